@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <type_traits>
+
+namespace flexarm {
+
+/// Hands the newest value from one writer thread to one reader thread. Older values are dropped.
+///
+/// Real-time safe on both sides: wait-free, no allocation, no system call; each call copies one T.
+/// Three buffers: the writer owns one, the reader owns one, the third waits in `shared_`. The
+/// acq_rel exchange publishes the bytes of T; nothing else synchronises.
+template <typename T>
+class LatestValue {
+  static_assert(std::is_trivially_copyable_v<T>, "a copy of T must not allocate or throw");
+  static_assert(std::atomic<std::uint8_t>::is_always_lock_free);
+
+ public:
+  explicit LatestValue(const T& initial) noexcept { buffers_.fill(initial); }
+  LatestValue(const LatestValue&) = delete;
+  LatestValue& operator=(const LatestValue&) = delete;
+
+  /// Writer thread only.
+  void Publish(const T& value) noexcept {
+    buffers_[write_] = value;
+    const std::uint8_t fresh = static_cast<std::uint8_t>(write_ | kFresh);
+    write_ = shared_.exchange(fresh, std::memory_order_acq_rel) & kIndex;
+  }
+
+  /// Reader thread only. The newest published value, or the previous one if none is newer. The
+  /// reference stays valid until the next call.
+  const T& Read() noexcept {
+    if ((shared_.load(std::memory_order_relaxed) & kFresh) != 0) {
+      read_ = shared_.exchange(read_, std::memory_order_acq_rel) & kIndex;
+    }
+    return buffers_[read_];
+  }
+
+ private:
+  static constexpr std::uint8_t kIndex = 0b011;
+  static constexpr std::uint8_t kFresh = 0b100;
+
+  std::array<T, 3> buffers_;
+  alignas(64) std::uint8_t write_ = 0;                // the writer's own
+  alignas(64) std::uint8_t read_ = 1;                 // the reader's own
+  alignas(64) std::atomic<std::uint8_t> shared_ = 2;  // index of the waiting buffer, plus kFresh
+};
+
+}  // namespace flexarm

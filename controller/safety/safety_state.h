@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+namespace flexarm {
+
+/// States of the daemon's safety machine (docs/safety.md). The value is logged: never renumber.
+enum class SafetyState : std::uint8_t {
+  kStarting = 0,  ///< until every task has reported once
+  kIdle = 1,      ///< relay open
+  kArmed = 2,     ///< relay closed, zero torque
+  kRunning = 3,   ///< the experiment
+  kStopping = 4,  ///< the controller damps the arm
+  kTripped = 5,   ///< latched: relay open, zero torque
+};
+
+/// Torque may flow only in these states.
+constexpr bool TorqueAllowed(SafetyState state) noexcept {
+  return state == SafetyState::kRunning || state == SafetyState::kStopping;
+}
+
+constexpr const char* Name(SafetyState state) noexcept {
+  switch (state) {
+    case SafetyState::kStarting: return "Starting";
+    case SafetyState::kIdle: return "Idle";
+    case SafetyState::kArmed: return "Armed";
+    case SafetyState::kRunning: return "Running";
+    case SafetyState::kStopping: return "Stopping";
+    case SafetyState::kTripped: return "Tripped";
+  }
+  return "corrupted";
+}
+
+}  // namespace flexarm
