@@ -13,14 +13,19 @@ class Task {
   struct Traits {
     const char* name;
     std::int64_t period_ns;
-    std::int64_t phase_ns;  ///< due at phase + n period
-    int priority;           ///< SCHED_FIFO 1..99; 0: ordinary scheduling
-    bool every_period;      ///< true: each due instant is run, late or not; false: late ones are skipped
+    std::int64_t phase_ns;     ///< due at phase + n period, n >= 0
+    std::int64_t deadline_ns;  ///< after the due instant; finishing later is a missed deadline
+    int priority;              ///< SCHED_FIFO 1..98; 0: ordinary scheduling
+  };
+
+  struct Activation {
+    std::int64_t due_ns;   ///< on the grid phase + n period, in the clock of the loop
+    int missed_in_a_row;   ///< deadlines missed or periods skipped just before this one
   };
 
   virtual ~Task() = default;
   virtual Traits traits() const noexcept = 0;
-  virtual void Run(std::int64_t due_ns) noexcept = 0;
+  virtual void Run(const Activation& activation) noexcept = 0;
 };
 
 }  // namespace flexarm

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "controller/law/step_types.h"
+#include "controller/runtime/history.h"
+#include "controller/runtime/latest_value.h"
+#include "controller/safety/safety_state.h"
+#include "controller/safety/trip_cause.h"
+
+// What the tasks tell each other. Every value is stamped with the instant from which it holds
+// (History), so that who sees what depends on the time grid and not on the scheduler.
+
+namespace flexarm {
+
+/// The values that caused a trip.
+struct Evidence {
+  double value;           ///< what was measured
+  double limit;           ///< what it broke
+  std::uint32_t channel;  ///< joint, counter or strain row, 1-based; 0: none
+  std::uint32_t reserved;
+};
+
+/// Control task -> drive. Holds from the instant at which it shall act.
+struct TorqueCommand {
+  std::array<double, 2> torque_nm;
+  std::int64_t tick;
+};
+
+/// Safety task -> drive, control, operator: what is allowed, renewed every safety tick.
+struct Permit {
+  SafetyState state;
+  TripCause cause;                ///< latched while Tripped
+  std::int64_t renewed_ns;        ///< safety tick that wrote it
+  std::int64_t running_since_ns;  ///< instant of the last change to Running; INT64_MIN: never
+  Evidence evidence;              ///< of `cause`
+};
+
+/// Control task -> safety: its heartbeat, and what only the loop can see. Holds from the deadline of
+/// the step on.
+struct ControlReport {
+  std::int64_t tick;       ///< -1: none yet
+  std::int64_t due_ns;     ///< when that step was due
+  TripCauses faults;
+  Evidence evidence;       ///< of the lowest fault
+  bool at_rest;
+  bool experiment_done;
+  int missed_in_a_row;
+};
+
+/// Drive side (plant task, or the buses) -> safety and control: its heartbeat, and what it did.
+struct DriveReport {
+  std::int64_t due_ns;                      ///< of its last run
+  bool bus_ok;
+  bool drive_ok;
+};
+
+enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };
+
+/// Operator -> safety. `not_before_ns` lets an unattended run plan its requests on the time grid.
+struct OperatorRequest {
+  RequestKind kind;
+  std::uint32_t number;         ///< echoed in the answer
+  std::int64_t not_before_ns;
+};
+
+enum class Refusal : std::uint8_t {
+  kNone,            ///< accepted
+  kWrongState,      ///< the state does not allow it
+  kNotAtRest,       ///< the arm moves
+  kCauseRemains,    ///< the trip's cause is still there
+  kNoReset,         ///< the physical reset button has not been pressed since the trip
+  kUnhealthy,       ///< a fact that would trip is present
+};
+
+/// Safety -> operator: what became of a request.
+struct RequestAnswer {
+  std::uint32_t number;
+  RequestKind kind;
+  Refusal refusal;
+  SafetyState state;      ///< when it was judged
+  TripCauses present;     ///< causes present then
+};
+
+}  // namespace flexarm
