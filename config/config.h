@@ -6,29 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "controller/law/controller_config.h"
 #include "controller/law/experiment.h"
-#include "controller/runtime/runtime_config.h"
-#include "controller/safety/safety_config.h"
-#include "estimator/estimator_config.h"
-#include "hal/sensor_config.h"
-#include "hal/sim/sim_config.h"
-#include "model/arm_parameters.h"
+#include "controller/runtime/stack_config.h"
 
 namespace flexarm {
 
 /// A rig, read from one TOML file and the files that it extends.
-struct Config {
+struct Config : StackConfig {
   std::string rig_name;  ///< key rig.name
   std::string backend;   ///< key hal.backend: "sim", or "" when the file has no [hal]
-  ArmParameters arm;
-  SensorConfig sensors;
-  SimConfig sim;
-  EstimatorConfig estimator;
-  ControllerConfig controller;
-  SafetyConfig safety;
-  LoopConfig loop;
-  DaemonConfig daemon;
   /// The merged, overridden document as TOML: reading it again gives the same Config. Logged.
   std::string text;
 };

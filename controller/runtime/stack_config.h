@@ -1,0 +1,25 @@
+#pragma once
+
+#include "controller/law/controller_config.h"
+#include "controller/runtime/runtime_config.h"
+#include "controller/safety/safety_config.h"
+#include "estimator/estimator_config.h"
+#include "hal/sensor_config.h"
+#include "hal/sim/sim_config.h"
+#include "model/arm_parameters.h"
+
+namespace flexarm {
+
+/// Everything that the loop and its tasks are built from: the plain structs of every folder.
+struct StackConfig {
+  ArmParameters arm;
+  SensorConfig sensors;
+  SimConfig sim;
+  EstimatorConfig estimator;
+  ControllerConfig controller;
+  SafetyConfig safety;
+  LoopConfig loop;
+  DaemonConfig daemon;
+};
+
+}  // namespace flexarm
