@@ -11,12 +11,12 @@ namespace flexarm {
 
 /// One uniform stretch of a link. A link is any number of them, root to tip.
 struct BeamSection {
-  double length_m;              ///< l > 0
-  double area_m2;               ///< A > 0
-  double second_moment_m4;      ///< I > 0, bending in the plane of motion
-  double density_kg_m3;         ///< rho > 0 (Table 2: D)
-  double youngs_modulus_pa;     ///< E > 0
-  double half_thickness_m;      ///< h/2 > 0: distance of the gauges from the neutral line
+  double length_m;           ///< l > 0
+  double area_m2;            ///< A > 0
+  double second_moment_m4;   ///< I > 0, bending in the plane of motion
+  double density_kg_m3;      ///< rho > 0 (Table 2: D)
+  double youngs_modulus_pa;  ///< E > 0
+  double half_thickness_m;   ///< h/2 > 0: distance of the gauges from the neutral line
 
   double mass_per_length_kg_m() const { return density_kg_m3 * area_m2; }
   double bending_stiffness_nm2() const { return youngs_modulus_pa * second_moment_m4; }
@@ -24,10 +24,10 @@ struct BeamSection {
 
 /// What the structural damping of a link means (docs/thesis notes: the thesis's (3.8) lacks rho).
 enum class DampingReading : std::uint8_t {
-  kNone,          ///< no structural damping
-  kCurvatureRho,  ///< "ca_rho": C_a = xi L^2 sqrt(rho A E / I): (3.8) with its units mended
+  kNone,                ///< no structural damping
+  kCurvatureRho,        ///< "ca_rho": C_a = xi L^2 sqrt(rho A E / I): (3.8) with its units mended
   kCurvatureAsPrinted,  ///< "ca_lit": C_a = xi L^2 sqrt(A E / I), as printed
-  kModal,         ///< "modal": every clamped mode of a link has the damping ratio xi
+  kModal,               ///< "modal": every clamped mode of a link has the damping ratio xi
 };
 
 /// Which rotary inertia the tip of link 1 carries when its mode shapes are computed.
@@ -45,10 +45,10 @@ struct LinkParameters {
 };
 
 struct JointParameters {
-  double stiffness_nm_per_rad;     ///< K > 0: spring between rotor and hub
-  double rotor_inertia_kgm2;       ///< J > 0, at the gearbox output
-  double hub_inertia_kgm2;         ///< I_h >= 0
-  double coulomb_friction_nm;      ///< K_F >= 0, acts between hub and its base (3.12)
+  double stiffness_nm_per_rad;  ///< K > 0: spring between rotor and hub
+  double rotor_inertia_kgm2;    ///< J > 0, at the gearbox output
+  double hub_inertia_kgm2;      ///< I_h >= 0
+  double coulomb_friction_nm;   ///< K_F >= 0, acts between hub and its base (3.12)
 };
 
 /// Physical constants of the arm, thesis Table 2 with names. SI units.
@@ -57,12 +57,13 @@ struct JointParameters {
 struct ArmParameters {
   std::array<LinkParameters, 2> link;
   std::array<JointParameters, 2> joint;
-  double hub2_mass_kg;         ///< M_h2 >= 0
-  double motor2_mass_kg;       ///< M_r2 >= 0, carried by the end of link 1
-  double motor2_inertia_kgm2;  ///< I_r2 >= 0, about the elbow, turns with the end of link 1
-  double payload_mass_kg;      ///< m_p >= 0
-  double payload_inertia_kgm2; ///< I_p >= 0
-  double shape_payload_mass_kg;  ///< payload for which the mode shapes are computed: the nominal one
+  double hub2_mass_kg;          ///< M_h2 >= 0
+  double motor2_mass_kg;        ///< M_r2 >= 0, carried by the end of link 1
+  double motor2_inertia_kgm2;   ///< I_r2 >= 0, about the elbow, turns with the end of link 1
+  double payload_mass_kg;       ///< m_p >= 0
+  double payload_inertia_kgm2;  ///< I_p >= 0
+  double
+      shape_payload_mass_kg;  ///< payload for which the mode shapes are computed: the nominal one
   DampingReading damping;
   Link1TipInertia link1_tip_inertia;
 

@@ -1,0 +1,131 @@
+#include "model/arm_model.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/arm_equations.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+// R(angle) [x, y] and its derivative for a turning frame.
+Vector2d Turned(double angle, const Vector2d& p) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
+}
+
+Vector2d Crossed(double rate, const Vector2d& p) { return {-rate * p.y(), rate * p.x()}; }
+
+}  // namespace
+
+ArmModel::ArmModel(const ArmParameters& parameters, ModeCount count)
+    : parameters_(parameters), constants_(parameters, count) {
+  const ArmConstants& c = constants_;
+  stiffness_ = damping_ = MatrixXd::Zero(dof(), dof());
+  for (const auto& [hub, rotor, K] :
+       {std::tuple{kTheta1, kTheta3, c.K1}, std::tuple{kTheta2, kTheta4, c.K2}}) {
+    stiffness_(hub, hub) = stiffness_(rotor, rotor) = K;
+    stiffness_(hub, rotor) = stiffness_(rotor, hub) = -K;
+  }
+  stiffness_.block(kPhi1, kPhi1, c.m1, c.m1) = c.link1.G;
+  stiffness_.bottomRightCorner(c.m2, c.m2) = c.link2.G;
+  damping_.block(kPhi1, kPhi1, c.m1, c.m1) = c.link1.D;
+  damping_.bottomRightCorner(c.m2, c.m2) = c.link2.D;
+}
+
+const LinkModes& ArmModel::link_modes(int link) const {
+  if (link == 1) return constants_.link1;
+  if (link == 2) return constants_.link2;
+  throw std::out_of_range("ArmModel: link is 1 or 2");
+}
+
+MatrixXd ArmModel::MassMatrix(const VectorXd& q) const {
+  const VectorXd rest = VectorXd::Zero(dof());
+  MatrixXd M(dof(), dof());
+  for (int i = 0; i < dof(); ++i) {
+    M.col(i) = InertialForces<double>(constants_, q, rest, VectorXd::Unit(dof(), i));
+  }
+  return 0.5 * (M + M.transpose());
+}
+
+VectorXd ArmModel::Bias(const VectorXd& q, const VectorXd& v) const {
+  return InertialForces<double>(constants_, q, v, VectorXd::Zero(dof()));
+}
+
+VectorXd ArmModel::Acceleration(const VectorXd& q, const VectorXd& v,
+                                const VectorXd& generalized_force) const {
+  const VectorXd force = generalized_force - Bias(q, v) - damping_ * v - stiffness_ * q;
+  return MassMatrix(q).llt().solve(force);
+}
+
+MatrixXd ArmModel::InputMatrix() const {
+  MatrixXd B = MatrixXd::Zero(dof(), 2);
+  B(kTheta3, 0) = B(kTheta4, 1) = 1.0;
+  return B;
+}
+
+double ArmModel::KineticEnergy(const VectorXd& q, const VectorXd& v) const {
+  return 0.5 * v.dot(InertialForces<double>(constants_, q, VectorXd::Zero(dof()), v));
+}
+
+double ArmModel::PotentialEnergy(const VectorXd& q) const { return 0.5 * q.dot(stiffness_ * q); }
+
+VectorXd ArmModel::ModalPart(int link, const VectorXd& q) const {
+  return link == 1 ? q.segment(kPhi1, constants_.m1) : q.tail(constants_.m2);
+}
+
+double ArmModel::Deflection(int link, double u_m, const VectorXd& coordinates) const {
+  const LinkModes& modes = link_modes(link);
+  const VectorXd phi = ModalPart(link, coordinates);
+  double w = 0.0;
+  for (int i = 0; i < modes.count(); ++i) {
+    w += modes.mode[static_cast<std::size_t>(i)].Value(u_m) * phi[i];
+  }
+  return w;
+}
+
+Vector2d ArmModel::Point(int link, double u_m, const VectorXd& q) const {
+  const Vector2d p(u_m, Deflection(link, u_m, q));
+  if (link == 1) return Turned(q[kTheta1], p);
+  const double alpha = std::atan(constants_.link1.slope_tip.dot(ModalPart(1, q)));
+  return Point(1, constants_.L1, q) + Turned(q[kTheta1] + alpha + q[kTheta2], p);
+}
+
+Vector2d ArmModel::PointVelocity(int link, double u_m, const VectorXd& q, const VectorXd& v) const {
+  const Vector2d p(u_m, Deflection(link, u_m, q)), p_dot(0.0, Deflection(link, u_m, v));
+  if (link == 1) return Turned(q[kTheta1], p_dot + Crossed(v[kTheta1], p));
+  const double s = constants_.link1.slope_tip.dot(ModalPart(1, q));
+  const double alpha_dot = constants_.link1.slope_tip.dot(ModalPart(1, v)) / (1.0 + s * s);
+  const double gamma = q[kTheta1] + std::atan(s) + q[kTheta2];
+  const double gamma_dot = v[kTheta1] + alpha_dot + v[kTheta2];
+  return PointVelocity(1, constants_.L1, q, v) + Turned(gamma, p_dot + Crossed(gamma_dot, p));
+}
+
+Vector2d ArmModel::TipPosition(const VectorXd& q) const { return Point(2, constants_.L2, q); }
+
+Vector2d ArmModel::TipVelocity(const VectorXd& q, const VectorXd& v) const {
+  return PointVelocity(2, constants_.L2, q, v);
+}
+
+double ArmModel::Strain(int link, double x_m, const VectorXd& q) const {
+  const LinkModes& modes = link_modes(link);
+  const VectorXd phi = ModalPart(link, q);
+  double curvature = 0.0;
+  for (int i = 0; i < modes.count(); ++i) {
+    curvature += modes.mode[static_cast<std::size_t>(i)].Curvature(x_m) * phi[i];
+  }
+  const auto& section = parameters_.link[static_cast<std::size_t>(link - 1)].section;
+  double end = 0.0;
+  for (const BeamSection& s : section) {
+    end += s.length_m;
+    if (x_m < end) return s.half_thickness_m * curvature;
+  }
+  return section.back().half_thickness_m * curvature;
+}
+
+}  // namespace flexarm

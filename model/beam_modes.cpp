@@ -1,0 +1,176 @@
+#include "model/beam_modes.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/beam_basis.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+using Row4 = Eigen::RowVector4d;
+
+double Beta(const BeamSection& s, double omega) {
+  return std::sqrt(omega * std::sqrt(s.mass_per_length_kg_m() / s.bending_stiffness_nm2()));
+}
+
+// Row of basis values: derivative `order`, in SI units (1/m^order).
+Row4 BasisRow(const BeamSection& s, double omega, double x, int order) {
+  const double beta = Beta(s, omega);
+  const auto f = BeamBasis(UseDecayingBasis(beta * s.length_m), beta, s.length_m, x, order);
+  const double scale = std::pow(beta, order);
+  return scale * Row4(f[0], f[1], f[2], f[3]);
+}
+
+// Exact dynamic stiffness of a section: [w0 w0' wl wl'] -> end forces, beam held at nothing.
+Eigen::Matrix4d SectionStiffness(const BeamSection& s, double omega) {
+  const double EI = s.bending_stiffness_nm2(), l = s.length_m;
+  Eigen::Matrix4d displacement, force;
+  displacement << BasisRow(s, omega, 0, 0), BasisRow(s, omega, 0, 1), BasisRow(s, omega, l, 0),
+      BasisRow(s, omega, l, 1);
+  force << EI * BasisRow(s, omega, 0, 3), -EI * BasisRow(s, omega, 0, 2),
+      -EI * BasisRow(s, omega, l, 3), EI * BasisRow(s, omega, l, 2);
+  // K = F E^-1. Slope rows are brought to the size of the others before the factorisation.
+  const double beta = Beta(s, omega);
+  const Eigen::Vector4d scale(1.0, 1.0 / beta, 1.0, 1.0 / beta);
+  const Eigen::Matrix4d scaled = scale.asDiagonal() * displacement;
+  const Eigen::Matrix4d inverse = scaled.fullPivLu().inverse() * scale.asDiagonal();
+  const Eigen::Matrix4d K = force * inverse;
+  return 0.5 * (K + K.transpose());
+}
+
+// Clamped-clamped frequencies of a section below omega: roots of 1 - cos z cosh z.
+int CountClampedClamped(const BeamSection& s, double omega) {
+  const double z = Beta(s, omega) * s.length_m;
+  if (z < 4.0) return 0;  // the first root is 4.730
+  const int i = static_cast<int>(std::floor(z / kPi));
+  const bool positive = 1.0 / std::cosh(z) > std::cos(z);
+  const bool even = i % 2 == 0;
+  return i - (positive == even ? 0 : 1);
+}
+
+int CountNegativeEigenvalues(const Eigen::MatrixXd& K) {
+  const Eigen::VectorXd scale = K.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * K * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
+  return static_cast<int>((eigen.eigenvalues().array() < 0.0).count());
+}
+
+double FindFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order) {
+  double high = 1.0;
+  while (CountFrequenciesBelow(section, tip, high) < order) high *= 2.0;
+  double low = high;
+  while (CountFrequenciesBelow(section, tip, low) >= order) low *= 0.5;
+  for (;;) {
+    const double middle = 0.5 * (low + high);
+    if (middle <= low || middle >= high) return middle;
+    (CountFrequenciesBelow(section, tip, middle) < order ? low : high) = middle;
+  }
+}
+
+// Homogeneous conditions on the 4 coefficients of each section: clamp, matching, tip.
+Eigen::MatrixXd MatchingMatrix(const std::vector<BeamSection>& section, const BeamTip& tip,
+                               double omega) {
+  const Eigen::Index n = 4 * static_cast<Eigen::Index>(section.size());
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+  A.block<1, 4>(0, 0) = BasisRow(section.front(), omega, 0.0, 0);
+  A.block<1, 4>(1, 0) = BasisRow(section.front(), omega, 0.0, 1);
+  Eigen::Index row = 2;
+  for (std::size_t i = 0; i + 1 < section.size(); ++i) {
+    const BeamSection &a = section[i], &b = section[i + 1];
+    const Eigen::Index col = 4 * static_cast<Eigen::Index>(i);
+    for (int d = 0; d < 4; ++d, ++row) {
+      const double Ka = d < 2 ? 1.0 : a.bending_stiffness_nm2();
+      const double Kb = d < 2 ? 1.0 : b.bending_stiffness_nm2();
+      A.block<1, 4>(row, col) = Ka * BasisRow(a, omega, a.length_m, d);
+      A.block<1, 4>(row, col + 4) = -Kb * BasisRow(b, omega, 0.0, d);
+    }
+  }
+  const BeamSection& s = section.back();
+  const double EI = s.bending_stiffness_nm2(), w2 = omega * omega, l = s.length_m;
+  A.block<1, 4>(row, n - 4) =
+      EI * BasisRow(s, omega, l, 2) - w2 * tip.inertia_kgm2 * BasisRow(s, omega, l, 1);
+  A.block<1, 4>(row + 1, n - 4) =
+      EI * BasisRow(s, omega, l, 3) + w2 * tip.mass_kg * BasisRow(s, omega, l, 0);
+  for (Eigen::Index i = 0; i < n; ++i) A.row(i) /= A.row(i).cwiseAbs().maxCoeff();
+  return A;
+}
+
+BeamMode ModeAt(const std::vector<BeamSection>& section, const BeamTip& tip, double omega) {
+  const Eigen::MatrixXd A = MatchingMatrix(section, tip, omega);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullV);
+  Eigen::VectorXd c = svd.matrixV().col(A.cols() - 1);
+  c /= BasisRow(section.back(), omega, section.back().length_m, 0).dot(c.tail<4>());
+  std::vector<BeamMode::Piece> piece;
+  double start = 0.0;
+  for (std::size_t i = 0; i < section.size(); ++i) {
+    const BeamSection& s = section[i];
+    const double beta = Beta(s, omega);
+    const Eigen::Vector4d k = c.segment<4>(4 * static_cast<Eigen::Index>(i));
+    piece.push_back(
+        {start, s.length_m, beta, UseDecayingBasis(beta * s.length_m), {k[0], k[1], k[2], k[3]}});
+    start += s.length_m;
+  }
+  return BeamMode(omega, std::move(piece));
+}
+
+void CheckBeam(const std::vector<BeamSection>& section, const BeamTip& tip, int count) {
+  if (section.empty()) throw std::invalid_argument("ClampedModes: a beam needs a section");
+  if (count < 1) throw std::invalid_argument("ClampedModes: count must be at least 1");
+  if (!(tip.mass_kg >= 0.0) || !(tip.inertia_kgm2 >= 0.0)) {
+    throw std::invalid_argument("ClampedModes: tip mass and inertia must not be negative");
+  }
+  for (const BeamSection& s : section) {
+    if (!(s.length_m > 0.0) || !(s.mass_per_length_kg_m() > 0.0) ||
+        !(s.bending_stiffness_nm2() > 0.0)) {
+      throw std::invalid_argument("ClampedModes: length, rho A and EI must be positive");
+    }
+  }
+}
+
+}  // namespace
+
+BeamMode::BeamMode(double frequency_rad_s, std::vector<Piece> piece)
+    : frequency_rad_s_(frequency_rad_s),
+      length_m_(piece.back().start_m + piece.back().length_m),
+      piece_(std::move(piece)) {}
+
+double BeamMode::Derivative(double x_m, int order) const {
+  std::size_t i = piece_.size() - 1;
+  while (i > 0 && x_m < piece_[i].start_m) --i;
+  const Piece& p = piece_[i];
+  const auto f = BeamBasis(p.decaying, p.beta_per_m, p.length_m, x_m - p.start_m, order);
+  const double sum = p.c[0] * f[0] + p.c[1] * f[1] + p.c[2] * f[2] + p.c[3] * f[3];
+  return sum * std::pow(p.beta_per_m, order);
+}
+
+int CountFrequenciesBelow(const std::vector<BeamSection>& section, const BeamTip& tip,
+                          double frequency_rad_s) {
+  const Eigen::Index n = 2 * static_cast<Eigen::Index>(section.size());
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n + 2, n + 2);
+  int count = 0;
+  for (std::size_t i = 0; i < section.size(); ++i) {
+    const Eigen::Index at = 2 * static_cast<Eigen::Index>(i);
+    K.block<4, 4>(at, at) += SectionStiffness(section[i], frequency_rad_s);
+    count += CountClampedClamped(section[i], frequency_rad_s);
+  }
+  const double w2 = frequency_rad_s * frequency_rad_s;
+  K(n, n) -= w2 * tip.mass_kg;
+  K(n + 1, n + 1) -= w2 * tip.inertia_kgm2;
+  return count + CountNegativeEigenvalues(K.bottomRightCorner(n, n));  // node 0 is clamped
+}
+
+std::vector<BeamMode> ClampedModes(const std::vector<BeamSection>& section, const BeamTip& tip,
+                                   int count) {
+  CheckBeam(section, tip, count);
+  std::vector<BeamMode> mode;
+  for (int order = 1; order <= count; ++order) {
+    mode.push_back(ModeAt(section, tip, FindFrequency(section, tip, order)));
+  }
+  return mode;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,106 @@
+#include "model/riccati.h"
+
+#include <Eigen/Dense>
+#include <complex>
+#include <stdexcept>
+#include <string>
+
+namespace flexarm {
+namespace {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+
+MatrixXd Symmetric(const MatrixXd& X) { return 0.5 * (X + X.transpose()); }
+
+void CheckDare(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R) {
+  const Eigen::Index n = A.rows(), m = B.cols();
+  if (n == 0 || A.cols() != n || B.rows() != n || Q.rows() != n || Q.cols() != n || R.rows() != m ||
+      R.cols() != m) {
+    throw std::invalid_argument("SolveDare: sizes do not fit");
+  }
+  if (R.llt().info() != Eigen::Success) {
+    throw std::invalid_argument("SolveDare: R must be positive definite");
+  }
+}
+
+// One Newton correction: with the closed loop F = A - B K, solve D - F'D F = residual.
+MatrixXd Refined(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R,
+                 const MatrixXd& P) {
+  const MatrixXd K = DareGain(A, B, R, P), F = A - B * K;
+  const MatrixXd residual = Symmetric(F.transpose() * P * F + K.transpose() * R * K + Q - P);
+  return Symmetric(P + SolveStein(F.transpose(), F, residual));
+}
+
+// Y - S Y T = F for upper triangular S and T.
+MatrixXcd SolveTriangularStein(const MatrixXcd& S, const MatrixXcd& T, const MatrixXcd& F) {
+  const MatrixXcd one = MatrixXcd::Identity(S.rows(), S.cols());
+  MatrixXcd Y = MatrixXcd::Zero(F.rows(), F.cols());
+  for (Eigen::Index j = 0; j < T.cols(); ++j) {
+    const MatrixXcd left = one - T(j, j) * S;
+    if (left.diagonal().cwiseAbs().minCoeff() < 1e-13) {
+      throw std::runtime_error(
+          "SolveStein: an eigenvalue of A times one of B is 1, so the solution is not unique");
+    }
+    const MatrixXcd right = F.col(j) + S * (Y.leftCols(j) * T.col(j).head(j));
+    Y.col(j) = left.triangularView<Eigen::Upper>().solve(right);
+  }
+  return Y;
+}
+
+}  // namespace
+
+MatrixXd DareGain(const MatrixXd& A, const MatrixXd& B, const MatrixXd& R, const MatrixXd& P) {
+  const MatrixXd H = Symmetric(R + B.transpose() * P * B);
+  return H.llt().solve(B.transpose() * P * A);
+}
+
+double DareResidual(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R,
+                    const MatrixXd& P) {
+  const MatrixXd K = DareGain(A, B, R, P);
+  const MatrixXd F = A - B * K;
+  const MatrixXd residual = F.transpose() * P * F + K.transpose() * R * K + Q - P;
+  return residual.cwiseAbs().maxCoeff() / P.cwiseAbs().maxCoeff();
+}
+
+MatrixXd SolveDare(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R) {
+  CheckDare(A, B, Q, R);
+  constexpr int kMaxDoublings = 60;
+  const MatrixXd one = MatrixXd::Identity(A.rows(), A.cols());
+  MatrixXd Ak = A, Gk = Symmetric(B * R.llt().solve(B.transpose())), Hk = Symmetric(Q);
+  for (int i = 0; i < kMaxDoublings; ++i) {
+    const Eigen::PartialPivLU<MatrixXd> W(one + Gk * Hk);
+    const MatrixXd WA = W.solve(Ak), WG = W.solve(Gk);
+    const MatrixXd H_step = Symmetric(Ak.transpose() * Hk * WA);
+    Gk = Symmetric(Gk + Ak * WG * Ak.transpose());
+    Hk += H_step;
+    Ak = (Ak * WA).eval();
+    if (!Hk.allFinite() || !Gk.allFinite()) break;
+    if (H_step.cwiseAbs().maxCoeff() <= 1e-15 * Hk.cwiseAbs().maxCoeff()) {
+      const MatrixXd P = Refined(A, B, Q, R, Hk);
+      if (DareResidual(A, B, Q, R, P) < 1e-8) return P;
+      break;
+    }
+  }
+  throw std::runtime_error(
+      "SolveDare: no convergence: a mode on or outside the unit circle is not reached by B, or one "
+      "on it is not weighted by Q");
+}
+
+MatrixXd SolveStein(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
+  if (A.rows() != A.cols() || B.rows() != B.cols() || C.rows() != A.rows() ||
+      C.cols() != B.rows() || C.size() == 0) {
+    throw std::invalid_argument("SolveStein: sizes do not fit");
+  }
+  const Eigen::ComplexSchur<MatrixXd> a(A), b(B);
+  MatrixXd X = MatrixXd::Zero(C.rows(), C.cols());
+  for (int round = 0; round < 3; ++round) {  // the first solves, two refine
+    const MatrixXd residual = C - (X - A * X * B);
+    const MatrixXcd F = a.matrixU().adjoint() * residual * b.matrixU();
+    const MatrixXcd Y = SolveTriangularStein(a.matrixT(), b.matrixT(), F);
+    X += (a.matrixU() * Y * b.matrixU().adjoint()).real();
+  }
+  return X;
+}
+
+}  // namespace flexarm
