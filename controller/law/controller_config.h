@@ -32,7 +32,7 @@ struct ControllerConfig {
   double passivity_margin;  ///< G = J + margin I, > 0
   double adaptation_gain;   ///< T = Tbar = gain I_16, >= 0
   bool prediction;          ///< one-sample open-loop prediction
-  bool adaptation;          ///< false: the gains stay at K_I(0)
+  bool adaptation;          ///< false: u = u* + y_e, the same feedforward and feedback
   std::string gains_file;   ///< key `gains`, optional: written by `flexarm design`; empty: design at start
 
   std::vector<Problem> Problems() const;

@@ -11,35 +11,48 @@ struct StackConfig;
 
 /// One check made on a design, with its figure.
 struct DesignCheck {
-  std::string name;    ///< e.g. "cgt-residual"
+  std::string name;   ///< e.g. "cgt-residual"
   double value;
   double limit;
-  bool below;          ///< true: value must be below limit; false: above
+  bool below;         ///< true: the value must be below the limit; false: above it
+
   bool passed() const { return below ? value < limit : value > limit; }
 };
 
 /// Everything that the loop needs and that is computed before it runs. SI, psi(L) = 1.
 ///
-/// Names as in control.md section 4: A B the nominal model R12 (n = 12, discrete), Am Bm the
-/// reference model, K the LQR gain = Cp, J G of the positive-real lemma, S11..S22 of the command
-/// generator, Ufx Ufu of (7.25), and the steady Kalman filter Aa Ba C L (16 states, 8 outputs).
+/// Names as in control.md section 4 and thesis chapter 7. n states, 2 inputs.
 struct Design {
-  Eigen::MatrixXd A, B, Am, Bm, K, P, J, G, S11, S12, S21, S22, Ufx, Ufu;
-  Eigen::MatrixXd filter_A, filter_B, filter_C, filter_L;
-  Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: move = M_r^-1 a T^2 / 4
+  Eigen::MatrixXd A, B;    ///< nominal model, discrete
+  Eigen::MatrixXd Am, Bm;  ///< reference model, discrete
+  Eigen::MatrixXd K;       ///< 2 x n: LQR with degree of stability alpha; also the output matrix C_p
+  Eigen::MatrixXd P;       ///< n x n: P' = e^(2 alpha Ts) P of the lemma (7.16)
+  Eigen::MatrixXd J, G;    ///< 2 x 2: J = B'P'B/2, G = J + margin I
+  Eigen::MatrixXd S11, S12, S21, S22;  ///< command generator: x* = S11 x_m + S12 u_m, u_c likewise
+  Eigen::MatrixXd Ufx, Ufu;            ///< (7.25): u_f = -+Ufx x_m + Ufu u_m
+  Eigen::MatrixXd filter_A, filter_B, filter_C, filter_L;  ///< estimator/kalman_design.h
+  Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: a doublet moves by M_r^-1 a T^2/4
   std::vector<DesignCheck> checks;
 
   bool sound() const;  ///< every check passed
 };
 
-/// Designs nominal and reference model, gains and filter for a rig. About a tenth of a second.
+/// Designs nominal model, reference model, gains and filter for a rig. Takes tens of milliseconds.
 /// @throws std::runtime_error naming the equation that has no solution
 Design DesignController(const StackConfig& config);
 
-/// Gains as JSON text in full precision (17 digits), with the hash of the parts of the config that
-/// they were designed from; and back.
-/// @throws std::runtime_error if the text is not a gains file
+/// Digest of what a design depends on: arm, sensors, estimator, controller, period. 16 hex digits.
+std::string DesignHash(const StackConfig& config);
+
+/// A design as JSON text, doubles in 17 digits, with the digest of its config.
 std::string DesignToJson(const Design& design, const std::string& config_hash);
-Design DesignFromJson(const std::string& text, std::string* config_hash);
+
+/// Reads what DesignToJson wrote.
+/// @throws std::runtime_error naming what is missing or misshapen, or that `expected_hash` differs
+Design DesignFromJson(const std::string& text, const std::string& expected_hash);
+
+/// The design to run with: the one in `controller.gains`, or a new one.
+/// @throws std::runtime_error, also when a check of the design failed
+Design DesignFor(const StackConfig& config);
 
 }  // namespace flexarm

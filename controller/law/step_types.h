@@ -24,6 +24,7 @@ struct ReferenceSample {
 struct StepInput {
   std::int64_t tick;     ///< k: the frame belongs to the sampling instant k Ts
   std::int64_t now_ns;   ///< scheduled release of this step, in the clock of the loop
+  std::int64_t sampling_instant_ns;  ///< k Ts, in the same clock: when the frame should be from
   SensorFrame frame;
   std::array<double, 2> applied_torque_nm;  ///< after the gate: mean over [k-1, k] Ts
   ReferenceSample reference_now;            ///< at k Ts
@@ -35,7 +36,7 @@ struct StepInput {
   std::array<std::uint8_t, 5> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
-static_assert(sizeof(StepInput) == 16 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) +
+static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) +
                                        8 * kCounters + 8,
               "no padding: the bytes are logged and compared");
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace flexarm {
+
+/// The discrete plant and the reference model whose output it shall follow: C_p x = C_m x_m.
+struct TrackingProblem {
+  Eigen::MatrixXd A, B, Cp;     ///< plant
+  Eigen::MatrixXd Am, Bm, Cm;   ///< reference model
+  Eigen::VectorXd scale;        ///< x = scale .* z: the solve is done in z, where it is well conditioned
+};
+
+/// Command generator tracker: the plant trajectory on which the outputs agree exactly.
+///   x* = S11 x_m + S12 u_m,  u* = S21 x_m + S22 u_m
+/// Source: thesis 7.3 and control.md section 4, point 5.
+struct CommandGenerator {
+  Eigen::MatrixXd S11, S12, S21, S22;
+  double condition;  ///< of the matrix [A - I, B; C_p, 0], scaled
+};
+
+/// @throws std::runtime_error if the plant has an invariant zero at 1, or one on a pole of A_m
+CommandGenerator SolveCommandGenerator(const TrackingProblem& problem);
+
+/// Largest violation of A S11 + B S21 = S11 Am, A S12 + B S22 = S11 Bm + S12, Cp S11 = Cm and
+/// Cp S12 = 0 in scaled coordinates.
+double TrackingResidual(const TrackingProblem& problem, const CommandGenerator& generator);
+
+}  // namespace flexarm

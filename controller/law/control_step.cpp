@@ -1,0 +1,148 @@
+#include "controller/law/control_step.h"
+
+#include "controller/law/design.h"
+#include "controller/law/loop_supervisor.h"
+#include "controller/law/sobel_law.h"
+#include "controller/runtime/stack_config.h"
+#include "estimator/counter_decoder.h"
+#include "estimator/state_estimator.h"
+#include "estimator/strain_fit.h"
+
+namespace flexarm {
+namespace {
+
+std::array<double, 2> JointStiffness(const ArmParameters& arm) {
+  return {arm.joint[0].stiffness_nm_per_rad, arm.joint[1].stiffness_nm_per_rad};
+}
+
+void Store(const StateVector& x, std::array<double, kMaxNominalStates>* out) noexcept {
+  for (Eigen::Index i = 0; i < x.size(); ++i) (*out)[static_cast<std::size_t>(i)] = x(i);
+}
+
+}  // namespace
+
+struct ControlStep::Stages {
+  Stages(const StackConfig& config, const Design& design)
+      : period_s(config.loop.period_ms * 1e-3),
+        prediction(config.controller.prediction),
+        decoder(config.sensors, period_s, config.estimator.max_joint_rate_rad_s),
+        fit(config.arm, config.sensors, config.estimator),
+        estimator(config.estimator,
+                  {.A = design.filter_A, .B = design.filter_B, .C = design.filter_C,
+                   .L = design.filter_L},
+                  period_s, JointStiffness(config.arm)),
+        supervisor(config.safety, config.estimator, period_s, config.sensors.counters_present(),
+                   JointStiffness(config.arm)),
+        law(design, config.controller, config.safety.torque_limit_nm),
+        A(design.A),
+        B(design.B) {}
+
+  void Reset(const std::array<std::int64_t, kCounters>& counts_before) noexcept {
+    decoder.Reset(counts_before);
+    fit.Reset();
+    estimator.Reset();
+    supervisor.Reset();
+    law.Reset();
+    pending_nm = {};
+    stopping = false;
+  }
+
+  // x(k+1) = A x(k) + B u(k), u(k) the torque that acts now: asked one sample ago.
+  StateVector Predict(const StateVector& x) const noexcept {
+    StateVector next = A.lazyProduct(x);
+    next += B.col(0) * pending_nm[0];
+    next += B.col(1) * pending_nm[1];
+    return next;
+  }
+
+  SobelLaw::Result Decide(const StepInput& input, const StateVector& x, bool sensors_good) noexcept {
+    if (input.safety_state == SafetyState::kRunning) {
+      stopping = false;
+      return law.Compute(x, input.reference_next, sensors_good);
+    }
+    if (!stopping) {  // hold the hubs where the stop found them, or where the reference ended
+      stopping = true;
+      stop_goal = StateVector::Zero(x.size());
+      for (Eigen::Index i = 0; i < 2; ++i) {
+        stop_goal(i) = input.reference_ended != 0
+                           ? input.reference_next.x_m[static_cast<std::size_t>(i)]
+                           : x(i);
+      }
+    }
+    return law.Regulate(x, stop_goal);
+  }
+
+  const double period_s;
+  const bool prediction;
+  CounterDecoder decoder;
+  StrainFit fit;
+  StateEstimator estimator;
+  LoopSupervisor supervisor;
+  SobelLaw law;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 16, 16> A;
+  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 16, 2> B;
+  std::array<double, 2> pending_nm{};  // asked in the last step, acts from this sample on
+  bool stopping = false;
+  StateVector stop_goal;
+};
+
+ControlStep::ControlStep(const StackConfig& config, const Design& design)
+    : stages_(std::make_unique<Stages>(config, design)) {}
+
+ControlStep::~ControlStep() = default;
+
+StepOutput ControlStep::Step(const StepInput& input) noexcept {
+  Stages& s = *stages_;
+  if (input.reset != 0) s.Reset(input.counts_before);
+
+  // A frame of another sampling instant says nothing about this one.
+  SensorFrame frame = input.frame;
+  const double frame_age_s =
+      static_cast<double>(input.sampling_instant_ns - frame.sampled_at_ns) * 1e-9;
+  if (frame_age_s > 0.5 * s.period_s) frame.counter_valid = frame.strain_valid = 0;
+
+  const DecodedCounters counters = s.decoder.Decode(frame);
+  const FittedModes modes = s.fit.Fit(frame);
+  const StateEstimator::Estimate estimate =
+      s.estimator.Update(counters, modes, input.applied_torque_nm);
+  const LoopSupervisor::Verdict verdict = s.supervisor.Judge({.counters = &counters,
+                                                              .modes = &modes,
+                                                              .estimate = &estimate,
+                                                              .applied_torque_nm = input.applied_torque_nm,
+                                                              .frame_age_s = frame_age_s});
+  const StateVector x_next = s.prediction ? s.Predict(estimate.x) : estimate.x;
+
+  StepOutput out{};
+  out.tick = input.tick;
+  out.faults = verdict.faults;
+  if (TorqueAllowed(input.safety_state) && verdict.faults == 0) {
+    const bool sensors_good = modes.valid[0] && modes.valid[1] && (counters.good & 3u) == 3u;
+    const SobelLaw::Result decision = s.Decide(input, x_next, sensors_good);
+    out.torque_nm = decision.torque_nm;
+    out.limits = decision.limits;
+  } else {
+    out.limits = kAdaptationHeld;
+  }
+  if (!s.prediction) out.limits |= kPredictionOff;
+  s.pending_nm = out.torque_nm;
+
+  out.angle_rad = counters.angle_rad;
+  out.modal_m = modes.modal_m;
+  Store(estimate.x, &out.x_hat);
+  Store(x_next, &out.x_next);
+  out.innovation = estimate.innovation;
+  out.root_strain = modes.root_strain;
+  out.fit_residual = modes.residual;
+  out.adaptive_gain_change = s.law.adaptive_gain_change();
+  out.fault_value = verdict.value;
+  out.fault_limit = verdict.limit;
+  out.fault_channel = verdict.channel;
+  out.counts = counters.counts;
+  out.strain_used = modes.used;
+  out.counters_used = counters.good;
+  out.at_rest = verdict.at_rest ? 1 : 0;
+  out.experiment_done = input.reference_ended;
+  return out;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,191 @@
+#include "controller/law/design.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "controller/law/command_generator.h"
+#include "controller/runtime/stack_config.h"
+#include "estimator/kalman_design.h"
+#include "estimator/nominal_model.h"
+#include "model/riccati.h"
+
+namespace flexarm {
+namespace {
+
+double SpectralRadius(const Eigen::MatrixXd& A) { return A.eigenvalues().cwiseAbs().maxCoeff(); }
+
+// Q weighs hub angles and rates only: weights on elastic energy make the regulator fight modes that
+// the nominal model does not have.
+Eigen::MatrixXd StateWeight(const ControllerConfig& controller, Eigen::Index n) {
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    q(i) = controller.hub_angle_weight[static_cast<std::size_t>(i)];
+    q(n / 2 + i) = controller.hub_rate_weight[static_cast<std::size_t>(i)];
+  }
+  return q.asDiagonal();
+}
+
+// LQR with prescribed degree of stability: P of (a A, a B, Q/rho, I), a = e^(alpha Ts), and
+// K = (I + a^2 B'PB)^-1 a^2 B'PA. P' = a^2 P satisfies A_c'P'B = K', so the lemma (7.16) holds with
+// W = 0 and J = B'P'B/2.
+void DesignRegulator(const StackConfig& config, Design* design) {
+  const ControllerConfig& controller = config.controller;
+  const double a = std::exp(controller.alpha * config.loop.period_ms * 1e-3);
+  const Eigen::MatrixXd& A = design->A;
+  const Eigen::MatrixXd& B = design->B;
+  const Eigen::MatrixXd Q = StateWeight(controller, A.rows()) / controller.torque_weight;
+  const Eigen::Matrix2d I2 = Eigen::Matrix2d::Identity();
+  const Eigen::MatrixXd P = SolveDare(a * A, a * B, Q, I2);
+  design->P = a * a * P;
+  const Eigen::Matrix2d S = I2 + B.transpose() * design->P * B;
+  design->K = S.llt().solve(B.transpose() * design->P * A);
+  design->J = 0.5 * B.transpose() * design->P * B;
+  design->G = design->J + controller.passivity_margin * I2;
+  design->checks.push_back({"regulator-riccati-residual", DareResidual(a * A, a * B, Q, I2, P), 1e-9, true});
+}
+
+// Coordinates in which the CGT equation is well conditioned: unit modal mass, and rates measured
+// against the torque modes. Link 1's second shape has its node at the heavy tip, so that with
+// psi(L) = 1 its modal mass is 410 kg.
+Eigen::VectorXd TrackingScale(const NominalModel& nominal) {
+  const Eigen::Index dof = nominal.M.rows();
+  const double rate = nominal.torque_mode_rad_s(0);
+  Eigen::VectorXd scale(2 * dof);
+  scale.head(dof) = nominal.M.diagonal().cwiseSqrt().cwiseInverse();
+  scale.tail(dof) = rate * scale.head(dof);
+  return scale;
+}
+
+void DesignCommandGenerator(const NominalModel& nominal, Design* design) {
+  const TrackingProblem problem{.A = design->A,
+                                .B = design->B,
+                                .Cp = design->K,
+                                .Am = design->Am,
+                                .Bm = design->Bm,
+                                .Cm = design->K,
+                                .scale = TrackingScale(nominal)};
+  const CommandGenerator generator = SolveCommandGenerator(problem);
+  design->S11 = generator.S11;
+  design->S12 = generator.S12;
+  design->S21 = generator.S21;
+  design->S22 = generator.S22;
+  design->checks.push_back({"cgt-condition", generator.condition, 1e9, true});
+  design->checks.push_back({"cgt-residual", TrackingResidual(problem, generator), 1e-8, true});
+
+  const Eigen::MatrixXd& B = design->B;
+  const Eigen::Matrix2d BtB = B.transpose() * B;
+  design->Ufx = BtB.llt().solve(B.transpose() * (design->Am - design->A));  // (7.25)
+  design->Ufu = BtB.llt().solve(B.transpose() * design->Bm);
+}
+
+// Smallest eigenvalue of S + S* on the unit circle, S(z) = J + K (zI - A_c)^-1 B: the lemma says
+// that it is positive, this looks.
+double PositiveRealMargin(const Design& design) {
+  constexpr int kFrequencies = 720;
+  const Eigen::MatrixXcd A_c = (design.A - design.B * design.K).cast<std::complex<double>>();
+  const Eigen::MatrixXcd B = design.B.cast<std::complex<double>>();
+  const Eigen::MatrixXcd K = design.K.cast<std::complex<double>>();
+  const Eigen::MatrixXcd I = Eigen::MatrixXcd::Identity(A_c.rows(), A_c.cols());
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kFrequencies; ++i) {
+    const std::complex<double> z = std::polar(1.0, std::numbers::pi * i / kFrequencies);
+    const Eigen::Matrix2cd S =
+        design.J.cast<std::complex<double>>() + K * (z * I - A_c).partialPivLu().solve(B);
+    const Eigen::Matrix2cd hermitian = S + S.adjoint();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> eigen(hermitian, Eigen::EigenvaluesOnly);
+    smallest = std::min(smallest, eigen.eigenvalues()(0));
+  }
+  return smallest;
+}
+
+void CheckLemma(double alpha, double period_s, Design* design) {
+  const Eigen::MatrixXd A_c = design->A - design->B * design->K;
+  const Eigen::MatrixXd mismatch = A_c.transpose() * design->P * design->B - design->K.transpose();
+  const Eigen::MatrixXd LLt = design->P - A_c.transpose() * design->P * A_c;
+  const auto smallest = [](const Eigen::MatrixXd& symmetric) {
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (symmetric + symmetric.transpose()),
+                                                          Eigen::EigenvaluesOnly)
+        .eigenvalues()(0);
+  };
+  design->checks.push_back({"lemma-residual",
+                            mismatch.cwiseAbs().maxCoeff() / design->K.cwiseAbs().maxCoeff(), 1e-8,
+                            true});
+  design->checks.push_back({"lemma-dissipation-min-eigenvalue",
+                            smallest(LLt) / design->P.cwiseAbs().maxCoeff(), -1e-12, false});
+  design->checks.push_back({"j-min-eigenvalue", smallest(design->J), 0.0, false});
+  design->checks.push_back({"g-minus-j-min-eigenvalue", smallest(design->G - design->J), 0.0, false});
+  design->checks.push_back({"positive-real-min-eigenvalue", PositiveRealMargin(*design), 0.0, false});
+  design->checks.push_back({"closed-loop-spectral-radius", SpectralRadius(A_c),
+                            std::exp(-alpha * period_s) + 1e-9, true});
+}
+
+}  // namespace
+
+bool Design::sound() const {
+  return std::all_of(checks.begin(), checks.end(), [](const DesignCheck& c) { return c.passed(); });
+}
+
+Design DesignController(const StackConfig& config) {
+  const double period_s = config.loop.period_ms * 1e-3;
+  const NominalModel nominal = MakeNominalModel(config.arm, config.estimator.modes_per_link);
+  const NominalModel reference = MakeReferenceModel(nominal);
+  const DiscreteModel plant = ZeroOrderHold(nominal.A, nominal.B, period_s);
+  const DiscreteModel followed = ZeroOrderHold(reference.A, reference.B, period_s);
+
+  Design design;
+  design.A = plant.A;
+  design.B = plant.B;
+  design.Am = followed.A;
+  design.Bm = followed.B;
+  design.rigid_inertia_kgm2 = nominal.M.topLeftCorner<2, 2>();
+  DesignRegulator(config, &design);
+  CheckLemma(config.controller.alpha, period_s, &design);
+  DesignCommandGenerator(nominal, &design);
+
+  const KalmanDesign filter =
+      DesignKalmanFilter(nominal, config.sensors, config.estimator, period_s);
+  design.filter_A = filter.A;
+  design.filter_B = filter.B;
+  design.filter_C = filter.C;
+  design.filter_L = filter.L;
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(filter.A.rows(), filter.A.rows());
+  design.checks.push_back({"filter-riccati-residual", filter.residual, 1e-9, true});
+  design.checks.push_back(
+      {"filter-spectral-radius", SpectralRadius(filter.A * (I - filter.L * filter.C)), 1.0, true});
+  return design;
+}
+
+Design DesignFor(const StackConfig& config) {
+  Design design;
+  if (config.controller.gains_file.empty()) {
+    design = DesignController(config);
+  } else {
+    std::ifstream file(config.controller.gains_file);
+    if (!file) {
+      throw std::runtime_error(config.controller.gains_file +
+                               ": cannot be read (controller.gains); write it with `flexarm design`");
+    }
+    std::stringstream text;
+    text << file.rdbuf();
+    design = DesignFromJson(text.str(), DesignHash(config));
+  }
+  for (const DesignCheck& check : design.checks) {
+    if (!check.passed()) {
+      throw std::runtime_error("design check '" + check.name + "' failed: " +
+                               std::to_string(check.value) + (check.below ? " is not below " : " is not above ") +
+                               std::to_string(check.limit));
+    }
+  }
+  return design;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,209 @@
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "controller/law/design.h"
+#include "controller/runtime/stack_config.h"
+
+namespace flexarm {
+namespace {
+
+constexpr const char* kFormat = "flexarm-gains-1";
+
+// FNV-1a over the text of every number that a design depends on.
+class Digest {
+ public:
+  Digest& operator<<(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.17g;", value);
+    for (const char c : text) {
+      if (c == '\0') break;
+      hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    }
+    return *this;
+  }
+  template <std::size_t N>
+  Digest& operator<<(const std::array<double, N>& values) {
+    for (const double value : values) *this << value;
+    return *this;
+  }
+  std::string Hex() const {
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash_));
+    return text.data();
+  }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037u;
+};
+
+void AddArm(const ArmParameters& arm, Digest* digest) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    *digest << arm.link[i].damping_ratio << static_cast<double>(arm.link[i].section.size());
+    for (const BeamSection& s : arm.link[i].section) {
+      *digest << s.length_m << s.area_m2 << s.second_moment_m4 << s.density_kg_m3
+              << s.youngs_modulus_pa << s.half_thickness_m;
+    }
+    const JointParameters& joint = arm.joint[i];
+    *digest << joint.stiffness_nm_per_rad << joint.rotor_inertia_kgm2 << joint.hub_inertia_kgm2
+            << joint.coulomb_friction_nm;
+  }
+  *digest << arm.hub2_mass_kg << arm.motor2_mass_kg << arm.motor2_inertia_kgm2
+          << arm.payload_mass_kg << arm.payload_inertia_kgm2 << arm.shape_payload_mass_kg
+          << static_cast<double>(arm.damping) << static_cast<double>(arm.link1_tip_inertia);
+}
+
+// The members of a design by name, so that writer and reader cannot disagree.
+template <typename D, typename F>
+void ForEachMatrix(D& design, F&& visit) {
+  visit("A", design.A);
+  visit("B", design.B);
+  visit("Am", design.Am);
+  visit("Bm", design.Bm);
+  visit("K", design.K);
+  visit("P", design.P);
+  visit("J", design.J);
+  visit("G", design.G);
+  visit("S11", design.S11);
+  visit("S12", design.S12);
+  visit("S21", design.S21);
+  visit("S22", design.S22);
+  visit("Ufx", design.Ufx);
+  visit("Ufu", design.Ufu);
+  visit("filter_A", design.filter_A);
+  visit("filter_B", design.filter_B);
+  visit("filter_C", design.filter_C);
+  visit("filter_L", design.filter_L);
+  visit("rigid_inertia_kgm2", design.rigid_inertia_kgm2);
+}
+
+template <typename M>
+nlohmann::json MatrixToJson(const M& matrix) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    nlohmann::json row = nlohmann::json::array();
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+template <typename M>
+void MatrixFromJson(const nlohmann::json& rows, const std::string& name, M* matrix) {
+  if (!rows.is_array() || rows.empty() || !rows[0].is_array()) {
+    throw std::runtime_error("gains file: '" + name + "' is not a matrix (an array of rows)");
+  }
+  Eigen::MatrixXd read(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].size() != rows[0].size()) {
+      throw std::runtime_error("gains file: '" + name + "' has rows of different length");
+    }
+    for (std::size_t j = 0; j < rows[i].size(); ++j) {
+      if (!rows[i][j].is_number()) {
+        throw std::runtime_error("gains file: '" + name + "' holds something that is not a number");
+      }
+      read(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j].get<double>();
+    }
+  }
+  *matrix = read;
+}
+
+template <>
+void MatrixFromJson(const nlohmann::json& rows, const std::string& name, Eigen::Matrix2d* matrix) {
+  Eigen::MatrixXd read;
+  MatrixFromJson(rows, name, &read);
+  if (read.rows() != 2 || read.cols() != 2) {
+    throw std::runtime_error("gains file: '" + name + "' must be 2 x 2");
+  }
+  *matrix = read;
+}
+
+// Every product that the loop forms must have matching shapes.
+void RequireShapes(const Design& d) {
+  const Eigen::Index n = d.A.rows(), flex = n / 2 - 2, nf = n + flex, outputs = 4 + flex;
+  const auto require = [](const char* name, const Eigen::MatrixXd& m, Eigen::Index rows,
+                          Eigen::Index cols) {
+    if (m.rows() == rows && m.cols() == cols) return;
+    throw std::runtime_error(std::string("gains file: '") + name + "' is " +
+                             std::to_string(m.rows()) + " x " + std::to_string(m.cols()) +
+                             ", expected " + std::to_string(rows) + " x " + std::to_string(cols));
+  };
+  require("A", d.A, n, n);
+  require("B", d.B, n, 2);
+  require("Am", d.Am, n, n);
+  require("Bm", d.Bm, n, 2);
+  require("K", d.K, 2, n);
+  require("P", d.P, n, n);
+  require("J", d.J, 2, 2);
+  require("G", d.G, 2, 2);
+  require("S11", d.S11, n, n);
+  require("S12", d.S12, n, 2);
+  require("S21", d.S21, 2, n);
+  require("S22", d.S22, 2, 2);
+  require("Ufx", d.Ufx, 2, n);
+  require("Ufu", d.Ufu, 2, 2);
+  require("filter_A", d.filter_A, nf, nf);
+  require("filter_B", d.filter_B, nf, 2);
+  require("filter_C", d.filter_C, outputs, nf);
+  require("filter_L", d.filter_L, nf, outputs);
+}
+
+}  // namespace
+
+std::string DesignHash(const StackConfig& config) {
+  Digest digest;
+  AddArm(config.arm, &digest);
+  for (const EncoderConfig& e : config.sensors.encoder) digest << e.counter << e.counts_per_turn;
+  digest << config.sensors.strain_input.filter_hz;
+  const EstimatorConfig& estimator = config.estimator;
+  digest << estimator.modes_per_link << estimator.process_force << estimator.rotor_extra_sigma_rad
+         << estimator.modal_sigma_m;
+  const ControllerConfig& c = config.controller;
+  digest << c.alpha << c.hub_angle_weight << c.hub_rate_weight << c.torque_weight
+         << c.passivity_margin << config.loop.period_ms;
+  return digest.Hex();
+}
+
+std::string DesignToJson(const Design& design, const std::string& config_hash) {
+  nlohmann::ordered_json out;
+  out["format"] = kFormat;
+  out["config_hash"] = config_hash;
+  ForEachMatrix(design, [&out](const char* name, const auto& m) { out[name] = MatrixToJson(m); });
+  for (const DesignCheck& check : design.checks) {
+    out["checks"].push_back({{"name", check.name},
+                             {"value", check.value},
+                             {"limit", check.limit},
+                             {"below", check.below},
+                             {"passed", check.passed()}});
+  }
+  return out.dump(1);
+}
+
+Design DesignFromJson(const std::string& text, const std::string& expected_hash) {
+  const nlohmann::json in = nlohmann::json::parse(text, nullptr, false);
+  if (!in.is_object() || in.value("format", "") != kFormat) {
+    throw std::runtime_error(std::string("not a gains file: expected JSON with \"format\": \"") +
+                             kFormat + "\", as `flexarm design` writes it");
+  }
+  if (in.value("config_hash", "") != expected_hash) {
+    throw std::runtime_error("gains file: designed for another config (hash " +
+                             in.value("config_hash", "missing") + ", this config has " +
+                             expected_hash + "); run `flexarm design` again");
+  }
+  Design design;
+  ForEachMatrix(design, [&in](const char* name, auto& m) {
+    if (!in.contains(name)) throw std::runtime_error(std::string("gains file: '") + name + "' is missing");
+    MatrixFromJson(in.at(name), name, &m);
+  });
+  RequireShapes(design);
+  for (const nlohmann::json& check : in.value("checks", nlohmann::json::array())) {
+    design.checks.push_back({check.value("name", ""), check.value("value", 0.0),
+                             check.value("limit", 0.0), check.value("below", true)});
+  }
+  return design;
+}
+
+}  // namespace flexarm

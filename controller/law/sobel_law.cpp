@@ -1,0 +1,92 @@
+#include "controller/law/sobel_law.h"
+
+#include <cmath>
+
+namespace flexarm {
+
+SobelLaw::SobelLaw(const Design& design, const ControllerConfig& config,
+                   const std::array<double, 2>& torque_limit_nm)
+    : config_(config),
+      torque_limit_nm_(torque_limit_nm),
+      states_(design.A.rows()),
+      Cp_(design.K),
+      G_(design.G) {
+  // (7.24) with (7.25): the printed minus sign in front of (A_m - A), or the one that follows.
+  const double sign = config.feedforward_sign == FeedforwardSign::kPrinted ? -1.0 : 1.0;
+  const bool adaptive = config.kind == ControllerKind::kSobel;
+  const double vartheta = adaptive ? config.vartheta : 0.0;
+  feedforward_x_ = vartheta * sign * design.Ufx + (1.0 - vartheta) * design.S21;
+  feedforward_u_ = vartheta * design.Ufu + (1.0 - vartheta) * design.S22;
+  if (!adaptive) config_.adaptation = false;
+
+  K_I0_.resize(2, 2 + states_ + 2);
+  K_I0_.leftCols<2>().setIdentity();
+  K_I0_.middleCols(2, states_) = design.S21;
+  K_I0_.rightCols<2>() = design.S22;
+  Reset();
+}
+
+void SobelLaw::Reset() noexcept { K_I_ = K_I0_; }
+
+Eigen::Vector2d SobelLaw::Feedforward(const StateVector& x_m,
+                                      const Eigen::Vector2d& u_m) const noexcept {
+  const Eigen::Vector2d from_state = feedforward_x_.lazyProduct(x_m);
+  const Eigen::Vector2d from_command = feedforward_u_.lazyProduct(u_m);
+  return from_state + from_command;
+}
+
+SobelLaw::Result SobelLaw::Compute(const StateVector& x, const ReferenceSample& reference,
+                                   bool may_adapt) noexcept {
+  StateVector x_m(states_);
+  for (Eigen::Index i = 0; i < states_; ++i) x_m(i) = reference.x_m[static_cast<std::size_t>(i)];
+  const Eigen::Vector2d u_m(reference.u_m_nm[0], reference.u_m_nm[1]);
+  const Eigen::Vector2d y_e = Cp_.lazyProduct(x_m - x);
+  const Eigen::Vector2d u_star = Feedforward(x_m, u_m);
+  if (!config_.adaptation) return Clip(u_star + y_e);
+
+  Regressor r(2 + states_ + 2);
+  r.head<2>() = y_e;
+  r.segment(2, states_) = x_m;
+  r.tail<2>() = u_m;
+  const double rho = config_.adaptation_gain * r.squaredNorm();
+  const Eigen::Vector2d from_gain = K_I_.lazyProduct(r);
+
+  // F e = K_e C_p e = y_e, because C_p S11 = C_m and C_p S12 = 0 make C_p x* = C_m x_m.
+  const Eigen::Vector2d drive = y_e + G_.lazyProduct(u_star + y_e - from_gain);
+  const Eigen::Matrix2d loop = Eigen::Matrix2d::Identity() + rho * G_;
+  const double determinant = loop(0, 0) * loop(1, 1) - loop(0, 1) * loop(1, 0);
+  const Eigen::Vector2d v((loop(1, 1) * drive(0) - loop(0, 1) * drive(1)) / determinant,
+                          (loop(0, 0) * drive(1) - loop(1, 0) * drive(0)) / determinant);
+
+  Result result = Clip(from_gain + rho * v);
+  if (!may_adapt || result.limits != 0) {
+    result.limits |= kAdaptationHeld;
+    return result;
+  }
+  K_I_ -= config_.sigma * (K_I_ - K_I0_);
+  K_I_ += (config_.adaptation_gain * v).lazyProduct(r.transpose());
+  return result;
+}
+
+SobelLaw::Result SobelLaw::Regulate(const StateVector& x,
+                                    const StateVector& x_goal) const noexcept {
+  const Eigen::Vector2d u = Cp_.lazyProduct(x_goal - x);
+  Result result = Clip(u);
+  result.limits |= kAdaptationHeld;
+  return result;
+}
+
+SobelLaw::Result SobelLaw::Clip(const Eigen::Vector2d& u) const noexcept {
+  Result result{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double limit = torque_limit_nm_[i];
+    const double asked = u(static_cast<Eigen::Index>(i));
+    result.torque_nm[i] = std::fmin(std::fmax(asked, -limit), limit);
+    if (result.torque_nm[i] != asked) result.limits |= i == 0 ? kLimitTorque1 : kLimitTorque2;
+  }
+  return result;
+}
+
+double SobelLaw::adaptive_gain_change() const noexcept { return (K_I_ - K_I0_).norm(); }
+
+}  // namespace flexarm

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "estimator/estimator_config.h"
+#include "estimator/nominal_model.h"
+#include "hal/sensor_config.h"
+
+namespace flexarm {
+
+/// Steady-state Kalman filter on the nominal model with the gauges' analogue filter in it.
+///
+/// States: the nominal model's n, then the filtered modal coordinates phi_f' = w_f (phi - phi_f).
+/// Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f..]: 4 + 2 m rows, u the torque applied
+/// during the last interval. The gain column of an encoder that the rig does not have is zero.
+///   x(k|k) = x(k|k-1) + L (y - C x(k|k-1)),  x(k+1|k) = A x(k|k) + B u(k)
+/// Source: control.md section 4, "Kalman filter".
+struct KalmanDesign {
+  Eigen::MatrixXd A, B, C, L;
+  double residual;  ///< of the filter's Riccati equation, relative
+};
+
+/// @throws std::runtime_error when the Riccati equation has no stabilising solution
+KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig& sensors,
+                                const EstimatorConfig& estimator, double period_s);
+
+}  // namespace flexarm

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "estimator/counter_decoder.h"
+#include "estimator/estimator_config.h"
+#include "estimator/strain_fit.h"
+
+namespace flexarm {
+
+/// Up to 16 nominal states, 20 with the gauge filter; no heap.
+using StateVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
+
+/// What the estimator needs of the off-line design (estimator/kalman_design.h).
+struct FilterGains {
+  Eigen::MatrixXd A, B, C, L;
+};
+
+/// The state of the nominal model at k Ts, from decoded counters and fitted modal coordinates.
+///
+/// `kalman`: the steady-state filter; an input that is not good leaves the state alone (its gain
+/// column is skipped). `difference`: coordinates as measured and backward differences, as in the
+/// thesis: the rates lag by half a sample.
+/// Real-time: Reset and Update are safe.
+class StateEstimator {
+ public:
+  struct Estimate {
+    StateVector x;                         ///< [th1 th2 f.. | rates], SI
+    std::array<double, 8> innovation;      ///< measured minus predicted outputs; 0 where not used
+  };
+
+  /// @param joint_stiffness_nm_per_rad  K1, K2: rotor angles are corrected by u/K
+  StateEstimator(const EstimatorConfig& config, const FilterGains& gains, double period_s,
+                 const std::array<double, 2>& joint_stiffness_nm_per_rad);
+
+  /// The next Update starts from its measurement, at rest.
+  void Reset() noexcept;
+
+  /// @param applied_torque_nm  mean over the last period
+  Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
+                  const std::array<double, 2>& applied_torque_nm) noexcept;
+
+ private:
+  using FilterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 24, 1>;
+  using FilterMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 24, 24>;
+  using OutputVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
+
+  OutputVector Measure(const DecodedCounters& counters, const FittedModes& modes,
+                       const std::array<double, 2>& torque_nm, std::uint32_t* good) const noexcept;
+  Estimate UpdateKalman(const OutputVector& y, std::uint32_t good,
+                        const std::array<double, 2>& torque_nm) noexcept;
+  Estimate UpdateDifference(const OutputVector& y, std::uint32_t good) noexcept;
+
+  EstimatorKind kind_;
+  double period_s_;
+  std::array<double, 2> joint_stiffness_;
+  int modes_;   // a link
+  int states_;  // n
+  FilterMatrix A_, B_, C_, L_;
+  FilterVector x_;         // kalman: x(k|k) with the gauge filter's states
+  OutputVector y_before_;  // difference
+  bool started_ = false;
+};
+
+}  // namespace flexarm

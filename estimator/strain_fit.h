@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "estimator/estimator_config.h"
+#include "hal/sensor_config.h"
+#include "hal/sensor_frame.h"
+#include "model/arm_parameters.h"
+
+namespace flexarm {
+
+/// Modal coordinates fitted to the strain channels of one sample.
+struct FittedModes {
+  std::array<double, 4> modal_m;        ///< f11 f12 f21 f22; the last good fit if not valid
+  std::array<bool, 2> valid;            ///< per link: enough good channels
+  std::array<double, 2> root_strain;    ///< surface strain of the fit at the root of each link
+  std::array<double, 2> residual;       ///< rms of channel minus fit, unit strain
+  std::uint32_t used;       ///< bit i: channel i took part
+  std::uint32_t saturated;  ///< bit i: at a rail of the converter
+  std::uint32_t stuck;      ///< bit i: does not move while its link does
+  std::uint32_t outlier;    ///< bit i: far from what the others agree on
+  double worst_outlier;     ///< its distance, unit strain
+};
+
+/// Weighted least-squares fit of one or two modal coordinates a link to the strain channels.
+///
+///   strain_i = face_i (h/2) sum_j psi_j''(x_i) f_j        (thesis B.2, and 7.4)
+///
+/// Channels are weighted by the inverse variance of their noise. With all channels good the fit is
+/// one product with a precomputed pseudo-inverse; otherwise the 2 x 2 normal equations of the good
+/// ones are solved. A channel that is saturated, stuck, or out of family by more than the limit is
+/// left out in the same sample; outliers are removed worst first, at most two a link.
+/// Real-time: Reset and Fit are safe.
+class StrainFit {
+ public:
+  StrainFit(const ArmParameters& arm, const SensorConfig& sensors, const EstimatorConfig& config);
+
+  void Reset() noexcept;
+  FittedModes Fit(const SensorFrame& frame) noexcept;
+
+ private:
+  struct Channel {
+    int link = 0;
+    double unit_per_count = 0.0;  // signed by face and gain
+    double offset_counts = 0.0;
+    double weight = 0.0;          // 1 / variance
+    std::array<double, 2> shape{};  // (h/2) psi_j''(x)
+    std::array<double, 2> inverse{};  // column of the pseudo-inverse when all channels are good
+    // Stuck detection: the last raw value, and the fitted strain when it last changed.
+    std::int32_t last_raw = 0;
+    double strain_at_change = 0.0;
+    bool seen = false;
+  };
+
+  double Predicted(const Channel& channel, const std::array<double, 4>& modal) const noexcept;
+  std::uint32_t LinkMask(int link) const noexcept;
+  bool Solve(int link, std::uint32_t used, const std::array<double, kMaxStrainChannels>& strain,
+             std::array<double, 4>* modal) const noexcept;
+  void FitLink(int link, const std::array<double, kMaxStrainChannels>& strain,
+               FittedModes* out) noexcept;
+  void JudgeStuck(const SensorFrame& frame, FittedModes* out) noexcept;
+
+  int modes_;
+  int channels_;
+  std::int32_t lowest_count_;
+  std::int32_t highest_count_;
+  double family_limit_;
+  double stuck_limit_;
+  std::array<Channel, kMaxStrainChannels> channel_;
+  std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j''(0) a link
+  std::array<double, 4> last_modal_{};
+};
+
+}  // namespace flexarm
