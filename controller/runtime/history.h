@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace flexarm {
@@ -42,7 +43,7 @@ class History {
   const Entry& Newest() const noexcept { return entries_[static_cast<std::size_t>(newest_)]; }
 
  private:
-  std::array<Entry, N> entries_;
+  std::array<Entry, static_cast<std::size_t>(N)> entries_;
   std::int32_t newest_ = 0;
 };
 

@@ -71,7 +71,8 @@ enum class Refusal : std::uint8_t {
   kNotAtRest,       ///< the arm moves
   kCauseRemains,    ///< the trip's cause is still there
   kNoReset,         ///< the physical reset button has not been pressed since the trip
-  kUnhealthy,       ///< a fact that would trip is present
+  kUnhealthy,       ///< a fact that would trip is present, or a task has not reported yet
+  kCancelled,       ///< a planned arm or run, overtaken by a stop, a disarm or a trip
 };
 
 /// Safety -> operator: what became of a request.
@@ -82,5 +83,30 @@ struct RequestAnswer {
   SafetyState state;      ///< when it was judged
   TripCauses present;     ///< causes present then
 };
+
+/// How the messages travel: one channel a reader, with as many entries as the slowest reader that
+/// meets its deadline may be late.
+using PermitHistory = History<Permit, 24>;
+using ControlReportHistory = History<ControlReport, 4>;
+using DriveReportHistory = History<DriveReport, 4>;
+using PermitChannel = LatestValue<PermitHistory>;
+using ControlReportChannel = LatestValue<ControlReportHistory>;
+using DriveReportChannel = LatestValue<DriveReportHistory>;
+
+/// What the channels hold before the first message.
+inline constexpr Permit kNoPermit{.state = SafetyState::kStarting,
+                                  .cause = TripCause::kNone,
+                                  .renewed_ns = INT64_MIN,
+                                  .running_since_ns = INT64_MIN,
+                                  .evidence = {}};
+inline constexpr ControlReport kNoControlReport{.tick = -1,
+                                                .due_ns = INT64_MIN,
+                                                .faults = 0,
+                                                .evidence = {},
+                                                .at_rest = false,
+                                                .experiment_done = false,
+                                                .missed_in_a_row = 0};
+inline constexpr DriveReport kNoDriveReport{
+    .due_ns = INT64_MIN, .bus_ok = false, .drive_ok = false};
 
 }  // namespace flexarm

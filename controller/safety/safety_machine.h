@@ -1,0 +1,123 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
+#include "controller/runtime/messages.h"
+#include "controller/safety/safety_state.h"
+#include "controller/safety/trip_cause.h"
+
+namespace flexarm {
+
+/// Everything that the safety machine may depend on in one safety tick. Logged on every change, and
+/// replayed: no padding. Flags are 0 or 1; any other value counts as set.
+struct SafetyFacts {
+  TripCauses present;            ///< all causes present now, but kStopTimeout
+  std::uint8_t all_reported;     ///< every task has reported once
+  std::uint8_t at_rest;          ///< fresh word of the loop that the arm is at rest
+  std::uint8_t experiment_done;  ///< the reference of this run has ended
+  std::uint8_t stop_expired;     ///< Stopping has lasted longer than it may
+  std::uint8_t reset_pressed;    ///< the reset button went down after the trip
+  RequestKind request;           ///< what the operator asks for in this tick
+  std::uint8_t reserved[2];      ///< zero
+};
+static_assert(std::has_unique_object_representations_v<SafetyFacts>, "no padding: it is logged");
+
+/// Where the machine is. `cause` is kNone but in Tripped.
+struct SafetyStatus {
+  SafetyState state;
+  TripCause cause;
+
+  friend constexpr bool operator==(const SafetyStatus&, const SafetyStatus&) = default;
+};
+
+/// Where the machine goes, and what became of the request (kNone also when there was none).
+struct SafetyDecision {
+  SafetyStatus status;
+  Refusal refusal;
+
+  friend constexpr bool operator==(const SafetyDecision&, const SafetyDecision&) = default;
+};
+
+/// The cause that latches when several are present: the lowest number. A set with no known cause in
+/// it is corrupt, and reads as kStateNotFinite.
+constexpr TripCause LowestCause(TripCauses causes) noexcept {
+  const int lowest = std::countr_zero(causes);
+  return lowest > 0 && lowest < kTripCauses ? static_cast<TripCause>(lowest)
+                                            : TripCause::kStateNotFinite;
+}
+
+/// The whole safety logic: a pure function of status and facts. No clock, no I/O, no memory.
+///
+/// A cause that is present trips from every state. A trip is left only by the operator's reset
+/// after the physical one, at rest, with no cause present, and only towards Idle. Torque becomes
+/// possible only by `run` from Armed. At most one transition a tick. Real-time: safe.
+constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts& facts) noexcept {
+  using enum SafetyState;
+  const RequestKind request = facts.request;
+  const Refusal not_here = request == RequestKind::kNone ? Refusal::kNone : Refusal::kWrongState;
+  const auto go = [](SafetyState state, Refusal refusal) {
+    return SafetyDecision{{state, TripCause::kNone}, refusal};
+  };
+
+  if (status.state > kTripped) {  // a corrupted byte
+    const TripCause cause =
+        facts.present != 0 ? LowestCause(facts.present) : TripCause::kStateNotFinite;
+    return {{kTripped, cause}, not_here};
+  }
+
+  if (status.state == kTripped) {
+    // Latched: what tripped first stays, whatever comes after.
+    const bool known =
+        status.cause != TripCause::kNone && static_cast<int>(status.cause) < kTripCauses;
+    const SafetyStatus latched{kTripped, known ? status.cause : TripCause::kStateNotFinite};
+    if (request != RequestKind::kReset) return {latched, not_here};
+    if (facts.present != 0) return {latched, Refusal::kCauseRemains};
+    if (facts.all_reported == 0) return {latched, Refusal::kUnhealthy};
+    if (facts.reset_pressed == 0) return {latched, Refusal::kNoReset};
+    if (facts.at_rest == 0) return {latched, Refusal::kNotAtRest};
+    return go(kIdle, Refusal::kNone);
+  }
+
+  if (facts.present != 0) {
+    return {{kTripped, LowestCause(facts.present)},
+            request == RequestKind::kNone ? Refusal::kNone : Refusal::kUnhealthy};
+  }
+
+  switch (status.state) {
+    case kStarting:
+      return go(facts.all_reported != 0 ? kIdle : kStarting, not_here);
+    case kIdle:
+      if (request != RequestKind::kArm) return go(kIdle, not_here);
+      if (facts.all_reported == 0) return go(kIdle, Refusal::kUnhealthy);
+      if (facts.at_rest == 0) return go(kIdle, Refusal::kNotAtRest);
+      return go(kArmed, Refusal::kNone);
+    case kArmed:
+      if (request == RequestKind::kRun) return go(kRunning, Refusal::kNone);
+      if (request == RequestKind::kDisarm) return go(kIdle, Refusal::kNone);
+      return go(kArmed, not_here);
+    case kRunning:
+      if (request == RequestKind::kStop) return go(kStopping, Refusal::kNone);
+      return go(facts.experiment_done != 0 ? kStopping : kRunning, not_here);
+    case kStopping: {
+      const Refusal refusal = request == RequestKind::kStop ? Refusal::kNone : not_here;
+      if (facts.at_rest != 0) return go(kArmed, refusal);
+      if (facts.stop_expired != 0) return {{kTripped, TripCause::kStopTimeout}, refusal};
+      return go(kStopping, refusal);
+    }
+    case kTripped:
+      break;  // handled above
+  }
+  return {{kTripped, TripCause::kStateNotFinite}, not_here};
+}
+
+const char* Name(RequestKind request) noexcept;
+
+/// Machine name of a refusal, as in JSON: "wrong-state".
+const char* Name(Refusal refusal) noexcept;
+
+/// Why the request was refused in `state` and what to do, one sentence or two. "" if it was not.
+const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state) noexcept;
+
+}  // namespace flexarm

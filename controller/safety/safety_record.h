@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "controller/runtime/messages.h"
+#include "controller/safety/safety_machine.h"
+
+namespace flexarm {
+
+/// One change of the safety facts or state, as the recorder logs it and replay runs it again.
+///
+/// Between two records neither facts nor status changed and there was no request, so
+/// NextSafetyState(before, facts) == {after, refusal} over the records is the whole story.
+struct SafetyRecord {
+  std::int64_t due_ns;  ///< safety tick
+  SafetyFacts facts;
+  Evidence evidence;             ///< of `after.cause`, written with the trip; else zero
+  std::uint32_t request_number;  ///< of facts.request
+  SafetyStatus before;
+  SafetyStatus after;
+  Refusal refusal;
+  std::uint8_t reserved[7];  ///< zero
+};
+static_assert(std::is_trivially_copyable_v<SafetyRecord>);
+static_assert(sizeof(SafetyRecord) == 64, "no padding: the bytes are logged");
+
+}  // namespace flexarm
