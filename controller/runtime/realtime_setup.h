@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace flexarm {
+
+/// What the kernel grants this process, as far as real time depends on it.
+struct RealtimeHost {
+  static constexpr std::uint64_t kUnlimited = UINT64_MAX;
+
+  int fifo_error;                     ///< errno of a trial SCHED_FIFO thread; 0: permitted
+  int fifo_priority;                  ///< priority that was tried
+  std::uint64_t rtprio_limit;         ///< RLIMIT_RTPRIO
+  std::uint64_t memlock_limit_bytes;  ///< RLIMIT_MEMLOCK
+  std::uint64_t rttime_limit_us;      ///< RLIMIT_RTTIME; kUnlimited is right
+  std::int64_t throttle_runtime_us;   ///< of 1 s; -1: no throttling; INT64_MIN: not readable
+  std::string kernel_version;         ///< uname -v
+};
+
+/// The host does not permit real time; what() says each cause and its remedy, one a line.
+class RealtimeRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Starts and joins one SCHED_FIFO thread of `fifo_priority` to see whether it may.
+RealtimeHost ReadRealtimeHost(int fifo_priority);
+
+/// One line a finding, good and bad, for the log. Never refuses.
+std::vector<std::string> RealtimeFindings(const RealtimeHost& host);
+
+/// Makes the process fit for real time, once, from the main thread, before any other is started:
+/// checks SCHED_FIFO up to `fifo_priority`, locks all memory present and future, and keeps malloc
+/// from giving memory back.
+/// @returns RealtimeFindings of this host
+/// @throws RealtimeRefused  if anything is not permitted. Nothing is done then but memory locked.
+std::vector<std::string> PrepareRealtime(int fifo_priority);
+
+}  // namespace flexarm
