@@ -1,0 +1,28 @@
+#include "model/arm_simulator.h"
+
+#include <stdexcept>
+
+#include "model/step_kernel.h"
+
+namespace flexarm {
+
+ArmSimulator::ArmSimulator(const ArmModel& model, const SimulatorOptions& options)
+    : dof_(model.dof()), options_(options) {
+  if (options.passes < 1 || options.substeps < 1) {
+    throw std::invalid_argument("SimulatorOptions: passes and substeps must be at least 1");
+  }
+  kernel_ = MakeStepKernel(model.constants(), options.coulomb_friction);
+}
+
+ArmSimulator::~ArmSimulator() = default;
+ArmSimulator::ArmSimulator(ArmSimulator&&) noexcept = default;
+ArmSimulator& ArmSimulator::operator=(ArmSimulator&&) noexcept = default;
+
+void ArmSimulator::Step(ArmState& state, const Eigen::Vector2d& torque_nm, double h_s) noexcept {
+  const double h = h_s / options_.substeps;
+  for (int i = 0; i < options_.substeps; ++i) {
+    kernel_->Step(&state, torque_nm, h, options_.passes);
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "model/arm_model.h"
+
+namespace flexarm {
+
+/// x' = A x + B u about a state, x = [q; v] deviations, u = motor torque deviations, N m.
+struct LinearModel {
+  Eigen::MatrixXd A;  ///< 2 dof x 2 dof
+  Eigen::MatrixXd B;  ///< 2 dof x 2
+};
+
+/// Jacobians of the smooth equations of motion (no friction) at any state, equilibrium or not.
+///
+/// A = [[0, 1], [-M^-1 (dF/dq + K), -M^-1 (dF/dv + D)]], F = M(q) a + bias(q, v) with a the
+/// acceleration at the state. dF by the complex step with h = 1e-30: no cancellation, so exact to
+/// round-off. Replaces the thesis's Appendix C.
+/// @param torque_nm  on th3 and th4 at the state, N m
+LinearModel Linearize(const ArmModel& model, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                      const Eigen::Vector2d& torque_nm);
+
+/// Undamped natural frequencies at rest, unbent, elbow at theta2_rad, Hz, ascending. Motors free:
+/// the two rigid-body zeros are left out.
+Eigen::VectorXd FreeMotorFrequenciesHz(const ArmModel& model, double theta2_rad);
+
+/// The same with both rotors (th3, th4) held.
+Eigen::VectorXd HeldMotorFrequenciesHz(const ArmModel& model, double theta2_rad);
+
+}  // namespace flexarm

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "model/arm_constants.h"
+#include "model/arm_simulator.h"
+
+namespace flexarm {
+
+/// One implicit midpoint step for a fixed number of modes. Inside of ArmSimulator.
+class StepKernel {
+ public:
+  virtual ~StepKernel() = default;
+  virtual void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h_s,
+                    int passes) noexcept = 0;
+};
+
+/// The kernel compiled for max(m1, m2) modes a link. A link with fewer modes is padded with modes
+/// of unit mass that nothing excites.
+std::unique_ptr<StepKernel> MakeStepKernel(const ArmConstants& constants, bool coulomb_friction);
+
+}  // namespace flexarm
