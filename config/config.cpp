@@ -1,0 +1,67 @@
+#include "config/config.h"
+
+#include <limits>
+
+#include "config/cross_rules.h"
+#include "config/document.h"
+#include "config/overrides.h"
+#include "config/problem_log.h"
+#include "config/rig_binding.h"
+#include "config/table_reader.h"
+#include "config/toml_text.h"
+#include "model/problem_list.h"
+
+namespace flexarm {
+namespace {
+
+// The length of a link if it was read well; NaN, which no rule minds, if not.
+double KnownLength(const Config& config, std::size_t link, const ProblemLog& log) {
+  const std::string section = "link" + NumberText(link + 1) + ".section";
+  return log.Clear({section}) ? config.arm.link[link].length_m()
+                              : std::numeric_limits<double>::quiet_NaN();
+}
+
+void CheckRules(const Config& config, ProblemLog* log) {
+  ProblemList rig("rig.");
+  rig.Require(!config.rig_name.empty(), "name", "\"\"", "must name the rig: logs carry it");
+  log->AddRules(rig.Take());
+  log->AddRules(config.arm.Problems());
+  log->AddRules(
+      config.sensors.Problems({KnownLength(config, 0, *log), KnownLength(config, 1, *log)}));
+  log->AddRules(config.sim.Problems());
+  log->AddRules(config.estimator.Problems());
+  log->AddRules(config.controller.Problems());
+  log->AddRules(config.safety.Problems());
+  log->AddRules(config.loop.Problems());
+  log->AddRules(config.daemon.Problems());
+  CheckCrossRules(config, log);
+}
+
+Config ReadConfig(const std::string& name, toml::table document,
+                  const std::vector<std::string>& overrides) {
+  ProblemLog log(name, &document);
+  ApplyOverrides(overrides, &document, &log);
+  TableReader root(&document, "", &log);
+  if (root.Has("extends")) {
+    root.Refuse("extends", "must stand in a rig's own file: a logged text and --set are complete");
+  }
+  Config config{};
+  ReadRig(root, &config);
+  CheckRules(config, &log);
+  log.AddUnknown();
+  log.ThrowIfAny();
+  config.text = DocumentText(document);
+  return config;
+}
+
+}  // namespace
+
+Config LoadConfig(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return ReadConfig(file.string(), LoadDocument(file), overrides);
+}
+
+Config ParseConfig(const std::string& text, const std::string& name) {
+  return ReadConfig(name, ParseToml(text, name), {});
+}
+
+}  // namespace flexarm

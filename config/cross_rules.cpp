@@ -1,0 +1,159 @@
+#include "config/cross_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "model/problem_list.h"
+
+namespace flexarm {
+namespace {
+
+std::string At(std::string_view key, std::size_t i) { return ProblemList::Element(key, i); }
+
+// A whole number of steps; 1e-9 is the rounding of decimal fractions, far below any wrong one.
+bool IsMultiple(double value, double step) {
+  const double steps = value / step;
+  return std::abs(steps - std::nearbyint(steps)) <= 1e-9 * std::max(1.0, steps);
+}
+
+void CheckChannelsForFit(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  if (!log->Clear({"sensors.strain", "estimator.modes_per_link"})) return;
+  for (int link = 1; link <= 2; ++link) {
+    std::vector<double> positions;
+    for (const StrainChannelConfig& s : c.sensors.strain) {
+      if (s.link == link) positions.push_back(s.position_m);
+    }
+    std::sort(positions.begin(), positions.end());
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    if (positions.size() >= static_cast<std::size_t>(c.estimator.modes_per_link)) continue;
+    out->push_back({"estimator.modes_per_link", NumberText(c.estimator.modes_per_link),
+                    "must be at most the number of different strain positions of a link: link " +
+                        NumberText(link) + " has " + NumberText(positions.size())});
+  }
+}
+
+void CheckCounters(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  const double rate = c.estimator.max_joint_rate_rad_s;
+  for (std::size_t i = 0; i < c.sensors.encoder.size(); ++i) {
+    const std::string row = At("sensors.encoder", i);
+    if (!log->Clear({"estimator.max_joint_rate_rad_s", "loop.period_ms", row})) continue;
+    const EncoderConfig& e = c.sensors.encoder[i];
+    const double period_s = c.loop.period_ms * 1e-3;
+    const double counts = rate * period_s * e.counts_per_turn / (2.0 * std::numbers::pi);
+    const double half_range = std::ldexp(1.0, e.counter_bits - 1);
+    if (counts < half_range) continue;
+    out->push_back({row + ".counter_bits", NumberText(e.counter_bits),
+                    "too few: at estimator.max_joint_rate_rad_s = " + NumberText(rate) +
+                        " the counter moves by " + NumberText(std::round(counts)) +
+                        " in a period, which must stay below half its range, " +
+                        NumberText(half_range)});
+  }
+}
+
+void CheckRates(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string limit = At("limits.hub_rate_rad_s", i);
+    if (!log->Clear({"estimator.max_joint_rate_rad_s", limit})) continue;
+    if (c.estimator.max_joint_rate_rad_s > c.safety.hub_rate_rad_s[i]) continue;
+    out->push_back({limit, NumberText(c.safety.hub_rate_rad_s[i]),
+                    "must be below estimator.max_joint_rate_rad_s = " +
+                        NumberText(c.estimator.max_joint_rate_rad_s) +
+                        ", or an allowed motion counts as an impossible jump"});
+  }
+}
+
+void CheckAnglesAndTorques(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string angle = At("limits.soft_angle_deg", i);
+    const double switch_deg = c.sim.switch_angle_deg[i];
+    if (log->Clear({angle, At("sim.switch_angle_deg", i)}) &&
+        c.safety.soft_angle_deg[i] >= switch_deg) {
+      out->push_back({angle, NumberText(c.safety.soft_angle_deg[i]),
+                      "must be below sim.switch_angle_deg[" + NumberText(i) +
+                          "] = " + NumberText(switch_deg) +
+                          ": the soft limit acts before the limit switch"});
+    }
+    const std::string torque = At("limits.torque_limit_nm", i);
+    const std::string friction = "joint" + NumberText(i + 1) + ".coulomb_friction_nm";
+    const double friction_nm = c.arm.joint[i].coulomb_friction_nm;
+    if (log->Clear({torque, friction}) && c.safety.torque_limit_nm[i] <= friction_nm) {
+      out->push_back({torque, NumberText(c.safety.torque_limit_nm[i]),
+                      "must exceed " + friction + " = " + NumberText(friction_nm) +
+                          ", or the joint never moves"});
+    }
+  }
+}
+
+// The largest strain that the channel can show on both sides of zero.
+double FullScaleStrain(const SensorConfig& sensors, const StrainChannelConfig& channel) {
+  const double counts = sensors.strain_input.highest_count() - std::abs(channel.offset_counts);
+  return counts * sensors.strain_input.volts_per_count() / std::abs(channel.gain_v_per_unit);
+}
+
+void CheckStrainLimits(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  if (!log->Clear({"sensors.strain", "sensors.strain_input"})) return;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string key = At("limits.strain_limit", i);
+    if (!log->Clear({key})) continue;
+    for (std::size_t row = 0; row < c.sensors.strain.size(); ++row) {
+      const StrainChannelConfig& channel = c.sensors.strain[row];
+      const double full_scale = FullScaleStrain(c.sensors, channel);
+      if (channel.link != static_cast<int>(i) + 1 || c.safety.strain_limit[i] < full_scale)
+        continue;
+      out->push_back({key, NumberText(c.safety.strain_limit[i]),
+                      "must be below the full scale of every channel of the link, or the amplifier "
+                      "clips before the trip: " +
+                          At("sensors.strain", row) + " ends at " + NumberText(full_scale)});
+      break;  // one channel says it
+    }
+  }
+}
+
+void CheckStrainJudgement(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  if (!log->Clear({"sensors.strain", "sensors.strain_input"})) return;
+  double noise = 0.0;  // largest standard deviation of a channel, quantisation at least
+  for (const StrainChannelConfig& s : c.sensors.strain) {
+    const double counts = std::max(1.0, c.sensors.strain_input.noise_counts);
+    const double volts = counts * c.sensors.strain_input.volts_per_count();
+    noise = std::max(noise, volts / std::abs(s.gain_v_per_unit));
+  }
+  const auto require = [&](const char* key, double value) {
+    if (!log->Clear({key}) || value >= 4.0 * noise) return;
+    out->push_back({key, NumberText(value),
+                    "must be at least four times the noise of a strain channel, " +
+                        NumberText(noise) + ", or healthy channels are judged faulty"});
+  };
+  require("estimator.strain_family_limit", c.estimator.strain_family_limit);
+  require("estimator.strain_stuck_limit", c.estimator.strain_stuck_limit);
+}
+
+void CheckGrid(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  const auto require = [&](const char* key, double value) {
+    if (!log->Clear({key, "sim.step_ms"}) || IsMultiple(value, c.sim.step_ms)) return;
+    out->push_back({key, NumberText(value),
+                    "must be a whole number of sim.step_ms = " + NumberText(c.sim.step_ms) +
+                        ": the plant is sampled and driven between its steps only"});
+  };
+  require("loop.period_ms", c.loop.period_ms);
+  require("loop.acquire_before_ms", c.loop.acquire_before_ms);
+}
+
+}  // namespace
+
+void CheckCrossRules(const Config& config, ProblemLog* log) {
+  std::vector<Problem> problems;
+  CheckChannelsForFit(config, log, &problems);
+  CheckCounters(config, log, &problems);
+  CheckRates(config, log, &problems);
+  CheckAnglesAndTorques(config, log, &problems);
+  CheckStrainLimits(config, log, &problems);
+  CheckStrainJudgement(config, log, &problems);
+  CheckGrid(config, log, &problems);
+  log->AddRules(problems);
+}
+
+}  // namespace flexarm

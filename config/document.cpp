@@ -1,0 +1,121 @@
+#include "config/document.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <utility>
+#include <vector>
+
+#include "config/config.h"
+#include "config/toml_text.h"
+
+namespace flexarm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLargestFile = 1 << 20;
+// toml++ destroys nested tables recursively: a.a.a.a... over a whole line would exhaust the stack.
+constexpr int kMostDotsInALine = 32;
+
+[[noreturn]] void Fail(const std::string& file, int line, std::string rule) {
+  throw ConfigError({{file, line, "", "", std::move(rule)}});
+}
+
+void CheckNesting(std::string_view text, const std::string& name) {
+  int line = 1;
+  int dots = 0;
+  for (const char c : text) {
+    if (c == '.') ++dots;
+    if (dots > kMostDotsInALine) {
+      Fail(name, line, "must not have more than 32 dots in one line: no config is nested so deep");
+    }
+    if (c != '\n') continue;
+    ++line;
+    dots = 0;
+  }
+}
+
+// The files that led here, to refuse a circle.
+using Chain = std::vector<fs::path>;
+
+toml::table LoadOnTopOfBase(const fs::path& file, Chain chain);
+
+toml::table LoadBase(const fs::path& file, const toml::node& extends, Chain chain) {
+  const int line = static_cast<int>(extends.source().begin.line);
+  const auto* name = extends.as_string();
+  const auto refuse = [&](std::string rule) {
+    throw ConfigError({{file.string(), line, "extends", ValueText(extends), std::move(rule)}});
+  };
+  if (name == nullptr || name->get().empty()) refuse("must be the name of a file, as a string");
+  const fs::path base = (file.parent_path() / name->get()).lexically_normal();
+  std::error_code ignored;
+  if (!fs::exists(base, ignored)) refuse("there is no file " + base.string());
+  const fs::path canonical = fs::weakly_canonical(base, ignored);
+  if (std::find(chain.begin(), chain.end(), canonical) != chain.end()) {
+    refuse("must not lead back to a file that extends this one");
+  }
+  return LoadOnTopOfBase(base, std::move(chain));
+}
+
+toml::table LoadOnTopOfBase(const fs::path& file, Chain chain) {
+  std::error_code ignored;
+  chain.push_back(fs::weakly_canonical(file, ignored));
+  toml::table own = ParseToml(ReadConfigFile(file), file.string());
+  const toml::node* extends = own.get("extends");
+  if (extends == nullptr) return own;
+  toml::table document = LoadBase(file, *extends, std::move(chain));
+  own.erase("extends");
+  Merge(&document, std::move(own));
+  return document;
+}
+
+}  // namespace
+
+std::string ReadConfigFile(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) {
+    Fail(file.string(), 0, "is a directory: must be a TOML file");
+  }
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) Fail(file.string(), 0, "cannot be read: " + std::string(std::strerror(errno)));
+  std::string text(kLargestFile + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad()) Fail(file.string(), 0, "cannot be read: " + std::string(std::strerror(errno)));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > kLargestFile) {
+    Fail(file.string(), 0, "is larger than 1 MiB: this is no config file");
+  }
+  return text;
+}
+
+toml::table ParseToml(std::string_view text, const std::string& name) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+    Fail(name, 0, "is empty: must be a TOML file");
+  }
+  CheckNesting(text, name);
+  try {
+    return toml::parse(text, std::string_view(name));
+  } catch (const toml::parse_error& error) {
+    Fail(name, static_cast<int>(error.source().begin.line),
+         "is not valid TOML: " + std::string(error.description()));
+  }
+}
+
+toml::table LoadDocument(const fs::path& file) { return LoadOnTopOfBase(file, {}); }
+
+void Merge(toml::table* base, toml::table&& top) {
+  for (auto& [key, node] : top) {
+    toml::node* below = base->get(key.str());
+    if (below != nullptr && below->is_table() && node.is_table()) {
+      Merge(below->as_table(), std::move(*node.as_table()));
+    } else {
+      base->insert_or_assign(key.str(), std::move(node));
+    }
+  }
+}
+
+}  // namespace flexarm

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/config.h"
+#include "model/problem.h"
+
+namespace flexarm {
+
+/// Joins a path and a key below it: "loop" and "period_ms" give "loop.period_ms".
+std::string JoinKey(const std::string& path, std::string_view key);
+
+/// Everything found wrong while one document is read, each with the file and line of its value.
+///
+/// A value that could not be read is reported once: rules about it stay silent.
+class ProblemLog {
+ public:
+  /// `document` outlives this; `file` stands for what has no place in it.
+  ProblemLog(std::string file, const toml::table* document);
+
+  /// Says that the table at `path` may have `key`, so that it is not reported as unknown.
+  void Know(const std::string& path, std::string_view key);
+
+  /// A required key that is not there. `wanted` is what it should hold, "a number".
+  void AddMissing(const std::string& path, std::string_view key, std::string_view wanted);
+
+  /// A value that breaks `rule`; its text and place are those of `node`.
+  void Add(const std::string& key, const toml::node& node, std::string rule);
+
+  /// A problem of an override that never became part of the document.
+  void AddOverride(const std::string& override_text, std::string rule);
+
+  /// Broken rules of a struct, placed at the keys they name.
+  void AddRules(const std::vector<Problem>& problems);
+
+  /// True if nothing is reported at, above or below any of `keys`.
+  bool Clear(std::initializer_list<std::string_view> keys) const;
+
+  /// Reports every key of the document that nobody asked for. Call it last.
+  void AddUnknown();
+
+  /// Everything, missing keys included, in order of file and line. Throws ConfigError unless empty.
+  void ThrowIfAny();
+
+ private:
+  struct Missing {
+    std::string path;
+    std::string key;
+    std::string wanted;
+  };
+
+  ConfigProblem Placed(const toml::node* node, std::string key, std::string value,
+                       std::string rule) const;
+  const toml::node* Locate(std::string_view path) const;
+  void AddUnknownIn(const toml::table& table, const std::string& path);
+  void AddUnknownKey(const std::string& path, std::string_view key, const toml::node& node);
+  std::string Suggestion(const std::string& path, std::string_view key);
+
+  std::string file_;
+  const toml::table* document_;
+  std::map<std::string, std::vector<std::string>> known_;  // table path -> its keys, in order
+  std::vector<std::string> reported_;                      // keys that rules shall not judge
+  std::vector<Missing> missing_;
+  std::vector<ConfigProblem> problems_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,169 @@
+#include "config/rig_binding.h"
+
+#include <string>
+
+namespace flexarm {
+namespace {
+
+void ReadSection(TableReader row, BeamSection* out) {
+  row.Read("length_m", &out->length_m);
+  row.Read("area_m2", &out->area_m2);
+  row.Read("second_moment_m4", &out->second_moment_m4);
+  row.Read("density_kg_m3", &out->density_kg_m3);
+  row.Read("youngs_modulus_pa", &out->youngs_modulus_pa);
+  row.Read("half_thickness_m", &out->half_thickness_m);
+}
+
+void ReadLink(TableReader link, LinkParameters* out) {
+  link.Read("damping_ratio", &out->damping_ratio);
+  for (const TableReader& row : link.Rows("section")) {
+    ReadSection(row, &out->section.emplace_back());
+  }
+}
+
+void ReadJoint(TableReader joint, JointParameters* out) {
+  joint.Read("stiffness_nm_per_rad", &out->stiffness_nm_per_rad);
+  joint.Read("rotor_inertia_kgm2", &out->rotor_inertia_kgm2);
+  joint.Read("hub_inertia_kgm2", &out->hub_inertia_kgm2);
+  joint.Read("coulomb_friction_nm", &out->coulomb_friction_nm);
+}
+
+void ReadArm(TableReader root, ArmParameters* out) {
+  ReadLink(root.Table("link1"), &out->link[0]);
+  ReadLink(root.Table("link2"), &out->link[1]);
+  ReadJoint(root.Table("joint1"), &out->joint[0]);
+  ReadJoint(root.Table("joint2"), &out->joint[1]);
+  TableReader arm = root.Table("arm");
+  arm.Read("hub2_mass_kg", &out->hub2_mass_kg);
+  arm.Read("motor2_mass_kg", &out->motor2_mass_kg);
+  arm.Read("motor2_inertia_kgm2", &out->motor2_inertia_kgm2);
+  arm.Read("payload_mass_kg", &out->payload_mass_kg);
+  arm.Read("payload_inertia_kgm2", &out->payload_inertia_kgm2);
+  arm.Read("shape_payload_mass_kg", &out->shape_payload_mass_kg);
+  arm.Read("damping", &out->damping,
+           {{"none", DampingReading::kNone},
+            {"ca_rho", DampingReading::kCurvatureRho},
+            {"ca_lit", DampingReading::kCurvatureAsPrinted},
+            {"modal", DampingReading::kModal}});
+  arm.Read(
+      "link1_tip_inertia", &out->link1_tip_inertia,
+      {{"motor", Link1TipInertia::kMotor}, {"motor_and_rotor", Link1TipInertia::kMotorAndRotor}});
+}
+
+void ReadEncoder(TableReader row, EncoderConfig* out) {
+  row.Read<int>("joint", &out->counter, {{"hub1", 0}, {"hub2", 1}, {"rotor1", 2}, {"rotor2", 3}});
+  row.Read("counts_per_turn", &out->counts_per_turn);
+  row.Read("counter_bits", &out->counter_bits);
+  row.Read("sign", &out->sign);
+}
+
+void ReadStrainChannel(TableReader row, StrainChannelConfig* out) {
+  row.Read("link", &out->link);
+  row.Read("position_m", &out->position_m);
+  row.Read("face", &out->face);
+  row.Read("gain_v_per_unit", &out->gain_v_per_unit);
+  row.Read("offset_counts", &out->offset_counts);
+}
+
+void ReadSensors(TableReader sensors, SensorConfig* out) {
+  for (const TableReader& row : sensors.Rows("encoder")) {
+    ReadEncoder(row, &out->encoder.emplace_back());
+  }
+  for (const TableReader& row : sensors.Rows("strain")) {
+    ReadStrainChannel(row, &out->strain.emplace_back());
+  }
+  TableReader input = sensors.Table("strain_input");
+  input.Read("converter_bits", &out->strain_input.converter_bits);
+  input.Read("range_v", &out->strain_input.range_v);
+  input.Read("filter_hz", &out->strain_input.filter_hz);
+  input.Read("noise_counts", &out->strain_input.noise_counts);
+}
+
+void ReadSim(TableReader sim, SimConfig* out) {
+  sim.Read("plant_modes", &out->plant_modes);
+  sim.Read("step_ms", &out->step_ms);
+  sim.Read("seed", &out->seed);
+  sim.Read("motor_lag_ms", &out->motor_lag_ms);
+  sim.Read("transport_delay_ms", &out->transport_delay_ms);
+  sim.Read("switch_angle_deg", &out->switch_angle_deg);
+}
+
+void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
+  estimator.Read("name", &out->kind,
+                 {{"kalman", EstimatorKind::kKalman}, {"difference", EstimatorKind::kDifference}});
+  estimator.Read("modes_per_link", &out->modes_per_link);
+  estimator.Read("process_force", &out->process_force);
+  estimator.Read("rotor_extra_sigma_rad", &out->rotor_extra_sigma_rad);
+  estimator.Read("modal_sigma_m", &out->modal_sigma_m);
+  estimator.Read("max_joint_rate_rad_s", &out->max_joint_rate_rad_s);
+  estimator.Read("hub_rotor_limit_rad", &out->hub_rotor_limit_rad);
+  estimator.Read("strain_family_limit", &out->strain_family_limit);
+  estimator.Read("strain_stuck_limit", &out->strain_stuck_limit);
+  estimator.Read("innovation_limit_rad", &out->innovation_limit_rad);
+  estimator.Read("fault_ticks", &out->fault_ticks);
+}
+
+void ReadController(TableReader controller, ControllerConfig* out) {
+  controller.Read("name", &out->kind,
+                  {{"sobel", ControllerKind::kSobel}, {"lqr-cgt", ControllerKind::kLqrCgt}});
+  controller.Read("alpha", &out->alpha);
+  controller.Read("vartheta", &out->vartheta);
+  controller.Read("sigma", &out->sigma);
+  controller.Read(
+      "feedforward_sign", &out->feedforward_sign,
+      {{"printed", FeedforwardSign::kPrinted}, {"corrected", FeedforwardSign::kCorrected}});
+  controller.Read("hub_angle_weight", &out->hub_angle_weight);
+  controller.Read("hub_rate_weight", &out->hub_rate_weight);
+  controller.Read("torque_weight", &out->torque_weight);
+  controller.Read("passivity_margin", &out->passivity_margin);
+  controller.Read("adaptation_gain", &out->adaptation_gain);
+  controller.Read("prediction", &out->prediction);
+  controller.Read("adaptation", &out->adaptation);
+  if (controller.Has("gains")) controller.Read("gains", &out->gains_file);
+}
+
+void ReadSafety(TableReader root, SafetyConfig* out) {
+  TableReader limits = root.Table("limits");
+  limits.Read("torque_limit_nm", &out->torque_limit_nm);
+  limits.Read("slew_limit_nm_per_s", &out->slew_limit_nm_per_s);
+  limits.Read("soft_angle_deg", &out->soft_angle_deg);
+  limits.Read("hub_rate_rad_s", &out->hub_rate_rad_s);
+  limits.Read("strain_limit", &out->strain_limit);
+  TableReader safety = root.Table("safety");
+  safety.Read("rest_hub_rate_rad_s", &out->rest_hub_rate_rad_s);
+  safety.Read("rest_strain_rate_per_s", &out->rest_strain_rate_per_s);
+  safety.Read("rest_time_s", &out->rest_time_s);
+  safety.Read("stop_timeout_s", &out->stop_timeout_s);
+  safety.Read("permit_timeout_ms", &out->permit_timeout_ms);
+  safety.Read("missed_deadlines_to_trip", &out->missed_deadlines_to_trip);
+}
+
+void ReadTiming(TableReader root, Config* config) {
+  TableReader loop = root.Table("loop");
+  loop.Read("period_ms", &config->loop.period_ms);
+  loop.Read("acquire_before_ms", &config->loop.acquire_before_ms);
+  loop.Read("step_deadline_ms", &config->loop.step_deadline_ms);
+  root.Table("daemon").Read("socket", &config->daemon.socket);
+  root.Table("log").Read("directory", &config->daemon.log_directory);
+}
+
+void ReadHal(TableReader root, Config* config) {
+  if (!root.Has("hal")) return;
+  root.Table("hal").Read<std::string>("backend", &config->backend, {{"sim", "sim"}});
+}
+
+}  // namespace
+
+void ReadRig(TableReader root, Config* config) {
+  root.Table("rig").Read("name", &config->rig_name);
+  ReadArm(root, &config->arm);
+  ReadSensors(root.Table("sensors"), &config->sensors);
+  ReadSim(root.Table("sim"), &config->sim);
+  ReadEstimator(root.Table("estimator"), &config->estimator);
+  ReadController(root.Table("controller"), &config->controller);
+  ReadSafety(root, &config->safety);
+  ReadTiming(root, config);
+  ReadHal(root, config);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "config/config.h"
+#include "config/table_reader.h"
+
+namespace flexarm {
+
+/// Reads every section of a rig into `config`, all but its text. What cannot be read goes into the
+/// reader's log.
+void ReadRig(TableReader root, Config* config);
+
+}  // namespace flexarm

@@ -1,0 +1,23 @@
+#include "controller/law/controller_config.h"
+
+#include "model/problem_list.h"
+
+namespace flexarm {
+
+std::vector<Problem> ControllerConfig::Problems() const {
+  ProblemList list("controller.");
+  list.Within("alpha", alpha, 0.0, 10.0,
+              "1/s; beyond this the prescribed stability asks more than the samples can give");
+  list.Within("vartheta", vartheta, 0.0, 1.0, "a weight between two feedforwards");
+  list.Within("sigma", sigma, 0.0, 1.0, "the share of the adapted gain that leaks a sample");
+  list.EachPositive("hub_angle_weight", hub_angle_weight, 1e6,
+                    "without weight the joint's double integrator is not controlled");
+  list.EachWithin("hub_rate_weight", hub_rate_weight, 0.0, 1e6, "a weight, never negative");
+  list.Positive("torque_weight", torque_weight, 1e6, "the Riccati equation divides by it");
+  list.Positive("passivity_margin", passivity_margin, 1e4,
+                "G = J + margin I must exceed J, or the adaptive loop is not passive");
+  list.Within("adaptation_gain", adaptation_gain, 0.0, 100.0, "0 adapts nothing");
+  return list.Take();
+}
+
+}  // namespace flexarm
