@@ -1,0 +1,20 @@
+#include "controller/runlog/build_info.h"
+
+#include "build_info_generated.h"
+
+namespace flexarm {
+
+const BuildInfo& ThisBuild() {
+  static const BuildInfo info{.version = FLEXARM_VERSION,
+                              .git_hash = FLEXARM_GIT_HASH,
+                              .compiler = FLEXARM_COMPILER,
+                              .flags_hash = FLEXARM_FLAGS_HASH};
+  return info;
+}
+
+std::string BuildId() {
+  const BuildInfo& build = ThisBuild();
+  return build.git_hash + " " + build.compiler + " " + build.flags_hash;
+}
+
+}  // namespace flexarm

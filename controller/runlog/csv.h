@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "controller/law/step_types.h"
+#include "hal/sensor_config.h"
+
+namespace flexarm {
+
+// Plain data of a run:
+//   time_s, counter_1..counter_4, strain_1_01.., strain_2_01.., valid, torque_1_nm, torque_2_nm
+// Counters and strain channels are raw counts; torques are what was applied up to the sample.
+// `valid` is 1 if every reading is good, 0 if none is, otherwise a mask in hexadecimal: bits 0..3
+// are the counters, bit 4 + i is strain channel i in the order of the config.
+
+/// Names of the strain columns in the order of the config: link, then number within the link.
+std::vector<std::string> StrainColumns(const SensorConfig& sensors);
+
+/// Writes inputs as CSV. Numbers read back exactly.
+class CsvWriter {
+ public:
+  /// Writes the header. @param start_ns  time_s = 0, in the clock of the loop
+  CsvWriter(std::ostream* out, const SensorConfig& sensors, std::int64_t start_ns);
+  void Row(const StepInput& input);
+
+ private:
+  std::ostream* out_;
+  std::uint32_t counters_present_;
+  std::vector<std::string> strain_columns_;
+  std::int64_t start_ns_;
+};
+
+/// Reads such a file, in any order of columns; more columns are ignored. Every input is in state
+/// Running with references zero; the first one resets the loop. Lines that begin with # are
+/// skipped.
+/// @param period_s  of the loop: the tick is the time since the first row in periods, rounded
+/// @throws InputError "file:line: column: found .., expected .."
+std::vector<StepInput> ReadCsv(const std::filesystem::path& file, const SensorConfig& sensors,
+                               double period_s);
+
+}  // namespace flexarm

@@ -1,0 +1,200 @@
+#include "controller/runlog/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/link_modes.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kDegPerRad = 57.295779513082320877;
+constexpr double kFinalWindow_s = 0.3;
+constexpr double kSettledWithin_m = 0.015;
+
+// What the metrics look at in one tick.
+struct Sample {
+  double time_s;  // after sample 0 of the experiment
+  std::array<double, 2> error_deg;
+  std::array<double, 2> tip_m;
+};
+
+double Distance(const std::array<double, 2>& a, const std::array<double, 2>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+std::span<const TickRecord> FirstRunningStretch(std::span<const TickRecord> ticks) {
+  const auto running = [](const TickRecord& record) {
+    return record.input.safety_state == SafetyState::kRunning;
+  };
+  const auto first = std::find_if(ticks.begin(), ticks.end(), running);
+  return {first, std::find_if_not(first, ticks.end(), running)};
+}
+
+std::vector<Sample> Samples(std::span<const TickRecord> ticks, double period_s, bool truth,
+                            const TipGeometry& geometry) {
+  std::vector<Sample> samples;
+  samples.reserve(ticks.size());
+  for (const TickRecord& record : ticks) {
+    const std::int64_t number = record.input.tick - ticks.front().input.tick - 1;
+    Sample sample{
+        .time_s = static_cast<double>(number) * period_s,
+        .error_deg = {},
+        .tip_m = truth ? record.truth.tip_m : EstimatedTip(geometry, record.output.x_hat)};
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      const double angle = truth ? record.truth.hub_angle_rad[joint] : record.output.x_hat[joint];
+      sample.error_deg[joint] = (angle - record.input.reference_now.x_m[joint]) * kDegPerRad;
+    }
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+// Half a period of slack on the borders: times are multiples of the period but for round-off.
+std::span<const Sample> Between(std::span<const Sample> samples, double after_s, double until_s,
+                                double slack_s) {
+  const auto before = [](double limit) {
+    return [limit](const Sample& sample) { return sample.time_s < limit; };
+  };
+  const auto first = std::find_if_not(samples.begin(), samples.end(), before(after_s + slack_s));
+  return {first, std::find_if_not(first, samples.end(), before(until_s + slack_s))};
+}
+
+void JudgeFinalError(std::span<const Sample> window, RunMetrics* metrics) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    double sum = 0;
+    for (const Sample& sample : window) sum += sample.error_deg[joint];
+    double& largest = metrics->joint_final_error_deg[joint];
+    largest = std::max(largest, std::abs(sum / static_cast<double>(window.size())));
+  }
+}
+
+std::array<double, 2> MeanTip(std::span<const Sample> window) {
+  std::array<double, 2> mean{};
+  for (const Sample& sample : window) {
+    for (std::size_t axis = 0; axis < 2; ++axis) mean[axis] += sample.tip_m[axis];
+  }
+  for (double& value : mean) value /= static_cast<double>(window.size());
+  return mean;
+}
+
+// @returns the time after the start of the rest from which on the tip stays; nothing if it does not
+std::optional<double> SettlingTime(std::span<const Sample> rest, double start_s,
+                                   const std::array<double, 2>& place) {
+  std::size_t settled = rest.size();
+  while (settled > 0 && Distance(rest[settled - 1].tip_m, place) <= kSettledWithin_m) --settled;
+  if (settled == rest.size()) return std::nullopt;
+  return std::max(0.0, rest[settled].time_s - start_s);
+}
+
+double ResidualRms_mm(std::span<const Sample> window, const std::array<double, 2>& place) {
+  double sum = 0;
+  for (const Sample& sample : window) {
+    const double distance_mm = 1e3 * Distance(sample.tip_m, place);
+    sum += distance_mm * distance_mm;
+  }
+  return std::sqrt(sum / static_cast<double>(window.size()));
+}
+
+// The last 0.3 s of a rest, or all of a shorter one.
+std::span<const Sample> FinalWindow(std::span<const Sample> samples, const Rest& rest,
+                                    double slack_s) {
+  const double start_s = std::max(rest.start_s, rest.end_s - kFinalWindow_s);
+  return Between(samples, start_s, rest.end_s, slack_s);
+}
+
+void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double slack_s,
+                RunMetrics* metrics) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::erase_if(rests,
+                [&](const Rest& rest) { return FinalWindow(samples, rest, slack_s).empty(); });
+  if (rests.empty()) {
+    metrics->joint_final_error_deg = {kNone, kNone};
+    metrics->tip_residual_rms_mm = kNone;
+    return;
+  }
+  metrics->tip_settling_time_s = 0;
+  for (const Rest& rest : rests) {
+    const auto all = Between(samples, rest.start_s - 2 * slack_s, rest.end_s, slack_s);
+    const auto window = FinalWindow(samples, rest, slack_s);
+    JudgeFinalError(window, metrics);
+    const std::array<double, 2> place = MeanTip(window);
+    metrics->tip_residual_rms_mm =
+        std::max(metrics->tip_residual_rms_mm, ResidualRms_mm(window, place));
+    const std::optional<double> settled = SettlingTime(all, rest.start_s, place);
+    if (!settled) {
+      metrics->tip_settling_time_s.reset();
+    } else if (metrics->tip_settling_time_s) {
+      metrics->tip_settling_time_s = std::max(*metrics->tip_settling_time_s, *settled);
+    }
+  }
+}
+
+void JudgeAllTicks(std::span<const TickRecord> ticks, std::span<const Sample> samples,
+                   RunMetrics* metrics) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    double sum = 0;
+    for (const Sample& sample : samples) sum += sample.error_deg[joint] * sample.error_deg[joint];
+    metrics->joint_rms_error_deg[joint] = std::sqrt(sum / static_cast<double>(samples.size()));
+    for (const TickRecord& record : ticks) {
+      metrics->peak_torque_nm[joint] =
+          std::max(metrics->peak_torque_nm[joint], std::abs(record.input.applied_torque_nm[joint]));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s) {
+  std::vector<Rest> rests;
+  const double end_s = std::min(run_end_s, experiment.duration_s);
+  for (std::size_t i = 0; i < experiment.doublet.size(); ++i) {
+    const Doublet& move = experiment.doublet[i];
+    const bool last = i + 1 == experiment.doublet.size();
+    const Rest rest{.start_s = move.start_s + move.duration_s,
+                    .end_s = last ? end_s : std::min(end_s, experiment.doublet[i + 1].start_s)};
+    if (rest.end_s > rest.start_s) rests.push_back(rest);
+  }
+  return rests;
+}
+
+TipGeometry TipGeometryOf(const ArmParameters& arm) {
+  const LinkModes modes = Link1Modes(arm, 2);
+  return {.length_m = {arm.link[0].length_m(), arm.link[1].length_m()},
+          .tip_slope_per_m = {modes.slope_tip(0), modes.slope_tip(1)}};
+}
+
+std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
+                                   const std::array<double, kMaxNominalStates>& x) {
+  const auto& [length1, length2] = geometry.length_m;
+  const double th1 = x[0], th2 = x[1], w1 = x[2] + x[3], w2 = x[4] + x[5];
+  const double alpha1 =
+      std::atan(geometry.tip_slope_per_m[0] * x[2] + geometry.tip_slope_per_m[1] * x[3]);
+  const double gamma = th1 + alpha1 + th2;
+  return {std::cos(th1) * length1 - std::sin(th1) * w1 + std::cos(gamma) * length2 -
+              std::sin(gamma) * w2,
+          std::sin(th1) * length1 + std::cos(th1) * w1 + std::sin(gamma) * length2 +
+              std::cos(gamma) * w2};
+}
+
+RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& experiment,
+                          double period_s, const TipGeometry& geometry) {
+  RunMetrics metrics;
+  const auto running = FirstRunningStretch(ticks);
+  metrics.ticks = static_cast<std::int64_t>(running.size());
+  metrics.truth =
+      !running.empty() && std::all_of(running.begin(), running.end(),
+                                      [](const TickRecord& record) { return record.truth.known; });
+  const auto samples = Samples(running, period_s, metrics.truth, geometry);
+  const double run_end_s = samples.empty() ? 0 : samples.back().time_s;
+  JudgeRests(samples, RestsOf(experiment, run_end_s), period_s / 2, &metrics);
+  if (samples.empty()) {
+    metrics.joint_rms_error_deg.fill(std::numeric_limits<double>::quiet_NaN());
+  } else {
+    JudgeAllTicks(running, samples, &metrics);
+  }
+  return metrics;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "controller/law/experiment.h"
+#include "controller/runlog/records.h"
+#include "model/arm_parameters.h"
+
+namespace flexarm {
+
+/// How well a run did (docs: "Metrics"). A figure that the run was too short for is NaN.
+struct RunMetrics {
+  std::int64_t ticks = 0;                         ///< in state Running
+  std::array<double, 2> joint_rms_error_deg{};    ///< against the reference model, all ticks
+  std::array<double, 2> joint_final_error_deg{};  ///< largest over the rests of |mean, last 0.3 s|
+  /// Largest over the rests: from the move's end until the tip stays within 15 mm of its mean over
+  /// the last 0.3 s. Nothing: never.
+  std::optional<double> tip_settling_time_s;
+  double tip_residual_rms_mm = 0;          ///< largest over the rests: rms about that mean
+  std::array<double, 2> peak_torque_nm{};  ///< after the gate
+  bool truth = false;  ///< angles and tip are the plant's own; otherwise estimated
+};
+
+/// A stretch without a move, in seconds after sample 0 of the experiment.
+struct Rest {
+  double start_s;
+  double end_s;
+};
+
+/// From the end of each move to the start of the next, or to `run_end_s`. Rests that the run did
+/// not reach are left out.
+std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s);
+
+/// What an estimated tip position needs: rigid geometry and the tip slopes of link 1's modes.
+struct TipGeometry {
+  std::array<double, 2> length_m;
+  std::array<double, 2> tip_slope_per_m;  ///< psi_1j'(L1), j = 1, 2
+};
+
+TipGeometry TipGeometryOf(const ArmParameters& arm);
+
+/// Tip in the base frame from th1 th2 f11 f12 f21 f22; slopes as arctangents, as in the model.
+std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
+                                   const std::array<double, kMaxNominalStates>& x);
+
+/// Judges the first stretch of ticks in state Running. Sample 0 of the experiment is the sampling
+/// instant after the first of them.
+RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& experiment,
+                          double period_s, const TipGeometry& geometry);
+
+}  // namespace flexarm

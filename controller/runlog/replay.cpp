@@ -1,0 +1,61 @@
+#include "controller/runlog/replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "controller/runlog/blob.h"
+
+namespace flexarm {
+namespace {
+
+// A NaN on one side only is an infinite difference: it must not hide in a maximum.
+double Difference(double a, double b) {
+  if (std::isnan(a) && std::isnan(b)) return 0;
+  const double difference = std::abs(a - b);
+  return std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference;
+}
+
+}  // namespace
+
+Replay::Replay(StepFunction step, bool other_config) : step_(std::move(step)) {
+  if (other_config) result_.bit_exact.reset();
+}
+
+void Replay::Tick(const TickRecord& record) {
+  const std::int64_t tick = record.input.tick;
+  if (previous_tick_ && tick != *previous_tick_ + 1 && !result_.first_gap_tick) {
+    result_.first_gap_tick = *previous_tick_ + 1;
+  }
+  previous_tick_ = tick;
+  ++result_.ticks;
+
+  const StepOutput output = step_(record.input);
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    double& largest = result_.max_torque_difference_nm[joint];
+    largest =
+        std::max(largest, Difference(output.torque_nm[joint], record.output.torque_nm[joint]));
+  }
+  if (SameBytes(output, record.output)) return;
+  if (result_.bit_exact) result_.bit_exact = false;
+  if (!result_.first_different_tick) result_.first_different_tick = tick;
+}
+
+void Replay::Safety(const SafetyRecord& record) {
+  ++result_.safety_records;
+  const bool continues = !previous_status_ || *previous_status_ == record.before;
+  previous_status_ = record.after;
+  const SafetyDecision recorded{.status = record.after, .refusal = record.refusal};
+  if (continues && NextSafetyState(record.before, record.facts) == recorded) return;
+  result_.safety_exact = false;
+  if (!result_.first_different_safety_ns) result_.first_different_safety_ns = record.due_ns;
+}
+
+ReplayResult Replay::Result() const {
+  ReplayResult result = result_;
+  if (result.safety_records == 0) result.safety_exact.reset();
+  return result;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "controller/runlog/run_sink.h"
+
+namespace flexarm {
+
+/// Makes the place for a run that begins. @throws RunLogError
+using OpenSink = std::function<std::unique_ptr<RunSink>(const RunInfo&)>;
+
+OpenSink RunsInDirectory(const std::filesystem::path& directory);  ///< NewRunFile a run
+OpenSink RunInFile(const std::filesystem::path& file);             ///< the one run; must not exist
+OpenSink RunInMemory(RunContents* contents);
+
+/// Which records belong to a run, and the events that follow from them.
+///
+/// A run lasts from Idle -> Armed until Idle, or 5 s after a trip. Its first tick is the one in
+/// which the loop was reset, so that it replays on its own. Records must come in order of time.
+/// Disk errors end the recording of the run; they are reported and counted, never thrown.
+class RunRecording {
+ public:
+  /// For the journal. Called on the recorder's thread.
+  using Report = std::function<void(bool is_error, const std::string& text)>;
+
+  /// @param info  what every run has in common; start and experiment are filled in
+  RunRecording(RunInfo info, OpenSink open, Report report);
+
+  void Safety(const SafetyRecord& record) noexcept;
+  void Tick(const TickRecord& record) noexcept;
+  void Timing(const TimingRecord& record) noexcept;
+  /// Kind "experiment" announces what is to run next: `name`, and `text` the whole file.
+  void Event(const RunEvent& event) noexcept;
+
+  /// Nothing older than this will come any more: closes a run that has ended by then.
+  void Until(std::int64_t time_ns) noexcept;
+  void Commit() noexcept;
+  /// Closes the run that is open, if any.
+  void Finish() noexcept;
+
+  /// Something outside went wrong: counts and reports it, and ends the recording of the run.
+  void CountError(const std::string& what) noexcept;
+
+  bool is_open() const { return sink_ != nullptr; }
+  std::int64_t errors() const { return errors_; }
+
+ private:
+  template <typename Action>
+  void Guarded(Action action) noexcept;
+  void Open(std::int64_t start_ns);
+  void Close();
+  void WriteEventsOf(const SafetyRecord& record);
+  std::string ResultJson() const;
+
+  RunInfo info_;
+  OpenSink open_;
+  Report report_;
+  std::unique_ptr<RunSink> sink_;
+  std::string sink_name_;
+  std::int64_t errors_ = 0;
+
+  // Of the open run.
+  std::optional<std::int64_t> end_ns_;  // it ends after this instant
+  std::optional<std::int64_t> last_tick_;
+  std::int64_t ticks_ = 0;
+  std::int64_t missing_ticks_ = 0;
+  TripCause trip_ = TripCause::kNone;
+  SafetyState state_ = SafetyState::kIdle;
+  bool has_run_ = false;  // the experiment was Running
+};
+
+}  // namespace flexarm

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "controller/runlog/records.h"
+#include "controller/runlog/safety_rows.h"
+
+namespace flexarm {
+
+/// Where the records of one run go: a file (RunWriter), or memory (RunMemory).
+/// Thread: the recorder's. Not real-time safe.
+class RunSink {
+ public:
+  virtual ~RunSink() = default;
+
+  virtual std::string Name() const = 0;  ///< for messages: the file
+  virtual void Tick(const TickRecord& record) = 0;
+  virtual void Timing(const TimingRecord& record) = 0;
+  virtual void Safety(const SafetyRecord& record) = 0;
+  virtual void Event(const RunEvent& event) = 0;
+  /// The experiment that is about to run. The first of a run is the one that metrics judge.
+  virtual void SetExperiment(const std::string& name, const std::string& text) = 0;
+  /// Makes what was written so far safe against the death of the process.
+  virtual void Commit() = 0;
+  /// Ends the run. Nothing may follow.
+  virtual void Close(const std::string& result_json) = 0;
+};
+
+/// A whole run in memory.
+struct RunContents {
+  RunInfo info;
+  std::vector<TickRecord> tick;
+  std::vector<TimingRecord> timing;
+  std::vector<SafetyRecord> safety;
+  std::vector<RunEvent> event;
+};
+
+/// Keeps a run in `contents`, which must outlive it: for metrics when there is no log.
+class RunMemory : public RunSink {
+ public:
+  explicit RunMemory(RunContents* contents) : contents_(contents) {}
+
+  std::string Name() const override { return "memory"; }
+  void Tick(const TickRecord& record) override { contents_->tick.push_back(record); }
+  void Timing(const TimingRecord& record) override { contents_->timing.push_back(record); }
+  void Safety(const SafetyRecord& record) override { contents_->safety.push_back(record); }
+  void Event(const RunEvent& event) override { contents_->event.push_back(event); }
+  void SetExperiment(const std::string& name, const std::string& text) override {
+    if (!contents_->info.experiment_text.empty()) return;
+    contents_->info.experiment_name = name;
+    contents_->info.experiment_text = text;
+  }
+  void Commit() override {}
+  void Close(const std::string& result_json) override { contents_->info.result_json = result_json; }
+
+ private:
+  RunContents* contents_;
+};
+
+}  // namespace flexarm

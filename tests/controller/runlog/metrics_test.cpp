@@ -1,0 +1,160 @@
+// Metrics of hand-made traces whose figures are known.
+
+#include "controller/runlog/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace flexarm {
+namespace {
+
+constexpr double kPeriod_s = 0.02;
+constexpr double kDeg = 3.14159265358979323846 / 180;
+const TipGeometry kGeometry{.length_m = {1.0, 0.7}, .tip_slope_per_m = {1.5, 4.0}};
+
+// Two moves: rests are 1..3 s and 4..6 s.
+Experiment TwoMoves() {
+  const auto move = [](double start_s) {
+    return Doublet{
+        .start_s = start_s, .duration_s = 1, .shape = DoubletShape::kSquare, .move_deg = {30, 30}};
+  };
+  return {
+      .name = "two", .text = "", .duration_s = 6, .doublet = {move(0), move(3)}, .sim_event = {}};
+}
+
+// Armed, then Running with `fill(t, record)`, t = 0 at sample 0, then Stopping.
+std::vector<TickRecord> Trace(double end_s, const std::function<void(double, TickRecord*)>& fill) {
+  std::vector<TickRecord> ticks;
+  const int last = static_cast<int>(std::lround(end_s / kPeriod_s));
+  for (int n = -6; n <= last + 5; ++n) {
+    TickRecord record{};
+    record.input.tick = 1000 + n;
+    record.input.safety_state = n < -1      ? SafetyState::kArmed
+                                : n <= last ? SafetyState::kRunning
+                                            : SafetyState::kStopping;
+    record.truth.known = true;
+    const bool running = record.input.safety_state == SafetyState::kRunning;
+    if (running) fill(n * kPeriod_s, &record);
+    if (!running) record.truth = {{9, 9}, {9, 9}, {9, 9}, true};  // must not count
+    ticks.push_back(record);
+  }
+  return ticks;
+}
+
+RunMetrics Judge(const std::vector<TickRecord>& ticks) {
+  return ComputeMetrics(ticks, TwoMoves(), kPeriod_s, kGeometry);
+}
+
+TEST(RunMetrics, RmsIsOverAllRunningTicksAgainstTheReference) {
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    record->input.reference_now.x_m[0] = std::sin(t);
+    record->truth.hub_angle_rad[0] = std::sin(t) + 2 * kDeg;
+    const bool odd = record->input.tick % 2 != 0;
+    record->truth.hub_angle_rad[1] = odd ? 4 * kDeg : 0;  // 999 .. 1300: 151 of 302 are odd
+  });
+  const RunMetrics metrics = Judge(ticks);
+  EXPECT_EQ(metrics.ticks, 302);
+  EXPECT_TRUE(metrics.truth);
+  EXPECT_NEAR(metrics.joint_rms_error_deg[0], 2, 1e-12);
+  EXPECT_NEAR(metrics.joint_rms_error_deg[1], 4 / std::sqrt(2.0), 1e-12);
+}
+
+TEST(RunMetrics, FinalErrorIsTheWorstRestsMeanOverItsLastThreeTenths) {
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    if (t > 2.71 && t < 3.01) record->truth.hub_angle_rad[0] = -0.5 * kDeg;  // the window exactly
+    if (t > 5.71) record->truth.hub_angle_rad[0] = 0.3 * kDeg;
+    if (t > 2.69 && t < 2.71) record->truth.hub_angle_rad[1] = 50 * kDeg;  // just before it
+    if (t > 3.01 && t < 3.03) record->truth.hub_angle_rad[1] = 50 * kDeg;  // just after it
+  });
+  const RunMetrics metrics = Judge(ticks);
+  EXPECT_NEAR(metrics.joint_final_error_deg[0], 0.5, 1e-12);
+  EXPECT_NEAR(metrics.joint_final_error_deg[1], 0, 1e-12);
+}
+
+TEST(RunMetrics, SettlingIsTheWorstTimeFromTheMovesEnd) {
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    record->truth.tip_m = {1.0, t < 3.5 ? 0.0 : 0.5};
+    if (t > 0.5 && t < 1.39) record->truth.tip_m[0] += 0.016;   // last outside at 1.38
+    if (t > 3.5 && t < 4.71) record->truth.tip_m[1] -= 0.0151;  // last outside at 4.70
+    if (t > 5.0 && t < 5.1) record->truth.tip_m[0] += 0.0149;   // inside
+  });
+  const RunMetrics metrics = Judge(ticks);
+  ASSERT_TRUE(metrics.tip_settling_time_s.has_value());
+  EXPECT_NEAR(*metrics.tip_settling_time_s, 0.72, 1e-9);
+  EXPECT_NEAR(metrics.tip_residual_rms_mm, 0, 1e-9);
+}
+
+TEST(RunMetrics, ATipThatNeverLeavesItsPlaceSettlesAtOnce) {
+  const auto ticks = Trace(6, [](double, TickRecord* record) { record->truth.tip_m = {1, 1}; });
+  EXPECT_EQ(Judge(ticks).tip_settling_time_s, 0.0);
+}
+
+TEST(RunMetrics, ATipThatNeverSettlesHasNoTime) {
+  const auto ticks = Trace(6, [](double, TickRecord* record) {
+    record->truth.tip_m = {record->input.tick % 2 != 0 ? 0.02 : -0.02, 0};
+  });
+  const RunMetrics metrics = Judge(ticks);
+  EXPECT_FALSE(metrics.tip_settling_time_s.has_value());
+  // 15 ticks: mean of +-20 mm with one more of a sign is 20/15 mm off centre.
+  EXPECT_NEAR(metrics.tip_residual_rms_mm, std::sqrt(400 - 400.0 / 225), 1e-9);
+}
+
+TEST(RunMetrics, PeakTorqueIsTheLargestAppliedOfEitherSign) {
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    record->input.applied_torque_nm = {std::sin(t), t < 0.01 && t > -0.01 ? -3.0 : 1.0};
+    record->output.torque_nm = {100, 100};  // asked only
+  });
+  EXPECT_NEAR(Judge(ticks).peak_torque_nm[0], 1, 1e-4);  // sampled near the crest
+  EXPECT_EQ(Judge(ticks).peak_torque_nm[1], 3);
+}
+
+TEST(RunMetrics, ARunThatEndedInItsFirstRestIsJudgedOnThatRestAlone) {
+  const auto ticks = Trace(2, [](double t, TickRecord* record) {
+    record->truth.hub_angle_rad[0] = t > 1.71 ? kDeg : 0;
+  });
+  EXPECT_NEAR(Judge(ticks).joint_final_error_deg[0], 1, 1e-12);
+}
+
+TEST(RunMetrics, ARunThatEndedInItsFirstMoveHasNoRestToJudge) {
+  const RunMetrics metrics = Judge(Trace(0.5, [](double, TickRecord*) {}));
+  EXPECT_EQ(metrics.ticks, 27);
+  EXPECT_TRUE(std::isnan(metrics.joint_final_error_deg[0]));
+  EXPECT_TRUE(std::isnan(metrics.tip_residual_rms_mm));
+  EXPECT_FALSE(metrics.tip_settling_time_s.has_value());
+}
+
+TEST(RunMetrics, NoTickAtAllIsNoError) {
+  const RunMetrics metrics = Judge({});
+  EXPECT_EQ(metrics.ticks, 0);
+  EXPECT_FALSE(metrics.truth);
+  EXPECT_TRUE(std::isnan(metrics.joint_rms_error_deg[0]));
+}
+
+TEST(RunMetrics, WithoutTruthTheEstimateIsJudged) {
+  const auto ticks = Trace(6, [](double, TickRecord* record) {
+    record->truth.known = false;
+    record->output.x_hat[0] = kDeg;
+  });
+  const RunMetrics metrics = Judge(ticks);
+  EXPECT_FALSE(metrics.truth);
+  EXPECT_NEAR(metrics.joint_rms_error_deg[0], 1, 1e-12);
+}
+
+TEST(EstimatedTip, IsTheEndOfTwoRigidLinksWithoutBending) {
+  const auto tip = EstimatedTip(kGeometry, {kDeg * 90, kDeg * 90});
+  EXPECT_NEAR(tip[0], -0.7, 1e-12);
+  EXPECT_NEAR(tip[1], 1.0, 1e-12);
+}
+
+TEST(EstimatedTip, TurnsLinkTwoByTheTipSlopeOfLinkOne) {
+  // f11 = 0.1 m: the elbow is 0.1 m to the left, link 2 points along atan(0.15).
+  const auto tip = EstimatedTip(kGeometry, {0, 0, 0.1, 0, 0.2, 0});
+  const double gamma = std::atan(0.15);
+  EXPECT_NEAR(tip[0], 1 + 0.7 * std::cos(gamma) - 0.2 * std::sin(gamma), 1e-12);
+  EXPECT_NEAR(tip[1], 0.1 + 0.7 * std::sin(gamma) + 0.2 * std::cos(gamma), 1e-12);
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,227 @@
+// The recorder: which records belong to a run, in which order, and what happens on a bad disk.
+
+#include <sys/stat.h>
+
+#include "controller/runlog/blob.h"
+#include "controller/runlog/recorder_task.h"
+#include "tests/controller/runlog/runlog_fixture.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr SafetyStatus kIdleStatus{SafetyState::kIdle, TripCause::kNone};
+constexpr SafetyStatus kArmedStatus{SafetyState::kArmed, TripCause::kNone};
+constexpr SafetyStatus kRunningStatus{SafetyState::kRunning, TripCause::kNone};
+
+class RecorderTest : public RunLogTest {
+ protected:
+  explicit RecorderTest(std::size_t capacity = 4096)
+      : ticks_(capacity), safety_(capacity), timing_(capacity), events_(capacity) {}
+
+  void Start(OpenSink open) {
+    recording_.emplace(MakeInfo(), std::move(open), [this](bool is_error, const std::string& text) {
+      (is_error ? errors_ : notes_).push_back(text);
+    });
+    recorder_.emplace(RecorderChannels{&ticks_, &safety_, &timing_, &events_}, &*recording_);
+  }
+  // Arms at `at_ns`; the first tick after it carries the reset.
+  void Arm(std::int64_t at_ns) { safety_.Push(MakeSafety(at_ns, kIdleStatus, RequestKind::kArm)); }
+  void Ticks(std::int64_t first, std::int64_t last, std::int64_t reset) {
+    for (std::int64_t tick = first; tick <= last; ++tick) {
+      TickRecord record = MakeTick(tick);
+      record.input.reset = tick == reset ? 1 : 0;
+      ticks_.Push(record);
+    }
+  }
+  void RunUntil(std::int64_t end_ns) {
+    for (; due_ns_ <= end_ns; due_ns_ += RecorderTask::kPeriodNs) {
+      recorder_->Run({.due_ns = due_ns_, .missed_in_a_row = 0});
+    }
+  }
+
+  SpscQueue<TickRecord> ticks_;
+  SpscQueue<SafetyRecord> safety_;
+  SpscQueue<TimingRecord> timing_;
+  EventQueue events_;
+  std::optional<RunRecording> recording_;
+  std::optional<RecorderTask> recorder_;
+  std::vector<std::string> errors_, notes_;
+  std::int64_t due_ns_ = 0;
+};
+
+TEST_F(RecorderTest, ARunIsFromTheResetAfterArmUntilIdle) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  Ticks(0, 100, 11);
+  Arm(10 * kTestPeriodNs + 1);
+  safety_.Push(MakeSafety(50 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm));
+  RunUntil(3 * kSecond);
+  EXPECT_FALSE(recording_->is_open());
+  ASSERT_EQ(run.tick.size(), 40U);
+  EXPECT_EQ(run.tick.front().input.tick, 11);
+  EXPECT_EQ(run.tick.back().input.tick, 50);
+  EXPECT_EQ(run.safety.size(), 2U);
+  EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs + 1);
+  EXPECT_TRUE(errors_.empty());
+}
+
+TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  Arm(0);
+  Ticks(1, 400, 1);
+  SafetyRecord trip = MakeSafety(kSecond, kRunningStatus, RequestKind::kNone,
+                                 CauseBit(TripCause::kLimitSwitch2High));
+  trip.evidence = {.value = 1.5, .limit = 1.25, .channel = 2, .reserved = 0};
+  safety_.Push(trip);
+  RunUntil(9 * kSecond);
+  EXPECT_FALSE(recording_->is_open());
+  EXPECT_EQ(run.tick.back().input.now_ns, 6 * kSecond);
+  ASSERT_EQ(run.event.size(), 2U);
+  EXPECT_EQ(run.event[0].name, "arm");
+  EXPECT_EQ(run.event[1].kind, "trip");
+  EXPECT_EQ(run.event[1].name, "limit-switch-2-high");
+  EXPECT_NE(run.event[1].value_json.find("1.25"), std::string::npos);
+  EXPECT_NE(run.info.result_json.find("\"trip\":\"limit-switch-2-high\""), std::string::npos);
+  EXPECT_NE(run.info.result_json.find("\"completed\":false"), std::string::npos);
+}
+
+TEST_F(RecorderTest, WhenRecordsArriveDoesNotChangeTheLog) {
+  RunContents at_once, late;
+  Start(RunInMemory(&at_once));
+  Arm(100);
+  Ticks(1, 60, 1);
+  recorder_->Finish();
+
+  Start(RunInMemory(&late));
+  Ticks(1, 1, 1);  // the tick is there before the record that opens the run
+  RunUntil(20'000'000);
+  Arm(100);
+  Ticks(2, 60, 1);
+  RunUntil(2 * kSecond);
+  recorder_->Finish();
+  ASSERT_EQ(late.tick.size(), at_once.tick.size());
+  EXPECT_EQ(late.tick.front().input.tick, 1);
+}
+
+TEST_F(RecorderTest, AMissingTickIsAnEvent) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  Arm(0);
+  Ticks(1, 5, 1);
+  Ticks(9, 10, 1);
+  recorder_->Finish();
+  ASSERT_EQ(run.event.size(), 2U);
+  EXPECT_EQ(run.event[1].kind, "gap");
+  EXPECT_EQ(run.event[1].value_json, "{\"first_tick\":6,\"ticks\":3}");
+  EXPECT_NE(run.info.result_json.find("\"missing_ticks\":3"), std::string::npos);
+}
+
+TEST_F(RecorderTest, ARefusalIsAnEventWithItsReason) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  Arm(0);
+  safety_.Push(MakeSafety(5, kArmedStatus, RequestKind::kStop));
+  recorder_->Finish();
+  ASSERT_EQ(run.event.size(), 2U);
+  EXPECT_EQ(run.event[1].kind, "refusal");
+  EXPECT_EQ(run.event[1].name, "stop");
+  EXPECT_FALSE(run.event[1].text.empty());
+}
+
+TEST_F(RecorderTest, AnExperimentAnnouncedBeforeArmNamesTheFile) {
+  Start(RunsInDirectory(folder_));
+  events_.Push(
+      {.time_ns = 1, .kind = "experiment", .name = "sine", .text = "x = 1", .value_json = ""});
+  Arm(2);
+  Ticks(1, 3, 1);
+  recorder_->Finish();
+  ASSERT_EQ(notes_.size(), 2U);
+  const auto file = std::filesystem::directory_iterator(folder_)->path();
+  EXPECT_NE(file.string().find("-sine.flexarm"), std::string::npos) << file;
+  EXPECT_EQ(RunReader(file).info().experiment_text, "x = 1");
+}
+
+TEST_F(RecorderTest, AnExperimentAfterArmIsStoredToo) {
+  Start(RunInFile(File()));
+  Arm(2);
+  events_.Push(
+      {.time_ns = 5, .kind = "experiment", .name = "sine", .text = "x = 1", .value_json = ""});
+  recorder_->Finish();
+  EXPECT_EQ(RunReader(File()).info().experiment_name, "sine");
+}
+
+TEST_F(RecorderTest, WhatWasRecordedIsSafeWithinHalfASecond) {
+  Start(RunInFile(File()));
+  Arm(0);
+  for (std::int64_t tick = 1; tick <= 500; ++tick) {
+    const std::int64_t now_ns = tick * kTestPeriodNs;
+    Ticks(tick, tick, 1);
+    RunUntil(now_ns);
+    if (now_ns < kSecond || tick % 10 != 0) continue;
+    RunReader reader(File());  // sees what a killed process would leave
+    std::int64_t last_ns = 0;
+    reader.ForEachTick([&](const TickRecord& record) { last_ns = record.input.now_ns; });
+    EXPECT_LE(now_ns - last_ns, kSecond / 2);
+  }
+  recorder_->Finish();
+}
+
+TEST_F(RecorderTest, ADiskErrorIsReportedAndCountedAndTheNextRunIsRecorded) {
+  WriteText(File("blocked"), "a file where a folder should be");
+  int opened = 0;
+  RunContents second;
+  Start([&](const RunInfo& info) -> std::unique_ptr<RunSink> {
+    if (++opened == 1) return RunsInDirectory(File("blocked"))(info);
+    return RunInMemory(&second)(info);
+  });
+  Arm(0);
+  Ticks(1, 10, 1);
+  safety_.Push(MakeSafety(11 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm));
+  Arm(20 * kTestPeriodNs);
+  Ticks(21, 30, 21);
+  recorder_->Finish();
+  EXPECT_EQ(recording_->errors(), 1);
+  ASSERT_EQ(errors_.size(), 1U);
+  EXPECT_NE(errors_[0].find("Not a directory"), std::string::npos) << errors_[0];
+  EXPECT_EQ(second.tick.size(), 10U);
+}
+
+class SmallQueueTest : public RecorderTest {
+ protected:
+  SmallQueueTest() : RecorderTest(8) {}
+};
+
+TEST_F(SmallQueueTest, DroppedRecordsAreAnEvent) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  Arm(0);
+  Ticks(1, 100, 1);
+  due_ns_ = RecorderTask::kPeriodNs;
+  RunUntil(kSecond);
+  recorder_->Finish();
+  const auto is_dropped = [](const RunEvent& event) { return event.name == "dropped"; };
+  ASSERT_EQ(std::count_if(run.event.begin(), run.event.end(), is_dropped), 1);
+  EXPECT_EQ(run.tick.size() + ticks_.dropped(), 100U);
+}
+
+TEST_F(RecorderTest, TwoRunsOfOneStoryWriteTheSameTickTable) {
+  for (const char* name : {"a", "b"}) {
+    Start(RunInFile(File(name)));
+    due_ns_ = 0;
+    Arm(0);
+    Ticks(1, 50, 1);
+    RunUntil(2 * kSecond);
+    recorder_->Finish();
+  }
+  const RunContents a = RunReader(File("a")).ReadAll(), b = RunReader(File("b")).ReadAll();
+  ASSERT_EQ(a.tick.size(), b.tick.size());
+  for (std::size_t i = 0; i < a.tick.size(); ++i) {
+    EXPECT_TRUE(SameBytes(a.tick[i].input, b.tick[i].input));
+    EXPECT_TRUE(SameBytes(a.tick[i].output, b.tick[i].output));
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

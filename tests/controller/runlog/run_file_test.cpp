@@ -1,0 +1,244 @@
+// A run written to a file is read back to the bit, whatever happens to the process or the folder.
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include "controller/runlog/blob.h"
+#include "controller/runlog/build_info.h"
+#include "tests/controller/runlog/runlog_fixture.h"
+
+namespace flexarm {
+namespace {
+
+using RunFileTest = RunLogTest;
+
+TEST_F(RunFileTest, TicksComeBackToTheBitIncludingNegativeZeroAndNan) {
+  TickRecord odd = MakeTick(3);
+  odd.output.torque_nm = {-0.0, std::numeric_limits<double>::quiet_NaN()};
+  odd.output.x_hat[5] = -std::numeric_limits<double>::infinity();
+  std::uint64_t nan_with_payload = 0x7ff800000000beefU;
+  std::memcpy(&odd.input.applied_torque_nm[1], &nan_with_payload, sizeof(double));
+  odd.truth.known = false;
+  {
+    RunWriter writer(File(), MakeInfo());
+    writer.Tick(MakeTick(2));
+    writer.Tick(odd);
+    writer.Close("{}");
+  }
+  const RunContents run = RunReader(File()).ReadAll();
+  ASSERT_EQ(run.tick.size(), 2U);
+  EXPECT_TRUE(SameBytes(run.tick[0].input, MakeTick(2).input));
+  EXPECT_TRUE(SameBytes(run.tick[0].output, MakeTick(2).output));
+  EXPECT_EQ(run.tick[0].truth.tip_m, MakeTick(2).truth.tip_m);
+  EXPECT_EQ(run.tick[0].truth.hub_angle_rad, MakeTick(2).truth.hub_angle_rad);
+  EXPECT_EQ(run.tick[0].truth.tip_deflection_m, MakeTick(2).truth.tip_deflection_m);
+  EXPECT_TRUE(run.tick[0].truth.known);
+  EXPECT_TRUE(SameBytes(run.tick[1].input, odd.input));
+  EXPECT_TRUE(SameBytes(run.tick[1].output, odd.output));
+  EXPECT_FALSE(run.tick[1].truth.known);
+}
+
+TEST_F(RunFileTest, EverythingElseComesBack) {
+  const SafetyRecord safety =
+      MakeSafety(5, {SafetyState::kIdle, TripCause::kNone}, RequestKind::kArm);
+  const RunEvent event{.time_ns = 7,
+                       .kind = "gap",
+                       .name = "ticks",
+                       .text = "it's \"so\"",
+                       .value_json = "{\"a\":1}"};
+  RunInfo info = MakeInfo();
+  info.start_ns = 4;
+  {
+    RunWriter writer(File(), info);
+    writer.Safety(safety);
+    writer.Timing({.tick = 1, .due_ns = 2, .woke_ns = 3, .finished_ns = 4});
+    writer.Event(event);
+    writer.SetExperiment("square", "text one");
+    writer.SetExperiment("second", "text two");
+    writer.Close("{\"trip\":null}");
+  }
+  RunReader reader(File());
+  EXPECT_TRUE(reader.closed());
+  const RunContents run = reader.ReadAll();
+  EXPECT_EQ(run.info.start_utc, info.start_utc);
+  EXPECT_EQ(run.info.start_ns, 4);
+  EXPECT_EQ(run.info.build_id, BuildId());
+  EXPECT_EQ(run.info.version, ThisBuild().version);
+  EXPECT_EQ(run.info.rig_name, info.rig_name);
+  EXPECT_EQ(run.info.seed, info.seed);
+  EXPECT_EQ(run.info.config_text, info.config_text);
+  EXPECT_EQ(run.info.gains_json, info.gains_json);
+  EXPECT_EQ(run.info.experiment_name, "square");
+  EXPECT_EQ(run.info.experiment_text, "text one");
+  EXPECT_EQ(run.info.result_json, "{\"trip\":null}");
+  ASSERT_EQ(run.safety.size(), 1U);
+  EXPECT_TRUE(SameBytes(run.safety[0], safety));
+  ASSERT_EQ(run.timing.size(), 1U);
+  EXPECT_EQ(run.timing[0].finished_ns, 4);
+  ASSERT_EQ(run.event.size(), 1U);
+  EXPECT_EQ(run.event[0].text, event.text);
+  EXPECT_EQ(run.event[0].value_json, event.value_json);
+}
+
+TEST_F(RunFileTest, ColumnsSayInTheirUnitsWhatTheBlobsSay) {
+  TickRecord record = MakeTick(100);
+  record.output.angle_rad[1] = 1.5707963267948966;
+  RunInfo info = MakeInfo();
+  info.start_ns = 500'000'000;
+  {
+    RunWriter writer(File(), info);
+    writer.Tick(record);
+    writer.Close("");
+  }
+  SqliteDb db = SqliteDb::OpenReadOnly(File(), false);
+  SqliteStatement row = db.Prepare(
+      "SELECT time_s, state, hub_2_deg, torque_asked_1_nm, torque_applied_2_nm, counter_4,"
+      " reference_1_deg FROM tick");
+  ASSERT_TRUE(row.Step());
+  EXPECT_DOUBLE_EQ(row.Real(0), 1.5);
+  EXPECT_EQ(row.Text(1), "Running");
+  EXPECT_DOUBLE_EQ(row.Real(2), 90.0);
+  EXPECT_EQ(row.Real(3), record.output.torque_nm[0]);
+  EXPECT_EQ(row.Real(4), record.input.applied_torque_nm[1]);
+  EXPECT_EQ(row.Integer(5), record.input.frame.counter[3]);
+  EXPECT_NEAR(row.Real(6), record.input.reference_now.x_m[0] * 180 / 3.14159265358979, 1e-12);
+}
+
+TEST_F(RunFileTest, AClosedRunIsOneFile) {
+  {
+    RunWriter writer(File(), MakeInfo());
+    writer.Tick(MakeTick(1));
+    EXPECT_TRUE(std::filesystem::exists(File("run.flexarm-wal")));
+    writer.Close("");
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(RunFileTest, ARunIsNeverOverwritten) {
+  WriteText(File(), "precious");
+  try {
+    RunWriter writer(File(), MakeInfo());
+    FAIL() << "it wrote over a file";
+  } catch (const RunLogError& error) {
+    EXPECT_NE(std::string(error.what()).find("exists already"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(Bytes(File()), "precious");
+}
+
+TEST_F(RunFileTest, AFolderThatCannotBeMadeIsNamedWithItsCause) {
+  WriteText(File("folder"), "a file, not a folder");
+  try {
+    RunWriter writer(File("folder") / "run.flexarm", MakeInfo());
+    FAIL();
+  } catch (const RunLogError& error) {
+    EXPECT_NE(std::string(error.what()).find("folder/run.flexarm"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("Not a directory"), std::string::npos) << error.what();
+  }
+}
+
+// A file size limit stands for the disk: a write fails as it would there. @returns an exit code
+int WriteUntilFull(const std::filesystem::path& file) {
+  ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{.rlim_cur = 300'000, .rlim_max = 300'000};
+  if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) return 2;
+  try {
+    RunWriter writer(file, MakeInfo());
+    for (int tick = 1; tick < 10'000; ++tick) {
+      writer.Tick(MakeTick(tick));
+      writer.Commit();
+    }
+  } catch (const RunLogError& error) {
+    const std::string text = error.what();
+    const bool names_both =
+        text.find(file.string()) == 0 && (text.find("disk I/O error") != std::string::npos ||
+                                          text.find("disk is full") != std::string::npos);
+    if (!names_both) std::fprintf(stderr, "%s\n", text.c_str());
+    return names_both ? 0 : 1;
+  }
+  return 3;
+}
+
+TEST_F(RunFileTest, ADiskThatTakesNoMoreIsNamedAsTheCause) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::_exit(WriteUntilFull(File()));
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(ReadingError(File()), "");  // what was committed before is there
+}
+
+TEST_F(RunFileTest, ReadsARunWhileItIsWritten) {
+  RunWriter writer(File(), MakeInfo());
+  writer.Tick(MakeTick(1));
+  writer.Commit();
+  writer.Tick(MakeTick(2));
+  RunReader reader(File());
+  EXPECT_FALSE(reader.closed());
+  EXPECT_EQ(reader.ReadAll().tick.size(), 1U);
+  writer.Close("");  // a reader does not stop the writer
+}
+
+// Writes ticks and commits after every 25th, then dies without any chance to clean up.
+void WriteAndDie(const std::filesystem::path& file, int ticks) {
+  RunWriter writer(file, MakeInfo());
+  for (int tick = 1; tick <= ticks; ++tick) {
+    writer.Tick(MakeTick(tick));
+    if (tick % 25 == 0) writer.Commit();
+  }
+  ::kill(::getpid(), SIGKILL);
+}
+
+TEST_F(RunFileTest, AKilledProcessLosesOnlyWhatItDidNotCommit) {
+  const pid_t child = ::fork();
+  if (child == 0) WriteAndDie(File(), 1090);  // long enough for automatic checkpoints
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  RunReader reader(File());
+  EXPECT_FALSE(reader.closed());
+  const RunContents run = reader.ReadAll();
+  ASSERT_EQ(run.tick.size(), 1075U);
+  EXPECT_TRUE(SameBytes(run.tick.back().output, MakeTick(1075).output));
+}
+
+TEST_F(RunFileTest, ReadsAKilledRunInAFolderWhereNothingMayBeWritten) {
+  const pid_t child = ::fork();
+  if (child == 0) WriteAndDie(File(), 60);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  std::filesystem::remove(File("run.flexarm-shm"));  // as after copying the two files elsewhere
+  ::chmod(folder_.c_str(), 0555);
+  const pid_t reader = ::fork();
+  if (reader == 0) {
+    // Root may write anywhere; nobody may not.
+    if (::geteuid() == 0 && ::seteuid(65534) != 0) ::_exit(2);
+    try {
+      ::_exit(RunReader(File()).ReadAll().tick.size() == 50 ? 0 : 1);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      ::_exit(3);
+    }
+  }
+  ASSERT_EQ(::waitpid(reader, &status, 0), reader);
+  ::chmod(folder_.c_str(), 0755);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST_F(RunFileTest, FileNamesAreUniqueAndHarmless) {
+  const std::filesystem::path first = NewRunFile(folder_, "a/b c");
+  EXPECT_EQ(first.parent_path(), folder_);
+  EXPECT_NE(first.string().find("Z-a_b_c.flexarm"), std::string::npos) << first;
+  WriteText(first, "");
+  EXPECT_NE(NewRunFile(folder_, "a/b c"), first);
+  EXPECT_NE(NewRunFile(folder_, "").string().find("-manual.flexarm"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flexarm
