@@ -18,7 +18,7 @@ class LatestValue {
   static_assert(std::atomic<std::uint8_t>::is_always_lock_free);
 
  public:
-  explicit LatestValue(const T& initial) noexcept { buffers_.fill(initial); }
+  explicit LatestValue(const T& initial) noexcept : buffers_{initial, initial, initial} {}
   LatestValue(const LatestValue&) = delete;
   LatestValue& operator=(const LatestValue&) = delete;
 

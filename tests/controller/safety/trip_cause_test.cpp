@@ -1,0 +1,47 @@
+#include "controller/safety/trip_cause.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+namespace flexarm {
+namespace {
+
+TEST(TripCause, EveryCauseHasItsOwnMachineNameAndATextThatSaysWhatToDo) {
+  std::set<std::string> names;
+  for (int i = 0; i < kTripCauses; ++i) {
+    const auto cause = static_cast<TripCause>(i);
+    SCOPED_TRACE(i);
+    const std::string name = Name(cause);
+    EXPECT_TRUE(names.insert(name).second) << name << " is given twice";
+    EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-0123456789"), std::string::npos);
+    const std::string text = OperatorText(cause);
+    ASSERT_FALSE(text.empty());
+    EXPECT_EQ(text.back(), '.');
+    if (cause != TripCause::kNone) {
+      EXPECT_GT(std::count(text.begin(), text.end(), '.'), 1) << "what happened, then what to do";
+    }
+  }
+}
+
+// The numbers are in logs: these pins fail when somebody renumbers.
+TEST(TripCause, NamesAreThoseOfTheirNumbers) {
+  EXPECT_STREQ(Name(static_cast<TripCause>(0)), "none");
+  EXPECT_STREQ(Name(static_cast<TripCause>(1)), "limit-switch-1-low");
+  EXPECT_STREQ(Name(static_cast<TripCause>(5)), "emergency-stop");
+  EXPECT_STREQ(Name(static_cast<TripCause>(11)), "bending-strain-2");
+  EXPECT_STREQ(Name(static_cast<TripCause>(18)), "stale-frame");
+  EXPECT_STREQ(Name(static_cast<TripCause>(22)), "control-heartbeat-lost");
+  EXPECT_STREQ(Name(static_cast<TripCause>(25)), "stop-timeout");
+}
+
+TEST(TripCause, ACorruptedNumberIsNamedAsSuch) {
+  EXPECT_STREQ(Name(static_cast<TripCause>(kTripCauses)), "corrupted");
+  EXPECT_STREQ(Name(static_cast<TripCause>(255)), "corrupted");
+  EXPECT_STRNE(OperatorText(static_cast<TripCause>(255)), "");
+}
+
+}  // namespace
+}  // namespace flexarm
