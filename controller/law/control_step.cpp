@@ -11,6 +11,10 @@
 namespace flexarm {
 namespace {
 
+// While Stopping the goal follows the hubs with this time constant: slower than the arm's vibration
+// (below 0.2 s with free joints), faster than the stop's time-out of 3 s.
+constexpr double kStopGoalFollow_s = 0.5;
+
 std::array<double, 2> JointStiffness(const ArmParameters& arm) {
   return {arm.joint[0].stiffness_nm_per_rad, arm.joint[1].stiffness_nm_per_rad};
 }
@@ -60,7 +64,9 @@ struct ControlStep::Stages {
       stopping = false;
       return law.Compute(x, input.reference_next, sensors_good);
     }
-    if (!stopping) {  // hold the hubs where the stop found them, or where the reference ended
+    // Damp the arm towards a goal that gives way: it starts where the reference ended, or where the
+    // stop found the hubs, and follows them, so that a heavy payload is not dragged back for long.
+    if (!stopping) {
       stopping = true;
       stop_goal = StateVector::Zero(x.size());
       for (Eigen::Index i = 0; i < 2; ++i) {
@@ -69,6 +75,7 @@ struct ControlStep::Stages {
                            : x(i);
       }
     }
+    stop_goal.head<2>() += (period_s / kStopGoalFollow_s) * (x.head<2>() - stop_goal.head<2>());
     return law.Regulate(x, stop_goal);
   }
 

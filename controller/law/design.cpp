@@ -34,6 +34,14 @@ Eigen::MatrixXd StateWeight(const ControllerConfig& controller, Eigen::Index n) 
   return q.asDiagonal();
 }
 
+// LQR without prescribed degree of stability: slower, and calm where the tracking gains keep an arm
+// with another payload in a limit cycle with its friction.
+Eigen::MatrixXd CalmGain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+                         const Eigen::MatrixXd& Q) {
+  const Eigen::Matrix2d I2 = Eigen::Matrix2d::Identity();
+  return DareGain(A, B, I2, SolveDare(A, B, Q, I2));
+}
+
 // LQR with prescribed degree of stability: P of (a A, a B, Q/rho, I), a = e^(alpha Ts), and
 // K = (I + a^2 B'PB)^-1 a^2 B'PA. P' = a^2 P satisfies A_c'P'B = K', so the lemma (7.16) holds with
 // W = 0 and J = B'P'B/2.
@@ -48,6 +56,7 @@ void DesignRegulator(const StackConfig& config, Design* design) {
   design->P = a * a * P;
   const Eigen::Matrix2d S = I2 + B.transpose() * design->P * B;
   design->K = S.llt().solve(B.transpose() * design->P * A);
+  design->K_stop = CalmGain(A, B, Q);
   design->J = 0.5 * B.transpose() * design->P * B;
   design->G = design->J + controller.passivity_margin * I2;
   design->checks.push_back({"regulator-riccati-residual", DareResidual(a * A, a * B, Q, I2, P), 1e-9, true});

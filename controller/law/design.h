@@ -26,6 +26,7 @@ struct Design {
   Eigen::MatrixXd A, B;    ///< nominal model, discrete
   Eigen::MatrixXd Am, Bm;  ///< reference model, discrete
   Eigen::MatrixXd K;       ///< 2 x n: LQR with degree of stability alpha; also the output matrix C_p
+  Eigen::MatrixXd K_stop;  ///< 2 x n: LQR with alpha = 0 of the same weights, damps the arm while Stopping
   Eigen::MatrixXd P;       ///< n x n: P' = e^(2 alpha Ts) P of the lemma (7.16)
   Eigen::MatrixXd J, G;    ///< 2 x 2: J = B'P'B/2, G = J + margin I
   Eigen::MatrixXd S11, S12, S21, S22;  ///< command generator: x* = S11 x_m + S12 u_m, u_c likewise

@@ -64,6 +64,7 @@ void ForEachMatrix(D& design, F&& visit) {
   visit("Am", design.Am);
   visit("Bm", design.Bm);
   visit("K", design.K);
+  visit("K_stop", design.K_stop);
   visit("P", design.P);
   visit("J", design.J);
   visit("G", design.G);
@@ -136,6 +137,7 @@ void RequireShapes(const Design& d) {
   require("Am", d.Am, n, n);
   require("Bm", d.Bm, n, 2);
   require("K", d.K, 2, n);
+  require("K_stop", d.K_stop, 2, n);
   require("P", d.P, n, n);
   require("J", d.J, 2, 2);
   require("G", d.G, 2, 2);

@@ -128,16 +128,19 @@ void LoopSupervisor::JudgeEstimate(const LoopFacts& facts) noexcept {
 }
 
 bool LoopSupervisor::JudgeRest(const LoopFacts& facts) noexcept {
-  const Eigen::Index dof = facts.estimate->x.size() / 2;
   bool slow = true;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double hub_rate = facts.estimate->x(dof + static_cast<Eigen::Index>(i));
+    const double angle = facts.counters->angle_rad[i];
+    const double hub_rate =
+        (angle - hub_before_[ring_][i]) / (static_cast<double>(kRestWindow) * period_s_);
+    hub_before_[ring_][i] = angle;
     const double strain_rate =
         (facts.modes->root_strain[i] - root_strain_before_[i]) / period_s_;
     slow = slow && std::fabs(hub_rate) < safety_.rest_hub_rate_rad_s &&
            std::fabs(strain_rate) < safety_.rest_strain_rate_per_s;
     root_strain_before_[i] = facts.modes->root_strain[i];
   }
+  ring_ = (ring_ + 1) % kRestWindow;
   rest_ticks_ = slow ? std::min(rest_ticks_ + 1, rest_ticks_needed_) : 0;
   return rest_ticks_ == rest_ticks_needed_;
 }

@@ -43,6 +43,10 @@ class LoopSupervisor {
   Verdict Judge(const LoopFacts& facts) noexcept;
 
  private:
+  /// Rest is judged by the mean hub rate over this many periods: a single count of the encoder in one
+  /// period is faster than the arm at rest may be.
+  static constexpr std::size_t kRestWindow = 5;
+
   void JudgeJoints(const LoopFacts& facts) noexcept;
   void JudgeCounters(const LoopFacts& facts) noexcept;
   void JudgeStrain(const LoopFacts& facts) noexcept;
@@ -59,6 +63,8 @@ class LoopSupervisor {
   std::array<double, 2> joint_stiffness_;
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
+  std::array<std::array<double, 2>, kRestWindow> hub_before_{};  // ring of the last hub angles
+  std::size_t ring_ = 0;
   std::array<double, 2> root_strain_before_{};
   std::array<int, kTripCauses> in_a_row_{};
   Verdict verdict_{};

@@ -10,6 +10,7 @@ SobelLaw::SobelLaw(const Design& design, const ControllerConfig& config,
       torque_limit_nm_(torque_limit_nm),
       states_(design.A.rows()),
       Cp_(design.K),
+      K_stop_(design.K_stop),
       G_(design.G) {
   // (7.24) with (7.25): the printed minus sign in front of (A_m - A), or the one that follows.
   const double sign = config.feedforward_sign == FeedforwardSign::kPrinted ? -1.0 : 1.0;
@@ -70,7 +71,7 @@ SobelLaw::Result SobelLaw::Compute(const StateVector& x, const ReferenceSample& 
 
 SobelLaw::Result SobelLaw::Regulate(const StateVector& x,
                                     const StateVector& x_goal) const noexcept {
-  const Eigen::Vector2d u = Cp_.lazyProduct(x_goal - x);
+  const Eigen::Vector2d u = K_stop_.lazyProduct(x_goal - x);
   Result result = Clip(u);
   result.limits |= kAdaptationHeld;
   return result;

@@ -42,7 +42,7 @@ class SobelLaw {
   /// @param may_adapt  false holds K_I (invalid sensor, not Running)
   Result Compute(const StateVector& x, const ReferenceSample& reference, bool may_adapt) noexcept;
 
-  /// Plain regulator towards `x_goal`: u = K (x_goal - x), clipped. Damps the arm while Stopping.
+  /// Calm regulator towards `x_goal`: u = K_stop (x_goal - x), clipped. Damps the arm while Stopping.
   Result Regulate(const StateVector& x, const StateVector& x_goal) const noexcept;
 
   double adaptive_gain_change() const noexcept;  ///< Frobenius norm of K_I - K_I(0)
@@ -59,6 +59,7 @@ class SobelLaw {
   std::array<double, 2> torque_limit_nm_;
   Eigen::Index states_;
   Matrix2n Cp_;
+  Matrix2n K_stop_;
   Eigen::Matrix2d G_;
   Matrix2n feedforward_x_;           // u* = feedforward_x x_m + feedforward_u u_m
   Eigen::Matrix2d feedforward_u_;

@@ -1,0 +1,101 @@
+#include "controller/law/reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace flexarm {
+namespace {
+
+constexpr double kGridTolerance = 1e-6;  // of a period: decimal times added in binary
+
+int OnGrid(double time_s, double period_s, const std::string& what) {
+  const double periods = time_s / period_s;
+  if (std::fabs(periods - std::round(periods)) > kGridTolerance) {
+    throw std::runtime_error(what + " = " + std::to_string(time_s) +
+                             " s does not lie on the sampling grid: it must be a multiple of " +
+                             std::to_string(period_s) + " s");
+  }
+  return static_cast<int>(std::lround(periods));
+}
+
+// Unit doublet over n samples: each value is held for one period, the sum is zero.
+std::vector<double> Shape(DoubletShape shape, int n) {
+  std::vector<double> values(static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    values[static_cast<std::size_t>(k)] =
+        shape == DoubletShape::kSquare ? (2 * k < n ? 1.0 : -1.0)
+                                       : std::sin(2.0 * std::numbers::pi * (k + 0.5) / n);
+  }
+  return values;
+}
+
+// Displacement of a unit inertia from rest under `shape`, at its end.
+double Displacement(const std::vector<double>& shape, double period_s) {
+  double displacement = 0.0;
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    displacement += shape[k] * (static_cast<double>(shape.size() - k) - 0.5) * period_s * period_s;
+  }
+  return displacement;
+}
+
+void AddDoublet(const Doublet& doublet, std::size_t row, const Design& design, double period_s,
+                std::vector<ReferenceSample>* samples) {
+  const std::string name = "doublet[" + std::to_string(row) + "]";
+  const int first = OnGrid(doublet.start_s, period_s, name + ".start_s");
+  const int count = OnGrid(doublet.duration_s, period_s, name + ".duration_s");
+  if (count < 2 || count % 2 != 0) {
+    throw std::runtime_error(name + ".duration_s = " + std::to_string(doublet.duration_s) +
+                             " s must be an even number of periods of " + std::to_string(period_s) +
+                             " s, so that its two halves cancel");
+  }
+  const std::vector<double> shape = Shape(doublet.shape, count);
+  const Eigen::Vector2d move =
+      Eigen::Vector2d(doublet.move_deg[0], doublet.move_deg[1]) * std::numbers::pi / 180.0;
+  const Eigen::Vector2d amplitude =
+      design.rigid_inertia_kgm2 * move / Displacement(shape, period_s);
+  for (int k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      (*samples)[static_cast<std::size_t>(first + k)].u_m_nm[i] =
+          amplitude(static_cast<Eigen::Index>(i)) * shape[static_cast<std::size_t>(k)];
+    }
+  }
+}
+
+}  // namespace
+
+ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
+                               const std::array<double, 2>& start_rad,
+                               const std::array<double, 2>& limit_rad) {
+  const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
+  samples_.resize(static_cast<std::size_t>(periods) + 1);
+  for (std::size_t row = 0; row < experiment.doublet.size(); ++row) {
+    AddDoublet(experiment.doublet[row], row, design, period_s, &samples_);
+  }
+  rest_.x_m[0] = start_rad[0];
+  rest_.x_m[1] = start_rad[1];
+  Eigen::VectorXd x_m = Eigen::VectorXd::Zero(design.Am.rows());
+  x_m.head<2>() << start_rad[0], start_rad[1];
+  for (std::size_t k = 0; k < samples_.size(); ++k) {
+    ReferenceSample& sample = samples_[k];
+    for (Eigen::Index i = 0; i < x_m.size(); ++i) sample.x_m[static_cast<std::size_t>(i)] = x_m(i);
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (std::fabs(sample.x_m[i]) <= limit_rad[i]) continue;
+      throw std::runtime_error("the reference of joint " + std::to_string(i + 1) + " reaches " +
+                               std::to_string(sample.x_m[i] * 180.0 / std::numbers::pi) +
+                               " deg after " + std::to_string(static_cast<double>(k) * period_s) +
+                               " s: the soft limit is " +
+                               std::to_string(limit_rad[i] * 180.0 / std::numbers::pi) + " deg");
+    }
+    x_m = design.Am * x_m + design.Bm * Eigen::Vector2d(sample.u_m_nm[0], sample.u_m_nm[1]);
+  }
+}
+
+const ReferenceSample& ReferenceTable::At(int k) const noexcept {
+  if (k < 0) return rest_;
+  return samples_[static_cast<std::size_t>(std::min(k, periods()))];
+}
+
+}  // namespace flexarm

@@ -1,0 +1,106 @@
+#include "controller/runtime/control_task.h"
+
+namespace flexarm {
+namespace {
+
+bool Powered(SafetyState state) noexcept {
+  return state == SafetyState::kArmed || TorqueAllowed(state);
+}
+
+}  // namespace
+
+ControlTask::ControlTask(const LoopConfig& loop, ControlStep* step, ControlChannels channels)
+    : grid_(loop), step_(step), channels_(channels) {}
+
+Task::Traits ControlTask::traits() const noexcept {
+  return {.name = "control",
+          .period_ns = grid_.period_ns,
+          .phase_ns = grid_.phase_ns,
+          .deadline_ns = grid_.deadline_ns,
+          .priority = kPriority};
+}
+
+void ControlTask::Run(const Activation& activation) noexcept {
+  if (activation.due_ns >= frozen_from_ns_) return;
+  // What was published at the due instant itself may or may not be there yet.
+  FollowState(channels_.permits->Read().At(activation.due_ns - 1).value.state);
+  const std::int64_t sampled_ns = grid_.SamplingInstant(grid_.Tick(activation.due_ns));
+  const FramePacket& packet = channels_.frames->Read().At(sampled_ns).value;
+
+  TickRecord record{};
+  record.input = Gather(activation, packet, state_);
+  record.output = step_->Step(record.input);
+  record.truth = packet.truth;
+  counts_ = record.output.counts;
+  hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
+  Publish(activation, record.input, record.output);
+  channels_.records->Push(record);
+  channels_.telemetry->Publish(record);
+}
+
+void ControlTask::FollowState(SafetyState state) noexcept {
+  reset_ = reset_ || (Powered(state) && !Powered(state_));
+  if (state == SafetyState::kRunning && state_ != SafetyState::kRunning) {
+    const PlannedRun& planned = channels_.plans->Read();
+    const bool used_up = planned.number == plan_.number;
+    plan_ = planned;
+    if (used_up) plan_.reference = nullptr;  // a plan is good for one run
+    released_.store(plan_.number, std::memory_order_release);
+    sample_ = -1;
+  }
+  if (state == SafetyState::kRunning) ++sample_;
+  state_ = state;
+}
+
+StepInput ControlTask::Gather(const Activation& activation, const FramePacket& packet,
+                              SafetyState state) noexcept {
+  StepInput input{};
+  input.tick = grid_.Tick(activation.due_ns);
+  input.now_ns = activation.due_ns;
+  input.sampling_instant_ns = grid_.SamplingInstant(input.tick);
+  input.frame = packet.frame;
+  input.applied_torque_nm = packet.applied_torque_nm;
+  input.counts_before = counts_;
+  input.safety_state = state;
+  input.reset = reset_ ? 1 : 0;
+  reset_ = false;
+  if (!TorqueAllowed(state)) return input;
+  if (plan_.reference == nullptr) {  // nothing to follow: end at once, where the hubs are
+    input.reference_now.x_m[0] = input.reference_next.x_m[0] = hub_angle_rad_[0];
+    input.reference_now.x_m[1] = input.reference_next.x_m[1] = hub_angle_rad_[1];
+    input.reference_ended = 1;
+    return input;
+  }
+
+  const int last = plan_.reference->periods() - 1;
+  if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
+  input.reference_now = plan_.reference->At(sample_ - 1);
+  input.reference_next = plan_.reference->At(sample_);
+  input.reference_ended = sample_ >= last ? 1 : 0;
+  if (state == SafetyState::kRunning && sample_ == 0 && plan_.freeze_after_ns != INT64_MAX) {
+    frozen_from_ns_ = input.sampling_instant_ns + grid_.period_ns + plan_.freeze_after_ns;
+  }
+  return input;
+}
+
+void ControlTask::Publish(const Activation& activation, const StepInput& input,
+                          const StepOutput& output) noexcept {
+  const std::int64_t published_ns = activation.due_ns + grid_.deadline_ns;
+  const std::int64_t next_sample_ns = input.sampling_instant_ns + grid_.period_ns;
+  commands_.Push(output.faults != 0 ? published_ns : next_sample_ns,
+                 {.torque_nm = output.torque_nm, .tick = output.tick});
+  channels_.commands->Publish(commands_);
+  reports_.Push(published_ns, {.tick = output.tick,
+                               .due_ns = activation.due_ns,
+                               .faults = output.faults,
+                               .evidence = {.value = output.fault_value,
+                                            .limit = output.fault_limit,
+                                            .channel = output.fault_channel,
+                                            .reserved = 0},
+                               .at_rest = output.at_rest != 0,
+                               .experiment_done = output.experiment_done != 0,
+                               .missed_in_a_row = activation.missed_in_a_row});
+  channels_.reports->Publish(reports_);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "controller/law/control_step.h"
+#include "controller/law/reference.h"
+#include "controller/runlog/records.h"
+#include "controller/runtime/frame_packet.h"
+#include "controller/runtime/loop_grid.h"
+#include "controller/runtime/messages.h"
+#include "controller/runtime/spsc_queue.h"
+#include "controller/runtime/task.h"
+
+namespace flexarm {
+
+/// The experiment that the next run follows, made by the operator's side, which keeps it alive until
+/// `ControlTask::released` has passed its number.
+struct PlannedRun {
+  const ReferenceTable* reference = nullptr;  ///< nullptr: none planned, a run ends where it is
+  std::uint32_t number = 0;                   ///< ascending
+  std::int64_t freeze_after_ns = INT64_MAX;   ///< sim_event: the task stops this long after the start
+};
+using PlanChannel = LatestValue<PlannedRun>;
+
+/// Everything that the control task touches. All of it outlives the task.
+struct ControlChannels {
+  FrameChannel* frames;              ///< read
+  PermitChannel* permits;            ///< read
+  PlanChannel* plans;                ///< read
+  CommandChannel* commands;          ///< written
+  ControlReportChannel* reports;     ///< written
+  SpscQueue<TickRecord>* records;    ///< written: every step, for the log
+  LatestValue<TickRecord>* telemetry;  ///< written: the newest step, for status
+};
+
+/// The control thread's body: newest frame -> Step -> asked torque, 50 Hz. Never waits.
+///
+/// Step k is due `acquire_before` after the sampling instant k Ts, and takes the frame and the permit
+/// that held before it was due. It is reset when it finds the arm newly armed. Its torque acts at
+/// (k+1) Ts; a fault that it sees takes the torque away at its deadline.
+/// Real-time: safe after construction.
+class ControlTask final : public Task {
+ public:
+  static constexpr int kPriority = 80;
+
+  ControlTask(const LoopConfig& loop, ControlStep* step, ControlChannels channels);
+
+  Traits traits() const noexcept override;
+  void Run(const Activation& activation) noexcept override;
+
+  /// Any thread. Plans with a lower number than this are no longer used.
+  std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
+
+ private:
+  void FollowState(SafetyState state) noexcept;
+  StepInput Gather(const Activation& activation, const FramePacket& packet,
+                   SafetyState state) noexcept;
+  void Publish(const Activation& activation, const StepInput& input,
+               const StepOutput& output) noexcept;
+
+  LoopGrid grid_;
+  ControlStep* step_;
+  ControlChannels channels_;
+  PlannedRun plan_;
+  std::atomic<std::uint32_t> released_{0};
+  SafetyState state_ = SafetyState::kStarting;
+  int sample_ = -1;               // of the experiment, at the instant the torque acts
+  bool reset_ = true;             // the next step starts afresh
+  std::int64_t frozen_from_ns_ = INT64_MAX;
+  std::array<std::int64_t, kCounters> counts_{};   // of the last step
+  std::array<double, 2> hub_angle_rad_{};         // of the last step
+  CommandHistory commands_{kNoCommand};
+  ControlReportHistory reports_{kNoControlReport};
+};
+
+}  // namespace flexarm

@@ -1,0 +1,129 @@
+#include "controller/runtime/plant_task.h"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+
+#include "controller/runtime/stack_config.h"
+
+namespace flexarm {
+namespace {
+
+ArmParameters WithPayload(ArmParameters arm, double payload_kg) {
+  arm.payload_mass_kg = payload_kg;
+  return arm;
+}
+
+}  // namespace
+
+PlantTask::PlantTask(const StackConfig& config, double payload_kg, std::vector<SimEvent> events,
+                     PlantChannels channels)
+    : rig_(WithPayload(config.arm, payload_kg), config.sensors, config.sim),
+      grid_(config.loop),
+      limits_{.torque_nm = config.safety.torque_limit_nm,
+              .slew_nm_per_s = config.safety.slew_limit_nm_per_s,
+              .command_timeout_ns = 2 * grid_.period_ns,
+              .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
+      transport_delay_ns_(std::llround(config.sim.transport_delay_ms * 1e6)),
+      events_(std::move(events)),
+      channels_(channels) {
+  std::stable_sort(events_.begin(), events_.end(),
+                   [](const SimEvent& a, const SimEvent& b) { return a.at_s < b.at_s; });
+  TakeFrame(0);
+}
+
+Task::Traits PlantTask::traits() const noexcept {
+  return {.name = "plant",
+          .period_ns = kPeriodNs,
+          .phase_ns = kPeriodNs,
+          .deadline_ns = kPeriodNs,
+          .priority = kPriority};
+}
+
+void PlantTask::Run(const Activation& activation) noexcept {
+  while (!frozen_ && now_ns_ < activation.due_ns) {
+    AdvanceSlice(now_ns_);
+    now_ns_ += kPeriodNs;
+    HandleEvents(now_ns_);
+    levels_.Push(now_ns_, rig_.levels());
+    channels_.levels->Publish(levels_);
+    if (now_ns_ % grid_.period_ns == 0) TakeFrame(now_ns_);
+  }
+  if (frozen_) return;
+  reports_.Push(activation.due_ns + kPeriodNs,
+                {.due_ns = activation.due_ns, .bus_ok = true, .drive_ok = true});
+  channels_.reports->Publish(reports_);
+}
+
+void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
+  applied_nm_ = Drive(start_ns);
+  rig_.SetTorque(applied_nm_);
+  for (std::int64_t t = 0; t < kPeriodNs; t += rig_.step_ns()) rig_.Step();
+  for (std::size_t i = 0; i < 2; ++i) applied_sum_nm_[i] += applied_nm_[i];
+  ++applied_slices_;
+}
+
+// The slew limit counts from command to command: between two commands the drive holds its set-point.
+std::array<double, 2> PlantTask::Drive(std::int64_t start_ns) noexcept {
+  const std::int64_t acting_ns = start_ns - transport_delay_ns_;
+  const CommandHistory::Entry& command = channels_.commands->Read().At(acting_ns);
+  const Permit& permit = channels_.permits->Read().At(start_ns).value;
+  const bool fresh = command.from_ns != command_acts_ns_;
+  command_acts_ns_ = command.from_ns;
+  const GateResult gated = Gate({.asked_nm = command.value.torque_nm,
+                                 .asked_age_ns = AgeNs(acting_ns, command.from_ns),
+                                 .permit = permit.state,
+                                 .permit_age_ns = AgeNs(start_ns, permit.renewed_ns),
+                                 .previous_nm = applied_nm_,
+                                 .dt_s = fresh ? grid_.period_s() : 0.0},
+                                limits_);
+  return Enabled(start_ns) ? gated.torque_nm : std::array<double, 2>{};
+}
+
+bool PlantTask::Enabled(std::int64_t start_ns) noexcept {
+  const SafetyLines::Outputs& outputs = channels_.outputs->Read().At(start_ns).value;
+  if (outputs.pump_level != pump_level_) {
+    pump_level_ = outputs.pump_level;
+    pump_toggled_ns_ = start_ns;
+  }
+  return outputs.relay_closed && AgeNs(start_ns, pump_toggled_ns_) <= kPumpTimeoutNs;
+}
+
+void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
+  LinePress press{};
+  while (channels_.presses->Pop(&press)) rig_.Press(press.line, press.level);
+
+  const Permit& permit = channels_.permits->Read().At(now_ns - kPeriodNs).value;
+  if (permit.running_since_ns == INT64_MIN) return;
+  if (permit.running_since_ns != events_of_run_ns_) {
+    events_of_run_ns_ = permit.running_since_ns;
+    next_event_ = 0;
+  }
+  const std::int64_t start_ns = grid_.ExperimentStart(permit.running_since_ns);
+  for (; next_event_ < events_.size(); ++next_event_) {
+    const SimEvent& event = events_[next_event_];
+    if (start_ns + std::llround(event.at_s * 1e9) > now_ns) return;
+    if (event.line.has_value()) rig_.Press(*event.line, event.level);
+    if (event.freeze == FreezeTarget::kPlant) frozen_ = true;
+    if (event.kill) std::raise(SIGKILL);
+  }
+}
+
+void PlantTask::TakeFrame(std::int64_t now_ns) noexcept {
+  FramePacket packet{};
+  packet.frame = rig_.Sample(now_ns);
+  for (std::size_t i = 0; i < 2; ++i) {
+    packet.applied_torque_nm[i] = applied_slices_ > 0 ? applied_sum_nm_[i] / applied_slices_ : 0.0;
+  }
+  applied_sum_nm_ = {};
+  applied_slices_ = 0;
+  const SimulatedRig::Truth truth = rig_.truth();
+  packet.truth = {.hub_angle_rad = truth.hub_angle_rad,
+                  .tip_m = truth.tip_m,
+                  .tip_deflection_m = truth.tip_deflection_m,
+                  .known = true};
+  frames_.Push(now_ns, packet);
+  channels_.frames->Publish(frames_);
+}
+
+}  // namespace flexarm

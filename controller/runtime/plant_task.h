@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "controller/law/experiment.h"
+#include "controller/runtime/frame_packet.h"
+#include "controller/runtime/loop_grid.h"
+#include "controller/runtime/messages.h"
+#include "controller/runtime/simulated_lines.h"
+#include "controller/runtime/spsc_queue.h"
+#include "controller/runtime/task.h"
+#include "controller/safety/gate.h"
+#include "hal/sim/simulated_rig.h"
+
+namespace flexarm {
+
+struct StackConfig;
+
+/// A simulated switch pressed by the operator: `flexarm sim LINE LEVEL`.
+struct LinePress {
+  Line line;
+  int level;
+};
+
+/// Everything that the plant task touches. All of it outlives the task.
+struct PlantChannels {
+  CommandChannel* commands;          ///< read
+  PermitChannel* permits;            ///< read
+  OutputChannel* outputs;            ///< read: relay and charge pump
+  SpscQueue<LinePress>* presses;     ///< read
+  FrameChannel* frames;              ///< written
+  LevelChannel* levels;              ///< written
+  DriveReportChannel* reports;       ///< written
+};
+
+/// The simulated backend's thread: 1 kHz, integrates the plant up to its due instant.
+///
+/// Each millisecond of the plant, s to s + 1 ms, is driven by what holds at s: the command that acts,
+/// through the gate on the permit of s, and nothing if the relay is open or the charge pump has not
+/// toggled for 5 ms. The slice is integrated when it is over, so everybody had a millisecond to
+/// publish what holds at its start. Frames are taken at exactly k Ts. A late thread catches up: the
+/// simulated world does not lose time.
+/// Real-time: safe after construction.
+class PlantTask final : public Task {
+ public:
+  static constexpr std::int64_t kPeriodNs = 1'000'000;
+  static constexpr std::int64_t kPumpTimeoutNs = 5'000'000;
+  static constexpr int kPriority = 60;
+
+  /// @param payload_kg  what the plant really carries, whatever the config's arm says
+  PlantTask(const StackConfig& config, double payload_kg, std::vector<SimEvent> events,
+            PlantChannels channels);
+
+  Traits traits() const noexcept override;
+  void Run(const Activation& activation) noexcept override;
+
+ private:
+  void AdvanceSlice(std::int64_t start_ns) noexcept;
+  std::array<double, 2> Drive(std::int64_t start_ns) noexcept;
+  bool Enabled(std::int64_t start_ns) noexcept;
+  void HandleEvents(std::int64_t now_ns) noexcept;
+  void TakeFrame(std::int64_t now_ns) noexcept;
+
+  SimulatedRig rig_;
+  LoopGrid grid_;
+  GateLimits limits_;
+  std::int64_t transport_delay_ns_;
+  std::vector<SimEvent> events_;  // in order of time
+  std::size_t next_event_ = 0;
+  std::int64_t events_of_run_ns_ = INT64_MIN;  // running_since of the run they belong to
+  PlantChannels channels_;
+
+  std::int64_t now_ns_ = 0;  // the plant has been integrated up to here
+  bool frozen_ = false;
+  std::array<double, 2> applied_nm_{};
+  std::int64_t command_acts_ns_ = INT64_MIN;  // of the command that the gate saw last
+  std::array<double, 2> applied_sum_nm_{};
+  int applied_slices_ = 0;
+  bool pump_level_ = false;
+  std::int64_t pump_toggled_ns_ = INT64_MIN;
+  FrameHistory frames_{kNoFrame};
+  LevelHistory levels_{kHealthyLevels};
+  DriveReportHistory reports_{kNoDriveReport};
+};
+
+}  // namespace flexarm

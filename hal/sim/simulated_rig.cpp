@@ -1,0 +1,90 @@
+#include "hal/sim/simulated_rig.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace flexarm {
+namespace {
+
+// Share of the way to its input that a first-order lag goes in a step; 1 without lag.
+double Blend(double step_s, double time_constant_s) {
+  return time_constant_s > 0.0 ? 1.0 - std::exp(-step_s / time_constant_s) : 1.0;
+}
+
+double FilterTimeConstant(const StrainInputConfig& input) {
+  return input.filter_hz > 0.0 ? 1.0 / (2.0 * std::numbers::pi * input.filter_hz) : 0.0;
+}
+
+}  // namespace
+
+SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
+                           const SimConfig& sim)
+    : arm_(arm, ModeCount{.link1 = sim.plant_modes, .link2 = sim.plant_modes}),
+      simulator_(arm_),
+      sensors_(arm_, sensors, sim.seed),
+      state_(arm_.dof()),
+      filtered_(ArmVector::Zero(arm_.dof() - kRigidCoordinates)),
+      step_ns_(std::llround(sim.step_ms * 1e6)),
+      filter_blend_(Blend(sim.step_ms * 1e-3, FilterTimeConstant(sensors.strain_input))) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    motor_blend_[i] = Blend(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
+    switch_angle_rad_[i] = sim.switch_angle_deg[i] * std::numbers::pi / 180.0;
+  }
+}
+
+void SimulatedRig::Step() noexcept {
+  // Lags use the middle of the step on either side, so they stay second order like the arm.
+  Eigen::Vector2d torque;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double before = torque_nm_[i];
+    torque_nm_[i] += motor_blend_[i] * (set_point_nm_[i] - before);
+    torque(static_cast<Eigen::Index>(i)) =
+        motor_blend_[i] == 1.0 ? torque_nm_[i] : 0.5 * (before + torque_nm_[i]);
+  }
+  const ArmVector before = state_.q.tail(filtered_.size());
+  simulator_.Step(state_, torque, static_cast<double>(step_ns_) * 1e-9);
+  const ArmVector after = state_.q.tail(filtered_.size());
+  const ArmVector input = filter_blend_ == 1.0 ? after : ArmVector(0.5 * (before + after));
+  filtered_ += filter_blend_ * (input - filtered_);
+}
+
+SensorFrame SimulatedRig::Sample(std::int64_t now_ns) noexcept {
+  return sensors_.Sample(now_ns, state_.q, filtered_, levels());
+}
+
+LineLevels SimulatedRig::levels() const noexcept {
+  LineLevels levels = forced_;
+  const std::array<Line, 2> low = {Line::kLimit1Low, Line::kLimit2Low};
+  const std::array<Line, 2> high = {Line::kLimit1High, Line::kLimit2High};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double angle = state_.q(static_cast<Eigen::Index>(i));
+    if (angle < -switch_angle_rad_[i]) levels &= ~LineBit(low[i]);
+    if (angle > switch_angle_rad_[i]) levels &= ~LineBit(high[i]);
+  }
+  return levels;
+}
+
+void SimulatedRig::Press(Line line, int level) noexcept {
+  if (level != 0) {
+    forced_ |= LineBit(line);
+  } else {
+    forced_ &= ~LineBit(line);
+  }
+}
+
+SimulatedRig::Truth SimulatedRig::truth() const noexcept {
+  const Eigen::Index m1 = arm_.mode_count().link1, m2 = arm_.mode_count().link2;
+  const LinkModes& link1 = arm_.link_modes(1);
+  // Shapes have psi(L) = 1: the deflection of a tip is the sum of its modal coordinates.
+  const double w1 = state_.q.segment(kPhi1, m1).sum(), w2 = state_.q.tail(m2).sum();
+  double slope = 0.0;
+  for (Eigen::Index i = 0; i < m1; ++i) slope += link1.slope_tip(i) * state_.q(kPhi1 + i);
+  const double th1 = state_.q(kTheta1), gamma = th1 + std::atan(slope) + state_.q(kTheta2);
+  const double L1 = link1.length_m, L2 = arm_.link_modes(2).length_m;
+  return {.hub_angle_rad = {th1, state_.q(kTheta2)},
+          .tip_m = {L1 * std::cos(th1) - w1 * std::sin(th1) + L2 * std::cos(gamma) - w2 * std::sin(gamma),
+                    L1 * std::sin(th1) + w1 * std::cos(th1) + L2 * std::sin(gamma) + w2 * std::cos(gamma)},
+          .tip_deflection_m = {w1, w2}};
+}
+
+}  // namespace flexarm

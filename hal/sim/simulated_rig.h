@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/sensor_config.h"
+#include "hal/sensor_frame.h"
+#include "hal/sim/sim_config.h"
+#include "hal/sim/simulated_sensors.h"
+#include "model/arm_model.h"
+#include "model/arm_simulator.h"
+
+namespace flexarm {
+
+/// The arm, its drives, its switches and its sensors, simulated: a passive object that whoever owns
+/// it advances. Starts at rest at zero, switches closed.
+///
+/// Drive: the torque follows its set-point with the electrical lag of (3.24), first order.
+/// Switches: a limit switch opens while its hub is beyond the switch angle or while it is held open
+/// by Press.
+/// Real-time: all but the constructor are safe.
+class SimulatedRig {
+ public:
+  /// What really is, for metrics and pictures; a rig does not know it.
+  struct Truth {
+    std::array<double, 2> hub_angle_rad;     ///< th1, th2
+    std::array<double, 2> tip_m;             ///< x, y in the base frame
+    std::array<double, 2> tip_deflection_m;  ///< w1(L1), w2(L2)
+  };
+
+  /// @param arm  the plant's parameters, with the payload that it really carries
+  SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim);
+
+  std::int64_t step_ns() const noexcept { return step_ns_; }
+
+  /// Set-point of the drives from now on, at the gearbox output.
+  void SetTorque(const std::array<double, 2>& torque_nm) noexcept { set_point_nm_ = torque_nm; }
+
+  /// One integration step.
+  void Step() noexcept;
+
+  /// What the converters show now.
+  SensorFrame Sample(std::int64_t now_ns) noexcept;
+
+  LineLevels levels() const noexcept;
+
+  /// Forces a line to a level (0 or 1) until it is forced to the other. A limit switch forced to 1
+  /// still opens by the arm's own angle.
+  void Press(Line line, int level) noexcept;
+
+  Truth truth() const noexcept;
+  const ArmState& state() const noexcept { return state_; }
+
+ private:
+  ArmModel arm_;
+  ArmSimulator simulator_;
+  SimulatedSensors sensors_;
+  ArmState state_;
+  ArmVector filtered_;  // modal coordinates behind the gauge filter
+  std::int64_t step_ns_;
+  double filter_blend_;                 // 1 - exp(-w_f h)
+  std::array<double, 2> motor_blend_;   // 1 - exp(-h / T_e)
+  std::array<double, 2> switch_angle_rad_;
+  std::array<double, 2> set_point_nm_{};
+  std::array<double, 2> torque_nm_{};   // behind the electrical lag
+  LineLevels forced_ = kHealthyLevels;
+};
+
+}  // namespace flexarm

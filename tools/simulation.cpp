@@ -1,0 +1,187 @@
+#include "tools/simulation.h"
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "controller/law/design.h"
+#include "controller/law/reference.h"
+#include "controller/runlog/recorder_task.h"
+#include "controller/runtime/lockstep_executor.h"
+#include "controller/runtime/simulated_stack.h"
+#include "controller/runtime/unattended_run.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kOperatorPeriodNs = 20'000'000;
+constexpr std::int64_t kAfterTripNs = 5'000'000'000;  // the log of a tripped run goes on this long
+constexpr std::int64_t kAfterIdleNs = 200'000'000;    // until the recorder has seen everything
+constexpr std::size_t kQueueDepth = 64;
+
+/// The operator's thread of a simulated run: one plan, then UnattendedRun's requests.
+class UnattendedTask final : public Task {
+ public:
+  explicit UnattendedTask(SimulatedStack* stack) : stack_(stack) {}
+
+  Traits traits() const noexcept override {
+    return {.name = "operator",
+            .period_ns = kOperatorPeriodNs,
+            .phase_ns = 0,
+            .deadline_ns = kOperatorPeriodNs,
+            .priority = 0};
+  }
+
+  void Run(const Activation& activation) noexcept override {
+    RequestAnswer answer{};
+    while (stack_->answers().Pop(&answer)) run_.Answered(answer);
+    const Permit& permit = stack_->operator_permits().Read().At(activation.due_ns - 1).value;
+    const OperatorRequest request = run_.Update(activation.due_ns, permit);
+    if (request.kind != RequestKind::kNone) stack_->requests().Push(request);
+    if (permit.state == SafetyState::kTripped && trip_ == TripCause::kNone) {
+      trip_ = permit.cause;
+      over_ns_ = activation.due_ns + kAfterTripNs;
+    } else if (run_.over() && over_ns_ == INT64_MAX) {
+      over_ns_ = activation.due_ns + kAfterIdleNs;
+    }
+  }
+
+  TripCause trip() const { return trip_; }
+  std::int64_t over_ns() const { return over_ns_; }
+  const UnattendedRun& run() const { return run_; }
+
+ private:
+  SimulatedStack* stack_;
+  UnattendedRun run_;
+  TripCause trip_ = TripCause::kNone;
+  std::int64_t over_ns_ = INT64_MAX;
+};
+
+RunInfo InfoOf(const SimulationRequest& request, const Design& design) {
+  RunInfo info;
+  info.rig_name = request.config.rig_name;
+  info.clock = "simulated";
+  info.backend = "sim";
+  info.seed = request.config.sim.seed;
+  info.config_text = request.config.text;
+  info.gains_json = DesignToJson(design, DesignHash(request.config));
+  return info;
+}
+
+/// Keeps every tick in memory for the metrics, and passes all on to the log if there is one.
+class MemoryAndLog final : public RunMemory {
+ public:
+  MemoryAndLog(RunContents* contents, std::unique_ptr<RunSink> log)
+      : RunMemory(contents), log_(std::move(log)) {}
+
+  std::string Name() const override { return log_->Name(); }
+  void Tick(const TickRecord& record) override {
+    RunMemory::Tick(record);
+    log_->Tick(record);
+  }
+  void Timing(const TimingRecord& record) override { log_->Timing(record); }
+  void Safety(const SafetyRecord& record) override { log_->Safety(record); }
+  void Event(const RunEvent& event) override { log_->Event(event); }
+  void SetExperiment(const std::string& name, const std::string& text) override {
+    RunMemory::SetExperiment(name, text);
+    log_->SetExperiment(name, text);
+  }
+  void Commit() override { log_->Commit(); }
+  void Close(const std::string& result_json) override { log_->Close(result_json); }
+
+ private:
+  std::unique_ptr<RunSink> log_;
+};
+
+OpenSink SinkFor(const SimulationRequest& request, RunContents* contents) {
+  if (!request.log) return RunInMemory(contents);
+  return [contents, open = RunInFile(*request.log)](const RunInfo& info) -> std::unique_ptr<RunSink> {
+    return std::make_unique<MemoryAndLog>(contents, open(info));
+  };
+}
+
+std::array<double, 2> SoftLimitsRad(const SafetyConfig& safety) {
+  return {safety.soft_angle_deg[0] * std::numbers::pi / 180.0,
+          safety.soft_angle_deg[1] * std::numbers::pi / 180.0};
+}
+
+std::int64_t FreezeOfControl(const Experiment& experiment) {
+  for (const SimEvent& event : experiment.sim_event) {
+    if (event.freeze == FreezeTarget::kControl) return std::llround(event.at_s * 1e9);
+  }
+  return INT64_MAX;
+}
+
+}  // namespace
+
+SimulationResult Simulate(const SimulationRequest& request,
+                          const std::function<void(double)>& progress) {
+  const Config& config = request.config;
+  const LoopGrid grid(config.loop);
+  const Design design = DesignFor(config);
+  const ReferenceTable reference(request.experiment, design, grid.period_s(), {0.0, 0.0},
+                                 SoftLimitsRad(config.safety));
+
+  SimulatedStack stack(config, design,
+                       {.payload_kg = request.payload_kg.value_or(config.arm.payload_mass_kg),
+                        .sim_events = request.experiment.sim_event});
+  stack.plans().Publish({.reference = &reference,
+                         .number = 1,
+                         .freeze_after_ns = FreezeOfControl(request.experiment)});
+  RunContents contents;
+  std::string log_error;
+  RunRecording recording(InfoOf(request, design), SinkFor(request, &contents),
+                         [&log_error](bool is_error, const std::string& text) {
+                           if (is_error && log_error.empty()) log_error = text;
+                         });
+  EventQueue events(kQueueDepth);
+  events.Push({.time_ns = 0,
+               .kind = "experiment",
+               .name = request.experiment.name,
+               .text = request.experiment.text,
+               .value_json = {}});
+  SpscQueue<TimingRecord> timing(kQueueDepth);  // a simulated clock has no wall-clock figures
+  RecorderTask recorder({.ticks = &stack.tick_records(),
+                         .safety = &stack.safety_records(),
+                         .timing = &timing,
+                         .events = &events},
+                        &recording);
+  UnattendedTask operator_task(&stack);
+  LockstepExecutor executor;
+  executor.Add(stack.safety());
+  executor.Add(stack.control());
+  executor.Add(stack.plant());
+  executor.Add(operator_task);
+  executor.Add(recorder);
+
+  constexpr std::int64_t kProgressNs = 100'000'000;
+  const auto started = std::chrono::steady_clock::now();
+  std::int64_t simulated_ns = 0;
+  executor.RunWhile([&](std::int64_t now_ns) {
+    if (progress && now_ns / kProgressNs != simulated_ns / kProgressNs) {
+      progress(static_cast<double>(now_ns) * 1e-9);
+    }
+    simulated_ns = now_ns;
+    return now_ns < operator_task.over_ns();
+  });
+  recorder.Finish();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
+  if (!log_error.empty()) throw std::runtime_error(log_error);
+  if (operator_task.run().progress() == UnattendedRun::Progress::kRefused) {
+    throw std::runtime_error("the simulated run was refused by the safety machine");
+  }
+
+  SimulationResult result;
+  result.metrics = ComputeMetrics(contents.tick, request.experiment, grid.period_s(),
+                                  TipGeometryOf(config.arm));
+  result.ticks = result.metrics.ticks;
+  result.trip = operator_task.trip();
+  result.completed = result.trip == TripCause::kNone && result.ticks == reference.periods();
+  result.realtime_factor = static_cast<double>(simulated_ns) * 1e-9 / wall.count();
+  return result;
+}
+
+}  // namespace flexarm

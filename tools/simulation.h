@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "config/config.h"
+#include "controller/runlog/metrics.h"
+#include "controller/runlog/run_sink.h"
+#include "controller/safety/trip_cause.h"
+
+namespace flexarm {
+
+/// One run of the whole stack in lock step: an unattended arm, run, stop and disarm.
+struct SimulationRequest {
+  Config config;
+  Experiment experiment;
+  std::optional<double> payload_kg;          ///< of the plant; the config's if empty
+  std::optional<std::filesystem::path> log;  ///< must not exist; empty: no log
+};
+
+struct SimulationResult {
+  bool completed = false;                  ///< every tick of the experiment ran, and no trip
+  TripCause trip = TripCause::kNone;
+  std::int64_t ticks = 0;                  ///< in state Running
+  RunMetrics metrics;
+  double realtime_factor = 0.0;            ///< simulated time over wall time of the loop, recorder included
+};
+
+/// @param progress  called now and then with the simulated time, s; may be empty
+/// @throws std::runtime_error when the design, the experiment or the log is refused
+SimulationResult Simulate(const SimulationRequest& request,
+                          const std::function<void(double)>& progress = {});
+
+}  // namespace flexarm
