@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/problem_list.h"
@@ -36,22 +38,26 @@ void CheckChannelsForFit(const Config& c, ProblemLog* log, std::vector<Problem>*
   }
 }
 
+// Between two samples a counter moves by less than half its range, or its direction is lost.
 void CheckCounters(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
-  const double rate = c.estimator.max_joint_rate_rad_s;
+  constexpr std::string_view kKey = "estimator.max_joint_rate_rad_s";
+  if (!log->Clear({kKey, "loop.period_ms", "sensors.encoder"})) return;
+  double slowest = std::numeric_limits<double>::infinity();
+  std::size_t row = 0;
   for (std::size_t i = 0; i < c.sensors.encoder.size(); ++i) {
-    const std::string row = At("sensors.encoder", i);
-    if (!log->Clear({"estimator.max_joint_rate_rad_s", "loop.period_ms", row})) continue;
     const EncoderConfig& e = c.sensors.encoder[i];
-    const double period_s = c.loop.period_ms * 1e-3;
-    const double counts = rate * period_s * e.counts_per_turn / (2.0 * std::numbers::pi);
-    const double half_range = std::ldexp(1.0, e.counter_bits - 1);
-    if (counts < half_range) continue;
-    out->push_back({row + ".counter_bits", NumberText(e.counter_bits),
-                    "too few: at estimator.max_joint_rate_rad_s = " + NumberText(rate) +
-                        " the counter moves by " + NumberText(std::round(counts)) +
-                        " in a period, which must stay below half its range, " +
-                        NumberText(half_range)});
+    const double half_range =
+        std::ldexp(2.0 * std::numbers::pi / e.counts_per_turn, e.counter_bits - 1);
+    const double rate = half_range / (c.loop.period_ms * 1e-3);
+    if (rate < slowest) row = i;
+    slowest = std::min(slowest, rate);
   }
+  if (c.estimator.max_joint_rate_rad_s < slowest) return;
+  out->push_back({std::string(kKey), NumberText(c.estimator.max_joint_rate_rad_s),
+                  "must be below " + NumberText(std::floor(100.0 * slowest) / 100.0) +
+                      ": there the counter of " + At("sensors.encoder", row) + " (" +
+                      NumberText(c.sensors.encoder[row].counter_bits) +
+                      " bits) moves by half its range in a period, and its direction is lost"});
 }
 
 void CheckRates(const Config& c, ProblemLog* log, std::vector<Problem>* out) {

@@ -30,7 +30,7 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
 std::optional<std::string> ClosestWord(std::string_view word,
                                        const std::vector<std::string>& words) {
   if (word.size() > kLongestWord) return std::nullopt;
-  std::size_t closest = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::size_t closest = (word.size() + 2) / 3 + 1;
   std::optional<std::string> found;
   for (const std::string& candidate : words) {
     const std::size_t distance = EditDistance(word, candidate);
