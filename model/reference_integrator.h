@@ -15,9 +15,9 @@ namespace flexarm {
 /// (allocates).
 class ReferenceIntegrator {
  public:
-  /// @param columns  k = 1..8
+  /// @param columns  k = 1..8; the default is of order 10
   /// @throws std::invalid_argument if it is outside.
-  explicit ReferenceIntegrator(const ArmModel& model, int columns = 4);
+  explicit ReferenceIntegrator(const ArmModel& model, int columns = 5);
 
   int order() const { return 2 * columns_; }
 

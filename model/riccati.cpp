@@ -32,6 +32,24 @@ MatrixXd Refined(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const 
   return Symmetric(P + SolveStein(F.transpose(), F, residual));
 }
 
+// Newton until the residual stops falling. Strongly unstable A costs doubling many digits.
+MatrixXd Polished(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R,
+                  MatrixXd P) {
+  double residual = DareResidual(A, B, Q, R, P);
+  for (int i = 0; i < 10; ++i) {
+    const MatrixXd next = Refined(A, B, Q, R, P);
+    const double next_residual = DareResidual(A, B, Q, R, next);
+    if (!(next_residual < residual)) break;
+    P = next;
+    residual = next_residual;
+  }
+  const MatrixXd F = A - B * DareGain(A, B, R, P);
+  if (!(residual < 1e-8) || !(F.eigenvalues().cwiseAbs().maxCoeff() < 1.0)) {
+    throw std::runtime_error("SolveDare: no stabilising solution was found");
+  }
+  return P;
+}
+
 // Y - S Y T = F for upper triangular S and T.
 MatrixXcd SolveTriangularStein(const MatrixXcd& S, const MatrixXcd& T, const MatrixXcd& F) {
   const MatrixXcd one = MatrixXcd::Identity(S.rows(), S.cols());
@@ -77,9 +95,7 @@ MatrixXd SolveDare(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, cons
     Ak = (Ak * WA).eval();
     if (!Hk.allFinite() || !Gk.allFinite()) break;
     if (H_step.cwiseAbs().maxCoeff() <= 1e-15 * Hk.cwiseAbs().maxCoeff()) {
-      const MatrixXd P = Refined(A, B, Q, R, Hk);
-      if (DareResidual(A, B, Q, R, P) < 1e-8) return P;
-      break;
+      return Polished(A, B, Q, R, Hk);
     }
   }
   throw std::runtime_error(

@@ -8,7 +8,7 @@ namespace flexarm {
 ///   P = A'PA - A'PB (R + B'PB)^-1 B'PA + Q.
 ///
 /// Structure-preserving doubling (Chu, Fan, Lin, Wang 2004): quadratic convergence, symmetric at
-/// every step. Then one correction by a Stein equation (Newton), which halves the lost digits.
+/// every step. Then Newton corrections, a Stein equation each, until the residual stops falling.
 /// @param Q, R  symmetric; Q >= 0, R > 0
 /// @throws std::invalid_argument if sizes do not fit or R is not positive definite;
 /// std::runtime_error if the doubling does not converge (a mode on or outside the unit circle that
