@@ -41,8 +41,8 @@ VectorXd After(const ArmModel& arm, int columns, double h) {
   return x.q;
 }
 
-// Halving h divides the error by 2^order or, in an oscillation, a little more. One wrong weight of the extrapolation drops the
-// order to 2.
+// Halving h divides the error by 2^order or, in an oscillation, a little more. One wrong weight of
+// the extrapolation drops the order to 2.
 TEST(ReferenceIntegrator, ErrorFallsWithItsOrder) {
   const ArmModel arm(Conservative(), {2, 2});
   const VectorXd truth = After(arm, 7, 2e-4);
