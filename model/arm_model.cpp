@@ -44,13 +44,41 @@ const LinkModes& ArmModel::link_modes(int link) const {
   throw std::out_of_range("ArmModel: link is 1 or 2");
 }
 
+// M = sum of T' m T over the bodies, T their velocities as rows over q'. Written apart from
+// InertialForces, so that each checks the other.
 MatrixXd ArmModel::MassMatrix(const VectorXd& q) const {
-  const VectorXd rest = VectorXd::Zero(dof());
-  MatrixXd M(dof(), dof());
-  for (int i = 0; i < dof(); ++i) {
-    M.col(i) = InertialForces<double>(constants_, q, rest, VectorXd::Unit(dof(), i));
-  }
-  return 0.5 * (M + M.transpose());
+  const ArmConstants& c = constants_;
+  const VectorXd f1 = ModalPart(1, q), f2 = ModalPart(2, q);
+  const double w = c.link1.psi_tip.dot(f1), s = c.link1.slope_tip.dot(f1);
+  const double s2 = c.link2.slope_tip.dot(f2), beta = q[kTheta2] + std::atan(s);
+  const double sb = std::sin(beta), cb = std::cos(beta);
+
+  VectorXd x = VectorXd::Zero(dof()), y = x, turn = x;  // elbow along and across link 2; stator 2
+  x[kTheta1] = -cb * w + sb * c.L1;
+  y[kTheta1] = sb * w + cb * c.L1;
+  x.segment(kPhi1, c.m1) = sb * c.link1.psi_tip;
+  y.segment(kPhi1, c.m1) = cb * c.link1.psi_tip;
+  turn[kTheta1] = 1.0;
+  turn.segment(kPhi1, c.m1) = c.link1.slope_tip / (1.0 + s * s);
+  const VectorXd gamma = turn + VectorXd::Unit(dof(), kTheta2);
+  const VectorXd rotor2 = turn + VectorXd::Unit(dof(), kTheta4);
+  VectorXd payload = gamma;
+  payload.tail(c.m2) = c.link2.slope_tip / (1.0 + s2 * s2);
+
+  MatrixXd M = MatrixXd::Zero(dof(), dof());
+  M(kTheta1, kTheta1) = c.I1 + f1.dot(c.link1.N * f1);
+  M(kTheta3, kTheta3) = c.J1;
+  M.block(kPhi1, kTheta1, c.m1, 1) = c.link1.a;
+  M.block(kPhi1, kPhi1, c.m1, c.m1) = c.link1.N;
+  M.bottomRightCorner(c.m2, c.m2) = c.N2;
+  M.bottomLeftCorner(c.m2, c.phi2()) =
+      c.k2 * y.head(c.phi2()).transpose() + c.a2 * gamma.head(c.phi2()).transpose();
+  auto lower = M.selfadjointView<Eigen::Lower>();
+  lower.rankUpdate(x, c.m_outboard).rankUpdate(y, c.m_outboard);
+  lower.rankUpdate(x, gamma, -c.k2.dot(f2)).rankUpdate(y, gamma, c.Sx);
+  lower.rankUpdate(gamma, c.I2 + f2.dot(c.N2 * f2)).rankUpdate(turn, c.Ir2);
+  lower.rankUpdate(rotor2, c.J2).rankUpdate(payload, c.Ip);
+  return lower;
 }
 
 VectorXd ArmModel::Bias(const VectorXd& q, const VectorXd& v) const {
