@@ -73,6 +73,7 @@ BROKEN = {
     "a sine in the step":
         ("estimator/state_estimator.cpp", "double S(double x) { return std::sin(x); }\n", "libm", 1),
     "an endless file": ("model/a.cpp", "// line\n" * 401, "file-size", 401),
+    "an endless test": ("tests/a.cpp", "// line\n" * 601, "file-size", 601),
     "a to-do note": ("model/a.cpp", f"// {NOTE}: later\n", "leftover", 1),
     "a to-do note in a script": ("tools/a.py", f"# {NOTE}: later\n", "leftover", 1),
     "a double without a unit":

@@ -4,7 +4,7 @@
 layers      an include points in the allowed direction only, and is written from the root
 realtime    no I/O, lock, clock or heap by name in files that run on the real-time threads
 libm        Step computes with + - * / and sqrt: libm's sin and exp differ between CPUs
-file-size   a source file has at most 400 lines
+file-size   a source file has at most 400 lines, a test 600
 function    a function of more than 60 lines is worth a look (a warning)
 leftover    no to-do notes in the tree
 unit        a double of a public struct has a unit in its name, or a comment
@@ -21,6 +21,7 @@ from pathlib import Path
 CODE_FOLDERS = ("model", "hal", "estimator", "controller", "config", "tools", "tests")
 TEXT_SUFFIXES = {".h", ".cpp", ".py", ".sh", ".cmake", ".toml", ".in", ".service", ".txt", ""}
 MAX_FILE_LINES = 400
+MAX_TEST_LINES = 600  # tables of cases are long
 MAX_FUNCTION_LINES = 60
 
 # Who may include whom: a room, and the rooms or single files that it may use beside itself. A file
@@ -39,6 +40,7 @@ ROOMS = {
                         "controller/runtime/stack_config.h",
                         "controller/runtime/runtime_config.h"],
     "controller/runlog/": ["model/", "hal/", "estimator/", "controller/law/", "controller/safety/",
+                           "controller/runtime/float_environment.h",
                            "controller/runtime/loop_grid.h", "controller/runtime/messages.h",
                            "controller/runtime/runtime_config.h", "controller/runtime/spsc_queue.h",
                            "controller/runtime/stack_config.h", "controller/runtime/task.h"],
@@ -154,8 +156,9 @@ def check_realtime(path, text, code, root):
 
 def check_file_size(path, text, code, root):
     lines = text.count("\n")
-    if lines > MAX_FILE_LINES:
-        yield Finding(path, lines, "file-size", f"{lines} lines, at most {MAX_FILE_LINES}")
+    most = MAX_TEST_LINES if path.startswith("tests/") else MAX_FILE_LINES
+    if lines > most:
+        yield Finding(path, lines, "file-size", f"{lines} lines, at most {most}")
 
 
 def blocks(code):

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""Runs the benchmarks for a few seconds each and reports the figures that the project promises.
+
+Times on a shared machine are a report. The one gate is the speed of the default experiment,
+realtime_factor at least 100 (median of 5), which leaves room for a busy neighbour.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+MIN_REALTIME_FACTOR = 100
+
+
+def run(program):
+    """The figures of one benchmark program, by benchmark."""
+    result = subprocess.run([program, "--benchmark_format=json", "--benchmark_min_time=0.1"],
+                            stdout=subprocess.PIPE, text=True, check=True)
+    benchmarks = json.loads(result.stdout)["benchmarks"]
+    print(f"\n{program.name}")
+    for b in benchmarks:
+        unit = b["time_unit"]
+        extra = "  ".join(f"{key} {value:.4g}" for key, value in b.items()
+                          if key.endswith("_us") or key == "realtime_factor")
+        print(f"  {b['name']:<42} {b['real_time']:10.3f} {unit}  {extra}")
+    return {b["name"]: b for b in benchmarks}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build", type=Path, required=True, help="build folder")
+    parser.add_argument("--note", type=Path, help="write the summary here, on one line")
+    parser.add_argument("--min-realtime-factor", type=float, default=MIN_REALTIME_FACTOR)
+    arguments = parser.parse_args()
+
+    folder = arguments.build / "tests/bench"
+    control = run(folder / "control_benchmark")
+    run(folder / "model_benchmark")
+    step = next(b for name, b in control.items() if name.startswith("Step"))
+    factor = next(b for name, b in control.items()
+                  if name.startswith("SimulatedRun/modes:4"))["realtime_factor"]
+    text = (f"Step {step['p50_us']:.1f} us median, {step['p99.9_us']:.1f} us p99.9;"
+            f" default experiment {factor:.0f} times real time")
+    print("\n" + text)
+    if arguments.note:
+        arguments.note.write_text(text + "\n", encoding="utf-8")
+    if factor < arguments.min_realtime_factor:
+        print(f"too slow: at least {arguments.min_realtime_factor:.0f} times is promised",
+              file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

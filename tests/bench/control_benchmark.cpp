@@ -1,0 +1,85 @@
+// How long a control step takes, and how fast the whole stack runs on the simulated arm.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <vector>
+
+#include "controller/law/control_step.h"
+#include "controller/law/design.h"
+#include "tests/support/recorded_inputs.h"
+
+namespace flexarm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Config Rig() { return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"); }
+
+double MicrosecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+// Each call is timed by itself: what counts is the slowest, not the mean. The counters hold the
+// reading of the clock too, some 20 ns.
+void Step(benchmark::State& state) {
+  const Config config = Rig();
+  const Design design = DesignFor(config);
+  const std::vector<StepInput> inputs = RecordedInputs(config);
+  ControlStep step(config, design);
+  std::vector<double> taken_us;
+  taken_us.reserve(10'000'000);
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const Clock::time_point start = Clock::now();
+    benchmark::DoNotOptimize(step.Step(inputs[next]));
+    taken_us.push_back(MicrosecondsSince(start));
+    next = (next + 1) % inputs.size();
+  }
+  std::sort(taken_us.begin(), taken_us.end());
+  const auto quantile = [&taken_us](double q) {
+    return taken_us[static_cast<std::size_t>(q * static_cast<double>(taken_us.size() - 1))];
+  };
+  state.counters["p50_us"] = quantile(0.5);
+  state.counters["p99.9_us"] = quantile(0.999);
+  state.counters["max_us"] = taken_us.back();
+}
+BENCHMARK(Step)->Unit(benchmark::kMicrosecond)->MinTime(1.0);
+
+void Design(benchmark::State& state) {
+  const Config config = Rig();
+  for (auto _ : state) benchmark::DoNotOptimize(DesignController(config).K.data());
+}
+BENCHMARK(Design)->Unit(benchmark::kMillisecond);
+
+// All tasks in lock step, design and start-up left out as in realtime_factor, for the plant's modes
+// a link.
+void SimulatedRun(benchmark::State& state) {
+  const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml",
+                                   {"sim.plant_modes=" + std::to_string(state.range(0))});
+  const Experiment experiment =
+      LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/square-30deg.toml");
+  std::vector<double> factors;
+  for (auto _ : state) {
+    const SimulationResult result =
+        Simulate({.config = config, .experiment = experiment, .payload_kg = {}, .log = {}});
+    factors.push_back(result.realtime_factor);
+    state.SetIterationTime(1.0 / result.realtime_factor);
+  }
+  std::sort(factors.begin(), factors.end());
+  state.counters["realtime_factor"] = factors[factors.size() / 2];
+}
+// The time shown is that of one simulated second.
+BENCHMARK(SimulatedRun)
+    ->ArgName("modes")
+    ->Arg(2)
+    ->Arg(4)
+    ->Arg(6)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,36 @@
+// Runs Step on the inputs of a whole run, for callgrind to count (tests/bench/step_cost.py).
+// Prints how many steps it ran.
+
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <vector>
+
+#include "controller/law/control_step.h"
+#include "controller/law/design.h"
+#include "tests/support/recorded_inputs.h"
+
+namespace flexarm {
+namespace {
+
+void Run() {
+  const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml");
+  const Design design = DesignFor(config);
+  const std::vector<StepInput> inputs = RecordedInputs(config);
+  ControlStep step(config, design);
+  std::int64_t last = 0;
+  for (const StepInput& input : inputs) last = step.Step(input).tick;
+  std::printf("steps %zu, last tick %lld\n", inputs.size(), static_cast<long long>(last));
+}
+
+}  // namespace
+}  // namespace flexarm
+
+int main() {
+  try {
+    flexarm::Run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "step_instructions: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "controller/runlog/run_reader.h"
+#include "tools/simulation.h"
+
+namespace flexarm {
+
+/// Every StepInput of a simulated run of the shipped rig, from arm to disarm, in order of tick.
+/// What the control thread gets in a real run, to the byte: sensor noise, reference, states.
+inline std::vector<StepInput> RecordedInputs(const Config& config) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                     ("recorded-inputs-" + std::to_string(getpid()) + ".flexarm");
+  const Experiment experiment =
+      LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/square-30deg.toml");
+  Simulate({.config = config, .experiment = experiment, .payload_kg = {}, .log = file});
+  std::vector<StepInput> inputs;
+  {
+    RunReader reader(file);
+    reader.ForEachTick([&inputs](const TickRecord& tick) { inputs.push_back(tick.input); });
+  }
+  std::filesystem::remove(file);
+  return inputs;
+}
+
+}  // namespace flexarm
