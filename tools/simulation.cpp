@@ -3,12 +3,11 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include "controller/law/design.h"
-#include "controller/law/reference.h"
+#include "controller/law/refused.h"
 #include "controller/runlog/recorder_task.h"
 #include "controller/runtime/lockstep_executor.h"
 #include "controller/runtime/simulated_stack.h"
@@ -103,34 +102,21 @@ OpenSink SinkFor(const SimulationRequest& request, RunContents* contents) {
   };
 }
 
-std::array<double, 2> SoftLimitsRad(const SafetyConfig& safety) {
-  return {safety.soft_angle_deg[0] * std::numbers::pi / 180.0,
-          safety.soft_angle_deg[1] * std::numbers::pi / 180.0};
-}
-
-std::int64_t FreezeOfControl(const Experiment& experiment) {
-  for (const SimEvent& event : experiment.sim_event) {
-    if (event.freeze == FreezeTarget::kControl) return std::llround(event.at_s * 1e9);
-  }
-  return INT64_MAX;
-}
-
 }  // namespace
 
 SimulationResult Simulate(const SimulationRequest& request,
                           const std::function<void(double)>& progress) {
   const Config& config = request.config;
+  if (request.log && std::filesystem::exists(*request.log)) {
+    throw Refused(request.log->string() + ": exists already; a run is never overwritten");
+  }
   const LoopGrid grid(config.loop);
   const Design design = DesignFor(config);
-  const ReferenceTable reference(request.experiment, design, grid.period_s(), {0.0, 0.0},
-                                 SoftLimitsRad(config.safety));
-
-  SimulatedStack stack(config, design,
-                       {.payload_kg = request.payload_kg.value_or(config.arm.payload_mass_kg),
-                        .sim_events = request.experiment.sim_event});
-  stack.plans().Publish({.reference = &reference,
-                         .number = 1,
-                         .freeze_after_ns = FreezeOfControl(request.experiment)});
+  const double payload_kg = request.payload_kg.value_or(config.arm.payload_mass_kg);
+  const PlannedExperiment planned(request.experiment, design, grid.period_s(), {0.0, 0.0},
+                                  SoftAngleRad(config.safety));
+  SimulatedStack stack(config, design, payload_kg);
+  stack.Plan({.experiment = &planned, .number = 1});
   RunContents contents;
   std::string log_error;
   RunRecording recording(InfoOf(request, design), SinkFor(request, &contents),
@@ -143,6 +129,11 @@ SimulationResult Simulate(const SimulationRequest& request,
                .name = request.experiment.name,
                .text = request.experiment.text,
                .value_json = {}});
+  events.Push({.time_ns = 0,
+               .kind = "simulation",
+               .name = "payload",
+               .text = {},
+               .value_json = "{\"payload_kg\": " + std::to_string(payload_kg) + "}"});
   SpscQueue<TimingRecord> timing(kQueueDepth);  // a simulated clock has no wall-clock figures
   RecorderTask recorder({.ticks = &stack.tick_records(),
                          .safety = &stack.safety_records(),
@@ -179,7 +170,7 @@ SimulationResult Simulate(const SimulationRequest& request,
                                   TipGeometryOf(config.arm));
   result.ticks = result.metrics.ticks;
   result.trip = operator_task.trip();
-  result.completed = result.trip == TripCause::kNone && result.ticks == reference.periods();
+  result.completed = result.trip == TripCause::kNone && result.ticks == planned.reference.periods();
   result.realtime_factor = static_cast<double>(simulated_ns) * 1e-9 / wall.count();
   return result;
 }

@@ -13,6 +13,7 @@
 #include <Eigen/LU>
 
 #include "controller/law/command_generator.h"
+#include "controller/law/refused.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/kalman_design.h"
 #include "estimator/nominal_model.h"
@@ -173,26 +174,41 @@ Design DesignController(const StackConfig& config) {
   return design;
 }
 
-Design DesignFor(const StackConfig& config) {
-  Design design;
-  if (config.controller.gains_file.empty()) {
-    design = DesignController(config);
-  } else {
-    std::ifstream file(config.controller.gains_file);
-    if (!file) {
-      throw std::runtime_error(config.controller.gains_file +
-                               ": cannot be read (controller.gains); write it with `flexarm design`");
-    }
-    std::stringstream text;
-    text << file.rdbuf();
-    design = DesignFromJson(text.str(), DesignHash(config));
+namespace {
+
+Design ReadDesign(const StackConfig& config) {
+  const std::string& name = config.controller.gains_file;
+  std::ifstream file(name);
+  if (!file) {
+    throw Refused(name + ": cannot be read (controller.gains); write it with `flexarm design`");
   }
+  std::stringstream text;
+  text << file.rdbuf();
+  try {
+    return DesignFromJson(text.str(), DesignHash(config));
+  } catch (const Refused& error) {
+    throw Refused(name + ": " + error.what());
+  }
+}
+
+Design NewDesign(const StackConfig& config) {
+  try {
+    return DesignController(config);
+  } catch (const std::runtime_error& error) {
+    throw Refused(std::string("no controller can be designed for this config: ") + error.what());
+  }
+}
+
+}  // namespace
+
+Design DesignFor(const StackConfig& config) {
+  Design design = config.controller.gains_file.empty() ? NewDesign(config) : ReadDesign(config);
   for (const DesignCheck& check : design.checks) {
-    if (!check.passed()) {
-      throw std::runtime_error("design check '" + check.name + "' failed: " +
-                               std::to_string(check.value) + (check.below ? " is not below " : " is not above ") +
-                               std::to_string(check.limit));
-    }
+    if (check.passed()) continue;
+    std::ostringstream text;
+    text << "design check '" << check.name << "' failed: " << check.value << " must be "
+         << (check.below ? "below " : "above ") << check.limit;
+    throw Refused(text.str());
   }
   return design;
 }

@@ -49,11 +49,11 @@ std::string DesignHash(const StackConfig& config);
 std::string DesignToJson(const Design& design, const std::string& config_hash);
 
 /// Reads what DesignToJson wrote.
-/// @throws std::runtime_error naming what is missing or misshapen, or that `expected_hash` differs
+/// @throws Refused naming what is missing or misshapen, or that `expected_hash` differs
 Design DesignFromJson(const std::string& text, const std::string& expected_hash);
 
 /// The design to run with: the one in `controller.gains`, or a new one.
-/// @throws std::runtime_error, also when a check of the design failed
+/// @throws Refused when there is none, or a check of it failed
 Design DesignFor(const StackConfig& config);
 
 }  // namespace flexarm

@@ -2,10 +2,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <utility>
 
 #include "controller/law/design.h"
+#include "controller/law/refused.h"
 #include "controller/runtime/stack_config.h"
 
 namespace flexarm {
@@ -95,16 +95,16 @@ nlohmann::json MatrixToJson(const M& matrix) {
 template <typename M>
 void MatrixFromJson(const nlohmann::json& rows, const std::string& name, M* matrix) {
   if (!rows.is_array() || rows.empty() || !rows[0].is_array()) {
-    throw std::runtime_error("gains file: '" + name + "' is not a matrix (an array of rows)");
+    throw Refused("gains file: '" + name + "' is not a matrix (an array of rows)");
   }
   Eigen::MatrixXd read(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].size() != rows[0].size()) {
-      throw std::runtime_error("gains file: '" + name + "' has rows of different length");
+      throw Refused("gains file: '" + name + "' has rows of different length");
     }
     for (std::size_t j = 0; j < rows[i].size(); ++j) {
       if (!rows[i][j].is_number()) {
-        throw std::runtime_error("gains file: '" + name + "' holds something that is not a number");
+        throw Refused("gains file: '" + name + "' holds something that is not a number");
       }
       read(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j].get<double>();
     }
@@ -117,7 +117,7 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name, Eigen::
   Eigen::MatrixXd read;
   MatrixFromJson(rows, name, &read);
   if (read.rows() != 2 || read.cols() != 2) {
-    throw std::runtime_error("gains file: '" + name + "' must be 2 x 2");
+    throw Refused("gains file: '" + name + "' must be 2 x 2");
   }
   *matrix = read;
 }
@@ -128,7 +128,7 @@ void RequireShapes(const Design& d) {
   const auto require = [](const char* name, const Eigen::MatrixXd& m, Eigen::Index rows,
                           Eigen::Index cols) {
     if (m.rows() == rows && m.cols() == cols) return;
-    throw std::runtime_error(std::string("gains file: '") + name + "' is " +
+    throw Refused(std::string("gains file: '") + name + "' is " +
                              std::to_string(m.rows()) + " x " + std::to_string(m.cols()) +
                              ", expected " + std::to_string(rows) + " x " + std::to_string(cols));
   };
@@ -187,17 +187,17 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
 Design DesignFromJson(const std::string& text, const std::string& expected_hash) {
   const nlohmann::json in = nlohmann::json::parse(text, nullptr, false);
   if (!in.is_object() || in.value("format", "") != kFormat) {
-    throw std::runtime_error(std::string("not a gains file: expected JSON with \"format\": \"") +
+    throw Refused(std::string("not a gains file: expected JSON with \"format\": \"") +
                              kFormat + "\", as `flexarm design` writes it");
   }
   if (in.value("config_hash", "") != expected_hash) {
-    throw std::runtime_error("gains file: designed for another config (hash " +
+    throw Refused("gains file: designed for another config (hash " +
                              in.value("config_hash", "missing") + ", this config has " +
                              expected_hash + "); run `flexarm design` again");
   }
   Design design;
   ForEachMatrix(design, [&in](const char* name, auto& m) {
-    if (!in.contains(name)) throw std::runtime_error(std::string("gains file: '") + name + "' is missing");
+    if (!in.contains(name)) throw Refused(std::string("gains file: '") + name + "' is missing");
     MatrixFromJson(in.at(name), name, &m);
   });
   RequireShapes(design);

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
+
+#include "controller/law/refused.h"
 
 namespace flexarm {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kGridTolerance = 1e-6;  // of a period: decimal times added in 
 int OnGrid(double time_s, double period_s, const std::string& what) {
   const double periods = time_s / period_s;
   if (std::fabs(periods - std::round(periods)) > kGridTolerance) {
-    throw std::runtime_error(what + " = " + std::to_string(time_s) +
+    throw Refused(what + " = " + std::to_string(time_s) +
                              " s does not lie on the sampling grid: it must be a multiple of " +
                              std::to_string(period_s) + " s");
   }
@@ -47,7 +48,7 @@ void AddDoublet(const Doublet& doublet, std::size_t row, const Design& design, d
   const int first = OnGrid(doublet.start_s, period_s, name + ".start_s");
   const int count = OnGrid(doublet.duration_s, period_s, name + ".duration_s");
   if (count < 2 || count % 2 != 0) {
-    throw std::runtime_error(name + ".duration_s = " + std::to_string(doublet.duration_s) +
+    throw Refused(name + ".duration_s = " + std::to_string(doublet.duration_s) +
                              " s must be an even number of periods of " + std::to_string(period_s) +
                              " s, so that its two halves cancel");
   }
@@ -83,7 +84,7 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
     for (Eigen::Index i = 0; i < x_m.size(); ++i) sample.x_m[static_cast<std::size_t>(i)] = x_m(i);
     for (std::size_t i = 0; i < 2; ++i) {
       if (std::fabs(sample.x_m[i]) <= limit_rad[i]) continue;
-      throw std::runtime_error("the reference of joint " + std::to_string(i + 1) + " reaches " +
+      throw Refused("the reference of joint " + std::to_string(i + 1) + " reaches " +
                                std::to_string(sample.x_m[i] * 180.0 / std::numbers::pi) +
                                " deg after " + std::to_string(static_cast<double>(k) * period_s) +
                                " s: the soft limit is " +

@@ -20,7 +20,7 @@ class ReferenceTable {
   /// A doublet of amplitude a = M_r dtheta / d moves by dtheta, d the displacement of a unit inertia
   /// under the doublet's sampled shape (T^2/4 for a square, thesis 7.5). Its area is zero, so the
   /// reference model, a double integrator, ends at rest.
-  /// @throws std::runtime_error naming the doublet whose times do not lie on the grid of `period_s`,
+  /// @throws Refused naming the doublet whose times do not lie on the grid of `period_s`,
   ///         or the instant at which the reference would leave +-`limit_rad`
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
                  const std::array<double, 2>& start_rad, const std::array<double, 2>& limit_rad);

@@ -1,5 +1,7 @@
 #include "controller/runtime/control_task.h"
 
+#include <cmath>
+
 namespace flexarm {
 namespace {
 
@@ -23,7 +25,7 @@ Task::Traits ControlTask::traits() const noexcept {
 void ControlTask::Run(const Activation& activation) noexcept {
   if (activation.due_ns >= frozen_from_ns_) return;
   // What was published at the due instant itself may or may not be there yet.
-  FollowState(channels_.permits->Read().At(activation.due_ns - 1).value.state);
+  FollowState(channels_.permits->Read().At(activation.due_ns - 1).value);
   const std::int64_t sampled_ns = grid_.SamplingInstant(grid_.Tick(activation.due_ns));
   const FramePacket& packet = channels_.frames->Read().At(sampled_ns).value;
 
@@ -38,18 +40,28 @@ void ControlTask::Run(const Activation& activation) noexcept {
   channels_.telemetry->Publish(record);
 }
 
-void ControlTask::FollowState(SafetyState state) noexcept {
-  reset_ = reset_ || (Powered(state) && !Powered(state_));
-  if (state == SafetyState::kRunning && state_ != SafetyState::kRunning) {
-    const PlannedRun& planned = channels_.plans->Read();
-    const bool used_up = planned.number == plan_.number;
-    plan_ = planned;
-    if (used_up) plan_.reference = nullptr;  // a plan is good for one run
-    released_.store(plan_.number, std::memory_order_release);
-    sample_ = -1;
+void ControlTask::FollowState(const Permit& permit) noexcept {
+  reset_ = reset_ || (Powered(permit.state) && !Powered(state_));
+  if (permit.state == SafetyState::kRunning) {
+    if (state_ != SafetyState::kRunning) StartRun(permit.running_since_ns);
+    ++sample_;
   }
-  if (state == SafetyState::kRunning) ++sample_;
-  state_ = state;
+  state_ = permit.state;
+}
+
+void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
+  const PlannedRun& planned = channels_.plans->Read();
+  const bool used_up = planned.number == plan_.number;
+  plan_ = planned;
+  if (used_up) plan_.experiment = nullptr;  // a plan is good for one run
+  released_.store(plan_.number, std::memory_order_release);
+  sample_ = -1;
+  if (plan_.experiment == nullptr) return;
+  for (const SimEvent& event : plan_.experiment->sim_events) {
+    if (event.freeze != FreezeTarget::kControl) continue;
+    frozen_from_ns_ = grid_.ExperimentStart(running_since_ns) + std::llround(event.at_s * 1e9);
+    break;
+  }
 }
 
 StepInput ControlTask::Gather(const Activation& activation, const FramePacket& packet,
@@ -65,21 +77,19 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
   input.reset = reset_ ? 1 : 0;
   reset_ = false;
   if (!TorqueAllowed(state)) return input;
-  if (plan_.reference == nullptr) {  // nothing to follow: end at once, where the hubs are
+  if (plan_.experiment == nullptr) {  // nothing to follow: end at once, where the hubs are
     input.reference_now.x_m[0] = input.reference_next.x_m[0] = hub_angle_rad_[0];
     input.reference_now.x_m[1] = input.reference_next.x_m[1] = hub_angle_rad_[1];
     input.reference_ended = 1;
     return input;
   }
 
-  const int last = plan_.reference->periods() - 1;
+  const ReferenceTable& reference = plan_.experiment->reference;
+  const int last = reference.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
-  input.reference_now = plan_.reference->At(sample_ - 1);
-  input.reference_next = plan_.reference->At(sample_);
+  input.reference_now = reference.At(sample_ - 1);
+  input.reference_next = reference.At(sample_);
   input.reference_ended = sample_ >= last ? 1 : 0;
-  if (state == SafetyState::kRunning && sample_ == 0 && plan_.freeze_after_ns != INT64_MAX) {
-    frozen_from_ns_ = input.sampling_instant_ns + grid_.period_ns + plan_.freeze_after_ns;
-  }
   return input;
 }
 

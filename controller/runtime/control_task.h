@@ -4,24 +4,15 @@
 #include <cstdint>
 
 #include "controller/law/control_step.h"
-#include "controller/law/reference.h"
 #include "controller/runlog/records.h"
 #include "controller/runtime/frame_packet.h"
 #include "controller/runtime/loop_grid.h"
 #include "controller/runtime/messages.h"
+#include "controller/runtime/planned_run.h"
 #include "controller/runtime/spsc_queue.h"
 #include "controller/runtime/task.h"
 
 namespace flexarm {
-
-/// The experiment that the next run follows, made by the operator's side, which keeps it alive until
-/// `ControlTask::released` has passed its number.
-struct PlannedRun {
-  const ReferenceTable* reference = nullptr;  ///< nullptr: none planned, a run ends where it is
-  std::uint32_t number = 0;                   ///< ascending
-  std::int64_t freeze_after_ns = INT64_MAX;   ///< sim_event: the task stops this long after the start
-};
-using PlanChannel = LatestValue<PlannedRun>;
 
 /// Everything that the control task touches. All of it outlives the task.
 struct ControlChannels {
@@ -53,7 +44,8 @@ class ControlTask final : public Task {
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
  private:
-  void FollowState(SafetyState state) noexcept;
+  void FollowState(const Permit& permit) noexcept;
+  void StartRun(std::int64_t running_since_ns) noexcept;
   StepInput Gather(const Activation& activation, const FramePacket& packet,
                    SafetyState state) noexcept;
   void Publish(const Activation& activation, const StepInput& input,

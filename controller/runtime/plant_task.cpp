@@ -1,6 +1,5 @@
 #include "controller/runtime/plant_task.h"
 
-#include <algorithm>
 #include <cmath>
 #include <csignal>
 
@@ -16,8 +15,7 @@ ArmParameters WithPayload(ArmParameters arm, double payload_kg) {
 
 }  // namespace
 
-PlantTask::PlantTask(const StackConfig& config, double payload_kg, std::vector<SimEvent> events,
-                     PlantChannels channels)
+PlantTask::PlantTask(const StackConfig& config, double payload_kg, PlantChannels channels)
     : rig_(WithPayload(config.arm, payload_kg), config.sensors, config.sim),
       grid_(config.loop),
       limits_{.torque_nm = config.safety.torque_limit_nm,
@@ -25,10 +23,7 @@ PlantTask::PlantTask(const StackConfig& config, double payload_kg, std::vector<S
               .command_timeout_ns = 2 * grid_.period_ns,
               .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
       transport_delay_ns_(std::llround(config.sim.transport_delay_ms * 1e6)),
-      events_(std::move(events)),
       channels_(channels) {
-  std::stable_sort(events_.begin(), events_.end(),
-                   [](const SimEvent& a, const SimEvent& b) { return a.at_s < b.at_s; });
   TakeFrame(0);
 }
 
@@ -95,13 +90,17 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
 
   const Permit& permit = channels_.permits->Read().At(now_ns - kPeriodNs).value;
   if (permit.running_since_ns == INT64_MIN) return;
-  if (permit.running_since_ns != events_of_run_ns_) {
-    events_of_run_ns_ = permit.running_since_ns;
+  if (permit.running_since_ns != run_since_ns_) {
+    run_since_ns_ = permit.running_since_ns;
     next_event_ = 0;
+    plan_ = channels_.plans->Read();
+    released_.store(plan_.number, std::memory_order_release);
   }
-  const std::int64_t start_ns = grid_.ExperimentStart(permit.running_since_ns);
-  for (; next_event_ < events_.size(); ++next_event_) {
-    const SimEvent& event = events_[next_event_];
+  if (plan_.experiment == nullptr) return;
+  const std::vector<SimEvent>& events = plan_.experiment->sim_events;
+  const std::int64_t start_ns = grid_.ExperimentStart(run_since_ns_);
+  for (; next_event_ < events.size(); ++next_event_) {
+    const SimEvent& event = events[next_event_];
     if (start_ns + std::llround(event.at_s * 1e9) > now_ns) return;
     if (event.line.has_value()) rig_.Press(*event.line, event.level);
     if (event.freeze == FreezeTarget::kPlant) frozen_ = true;

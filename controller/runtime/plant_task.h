@@ -1,13 +1,13 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
-#include <vector>
 
-#include "controller/law/experiment.h"
 #include "controller/runtime/frame_packet.h"
 #include "controller/runtime/loop_grid.h"
 #include "controller/runtime/messages.h"
+#include "controller/runtime/planned_run.h"
 #include "controller/runtime/simulated_lines.h"
 #include "controller/runtime/spsc_queue.h"
 #include "controller/runtime/task.h"
@@ -29,6 +29,7 @@ struct PlantChannels {
   CommandChannel* commands;          ///< read
   PermitChannel* permits;            ///< read
   OutputChannel* outputs;            ///< read: relay and charge pump
+  PlanChannel* plans;                ///< read: for the experiment's sim_events
   SpscQueue<LinePress>* presses;     ///< read
   FrameChannel* frames;              ///< written
   LevelChannel* levels;              ///< written
@@ -50,11 +51,13 @@ class PlantTask final : public Task {
   static constexpr int kPriority = 60;
 
   /// @param payload_kg  what the plant really carries, whatever the config's arm says
-  PlantTask(const StackConfig& config, double payload_kg, std::vector<SimEvent> events,
-            PlantChannels channels);
+  PlantTask(const StackConfig& config, double payload_kg, PlantChannels channels);
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
+
+  /// Any thread. Plans with a lower number than this are no longer used.
+  std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
  private:
   void AdvanceSlice(std::int64_t start_ns) noexcept;
@@ -67,9 +70,10 @@ class PlantTask final : public Task {
   LoopGrid grid_;
   GateLimits limits_;
   std::int64_t transport_delay_ns_;
-  std::vector<SimEvent> events_;  // in order of time
+  PlannedRun plan_;                      // of the run that began at run_since_ns_
+  std::int64_t run_since_ns_ = INT64_MIN;
   std::size_t next_event_ = 0;
-  std::int64_t events_of_run_ns_ = INT64_MIN;  // running_since of the run they belong to
+  std::atomic<std::uint32_t> released_{0};
   PlantChannels channels_;
 
   std::int64_t now_ns_ = 0;  // the plant has been integrated up to here

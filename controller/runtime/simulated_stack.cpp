@@ -1,6 +1,6 @@
 #include "controller/runtime/simulated_stack.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace flexarm {
 namespace {
@@ -13,7 +13,7 @@ constexpr std::size_t kOperatorDepth = 64;
 }  // namespace
 
 SimulatedStack::SimulatedStack(const StackConfig& config, const Design& design,
-                               SimulatedStackOptions options)
+                               double payload_kg)
     : outputs_(OutputHistory({.relay_closed = false, .pump_level = false})),
       levels_(LevelHistory(kHealthyLevels)),
       requests_(kOperatorDepth),
@@ -34,18 +34,28 @@ SimulatedStack::SimulatedStack(const StackConfig& config, const Design& design,
       control_(config.loop, &step_,
                {.frames = &frames_,
                 .permits = &control_permits_,
-                .plans = &plans_,
+                .plans = &control_plans_,
                 .commands = &commands_,
                 .reports = &control_reports_,
                 .records = &tick_records_,
                 .telemetry = &telemetry_}),
-      plant_(config, options.payload_kg, std::move(options.sim_events),
+      plant_(config, payload_kg,
              {.commands = &commands_,
               .permits = &plant_permits_,
               .outputs = &outputs_,
+              .plans = &plant_plans_,
               .presses = &presses_,
               .frames = &frames_,
               .levels = &levels_,
               .reports = &drive_reports_}) {}
+
+void SimulatedStack::Plan(const PlannedRun& plan) noexcept {
+  control_plans_.Publish(plan);
+  plant_plans_.Publish(plan);
+}
+
+std::uint32_t SimulatedStack::released_plans() const noexcept {
+  return std::min(control_.released(), plant_.released());
+}
 
 }  // namespace flexarm

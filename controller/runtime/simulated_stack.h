@@ -1,10 +1,9 @@
 #pragma once
 
-#include <vector>
+#include <cstdint>
 
 #include "controller/law/control_step.h"
 #include "controller/law/design.h"
-#include "controller/law/experiment.h"
 #include "controller/runtime/control_task.h"
 #include "controller/runtime/plant_task.h"
 #include "controller/runtime/safety_task.h"
@@ -13,19 +12,14 @@
 
 namespace flexarm {
 
-/// What a simulated stack may be told beyond the config.
-struct SimulatedStackOptions {
-  double payload_kg;                 ///< that the plant carries; the design keeps the config's
-  std::vector<SimEvent> sim_events;  ///< of the experiment
-};
-
 /// The three real-time tasks of the daemon on the simulated rig, and the channels between them.
 ///
 /// Either executor runs them. The outside gets the other ends: requests and plans in, permits,
 /// answers and records out. Construction allocates; running does not.
 class SimulatedStack {
  public:
-  SimulatedStack(const StackConfig& config, const Design& design, SimulatedStackOptions options);
+  /// @param payload_kg  that the plant carries; the design keeps the config's
+  SimulatedStack(const StackConfig& config, const Design& design, double payload_kg);
   SimulatedStack(const SimulatedStack&) = delete;
   SimulatedStack& operator=(const SimulatedStack&) = delete;
 
@@ -37,7 +31,10 @@ class SimulatedStack {
   SpscQueue<OperatorRequest>& requests() { return requests_; }
   SpscQueue<RequestAnswer>& answers() { return answers_; }
   SpscQueue<LinePress>& presses() { return presses_; }
-  PlanChannel& plans() { return plans_; }
+  /// The experiment of the next run; see PlannedRun for how long it must live.
+  void Plan(const PlannedRun& plan) noexcept;
+  /// Plans with a lower number than this are no longer used.
+  std::uint32_t released_plans() const noexcept;
   PermitChannel& operator_permits() { return operator_permits_; }
   LatestValue<TickRecord>& telemetry() { return telemetry_; }
 
@@ -55,7 +52,8 @@ class SimulatedStack {
   LevelChannel levels_;
   ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
   DriveReportChannel drive_reports_{DriveReportHistory(kNoDriveReport)};
-  PlanChannel plans_{PlannedRun{}};
+  PlanChannel control_plans_{PlannedRun{}};
+  PlanChannel plant_plans_{PlannedRun{}};
   LatestValue<TickRecord> telemetry_{TickRecord{}};
   SpscQueue<OperatorRequest> requests_;
   SpscQueue<RequestAnswer> answers_;

@@ -1,6 +1,7 @@
 #include "controller/safety/safety_config.h"
 
 #include <cstddef>
+#include <numbers>
 
 #include "model/problem_list.h"
 
@@ -52,6 +53,11 @@ std::vector<Problem> SafetyConfig::Problems() const {
       stop_timeout_s > rest_time_s, "safety.stop_timeout_s", NumberText(stop_timeout_s),
       "must be above safety.rest_time_s = " + NumberText(rest_time_s) + ", or every stop trips");
   return list.Take();
+}
+
+std::array<double, 2> SoftAngleRad(const SafetyConfig& safety) noexcept {
+  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+  return {safety.soft_angle_deg[0] * kRadPerDeg, safety.soft_angle_deg[1] * kRadPerDeg};
 }
 
 }  // namespace flexarm

@@ -26,4 +26,7 @@ struct SafetyConfig {
   std::vector<Problem> Problems() const;
 };
 
+/// The soft limits in rad.
+std::array<double, 2> SoftAngleRad(const SafetyConfig& safety) noexcept;
+
 }  // namespace flexarm

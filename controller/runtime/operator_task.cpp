@@ -1,0 +1,245 @@
+#include "controller/runtime/operator_task.h"
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
+
+#include "controller/law/refused.h"
+#include "hal/line_names.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr int kNoClient = -1;
+constexpr std::int64_t kShutdownLimitNs = 6'000'000'000;  // a stop takes 3 s at most, or trips
+constexpr std::int64_t kAfterTripNs = 5'000'000'000;      // the log of a tripped run goes on this long
+constexpr std::int64_t kSettleNs = 300'000'000;           // until the recorder has seen everything
+constexpr std::int64_t kAliveNs = 100'000'000;            // an older heartbeat starves the watchdog
+
+Json Failure(const std::string& error, const std::string& remedy) {
+  return {{"ok", false}, {"error", error}, {"remedy", remedy}};
+}
+
+std::optional<RequestKind> RequestByName(const std::string& name) {
+  for (const RequestKind kind : {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm,
+                                 RequestKind::kReset}) {
+    if (name == Name(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+OperatorTask::OperatorTask(OperatorContext context) : context_(std::move(context)) {
+  if (!context_.socket.empty()) socket_ = std::make_unique<OperatorSocket>(context_.socket);
+  if (context_.unattended) Plan(*context_.unattended, {0.0, 0.0});
+}
+
+OperatorTask::~OperatorTask() = default;
+
+Task::Traits OperatorTask::traits() const noexcept {
+  return {.name = "operator",
+          .period_ns = kPeriodNs,
+          .phase_ns = 0,
+          .deadline_ns = kPeriodNs,
+          .priority = 0};
+}
+
+void OperatorTask::Run(const Activation& activation) noexcept {
+  try {
+    now_ns_ = activation.due_ns;
+    FollowState();
+    telemetry_ = context_.stack->telemetry().Read();
+    TakeAnswers();
+    if (socket_) Serve();
+    FollowUnattended();
+    FollowShutdown();
+    while (!plans_.empty() && plans_.front().number < context_.stack->released_plans()) {
+      plans_.pop_front();
+    }
+    const bool alive = now_ns_ - permit_.renewed_ns < kAliveNs &&
+                       now_ns_ - telemetry_.input.now_ns < kAliveNs;
+    if (alive) context_.alive(Name(permit_.state));
+  } catch (const std::exception& error) {
+    context_.report(true, std::string("operator: ") + error.what());
+  }
+}
+
+void OperatorTask::FollowState() {
+  const Permit& permit = context_.stack->operator_permits().Read().At(now_ns_ - 1).value;
+  if (permit.state != permit_.state) {
+    const bool tripped = permit.state == SafetyState::kTripped;
+    std::string text = std::string(Name(permit_.state)) + " -> " + Name(permit.state);
+    if (tripped) {
+      text += std::string(": ") + Name(permit.cause) + " (value " +
+              std::to_string(permit.evidence.value) + ", limit " +
+              std::to_string(permit.evidence.limit) + "). " + OperatorText(permit.cause);
+      trip_.store(permit.cause, std::memory_order_relaxed);
+    }
+    context_.report(tripped, text);
+  }
+  permit_ = permit;
+}
+
+void OperatorTask::Serve() {
+  for (const OperatorSocket::Message& message : socket_->Poll()) {
+    Json answer;
+    try {
+      answer = Answer(message);
+    } catch (const std::exception& error) {
+      answer = Failure(error.what(), "mend the experiment and send it again");
+    }
+    if (!answer.is_null()) socket_->Reply(message.client, answer.dump());
+  }
+}
+
+// Null: the answer comes when the safety task has judged.
+Json OperatorTask::Answer(const OperatorSocket::Message& message) {
+  const Json command = Json::parse(message.line, nullptr, false);
+  if (!command.is_object() || !command.contains("command") || !command["command"].is_string()) {
+    return Failure("not a command: expected a line like {\"command\": \"status\"}",
+                   "use the flexarm program");
+  }
+  const std::string name = command["command"];
+  if (name == "status") return Status();
+  if (name == "sim") return PressLine(command);
+  if (name == "run") return StartRun(command, message.client);
+  if (const std::optional<RequestKind> kind = RequestByName(name)) {
+    Ask(*kind, message.client);
+    return nullptr;
+  }
+  return Failure("no such command: '" + name + "'",
+                 "one of status, arm, run, stop, disarm, reset, sim");
+}
+
+Json OperatorTask::PressLine(const Json& command) {
+  const std::optional<Line> line = LineByName(command.value("line", ""));
+  const int level = command.value("level", -1);
+  if (!line || (level != 0 && level != 1)) {
+    return Failure("no such line or level",
+                   "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop or "
+                   "reset-button, and level 0 or 1");
+  }
+  context_.stack->presses().Push({.line = *line, .level = level});
+  context_.report(false, std::string("simulated line ") + Name(*line) + " set to " +
+                             std::to_string(level));
+  return {{"ok", true}, {"line", Name(*line)}, {"level", level}};
+}
+
+Json OperatorTask::StartRun(const Json& command, int client) {
+  if (permit_.state != SafetyState::kArmed) {
+    return {{"ok", false},
+            {"refusal", Name(Refusal::kWrongState)},
+            {"state", Name(permit_.state)},
+            {"error", RefusalText(RequestKind::kRun, Refusal::kWrongState, permit_.state)}};
+  }
+  const std::string name = command.value("name", "experiment");
+  Plan(context_.parse_experiment(command.value("experiment", ""), name),
+       {telemetry_.output.angle_rad[0], telemetry_.output.angle_rad[1]});
+  Ask(RequestKind::kRun, client);
+  return nullptr;
+}
+
+void OperatorTask::Plan(const Experiment& experiment, const std::array<double, 2>& start_rad) {
+  auto planned = std::make_unique<PlannedExperiment>(
+      experiment, *context_.design, context_.grid.period_s(), start_rad, context_.soft_limit_rad);
+  context_.stack->Plan({.experiment = planned.get(), .number = ++plan_number_});
+  plans_.push_back({.number = plan_number_, .experiment = std::move(planned)});
+  experiment_name_ = experiment.name;
+  context_.events->Push({.time_ns = now_ns_,
+                         .kind = "experiment",
+                         .name = experiment.name,
+                         .text = experiment.text,
+                         .value_json = {}});
+}
+
+void OperatorTask::Ask(RequestKind kind, int client) {
+  const OperatorRequest request{
+      .kind = kind, .number = ++request_number_, .not_before_ns = now_ns_};
+  if (client != kNoClient) waiting_.push_back({.number = request.number, .client = client});
+  context_.stack->requests().Push(request);
+}
+
+void OperatorTask::TakeAnswers() {
+  RequestAnswer answer{};
+  while (context_.stack->answers().Pop(&answer)) {
+    unattended_.Answered(answer);
+    const bool ok = answer.refusal == Refusal::kNone;
+    const std::string why = RefusalText(answer.kind, answer.refusal, answer.state);
+    context_.report(!ok, std::string(Name(answer.kind)) + (ok ? ": accepted" : ": refused: " + why));
+    if (waiting_.empty() || waiting_.front().number != answer.number) continue;
+    Json reply{{"ok", ok}, {"command", Name(answer.kind)}, {"state", Name(permit_.state)}};
+    if (!ok) {
+      reply["refusal"] = Name(answer.refusal);
+      reply["error"] = why;
+    }
+    socket_->Reply(waiting_.front().client, reply.dump());
+    waiting_.pop_front();
+  }
+}
+
+Json OperatorTask::Status() {
+  const StepOutput& out = telemetry_.output;
+  Json status{{"ok", true},
+              {"state", Name(permit_.state)},
+              {"time_s", static_cast<double>(now_ns_) * 1e-9},
+              {"tick", telemetry_.input.tick},
+              {"experiment", experiment_name_.empty() ? Json(nullptr) : Json(experiment_name_)},
+              {"joint_angle_deg", {out.angle_rad[0] * kDegPerRad, out.angle_rad[1] * kDegPerRad}},
+              {"torque_nm", out.torque_nm},
+              {"modal_m", out.modal_m},
+              {"root_strain", out.root_strain},
+              {"at_rest", out.at_rest != 0},
+              {"levels", telemetry_.input.frame.levels},
+              {"trip", nullptr},
+              {"threads", context_.thread_status()}};
+  if (permit_.state == SafetyState::kTripped) {
+    status["trip"] = {{"name", Name(permit_.cause)},
+                      {"number", static_cast<int>(permit_.cause)},
+                      {"value", permit_.evidence.value},
+                      {"limit", permit_.evidence.limit},
+                      {"channel", permit_.evidence.channel},
+                      {"text", OperatorText(permit_.cause)}};
+  }
+  return status;
+}
+
+void OperatorTask::FollowUnattended() {
+  if (!context_.unattended || shutdown_.load(std::memory_order_relaxed)) return;
+  const OperatorRequest request = unattended_.Update(now_ns_, permit_);
+  if (request.kind != RequestKind::kNone) context_.stack->requests().Push(request);
+  if (!unattended_.over()) return;
+  if (unattended_.progress() == UnattendedRun::Progress::kRefused) {
+    refused_.store(true, std::memory_order_relaxed);
+  }
+  if (over_ns_ == INT64_MAX) {
+    over_ns_ = now_ns_ + (permit_.state == SafetyState::kTripped ? kAfterTripNs : kSettleNs);
+  }
+  if (now_ns_ >= over_ns_) done_.store(true, std::memory_order_release);
+}
+
+// One request a state: stop a run, then disarm, then it is Idle and done.
+void OperatorTask::FollowShutdown() {
+  if (!shutdown_.load(std::memory_order_relaxed) || done()) return;
+  if (shutdown_since_ns_ == INT64_MAX) {
+    shutdown_since_ns_ = now_ns_;
+    context_.report(false, "shutting down: bringing the arm to rest");
+  }
+  const bool late = now_ns_ - shutdown_since_ns_ > kShutdownLimitNs;
+  const bool moving = permit_.state == SafetyState::kRunning ||
+                      permit_.state == SafetyState::kStopping;
+  if (late || (!moving && permit_.state != SafetyState::kArmed)) {
+    if (over_ns_ == INT64_MAX) over_ns_ = now_ns_ + kSettleNs;
+    if (now_ns_ >= over_ns_) done_.store(true, std::memory_order_release);
+    return;
+  }
+  if (permit_.state == shutdown_asked_in_) return;
+  shutdown_asked_in_ = permit_.state;
+  if (permit_.state == SafetyState::kRunning) Ask(RequestKind::kStop, kNoClient);
+  if (permit_.state == SafetyState::kArmed) Ask(RequestKind::kDisarm, kNoClient);
+}
+
+}  // namespace flexarm

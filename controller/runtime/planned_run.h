@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "controller/law/experiment.h"
+#include "controller/law/reference.h"
+#include "controller/runtime/latest_value.h"
+
+namespace flexarm {
+
+/// An accepted experiment: made once by the operator's side, never changed after.
+struct PlannedExperiment {
+  /// Parameters as ReferenceTable's. @throws Refused as ReferenceTable
+  PlannedExperiment(const Experiment& experiment, const Design& design, double period_s,
+                    const std::array<double, 2>& start_rad,
+                    const std::array<double, 2>& limit_rad);
+
+  ReferenceTable reference;
+  std::vector<SimEvent> sim_events;  ///< in order of time; simulated backend only
+};
+
+/// The experiment that the next run follows. The operator's side keeps it alive until every reader
+/// has released its number.
+struct PlannedRun {
+  const PlannedExperiment* experiment = nullptr;  ///< nullptr: none planned, a run ends where it is
+  std::uint32_t number = 0;                       ///< ascending
+};
+using PlanChannel = LatestValue<PlannedRun>;
+
+}  // namespace flexarm
