@@ -5,25 +5,12 @@
 #include <stdexcept>
 
 #include "model/beam_basis.h"
+#include "model/beam_equations.h"
 
 namespace flexarm {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-using Row4 = Eigen::RowVector4d;
-
-double Beta(const BeamSection& s, double omega) {
-  return std::sqrt(omega * std::sqrt(s.mass_per_length_kg_m() / s.bending_stiffness_nm2()));
-}
-
-// Row of basis values: derivative `order`, in SI units (1/m^order).
-Row4 BasisRow(const BeamSection& s, double omega, double x, int order) {
-  const double beta = Beta(s, omega);
-  const auto f = BeamBasis(UseDecayingBasis(beta * s.length_m), beta, s.length_m, x, order);
-  const double scale = std::pow(beta, order);
-  return scale * Row4(f[0], f[1], f[2], f[3]);
-}
 
 // Exact dynamic stiffness of a section: [w0 w0' wl wl'] -> end forces, beam held at nothing.
 Eigen::Matrix4d SectionStiffness(const BeamSection& s, double omega) {
@@ -59,44 +46,17 @@ int CountNegativeEigenvalues(const Eigen::MatrixXd& K) {
   return static_cast<int>((eigen.eigenvalues().array() < 0.0).count());
 }
 
-double FindFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order) {
+double FindFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order,
+                     BeamRoot root) {
   double high = 1.0;
-  while (CountFrequenciesBelow(section, tip, high) < order) high *= 2.0;
+  while (CountFrequenciesBelow(section, tip, high, root) < order) high *= 2.0;
   double low = high;
-  while (CountFrequenciesBelow(section, tip, low) >= order) low *= 0.5;
+  while (CountFrequenciesBelow(section, tip, low, root) >= order) low *= 0.5;
   for (;;) {
     const double middle = 0.5 * (low + high);
     if (middle <= low || middle >= high) return middle;
-    (CountFrequenciesBelow(section, tip, middle) < order ? low : high) = middle;
+    (CountFrequenciesBelow(section, tip, middle, root) < order ? low : high) = middle;
   }
-}
-
-// Homogeneous conditions on the 4 coefficients of each section: clamp, matching, tip.
-Eigen::MatrixXd MatchingMatrix(const std::vector<BeamSection>& section, const BeamTip& tip,
-                               double omega) {
-  const Eigen::Index n = 4 * static_cast<Eigen::Index>(section.size());
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
-  A.block<1, 4>(0, 0) = BasisRow(section.front(), omega, 0.0, 0);
-  A.block<1, 4>(1, 0) = BasisRow(section.front(), omega, 0.0, 1);
-  Eigen::Index row = 2;
-  for (std::size_t i = 0; i + 1 < section.size(); ++i) {
-    const BeamSection &a = section[i], &b = section[i + 1];
-    const Eigen::Index col = 4 * static_cast<Eigen::Index>(i);
-    for (int d = 0; d < 4; ++d, ++row) {
-      const double Ka = d < 2 ? 1.0 : a.bending_stiffness_nm2();
-      const double Kb = d < 2 ? 1.0 : b.bending_stiffness_nm2();
-      A.block<1, 4>(row, col) = Ka * BasisRow(a, omega, a.length_m, d);
-      A.block<1, 4>(row, col + 4) = -Kb * BasisRow(b, omega, 0.0, d);
-    }
-  }
-  const BeamSection& s = section.back();
-  const double EI = s.bending_stiffness_nm2(), w2 = omega * omega, l = s.length_m;
-  A.block<1, 4>(row, n - 4) =
-      EI * BasisRow(s, omega, l, 2) - w2 * tip.inertia_kgm2 * BasisRow(s, omega, l, 1);
-  A.block<1, 4>(row + 1, n - 4) =
-      EI * BasisRow(s, omega, l, 3) + w2 * tip.mass_kg * BasisRow(s, omega, l, 0);
-  for (Eigen::Index i = 0; i < n; ++i) A.row(i) /= A.row(i).cwiseAbs().maxCoeff();
-  return A;
 }
 
 // Newton on the smallest singular value of the matching matrix. Counting is certain but, with very
@@ -166,7 +126,7 @@ double BeamMode::Derivative(double x_m, int order) const {
 }
 
 int CountFrequenciesBelow(const std::vector<BeamSection>& section, const BeamTip& tip,
-                          double frequency_rad_s) {
+                          double frequency_rad_s, BeamRoot root) {
   const Eigen::Index n = 2 * static_cast<Eigen::Index>(section.size());
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n + 2, n + 2);
   int count = 0;
@@ -178,7 +138,13 @@ int CountFrequenciesBelow(const std::vector<BeamSection>& section, const BeamTip
   const double w2 = frequency_rad_s * frequency_rad_s;
   K(n, n) -= w2 * tip.mass_kg;
   K(n + 1, n + 1) -= w2 * tip.inertia_kgm2;
-  return count + CountNegativeEigenvalues(K.bottomRightCorner(n, n));  // node 0 is clamped
+  const Eigen::Index free = root == BeamRoot::kClamped ? n : n + 1;  // w(0) = 0 in any case
+  return count + CountNegativeEigenvalues(K.bottomRightCorner(free, free));
+}
+
+double PinnedFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order) {
+  CheckBeam(section, tip, order);
+  return order == 1 ? 0.0 : FindFrequency(section, tip, order, BeamRoot::kPinned);
 }
 
 std::vector<BeamMode> ClampedModes(const std::vector<BeamSection>& section, const BeamTip& tip,
@@ -186,7 +152,8 @@ std::vector<BeamMode> ClampedModes(const std::vector<BeamSection>& section, cons
   CheckBeam(section, tip, count);
   std::vector<BeamMode> mode;
   for (int order = 1; order <= count; ++order) {
-    const double omega = Polished(section, tip, FindFrequency(section, tip, order));
+    const double omega =
+        Polished(section, tip, FindFrequency(section, tip, order, BeamRoot::kClamped));
     mode.push_back(ModeAt(section, tip, omega));
   }
   return mode;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "model/arm_parameters.h"
@@ -56,13 +57,22 @@ class BeamMode {
   std::vector<Piece> piece_;
 };
 
-/// Number of natural frequencies of the clamped beam that lie below `frequency_rad_s`.
+/// What holds the root of a beam. The deflection there is zero in any case.
+enum class BeamRoot : std::uint8_t {
+  kClamped,  ///< psi'(0) = 0
+  kPinned,   ///< psi''(0) = 0; the rigid-body root, 0 Hz, counts as the first
+};
+
+/// Number of natural frequencies of the beam that lie below `frequency_rad_s`.
 ///
 /// Wittrick and Williams, Q. J. Mech. Appl. Math. 24 (1971) 263: clamped-clamped frequencies of the
 /// sections plus negative eigenvalues of the exact dynamic stiffness. Exact for any w, so that a
 /// search built on it can miss no root, however close two of them are.
 int CountFrequenciesBelow(const std::vector<BeamSection>& section, const BeamTip& tip,
-                          double frequency_rad_s);
+                          double frequency_rad_s, BeamRoot root = BeamRoot::kClamped);
+
+/// Frequency `order` of the pinned beam, rad/s; 0 for order 1, the rigid-body root.
+double PinnedFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order);
 
 /// The lowest `count` modes, ascending. Frequencies are good to a few units of round-off (uniform
 /// beams: beta*L within 1e-12 of the closed form).

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "model/friction_root.h"
 #include "model/link_modes.h"
 #include "tests/support/thesis_rig.h"
 
@@ -125,6 +126,34 @@ TEST(BeamModes, HeavyTipMassRecoversTheMasslessSpring) {
   const double stiffness = 3.0 * s.bending_stiffness_nm2() / std::pow(0.9, 3);
   const double expected = std::sqrt(stiffness / (100.0 * mass + 33.0 / 140.0 * mass));
   EXPECT_NEAR(ClampedModes({s}, {100.0 * mass, 0.0}, 1)[0].frequency_rad_s() / expected, 1.0, 1e-6);
+}
+
+// Pinned-free roots of tan z = tanh z (plant.md), after the rigid-body root. Counting without
+// polishing leaves 7e-11.
+TEST(BeamModes, PinnedBeamHasTheRootsOfTheClosedForm) {
+  const BeamSection s = Strip(0.9);
+  const auto beta_length = [&](int order) {
+    const double w = PinnedFrequency({s}, {0.0, 0.0}, order);
+    return 0.9 * std::sqrt(w * std::sqrt(s.mass_per_length_kg_m() / s.bending_stiffness_nm2()));
+  };
+  EXPECT_EQ(PinnedFrequency({s}, {0.0, 0.0}, 1), 0.0);
+  EXPECT_NEAR(beta_length(2), 3.926602312047919, 2e-10);
+  EXPECT_NEAR(beta_length(3), 7.068582745628732, 2e-10);
+}
+
+// The example of plant.md, its digits being the tolerance: link 1 with I_r2 at its tip, 0.16 N m.
+TEST(FrictionRootMode, RigExampleSlipsAtFiveMillimetresAndSticksAtOne) {
+  const ArmParameters p = ThesisRig();
+  const BeamTip tip{3.03 + 0.24 + p.link[1].mass_kg() + 0.1, 1.15e-2};
+  const FrictionRoot five = FrictionRootMode(p.link[0].section, tip, 1, 5e-3, 0.16);
+  EXPECT_FALSE(five.sticks);
+  EXPECT_NEAR(five.clamped_moment_nm, 0.42905, 5e-6);
+  EXPECT_NEAR(five.frequency_rad_s / (2.0 * M_PI), 0.52121261973, 1e-10);
+  const FrictionRoot one = FrictionRootMode(p.link[0].section, tip, 1, 1e-3, 0.16);
+  EXPECT_TRUE(one.sticks);
+  EXPECT_NEAR(one.clamped_moment_nm, 0.0858, 5e-5);
+  EXPECT_NEAR(one.frequency_rad_s / (2.0 * M_PI), 0.8542954, 2e-7);
+  EXPECT_THROW(FrictionRootMode(p.link[0].section, tip, 1, 0.0, 0.16), std::invalid_argument);
 }
 
 TEST(BeamModes, BrokenBeamsAreRefused) {
