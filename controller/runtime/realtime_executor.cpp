@@ -16,7 +16,7 @@
 namespace flexarm {
 namespace {
 
-constexpr std::size_t kStackBytes = std::size_t{1} << 20;
+constexpr std::size_t kStackBytes = std::size_t{2} << 20;  // a sanitizer keeps 1 MiB for itself
 constexpr std::size_t kPrefaultBytes = std::size_t{256} << 10;
 constexpr std::size_t kPageBytes = 4096;
 
