@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+"""The daemon as a process: real time, its socket, its signals, its death."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from program import BIN, HIL, SQUARE, ProgramTest, missed_deadlines, realtime_permitted, rows, ticks
+
+SHORT = """
+name = "short"
+duration_s = 2.0
+
+[[doublet]]
+start_s = 0.0
+duration_s = 1.0
+shape = "square"
+move_deg = [10.0, 10.0]
+"""
+
+LONG = SHORT.replace("2.0", "30.0")
+
+
+class Daemon(ProgramTest):
+    def wait_for_state(self, *states, within_s=20):
+        """The status in which the daemon first is in one of the states."""
+        end = time.monotonic() + within_s
+        status = {}
+        while time.monotonic() < end:
+            result = self.run_program("flexarm", "status", "--socket", self.folder / "socket", "--json")
+            if result.returncode == 0:
+                status = json.loads(result.stdout)
+                if status["state"] in states:
+                    return status
+            time.sleep(0.05)
+        self.fail(f"not {states} within {within_s} s: {status}\n{self.daemon_log()}")
+
+    def operate(self, *command, expect=0):
+        result = self.run_program("flexarm", *command, "--socket", self.folder / "socket")
+        self.assertEqual(result.returncode, expect, f"{command}: {result.stdout}{result.stderr}")
+        return result
+
+    def test_an_unattended_run_ends_in_idle_with_a_log_that_replays(self):
+        daemon = self.start_daemon("--experiment", self.experiment(SHORT))
+        self.assertEqual(daemon.wait(timeout=60), 0, self.daemon_log())
+        run = self.only_run()
+        info = self.flexarm_json("info", run)
+        self.assertIs(info["closed"], True)
+        self.assertEqual(info["final_state"], "Idle")
+        self.assertEqual(info["missing_ticks"], 0)
+        self.assertEqual(info["metrics"]["ticks"], 100)
+        replay = self.flexarm_json("replay", run)
+        self.assertIs(replay["bit_exact"], True)
+        self.assertIs(replay["safety_exact"], True)
+        self.assertEqual(replay["max_torque_difference_nm"], [0, 0])
+
+    def test_a_run_in_real_time_equals_the_lock_step_run_tick_for_tick(self):
+        if not realtime_permitted():
+            self.skipTest("SCHED_FIFO is not permitted here")
+        simulated, _ = self.simulate("lockstep.flexarm")
+        # A shared machine may take the processor away from the whole guest: then the run says
+        # nothing about us, and is done again.
+        for _ in range(3):
+            daemon = self.start_daemon("--experiment", SQUARE)
+            daemon.wait(timeout=60)
+            run = self.only_run()
+            if missed_deadlines(run) == 0 and daemon.returncode == 0:
+                columns = "tick, state, input, output"
+                query = f"SELECT {columns} FROM tick WHERE state = 'Running' ORDER BY tick"
+                self.assertEqual(len(rows(run, query)), 300)
+                difference = self.flexarm_json("diff", simulated, run)
+                self.assertIs(difference["identical"], True, difference)
+                return
+            run.unlink()
+        self.skipTest("this machine missed deadlines three times")
+
+    def test_an_operator_arms_runs_stops_and_disarms(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        refused = self.operate("run", self.experiment(LONG), expect=1)
+        self.assertIn("arm", refused.stderr)
+        time.sleep(0.8)  # at rest means half a second of rest
+        self.operate("arm")
+        self.wait_for_state("Armed")
+        self.operate("run", self.experiment(LONG))
+        self.wait_for_state("Running")
+        self.operate("disarm", expect=1)
+        self.operate("stop")
+        self.wait_for_state("Armed")
+        self.operate("disarm")
+        self.wait_for_state("Idle")
+
+    def test_a_trip_latches_until_button_and_reset(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        time.sleep(0.8)
+        self.operate("arm")
+        self.operate("run", self.experiment(LONG))
+        self.wait_for_state("Running")
+        self.operate("sim", "emergency-stop", "0")
+        self.assertEqual(self.wait_for_state("Tripped")["trip"]["name"], "emergency-stop")
+        self.operate("arm", expect=1)
+        self.operate("reset", expect=1)  # the cause is still there
+        self.operate("sim", "emergency-stop", "1")
+        self.operate("reset", expect=1)  # nobody has pressed the button
+        time.sleep(2.0)                  # the arm comes to rest
+        self.operate("sim", "reset-button", "1")
+        self.operate("sim", "reset-button", "0")
+        end = time.monotonic() + 20
+        while self.run_program("flexarm", "reset", "--socket", self.folder / "socket").returncode:
+            self.assertLess(time.monotonic(), end, "never at rest")
+            time.sleep(0.2)
+        self.wait_for_state("Idle")
+
+    def test_a_term_signal_ends_in_a_safe_logged_stop(self):
+        daemon = self.start_daemon("--experiment", self.experiment(LONG))
+        self.wait_for_state("Running")
+        time.sleep(0.5)
+        daemon.send_signal(signal.SIGTERM)
+        daemon.wait(timeout=20)
+        info = self.flexarm_json("info", self.only_run())
+        self.assertIs(info["closed"], True)
+        self.assertEqual(info["final_state"], "Idle")
+        states = [row[0] for row in rows(self.only_run(), "SELECT state_after FROM safety")]
+        self.assertIn("Stopping", states)
+
+    def test_a_killed_process_leaves_a_log_that_lost_half_a_second_at_most(self):
+        daemon = self.start_daemon("--experiment", self.experiment(
+            LONG + "\n[[sim_event]]\nat_s = 2.0\nkill = true\n"))
+        self.assertEqual(daemon.wait(timeout=60), -signal.SIGKILL, self.daemon_log())
+        run = self.only_run()
+        info = self.flexarm_json("info", run)
+        self.assertIs(info["closed"], False)
+        self.assertIs(self.flexarm_json("replay", run)["bit_exact"], True)
+        # Running began with sample 0: of 100 samples until the end, 25 may be lost. One more is in
+        # flight.
+        running = self.flexarm_json("info", run)["metrics"]["ticks"]
+        self.assertGreaterEqual(running, 100 - 25 - 1)
+
+    def test_a_second_daemon_on_the_same_socket_is_refused(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        options = [] if realtime_permitted() else ["--without-realtime"]
+        second = self.run_program("flexarmd", "--config", HIL, "--log-dir", self.folder / "runs",
+                                  "--socket", self.folder / "socket", *options)
+        self.assertNotEqual(second.returncode, 0)
+        self.assertIn("socket", second.stderr)
+        self.wait_for_state("Idle")
+
+    def test_without_permission_real_time_is_refused_loudly_and_never_replaced(self):
+        if os.geteuid() != 0:
+            self.skipTest("dropping a permission needs root")
+        os.chmod(self.folder, 0o777)
+        result = subprocess.run(
+            ["setpriv", "--reuid=65534", "--clear-groups", "--bounding-set=-sys_nice,-ipc_lock",
+             BIN / "flexarmd", "--config", HIL, "--experiment", SQUARE, "--log-dir",
+             self.folder / "runs", "--socket", self.folder / "socket"],
+            cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertIn("SCHED_FIFO", result.stderr)
+        self.assertIn("--without-realtime", result.stderr)
+        self.assertFalse(list(self.folder.glob("runs/*.flexarm")))
+
+    def test_run_for_ends_in_time(self):
+        began = time.monotonic()
+        daemon = self.start_daemon("--run-for", "1.0")
+        self.assertEqual(daemon.wait(timeout=30), 0, self.daemon_log())
+        self.assertGreater(time.monotonic() - began, 0.9)
+
+    def test_a_verb_without_a_daemon_says_so(self):
+        result = self.run_program("flexarm", "arm", "--socket", self.folder / "socket")
+        self.assert_refused(result, "flexarmd")
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
