@@ -29,7 +29,8 @@ std::string_view Trimmed(std::string_view text) {
   return text;
 }
 
-// A table with the one key `key` (dotted: nested tables), or nothing if that is not TOML.
+// A table with the one key `key` (dotted: nested tables), or nothing if that is not TOML. One line
+// only: a second one could set another key.
 std::optional<toml::table> ParseAssignment(const std::string& key, std::string_view value) {
   if (std::count(key.begin(), key.end(), '.') > 8) return std::nullopt;
   if (value.find('\n') != std::string_view::npos) return std::nullopt;
@@ -111,7 +112,7 @@ std::optional<std::string> Apply(const std::vector<Step>& steps, std::string_vie
     names.clear();
     if (i + 1 == steps.size()) {
       std::optional<toml::table> parsed = ParseOverride("value", value);
-      if (!parsed || parsed->size() != 1) return "VALUE must be one TOML value or one word";
+      if (!parsed) return "VALUE must be one TOML value or one word";
       ReplaceElement(array, *steps[i].index, std::move(*parsed->get("value")));
       return std::nullopt;
     }
@@ -121,7 +122,7 @@ std::optional<std::string> Apply(const std::vector<Step>& steps, std::string_vie
   std::string key;
   for (const std::string& name : names) key += (key.empty() ? "" : ".") + name;
   std::optional<toml::table> parsed = ParseOverride(key, value);
-  if (!parsed || parsed->size() != 1) return "VALUE must be one TOML value or one word";
+  if (!parsed) return "VALUE must be one TOML value or one word";
   Merge(table, std::move(*parsed));
   return std::nullopt;
 }

@@ -86,13 +86,14 @@ TEST(Overrides, WithoutSenseAreRefusedOneByOne) {
       "controller..alpha=1",          // empty name
       "rig.name=two words",           // not one word, not TOML
       "controller.alpha=1\nsigma=2",  // a second key by the back door
-      "sensors.strain[20].face=1",    // no such row
-      "sensors.strain[-1].face=1",    // no such row
-      "sensors.strain[x].face=1",     //
-      "controller.alpha[0]=1",        // no array
-      "limits.soft_angle_deg[2]=1",   // no such element
-      "controller.alpha=three",       // a word for a number
-      "extends=other.toml",           // too late
+      "controller.alpha=1\ncontroller.sigma=0.1",
+      "sensors.strain[20].face=1",   // no such row
+      "sensors.strain[-1].face=1",   // no such row
+      "sensors.strain[x].face=1",    //
+      "controller.alpha[0]=1",       // no array
+      "limits.soft_angle_deg[2]=1",  // no such element
+      "controller.alpha=three",      // a word for a number
+      "extends=other.toml",          // too late
   };
   for (const std::string& text : bad) {
     const auto problems = ProblemsWith({text});

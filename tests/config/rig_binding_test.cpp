@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "config/config.h"
+#include "tests/config/config_testing.h"
+
+namespace flexarm {
+namespace {
+
+// Every key of a section gets a value that no other key of its type has: a value in the wrong field
+// shows.
+Config With(const std::vector<std::string>& overrides) {
+  return LoadConfig(Shipped("hil.toml"), overrides);
+}
+
+TEST(RigBinding, PutsEveryKeyOfTheArmInItsField) {
+  const ArmParameters arm =
+      With({"arm.hub2_mass_kg=1", "arm.motor2_mass_kg=2", "arm.motor2_inertia_kgm2=3",
+            "arm.payload_mass_kg=4", "arm.payload_inertia_kgm2=5", "arm.shape_payload_mass_kg=6"})
+          .arm;
+  EXPECT_EQ(arm.hub2_mass_kg, 1.0);
+  EXPECT_EQ(arm.motor2_mass_kg, 2.0);
+  EXPECT_EQ(arm.motor2_inertia_kgm2, 3.0);
+  EXPECT_EQ(arm.payload_mass_kg, 4.0);
+  EXPECT_EQ(arm.payload_inertia_kgm2, 5.0);
+  EXPECT_EQ(arm.shape_payload_mass_kg, 6.0);
+}
+
+TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
+  const SensorConfig s =
+      With({"sensors.encoder[1].sign=-1", "sensors.encoder[1].counter_bits=9",
+            "sensors.encoder[1].counts_per_turn=2541", "sensors.strain[11].position_m=0.2",
+            "sensors.strain[11].face=-1", "sensors.strain[11].gain_v_per_unit=4000",
+            "sensors.strain[11].offset_counts=7", "sensors.strain_input.converter_bits=13",
+            "sensors.strain_input.range_v=11", "sensors.strain_input.filter_hz=21",
+            "sensors.strain_input.noise_counts=2"})
+          .sensors;
+  for (std::size_t i = 0; i < s.encoder.size(); ++i) {
+    EXPECT_EQ(s.encoder[i].counter, static_cast<int>(i));
+  }
+  EXPECT_EQ(s.encoder[1].sign, -1);
+  EXPECT_EQ(s.encoder[1].counter_bits, 9);
+  EXPECT_EQ(s.encoder[1].counts_per_turn, 2541.0);
+  EXPECT_EQ(s.strain[11].link, 2);
+  EXPECT_EQ(s.strain[11].position_m, 0.2);
+  EXPECT_EQ(s.strain[11].face, -1);
+  EXPECT_EQ(s.strain[11].gain_v_per_unit, 4000.0);
+  EXPECT_EQ(s.strain[11].offset_counts, 7.0);
+  EXPECT_EQ(s.strain_input.converter_bits, 13);
+  EXPECT_EQ(s.strain_input.range_v, 11.0);
+  EXPECT_EQ(s.strain_input.filter_hz, 21.0);
+  EXPECT_EQ(s.strain_input.noise_counts, 2.0);
+}
+
+TEST(RigBinding, PutsEveryKeyOfTheSimulationInItsField) {
+  const SimConfig sim =
+      With({"sim.plant_modes=3", "sim.step_ms=0.25", "sim.seed=12", "sim.motor_lag_ms=[4, 5]",
+            "sim.transport_delay_ms=6", "sim.switch_angle_deg=[97, 98]"})
+          .sim;
+  EXPECT_EQ(sim.plant_modes, 3);
+  EXPECT_EQ(sim.step_ms, 0.25);
+  EXPECT_EQ(sim.seed, 12U);
+  EXPECT_EQ(sim.motor_lag_ms, (std::array{4.0, 5.0}));
+  EXPECT_EQ(sim.transport_delay_ms, 6.0);
+  EXPECT_EQ(sim.switch_angle_deg, (std::array{97.0, 98.0}));
+}
+
+TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
+  const EstimatorConfig e = LoadConfig(Shipped("thesis-rig.toml"),
+                                       {"estimator.modes_per_link=1", "estimator.fault_ticks=2"})
+                                .estimator;
+  EXPECT_EQ(e.modes_per_link, 1);
+  EXPECT_EQ(e.fault_ticks, 2);
+  const EstimatorConfig set =
+      With({"estimator.process_force=[1, 2, 3, 4, 5, 6]",
+            "estimator.rotor_extra_sigma_rad=[0.01, 0.02]",
+            "estimator.modal_sigma_m=[0.01, 0.02, 0.03, 0.04]", "estimator.max_joint_rate_rad_s=15",
+            "estimator.hub_rotor_limit_rad=0.11", "estimator.strain_family_limit=0.005",
+            "estimator.strain_stuck_limit=0.006", "estimator.innovation_limit_rad=0.36"})
+          .estimator;
+  EXPECT_EQ(set.process_force, (std::array{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+  EXPECT_EQ(set.rotor_extra_sigma_rad, (std::array{0.01, 0.02}));
+  EXPECT_EQ(set.modal_sigma_m, (std::array{0.01, 0.02, 0.03, 0.04}));
+  EXPECT_EQ(set.max_joint_rate_rad_s, 15.0);
+  EXPECT_EQ(set.hub_rotor_limit_rad, 0.11);
+  EXPECT_EQ(set.strain_family_limit, 0.005);
+  EXPECT_EQ(set.strain_stuck_limit, 0.006);
+  EXPECT_EQ(set.innovation_limit_rad, 0.36);
+}
+
+TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
+  const ControllerConfig c =
+      With({"controller.alpha=0.1", "controller.vartheta=0.2", "controller.sigma=0.3",
+            "controller.hub_angle_weight=[4, 5]", "controller.hub_rate_weight=[6, 7]",
+            "controller.torque_weight=8", "controller.passivity_margin=9",
+            "controller.adaptation_gain=10", "controller.prediction=false"})
+          .controller;
+  EXPECT_EQ(c.alpha, 0.1);
+  EXPECT_EQ(c.vartheta, 0.2);
+  EXPECT_EQ(c.sigma, 0.3);
+  EXPECT_EQ(c.hub_angle_weight, (std::array{4.0, 5.0}));
+  EXPECT_EQ(c.hub_rate_weight, (std::array{6.0, 7.0}));
+  EXPECT_EQ(c.torque_weight, 8.0);
+  EXPECT_EQ(c.passivity_margin, 9.0);
+  EXPECT_EQ(c.adaptation_gain, 10.0);
+  EXPECT_FALSE(c.prediction);
+  EXPECT_TRUE(c.adaptation);
+  EXPECT_EQ(c.gains_file, "");
+}
+
+TEST(RigBinding, PutsEveryLimitInItsField) {
+  const SafetyConfig s = With({"limits.torque_limit_nm=[1, 2]", "limits.slew_limit_nm_per_s=[3, 4]",
+                               "limits.soft_angle_deg=[5, 6]", "limits.hub_rate_rad_s=[7, 8]",
+                               "limits.strain_limit=[1e-4, 2e-4]", "safety.rest_hub_rate_rad_s=0.1",
+                               "safety.rest_strain_rate_per_s=0.2", "safety.rest_time_s=0.3",
+                               "safety.stop_timeout_s=0.4", "safety.permit_timeout_ms=6",
+                               "safety.missed_deadlines_to_trip=4"})
+                             .safety;
+  EXPECT_EQ(s.torque_limit_nm, (std::array{1.0, 2.0}));
+  EXPECT_EQ(s.slew_limit_nm_per_s, (std::array{3.0, 4.0}));
+  EXPECT_EQ(s.soft_angle_deg, (std::array{5.0, 6.0}));
+  EXPECT_EQ(s.hub_rate_rad_s, (std::array{7.0, 8.0}));
+  EXPECT_EQ(s.strain_limit, (std::array{1e-4, 2e-4}));
+  EXPECT_EQ(s.rest_hub_rate_rad_s, 0.1);
+  EXPECT_EQ(s.rest_strain_rate_per_s, 0.2);
+  EXPECT_EQ(s.rest_time_s, 0.3);
+  EXPECT_EQ(s.stop_timeout_s, 0.4);
+  EXPECT_EQ(s.permit_timeout_ms, 6.0);
+  EXPECT_EQ(s.missed_deadlines_to_trip, 4);
+}
+
+TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
+  const Config c = With({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
+                         "daemon.socket=/tmp/s", "log.directory=/tmp/d"});
+  EXPECT_EQ(c.loop.period_ms, 18.0);
+  EXPECT_EQ(c.loop.acquire_before_ms, 9.0);
+  EXPECT_EQ(c.loop.step_deadline_ms, 4.0);
+  EXPECT_EQ(c.daemon.socket, "/tmp/s");
+  EXPECT_EQ(c.daemon.log_directory, "/tmp/d");
+}
+
+TEST(RigBinding, KnowsEveryNamedChoice) {
+  const auto damping = [](const char* name) {
+    return With({std::string("arm.damping=") + name}).arm.damping;
+  };
+  EXPECT_EQ(damping("none"), DampingReading::kNone);
+  EXPECT_EQ(damping("ca_rho"), DampingReading::kCurvatureRho);
+  EXPECT_EQ(damping("ca_lit"), DampingReading::kCurvatureAsPrinted);
+  EXPECT_EQ(damping("modal"), DampingReading::kModal);
+  const auto inertia = [](const char* name) {
+    return With({std::string("arm.link1_tip_inertia=") + name}).arm.link1_tip_inertia;
+  };
+  EXPECT_EQ(inertia("motor"), Link1TipInertia::kMotor);
+  EXPECT_EQ(inertia("motor_and_rotor"), Link1TipInertia::kMotorAndRotor);
+  EXPECT_EQ(With({}).estimator.kind, EstimatorKind::kKalman);
+  EXPECT_EQ(With({"estimator.name=difference"}).estimator.kind, EstimatorKind::kDifference);
+  EXPECT_EQ(With({}).controller.kind, ControllerKind::kSobel);
+  EXPECT_EQ(With({"controller.name=lqr-cgt"}).controller.kind, ControllerKind::kLqrCgt);
+  EXPECT_EQ(With({}).controller.feedforward_sign, FeedforwardSign::kPrinted);
+  EXPECT_EQ(With({"controller.feedforward_sign=corrected"}).controller.feedforward_sign,
+            FeedforwardSign::kCorrected);
+}
+
+TEST(RigBinding, KnowsEveryLineOfASimEvent) {
+  const char* names[] = {"limit-1-low",  "limit-1-high",   "limit-2-low",
+                         "limit-2-high", "emergency-stop", "reset-button"};
+  for (int i = 0; i < kLines; ++i) {
+    const Experiment e =
+        ParseExperiment(std::string("name = \"x\"\nduration_s = 1\n[[sim_event]]\nat_s = 0\n"
+                                    "level = 1\nline = \"") +
+                            names[i] + "\"\n",
+                        "e.toml");
+    EXPECT_EQ(e.sim_event.at(0).line, static_cast<Line>(i)) << names[i];
+    EXPECT_EQ(e.sim_event.at(0).level, 1);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
