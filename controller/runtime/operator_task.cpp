@@ -62,7 +62,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     }
     const bool alive = now_ns_ - permit_.renewed_ns < kAliveNs &&
                        now_ns_ - telemetry_.input.now_ns < kAliveNs;
-    if (alive) context_.alive(Name(permit_.state));
+    if (alive) context_.alive(now_ns_, Name(permit_.state));
   } catch (const std::exception& error) {
     context_.report(true, std::string("operator: ") + error.what());
   }

@@ -34,7 +34,7 @@ struct OperatorContext {
   /// Fills "threads" of the status: how the tasks kept their time.
   std::function<nlohmann::json()> thread_status;
   /// Called once a period while safety and control are alive: the service manager's watchdog.
-  std::function<void(const std::string& status)> alive;
+  std::function<void(std::int64_t now_ns, const std::string& status)> alive;
 };
 
 /// The operator thread's body, 50 Hz: commands in, answers and telemetry out, journal, watchdog.

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace flexarm {
+
+/// The daemon's text log: to the journal when systemd started us, else to stderr. Recorder and
+/// operator threads, and start-up, only: a line takes a lock and may wait.
+class Journal {
+ public:
+  Journal();
+
+  void Info(const std::string& text);
+  void Error(const std::string& text);
+  void Report(bool is_error, const std::string& text) { is_error ? Error(text) : Info(text); }
+};
+
+}  // namespace flexarm

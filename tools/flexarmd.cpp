@@ -1,0 +1,124 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "config/config.h"
+#include "controller/law/refused.h"
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/errors.h"
+#include "controller/runtime/daemon.h"
+#include "controller/runtime/realtime_setup.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kDone = 0, kFailed = 1, kBadInput = 2;
+
+struct Options {
+  std::filesystem::path config;
+  std::filesystem::path experiment;
+  std::optional<double> run_for_s;
+  std::vector<std::string> overrides;
+  std::string log_directory;
+  std::string socket;
+  bool without_realtime = false;
+};
+
+void AddOptions(CLI::App* app, Options* options) {
+  app->add_option("--config", options->config, "Config of the rig, a TOML file")
+      ->required()
+      ->type_name("FILE");
+  app->add_option("--experiment", options->experiment,
+                  "Arm, run this once, disarm and end; simulated backend only")
+      ->type_name("FILE");
+  app->add_option("--run-for", options->run_for_s, "End safely after this long")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+  app->add_flag("--without-realtime", options->without_realtime,
+                "Run although SCHED_FIFO or locked memory is not permitted");
+  app->add_option("--set", options->overrides, "Replace a value of the config; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app->add_option("--log-dir", options->log_directory, "log.directory of the config")
+      ->type_name("DIR");
+  app->add_option("--socket", options->socket, "daemon.socket of the config")->type_name("PATH");
+}
+
+Config Load(const Options& options) {
+  std::vector<std::string> overrides = options.overrides;
+  const auto quoted = [](const std::string& text) { return "'" + text + "'"; };
+  if (!options.log_directory.empty()) {
+    overrides.push_back("log.directory=" + quoted(options.log_directory));
+  }
+  if (!options.socket.empty()) overrides.push_back("daemon.socket=" + quoted(options.socket));
+  return LoadConfig(options.config, overrides);
+}
+
+// Only a simulated arm may be moved without a person who asked for it.
+void RequireBackend(const Config& config, const Options& options) {
+  if (config.backend.empty()) {
+    throw Refused(options.config.string() +
+                  ": has no [hal] section, so there is nothing to drive; use a config with "
+                  "hal.backend, as config/hil.toml");
+  }
+  if (config.backend == "sim" || options.experiment.empty()) return;
+  throw Refused("--experiment moves the arm without a person, and backend '" + config.backend +
+                "' drives a real one: start the daemon without it, then use `flexarm arm` and "
+                "`flexarm run`");
+}
+
+int Serve(const Options& options) {
+  const Config config = Load(options);
+  RequireBackend(config, options);
+  DaemonOptions daemon{.config = config,
+                       .backend = config.backend,
+                       .rig_name = config.rig_name,
+                       .config_text = config.text,
+                       .experiment = std::nullopt,
+                       .run_for_s = options.run_for_s,
+                       .realtime = !options.without_realtime,
+                       .parse_experiment = ParseExperiment};
+  if (!options.experiment.empty()) daemon.experiment = LoadExperiment(options.experiment);
+  const DaemonResult result = RunDaemon(daemon);
+  return result.tripped || result.refused || result.log_errors > 0 ? kFailed : kDone;
+}
+
+int Main(int argc, char** argv) {
+  Options options;
+  CLI::App app("The controller daemon of a two-link flexible arm. Operated with `flexarm`.",
+               "flexarmd");
+  app.set_version_flag("--version", "flexarmd " + ThisBuild().version + " (" + BuildId() + ")");
+  AddOptions(&app, &options);
+  app.footer(
+      "As a service: systemctl start flexarmd.\n"
+      "Hardware in the loop: flexarmd --config config/hil.toml\n"
+      "                      --experiment config/experiments/square-30deg.toml\n"
+      "SIGTERM brings the arm to rest, disarms it, closes the log and ends.\n"
+      "Exit codes: 0 done; 1 tripped, refused, or a log could not be written; 2 bad input.");
+  try {
+    app.parse(argc, argv);
+    return Serve(options);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << "flexarmd: " << error.what() << "\nTry: flexarmd --help\n";
+  } catch (const RealtimeRefused& error) {
+    std::cerr << "flexarmd: real time is refused.\n" << error.what() << '\n';
+    return kFailed;
+  } catch (const ConfigError& error) {
+    std::cerr << "flexarmd: " << error.what() << '\n';
+  } catch (const Refused& error) {
+    std::cerr << "flexarmd: " << error.what() << '\n';
+  } catch (const InputError& error) {
+    std::cerr << "flexarmd: " << error.what() << '\n';
+  } catch (const std::exception& error) {
+    std::cerr << "flexarmd: " << error.what() << '\n';
+    return kFailed;
+  }
+  return kBadInput;
+}
+
+}  // namespace
+}  // namespace flexarm
+
+int main(int argc, char** argv) { return flexarm::Main(argc, argv); }

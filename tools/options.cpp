@@ -1,0 +1,40 @@
+#include "tools/options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "controller/runlog/errors.h"
+
+namespace flexarm {
+
+void ConfigOptions::AddTo(CLI::App* verb, bool required) {
+  verb->add_option("-c,--config", file, "Config of the rig, a TOML file")
+      ->required(required)
+      ->type_name("FILE");
+  verb->add_option("--set", overrides,
+                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);  // one value each: what follows may be a run
+}
+
+Config ConfigOptions::Load() const {
+  if (!given()) throw InputError("--set needs --config FILE");
+  return LoadConfig(file, overrides);
+}
+
+std::filesystem::path ExperimentFile(const std::filesystem::path& given,
+                                     const std::filesystem::path& config) {
+  if (!given.empty()) return given;
+  const std::filesystem::path name = "experiments/square-30deg.toml";
+  const std::filesystem::path beside = config.parent_path() / name;
+  return std::filesystem::exists(beside) ? beside : "config" / name;
+}
+
+void AddJson(CLI::App* verb, bool* json) {
+  verb->add_flag("--json", *json, "Print one JSON object instead of text");
+}
+
+void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what) {
+  verb->add_option("-o,--output", *file, what)->required()->type_name("FILE");
+}
+
+}  // namespace flexarm

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+
+namespace CLI {
+class App;
+}
+
+namespace flexarm {
+
+/// -c/--config FILE and --set section.key=VALUE, of every verb that reads a config.
+struct ConfigOptions {
+  std::filesystem::path file;
+  std::vector<std::string> overrides;
+
+  void AddTo(CLI::App* verb, bool required);
+  bool given() const { return !file.empty(); }
+  /// @throws ConfigError; InputError if --set was given without --config
+  Config Load() const;
+};
+
+/// `given`, or if that is empty the default experiment: experiments/square-30deg.toml beside the
+/// config, or in config/ of the present folder.
+std::filesystem::path ExperimentFile(const std::filesystem::path& given,
+                                     const std::filesystem::path& config);
+
+/// --json: one JSON object on stdout and nothing else.
+void AddJson(CLI::App* verb, bool* json);
+
+/// -o/--output FILE.
+void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what);
+
+}  // namespace flexarm

@@ -1,0 +1,34 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace flexarm {
+
+/// What the program ends with (the contract of every verb).
+struct Exit {
+  static constexpr int kDone = 0;
+  static constexpr int kFailed =
+      1;  ///< the run failed or tripped, a replay differs, a check failed
+  static constexpr int kBadInput = 2;  ///< bad usage, config or input
+
+  int code = kDone;
+};
+
+// One function a verb, in verb_<name>.cpp: adds the verb, which sets `exit.code` when it runs.
+// Bad input is thrown (InputError, ConfigError, Refused); main turns it into a message and
+// kBadInput, and any other exception into kFailed.
+void RegisterCheck(CLI::App& app, Exit& exit);
+void RegisterConfig(CLI::App& app, Exit& exit);
+void RegisterDesign(CLI::App& app, Exit& exit);
+void RegisterDiff(CLI::App& app, Exit& exit);
+void RegisterExport(CLI::App& app, Exit& exit);
+void RegisterInfo(CLI::App& app, Exit& exit);
+void RegisterModes(CLI::App& app, Exit& exit);
+void RegisterOperate(CLI::App& app, Exit& exit);  ///< status, arm, run, stop, disarm, reset, sim
+void RegisterPlot(CLI::App& app, Exit& exit);
+void RegisterReplay(CLI::App& app, Exit& exit);
+void RegisterSimulate(CLI::App& app, Exit& exit);
+
+}  // namespace flexarm

@@ -1,0 +1,177 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "controller/runlog/errors.h"
+#include "controller/runtime/operator_socket.h"
+#include "tools/options.h"
+#include "tools/verbs.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kAnswerWithin_s = 5.0;
+
+struct Options {
+  ConfigOptions config;
+  std::string socket;
+  std::filesystem::path experiment;
+  std::string line;
+  int level = 0;
+  bool watch = false;
+  bool json = false;
+};
+
+std::string SocketOf(const Options& options) {
+  if (!options.socket.empty()) return options.socket;
+  if (options.config.given()) return options.config.Load().daemon.socket;
+  const char* named = std::getenv("FLEXARM_SOCKET");
+  return named != nullptr ? named : "/run/flexarm/flexarmd.sock";
+}
+
+Json Ask(const Options& options, const Json& command) {
+  const std::string reply = AskDaemon(SocketOf(options), command.dump(), kAnswerWithin_s);
+  Json answer = Json::parse(reply, nullptr, false);
+  if (!answer.is_object()) throw InputError("the daemon answered with something that is not JSON");
+  return answer;
+}
+
+int Print(const Options& options, const Json& answer) {
+  const bool ok = answer.value("ok", false);
+  if (options.json) {
+    std::cout << answer.dump(2) << '\n';
+  } else if (ok) {
+    std::cout << answer.value("command", "done") << ": ok, state " << answer.value("state", "-") << '\n';
+  }
+  if (!ok) {
+    std::cerr << "flexarm: " << answer.value("error", "refused");
+    if (answer.contains("remedy")) std::cerr << "; " << answer.value("remedy", "");
+    std::cerr << '\n';
+  }
+  return ok ? Exit::kDone : Exit::kFailed;
+}
+
+void PrintStatus(const Json& s) {
+  std::printf("state          %s\n", s.value("state", "-").c_str());
+  if (s.contains("trip") && s["trip"].is_object()) {
+    std::printf("trip           %s: %s\n", s["trip"].value("name", "").c_str(),
+                s["trip"].value("text", "").c_str());
+  }
+  std::printf("time           %.2f s (tick %lld)\n", s.value("time_s", 0.0),
+              static_cast<long long>(s.value("tick", std::int64_t{0})));
+  const auto pair = [&s](const char* key) { return s.value(key, std::vector<double>{0.0, 0.0}); };
+  std::printf("joint angle    %.2f, %.2f deg\n", pair("joint_angle_deg")[0], pair("joint_angle_deg")[1]);
+  std::printf("torque asked   %.3f, %.3f N m\n", pair("torque_nm")[0], pair("torque_nm")[1]);
+  std::printf("at rest        %s\n", s.value("at_rest", false) ? "yes" : "no");
+  for (const Json& thread : s.value("threads", Json::array())) {
+    std::printf("%-14s %llu runs, %llu missed, %llu skipped, worst lateness %.0f us\n",
+                thread.value("name", "").c_str(),
+                static_cast<unsigned long long>(thread.value("activations", std::uint64_t{0})),
+                static_cast<unsigned long long>(thread.value("missed_deadlines", std::uint64_t{0})),
+                static_cast<unsigned long long>(thread.value("skipped_periods", std::uint64_t{0})),
+                thread.value("worst_lateness_us", 0.0));
+  }
+}
+
+int Status(const Options& options) {
+  for (;;) {
+    const Json answer = Ask(options, {{"command", "status"}});
+    if (options.json) {
+      std::cout << answer.dump(2) << '\n';
+    } else {
+      if (options.watch) std::printf("\033[H\033[2J");
+      PrintStatus(answer);
+    }
+    std::cout.flush();
+    std::fflush(stdout);
+    if (!options.watch) return Exit::kDone;
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+}
+
+int RunExperiment(const Options& options) {
+  std::ifstream file(options.experiment);
+  if (!file) throw InputError(options.experiment.string() + ": cannot be read; expected an experiment");
+  std::stringstream text;
+  text << file.rdbuf();
+  ParseExperiment(text.str(), options.experiment.string());  // complains here, with file and line
+  return Print(options, Ask(options, {{"command", "run"},
+                                      {"name", options.experiment.filename().string()},
+                                      {"experiment", text.str()}}));
+}
+
+CLI::App* AddVerb(CLI::App& app, const char* name, const char* what,
+                  const std::shared_ptr<Options>& options) {
+  CLI::App* verb = app.add_subcommand(name, what);
+  options->config.AddTo(verb, false);
+  verb->add_option("--socket", options->socket,
+                   "Socket of the daemon (default: of the config, $FLEXARM_SOCKET, or "
+                   "/run/flexarm/flexarmd.sock)")
+      ->type_name("PATH");
+  AddJson(verb, &options->json);
+  return verb;
+}
+
+void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = AddVerb(app, name, what, options);
+  verb->footer(footer);
+  verb->callback([options, &exit, name] {
+    exit.code = Print(*options, Ask(*options, {{"command", name}}));
+  });
+}
+
+}  // namespace
+
+void RegisterOperate(CLI::App& app, Exit& exit) {
+  const auto status = std::make_shared<Options>();
+  CLI::App* verb = AddVerb(app, "status", "What the running daemon is doing", status);
+  verb->add_flag("--watch", status->watch, "Again and again, until interrupted");
+  verb->footer("Example: flexarm status --watch");
+  verb->callback([status, &exit] { exit.code = Status(*status); });
+
+  AddCommand(app, exit, "arm", "Close the relay: zero torque, ready to run",
+             "Only from Idle, at rest, with no fault present. Example: flexarm arm");
+
+  const auto run = std::make_shared<Options>();
+  verb = AddVerb(app, "run", "Run an experiment on the armed arm", run);
+  verb->add_option("experiment", run->experiment, "Experiment, a TOML file")
+      ->required()
+      ->type_name("EXPERIMENT");
+  verb->footer("Only from Armed. Example: flexarm run config/experiments/square-30deg.toml");
+  verb->callback([run, &exit] { exit.code = RunExperiment(*run); });
+
+  AddCommand(app, exit, "stop", "Bring the running arm to rest, under control",
+             "The controller damps the arm, at most 3 s, then it is Armed. Example: flexarm stop");
+  AddCommand(app, exit, "disarm", "Open the relay", "Only from Armed; stop first. Example: flexarm disarm");
+  AddCommand(app, exit, "reset", "Leave Tripped for Idle",
+             "Only after the reset button was pressed, at rest, with the cause gone.\n"
+             "Example: flexarm reset");
+
+  const auto sim = std::make_shared<Options>();
+  verb = AddVerb(app, "sim", "Press a switch of the simulated rig", sim);
+  verb->add_option("line", sim->line,
+                   "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop, reset-button")
+      ->required()
+      ->type_name("LINE");
+  verb->add_option("level", sim->level, "0 or 1; switches are closed (1) when healthy")
+      ->required()
+      ->check(CLI::Range(0, 1))
+      ->type_name("LEVEL");
+  verb->footer("Examples: flexarm sim emergency-stop 0    somebody hits it\n"
+               "          flexarm sim reset-button 1      and 0 again: pressed and released");
+  verb->callback([sim, &exit] {
+    exit.code = Print(*sim, Ask(*sim, {{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));
+  });
+}
+
+}  // namespace flexarm
