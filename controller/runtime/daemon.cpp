@@ -5,6 +5,7 @@
 #include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <vector>
 
 #include "controller/law/design.h"
@@ -139,7 +140,10 @@ DaemonResult Daemon::Run() {
   journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " + options_.rig_name +
                 ", backend " + options_.backend);
   for (const DesignCheck& check : design_.checks) {
-    journal_.Info("design: " + check.name + " = " + std::to_string(check.value));
+    std::ostringstream text;
+    text << "design: " << check.name << " = " << check.value << ", must be "
+         << (check.below ? "below " : "above ") << check.limit;
+    journal_.Info(text.str());
   }
   const sigset_t signals = BlockEndSignals();
   PrepareHost();

@@ -126,7 +126,11 @@ Json OperatorTask::PressLine(const Json& command) {
   context_.stack->presses().Push({.line = *line, .level = level});
   context_.report(false, std::string("simulated line ") + Name(*line) + " set to " +
                              std::to_string(level));
-  return {{"ok", true}, {"line", Name(*line)}, {"level", level}};
+  return {{"ok", true},
+          {"command", "sim"},
+          {"state", Name(permit_.state)},
+          {"line", Name(*line)},
+          {"level", level}};
 }
 
 Json OperatorTask::StartRun(const Json& command, int client) {
