@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-FUNCTION = "flexarm::ControlStep::Step(flexarm::StepInput const&)"
+FUNCTION = "flexarm::CountedStep(flexarm::ControlStep&, flexarm::StepInput const&)"
 
 
 def count(program):

@@ -33,7 +33,8 @@ class ProgramTest(unittest.TestCase):
 
     def run_program(self, name, *arguments, timeout_s=120):
         result = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder,
-                                capture_output=True, text=True, timeout=timeout_s, check=False)
+                                capture_output=True, text=True, errors="backslashreplace",
+                                timeout=timeout_s, check=False)
         told = f"{name} {' '.join(map(str, arguments))}\n{result.stdout}\n{result.stderr}"
         self.assertGreaterEqual(result.returncode, 0, f"killed by a signal: {told}")
         for sign in CRASH_SIGNS:

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# Installs into an empty folder and looks at what a machine would get.
+# usage: install_check.sh BUILD_FOLDER
+set -euo pipefail
+
+build=$1
+machine=$(mktemp -d)
+trap 'rm -rf "$machine"' EXIT
+
+fail() {
+  echo "install check: $*" >&2
+  exit 1
+}
+
+DESTDIR=$machine cmake --install "$build" >/dev/null
+cd "$machine"
+find . -type f | sort
+
+for program in flexarmd flexarm; do
+  file=$(find . -type f -name "$program" -path '*/bin/*')
+  [[ -n $file ]] || fail "$program is not installed"
+  "$file" --version
+  "$file" --help >/dev/null
+done
+flexarm=$(find . -type f -name flexarm -path '*/bin/*')
+
+# The shipped configs find each other where they are installed.
+hil=$(find . -name hil.toml)
+[[ -n $hil ]] || fail "no configs are installed"
+while read -r config; do
+  "$flexarm" config check "$config" >/dev/null || fail "$config is refused"
+done < <(find "$(dirname "$hil")" -maxdepth 1 -name '*.toml')
+"$flexarm" simulate -c "$hil" --json >/dev/null || fail "the installed config does not simulate"
+
+unit=$(find . -name flexarmd.service)
+[[ -n $unit ]] || fail "no service is installed"
+for line in 'Type=notify' 'WatchdogSec=' 'LimitRTPRIO=' 'LimitMEMLOCK=' 'ExecStart='; do
+  grep -q "^$line" "$unit" || fail "flexarmd.service has no $line"
+done
+daemon=$(sed -n 's/^ExecStart=[-@:+!]*\([^ ]*\).*/\1/p' "$unit" | head -n 1)
+[[ -x .$daemon ]] || fail "the service starts $daemon, which is not installed"
+started=$(sed -n 's/^ExecStart=.*--config[ =]\([^ ]*\).*/\1/p' "$unit" | head -n 1)
+if [[ -n $started && $started != *[%$]* && ! -e .$started ]]; then
+  fail "the service reads $started, which is not installed"
+fi
+
+if command -v systemd-analyze >/dev/null; then
+  # systemd looks for the program on this machine: show it the one just installed.
+  mkdir verify
+  sed "s#^\(ExecStart=[-@:+!]*\)/#\1$machine/#" "$unit" >verify/flexarmd.service
+  systemd-analyze verify --man=no verify/flexarmd.service
+else
+  echo "systemd-analyze is not here: the unit was not verified"
+fi
+echo "install check: complete"
