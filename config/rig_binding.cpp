@@ -29,10 +29,10 @@ void ReadJoint(TableReader joint, JointParameters* out) {
 }
 
 void ReadArm(TableReader root, ArmParameters* out) {
-  ReadLink(root.Table("link1"), &out->link[0]);
-  ReadLink(root.Table("link2"), &out->link[1]);
-  ReadJoint(root.Table("joint1"), &out->joint[0]);
-  ReadJoint(root.Table("joint2"), &out->joint[1]);
+  ReadLink(root.Table("link1"), &out->link.front());
+  ReadLink(root.Table("link2"), &out->link.back());
+  ReadJoint(root.Table("joint1"), &out->joint.front());
+  ReadJoint(root.Table("joint2"), &out->joint.back());
   TableReader arm = root.Table("arm");
   arm.Read("hub2_mass_kg", &out->hub2_mass_kg);
   arm.Read("motor2_mass_kg", &out->motor2_mass_kg);

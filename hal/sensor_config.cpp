@@ -20,7 +20,7 @@ void CheckEncoders(const std::vector<EncoderConfig>& encoder, ProblemList* list)
     const std::string row = ProblemList::Element("encoder", i);
     if (e.counter < 0 || e.counter >= kCounters) {
       list->Require(false, row + ".joint", NumberText(e.counter),
-                    "must be \"hub1\", \"hub2\", \"rotor1\" or \"rotor2\" (counter 0 .. 3)");
+                    R"(must be "hub1", "hub2", "rotor1" or "rotor2" (counter 0 .. 3))");
       continue;
     }
     const std::uint32_t bit = std::uint32_t{1} << static_cast<unsigned>(e.counter);
