@@ -10,20 +10,20 @@ namespace flexarm {
 
 /// What the counters say at one sample.
 struct DecodedCounters {
-  std::array<double, kCounters> angle_rad;  ///< th1..th4; the last good value if not good
+  std::array<double, kCounters> angle_rad;     ///< th1..th4; the last good value if not good
   std::array<std::int64_t, kCounters> counts;  ///< unwrapped
-  std::uint32_t good;     ///< bit i: read, and its change was possible
-  std::uint32_t jumped;   ///< bit i: changed faster than the joint can turn
-  std::array<double, kCounters> rate_rad_s;  ///< mean since the last good reading
-  std::array<int, kCounters> missing_ticks;  ///< ticks since the last good reading
+  std::uint32_t good;                          ///< bit i: read, and its change was possible
+  std::uint32_t jumped;                        ///< bit i: changed faster than the joint can turn
+  std::array<double, kCounters> rate_rad_s;    ///< mean since the last good reading
+  std::array<int, kCounters> missing_ticks;    ///< ticks since the last good reading
 };
 
 /// Unwraps the encoder counters into joint angles, and refuses impossible jumps.
 ///
 /// A counter of n bits is unwrapped to the value nearest to the expected one: the last count after
-/// one period, or the last count extrapolated at the last rate when readings were missed. Counts are
-/// zero at the joint's zero. A rig without some encoder reads 0 there, never good.
-/// Real-time: Reset and Decode are safe.
+/// one period, or the last count extrapolated at the last rate when readings were missed. Counts
+/// are zero at the joint's zero. A rig without some encoder reads 0 there, never good. Real-time:
+/// Reset and Decode are safe.
 class CounterDecoder {
  public:
   /// @param max_rate_rad_s  a faster mean rate between two readings is a jump

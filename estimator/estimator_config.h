@@ -23,12 +23,12 @@ struct EstimatorConfig {
   std::array<double, 2> rotor_extra_sigma_rad;  ///< added to the quantisation of rotor encoders
   std::array<double, 4> modal_sigma_m;          ///< of the fitted f11 f12 f21 f22
   // Judgement of the inputs.
-  double max_joint_rate_rad_s;          ///< a faster change of a counter is an impossible jump
-  double hub_rotor_limit_rad;           ///< |rotor - hub - u/K| beyond this is a fault
-  double strain_family_limit;           ///< |channel - fit| beyond this (unit strain) is dropped
-  double strain_stuck_limit;            ///< fit moves by this (unit strain), a channel by nothing
-  double innovation_limit_rad;          ///< hub angle innovation beyond this is a residual fault
-  int fault_ticks;                      ///< a judgement must persist this long to be a fault, 1..3
+  double max_joint_rate_rad_s;  ///< a faster change of a counter is an impossible jump
+  double hub_rotor_limit_rad;   ///< |rotor - hub - u/K| beyond this is a fault
+  double strain_family_limit;   ///< |channel - fit| beyond this (unit strain) is dropped
+  double strain_stuck_limit;    ///< fit moves by this (unit strain), a channel by nothing
+  double innovation_limit_rad;  ///< hub angle innovation beyond this is a residual fault
+  int fault_ticks;              ///< a judgement must persist this long to be a fault, 1..3
 
   std::vector<Problem> Problems() const;
 };

@@ -1,10 +1,9 @@
 #include "estimator/kalman_design.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 #include "model/discretize.h"
 #include "model/riccati.h"
@@ -34,8 +33,7 @@ Augmented Augment(const NominalModel& nominal, double filter_hz) {
   out.A.block(n, 2, flex, flex) = w_f * Eigen::MatrixXd::Identity(flex, flex);
   out.A.bottomRightCorner(flex, flex) = -w_f * Eigen::MatrixXd::Identity(flex, flex);
   out.B.topRows(n) = nominal.B;
-  out.G.middleRows(dof, dof) =
-      nominal.M.llt().solve(Eigen::MatrixXd::Identity(dof, dof));
+  out.G.middleRows(dof, dof) = nominal.M.llt().solve(Eigen::MatrixXd::Identity(dof, dof));
   return out;
 }
 
@@ -54,7 +52,8 @@ Eigen::VectorXd OutputVariance(const SensorConfig& sensors, const EstimatorConfi
     const double q = kTwoPi / encoder.counts_per_turn;
     const bool rotor = encoder.counter >= 2;
     const double extra =
-        rotor ? estimator.rotor_extra_sigma_rad[static_cast<std::size_t>(encoder.counter - 2)] : 0.0;
+        rotor ? estimator.rotor_extra_sigma_rad[static_cast<std::size_t>(encoder.counter - 2)]
+              : 0.0;
     R(encoder.counter) = q * q / 12.0 + extra * extra;
   }
   for (Eigen::Index i = 0; i < flex; ++i) {

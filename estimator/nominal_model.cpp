@@ -1,10 +1,9 @@
 #include "estimator/nominal_model.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 
 #include "model/arm_model.h"
 

@@ -15,8 +15,8 @@ namespace flexarm {
 /// 50 Hz loop (control.md section 2), so they are left out.
 struct NominalModel {
   int modes_per_link;
-  Eigen::MatrixXd M, D, K;  ///< n/2 x n/2
-  Eigen::MatrixXd A, B;     ///< continuous, n x n and n x 2
+  Eigen::MatrixXd M, D, K;            ///< n/2 x n/2
+  Eigen::MatrixXd A, B;               ///< continuous, n x n and n x 2
   Eigen::VectorXd torque_mode_rad_s;  ///< undamped circular frequencies, non-zero, ascending
 
   int states() const { return static_cast<int>(A.rows()); }

@@ -88,7 +88,8 @@ StateEstimator::Estimate StateEstimator::UpdateDifference(const OutputVector& y,
   const Eigen::Index dof = states_ / 2;
   for (Eigen::Index i = 0; i < dof; ++i) {
     const Eigen::Index row = i < 2 ? i : i + 2;  // hub angles, then modal coordinates
-    const double change = (good >> row & 1u) != 0 ? y(row) - y_before_(row) : x_(dof + i) * period_s_;
+    const double change =
+        (good >> row & 1u) != 0 ? y(row) - y_before_(row) : x_(dof + i) * period_s_;
     x_(dof + i) = change / period_s_;
     y_before_(row) += change;
     x_(i) = y_before_(row);

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
-
-#include <Eigen/Core>
 
 #include "estimator/counter_decoder.h"
 #include "estimator/estimator_config.h"
@@ -28,8 +27,8 @@ struct FilterGains {
 class StateEstimator {
  public:
   struct Estimate {
-    StateVector x;                         ///< [th1 th2 f.. | rates], SI
-    std::array<double, 8> innovation;      ///< measured minus predicted outputs; 0 where not used
+    StateVector x;                     ///< [th1 th2 f.. | rates], SI
+    std::array<double, 8> innovation;  ///< measured minus predicted outputs; 0 where not used
   };
 
   /// @param joint_stiffness_nm_per_rad  K1, K2: rotor angles are corrected by u/K

@@ -60,6 +60,7 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     unit[i] = 1.0;
     std::array<double, 4> modal{};
     if (!Solve(channel_[i].link, LinkMask(channel_[i].link), unit, &modal)) continue;
+    solvable_[static_cast<std::size_t>(channel_[i].link)] = true;
     const std::size_t first = channel_[i].link == 0 ? 0 : 2;
     channel_[i].inverse = {modal[first], modal[first + 1]};
   }
@@ -128,6 +129,17 @@ FittedModes StrainFit::Fit(const SensorFrame& frame) noexcept {
   out.modal_m = last_modal_;
   for (int link = 0; link < 2; ++link) FitLink(link, strain, &out);
   JudgeStuck(frame, &out);
+  for (int link = 0; link < 2; ++link) {  // once more without the channels that are stuck
+    const std::uint32_t stuck = out.stuck & out.used & LinkMask(link);
+    if (stuck == 0) continue;
+    const std::size_t i = static_cast<std::size_t>(link);
+    out.used &= ~stuck;
+    out.valid[i] = false;
+    out.root_strain[i] = 0.0;
+    out.modal_m[2 * i] = last_modal_[2 * i];
+    out.modal_m[2 * i + 1] = last_modal_[2 * i + 1];
+    FitLink(link, strain, &out);
+  }
   last_modal_ = out.modal_m;
   return out;
 }
@@ -138,7 +150,7 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
   const std::size_t first = link == 0 ? 0 : 2;
   std::array<double, 4> modal{};
   for (int removed = 0;; ++removed) {
-    if ((out->used & all) == all) {
+    if ((out->used & all) == all && solvable_[static_cast<std::size_t>(link)]) {
       modal[first] = modal[first + 1] = 0.0;
       for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
         if (channel_[i].link != link) continue;
@@ -171,7 +183,8 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
   out->modal_m[first] = modal[first];
   out->modal_m[first + 1] = modal[first + 1];
   const std::array<double, 2>& root = root_shape_[static_cast<std::size_t>(link)];
-  out->root_strain[static_cast<std::size_t>(link)] = root[0] * modal[first] + root[1] * modal[first + 1];
+  out->root_strain[static_cast<std::size_t>(link)] =
+      root[0] * modal[first] + root[1] * modal[first + 1];
 }
 
 // A channel is stuck when its raw value has not changed while the fit at its station has moved by

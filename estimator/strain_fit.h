@@ -13,15 +13,15 @@ namespace flexarm {
 
 /// Modal coordinates fitted to the strain channels of one sample.
 struct FittedModes {
-  std::array<double, 4> modal_m;        ///< f11 f12 f21 f22; the last good fit if not valid
-  std::array<bool, 2> valid;            ///< per link: enough good channels
-  std::array<double, 2> root_strain;    ///< surface strain of the fit at the root of each link
-  std::array<double, 2> residual;       ///< rms of channel minus fit, unit strain
-  std::uint32_t used;       ///< bit i: channel i took part
-  std::uint32_t saturated;  ///< bit i: at a rail of the converter
-  std::uint32_t stuck;      ///< bit i: does not move while its link does
-  std::uint32_t outlier;    ///< bit i: far from what the others agree on
-  double worst_outlier;     ///< its distance, unit strain
+  std::array<double, 4> modal_m;      ///< f11 f12 f21 f22; the last good fit if not valid
+  std::array<bool, 2> valid;          ///< per link: enough good channels
+  std::array<double, 2> root_strain;  ///< surface strain of the fit at the root of each link
+  std::array<double, 2> residual;     ///< rms of channel minus fit, unit strain
+  std::uint32_t used;                 ///< bit i: channel i took part
+  std::uint32_t saturated;            ///< bit i: at a rail of the converter
+  std::uint32_t stuck;                ///< bit i: does not move while its link does
+  std::uint32_t outlier;              ///< bit i: far from what the others agree on
+  double worst_outlier;               ///< its distance, unit strain
 };
 
 /// Weighted least-squares fit of one or two modal coordinates a link to the strain channels.
@@ -45,8 +45,8 @@ class StrainFit {
     int link = 0;
     double unit_per_count = 0.0;  // signed by face and gain
     double offset_counts = 0.0;
-    double weight = 0.0;          // 1 / variance
-    std::array<double, 2> shape{};  // (h/2) psi_j''(x)
+    double weight = 0.0;              // 1 / variance
+    std::array<double, 2> shape{};    // (h/2) psi_j''(x)
     std::array<double, 2> inverse{};  // column of the pseudo-inverse when all channels are good
     // Stuck detection: the last raw value, and the fitted strain when it last changed.
     std::int32_t last_raw = 0;
@@ -69,6 +69,7 @@ class StrainFit {
   double family_limit_;
   double stuck_limit_;
   std::array<Channel, kMaxStrainChannels> channel_;
+  std::array<bool, 2> solvable_{};  // a link's channels tell its modes apart
   std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j''(0) a link
   std::array<double, 4> last_modal_{};
 };

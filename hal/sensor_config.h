@@ -12,10 +12,10 @@ namespace flexarm {
 ///
 /// angle = sign * 2 pi * unwrapped counts / counts_per_turn, counter-clockwise positive.
 struct EncoderConfig {
-  int counter;              ///< 0..3: key `joint` = "hub1" "hub2" "rotor1" "rotor2" (th1..th4)
-  double counts_per_turn;   ///< per turn of the joint, gear included, > 0
-  int counter_bits;         ///< the counter wraps at 2^bits, 4..32
-  int sign;                 ///< +1, or -1 if the encoder counts clockwise
+  int counter;             ///< 0..3: key `joint` = "hub1" "hub2" "rotor1" "rotor2" (th1..th4)
+  double counts_per_turn;  ///< per turn of the joint, gear included, > 0
+  int counter_bits;        ///< the counter wraps at 2^bits, 4..32
+  int sign;                ///< +1, or -1 if the encoder counts clockwise
 };
 
 /// One strain channel: [[sensors.strain]]. A half bridge is a row too.
@@ -31,10 +31,10 @@ struct StrainChannelConfig {
 
 /// The converter and amplifier that all strain channels share: [sensors.strain_input].
 struct StrainInputConfig {
-  int converter_bits;     ///< 8..24, two's complement, clips at its rails
-  double range_v;         ///< full scale is -range_v .. +range_v
-  double filter_hz;       ///< corner of the first-order analogue filter; 0: no filter
-  double noise_counts;    ///< standard deviation before quantising
+  int converter_bits;   ///< 8..24, two's complement, clips at its rails
+  double range_v;       ///< full scale is -range_v .. +range_v
+  double filter_hz;     ///< corner of the first-order analogue filter; 0: no filter
+  double noise_counts;  ///< standard deviation before quantising
 
   double volts_per_count() const;  ///< 2 range / 2^bits
   int lowest_count() const;        ///< -2^(bits-1)

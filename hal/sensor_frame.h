@@ -6,8 +6,8 @@
 
 namespace flexarm {
 
-inline constexpr int kCounters = 4;             ///< hub 1, hub 2, rotor 1, rotor 2, as th1..th4
-inline constexpr int kMaxStrainChannels = 32;   ///< both links together
+inline constexpr int kCounters = 4;            ///< hub 1, hub 2, rotor 1, rotor 2, as th1..th4
+inline constexpr int kMaxStrainChannels = 32;  ///< both links together
 
 /// Digital input lines of the rig, by bit number in `LineLevels`.
 ///
@@ -37,11 +37,11 @@ inline constexpr LineLevels kHealthyLevels =
 /// Everything that the rig measured around one sampling instant, as raw counts.
 ///
 /// A reading that is not valid repeats the last good value. The offset tells when a reading was
-/// taken, relative to `sampled_at_ns`: 0 is simultaneous sampling, a positive value is the skew of a
-/// multiplexed input, a negative one an older reading; so age = now - sampled_at - offset.
-/// The layout has no padding: its bytes go into the run log and are compared by replay.
+/// taken, relative to `sampled_at_ns`: 0 is simultaneous sampling, a positive value is the skew of
+/// a multiplexed input, a negative one an older reading; so age = now - sampled_at - offset. The
+/// layout has no padding: its bytes go into the run log and are compared by replay.
 struct SensorFrame {
-  std::int64_t sampled_at_ns;  ///< sampling instant, in the clock of the loop
+  std::int64_t sampled_at_ns;                    ///< sampling instant, in the clock of the loop
   std::array<std::uint32_t, kCounters> counter;  ///< raw counter value, wraps at 2^counter_bits
   std::array<std::int32_t, kCounters> counter_offset_ns;
   std::array<std::int32_t, kMaxStrainChannels> strain;  ///< raw converter counts, in config order

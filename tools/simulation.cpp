@@ -97,82 +97,127 @@ class MemoryAndLog final : public RunMemory {
 
 OpenSink SinkFor(const SimulationRequest& request, RunContents* contents) {
   if (!request.log) return RunInMemory(contents);
-  return [contents, open = RunInFile(*request.log)](const RunInfo& info) -> std::unique_ptr<RunSink> {
-    return std::make_unique<MemoryAndLog>(contents, open(info));
-  };
+  return
+      [contents, open = RunInFile(*request.log)](const RunInfo& info) -> std::unique_ptr<RunSink> {
+        return std::make_unique<MemoryAndLog>(contents, open(info));
+      };
+}
+
+/// A simulated run's parts, in the order in which they are made.
+class Simulation {
+ public:
+  explicit Simulation(const SimulationRequest& request);
+
+  SimulationResult Run(const std::function<void(double)>& progress);
+
+ private:
+  void Announce();
+  /// Runs the tasks until the operator is done. @returns wall-clock time, s
+  double Loop(const std::function<void(double)>& progress);
+  SimulationResult Result(double wall_s) const;
+
+  const SimulationRequest& request_;
+  LoopGrid grid_;
+  Design design_;
+  double payload_kg_;
+  PlannedExperiment planned_;
+  SimulatedStack stack_;
+  RunContents contents_;
+  std::string log_error_;
+  RunRecording recording_;
+  EventQueue events_;
+  SpscQueue<TimingRecord> timing_;  // a simulated clock has no wall-clock figures
+  RecorderTask recorder_;
+  UnattendedTask operator_;
+  std::int64_t simulated_ns_ = 0;
+};
+
+Simulation::Simulation(const SimulationRequest& request)
+    : request_(request),
+      grid_(request.config.loop),
+      design_(DesignFor(request.config)),
+      payload_kg_(request.payload_kg.value_or(request.config.arm.payload_mass_kg)),
+      planned_(request.experiment, design_, grid_.period_s(), {0.0, 0.0},
+               SoftAngleRad(request.config.safety)),
+      stack_(request.config, design_, payload_kg_),
+      recording_(InfoOf(request, design_), SinkFor(request, &contents_),
+                 [this](bool is_error, const std::string& text) {
+                   if (is_error && log_error_.empty()) log_error_ = text;
+                 }),
+      events_(kQueueDepth),
+      timing_(kQueueDepth),
+      recorder_({.ticks = &stack_.tick_records(),
+                 .safety = &stack_.safety_records(),
+                 .timing = &timing_,
+                 .events = &events_},
+                &recording_),
+      operator_(&stack_) {
+  stack_.Plan({.experiment = &planned_, .number = 1});
+}
+
+void Simulation::Announce() {
+  events_.Push({.time_ns = 0,
+                .kind = "experiment",
+                .name = request_.experiment.name,
+                .text = request_.experiment.text,
+                .value_json = {}});
+  events_.Push({.time_ns = 0,
+                .kind = "simulation",
+                .name = "payload",
+                .text = {},
+                .value_json = "{\"payload_kg\": " + std::to_string(payload_kg_) + "}"});
+}
+
+double Simulation::Loop(const std::function<void(double)>& progress) {
+  constexpr std::int64_t kProgressNs = 100'000'000;
+  LockstepExecutor executor;
+  executor.Add(stack_.safety());
+  executor.Add(stack_.control());
+  executor.Add(stack_.plant());
+  executor.Add(operator_);
+  executor.Add(recorder_);
+  const auto started = std::chrono::steady_clock::now();
+  executor.RunWhile([&](std::int64_t now_ns) {
+    if (progress && now_ns / kProgressNs != simulated_ns_ / kProgressNs) {
+      progress(static_cast<double>(now_ns) * 1e-9);
+    }
+    simulated_ns_ = now_ns;
+    return now_ns < operator_.over_ns();
+  });
+  recorder_.Finish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+}
+
+SimulationResult Simulation::Result(double wall_s) const {
+  SimulationResult result;
+  result.metrics = ComputeMetrics(contents_.tick, request_.experiment, grid_.period_s(),
+                                  TipGeometryOf(request_.config.arm));
+  result.ticks = result.metrics.ticks;
+  result.trip = operator_.trip();
+  result.completed =
+      result.trip == TripCause::kNone && result.ticks == planned_.reference.periods();
+  result.realtime_factor = static_cast<double>(simulated_ns_) * 1e-9 / wall_s;
+  return result;
+}
+
+SimulationResult Simulation::Run(const std::function<void(double)>& progress) {
+  Announce();
+  const double wall_s = Loop(progress);
+  if (!log_error_.empty()) throw std::runtime_error(log_error_);
+  if (operator_.run().progress() == UnattendedRun::Progress::kRefused) {
+    throw std::runtime_error("the simulated run was refused by the safety machine");
+  }
+  return Result(wall_s);
 }
 
 }  // namespace
 
 SimulationResult Simulate(const SimulationRequest& request,
                           const std::function<void(double)>& progress) {
-  const Config& config = request.config;
   if (request.log && std::filesystem::exists(*request.log)) {
     throw Refused(request.log->string() + ": exists already; a run is never overwritten");
   }
-  const LoopGrid grid(config.loop);
-  const Design design = DesignFor(config);
-  const double payload_kg = request.payload_kg.value_or(config.arm.payload_mass_kg);
-  const PlannedExperiment planned(request.experiment, design, grid.period_s(), {0.0, 0.0},
-                                  SoftAngleRad(config.safety));
-  SimulatedStack stack(config, design, payload_kg);
-  stack.Plan({.experiment = &planned, .number = 1});
-  RunContents contents;
-  std::string log_error;
-  RunRecording recording(InfoOf(request, design), SinkFor(request, &contents),
-                         [&log_error](bool is_error, const std::string& text) {
-                           if (is_error && log_error.empty()) log_error = text;
-                         });
-  EventQueue events(kQueueDepth);
-  events.Push({.time_ns = 0,
-               .kind = "experiment",
-               .name = request.experiment.name,
-               .text = request.experiment.text,
-               .value_json = {}});
-  events.Push({.time_ns = 0,
-               .kind = "simulation",
-               .name = "payload",
-               .text = {},
-               .value_json = "{\"payload_kg\": " + std::to_string(payload_kg) + "}"});
-  SpscQueue<TimingRecord> timing(kQueueDepth);  // a simulated clock has no wall-clock figures
-  RecorderTask recorder({.ticks = &stack.tick_records(),
-                         .safety = &stack.safety_records(),
-                         .timing = &timing,
-                         .events = &events},
-                        &recording);
-  UnattendedTask operator_task(&stack);
-  LockstepExecutor executor;
-  executor.Add(stack.safety());
-  executor.Add(stack.control());
-  executor.Add(stack.plant());
-  executor.Add(operator_task);
-  executor.Add(recorder);
-
-  constexpr std::int64_t kProgressNs = 100'000'000;
-  const auto started = std::chrono::steady_clock::now();
-  std::int64_t simulated_ns = 0;
-  executor.RunWhile([&](std::int64_t now_ns) {
-    if (progress && now_ns / kProgressNs != simulated_ns / kProgressNs) {
-      progress(static_cast<double>(now_ns) * 1e-9);
-    }
-    simulated_ns = now_ns;
-    return now_ns < operator_task.over_ns();
-  });
-  recorder.Finish();
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
-  if (!log_error.empty()) throw std::runtime_error(log_error);
-  if (operator_task.run().progress() == UnattendedRun::Progress::kRefused) {
-    throw std::runtime_error("the simulated run was refused by the safety machine");
-  }
-
-  SimulationResult result;
-  result.metrics = ComputeMetrics(contents.tick, request.experiment, grid.period_s(),
-                                  TipGeometryOf(config.arm));
-  result.ticks = result.metrics.ticks;
-  result.trip = operator_task.trip();
-  result.completed = result.trip == TripCause::kNone && result.ticks == planned.reference.periods();
-  result.realtime_factor = static_cast<double>(simulated_ns) * 1e-9 / wall.count();
-  return result;
+  return Simulation(request).Run(progress);
 }
 
 }  // namespace flexarm

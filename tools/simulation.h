@@ -21,11 +21,11 @@ struct SimulationRequest {
 };
 
 struct SimulationResult {
-  bool completed = false;                  ///< every tick of the experiment ran, and no trip
+  bool completed = false;  ///< every tick of the experiment ran, and no trip
   TripCause trip = TripCause::kNone;
-  std::int64_t ticks = 0;                  ///< in state Running
+  std::int64_t ticks = 0;  ///< in state Running
   RunMetrics metrics;
-  double realtime_factor = 0.0;            ///< simulated time over wall time of the loop, recorder included
+  double realtime_factor = 0.0;  ///< simulated time over wall time of the loop, recorder included
 };
 
 /// @param progress  called now and then with the simulated time, s; may be empty

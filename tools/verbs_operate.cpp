@@ -50,7 +50,8 @@ int Print(const Options& options, const Json& answer) {
   if (options.json) {
     std::cout << answer.dump(2) << '\n';
   } else if (ok) {
-    std::cout << answer.value("command", "done") << ": ok, state " << answer.value("state", "-") << '\n';
+    std::cout << answer.value("command", "done") << ": ok, state " << answer.value("state", "-")
+              << '\n';
   }
   if (!ok) {
     std::cerr << "flexarm: " << answer.value("error", "refused");
@@ -69,7 +70,8 @@ void PrintStatus(const Json& s) {
   std::printf("time           %.2f s (tick %lld)\n", s.value("time_s", 0.0),
               static_cast<long long>(s.value("tick", std::int64_t{0})));
   const auto pair = [&s](const char* key) { return s.value(key, std::vector<double>{0.0, 0.0}); };
-  std::printf("joint angle    %.2f, %.2f deg\n", pair("joint_angle_deg")[0], pair("joint_angle_deg")[1]);
+  std::printf("joint angle    %.2f, %.2f deg\n", pair("joint_angle_deg")[0],
+              pair("joint_angle_deg")[1]);
   std::printf("torque asked   %.3f, %.3f N m\n", pair("torque_nm")[0], pair("torque_nm")[1]);
   std::printf("at rest        %s\n", s.value("at_rest", false) ? "yes" : "no");
   for (const Json& thread : s.value("threads", Json::array())) {
@@ -100,7 +102,8 @@ int Status(const Options& options) {
 
 int RunExperiment(const Options& options) {
   std::ifstream file(options.experiment);
-  if (!file) throw InputError(options.experiment.string() + ": cannot be read; expected an experiment");
+  if (!file)
+    throw InputError(options.experiment.string() + ": cannot be read; expected an experiment");
   std::stringstream text;
   text << file.rdbuf();
   ParseExperiment(text.str(), options.experiment.string());  // complains here, with file and line
@@ -152,25 +155,29 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
 
   AddCommand(app, exit, "stop", "Bring the running arm to rest, under control",
              "The controller damps the arm, at most 3 s, then it is Armed. Example: flexarm stop");
-  AddCommand(app, exit, "disarm", "Open the relay", "Only from Armed; stop first. Example: flexarm disarm");
+  AddCommand(app, exit, "disarm", "Open the relay",
+             "Only from Armed; stop first. Example: flexarm disarm");
   AddCommand(app, exit, "reset", "Leave Tripped for Idle",
              "Only after the reset button was pressed, at rest, with the cause gone.\n"
              "Example: flexarm reset");
 
   const auto sim = std::make_shared<Options>();
   verb = AddVerb(app, "sim", "Press a switch of the simulated rig", sim);
-  verb->add_option("line", sim->line,
-                   "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop, reset-button")
+  verb->add_option(
+          "line", sim->line,
+          "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop, reset-button")
       ->required()
       ->type_name("LINE");
   verb->add_option("level", sim->level, "0 or 1; switches are closed (1) when healthy")
       ->required()
       ->check(CLI::Range(0, 1))
       ->type_name("LEVEL");
-  verb->footer("Examples: flexarm sim emergency-stop 0    somebody hits it\n"
-               "          flexarm sim reset-button 1      and 0 again: pressed and released");
+  verb->footer(
+      "Examples: flexarm sim emergency-stop 0    somebody hits it\n"
+      "          flexarm sim reset-button 1      and 0 again: pressed and released");
   verb->callback([sim, &exit] {
-    exit.code = Print(*sim, Ask(*sim, {{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));
+    exit.code =
+        Print(*sim, Ask(*sim, {{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));
   });
 }
 

@@ -1,10 +1,9 @@
 #include "controller/law/command_generator.h"
 
-#include <algorithm>
-#include <stdexcept>
-
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
+#include <stdexcept>
 
 #include "model/riccati.h"
 
@@ -70,8 +69,7 @@ double TrackingResidual(const TrackingProblem& problem, const CommandGenerator& 
   const Eigen::MatrixXd& S22 = generator.S22;
   return std::max({(z.A * S11 + z.B * S21 - S11 * z.Am).cwiseAbs().maxCoeff(),
                    (z.A * S12 + z.B * S22 - S11 * z.Bm - S12).cwiseAbs().maxCoeff(),
-                   (z.Cp * S11 - z.Cm).cwiseAbs().maxCoeff(),
-                   (z.Cp * S12).cwiseAbs().maxCoeff()});
+                   (z.Cp * S11 - z.Cm).cwiseAbs().maxCoeff(), (z.Cp * S12).cwiseAbs().maxCoeff()});
 }
 
 }  // namespace flexarm

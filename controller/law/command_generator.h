@@ -6,9 +6,9 @@ namespace flexarm {
 
 /// The discrete plant and the reference model whose output it shall follow: C_p x = C_m x_m.
 struct TrackingProblem {
-  Eigen::MatrixXd A, B, Cp;     ///< plant
-  Eigen::MatrixXd Am, Bm, Cm;   ///< reference model
-  Eigen::VectorXd scale;        ///< x = scale .* z: the solve is done in z, where it is well conditioned
+  Eigen::MatrixXd A, B, Cp;    ///< plant
+  Eigen::MatrixXd Am, Bm, Cm;  ///< reference model
+  Eigen::VectorXd scale;  ///< x = scale .* z: the solve is done in z, where it is well conditioned
 };
 
 /// Command generator tracker: the plant trajectory on which the outputs agree exactly.

@@ -32,7 +32,9 @@ struct ControlStep::Stages {
         decoder(config.sensors, period_s, config.estimator.max_joint_rate_rad_s),
         fit(config.arm, config.sensors, config.estimator),
         estimator(config.estimator,
-                  {.A = design.filter_A, .B = design.filter_B, .C = design.filter_C,
+                  {.A = design.filter_A,
+                   .B = design.filter_B,
+                   .C = design.filter_C,
                    .L = design.filter_L},
                   period_s, JointStiffness(config.arm)),
         supervisor(config.safety, config.estimator, period_s, config.sensors.counters_present(),
@@ -59,7 +61,8 @@ struct ControlStep::Stages {
     return next;
   }
 
-  SobelLaw::Result Decide(const StepInput& input, const StateVector& x, bool sensors_good) noexcept {
+  SobelLaw::Result Decide(const StepInput& input, const StateVector& x,
+                          bool sensors_good) noexcept {
     if (input.safety_state == SafetyState::kRunning) {
       stopping = false;
       return law.Compute(x, input.reference_next, sensors_good);
@@ -112,12 +115,16 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const FittedModes modes = s.fit.Fit(frame);
   const StateEstimator::Estimate estimate =
       s.estimator.Update(counters, modes, input.applied_torque_nm);
-  const LoopSupervisor::Verdict verdict = s.supervisor.Judge({.counters = &counters,
-                                                              .modes = &modes,
-                                                              .estimate = &estimate,
-                                                              .applied_torque_nm = input.applied_torque_nm,
-                                                              .frame_age_s = frame_age_s});
+  const LoopSupervisor::Verdict verdict =
+      s.supervisor.Judge({.counters = &counters,
+                          .modes = &modes,
+                          .estimate = &estimate,
+                          .applied_torque_nm = input.applied_torque_nm,
+                          .frame_age_s = frame_age_s});
   const StateVector x_next = s.prediction ? s.Predict(estimate.x) : estimate.x;
+  // Start again from the next measurement. A trip needs its cause gone before the arm can be armed,
+  // and so reset: a state that stayed bad would be tripped for ever.
+  if ((verdict.faults & CauseBit(TripCause::kStateNotFinite)) != 0) s.estimator.Reset();
 
   StepOutput out{};
   out.tick = input.tick;

@@ -1,5 +1,8 @@
 #include "controller/law/design.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -7,10 +10,6 @@
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include "controller/law/command_generator.h"
 #include "controller/law/refused.h"
@@ -60,7 +59,8 @@ void DesignRegulator(const StackConfig& config, Design* design) {
   design->K_stop = CalmGain(A, B, Q);
   design->J = 0.5 * B.transpose() * design->P * B;
   design->G = design->J + controller.passivity_margin * I2;
-  design->checks.push_back({"regulator-riccati-residual", DareResidual(a * A, a * B, Q, I2, P), 1e-9, true});
+  design->checks.push_back(
+      {"regulator-riccati-residual", DareResidual(a * A, a * B, Q, I2, P), 1e-9, true});
 }
 
 // Coordinates in which the CGT equation is well conditioned: unit modal mass, and rates measured
@@ -132,8 +132,10 @@ void CheckLemma(double alpha, double period_s, Design* design) {
   design->checks.push_back({"lemma-dissipation-min-eigenvalue",
                             smallest(LLt) / design->P.cwiseAbs().maxCoeff(), -1e-12, false});
   design->checks.push_back({"j-min-eigenvalue", smallest(design->J), 0.0, false});
-  design->checks.push_back({"g-minus-j-min-eigenvalue", smallest(design->G - design->J), 0.0, false});
-  design->checks.push_back({"positive-real-min-eigenvalue", PositiveRealMargin(*design), 0.0, false});
+  design->checks.push_back(
+      {"g-minus-j-min-eigenvalue", smallest(design->G - design->J), 0.0, false});
+  design->checks.push_back(
+      {"positive-real-min-eigenvalue", PositiveRealMargin(*design), 0.0, false});
   design->checks.push_back({"closed-loop-spectral-radius", SpectralRadius(A_c),
                             std::exp(-alpha * period_s) + 1e-9, true});
 }

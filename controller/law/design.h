@@ -1,9 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace flexarm {
 
@@ -11,10 +10,10 @@ struct StackConfig;
 
 /// One check made on a design, with its figure.
 struct DesignCheck {
-  std::string name;   ///< e.g. "cgt-residual"
+  std::string name;  ///< e.g. "cgt-residual"
   double value;
   double limit;
-  bool below;         ///< true: the value must be below the limit; false: above it
+  bool below;  ///< true: the value must be below the limit; false: above it
 
   bool passed() const { return below ? value < limit : value > limit; }
 };
@@ -25,10 +24,11 @@ struct DesignCheck {
 struct Design {
   Eigen::MatrixXd A, B;    ///< nominal model, discrete
   Eigen::MatrixXd Am, Bm;  ///< reference model, discrete
-  Eigen::MatrixXd K;       ///< 2 x n: LQR with degree of stability alpha; also the output matrix C_p
-  Eigen::MatrixXd K_stop;  ///< 2 x n: LQR with alpha = 0 of the same weights, damps the arm while Stopping
-  Eigen::MatrixXd P;       ///< n x n: P' = e^(2 alpha Ts) P of the lemma (7.16)
-  Eigen::MatrixXd J, G;    ///< 2 x 2: J = B'P'B/2, G = J + margin I
+  Eigen::MatrixXd K;  ///< 2 x n: LQR with degree of stability alpha; also the output matrix C_p
+  Eigen::MatrixXd
+      K_stop;  ///< 2 x n: LQR with alpha = 0 of the same weights, damps the arm while Stopping
+  Eigen::MatrixXd P;                   ///< n x n: P' = e^(2 alpha Ts) P of the lemma (7.16)
+  Eigen::MatrixXd J, G;                ///< 2 x 2: J = B'P'B/2, G = J + margin I
   Eigen::MatrixXd S11, S12, S21, S22;  ///< command generator: x* = S11 x_m + S12 u_m, u_c likewise
   Eigen::MatrixXd Ufx, Ufu;            ///< (7.25): u_f = -+Ufx x_m + Ufu u_m
   Eigen::MatrixXd filter_A, filter_B, filter_C, filter_L;  ///< estimator/kalman_design.h

@@ -97,7 +97,8 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name, M* matr
   if (!rows.is_array() || rows.empty() || !rows[0].is_array()) {
     throw Refused("gains file: '" + name + "' is not a matrix (an array of rows)");
   }
-  Eigen::MatrixXd read(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
+  Eigen::MatrixXd read(static_cast<Eigen::Index>(rows.size()),
+                       static_cast<Eigen::Index>(rows[0].size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].size() != rows[0].size()) {
       throw Refused("gains file: '" + name + "' has rows of different length");
@@ -122,15 +123,31 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name, Eigen::
   *matrix = read;
 }
 
+// The text at `key`, or what stands for a missing one; of another type it is not ours.
+std::string TextAt(const nlohmann::json& in, const char* key, const char* missing) {
+  const auto found = in.find(key);
+  if (found == in.end()) return missing;
+  return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+DesignCheck CheckFromJson(const nlohmann::json& in) {
+  try {
+    return {in.at("name").get<std::string>(), in.at("value").get<double>(),
+            in.at("limit").get<double>(), in.at("below").get<bool>()};
+  } catch (const nlohmann::json::exception&) {
+    throw Refused("gains file: a row of 'checks' lacks its name, value, limit or below");
+  }
+}
+
 // Every product that the loop forms must have matching shapes.
 void RequireShapes(const Design& d) {
   const Eigen::Index n = d.A.rows(), flex = n / 2 - 2, nf = n + flex, outputs = 4 + flex;
   const auto require = [](const char* name, const Eigen::MatrixXd& m, Eigen::Index rows,
                           Eigen::Index cols) {
     if (m.rows() == rows && m.cols() == cols) return;
-    throw Refused(std::string("gains file: '") + name + "' is " +
-                             std::to_string(m.rows()) + " x " + std::to_string(m.cols()) +
-                             ", expected " + std::to_string(rows) + " x " + std::to_string(cols));
+    throw Refused(std::string("gains file: '") + name + "' is " + std::to_string(m.rows()) + " x " +
+                  std::to_string(m.cols()) + ", expected " + std::to_string(rows) + " x " +
+                  std::to_string(cols));
   };
   require("A", d.A, n, n);
   require("B", d.B, n, 2);
@@ -186,14 +203,14 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
 
 Design DesignFromJson(const std::string& text, const std::string& expected_hash) {
   const nlohmann::json in = nlohmann::json::parse(text, nullptr, false);
-  if (!in.is_object() || in.value("format", "") != kFormat) {
-    throw Refused(std::string("not a gains file: expected JSON with \"format\": \"") +
-                             kFormat + "\", as `flexarm design` writes it");
+  if (!in.is_object() || TextAt(in, "format", "") != kFormat) {
+    throw Refused(std::string("not a gains file: expected JSON with \"format\": \"") + kFormat +
+                  "\", as `flexarm design` writes it");
   }
-  if (in.value("config_hash", "") != expected_hash) {
+  if (TextAt(in, "config_hash", "") != expected_hash) {
     throw Refused("gains file: designed for another config (hash " +
-                             in.value("config_hash", "missing") + ", this config has " +
-                             expected_hash + "); run `flexarm design` again");
+                  TextAt(in, "config_hash", "missing") + ", this config has " + expected_hash +
+                  "); run `flexarm design` again");
   }
   Design design;
   ForEachMatrix(design, [&in](const char* name, auto& m) {
@@ -201,10 +218,10 @@ Design DesignFromJson(const std::string& text, const std::string& expected_hash)
     MatrixFromJson(in.at(name), name, &m);
   });
   RequireShapes(design);
-  for (const nlohmann::json& check : in.value("checks", nlohmann::json::array())) {
-    design.checks.push_back({check.value("name", ""), check.value("value", 0.0),
-                             check.value("limit", 0.0), check.value("below", true)});
+  if (!in.contains("checks") || !in.at("checks").is_array()) {
+    throw Refused("gains file: 'checks' is missing or not an array");
   }
+  for (const nlohmann::json& check : in.at("checks")) design.checks.push_back(CheckFromJson(check));
   return design;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kRateTicks = 2;
-constexpr int kMissingTicks = 2;   // no good reading for two periods
+constexpr int kMissingTicks = 2;  // no good reading for two periods
 constexpr double kStalePeriods = 2.0;
 
 std::size_t FirstChannel(std::uint32_t mask) noexcept {
@@ -134,8 +134,7 @@ bool LoopSupervisor::JudgeRest(const LoopFacts& facts) noexcept {
     const double hub_rate =
         (angle - hub_before_[ring_][i]) / (static_cast<double>(kRestWindow) * period_s_);
     hub_before_[ring_][i] = angle;
-    const double strain_rate =
-        (facts.modes->root_strain[i] - root_strain_before_[i]) / period_s_;
+    const double strain_rate = (facts.modes->root_strain[i] - root_strain_before_[i]) / period_s_;
     slow = slow && std::fabs(hub_rate) < safety_.rest_hub_rate_rad_s &&
            std::fabs(strain_rate) < safety_.rest_strain_rate_per_s;
     root_strain_before_[i] = facts.modes->root_strain[i];

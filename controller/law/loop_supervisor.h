@@ -43,8 +43,8 @@ class LoopSupervisor {
   Verdict Judge(const LoopFacts& facts) noexcept;
 
  private:
-  /// Rest is judged by the mean hub rate over this many periods: a single count of the encoder in one
-  /// period is faster than the arm at rest may be.
+  /// Rest is judged by the mean hub rate over this many periods: a single count of the encoder in
+  /// one period is faster than the arm at rest may be.
   static constexpr std::size_t kRestWindow = 5;
 
   void JudgeJoints(const LoopFacts& facts) noexcept;

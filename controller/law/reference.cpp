@@ -16,8 +16,8 @@ int OnGrid(double time_s, double period_s, const std::string& what) {
   const double periods = time_s / period_s;
   if (std::fabs(periods - std::round(periods)) > kGridTolerance) {
     throw Refused(what + " = " + std::to_string(time_s) +
-                             " s does not lie on the sampling grid: it must be a multiple of " +
-                             std::to_string(period_s) + " s");
+                  " s does not lie on the sampling grid: it must be a multiple of " +
+                  std::to_string(period_s) + " s");
   }
   return static_cast<int>(std::lround(periods));
 }
@@ -26,9 +26,9 @@ int OnGrid(double time_s, double period_s, const std::string& what) {
 std::vector<double> Shape(DoubletShape shape, int n) {
   std::vector<double> values(static_cast<std::size_t>(n));
   for (int k = 0; k < n; ++k) {
-    values[static_cast<std::size_t>(k)] =
-        shape == DoubletShape::kSquare ? (2 * k < n ? 1.0 : -1.0)
-                                       : std::sin(2.0 * std::numbers::pi * (k + 0.5) / n);
+    values[static_cast<std::size_t>(k)] = shape == DoubletShape::kSquare
+                                              ? (2 * k < n ? 1.0 : -1.0)
+                                              : std::sin(2.0 * std::numbers::pi * (k + 0.5) / n);
   }
   return values;
 }
@@ -49,8 +49,8 @@ void AddDoublet(const Doublet& doublet, std::size_t row, const Design& design, d
   const int count = OnGrid(doublet.duration_s, period_s, name + ".duration_s");
   if (count < 2 || count % 2 != 0) {
     throw Refused(name + ".duration_s = " + std::to_string(doublet.duration_s) +
-                             " s must be an even number of periods of " + std::to_string(period_s) +
-                             " s, so that its two halves cancel");
+                  " s must be an even number of periods of " + std::to_string(period_s) +
+                  " s, so that its two halves cancel");
   }
   const std::vector<double> shape = Shape(doublet.shape, count);
   const Eigen::Vector2d move =
@@ -85,10 +85,9 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
     for (std::size_t i = 0; i < 2; ++i) {
       if (std::fabs(sample.x_m[i]) <= limit_rad[i]) continue;
       throw Refused("the reference of joint " + std::to_string(i + 1) + " reaches " +
-                               std::to_string(sample.x_m[i] * 180.0 / std::numbers::pi) +
-                               " deg after " + std::to_string(static_cast<double>(k) * period_s) +
-                               " s: the soft limit is " +
-                               std::to_string(limit_rad[i] * 180.0 / std::numbers::pi) + " deg");
+                    std::to_string(sample.x_m[i] * 180.0 / std::numbers::pi) + " deg after " +
+                    std::to_string(static_cast<double>(k) * period_s) + " s: the soft limit is " +
+                    std::to_string(limit_rad[i] * 180.0 / std::numbers::pi) + " deg");
     }
     x_m = design.Am * x_m + design.Bm * Eigen::Vector2d(sample.u_m_nm[0], sample.u_m_nm[1]);
   }

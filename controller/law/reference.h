@@ -17,9 +17,9 @@ class ReferenceTable {
  public:
   /// Runs the reference model over the experiment's doublets, from rest at `start_rad`.
   ///
-  /// A doublet of amplitude a = M_r dtheta / d moves by dtheta, d the displacement of a unit inertia
-  /// under the doublet's sampled shape (T^2/4 for a square, thesis 7.5). Its area is zero, so the
-  /// reference model, a double integrator, ends at rest.
+  /// A doublet of amplitude a = M_r dtheta / d moves by dtheta, d the displacement of a unit
+  /// inertia under the doublet's sampled shape (T^2/4 for a square, thesis 7.5). Its area is zero,
+  /// so the reference model, a double integrator, ends at rest.
   /// @throws Refused naming the doublet whose times do not lie on the grid of `period_s`,
   ///         or the instant at which the reference would leave +-`limit_rad`
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,

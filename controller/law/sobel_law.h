@@ -1,9 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
-
-#include <Eigen/Core>
 
 #include "controller/law/controller_config.h"
 #include "controller/law/design.h"
@@ -42,7 +41,8 @@ class SobelLaw {
   /// @param may_adapt  false holds K_I (invalid sensor, not Running)
   Result Compute(const StateVector& x, const ReferenceSample& reference, bool may_adapt) noexcept;
 
-  /// Calm regulator towards `x_goal`: u = K_stop (x_goal - x), clipped. Damps the arm while Stopping.
+  /// Calm regulator towards `x_goal`: u = K_stop (x_goal - x), clipped. Damps the arm while
+  /// Stopping.
   Result Regulate(const StateVector& x, const StateVector& x_goal) const noexcept;
 
   double adaptive_gain_change() const noexcept;  ///< Frobenius norm of K_I - K_I(0)
@@ -61,7 +61,7 @@ class SobelLaw {
   Matrix2n Cp_;
   Matrix2n K_stop_;
   Eigen::Matrix2d G_;
-  Matrix2n feedforward_x_;           // u* = feedforward_x x_m + feedforward_u u_m
+  Matrix2n feedforward_x_;  // u* = feedforward_x x_m + feedforward_u u_m
   Eigen::Matrix2d feedforward_u_;
   AdaptiveGain K_I0_, K_I_;
 };

@@ -14,7 +14,7 @@ inline constexpr int kMaxFilterOutputs = 8;
 
 /// The reference model at one sample.
 struct ReferenceSample {
-  std::array<double, 2> u_m_nm;              ///< command torque u_m held from this sample on
+  std::array<double, 2> u_m_nm;               ///< command torque u_m held from this sample on
   std::array<double, kMaxNominalStates> x_m;  ///< state of the reference model, SI, psi(L) = 1
 };
 
@@ -22,8 +22,8 @@ struct ReferenceSample {
 ///
 /// Recorded whole before use; replay feeds the same bytes again. No padding.
 struct StepInput {
-  std::int64_t tick;     ///< k: the frame belongs to the sampling instant k Ts
-  std::int64_t now_ns;   ///< scheduled release of this step, in the clock of the loop
+  std::int64_t tick;                 ///< k: the frame belongs to the sampling instant k Ts
+  std::int64_t now_ns;               ///< scheduled release of this step, in the clock of the loop
   std::int64_t sampling_instant_ns;  ///< k Ts, in the same clock: when the frame should be from
   SensorFrame frame;
   std::array<double, 2> applied_torque_nm;  ///< after the gate: mean over [k-1, k] Ts
@@ -31,13 +31,13 @@ struct StepInput {
   ReferenceSample reference_next;           ///< at (k+1) Ts, when the torque computed now acts
   std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts known before a reset
   SafetyState safety_state;
-  std::uint8_t reset;           ///< 1: forget everything but counts_before (the arm was just armed)
-  std::uint8_t reference_ended; ///< 1: reference_next is the last sample of the experiment
+  std::uint8_t reset;  ///< 1: forget everything but counts_before (the arm was just armed)
+  std::uint8_t reference_ended;  ///< 1: reference_next is the last sample of the experiment
   std::array<std::uint8_t, 5> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
-static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) +
-                                       8 * kCounters + 8,
+static_assert(sizeof(StepInput) ==
+                  24 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) + 8 * kCounters + 8,
               "no padding: the bytes are logged and compared");
 
 /// Why Step asked for less than the law computed. Bits of StepOutput::limits.
@@ -51,29 +51,31 @@ enum LimitBit : std::uint32_t {
 /// What one Step decided, and what it knew. No padding.
 struct StepOutput {
   std::int64_t tick;
-  std::uint64_t faults;                  ///< TripCauses that only the loop can see
-  std::array<double, 2> torque_nm;       ///< asked torque, to act at (k+1) Ts; 0 unless TorqueAllowed
-  std::array<double, kCounters> angle_rad;  ///< th1 th2 th3 th4 from the counters
-  std::array<double, 4> modal_m;         ///< fitted f11 f12 f21 f22
+  std::uint64_t faults;             ///< TripCauses that only the loop can see
+  std::array<double, 2> torque_nm;  ///< asked torque, to act at (k+1) Ts; 0 unless TorqueAllowed
+  std::array<double, kCounters> angle_rad;       ///< th1 th2 th3 th4 from the counters
+  std::array<double, 4> modal_m;                 ///< fitted f11 f12 f21 f22
   std::array<double, kMaxNominalStates> x_hat;   ///< state at k Ts
   std::array<double, kMaxNominalStates> x_next;  ///< state predicted to the instant the torque acts
-  std::array<double, kMaxFilterOutputs> innovation;  ///< measurement minus prediction; 0 without filter
-  std::array<double, 2> root_strain;     ///< fitted surface strain at the root of each link
-  std::array<double, 2> fit_residual;    ///< rms of the strain fit, unit strain
-  double adaptive_gain_change;           ///< Frobenius norm of K_I - K_I(0)
-  double fault_value;                    ///< of the lowest fault: the value that broke the limit,
-  double fault_limit;                    ///< the limit,
+  std::array<double, kMaxFilterOutputs>
+      innovation;                      ///< measurement minus prediction; 0 without filter
+  std::array<double, 2> root_strain;   ///< fitted surface strain at the root of each link
+  std::array<double, 2> fit_residual;  ///< rms of the strain fit, unit strain
+  double adaptive_gain_change;         ///< Frobenius norm of K_I - K_I(0)
+  double fault_value;                  ///< of the lowest fault: the value that broke the limit,
+  double fault_limit;                  ///< the limit,
   std::array<std::int64_t, kCounters> counts;  ///< unwrapped
-  std::uint32_t limits;                  ///< LimitBit
-  std::uint32_t strain_used;             ///< bit i: strain channel i took part in the fit
-  std::uint32_t counters_used;           ///< bit i: counter i was good
-  std::uint16_t fault_channel;           ///< and its channel (joint, counter or strain row; 1-based; 0: none)
-  std::uint8_t at_rest;                  ///< hub and strain rates within their bounds for rest_time
-  std::uint8_t experiment_done;          ///< the reference has ended
+  std::uint32_t limits;                        ///< LimitBit
+  std::uint32_t strain_used;                   ///< bit i: strain channel i took part in the fit
+  std::uint32_t counters_used;                 ///< bit i: counter i was good
+  std::uint16_t
+      fault_channel;     ///< and its channel (joint, counter or strain row; 1-based; 0: none)
+  std::uint8_t at_rest;  ///< hub and strain rates within their bounds for rest_time
+  std::uint8_t experiment_done;  ///< the reference has ended
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);
-static_assert(sizeof(StepOutput) == 16 + 8 * (2 + 4 + 4 + 2 * kMaxNominalStates + 8 + 2 + 2 + 3 + 4) +
-                                        16,
+static_assert(sizeof(StepOutput) ==
+                  16 + 8 * (2 + 4 + 4 + 2 * kMaxNominalStates + 8 + 2 + 2 + 3 + 4) + 16,
               "no padding: the bytes are logged and compared");
 
 }  // namespace flexarm

@@ -16,21 +16,21 @@ namespace flexarm {
 
 /// Everything that the control task touches. All of it outlives the task.
 struct ControlChannels {
-  FrameChannel* frames;              ///< read
-  PermitChannel* permits;            ///< read
-  PlanChannel* plans;                ///< read
-  CommandChannel* commands;          ///< written
-  ControlReportChannel* reports;     ///< written
-  SpscQueue<TickRecord>* records;    ///< written: every step, for the log
+  FrameChannel* frames;                ///< read
+  PermitChannel* permits;              ///< read
+  PlanChannel* plans;                  ///< read
+  CommandChannel* commands;            ///< written
+  ControlReportChannel* reports;       ///< written
+  SpscQueue<TickRecord>* records;      ///< written: every step, for the log
   LatestValue<TickRecord>* telemetry;  ///< written: the newest step, for status
 };
 
 /// The control thread's body: newest frame -> Step -> asked torque, 50 Hz. Never waits.
 ///
-/// Step k is due `acquire_before` after the sampling instant k Ts, and takes the frame and the permit
-/// that held before it was due. It is reset when it finds the arm newly armed. Its torque acts at
-/// (k+1) Ts; a fault that it sees takes the torque away at its deadline.
-/// Real-time: safe after construction.
+/// Step k is due `acquire_before` after the sampling instant k Ts, and takes the frame and the
+/// permit that held before it was due. It is reset when it finds the arm newly armed. Its torque
+/// acts at (k+1) Ts; a fault that it sees takes the torque away at its deadline. Real-time: safe
+/// after construction.
 class ControlTask final : public Task {
  public:
   static constexpr int kPriority = 80;
@@ -57,10 +57,10 @@ class ControlTask final : public Task {
   PlannedRun plan_;
   std::atomic<std::uint32_t> released_{0};
   SafetyState state_ = SafetyState::kStarting;
-  int sample_ = -1;               // of the experiment, at the instant the torque acts
-  bool reset_ = true;             // the next step starts afresh
+  int sample_ = -1;    // of the experiment, at the instant the torque acts
+  bool reset_ = true;  // the next step starts afresh
   std::int64_t frozen_from_ns_ = INT64_MAX;
-  std::array<std::int64_t, kCounters> counts_{};   // of the last step
+  std::array<std::int64_t, kCounters> counts_{};  // of the last step
   std::array<double, 2> hub_angle_rad_{};         // of the last step
   CommandHistory commands_{kNoCommand};
   ControlReportHistory reports_{kNoControlReport};

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::int64_t kEpochLeadNs = 100'000'000;  // threads are up before instant 0
 constexpr std::size_t kEventDepth = 256;
-constexpr std::size_t kTimingDepth = 4'000;         // 60 s of the control task
+constexpr std::size_t kTimingDepth = 4'000;  // 60 s of the control task
 constexpr int kHighestPriority = SafetyTask::kPriority;
 
 sigset_t BlockEndSignals() {
@@ -83,8 +83,9 @@ class Daemon {
         stack_(options.config, design_, options.config.arm.payload_mass_kg),
         events_(kEventDepth),
         timing_(kTimingDepth),
-        recording_(InfoOf(options, design_), RunsInDirectory(options.config.daemon.log_directory),
-                   [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
+        recording_(
+            InfoOf(options, design_), RunsInDirectory(options.config.daemon.log_directory),
+            [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         recorder_({.ticks = &stack_.tick_records(),
                    .safety = &stack_.safety_records(),
                    .timing = &timing_,
@@ -115,30 +116,32 @@ class Daemon {
 };
 
 OperatorContext Daemon::Context() {
-  return {.stack = &stack_,
-          .events = &events_,
-          .design = &design_,
-          .grid = LoopGrid(options_.config.loop),
-          .soft_limit_rad = SoftAngleRad(options_.config.safety),
-          .socket = options_.config.daemon.socket,
-          .unattended = options_.experiment,
-          .parse_experiment = options_.parse_experiment,
-          .report = [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
-          .thread_status = [this] { return ThreadStatus(executor_); },
-          .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); }};
+  return {
+      .stack = &stack_,
+      .events = &events_,
+      .design = &design_,
+      .grid = LoopGrid(options_.config.loop),
+      .soft_limit_rad = SoftAngleRad(options_.config.safety),
+      .socket = options_.config.daemon.socket,
+      .unattended = options_.experiment,
+      .parse_experiment = options_.parse_experiment,
+      .report = [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
+      .thread_status = [this] { return ThreadStatus(executor_); },
+      .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); }};
 }
 
 void Daemon::PrepareHost() {
   if (!options_.realtime) {
-    journal_.Error("--without-realtime: ordinary scheduling, unlocked memory. Deadlines will be missed.");
+    journal_.Error(
+        "--without-realtime: ordinary scheduling, unlocked memory. Deadlines will be missed.");
     return;
   }
   for (const std::string& finding : PrepareRealtime(kHighestPriority)) journal_.Info(finding);
 }
 
 DaemonResult Daemon::Run() {
-  journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " + options_.rig_name +
-                ", backend " + options_.backend);
+  journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " +
+                options_.rig_name + ", backend " + options_.backend);
   for (const DesignCheck& check : design_.checks) {
     std::ostringstream text;
     text << "design: " << check.name << " = " << check.value << ", must be "

@@ -13,9 +13,9 @@ namespace flexarm {
 /// What the daemon is started with.
 struct DaemonOptions {
   StackConfig config;
-  std::string backend;      ///< of the config: "sim"
+  std::string backend;  ///< of the config: "sim"
   std::string rig_name;
-  std::string config_text;  ///< whole, for the log
+  std::string config_text;               ///< whole, for the log
   std::optional<Experiment> experiment;  ///< run once, unattended, then end
   std::optional<double> run_for_s;       ///< end after this long
   bool realtime = true;                  ///< false: --without-realtime
@@ -25,7 +25,7 @@ struct DaemonOptions {
 /// How it ended.
 struct DaemonResult {
   bool tripped = false;
-  bool refused = false;           ///< the unattended run was refused
+  bool refused = false;  ///< the unattended run was refused
   std::int64_t log_errors = 0;
 };
 

@@ -9,9 +9,9 @@ namespace flexarm {
 
 /// The control grid in nanoseconds, and the one rule that turns instants into samples.
 ///
-/// Sampling instant k is at k Ts; its step is due `phase` later, published by `deadline` after that,
-/// and its torque acts at (k+1) Ts. The first step that finds the state Running, k0, computes the
-/// torque for the experiment's sample 0; so the experiment starts at (k0 + 1) Ts.
+/// Sampling instant k is at k Ts; its step is due `phase` later, published by `deadline` after
+/// that, and its torque acts at (k+1) Ts. The first step that finds the state Running, k0, computes
+/// the torque for the experiment's sample 0; so the experiment starts at (k0 + 1) Ts.
 struct LoopGrid {
   std::int64_t period_ns;
   std::int64_t phase_ns;

@@ -37,13 +37,13 @@ struct Permit {
   Evidence evidence;              ///< of `cause`
 };
 
-/// Control task -> safety: its heartbeat, and what only the loop can see. Holds from the deadline of
-/// the step on.
+/// Control task -> safety: its heartbeat, and what only the loop can see. Holds from the deadline
+/// of the step on.
 struct ControlReport {
-  std::int64_t tick;       ///< -1: none yet
-  std::int64_t due_ns;     ///< when that step was due
+  std::int64_t tick;    ///< -1: none yet
+  std::int64_t due_ns;  ///< when that step was due
   TripCauses faults;
-  Evidence evidence;       ///< of the lowest fault
+  Evidence evidence;  ///< of the lowest fault
   bool at_rest;
   bool experiment_done;
   int missed_in_a_row;
@@ -51,7 +51,7 @@ struct ControlReport {
 
 /// Drive side (plant task, or the buses) -> safety and control: its heartbeat, and what it did.
 struct DriveReport {
-  std::int64_t due_ns;                      ///< of its last run
+  std::int64_t due_ns;  ///< of its last run
   bool bus_ok;
   bool drive_ok;
 };
@@ -61,18 +61,18 @@ enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kRese
 /// Operator -> safety. `not_before_ns` lets an unattended run plan its requests on the time grid.
 struct OperatorRequest {
   RequestKind kind;
-  std::uint32_t number;         ///< echoed in the answer
+  std::uint32_t number;  ///< echoed in the answer
   std::int64_t not_before_ns;
 };
 
 enum class Refusal : std::uint8_t {
-  kNone,            ///< accepted
-  kWrongState,      ///< the state does not allow it
-  kNotAtRest,       ///< the arm moves
-  kCauseRemains,    ///< the trip's cause is still there
-  kNoReset,         ///< the physical reset button has not been pressed since the trip
-  kUnhealthy,       ///< a fact that would trip is present, or a task has not reported yet
-  kCancelled,       ///< a planned arm or run, overtaken by a stop, a disarm or a trip
+  kNone,          ///< accepted
+  kWrongState,    ///< the state does not allow it
+  kNotAtRest,     ///< the arm moves
+  kCauseRemains,  ///< the trip's cause is still there
+  kNoReset,       ///< the physical reset button has not been pressed since the trip
+  kUnhealthy,     ///< a fact that would trip is present, or a task has not reported yet
+  kCancelled,     ///< a planned arm or run, overtaken by a stop, a disarm or a trip
 };
 
 /// Safety -> operator: what became of a request.
@@ -80,8 +80,8 @@ struct RequestAnswer {
   std::uint32_t number;
   RequestKind kind;
   Refusal refusal;
-  SafetyState state;      ///< when it was judged
-  TripCauses present;     ///< causes present then
+  SafetyState state;   ///< when it was judged
+  TripCauses present;  ///< causes present then
 };
 
 /// How the messages travel: one channel a reader, with as many entries as the slowest reader that

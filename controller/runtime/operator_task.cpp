@@ -15,17 +15,17 @@ using Json = nlohmann::json;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr int kNoClient = -1;
 constexpr std::int64_t kShutdownLimitNs = 6'000'000'000;  // a stop takes 3 s at most, or trips
-constexpr std::int64_t kAfterTripNs = 5'000'000'000;      // the log of a tripped run goes on this long
-constexpr std::int64_t kSettleNs = 300'000'000;           // until the recorder has seen everything
-constexpr std::int64_t kAliveNs = 100'000'000;            // an older heartbeat starves the watchdog
+constexpr std::int64_t kAfterTripNs = 5'000'000'000;  // the log of a tripped run goes on this long
+constexpr std::int64_t kSettleNs = 300'000'000;       // until the recorder has seen everything
+constexpr std::int64_t kAliveNs = 100'000'000;        // an older heartbeat starves the watchdog
 
 Json Failure(const std::string& error, const std::string& remedy) {
   return {{"ok", false}, {"error", error}, {"remedy", remedy}};
 }
 
 std::optional<RequestKind> RequestByName(const std::string& name) {
-  for (const RequestKind kind : {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm,
-                                 RequestKind::kReset}) {
+  for (const RequestKind kind :
+       {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
     if (name == Name(kind)) return kind;
   }
   return std::nullopt;
@@ -60,8 +60,8 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     while (!plans_.empty() && plans_.front().number < context_.stack->released_plans()) {
       plans_.pop_front();
     }
-    const bool alive = now_ns_ - permit_.renewed_ns < kAliveNs &&
-                       now_ns_ - telemetry_.input.now_ns < kAliveNs;
+    const bool alive =
+        now_ns_ - permit_.renewed_ns < kAliveNs && now_ns_ - telemetry_.input.now_ns < kAliveNs;
     if (alive) context_.alive(now_ns_, Name(permit_.state));
   } catch (const std::exception& error) {
     context_.report(true, std::string("operator: ") + error.what());
@@ -124,8 +124,8 @@ Json OperatorTask::PressLine(const Json& command) {
                    "reset-button, and level 0 or 1");
   }
   context_.stack->presses().Push({.line = *line, .level = level});
-  context_.report(false, std::string("simulated line ") + Name(*line) + " set to " +
-                             std::to_string(level));
+  context_.report(
+      false, std::string("simulated line ") + Name(*line) + " set to " + std::to_string(level));
   return {{"ok", true},
           {"command", "sim"},
           {"state", Name(permit_.state)},
@@ -173,7 +173,8 @@ void OperatorTask::TakeAnswers() {
     unattended_.Answered(answer);
     const bool ok = answer.refusal == Refusal::kNone;
     const std::string why = RefusalText(answer.kind, answer.refusal, answer.state);
-    context_.report(!ok, std::string(Name(answer.kind)) + (ok ? ": accepted" : ": refused: " + why));
+    context_.report(!ok,
+                    std::string(Name(answer.kind)) + (ok ? ": accepted" : ": refused: " + why));
     if (waiting_.empty() || waiting_.front().number != answer.number) continue;
     Json reply{{"ok", ok}, {"command", Name(answer.kind)}, {"state", Name(permit_.state)}};
     if (!ok) {
@@ -201,12 +202,10 @@ Json OperatorTask::Status() {
               {"trip", nullptr},
               {"threads", context_.thread_status()}};
   if (permit_.state == SafetyState::kTripped) {
-    status["trip"] = {{"name", Name(permit_.cause)},
-                      {"number", static_cast<int>(permit_.cause)},
-                      {"value", permit_.evidence.value},
-                      {"limit", permit_.evidence.limit},
-                      {"channel", permit_.evidence.channel},
-                      {"text", OperatorText(permit_.cause)}};
+    status["trip"] = {
+        {"name", Name(permit_.cause)},         {"number", static_cast<int>(permit_.cause)},
+        {"value", permit_.evidence.value},     {"limit", permit_.evidence.limit},
+        {"channel", permit_.evidence.channel}, {"text", OperatorText(permit_.cause)}};
   }
   return status;
 }
@@ -233,8 +232,8 @@ void OperatorTask::FollowShutdown() {
     context_.report(false, "shutting down: bringing the arm to rest");
   }
   const bool late = now_ns_ - shutdown_since_ns_ > kShutdownLimitNs;
-  const bool moving = permit_.state == SafetyState::kRunning ||
-                      permit_.state == SafetyState::kStopping;
+  const bool moving =
+      permit_.state == SafetyState::kRunning || permit_.state == SafetyState::kStopping;
   if (late || (!moving && permit_.state != SafetyState::kArmed)) {
     if (over_ns_ == INT64_MAX) over_ns_ = now_ns_ + kSettleNs;
     if (now_ns_ >= over_ns_) done_.store(true, std::memory_order_release);

@@ -21,11 +21,11 @@ namespace flexarm {
 /// What the operator task needs of its daemon. All of it outlives the task.
 struct OperatorContext {
   SimulatedStack* stack;
-  EventQueue* events;        ///< to the recorder
+  EventQueue* events;  ///< to the recorder
   const Design* design;
   LoopGrid grid;
   std::array<double, 2> soft_limit_rad;
-  std::string socket;        ///< path; empty: no socket
+  std::string socket;                    ///< path; empty: no socket
   std::optional<Experiment> unattended;  ///< run once without a person
   /// Reads an experiment that a client sent. Throws std::exception with the reasons.
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
@@ -40,8 +40,8 @@ struct OperatorContext {
 /// The operator thread's body, 50 Hz: commands in, answers and telemetry out, journal, watchdog.
 ///
 /// Commands are JSON objects, one a line: {"command": "arm"}. Every answer has "ok"; a refused one
-/// "error" and "remedy". What changes the arm's state is judged by the safety task; the answer waits
-/// for it. Not real-time safe. Thread: its own.
+/// "error" and "remedy". What changes the arm's state is judged by the safety task; the answer
+/// waits for it. Not real-time safe. Thread: its own.
 class OperatorTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 20'000'000;

@@ -14,8 +14,7 @@ namespace flexarm {
 struct PlannedExperiment {
   /// Parameters as ReferenceTable's. @throws Refused as ReferenceTable
   PlannedExperiment(const Experiment& experiment, const Design& design, double period_s,
-                    const std::array<double, 2>& start_rad,
-                    const std::array<double, 2>& limit_rad);
+                    const std::array<double, 2>& start_rad, const std::array<double, 2>& limit_rad);
 
   ReferenceTable reference;
   std::vector<SimEvent> sim_events;  ///< in order of time; simulated backend only

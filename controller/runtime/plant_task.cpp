@@ -58,7 +58,8 @@ void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
   ++applied_slices_;
 }
 
-// The slew limit counts from command to command: between two commands the drive holds its set-point.
+// The slew limit counts from command to command: between two commands the drive holds its
+// set-point.
 std::array<double, 2> PlantTask::Drive(std::int64_t start_ns) noexcept {
   const std::int64_t acting_ns = start_ns - transport_delay_ns_;
   const CommandHistory::Entry& command = channels_.commands->Read().At(acting_ns);

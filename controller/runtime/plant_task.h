@@ -26,24 +26,23 @@ struct LinePress {
 
 /// Everything that the plant task touches. All of it outlives the task.
 struct PlantChannels {
-  CommandChannel* commands;          ///< read
-  PermitChannel* permits;            ///< read
-  OutputChannel* outputs;            ///< read: relay and charge pump
-  PlanChannel* plans;                ///< read: for the experiment's sim_events
-  SpscQueue<LinePress>* presses;     ///< read
-  FrameChannel* frames;              ///< written
-  LevelChannel* levels;              ///< written
-  DriveReportChannel* reports;       ///< written
+  CommandChannel* commands;       ///< read
+  PermitChannel* permits;         ///< read
+  OutputChannel* outputs;         ///< read: relay and charge pump
+  PlanChannel* plans;             ///< read: for the experiment's sim_events
+  SpscQueue<LinePress>* presses;  ///< read
+  FrameChannel* frames;           ///< written
+  LevelChannel* levels;           ///< written
+  DriveReportChannel* reports;    ///< written
 };
 
 /// The simulated backend's thread: 1 kHz, integrates the plant up to its due instant.
 ///
-/// Each millisecond of the plant, s to s + 1 ms, is driven by what holds at s: the command that acts,
-/// through the gate on the permit of s, and nothing if the relay is open or the charge pump has not
-/// toggled for 5 ms. The slice is integrated when it is over, so everybody had a millisecond to
-/// publish what holds at its start. Frames are taken at exactly k Ts. A late thread catches up: the
-/// simulated world does not lose time.
-/// Real-time: safe after construction.
+/// Each millisecond of the plant, s to s + 1 ms, is driven by what holds at s: the command that
+/// acts, through the gate on the permit of s, and nothing if the relay is open or the charge pump
+/// has not toggled for 5 ms. The slice is integrated when it is over, so everybody had a
+/// millisecond to publish what holds at its start. Frames are taken at exactly k Ts. A late thread
+/// catches up: the simulated world does not lose time. Real-time: safe after construction.
 class PlantTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -70,7 +69,7 @@ class PlantTask final : public Task {
   LoopGrid grid_;
   GateLimits limits_;
   std::int64_t transport_delay_ns_;
-  PlannedRun plan_;                      // of the run that began at run_since_ns_
+  PlannedRun plan_;  // of the run that began at run_since_ns_
   std::int64_t run_since_ns_ = INT64_MIN;
   std::size_t next_event_ = 0;
   std::atomic<std::uint32_t> released_{0};

@@ -11,7 +11,8 @@ namespace flexarm {
 struct LoopConfig {
   double period_ms;          ///< Ts; sampling instants are at k Ts
   double acquire_before_ms;  ///< the control task runs this long after the sampling instant's grid
-  double step_deadline_ms;   ///< a Step published later than this after its release missed its deadline
+  double
+      step_deadline_ms;  ///< a Step published later than this after its release missed its deadline
 
   std::vector<Problem> Problems() const;
 };

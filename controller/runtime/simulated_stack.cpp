@@ -12,8 +12,7 @@ constexpr std::size_t kOperatorDepth = 64;
 
 }  // namespace
 
-SimulatedStack::SimulatedStack(const StackConfig& config, const Design& design,
-                               double payload_kg)
+SimulatedStack::SimulatedStack(const StackConfig& config, const Design& design, double payload_kg)
     : outputs_(OutputHistory({.relay_closed = false, .pump_level = false})),
       levels_(LevelHistory(kHealthyLevels)),
       requests_(kOperatorDepth),

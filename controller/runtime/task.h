@@ -19,8 +19,8 @@ class Task {
   };
 
   struct Activation {
-    std::int64_t due_ns;   ///< on the grid phase + n period, in the clock of the loop
-    int missed_in_a_row;   ///< deadlines missed or periods skipped just before this one
+    std::int64_t due_ns;  ///< on the grid phase + n period, in the clock of the loop
+    int missed_in_a_row;  ///< deadlines missed or periods skipped just before this one
   };
 
   virtual ~Task() = default;

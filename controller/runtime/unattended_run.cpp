@@ -14,7 +14,8 @@ OperatorRequest UnattendedRun::Update(std::int64_t due_ns, const Permit& permit)
   const std::int64_t soon_ns = due_ns + kLeadNs;
   if (!over()) {
     switch (permit.state) {
-      case SafetyState::kStarting: break;
+      case SafetyState::kStarting:
+        break;
       case SafetyState::kIdle:
         if (!ran_) return Ask(RequestKind::kArm, std::max(soon_ns, kFirstArmNs));
         progress_ = Progress::kDone;
@@ -28,7 +29,9 @@ OperatorRequest UnattendedRun::Update(std::int64_t due_ns, const Permit& permit)
         progress_ = Progress::kRunning;
         ran_ = true;
         break;
-      case SafetyState::kTripped: progress_ = Progress::kDone; break;
+      case SafetyState::kTripped:
+        progress_ = Progress::kDone;
+        break;
     }
   }
   return {.kind = RequestKind::kNone, .number = 0, .not_before_ns = 0};

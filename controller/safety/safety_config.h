@@ -10,18 +10,18 @@ namespace flexarm {
 /// Sections [limits] and [safety].
 struct SafetyConfig {
   // [limits]
-  std::array<double, 2> torque_limit_nm;        ///< at the gearbox output
+  std::array<double, 2> torque_limit_nm;  ///< at the gearbox output
   std::array<double, 2> slew_limit_nm_per_s;
-  std::array<double, 2> soft_angle_deg;         ///< |hub angle| beyond this trips
-  std::array<double, 2> hub_rate_rad_s;         ///< |estimated hub rate| beyond this on two ticks trips
-  std::array<double, 2> strain_limit;           ///< |fitted surface strain at the root| beyond this trips
+  std::array<double, 2> soft_angle_deg;  ///< |hub angle| beyond this trips
+  std::array<double, 2> hub_rate_rad_s;  ///< |estimated hub rate| beyond this on two ticks trips
+  std::array<double, 2> strain_limit;    ///< |fitted surface strain at the root| beyond this trips
   // [safety]
-  double rest_hub_rate_rad_s;      ///< at rest: both hub rates below this
-  double rest_strain_rate_per_s;   ///< at rest: both root strain rates below this
-  double rest_time_s;              ///< for this long
-  double stop_timeout_s;           ///< Stopping longer than this trips
-  double permit_timeout_ms;        ///< a permit older than this means zero torque
-  int missed_deadlines_to_trip;    ///< consecutive missed deadlines of the control task
+  double rest_hub_rate_rad_s;     ///< at rest: both hub rates below this
+  double rest_strain_rate_per_s;  ///< at rest: both root strain rates below this
+  double rest_time_s;             ///< for this long
+  double stop_timeout_s;          ///< Stopping longer than this trips
+  double permit_timeout_ms;       ///< a permit older than this means zero torque
+  int missed_deadlines_to_trip;   ///< consecutive missed deadlines of the control task
 
   std::vector<Problem> Problems() const;
 };

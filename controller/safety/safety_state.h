@@ -21,12 +21,18 @@ constexpr bool TorqueAllowed(SafetyState state) noexcept {
 
 constexpr const char* Name(SafetyState state) noexcept {
   switch (state) {
-    case SafetyState::kStarting: return "Starting";
-    case SafetyState::kIdle: return "Idle";
-    case SafetyState::kArmed: return "Armed";
-    case SafetyState::kRunning: return "Running";
-    case SafetyState::kStopping: return "Stopping";
-    case SafetyState::kTripped: return "Tripped";
+    case SafetyState::kStarting:
+      return "Starting";
+    case SafetyState::kIdle:
+      return "Idle";
+    case SafetyState::kArmed:
+      return "Armed";
+    case SafetyState::kRunning:
+      return "Running";
+    case SafetyState::kStopping:
+      return "Stopping";
+    case SafetyState::kTripped:
+      return "Tripped";
   }
   return "corrupted";
 }

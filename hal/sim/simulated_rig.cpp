@@ -82,8 +82,10 @@ SimulatedRig::Truth SimulatedRig::truth() const noexcept {
   const double th1 = state_.q(kTheta1), gamma = th1 + std::atan(slope) + state_.q(kTheta2);
   const double L1 = link1.length_m, L2 = arm_.link_modes(2).length_m;
   return {.hub_angle_rad = {th1, state_.q(kTheta2)},
-          .tip_m = {L1 * std::cos(th1) - w1 * std::sin(th1) + L2 * std::cos(gamma) - w2 * std::sin(gamma),
-                    L1 * std::sin(th1) + w1 * std::cos(th1) + L2 * std::sin(gamma) + w2 * std::cos(gamma)},
+          .tip_m = {L1 * std::cos(th1) - w1 * std::sin(th1) + L2 * std::cos(gamma) -
+                        w2 * std::sin(gamma),
+                    L1 * std::sin(th1) + w1 * std::cos(th1) + L2 * std::sin(gamma) +
+                        w2 * std::cos(gamma)},
           .tip_deflection_m = {w1, w2}};
 }
 

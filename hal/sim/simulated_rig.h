@@ -58,11 +58,11 @@ class SimulatedRig {
   ArmState state_;
   ArmVector filtered_;  // modal coordinates behind the gauge filter
   std::int64_t step_ns_;
-  double filter_blend_;                 // 1 - exp(-w_f h)
-  std::array<double, 2> motor_blend_;   // 1 - exp(-h / T_e)
+  double filter_blend_;                // 1 - exp(-w_f h)
+  std::array<double, 2> motor_blend_;  // 1 - exp(-h / T_e)
   std::array<double, 2> switch_angle_rad_;
   std::array<double, 2> set_point_nm_{};
-  std::array<double, 2> torque_nm_{};   // behind the electrical lag
+  std::array<double, 2> torque_nm_{};  // behind the electrical lag
   LineLevels forced_ = kHealthyLevels;
 };
 

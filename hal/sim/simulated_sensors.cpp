@@ -10,10 +10,10 @@ SimulatedSensors::SimulatedSensors(const ArmModel& arm, const SensorConfig& sens
                                    std::uint64_t seed)
     : input_(sensors.strain_input), random_(seed) {
   for (const EncoderConfig& encoder : sensors.encoder) {
-    encoder_.push_back({.counter = static_cast<std::size_t>(encoder.counter),
-                        .counts_per_rad =
-                            encoder.sign * encoder.counts_per_turn / (2.0 * std::numbers::pi),
-                        .modulus = std::int64_t{1} << encoder.counter_bits});
+    encoder_.push_back(
+        {.counter = static_cast<std::size_t>(encoder.counter),
+         .counts_per_rad = encoder.sign * encoder.counts_per_turn / (2.0 * std::numbers::pi),
+         .modulus = std::int64_t{1} << encoder.counter_bits});
   }
   for (const StrainChannelConfig& row : sensors.strain) {
     const double counts_per_unit = row.face * row.gain_v_per_unit / input_.volts_per_count();
@@ -23,7 +23,8 @@ SimulatedSensors::SimulatedSensors(const ArmModel& arm, const SensorConfig& sens
     for (int mode = 0; mode < count; ++mode) {
       Eigen::VectorXd unit = Eigen::VectorXd::Zero(arm.dof());
       unit(kPhi1 + first + mode) = 1.0;
-      gauge.counts_per_metre.push_back(counts_per_unit * arm.Strain(row.link, row.position_m, unit));
+      gauge.counts_per_metre.push_back(counts_per_unit *
+                                       arm.Strain(row.link, row.position_m, unit));
     }
     gauge_.push_back(std::move(gauge));
   }
@@ -45,7 +46,8 @@ SensorFrame SimulatedSensors::Sample(std::int64_t now_ns, const ArmVector& q,
     const Gauge& gauge = gauge_[i];
     double counts = gauge.offset_counts;
     for (std::size_t mode = 0; mode < gauge.counts_per_metre.size(); ++mode) {
-      counts += gauge.counts_per_metre[mode] * filtered(gauge.first + static_cast<Eigen::Index>(mode));
+      counts +=
+          gauge.counts_per_metre[mode] * filtered(gauge.first + static_cast<Eigen::Index>(mode));
     }
     counts += input_.noise_counts * noise_(random_);
     const double railed = std::clamp(counts, static_cast<double>(input_.lowest_count()),

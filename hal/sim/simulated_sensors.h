@@ -15,9 +15,9 @@ namespace flexarm {
 /// Turns the state of the simulated arm into the raw counts that the rig's converters would show.
 ///
 /// Encoders round to the nearest count and wrap at their counter's width. Strain channels read the
-/// modal coordinates behind the gauges' analogue filter, then noise, rounding and rails. Noise comes
-/// from one seeded generator, drawn channel by channel in config order: same seed, same frames.
-/// Real-time: Sample is safe.
+/// modal coordinates behind the gauges' analogue filter, then noise, rounding and rails. Noise
+/// comes from one seeded generator, drawn channel by channel in config order: same seed, same
+/// frames. Real-time: Sample is safe.
 class SimulatedSensors {
  public:
   SimulatedSensors(const ArmModel& arm, const SensorConfig& sensors, std::uint64_t seed);
@@ -35,7 +35,7 @@ class SimulatedSensors {
   };
   struct Gauge {
     double offset_counts;
-    Eigen::Index first;  // of its link's modal coordinates in `filtered`
+    Eigen::Index first;                    // of its link's modal coordinates in `filtered`
     std::vector<double> counts_per_metre;  // of every modal coordinate of its link
   };
 
