@@ -49,7 +49,9 @@ NoAlloc::~NoAlloc() { --armed; }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// glibc's own, under the names that it keeps for replacements.
+// glibc's own, under the names that it keeps for replacements; and the replacements.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-inconsistent-declaration-parameter-name):
+// the names are glibc's.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -93,5 +95,6 @@ void free(void* block) {
   __libc_free(block);
 }
 }  // extern "C"
+// NOLINTEND(bugprone-reserved-identifier, readability-inconsistent-declaration-parameter-name)
 
 #endif
