@@ -58,6 +58,11 @@ int Main(int argc, char** argv) {
       "  flexarm replay RUN.flexarm                does it compute the same again?\n"
       "Exit codes: 0 done; 1 a run, replay or check failed; 2 bad usage, config or input.");
   RegisterVerbs(app, exit);
+  const auto is_first = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty()) {
+    Complain("unknown verb \"" + std::string(argv[1]) + "\"; flexarm --help names them all");
+    return Exit::kBadInput;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

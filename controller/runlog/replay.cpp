@@ -32,7 +32,8 @@ void Replay::Tick(const TickRecord& record) {
   previous_tick_ = tick;
   ++result_.ticks;
 
-  const FlushDenormals flush;  // as in the control thread: the same bytes ask for the same arithmetic
+  const FlushDenormals
+      flush;  // as in the control thread: the same bytes ask for the same arithmetic
   const StepOutput output = step_(record.input);
   for (std::size_t joint = 0; joint < 2; ++joint) {
     double& largest = result_.max_torque_difference_nm[joint];

@@ -1,0 +1,48 @@
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "controller/runlog/csv.h"
+#include "controller/runlog/errors.h"
+#include "tools/options.h"
+#include "tools/run_summary.h"
+#include "tools/verbs.h"
+
+namespace flexarm {
+namespace {
+
+struct Options {
+  std::filesystem::path run, output;
+};
+
+void Export(const Options& options) {
+  RunReader reader(options.run);
+  const Config config = ConfigOf(reader);
+  std::ofstream file(options.output, std::ios::binary);
+  CsvWriter writer(&file, config.sensors, reader.info().start_ns);
+  std::int64_t rows = 0;
+  reader.ForEachTick([&](const TickRecord& record) {
+    writer.Row(record.input);
+    ++rows;
+  });
+  file.close();
+  if (!file) throw RunLogError(options.output.string() + ": cannot be written");
+  std::cerr << "wrote " << rows << " samples to " << options.output.string() << '\n';
+}
+
+}  // namespace
+
+void RegisterExport(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("export", "Write a run as CSV, which replay reads again");
+  verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
+  AddOutput(verb, &options->output, "CSV file to write");
+  verb->footer(
+      "Columns: time_s, counter_1..4 and strain_<link>_<number> as raw counts, valid (1, 0 or a\n"
+      "mask), torque_1_nm and torque_2_nm as applied.\n"
+      "Example: flexarm export runs/today.flexarm -o today.csv");
+  verb->callback([options] { Export(*options); });
+}
+
+}  // namespace flexarm

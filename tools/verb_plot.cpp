@@ -1,0 +1,52 @@
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+#include <memory>
+
+#include "controller/runlog/errors.h"
+#include "tools/options.h"
+#include "tools/plot_script.h"
+#include "tools/verbs.h"
+
+namespace flexarm {
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path output;
+};
+
+void Plot(const Options& options) {
+  const auto extension = options.output.extension();
+  if (extension != ".png" && extension != ".svg") {
+    throw InputError(options.output.string() + ": found extension \"" + extension.string() +
+                     "\", expected .png or .svg");
+  }
+  std::vector<PlotRun> runs;
+  for (const auto& file : options.runs) {
+    runs.push_back(PlotDataOf(LoadRun(file)));
+    if (runs.back().sample.empty()) {
+      throw InputError(file.string() + ": has no ticks; expected a run with at least one");
+    }
+  }
+  std::signal(SIGPIPE, SIG_IGN);  // a missing gnuplot is a message, not a silent death
+  RunGnuplot(PlotScript(runs, options.output));
+  std::cerr << "wrote " << options.output.string() << '\n';
+}
+
+}  // namespace
+
+void RegisterPlot(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb =
+      app.add_subcommand("plot", "A picture of one run, or of several over each other");
+  verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");
+  AddOutput(verb, &options->output, "Picture to write, .png or .svg");
+  verb->footer(
+      "Angles against their references, torques asked and applied, tip deflections, the tip's\n"
+      "distance from where it comes to rest, the safety state, and the arm from above.\n"
+      "Example: flexarm plot runs/today.flexarm runs/yesterday.flexarm -o compare.png");
+  verb->callback([options] { Plot(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,152 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "controller/law/control_step.h"
+#include "controller/law/design.h"
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/csv.h"
+#include "controller/runlog/errors.h"
+#include "controller/runlog/replay.h"
+#include "tools/options.h"
+#include "tools/run_summary.h"
+#include "tools/verbs.h"
+
+namespace flexarm {
+namespace {
+
+struct Options {
+  std::filesystem::path source;
+  ConfigOptions config;
+  bool json = false;
+};
+
+struct Outcome {
+  ReplayResult result;
+  std::string other_build;  // the recorded build id, if it is not this one's
+};
+
+StepFunction Fresh(const StackConfig& config, const Design& design) {
+  const auto step = std::make_shared<ControlStep>(config, design);
+  return [step](const StepInput& input) { return step->Step(input); };
+}
+
+Design GainsOf(const RunReader& reader, const Config& config) {
+  try {
+    return DesignFromJson(reader.info().gains_json, DesignHash(config));
+  } catch (const std::runtime_error& error) {
+    throw InputError(reader.file().string() + ": its gains cannot be used: " + error.what());
+  }
+}
+
+Outcome ReplayRun(const Options& options) {
+  RunReader reader(options.source);
+  const Config own = ConfigOf(reader);
+  const bool asks_for_other = options.config.given() || !options.config.overrides.empty();
+  const Config config = asks_for_other ? options.config.Load() : own;
+  const bool other_config = config.text != own.text;
+  const Design design = other_config ? DesignFor(config) : GainsOf(reader, config);
+  Replay replay(Fresh(config, design), other_config);
+  reader.ForEachTick([&](const TickRecord& record) { replay.Tick(record); });
+  reader.ForEachSafety([&](const SafetyRecord& record) { replay.Safety(record); });
+  const std::string& build = reader.info().build_id;
+  return {.result = replay.Result(), .other_build = build == BuildId() ? "" : build};
+}
+
+// A CSV file has no outputs of its own. What was applied up to a row was asked one row before.
+Outcome ReplayCsv(const Options& options) {
+  if (!options.config.given()) {
+    throw InputError(options.source.string() +
+                     ": a CSV file needs the config of its rig: add -c FILE");
+  }
+  const Config config = options.config.Load();
+  const auto inputs = ReadCsv(options.source, config.sensors, config.loop.period_ms * 1e-3);
+  Replay replay(Fresh(config, DesignFor(config)), true);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    TickRecord record{};
+    record.input = inputs[i];
+    record.output.torque_nm = inputs[std::min(i + 1, inputs.size() - 1)].applied_torque_nm;
+    replay.Tick(record);
+  }
+  return {.result = replay.Result(), .other_build = ""};
+}
+
+template <typename T>
+nlohmann::ordered_json OrNull(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json ToJson(const Outcome& outcome) {
+  const ReplayResult& result = outcome.result;
+  nlohmann::ordered_json json;
+  json["ticks"] = result.ticks;
+  json["bit_exact"] = OrNull(result.bit_exact);
+  json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
+                                      NumberOrNull(result.max_torque_difference_nm[1])};
+  json["safety_exact"] = OrNull(result.safety_exact);
+  json["first_gap_tick"] = OrNull(result.first_gap_tick);
+  json["first_different_tick"] = OrNull(result.first_different_tick);
+  json["safety_records"] = result.safety_records;
+  json["same_build"] = outcome.other_build.empty();
+  return json;
+}
+
+const char* Word(const std::optional<bool>& exact) {
+  if (!exact) return "not compared";
+  return *exact ? "yes" : "NO";
+}
+
+void PrintText(const Outcome& outcome) {
+  const ReplayResult& result = outcome.result;
+  std::cout << "ticks                     " << result.ticks << '\n'
+            << "bit exact                 " << Word(result.bit_exact) << '\n'
+            << "max torque difference     " << result.max_torque_difference_nm[0] << ", "
+            << result.max_torque_difference_nm[1] << " N m\n"
+            << "safety exact              " << Word(result.safety_exact) << " ("
+            << result.safety_records << " records)\n";
+  if (result.first_gap_tick)
+    std::cout << "first missing tick        " << *result.first_gap_tick << '\n';
+  if (result.bit_exact && result.first_different_tick) {
+    std::cout << "first different tick      " << *result.first_different_tick << '\n';
+  }
+}
+
+int Run(const Options& options) {
+  const bool is_run = options.source.extension() != ".csv";
+  const Outcome outcome = is_run ? ReplayRun(options) : ReplayCsv(options);
+  if (!outcome.other_build.empty()) {
+    std::cerr << "flexarm: another build recorded this run: " << outcome.other_build
+              << "; this one is " << BuildId() << '\n';
+  }
+  if (options.json) {
+    std::cout << ToJson(outcome).dump(2) << '\n';
+  } else {
+    PrintText(outcome);
+  }
+  const bool differs =
+      !outcome.result.bit_exact.value_or(true) || !outcome.result.safety_exact.value_or(true);
+  return differs ? Exit::kFailed : Exit::kDone;
+}
+
+}  // namespace
+
+void RegisterReplay(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "replay", "Run recorded inputs through the loop again and compare what it asks for");
+  verb->add_option("source", options->source, "Run log, or CSV file (*.csv)")
+      ->required()
+      ->type_name("RUN_OR_CSV");
+  options->config.AddTo(verb, false);
+  AddJson(verb, &options->json);
+  verb->footer(
+      "A run log brings its own config and gains, and must give the same bytes: exit code 1 if "
+      "not.\n"
+      "With -c the loop is built from another config, and the difference is reported.\n"
+      "Examples: flexarm replay runs/today.flexarm\n"
+      "          flexarm replay today.csv -c config/thesis-rig.toml");
+  verb->callback([options, &exit] { exit.code = Run(*options); });
+}
+
+}  // namespace flexarm
