@@ -1,10 +1,13 @@
 #include "controller/law/control_step.h"
 
+#include <cmath>
+
 #include "controller/law/design.h"
 #include "controller/law/loop_supervisor.h"
 #include "controller/law/sobel_law.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/counter_decoder.h"
+#include "estimator/reading_age.h"
 #include "estimator/state_estimator.h"
 #include "estimator/strain_fit.h"
 
@@ -28,6 +31,7 @@ void Store(const StateVector& x, std::array<double, kMaxNominalStates>* out) noe
 struct ControlStep::Stages {
   Stages(const StackConfig& config, const Design& design)
       : period_s(config.loop.period_ms * 1e-3),
+        max_reading_age_ns(std::llround(config.loop.period_ms * 0.5e6)),
         prediction(config.controller.prediction),
         decoder(config.sensors, period_s, config.estimator.max_joint_rate_rad_s),
         fit(config.arm, config.sensors, config.estimator),
@@ -83,6 +87,7 @@ struct ControlStep::Stages {
   }
 
   const double period_s;
+  const std::int64_t max_reading_age_ns;  // half a period: nearer to this sample than to another
   const bool prediction;
   CounterDecoder decoder;
   StrainFit fit;
@@ -105,11 +110,10 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   Stages& s = *stages_;
   if (input.reset != 0) s.Reset(input.counts_before);
 
-  // A frame of another sampling instant says nothing about this one.
-  SensorFrame frame = input.frame;
   const double frame_age_s =
-      static_cast<double>(input.sampling_instant_ns - frame.sampled_at_ns) * 1e-9;
-  if (frame_age_s > 0.5 * s.period_s) frame.counter_valid = frame.strain_valid = 0;
+      static_cast<double>(input.sampling_instant_ns - input.frame.sampled_at_ns) * 1e-9;
+  const SensorFrame frame =
+      WithoutStaleReadings(input.frame, input.sampling_instant_ns, s.max_reading_age_ns);
 
   const DecodedCounters counters = s.decoder.Decode(frame);
   const FittedModes modes = s.fit.Fit(frame);
