@@ -53,13 +53,13 @@ class RecorderTest : public RunLogTest {
 TEST_F(RecorderTest, ARunIsFromTheResetAfterArmUntilIdle) {
   RunContents run;
   Start(RunInMemory(&run));
-  Ticks(0, 100, 11);
+  Ticks(0, 100, 12);
   Arm(10 * kTestPeriodNs + 1);
   safety_.Push(MakeSafety(50 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm));
   RunUntil(3 * kSecond);
   EXPECT_FALSE(recording_->is_open());
-  ASSERT_EQ(run.tick.size(), 40U);
-  EXPECT_EQ(run.tick.front().input.tick, 11);
+  ASSERT_EQ(run.tick.size(), 39U);
+  EXPECT_EQ(run.tick.front().input.tick, 12);  // 11 was computed before the reset
   EXPECT_EQ(run.tick.back().input.tick, 50);
   EXPECT_EQ(run.safety.size(), 2U);
   EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs + 1);
@@ -96,7 +96,7 @@ TEST_F(RecorderTest, WhenRecordsArriveDoesNotChangeTheLog) {
 
   Start(RunInMemory(&late));
   Ticks(1, 1, 1);  // the tick is there before the record that opens the run
-  RunUntil(20'000'000);
+  RunUntil(RecorderTask::kPeriodNs);
   Arm(100);
   Ticks(2, 60, 1);
   RunUntil(2 * kSecond);
