@@ -22,9 +22,11 @@ inline constexpr std::uint32_t kStepOutputVersion = 1;
 static_assert(sizeof(StepInput) == 680, "the layout changed: raise kStepInputVersion");
 static_assert(sizeof(StepOutput) == 520, "the layout changed: raise kStepOutputVersion");
 
+/// A logged struct with the version before it.
 template <typename T>
 using BlobBytes = std::array<std::byte, sizeof(std::uint32_t) + sizeof(T)>;
 
+/// Version, then the bytes of the struct.
 template <typename T>
 BlobBytes<T> EncodeBlob(std::uint32_t version, const T& value) {
   static_assert(std::is_trivially_copyable_v<T>);
