@@ -1,0 +1,175 @@
+#include "estimator/state_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "tests/estimator/thesis_estimator.h"
+
+namespace flexarm {
+namespace {
+
+const std::array<double, 2> kStiffness = {761.59, 497.96};
+
+FilterGains GainsOf(const KalmanDesign& design) {
+  return {.A = design.A, .B = design.B, .C = design.C, .L = design.L};
+}
+
+DecodedCounters Angles(double th1, double th2, double th3, double th4) {
+  DecodedCounters counters{};
+  counters.angle_rad = {th1, th2, th3, th4};
+  counters.good = 0b1111;
+  return counters;
+}
+
+FittedModes Bend(const std::array<double, 4>& modal) {
+  FittedModes modes{};
+  modes.modal_m = modal;
+  modes.valid = {true, true};
+  return modes;
+}
+
+StateEstimator Kalman(const KalmanDesign& design) {
+  return {ThesisEstimator(), GainsOf(design), kPeriod_s, kStiffness};
+}
+
+StateEstimator Difference() {
+  return {ThesisEstimator(EstimatorKind::kDifference), GainsOf(ThesisFilter()), kPeriod_s,
+          kStiffness};
+}
+
+TEST(KalmanFilter, StartsFromItsFirstMeasurementAtRest) {
+  StateEstimator estimator = Kalman(ThesisFilter());
+  const auto out =
+      estimator.Update(Angles(0.3, -0.2, 0.3, -0.2), Bend({0.01, 1e-3, 0.02, -1e-3}), {0.0, 0.0});
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(12);
+  expected.head<6>() << 0.3, -0.2, 0.01, 1e-3, 0.02, -1e-3;
+  EXPECT_EQ((out.x - expected).cwiseAbs().maxCoeff(), 0.0);
+}
+
+// Fed what the model itself does, it makes no innovation: a filter whose prediction is wrong in any
+// term does. Round-off of 200 products of numbers up to 50: 1e-12 measured below.
+TEST(KalmanFilter, OnItsOwnModelWithoutNoiseTheInnovationsVanish) {
+  const KalmanDesign design = ThesisFilter();
+  StateEstimator estimator = Kalman(design);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(16);
+  std::array<double, 2> torque = {0.0, 0.0};
+  for (int k = 0; k < 200; ++k) {
+    const Eigen::VectorXd y = design.C * x;
+    // The rotors lead their hubs by the torsion of the last interval's torque.
+    const auto out = estimator.Update(
+        Angles(y(0), y(1), y(2) + torque[0] / kStiffness[0], y(3) + torque[1] / kStiffness[1]),
+        Bend({y(4), y(5), y(6), y(7)}), torque);
+    for (const double innovation : out.innovation) EXPECT_NEAR(innovation, 0.0, 1e-9);
+    for (Eigen::Index i = 0; i < 12; ++i) {
+      EXPECT_NEAR(out.x(i), x(i), 1e-9 * (1.0 + std::abs(x(i)))) << "state " << i << " at " << k;
+    }
+    torque = {4.0 * std::sin(0.1 * k), 0.5 * std::cos(0.2 * k)};
+    x = design.A * x + design.B * Eigen::Vector2d(torque[0], torque[1]);
+  }
+}
+
+TEST(KalmanFilter, WithoutAnyMeasurementThePredictionStays) {
+  const KalmanDesign design = ThesisFilter();
+  StateEstimator estimator = Kalman(design);
+  estimator.Update(Angles(0.1, 0.2, 0.1, 0.2), Bend({0.03, 0.0, 0.01, 0.0}), {0.0, 0.0});
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(16);
+  x << 0.1, 0.2, 0.03, 0.0, 0.01, 0.0, 0, 0, 0, 0, 0, 0, 0.03, 0.0, 0.01, 0.0;
+  for (int k = 0; k < 5; ++k) {
+    DecodedCounters none = Angles(9.0, 9.0, 9.0, 9.0);
+    none.good = 0;
+    FittedModes invalid = Bend({9.0, 9.0, 9.0, 9.0});
+    invalid.valid = {false, false};
+    const auto out = estimator.Update(none, invalid, {1.0, -0.1});
+    x = design.A * x + design.B * Eigen::Vector2d(1.0, -0.1);
+    EXPECT_LT((out.x - x.head(12)).cwiseAbs().maxCoeff(), 1e-12);
+    for (const double innovation : out.innovation) EXPECT_EQ(innovation, 0.0);
+  }
+}
+
+// One lost input is skipped and the others still count: the same as a correction by L without its
+// column.
+TEST(KalmanFilter, ALostMeasurementOnlyLosesItsOwnColumn) {
+  const KalmanDesign design = ThesisFilter();
+  for (Eigen::Index lost = 0; lost < 8; ++lost) {
+    StateEstimator estimator = Kalman(design);
+    estimator.Update(Angles(0, 0, 0, 0), Bend({}), {0.0, 0.0});
+    Eigen::VectorXd y(8);
+    y << 0.01, 0.02, 0.011, 0.021, 1e-3, 1e-4, 2e-3, 2e-4;
+    DecodedCounters counters = Angles(y(0), y(1), y(2), y(3));
+    FittedModes modes = Bend({y(4), y(5), y(6), y(7)});
+    Eigen::VectorXd seen = y;
+    if (lost < 4) {
+      counters.good &= ~(1u << static_cast<unsigned>(lost));
+      seen(lost) = 0.0;
+    } else {  // a link's two coordinates come and go together
+      const std::size_t link = lost < 6 ? 0 : 1;
+      modes.valid[link] = false;
+      seen.segment(4 + 2 * static_cast<Eigen::Index>(link), 2).setZero();
+    }
+    const auto out = estimator.Update(counters, modes, {0.0, 0.0});
+    const Eigen::VectorXd expected = design.L * seen;  // from rest at zero the prediction is zero
+    EXPECT_LT((out.x - expected.head(12)).cwiseAbs().maxCoeff(), 1e-14) << lost;
+  }
+}
+
+TEST(KalmanFilter, TheGainColumnOfAnAbsentEncoderIsZero) {
+  SensorConfig hubs_only = ThesisSensors();
+  hubs_only.encoder.resize(2);
+  const KalmanDesign design = ThesisFilter(hubs_only);
+  EXPECT_EQ(design.L.middleCols(2, 2).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_GT(design.L.col(0).cwiseAbs().maxCoeff(), 0.0);
+  // The hubs then count for more than when the rotors help.
+  const KalmanDesign with = ThesisFilter();
+  EXPECT_GT(design.L(0, 0), with.L(0, 0));
+  // And the filter is still a filter.
+  const Eigen::MatrixXd error =
+      design.A * (Eigen::MatrixXd::Identity(16, 16) - design.L * design.C);
+  EXPECT_LT(error.eigenvalues().cwiseAbs().maxCoeff(), 1.0);
+}
+
+TEST(DifferenceEstimator, RampsAreExactFromTheSecondSample) {
+  StateEstimator estimator = Difference();
+  for (int k = 0; k < 5; ++k) {
+    const double t = kPeriod_s * k;
+    const auto out = estimator.Update(Angles(1.5 * t, -2.0 * t, 1.5 * t, -2.0 * t),
+                                      Bend({0.1 * t, 0.01 * t, -0.2 * t, 0.0}), {0.0, 0.0});
+    EXPECT_DOUBLE_EQ(out.x(0), 1.5 * t);
+    if (k == 0) continue;
+    EXPECT_NEAR(out.x(6), 1.5, 1e-12);
+    EXPECT_NEAR(out.x(7), -2.0, 1e-12);
+    EXPECT_NEAR(out.x(8), 0.1, 1e-12);
+    EXPECT_NEAR(out.x(10), -0.2, 1e-12);
+  }
+}
+
+// The backward difference of sin(w t) is w sinc(w Ts / 2) cos(w (t - Ts / 2)): half a sample late.
+TEST(DifferenceEstimator, RatesLagBehindByHalfASample) {
+  StateEstimator estimator = Difference();
+  const double w = 20.0, half = 0.5 * w * kPeriod_s;
+  for (int k = 0; k < 200; ++k) {
+    const double t = kPeriod_s * k;
+    const double angle = 0.1 * std::sin(w * t);
+    const auto out = estimator.Update(Angles(angle, 0, angle, 0), Bend({}), {0.0, 0.0});
+    if (k == 0) continue;
+    const double late = 0.1 * w * std::sin(half) / half * std::cos(w * (t - 0.5 * kPeriod_s));
+    EXPECT_NEAR(out.x(6), late, 1e-12);
+  }
+}
+
+TEST(DifferenceEstimator, ALostAngleGoesOnAtItsLastRate) {
+  StateEstimator estimator = Difference();
+  for (int k = 0; k < 3; ++k) {
+    estimator.Update(Angles(0.01 * k, 0, 0.01 * k, 0), Bend({}), {0.0, 0.0});
+  }
+  DecodedCounters lost = Angles(0.02, 0, 0.02, 0);
+  lost.good = 0b1110;
+  const auto out = estimator.Update(lost, Bend({}), {0.0, 0.0});
+  EXPECT_NEAR(out.x(0), 0.03, 1e-12);
+  EXPECT_NEAR(out.x(6), 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace flexarm

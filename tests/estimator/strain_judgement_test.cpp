@@ -1,0 +1,137 @@
+// One bad channel among ten: found, named and left out in the very sample that shows it, and the
+// fit of the others is what it would be without that channel.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "estimator/strain_fit.h"
+#include "model/arm_model.h"
+#include "tests/estimator/thesis_estimator.h"
+
+namespace flexarm {
+namespace {
+
+const std::array<double, 4> kBend = {0.03, 1e-4, -0.02, 5e-4};
+
+// A count is 0.98 microstrain. Rounding of half a count on every channel moves a coordinate by
+// 5e-5 m (measured, f21 without its root channel); a bad channel that stays in the fit, by 1e-3 m
+// and more.
+constexpr double kRounding_m = 1e-4;
+
+class StrainJudgement : public testing::Test {
+ protected:
+  SensorFrame FrameOf(const std::array<double, 4>& modal) const {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(arm_.dof());
+    q.tail(4) << modal[0], modal[1], modal[2], modal[3];
+    SensorFrame frame{};
+    for (std::size_t i = 0; i < sensors_.strain.size(); ++i) {
+      const StrainChannelConfig& row = sensors_.strain[i];
+      const double counts = arm_.Strain(row.link, row.position_m, q) * 5000.0 / (20.0 / 4096.0);
+      frame.strain[i] = static_cast<std::int32_t>(std::lround(counts));
+      frame.strain_valid |= 1u << i;
+    }
+    return frame;
+  }
+
+  static void ExpectBend(const FittedModes& out, const std::array<double, 4>& modal,
+                         std::size_t channel) {
+    EXPECT_TRUE(out.valid[0] && out.valid[1]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(out.modal_m[i], modal[i], kRounding_m) << "f" << i << ", bad channel " << channel;
+    }
+  }
+
+  const SensorConfig sensors_ = ThesisSensors();
+  const ArmModel arm_{ThesisRig(), ModeCount{.link1 = 2, .link2 = 2}};
+};
+
+TEST_F(StrainJudgement, ASaturatedChannelIsLeftOutAtOnce) {
+  for (std::size_t i = 0; i < 20; ++i) {
+    for (const std::int32_t rail : {-2048, 2047}) {
+      StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+      SensorFrame frame = FrameOf(kBend);
+      frame.strain[i] = rail;
+      const FittedModes out = fit.Fit(frame);
+      EXPECT_EQ(out.saturated, 1u << i);
+      EXPECT_EQ(out.outlier, 0u);
+      EXPECT_EQ(out.used, 0xFFFFFu & ~(1u << i));
+      ExpectBend(out, kBend, i);
+    }
+  }
+}
+
+// 1000 microstrain out of family, the limit being 400; every channel, both ways.
+TEST_F(StrainJudgement, AWildChannelIsLeftOutAtOnce) {
+  for (std::size_t i = 0; i < 20; ++i) {
+    for (const int sign : {-1, 1}) {
+      StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+      SensorFrame frame = FrameOf(kBend);
+      frame.strain[i] += sign * 1024;  // 1000 microstrain
+      const FittedModes out = fit.Fit(frame);
+      EXPECT_EQ(out.outlier, 1u << i);
+      EXPECT_EQ(out.used, 0xFFFFFu & ~(1u << i));
+      EXPECT_GT(out.worst_outlier, 4e-4);
+      ExpectBend(out, kBend, i);
+    }
+  }
+}
+
+// Two wild ones a link are the most that are removed.
+TEST_F(StrainJudgement, TwoWildChannelsOfALinkAreLeftOut) {
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  SensorFrame frame = FrameOf(kBend);
+  frame.strain[5] += 1500;
+  frame.strain[8] -= 1500;
+  const FittedModes out = fit.Fit(frame);
+  EXPECT_EQ(out.outlier, 1u << 5 | 1u << 8);
+  ExpectBend(out, kBend, 5);
+}
+
+// A channel that holds its value while its link bends: stuck once the fit at its station has moved
+// by the limit of 100 microstrain, long before it is out of family.
+TEST_F(StrainJudgement, AStuckChannelIsLeftOutInTheSampleThatShowsIt) {
+  for (std::size_t i = 0; i < 20; ++i) {
+    StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+    const SensorFrame rest = FrameOf({});
+    fit.Fit(rest);
+    bool found = false;
+    for (int k = 1; k <= 200 && !found; ++k) {
+      const double share = 0.01 * k;
+      // Bent until even the stations near the tips have moved.
+      const std::array<double, 4> bend = {share * 0.03, 0.0, share * -0.03, 0.0};
+      SensorFrame frame = FrameOf(bend);
+      frame.strain[i] = rest.strain[i];
+      const bool others_saturated = std::abs(frame.strain[0]) >= 2047;
+      ASSERT_FALSE(others_saturated) << "channel " << i << " never moved enough";
+      const FittedModes out = fit.Fit(frame);
+      if (out.stuck == 0) continue;
+      found = true;
+      EXPECT_EQ(out.stuck, 1u << i);
+      EXPECT_EQ(out.outlier, 0u) << "stuck is noticed first";
+      EXPECT_EQ(out.used & (1u << i), 0u) << "channel " << i;
+      ExpectBend(out, bend, i);
+    }
+    // At the free ends there is hardly any strain: 102 counts are the limit, and some room.
+    const bool moves_enough = std::abs(FrameOf({0.06, 0.0, -0.06, 0.0}).strain[i]) > 110;
+    EXPECT_EQ(found, moves_enough) << i;
+  }
+}
+
+TEST_F(StrainJudgement, ChannelsOfAnArmAtRestAreNotStuck) {
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  for (int k = 0; k < 500; ++k) EXPECT_EQ(fit.Fit(FrameOf(kBend)).stuck, 0u);
+}
+
+TEST_F(StrainJudgement, ResetForgetsWhatWasStuck) {
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  fit.Fit(FrameOf({}));
+  SensorFrame frame = FrameOf(kBend);
+  frame.strain[0] = 0;
+  EXPECT_NE(fit.Fit(frame).stuck, 0u);
+  fit.Reset();
+  EXPECT_EQ(fit.Fit(frame).stuck, 0u);
+}
+
+}  // namespace
+}  // namespace flexarm

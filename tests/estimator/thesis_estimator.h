@@ -1,0 +1,34 @@
+#pragma once
+
+#include "estimator/estimator_config.h"
+#include "estimator/kalman_design.h"
+#include "estimator/nominal_model.h"
+#include "tests/hal/thesis_sensors.h"
+#include "tests/support/thesis_rig.h"
+
+namespace flexarm {
+
+inline constexpr double kPeriod_s = 0.02;
+
+/// The estimator of the simulated rig (study of the control law, section 4).
+inline EstimatorConfig ThesisEstimator(EstimatorKind kind = EstimatorKind::kKalman) {
+  return {.kind = kind,
+          .modes_per_link = 2,
+          .process_force = {0.3, 0.05, 5.0, 5.0, 1.5, 1.5},
+          .rotor_extra_sigma_rad = {3e-4, 3e-4},
+          .modal_sigma_m = {2e-4, 1e-4, 2e-4, 1e-4},
+          .max_joint_rate_rad_s = 14.0,
+          .hub_rotor_limit_rad = 0.1,
+          .strain_family_limit = 4e-4,
+          .strain_stuck_limit = 1e-4,
+          .innovation_limit_rad = 0.35,
+          .fault_ticks = 3};
+}
+
+inline KalmanDesign ThesisFilter(const SensorConfig& sensors = ThesisSensors(),
+                                 const EstimatorConfig& estimator = ThesisEstimator()) {
+  return DesignKalmanFilter(MakeNominalModel(ThesisRig(), estimator.modes_per_link), sensors,
+                            estimator, kPeriod_s);
+}
+
+}  // namespace flexarm
