@@ -1,0 +1,197 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "controller/law/refused.h"
+#include "tests/controller/law/shipped_rig.h"
+
+namespace flexarm {
+namespace {
+
+using testing::HasSubstr;
+
+bool SameBits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+  return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+// What the loop and the checks use, all of it.
+void ExpectSameBits(const Design& a, const Design& b) {
+  EXPECT_TRUE(SameBits(a.A, b.A) && SameBits(a.B, b.B));
+  EXPECT_TRUE(SameBits(a.Am, b.Am) && SameBits(a.Bm, b.Bm));
+  EXPECT_TRUE(SameBits(a.K, b.K) && SameBits(a.K_stop, b.K_stop) && SameBits(a.P, b.P));
+  EXPECT_TRUE(SameBits(a.J, b.J) && SameBits(a.G, b.G));
+  EXPECT_TRUE(SameBits(a.S11, b.S11) && SameBits(a.S12, b.S12));
+  EXPECT_TRUE(SameBits(a.S21, b.S21) && SameBits(a.S22, b.S22));
+  EXPECT_TRUE(SameBits(a.Ufx, b.Ufx) && SameBits(a.Ufu, b.Ufu));
+  EXPECT_TRUE(SameBits(a.filter_A, b.filter_A) && SameBits(a.filter_B, b.filter_B));
+  EXPECT_TRUE(SameBits(a.filter_C, b.filter_C) && SameBits(a.filter_L, b.filter_L));
+  EXPECT_TRUE(SameBits(a.rigid_inertia_kgm2, b.rigid_inertia_kgm2));
+}
+
+std::string RefusalOf(const std::string& text, const std::string& hash = "h") {
+  try {
+    DesignFromJson(text, hash);
+  } catch (const Refused& refused) {
+    return refused.what();
+  }
+  return "accepted";
+}
+
+nlohmann::json ShippedJson() { return nlohmann::json::parse(DesignToJson(ShippedDesign(), "h")); }
+
+TEST(DesignJson, ComesBackBitForBit) {
+  const Design back = DesignFromJson(DesignToJson(ShippedDesign(), "h"), "h");
+  ExpectSameBits(back, ShippedDesign());
+  ASSERT_EQ(back.checks.size(), ShippedDesign().checks.size());
+  for (std::size_t i = 0; i < back.checks.size(); ++i) {
+    EXPECT_EQ(back.checks[i].name, ShippedDesign().checks[i].name);
+    EXPECT_EQ(back.checks[i].value, ShippedDesign().checks[i].value);
+    EXPECT_EQ(back.checks[i].limit, ShippedDesign().checks[i].limit);
+    EXPECT_EQ(back.checks[i].below, ShippedDesign().checks[i].below);
+  }
+}
+
+TEST(DesignJson, AnotherConfigsGainsAreRefusedWithBothHashes) {
+  EXPECT_THAT(RefusalOf(DesignToJson(ShippedDesign(), "aaaa"), "bbbb"),
+              AllOf(HasSubstr("another config"), HasSubstr("aaaa"), HasSubstr("bbbb"),
+                    HasSubstr("flexarm design")));
+}
+
+TEST(DesignJson, EachMissingMatrixIsNamed) {
+  for (const char* name : {"A", "Am", "K", "K_stop", "P", "G", "S11", "S22", "Ufx", "filter_L",
+                           "rigid_inertia_kgm2"}) {
+    nlohmann::json json = ShippedJson();
+    json.erase(name);
+    EXPECT_THAT(RefusalOf(json.dump()), HasSubstr(std::string(name) + "' is missing"));
+  }
+}
+
+TEST(DesignJson, AWrongShapeIsNamedWithWhatWasExpected) {
+  nlohmann::json json = ShippedJson();
+  json["B"].erase(json["B"].end() - 1);
+  EXPECT_THAT(RefusalOf(json.dump()),
+              AllOf(HasSubstr("'B'"), HasSubstr("11 x 2"), HasSubstr("expected 12 x 2")));
+  json = ShippedJson();
+  json["rigid_inertia_kgm2"] = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("rigid_inertia"), HasSubstr("2 x 2")));
+}
+
+TEST(DesignJson, ABrokenMatrixIsNamed) {
+  nlohmann::json json = ShippedJson();
+  json["K"][1].erase(json["K"][1].end() - 1);
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'K'"), HasSubstr("different length")));
+  json = ShippedJson();
+  json["S11"][2][3] = "twelve";
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'S11'"), HasSubstr("not a number")));
+  json = ShippedJson();
+  json["J"][0][0] = nullptr;  // how JSON writes NaN
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'J'"), HasSubstr("not a number")));
+  json = ShippedJson();
+  json["G"] = 5;
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'G'"), HasSubstr("not a matrix")));
+  json = ShippedJson();
+  json["P"] = nlohmann::json::array({1.0, 2.0});
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'P'"), HasSubstr("not a matrix")));
+}
+
+// Every one of these is a file that somebody may hand in by mistake: one clear refusal, no other
+// exception.
+TEST(DesignJson, WhatIsNoGainsFileIsRefusedAsSuch) {
+  for (const char* text : {"", "hello", "[1, 2]", "{}", "{\"format\": \"other\"}",
+                           "{\"format\": 5}", "{\"A\": [[1", "null"}) {
+    EXPECT_THAT(RefusalOf(text), HasSubstr("not a gains file")) << text;
+  }
+}
+
+TEST(DesignJson, FieldsOfTheWrongTypeAreRefusedNotCrashedOn) {
+  nlohmann::json json = ShippedJson();
+  json["config_hash"] = 12;
+  EXPECT_NE(RefusalOf(json.dump()), "accepted");
+  json = ShippedJson();
+  json["checks"] = 5;
+  EXPECT_NE(RefusalOf(json.dump()), "accepted");
+  json = ShippedJson();
+  json["checks"][0]["value"] = "high";
+  EXPECT_NE(RefusalOf(json.dump()), "accepted");
+}
+
+class GainsFile : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+  void Write(const std::string& text) const { std::ofstream(path_) << text; }
+  Config RigWithGains() const {
+    Config config = ShippedRig();
+    config.controller.gains_file = path_;
+    return config;
+  }
+
+  const std::string path_ = testing::TempDir() + "flexarm_gains_" +
+                            testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+};
+
+TEST_F(GainsFile, IsUsedWhenTheConfigNamesIt) {
+  Design marked = ShippedDesign();
+  marked.G(0, 0) += 0.25;  // no design would give this: it must come from the file
+  Write(DesignToJson(marked, DesignHash(ShippedRig())));
+  ExpectSameBits(DesignFor(RigWithGains()), marked);
+}
+
+TEST_F(GainsFile, OfAnotherAlphaIsRefused) {
+  const Config other = ShippedRig({"controller.alpha=2.5"});
+  Write(DesignToJson(DesignController(other), DesignHash(other)));
+  EXPECT_THROW(DesignFor(RigWithGains()), Refused);
+}
+
+TEST_F(GainsFile, ThatIsNotThereIsRefusedByName) {
+  try {
+    DesignFor(RigWithGains());
+    FAIL() << "accepted";
+  } catch (const Refused& refused) {
+    EXPECT_THAT(refused.what(), AllOf(HasSubstr(path_), HasSubstr("flexarm design")));
+  }
+}
+
+TEST_F(GainsFile, WithAFailedCheckIsRefusedByItsName) {
+  Design bad = ShippedDesign();
+  bad.checks[0].value = 2.0 * bad.checks[0].limit;
+  Write(DesignToJson(bad, DesignHash(ShippedRig())));
+  try {
+    DesignFor(RigWithGains());
+    FAIL() << "accepted";
+  } catch (const Refused& refused) {
+    EXPECT_THAT(refused.what(), HasSubstr(bad.checks[0].name));
+  }
+}
+
+// The hash covers what a design depends on, and nothing else.
+TEST(DesignHash, ChangesWithWhatADesignDependsOn) {
+  const std::string shipped = DesignHash(ShippedRig());
+  for (const char* changed :
+       {"controller.alpha=2.9", "controller.torque_weight=2.1", "controller.passivity_margin=4.0",
+        "controller.hub_angle_weight=[100.0, 21.0]", "controller.hub_rate_weight=[5.0, 1.1]",
+        "arm.payload_mass_kg=0.11", "link1.damping_ratio=0.031", "joint2.rotor_inertia_kgm2=0.01",
+        "sensors.strain_input.filter_hz=21.0", "sensors.encoder[0].counts_per_turn=2000.0",
+        "estimator.process_force=[0.3, 0.05, 5.0, 5.0, 1.5, 1.6]", "estimator.modes_per_link=1",
+        "estimator.modal_sigma_m=[2e-4, 1e-4, 2e-4, 2e-4]", "arm.damping=modal",
+        "arm.link1_tip_inertia=motor", "loop.period_ms=10.0"}) {
+    Config config;
+    try {
+      config = ShippedRig({changed});
+    } catch (const ConfigError&) {
+      continue;  // breaks another rule of the config: cannot be run at all
+    }
+    EXPECT_NE(DesignHash(config), shipped) << changed;
+  }
+  for (const char* same : {"sim.seed=2", "controller.vartheta=0.5", "controller.name=lqr-cgt",
+                           "safety.rest_time_s=0.6", "controller.adaptation_gain=0.001"}) {
+    EXPECT_EQ(DesignHash(ShippedRig({same})), shipped) << same;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

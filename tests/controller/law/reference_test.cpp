@@ -1,0 +1,178 @@
+#include "controller/law/reference.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "controller/law/refused.h"
+#include "tests/controller/law/shipped_rig.h"
+#include "tests/model/golden_data.h"
+
+namespace flexarm {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kPeriod_s = 0.02;
+constexpr double kDeg = std::numbers::pi / 180.0;
+constexpr std::array<double, 2> kSoft = {90.0 * kDeg, 90.0 * kDeg};
+
+Experiment Doublets(std::vector<Doublet> doublets, double duration_s = 6.0) {
+  return {.name = "test",
+          .text = "",
+          .duration_s = duration_s,
+          .doublet = std::move(doublets),
+          .sim_event = {}};
+}
+
+Doublet Move(double th1_deg, double th2_deg, double start_s = 0.0, double duration_s = 1.0,
+             DoubletShape shape = DoubletShape::kSquare) {
+  return {
+      .start_s = start_s, .duration_s = duration_s, .shape = shape, .move_deg = {th1_deg, th2_deg}};
+}
+
+ReferenceTable Table(const Experiment& experiment, std::array<double, 2> start = {0.0, 0.0}) {
+  return {experiment, ShippedDesign(), kPeriod_s, start, kSoft};
+}
+
+const Experiment kBase = Doublets({Move(30, 30), Move(-30, -30, 3.0)});
+
+// The golden amplitudes are M_r 4 dth / T^2 rounded to four decimals: M_r^-1 (5e-5, 5e-5) T^2 / 4
+// is 1.2e-4 rad of joint 2, 2.3e-4 of its move.
+TEST(ReferenceTable, BaseCommandIsTheGoldenOne) {
+  const nlohmann::json golden = GoldenFile("golden.json");
+  const Eigen::MatrixXd u_m = AsMatrix(golden["u_m"]), x_m = AsMatrix(golden["x_m"]);
+  const ReferenceTable table = Table(kBase);
+  ASSERT_EQ(table.periods(), 300);
+  for (int k = 0; k < 300; ++k) {
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_NEAR(table.At(k).u_m_nm[static_cast<std::size_t>(i)], u_m(k, i), 1e-4) << k;
+    }
+    for (int i = 0; i < 12; ++i) {
+      const double size = x_m.col(i).cwiseAbs().maxCoeff();
+      EXPECT_NEAR(table.At(k).x_m[static_cast<std::size_t>(i)], x_m(k, i), 3e-4 * size) << k;
+    }
+  }
+}
+
+// The golden reference model, driven by this table's torques, makes this table's motion; but for
+// the rounding of its torque modes, 1e-6 of its damping.
+TEST(ReferenceTable, TheGoldenReferenceModelMovesAlike) {
+  const nlohmann::json golden = GoldenFile("golden.json");
+  const Eigen::MatrixXd Am = AsMatrix(golden["R12_Am"]), Bm = AsMatrix(golden["R12_Bm"]);
+  const Eigen::MatrixXd golden_x_m = AsMatrix(golden["x_m"]);
+  const ReferenceTable table = Table(kBase);
+  Eigen::VectorXd x_m = Eigen::VectorXd::Zero(12);
+  for (int k = 0; k < 300; ++k) {
+    const ReferenceSample& sample = table.At(k);
+    for (int i = 0; i < 12; ++i) {
+      const double size = golden_x_m.col(i).cwiseAbs().maxCoeff();
+      ASSERT_NEAR(sample.x_m[static_cast<std::size_t>(i)], x_m(i), 1e-5 * size) << k;
+    }
+    x_m = Am * x_m + Bm * Eigen::Vector2d(sample.u_m_nm[0], sample.u_m_nm[1]);
+  }
+}
+
+// A doublet of zero area on a double integrator moves by exactly the angle and leaves it at rest,
+// when the bending has died out: the slowest reference mode has critical damping at 42 rad/s, so
+// after 4 s nothing is left but round-off.
+TEST(ReferenceTable, ADoubletMovesByItsAngleAndEndsAtRest) {
+  for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
+    for (const double duration_s : {0.4, 1.0, 2.0}) {
+      const ReferenceTable table = Table(Doublets({Move(13, -7, 0.0, duration_s, shape)}));
+      const ReferenceSample& end = table.At(table.periods());
+      EXPECT_NEAR(end.x_m[0], 13 * kDeg, 1e-10) << duration_s;
+      EXPECT_NEAR(end.x_m[1], -7 * kDeg, 1e-10) << duration_s;
+      for (std::size_t i = 2; i < 12; ++i) EXPECT_NEAR(end.x_m[i], 0.0, 1e-9) << i;
+    }
+  }
+}
+
+TEST(ReferenceTable, DoubletsHaveZeroArea) {
+  for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
+    const ReferenceTable table = Table(Doublets({Move(20, 10, 0.2, 0.8, shape)}));
+    std::array<double, 2> area{};
+    for (int k = 0; k < table.periods(); ++k) {
+      for (std::size_t i = 0; i < 2; ++i) area[i] += table.At(k).u_m_nm[i] * kPeriod_s;
+    }
+    EXPECT_NEAR(area[0], 0.0, 1e-12);
+    EXPECT_NEAR(area[1], 0.0, 1e-12);
+    EXPECT_EQ(table.At(9).u_m_nm[0], 0.0);
+    EXPECT_NE(table.At(10).u_m_nm[0], 0.0);
+    EXPECT_NE(table.At(49).u_m_nm[0], 0.0);
+    EXPECT_EQ(table.At(50).u_m_nm[0], 0.0);
+  }
+}
+
+// At equal amplitude a continuous sine moves 2/pi as far, as the thesis reports, so for the same
+// move it needs pi/2 the amplitude. Sampled and held at 50 points the figure differs by
+// (pi/50)^2 / 6 = 0.07 %.
+TEST(ReferenceTable, ASineNeedsHalfPiTimesTheAmplitude) {
+  const ReferenceTable sine = Table(Doublets({Move(30, 0, 0.0, 1.0, DoubletShape::kSine)}));
+  const ReferenceTable square = Table(Doublets({Move(30, 0)}));
+  double peak = 0.0;
+  for (int k = 0; k < 50; ++k) peak = std::max(peak, sine.At(k).u_m_nm[0]);
+  EXPECT_NEAR(peak / square.At(0).u_m_nm[0], std::numbers::pi / 2.0, 0.004);
+}
+
+// The table is the reference model's own motion, sample by sample.
+TEST(ReferenceTable, FollowsTheReferenceModelFromItsStart) {
+  const ReferenceTable table = Table(kBase, {0.1, -0.2});
+  Eigen::VectorXd x_m = Eigen::VectorXd::Zero(12);
+  x_m(0) = 0.1;
+  x_m(1) = -0.2;
+  for (int k = 0; k <= 300; ++k) {
+    const ReferenceSample& sample = table.At(k);
+    for (int i = 0; i < 12; ++i) {
+      ASSERT_NEAR(sample.x_m[static_cast<std::size_t>(i)], x_m(i), 1e-12) << k;
+    }
+    x_m = ShippedDesign().Am * x_m +
+          ShippedDesign().Bm * Eigen::Vector2d(sample.u_m_nm[0], sample.u_m_nm[1]);
+  }
+}
+
+TEST(ReferenceTable, BeforeTheStartItRestsThereAndAfterTheEndItStays) {
+  const ReferenceTable table = Table(kBase, {0.1, -0.2});
+  EXPECT_EQ(table.At(-1).x_m[0], 0.1);
+  EXPECT_EQ(table.At(-1).u_m_nm[0], 0.0);
+  EXPECT_EQ(table.At(301).x_m, table.At(300).x_m);
+  EXPECT_EQ(table.At(300).u_m_nm[0], 0.0);
+}
+
+std::string RefusalOf(const Experiment& experiment) {
+  try {
+    Table(experiment);
+  } catch (const Refused& refused) {
+    return refused.what();
+  }
+  return "accepted";
+}
+
+TEST(ReferenceTable, TimesOffTheSamplingGridAreRefusedByName) {
+  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10), Move(-10, -10, 3.01)})),
+              AllOf(HasSubstr("doublet[1].start_s"), HasSubstr("3.01")));
+  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10, 0.0, 1.005)})), HasSubstr("doublet[0].duration_s"));
+  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10)}, 6.013)), HasSubstr("duration_s"));
+}
+
+TEST(ReferenceTable, AnOddNumberOfPeriodsHasNoTwoHalvesAndIsRefused) {
+  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10, 0.0, 0.98)})),
+              AllOf(HasSubstr("doublet[0].duration_s"), HasSubstr("even")));
+}
+
+TEST(ReferenceTable, ALongSeriesOfDecimalTimesIsOnTheGrid) {
+  EXPECT_EQ(RefusalOf(Doublets({Move(5, 5, 0.06, 0.28), Move(-5, -5, 1.14, 0.36)}, 3.3)),
+            "accepted");
+}
+
+TEST(ReferenceTable, LeavingTheSoftLimitIsRefusedWithJointAndInstant) {
+  const std::string refusal = RefusalOf(Doublets({Move(80, 0), Move(30, 0, 2.0)}));
+  EXPECT_THAT(refusal, AllOf(HasSubstr("joint 1"), HasSubstr("90"), HasSubstr("after 2.")));
+  EXPECT_THAT(RefusalOf(Doublets({Move(0, -95, 0.0, 2.0)})), HasSubstr("joint 2"));
+  EXPECT_EQ(RefusalOf(Doublets({Move(80, 0, 0.0, 2.0)})), "accepted");
+}
+
+}  // namespace
+}  // namespace flexarm

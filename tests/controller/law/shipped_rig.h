@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "controller/law/design.h"
+
+namespace flexarm {
+
+/// The rig of config/hil.toml: the one that golden.json speaks of.
+inline Config ShippedRig(const std::vector<std::string>& overrides = {}) {
+  return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", overrides);
+}
+
+/// Its design, made once.
+inline const Design& ShippedDesign() {
+  static const Design design = DesignController(ShippedRig());
+  return design;
+}
+
+}  // namespace flexarm

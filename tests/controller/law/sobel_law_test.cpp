@@ -1,0 +1,237 @@
+#include "controller/law/sobel_law.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "tests/controller/law/shipped_rig.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+constexpr std::array<double, 2> kWide = {1e9, 1e9};  // limits that are never met
+
+// A state a few degrees and millimetres off a reference in full motion.
+struct Sample {
+  StateVector x = StateVector::Zero(12);
+  ReferenceSample reference{};
+
+  Sample() {
+    x << 0.11, 0.08, -0.05, 1e-3, -0.04, 1e-3, 0.5, 0.4, -0.3, 0.01, 0.2, -0.01;
+    reference.u_m_nm = {6.6, -0.9};
+    const VectorXd moving = (VectorXd(12) << 0.12, 0.09, -0.06, 1.2e-3, -0.05, 1.1e-3, 0.55, 0.35,
+                             -0.2, 0.02, 0.1, -0.02)
+                                .finished();
+    for (Eigen::Index i = 0; i < 12; ++i) {
+      reference.x_m[static_cast<std::size_t>(i)] = moving(i);
+    }
+  }
+  VectorXd x_m() const { return Eigen::Map<const VectorXd>(reference.x_m.data(), 12); }
+  Vector2d u_m() const { return {reference.u_m_nm[0], reference.u_m_nm[1]}; }
+  VectorXd r() const {  // [y_e; x_m; u_m]
+    VectorXd all(16);
+    all << ShippedDesign().K * (x_m() - VectorXd(x)), x_m(), u_m();
+    return all;
+  }
+};
+
+ControllerConfig Controller() { return ShippedRig().controller; }
+
+SobelLaw Law(const ControllerConfig& config, std::array<double, 2> limit_nm = kWide) {
+  return {ShippedDesign(), config, limit_nm};
+}
+
+Vector2d Torque(const SobelLaw::Result& result) {
+  return {result.torque_nm[0], result.torque_nm[1]};
+}
+
+// (7.24) and (7.25), written out from the thesis and not from the code.
+Vector2d UStar(const Sample& s, const ControllerConfig& config) {
+  const Design& d = ShippedDesign();
+  const MatrixXd pseudo_inverse = (d.B.transpose() * d.B).inverse() * d.B.transpose();
+  const double sign = config.feedforward_sign == FeedforwardSign::kPrinted ? -1.0 : 1.0;
+  const Vector2d u_f = pseudo_inverse * (sign * (d.Am - d.A) * s.x_m() + d.Bm * s.u_m());
+  const Vector2d u_c = d.S21 * s.x_m() + d.S22 * s.u_m();
+  return config.vartheta * u_f + (1.0 - config.vartheta) * u_c;
+}
+
+MatrixXd KI0() {
+  MatrixXd K_I(2, 16);
+  K_I << MatrixXd::Identity(2, 2), ShippedDesign().S21, ShippedDesign().S22;
+  return K_I;
+}
+
+// The loop as the thesis writes it, with the torque on both sides: z = F e + G (u* + K_e C_p e - u)
+// and u = K_I r + z (r' Tbar r). Returns what is left of the second when u is put into the first.
+Vector2d LoopMismatch(const Sample& s, const MatrixXd& K_I, const ControllerConfig& config,
+                      const Vector2d& u) {
+  const Design& d = ShippedDesign();
+  const VectorXd x_star = d.S11 * s.x_m() + d.S12 * s.u_m();
+  const VectorXd e = x_star - VectorXd(s.x);
+  const Vector2d z = d.K * e + d.G * (UStar(s, config) + d.K * e - u);
+  const double rho = config.adaptation_gain * s.r().squaredNorm();
+  return K_I * s.r() + rho * z - u;
+}
+
+// The mismatch is round-off times G rho, about 1e2; a loop solved with the last u misses by
+// newtons.
+TEST(SobelLaw, TheTorqueSatisfiesItsOwnAlgebraicLoop) {
+  for (const double gain : {1e-4, 0.01, 1.0}) {
+    for (const FeedforwardSign sign : {FeedforwardSign::kPrinted, FeedforwardSign::kCorrected}) {
+      ControllerConfig config = Controller();
+      config.adaptation_gain = gain;
+      config.feedforward_sign = sign;
+      SobelLaw law = Law(config);
+      const Sample s;
+      const Vector2d u = Torque(law.Compute(s.x, s.reference, true));
+      EXPECT_LT(LoopMismatch(s, KI0(), config, u).cwiseAbs().maxCoeff(), 1e-6) << gain;
+    }
+  }
+}
+
+// The second sample must use K_I <- (1 - sigma)(K_I - K_I0) + K_I0 + v (T r)' of the first, v the z
+// of the loop above.
+TEST(SobelLaw, TheGainAdaptsByTheOuterProductAndLeaks) {
+  const ControllerConfig config = Controller();
+  SobelLaw law = Law(config);
+  const Sample s;
+  MatrixXd K_I = KI0();
+  for (int k = 0; k < 5; ++k) {
+    const Vector2d u = Torque(law.Compute(s.x, s.reference, true));
+    EXPECT_LT(LoopMismatch(s, K_I, config, u).cwiseAbs().maxCoeff(), 1e-6) << "sample " << k;
+    const double rho = config.adaptation_gain * s.r().squaredNorm();
+    const Vector2d v = (u - K_I * s.r()) / rho;
+    K_I = (1.0 - config.sigma) * (K_I - KI0()) + KI0() +
+          config.adaptation_gain * v * s.r().transpose();
+    EXPECT_NEAR(law.adaptive_gain_change(), (K_I - KI0()).norm(), 1e-9);
+  }
+  EXPECT_GT(law.adaptive_gain_change(), 1e-3) << "nothing adapted: the test says nothing";
+}
+
+// T = Tbar = 0 leaves K_I(0) r, whatever vartheta is: LQR around the command generator's
+// trajectory.
+TEST(SobelLaw, WithoutAdaptationGainItIsLqrWithCgt) {
+  ControllerConfig none = Controller(), lqr = Controller();
+  none.adaptation_gain = 0.0;
+  lqr.kind = ControllerKind::kLqrCgt;
+  SobelLaw sobel = Law(none), cgt = Law(lqr);
+  const Sample s;
+  const Design& d = ShippedDesign();
+  const Vector2d expected = d.K * (s.x_m() - VectorXd(s.x)) + d.S21 * s.x_m() + d.S22 * s.u_m();
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT((Torque(sobel.Compute(s.x, s.reference, true)) - expected).norm(), 1e-10);
+    EXPECT_LT((Torque(cgt.Compute(s.x, s.reference, true)) - expected).norm(), 1e-10);
+  }
+  EXPECT_EQ(cgt.adaptive_gain_change(), 0.0);
+}
+
+TEST(SobelLaw, WithAdaptationOffItIsTheSameFeedforwardAndFeedback) {
+  ControllerConfig config = Controller();
+  config.adaptation = false;
+  SobelLaw law = Law(config);
+  const Sample s;
+  const Vector2d expected = UStar(s, config) + ShippedDesign().K * (s.x_m() - VectorXd(s.x));
+  EXPECT_LT((Torque(law.Compute(s.x, s.reference, true)) - expected).norm(), 1e-9);
+  EXPECT_EQ(law.adaptive_gain_change(), 0.0);
+}
+
+// rho -> infinity: u -> u* + (I + G^-1) C_p e, from v -> 0 in the loop. The rest falls as 1 / rho:
+// at a gain of 1e8 it is 1e-8 of some newton metres.
+TEST(SobelLaw, TheProportionalPartRaisesTheLoopGainUpToOnePlusOneOverG) {
+  ControllerConfig config = Controller();
+  config.adaptation_gain = 1e8;
+  SobelLaw law = Law(config);
+  const Sample s;
+  const Design& d = ShippedDesign();
+  const Vector2d y_e = d.K * (s.x_m() - VectorXd(s.x));
+  const Vector2d limit = UStar(s, config) + y_e + d.G.inverse() * y_e;
+  const Vector2d u = Torque(law.Compute(s.x, s.reference, false));
+  EXPECT_LT((u - limit).norm(), 1e-5 * limit.norm());
+}
+
+// At rest on a reference at rest at zero r vanishes: nothing but the leak is left.
+TEST(SobelLaw, TheLeakReturnsTheGainToItsStart) {
+  const ControllerConfig config = Controller();
+  SobelLaw law = Law(config);
+  const Sample s;
+  for (int k = 0; k < 20; ++k) law.Compute(s.x, s.reference, true);
+  double before = law.adaptive_gain_change();
+  ASSERT_GT(before, 1e-3);
+  const StateVector rest = StateVector::Zero(12);
+  for (int k = 0; k < 50; ++k) {
+    law.Compute(rest, ReferenceSample{}, true);
+    EXPECT_NEAR(law.adaptive_gain_change(), (1.0 - config.sigma) * before, 1e-12);
+    before = law.adaptive_gain_change();
+  }
+}
+
+TEST(SobelLaw, AdaptationIsHeldWhileSaturatedOrForbidden) {
+  const Sample s;
+  SobelLaw saturated = Law(Controller(), {0.5, 1e9});
+  const SobelLaw::Result clipped = saturated.Compute(s.x, s.reference, true);
+  EXPECT_EQ(clipped.limits, kLimitTorque1 | kAdaptationHeld);
+  EXPECT_EQ(saturated.adaptive_gain_change(), 0.0);
+
+  SobelLaw forbidden = Law(Controller());
+  EXPECT_EQ(forbidden.Compute(s.x, s.reference, false).limits, kAdaptationHeld);
+  EXPECT_EQ(forbidden.adaptive_gain_change(), 0.0);
+
+  SobelLaw free = Law(Controller());
+  EXPECT_EQ(free.Compute(s.x, s.reference, true).limits, 0u);
+  EXPECT_GT(free.adaptive_gain_change(), 0.0);
+}
+
+TEST(SobelLaw, TorqueIsClippedToEachLimitWithItsFlag) {
+  const Sample s;
+  SobelLaw wide = Law(Controller());
+  const Vector2d free = Torque(wide.Compute(s.x, s.reference, true));
+  for (int i = 0; i < 2; ++i) {
+    std::array<double, 2> limit = kWide;
+    limit[static_cast<std::size_t>(i)] = 0.5 * std::abs(free(i));
+    SobelLaw narrow = Law(Controller(), limit);
+    const SobelLaw::Result result = narrow.Compute(s.x, s.reference, true);
+    EXPECT_EQ(result.limits & (kLimitTorque1 | kLimitTorque2),
+              i == 0 ? kLimitTorque1 : kLimitTorque2);
+    EXPECT_DOUBLE_EQ(result.torque_nm[static_cast<std::size_t>(i)], 0.5 * free(i));
+    EXPECT_DOUBLE_EQ(result.torque_nm[static_cast<std::size_t>(1 - i)], free(1 - i));
+  }
+}
+
+TEST(SobelLaw, ResetForgetsTheAdaptation) {
+  SobelLaw law = Law(Controller());
+  const Sample s;
+  const Vector2d first = Torque(law.Compute(s.x, s.reference, true));
+  for (int k = 0; k < 5; ++k) law.Compute(s.x, s.reference, true);
+  law.Reset();
+  EXPECT_EQ(law.adaptive_gain_change(), 0.0);
+  EXPECT_EQ(Torque(law.Compute(s.x, s.reference, true)), first);
+}
+
+// The calm regulator brings the nominal arm to any goal at rest. Its slowest pole decides how far
+// it is after 10 s.
+TEST(SobelLaw, RegulateDrivesTheNominalArmToItsGoal) {
+  const SobelLaw law = Law(Controller());
+  const Design& d = ShippedDesign();
+  StateVector x = Sample().x, goal = StateVector::Zero(12);
+  goal(0) = -0.4;
+  goal(1) = 0.3;
+  const double slowest = (d.A - d.B * d.K_stop).eigenvalues().cwiseAbs().maxCoeff();
+  ASSERT_LT(slowest, 1.0);
+  const double at_start = (x - goal).norm();
+  for (int k = 0; k < 500; ++k) {
+    const SobelLaw::Result result = law.Regulate(x, goal);
+    EXPECT_EQ(result.limits & kAdaptationHeld, kAdaptationHeld);
+    x = d.A * VectorXd(x) + d.B * Torque(result);
+  }
+  EXPECT_LT((x - goal).norm(), 1e3 * at_start * std::pow(slowest, 500));
+  EXPECT_LT((x - goal).norm(), 1e-3);
+}
+
+}  // namespace
+}  // namespace flexarm
