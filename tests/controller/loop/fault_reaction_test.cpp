@@ -1,0 +1,181 @@
+// Switches, emergency stop, and frozen threads while the arm runs: how fast, by what name, and that
+// nothing comes back by itself.
+//
+// Torque is observed at the frames: their applied torque is the mean over 20 slices of 1 ms, and
+// the command is constant over a period, so mean / command * 20 is the number of milliseconds with
+// torque, exact to the slew limit's ramp.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/controller/loop/stack_run.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+Experiment WithEvent(const SimEvent& event) {
+  Experiment experiment = ShippedExperiment();
+  experiment.sim_event = {event};
+  return experiment;
+}
+
+SimEvent LineEvent(double at_s, Line line) {
+  return {.at_s = at_s, .line = line, .level = 0, .freeze = FreezeTarget::kNone, .kill = false};
+}
+
+SimEvent FreezeEvent(double at_s, FreezeTarget target) {
+  return {.at_s = at_s, .line = {}, .level = 0, .freeze = target, .kill = false};
+}
+
+// Runs until 5 s after the event at `at_s` of the experiment.
+void RunBeyond(StackRun* run, double at_s) {
+  while (run->permit().running_since_ns == INT64_MIN) run->Run(run->now_ns() + 20 * kMs);
+  run->Run(run->ExperimentStart() + std::llround(at_s * 1e9) + 5'000 * kMs);
+}
+
+const SafetyRecord& Trip(const StackRun& run) {
+  const auto found = std::find_if(run.safety.begin(), run.safety.end(), [](const SafetyRecord& r) {
+    return r.before.state != SafetyState::kTripped && r.after.state == SafetyState::kTripped;
+  });
+  EXPECT_NE(found, run.safety.end()) << "no trip";
+  return found != run.safety.end() ? *found : run.safety.back();
+}
+
+// Tripped at the end with the cause it tripped with, and never left in between.
+void ExpectLatched(StackRun* run, TripCause cause) {
+  const SafetyRecord& trip = Trip(*run);
+  EXPECT_STREQ(Name(trip.after.cause), Name(cause));
+  EXPECT_STREQ(Name(run->permit().cause), Name(cause));
+  EXPECT_EQ(run->permit().state, SafetyState::kTripped);
+  for (const SafetyRecord& record : run->safety) {
+    if (record.due_ns <= trip.due_ns) continue;
+    EXPECT_EQ(record.after.state, SafetyState::kTripped);
+    EXPECT_EQ(record.after.cause, cause);
+  }
+}
+
+// Milliseconds with torque on joint 1 in the period that ends at `sampled_ns`.
+double MillisecondsWithTorque(const StackRun& run, std::int64_t sampled_ns) {
+  const std::int64_t period_ns = run.grid().period_ns;
+  const auto at = [&run](std::int64_t instant_ns) {
+    return std::find_if(run.tick.begin(), run.tick.end(), [instant_ns](const TickRecord& r) {
+      return r.input.sampling_instant_ns == instant_ns;
+    });
+  };
+  const auto command = at(sampled_ns - 2 * period_ns), frame = at(sampled_ns);
+  EXPECT_NE(command, run.tick.end());
+  EXPECT_NE(frame, run.tick.end());
+  return frame->input.applied_torque_nm[0] / command->output.torque_nm[0] * 20.0;
+}
+
+struct SwitchCase {
+  Line line;
+  TripCause cause;
+  std::uint32_t channel;
+};
+
+class SwitchReaction : public testing::TestWithParam<SwitchCase> {};
+
+// The level changes at 0.317 s, between two frames. Relay and permit are written in the safety
+// task's same tick, so the record of the trip is the relay's instant.
+TEST_P(SwitchReaction, OpensTheRelayAtTheNextTickAndTakesTheTorqueWithinTwoMilliseconds) {
+  constexpr double kAt = 0.317;
+  StackRun run(ShippedRig(), WithEvent(LineEvent(kAt, GetParam().line)));
+  RunBeyond(&run, kAt);
+  ExpectLatched(&run, GetParam().cause);
+  const std::int64_t event_ns = run.ExperimentStart() + 317 * kMs;
+  EXPECT_EQ(Trip(run).due_ns, event_ns + kMs);
+  EXPECT_EQ(Trip(run).evidence.value, 0.0);
+  EXPECT_EQ(Trip(run).evidence.limit, 1.0);
+  EXPECT_EQ(Trip(run).evidence.channel, GetParam().channel);
+  // 0.300 .. 0.320: torque until the tick after the event, 18 ms, and at most 19 by the contract.
+  const std::int64_t period_end_ns = run.ExperimentStart() + 320 * kMs;
+  EXPECT_NEAR(MillisecondsWithTorque(run, period_end_ns), 18.0, 1e-9);
+  for (const TickRecord& record : run.tick) {
+    if (record.input.sampling_instant_ns <= period_end_ns) continue;
+    EXPECT_EQ(record.input.applied_torque_nm[0], 0.0);
+    EXPECT_EQ(record.input.applied_torque_nm[1], 0.0);
+    EXPECT_EQ(record.output.torque_nm[0], 0.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Lines, SwitchReaction,
+    testing::Values(SwitchCase{Line::kLimit1Low, TripCause::kLimitSwitch1Low, 1},
+                    SwitchCase{Line::kLimit1High, TripCause::kLimitSwitch1High, 1},
+                    SwitchCase{Line::kLimit2Low, TripCause::kLimitSwitch2Low, 2},
+                    SwitchCase{Line::kLimit2High, TripCause::kLimitSwitch2High, 2},
+                    SwitchCase{Line::kEmergencyStop, TripCause::kEmergencyStop, 0}),
+    [](const auto& shown) { return "Line" + std::to_string(static_cast<int>(shown.param.line)); });
+
+class FreezePhase : public testing::TestWithParam<int> {};  // ms into the control period
+
+// A frozen plant sends neither frames nor reports. Who notices first, the safety task (stale
+// frame) or the loop (two periods without a reading), depends on the phase; both within two periods
+// and 2 ms.
+TEST_P(FreezePhase, OfThePlantTripsWithinTwoPeriodsAndTwoMilliseconds) {
+  const double at_s = 0.3 + 1e-3 * GetParam();
+  StackRun run(ShippedRig(), WithEvent(FreezeEvent(at_s, FreezeTarget::kPlant)));
+  RunBeyond(&run, at_s);
+  const SafetyRecord& trip = Trip(run);
+  const std::int64_t event_ns = run.ExperimentStart() + std::llround(at_s * 1e9);
+  EXPECT_LE(trip.due_ns - event_ns, 42 * kMs);
+  EXPECT_GT(trip.due_ns - event_ns, 20 * kMs) << "one late frame is no fault";
+  EXPECT_TRUE(trip.after.cause == TripCause::kStaleFrame ||
+              trip.after.cause == TripCause::kNoCounterReading)
+      << Name(trip.after.cause);
+  EXPECT_GT(trip.evidence.limit, 0.0);
+  EXPECT_GE(trip.evidence.value, trip.evidence.limit);
+  ExpectLatched(&run, trip.after.cause);
+}
+
+// A frozen control thread is noticed by its heartbeat, and its last command dies of age.
+TEST_P(FreezePhase, OfTheControlTaskTripsWithinTwoPeriodsAndTwoMilliseconds) {
+  const double at_s = 0.3 + 1e-3 * GetParam();
+  StackRun run(ShippedRig(), WithEvent(FreezeEvent(at_s, FreezeTarget::kControl)));
+  RunBeyond(&run, at_s);
+  ExpectLatched(&run, TripCause::kControlHeartbeatLost);
+  const SafetyRecord& trip = Trip(run);
+  const std::int64_t event_ns = run.ExperimentStart() + std::llround(at_s * 1e9);
+  EXPECT_LE(trip.due_ns - event_ns, 42 * kMs);
+  EXPECT_GT(trip.due_ns - event_ns, 20 * kMs);
+  // Evidence: the age of the heartbeat, just over its limit of two periods.
+  EXPECT_DOUBLE_EQ(trip.evidence.limit, 0.040);
+  EXPECT_NEAR(trip.evidence.value, 0.041, 1e-9);
+  EXPECT_LT(run.tick.back().input.now_ns, event_ns);
+}
+
+INSTANTIATE_TEST_SUITE_P(Milliseconds, FreezePhase, testing::Values(0, 1, 7, 9, 10, 11, 19));
+
+// The cause has gone, the arm is at rest, the button is pressed: still only the operator's reset
+// leaves Tripped, and it leads to Idle. Each of the two keys alone is refused with its reason.
+TEST(TripReset, NeedsTheButtonAndTheOperatorAndLeadsToIdle) {
+  constexpr double kAt = 2.6;  // in the rest between the moves: the arm stops soon without torque
+  StackRun run(ShippedRig(), WithEvent(LineEvent(kAt, Line::kEmergencyStop)));
+  RunBeyond(&run, kAt);
+  ExpectLatched(&run, TripCause::kEmergencyStop);
+
+  EXPECT_EQ(run.Ask(RequestKind::kArm), Refusal::kWrongState);
+  EXPECT_EQ(run.Ask(RequestKind::kReset), Refusal::kCauseRemains);
+  run.Press(Line::kEmergencyStop, 1);
+  EXPECT_EQ(run.Ask(RequestKind::kReset), Refusal::kNoReset);
+  run.Press(Line::kResetButton, 1);
+  run.Press(Line::kResetButton, 0);
+  run.Run(run.now_ns() + 5'000 * kMs, false);
+  EXPECT_EQ(run.permit().state, SafetyState::kTripped) << "the button alone resets nothing";
+  EXPECT_EQ(run.Ask(RequestKind::kReset), Refusal::kNone);
+  EXPECT_EQ(run.permit().state, SafetyState::kIdle);
+  run.Run(run.now_ns() + 5'000 * kMs, false);
+  EXPECT_EQ(run.permit().state, SafetyState::kIdle) << "nothing arms by itself";
+  EXPECT_EQ(run.tick.back().input.applied_torque_nm[0], 0.0);
+
+  // And the arm can be used again.
+  EXPECT_EQ(run.Ask(RequestKind::kArm), Refusal::kNone);
+  EXPECT_EQ(run.permit().state, SafetyState::kArmed);
+}
+
+}  // namespace
+}  // namespace flexarm

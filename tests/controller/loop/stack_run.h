@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "controller/law/design.h"
+#include "controller/runtime/lockstep_executor.h"
+#include "controller/runtime/planned_run.h"
+#include "controller/runtime/simulated_stack.h"
+#include "controller/runtime/unattended_run.h"
+#include "tests/controller/loop/simulated_runs.h"
+
+namespace flexarm {
+
+/// The stack in lock step with an operator that a test writes down, and everything it recorded.
+class StackRun {
+ public:
+  explicit StackRun(const Config& config, const Experiment& experiment, double payload_kg = 0.1)
+      : config_(config),
+        design_(DesignFor(config)),
+        grid_(config.loop),
+        planned_(experiment, design_, grid_.period_s(), {0.0, 0.0}, SoftAngleRad(config.safety)),
+        stack_(config, design_, payload_kg) {
+    stack_.Plan({.experiment = &planned_, .number = 1});
+    executor_.Add(stack_.safety());
+    executor_.Add(stack_.control());
+    executor_.Add(stack_.plant());
+  }
+
+  /// Lets the tasks run until `until_ns`; `unattended` makes the requests of UnattendedRun.
+  void Run(std::int64_t until_ns, bool unattended = true) {
+    constexpr std::int64_t kLookNs = 20'000'000;
+    while (now_ns_ < until_ns) {
+      now_ns_ = std::min(now_ns_ + kLookNs, until_ns);
+      executor_.RunUntil(now_ns_);
+      Collect();
+      if (!unattended) continue;
+      const OperatorRequest request = operator_.Update(now_ns_, permit());
+      if (request.kind != RequestKind::kNone) stack_.requests().Push(request);
+    }
+  }
+
+  /// Asks, waits 20 ms and returns the answer's refusal.
+  Refusal Ask(RequestKind kind) {
+    stack_.requests().Push({.kind = kind, .number = ++asked_, .not_before_ns = 0});
+    Run(now_ns_ + 20'000'000, false);
+    return answer.back().refusal;
+  }
+
+  void Press(Line line, int level) {
+    stack_.presses().Push({.line = line, .level = level});
+    Run(now_ns_ + 20'000'000, false);
+  }
+
+  Permit permit() { return stack_.operator_permits().Read().Newest().value; }
+  const Config& config() const { return config_; }
+  const Design& design() const { return design_; }
+  const LoopGrid& grid() const { return grid_; }
+  std::int64_t now_ns() const { return now_ns_; }
+
+  /// Sample 0 of the experiment.
+  std::int64_t ExperimentStart() { return grid_.ExperimentStart(permit().running_since_ns); }
+
+  std::vector<TickRecord> tick;
+  std::vector<SafetyRecord> safety;
+  std::vector<RequestAnswer> answer;
+
+ private:
+  void Collect() {
+    TickRecord record{};
+    while (stack_.tick_records().Pop(&record)) tick.push_back(record);
+    SafetyRecord change{};
+    while (stack_.safety_records().Pop(&change)) safety.push_back(change);
+    RequestAnswer given{};
+    while (stack_.answers().Pop(&given)) answer.push_back(given);
+  }
+
+  Config config_;
+  Design design_;
+  LoopGrid grid_;
+  PlannedExperiment planned_;
+  SimulatedStack stack_;
+  LockstepExecutor executor_;
+  UnattendedRun operator_;
+  std::int64_t now_ns_ = 0;
+  std::uint32_t asked_ = 1000;  // apart from the unattended run's numbers
+};
+
+}  // namespace flexarm

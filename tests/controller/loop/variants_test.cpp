@@ -1,0 +1,116 @@
+// The same loop with one thing changed: another law, plant, command or limit.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "tests/controller/loop/simulated_runs.h"
+
+namespace flexarm {
+namespace {
+
+void Print(const char* what, const Runs& runs) {
+  std::printf(
+      "  %-24s rms %6.3f %6.3f  final %5.3f %5.3f  settling %5.2f  residual %5.2f  trips %d\n",
+      what, Median(runs.rms1_deg), Median(runs.rms2_deg), Median(runs.final1_deg),
+      Median(runs.final2_deg), Median(runs.settling_s), Median(runs.residual_mm), runs.tripped);
+}
+
+// The study: 0.76 against 1.12 deg; measured 0.75 against 1.05. What is compared is the feedforward
+// (7.24)-(7.25): the adaptation adds nothing at this payload.
+TEST(LoopVariants, SobelTracksJointOneAQuarterBetterThanLqrWithCgt) {
+  const Runs sobel = RunSeeds(0.1), lqr = RunSeeds(0.1, {"controller.name=lqr-cgt"});
+  Print("sobel", sobel);
+  Print("lqr-cgt", lqr);
+  EXPECT_EQ(lqr.tripped, 0);
+  EXPECT_LE(Median(sobel.rms1_deg), 0.75 * Median(lqr.rms1_deg));
+}
+
+// No bar: the study found no benefit of the adaptation at 0 to 0.2 kg. Both must run, and must not
+// be the same run. Measured, rms th1 and th2 with and without: 1.08 0.70 and 1.06 0.89 at 0.01 kg,
+// 0.75 1.10 and 0.83 1.07 at 0.1 kg, 0.94 2.66 and 0.99 2.91 at 0.2 kg, 2.43 10.8 and 2.35 12.2 at
+// 1 kg; final error of joint 2 at 1 kg 3.4 and 5.7 deg.
+TEST(LoopVariants, AdaptationOffStillRunsAndIsReportedSideBySide) {
+  for (const double payload_kg : {0.01, 0.1, 0.2, 1.0}) {
+    const Runs with = RunSeeds(payload_kg, {}, 3),
+               without = RunSeeds(payload_kg, {"controller.adaptation=false"}, 3);
+    std::printf("payload %.2f kg\n", payload_kg);
+    Print("adaptation", with);
+    Print("no adaptation", without);
+    EXPECT_EQ(without.tripped, 0);
+    EXPECT_TRUE(std::isfinite(Median(without.rms1_deg) + Median(without.rms2_deg)));
+    EXPECT_NE(without.rms2_deg, with.rms2_deg);
+  }
+}
+
+// A controller that knows two modes a link must not mind what the plant has: rms within 5 % (the
+// study's bar) of the four-mode plant. Measured: within 0.6 %.
+TEST(LoopVariants, RmsDoesNotDependOnThePlantsModes) {
+  const Runs four = RunSeeds(0.1);
+  Print("4 modes", four);
+  for (const int modes : {2, 3, 6}) {
+    const Runs runs = RunSeeds(0.1, {"sim.plant_modes=" + std::to_string(modes)});
+    Print((std::to_string(modes) + " modes").c_str(), runs);
+    EXPECT_EQ(runs.tripped, 0);
+    EXPECT_NEAR(Median(runs.rms1_deg) / Median(four.rms1_deg), 1.0, 0.05) << modes;
+    EXPECT_NEAR(Median(runs.rms2_deg) / Median(four.rms2_deg), 1.0, 0.05) << modes;
+  }
+}
+
+TEST(LoopVariants, TheOtherShippedExperimentsComplete) {
+  for (const char* experiment : {"sine", "square-20deg"}) {
+    for (const double payload_kg : {0.01, 0.1, 0.2}) {
+      const Runs runs = RunSeeds(payload_kg, {}, 3, experiment);
+      Print(experiment, runs);
+      EXPECT_EQ(runs.tripped, 0) << experiment << " " << payload_kg;
+      // Smaller moves (20 deg) and gentler ones (sine) than the base command's bar at 0.2 kg.
+      EXPECT_LE(Largest(runs.rms1_deg), 1.3 * 1.10) << experiment << " " << payload_kg;
+      EXPECT_LE(Largest(runs.rms2_deg), 1.3 * 3.0) << experiment << " " << payload_kg;
+    }
+  }
+}
+
+// The study: 7.5 and 1.5 N m lose nothing. The rms bars at 0.1 kg hold as they are, and the limits
+// are really reached. Measured: rms 0.77 and 1.10 deg.
+TEST(LoopVariants, QuarterTorqueLimitsLoseNothing) {
+  const Runs runs = RunSeeds(0.1, {"limits.torque_limit_nm=[7.5, 1.5]"});
+  Print("7.5 and 1.5 N m", runs);
+  EXPECT_EQ(runs.tripped, 0);
+  EXPECT_LE(Median(runs.rms1_deg), 0.90);
+  EXPECT_LE(Median(runs.rms2_deg), 1.35);
+  EXPECT_LE(Largest(runs.peak1_nm), 7.5);
+  EXPECT_LE(Largest(runs.peak2_nm), 1.5);
+  EXPECT_GT(Largest(runs.peak1_nm), 7.4) << "the limit was never reached: the test says nothing";
+}
+
+// The prescribed degree of stability is what removes the final error. Measured: 0.45 against 0.04
+// deg (study: 1.2 against 0.15).
+TEST(LoopVariants, WithoutPrescribedStabilityTheFinalErrorIsFourTimesLarger) {
+  const std::vector<std::string> corrected = {"controller.feedforward_sign=corrected",
+                                              "controller.vartheta=0.5"};
+  std::vector<std::string> slow = corrected;
+  slow.push_back("controller.alpha=0.0");
+  const Runs fast = RunSeeds(0.1, corrected), at_zero = RunSeeds(0.1, slow);
+  Print("alpha 3", fast);
+  Print("alpha 0", at_zero);
+  const double error3 = std::max(Median(fast.final1_deg), Median(fast.final2_deg));
+  const double error0 = std::max(Median(at_zero.final1_deg), Median(at_zero.final2_deg));
+  EXPECT_GE(error0, 4.0 * error3);
+}
+
+// The interior optimum of (7.24), which exists with the printed sign and this command only: at
+// least 20 % below vartheta 0 and 40 % below 1. Measured: 1.10, 0.75, 2.35 deg.
+TEST(LoopVariants, TheBlendOfFeedforwardsBeatsBothEnds) {
+  const Runs none = RunSeeds(0.1, {"controller.vartheta=0.0"}),
+             blend = RunSeeds(0.1, {"controller.vartheta=0.35"}),
+             all = RunSeeds(0.1, {"controller.vartheta=1.0"});
+  Print("vartheta 0", none);
+  Print("vartheta 0.35", blend);
+  Print("vartheta 1", all);
+  EXPECT_LE(Median(blend.rms1_deg), 0.8 * Median(none.rms1_deg));
+  EXPECT_LE(Median(blend.rms1_deg), 0.6 * Median(all.rms1_deg));
+}
+
+}  // namespace
+}  // namespace flexarm
