@@ -102,7 +102,7 @@ class InnovationsTest : public testing::Test {
 };
 
 // The sum of v' S^-1 v over N samples is chi-square with 8 N degrees of freedom: the mean lies in
-// 8 +- 4 sqrt(16 / N) with 4 sigma. A gain that is off by 10 % or a noise that is off by 5 % fails.
+// 8 +- 4 sqrt(16 / N) with 4 sigma.
 TEST_F(InnovationsTest, NormalisedSquareLiesInsideItsChiSquareBounds) {
   const Eigen::LLT<MatrixXd> S(S_);
   double sum = 0.0;

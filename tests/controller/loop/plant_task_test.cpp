@@ -1,0 +1,112 @@
+// The drive side of the simulated backend: permit, relay, charge pump and the age of a command each
+// stop the torque alone. In a whole stack they act together, and hide one another.
+
+#include "controller/runtime/plant_task.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/controller/loop/simulated_runs.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+// What the other tasks say in every millisecond.
+struct World {
+  SafetyState permit = SafetyState::kRunning;
+  bool permit_renewed = true;
+  bool relay_closed = true;
+  bool pump_toggles = true;
+  bool commands_go_on = true;
+};
+
+class PlantTaskTest : public testing::Test {
+ protected:
+  // Runs to `until_ns`, the world as it says from now on; returns the mean torque of joint 1 over
+  // the 20 ms that end there.
+  double RunTo(std::int64_t until_ns, const World& world) {
+    while (now_ns_ < until_ns) {
+      if (world.commands_go_on && now_ns_ % (20 * kMs) == 0) {
+        commands_history_.Push(now_ns_, {.torque_nm = {2.0, 0.2}, .tick = now_ns_ / (20 * kMs)});
+        commands_.Publish(commands_history_);
+      }
+      if (world.permit_renewed) {
+        Permit permit = kNoPermit;
+        permit.state = world.permit;
+        permit.renewed_ns = now_ns_;
+        permits_history_.Push(now_ns_, permit);
+        permits_.Publish(permits_history_);
+      }
+      pump_ = world.pump_toggles ? !pump_ : pump_;
+      outputs_history_.Push(now_ns_, {.relay_closed = world.relay_closed, .pump_level = pump_});
+      outputs_.Publish(outputs_history_);
+      now_ns_ += kMs;
+      task_.Run({.due_ns = now_ns_, .missed_in_a_row = 0});
+    }
+    return frames_.Read().At(until_ns).value.applied_torque_nm[0];
+  }
+
+  std::int64_t now_ns_ = 0;
+  bool pump_ = false;
+  CommandHistory commands_history_{kNoCommand};
+  PermitHistory permits_history_{kNoPermit};
+  OutputHistory outputs_history_{{.relay_closed = false, .pump_level = false}};
+  CommandChannel commands_{commands_history_};
+  PermitChannel permits_{permits_history_};
+  OutputChannel outputs_{outputs_history_};
+  PlanChannel plans_{PlannedRun{}};
+  SpscQueue<LinePress> presses_{4};
+  FrameChannel frames_{FrameHistory(kNoFrame)};
+  LevelChannel levels_{LevelHistory(kHealthyLevels)};
+  DriveReportChannel reports_{DriveReportHistory(kNoDriveReport)};
+  PlantTask task_{ShippedRig(),
+                  0.1,
+                  {.commands = &commands_,
+                   .permits = &permits_,
+                   .outputs = &outputs_,
+                   .plans = &plans_,
+                   .presses = &presses_,
+                   .frames = &frames_,
+                   .levels = &levels_,
+                   .reports = &reports_}};
+};
+
+TEST_F(PlantTaskTest, AppliesTheCommandWhileEverythingAllowsIt) {
+  EXPECT_EQ(RunTo(40 * kMs, {}), 2.0);
+  EXPECT_EQ(RunTo(60 * kMs, {}), 2.0);
+}
+
+TEST_F(PlantTaskTest, APermitThatAllowsNoTorqueStopsItAlone) {
+  ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
+  EXPECT_EQ(RunTo(60 * kMs, {.permit = SafetyState::kTripped}), 0.0);
+}
+
+TEST_F(PlantTaskTest, AnOpenRelayStopsItAlone) {
+  ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
+  EXPECT_EQ(RunTo(60 * kMs, {.relay_closed = false}), 0.0);
+}
+
+// Renewed last at 39 ms, the permit is 5 ms old at 44 and too old at 45: five of the twenty
+// milliseconds from 40 on.
+TEST_F(PlantTaskTest, APermitOlderThanFiveMillisecondsStopsItAlone) {
+  ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
+  EXPECT_DOUBLE_EQ(RunTo(60 * kMs, {.permit_renewed = false}), 2.0 * 5.0 / 20.0);
+}
+
+// The pump toggled last at 39 ms; the same five milliseconds.
+TEST_F(PlantTaskTest, AChargePumpThatStandsStillStopsItAlone) {
+  ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
+  EXPECT_DOUBLE_EQ(RunTo(60 * kMs, {.pump_toggles = false}), 2.0 * 5.0 / 20.0);
+}
+
+// The last command acts from 20 ms on and lives two periods: to 60 ms and that millisecond.
+TEST_F(PlantTaskTest, ACommandOlderThanTwoPeriodsStopsItAlone) {
+  ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
+  EXPECT_EQ(RunTo(60 * kMs, {.commands_go_on = false}), 2.0);
+  EXPECT_DOUBLE_EQ(RunTo(80 * kMs, {.commands_go_on = false}), 2.0 * 1.0 / 20.0);
+  EXPECT_EQ(RunTo(100 * kMs, {.commands_go_on = false}), 0.0);
+}
+
+}  // namespace
+}  // namespace flexarm
