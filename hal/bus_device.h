@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+
+#include "hal/sensor_frame.h"
+
+namespace flexarm {
+
+/// A device cannot be opened or configured: which one, what happened, what was expected.
+class HalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How one exchange with a bus went. Anything but kOk is counted and, if it lasts, a named fault.
+enum class BusStatus : std::uint8_t {
+  kOk,
+  kTimeout,       ///< no answer, or not all of it, in time
+  kMalformed,     ///< an answer that cannot be one: wrong id, length, unit, checksum, range
+  kDisconnected,  ///< the peer is gone
+  kBusOff,        ///< the CAN controller has left the bus
+  kDriveFault,    ///< a drive reports a fault, or has left the operational state
+};
+
+/// What a bus is told for one period. A bus without drives ignores it.
+struct BusCommand {
+  std::array<double, 2> torque_nm;  ///< after the gate, at the gearbox output
+  bool enabled;                     ///< false: the drives shall be off, whatever the torque
+};
+
+/// One bus, board or serial line, on a thread of its own because it may block.
+///
+/// Order: Open, then Exchange once a period; after a failed one Reconnect, until it succeeds, but
+/// only while the arm is disarmed. Thread: the bus's own; Open and Close when no thread runs.
+class BusDevice {
+ public:
+  virtual ~BusDevice() = default;
+
+  virtual const char* name() const noexcept = 0;
+
+  /// Declared bound of one Exchange or Reconnect, whatever the peer does. A test asserts it.
+  virtual std::int64_t worst_case_ns() const noexcept = 0;
+
+  /// Connects, identifies, configures and reads the configuration back. May take seconds.
+  /// @throws HalError
+  virtual void Open() = 0;
+
+  /// Writes `command`, then reads. On return `part` holds this bus's readings as valid and nothing
+  /// else; sampled_at_ns and offsets in CLOCK_MONOTONIC. On failure nothing is valid.
+  [[nodiscard]] virtual BusStatus Exchange(const BusCommand& command,
+                                           SensorFrame* part) noexcept = 0;
+
+  /// One bounded attempt to come back after a failure.
+  [[nodiscard]] virtual BusStatus Reconnect() noexcept = 0;
+
+  /// Torque off by the shortest path there is, then lets go.
+  virtual void Close() noexcept = 0;
+};
+
+}  // namespace flexarm
