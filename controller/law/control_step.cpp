@@ -138,6 +138,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
     const SobelLaw::Result decision = s.Decide(input, x_next, sensors_good);
     out.torque_nm = decision.torque_nm;
     out.limits = decision.limits;
+    if (!decision.finite) out.faults |= CauseBit(TripCause::kStateNotFinite);
   } else {
     out.limits = kAdaptationHeld;
   }

@@ -60,7 +60,7 @@ SobelLaw::Result SobelLaw::Compute(const StateVector& x, const ReferenceSample& 
                           (loop(0, 0) * drive(1) - loop(1, 0) * drive(0)) / determinant);
 
   Result result = Clip(from_gain + rho * v);
-  if (!may_adapt || result.limits != 0) {
+  if (!may_adapt || result.limits != 0 || !result.finite) {
     result.limits |= kAdaptationHeld;
     return result;
   }
@@ -78,7 +78,8 @@ SobelLaw::Result SobelLaw::Regulate(const StateVector& x,
 }
 
 SobelLaw::Result SobelLaw::Clip(const Eigen::Vector2d& u) const noexcept {
-  Result result{};
+  Result result{.torque_nm = {0.0, 0.0}, .limits = 0, .finite = u.allFinite()};
+  if (!result.finite) return result;
   for (std::size_t i = 0; i < 2; ++i) {
     const double limit = torque_limit_nm_[i];
     const double asked = u(static_cast<Eigen::Index>(i));

@@ -28,6 +28,7 @@ class SobelLaw {
   struct Result {
     std::array<double, 2> torque_nm;
     std::uint32_t limits;  ///< LimitBit
+    bool finite;           ///< false: the law computed no number; the torque is zero
   };
 
   SobelLaw(const Design& design, const ControllerConfig& config,

@@ -188,6 +188,17 @@ TEST_F(ControlStepTest, ATorqueThatIsNotANumberIsAFaultAndTakesTheTorque) {
 
 // A trip is left only when its cause has gone, and the step is reset only when the arm is armed
 // again: so a state that went bad must mend by itself, or the daemon can never be reset.
+// Clipping alone would turn a NaN into full torque: fmax and fmin pass over it.
+TEST_F(ControlStepTest, AReferenceThatIsNotANumberIsAFaultAndTakesTheTorque) {
+  step_.Step(AtRest(0, SafetyState::kArmed));
+  StepInput input = Moving(1);
+  input.reference_next.x_m[0] = std::numeric_limits<double>::quiet_NaN();
+  const StepOutput output = step_.Step(input);
+  EXPECT_EQ(output.faults, CauseBit(TripCause::kStateNotFinite));
+  EXPECT_EQ(output.torque_nm, (std::array<double, 2>{0.0, 0.0}));
+  EXPECT_EQ(step_.Step(Moving(2)).faults, 0u) << "the adaptive gains must not have taken it in";
+}
+
 TEST_F(ControlStepTest, AStateThatWasNotFiniteMendsWhenTheInputsDo) {
   step_.Step(Moving(0));
   StepInput poisoned = Moving(1);
