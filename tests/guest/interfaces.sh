@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# Inside the guest: the kernel interfaces that drivers are tested with are there and work. Each
+# block also shows how its interface is brought up.
+# shellcheck source=tests/guest/check.sh
+. "$(dirname "$0")/check.sh"
+
+echo "== real time"
+check "the kernel is PREEMPT_RT" equal "$(cat /sys/kernel/realtime)" 1
+check "SCHED_FIFO is permitted" chrt -f 90 true
+check "memory can be locked" cyclictest -q -m -p 90 -i 1000 -l 50
+
+echo "== SocketCAN"
+modprobe -a vcan can-raw
+ip link add vcan0 type vcan && ip link set vcan0 up
+candump -n 1 vcan0 >can.txt &
+listener=$!
+sleep 0.5
+cansend vcan0 123#DEADBEEF
+wait $listener
+check "a CAN frame arrives" grep -q '123 *\[4\]  DE AD BE EF' can.txt
+
+echo "== GPIO lines of gpio-sim"
+modprobe gpio-sim  # before the mount: configfs is there only once something uses it
+mountpoint -q /sys/kernel/config || mount -t configfs none /sys/kernel/config
+device=/sys/kernel/config/gpio-sim/plc
+mkdir -p $device/bank/line3
+echo 8 >$device/bank/num_lines
+echo limit >$device/bank/line3/name
+echo 1 >$device/live
+chip=$(cat $device/bank/chip_name)
+line=/sys/devices/platform/$(cat $device/dev_name)/$chip/sim_gpio
+check "the line is found by its name" equal "$(gpiofind limit)" "$chip 3"
+check "the line reads 0" equal "$(gpioget "$chip" 3)" 0
+echo pull-up >"${line}3/pull"
+check "the line reads 1 when pulled" equal "$(gpioget "$chip" 3)" 1
+gpiomon --num-events=1 --falling-edge "$chip" 3 >edge.txt &
+monitor=$!
+sleep 0.5
+echo pull-down >"${line}3/pull"
+wait $monitor
+check "an edge is reported" grep -q FALLING edge.txt
+gpioset --mode=time --sec=1 "$chip" 5=1 &
+sleep 0.5
+check "a driven line is seen outside" equal "$(cat "${line}5/value")" 1
+wait
+
+echo "== comedi"
+modprobe comedi_test  # attaches itself
+check "a DAQ board answers" ls /dev/comedi0
+
+echo "== the kernel's log"
+dmesg >dmesg.txt
+check "was read" grep -q 'Linux version' dmesg.txt
+check "has no complaint" refused grep -E 'WARNING:|BUG:|\bOops\b|Call Trace:' dmesg.txt
+conclude
