@@ -173,7 +173,7 @@ double Simulation::Loop(const std::function<void(double)>& progress) {
   LockstepExecutor executor;
   executor.Add(stack_.safety());
   executor.Add(stack_.control());
-  executor.Add(stack_.plant());
+  for (Task* task : stack_.drive_tasks()) executor.Add(*task);
   executor.Add(operator_);
   executor.Add(recorder_);
   const auto started = std::chrono::steady_clock::now();

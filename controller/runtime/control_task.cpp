@@ -27,7 +27,7 @@ void ControlTask::Run(const Activation& activation) noexcept {
   // What was published at the due instant itself may or may not be there yet.
   FollowState(channels_.permits->Read().At(activation.due_ns - 1).value);
   const std::int64_t sampled_ns = grid_.SamplingInstant(grid_.Tick(activation.due_ns));
-  const FramePacket& packet = channels_.frames->Read().At(sampled_ns).value;
+  const FramePacket packet = ReadFrames(sampled_ns);
 
   TickRecord record{};
   record.input = Gather(activation, packet, state_);
@@ -38,6 +38,14 @@ void ControlTask::Run(const Activation& activation) noexcept {
   Publish(activation, record.input, record.output);
   channels_.records->Push(record);
   channels_.telemetry->Publish(record);
+}
+
+FramePacket ControlTask::ReadFrames(std::int64_t sampled_ns) noexcept {
+  FramePacket packet = channels_.frames.front()->Read().At(sampled_ns).value;
+  for (std::size_t i = 1; i < channels_.frames.size(); ++i) {
+    Join(channels_.frames[i]->Read().At(sampled_ns).value, &packet);
+  }
+  return packet;
 }
 
 void ControlTask::FollowState(const Permit& permit) noexcept {
@@ -99,7 +107,7 @@ void ControlTask::Publish(const Activation& activation, const StepInput& input,
   const std::int64_t next_sample_ns = input.sampling_instant_ns + grid_.period_ns;
   commands_.Push(output.faults != 0 ? published_ns : next_sample_ns,
                  {.torque_nm = output.torque_nm, .tick = output.tick});
-  channels_.commands->Publish(commands_);
+  for (CommandChannel* channel : channels_.commands) channel->Publish(commands_);
   reports_.Push(published_ns, {.tick = output.tick,
                                .due_ns = activation.due_ns,
                                .faults = output.faults,

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 #include "controller/law/control_step.h"
 #include "controller/runlog/records.h"
@@ -16,13 +17,13 @@ namespace flexarm {
 
 /// Everything that the control task touches. All of it outlives the task.
 struct ControlChannels {
-  FrameChannel* frames;                ///< read
-  PermitChannel* permits;              ///< read
-  PlanChannel* plans;                  ///< read
-  CommandChannel* commands;            ///< written
-  ControlReportChannel* reports;       ///< written
-  SpscQueue<TickRecord>* records;      ///< written: every step, for the log
-  LatestValue<TickRecord>* telemetry;  ///< written: the newest step, for status
+  std::vector<FrameChannel*> frames;      ///< read: each holds its own part of the readings
+  PermitChannel* permits;                 ///< read
+  PlanChannel* plans;                     ///< read
+  std::vector<CommandChannel*> commands;  ///< written: one a drive bus
+  ControlReportChannel* reports;          ///< written
+  SpscQueue<TickRecord>* records;         ///< written: every step, for the log
+  LatestValue<TickRecord>* telemetry;     ///< written: the newest step, for status
 };
 
 /// The control thread's body: newest frame -> Step -> asked torque, 50 Hz. Never waits.
@@ -44,6 +45,7 @@ class ControlTask final : public Task {
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
  private:
+  FramePacket ReadFrames(std::int64_t sampled_ns) noexcept;
   void FollowState(const Permit& permit) noexcept;
   void StartRun(std::int64_t running_since_ns) noexcept;
   StepInput Gather(const Activation& activation, const FramePacket& packet,

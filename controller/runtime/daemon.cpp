@@ -152,7 +152,7 @@ DaemonResult Daemon::Run() {
   PrepareHost();
   executor_.Add(stack_.safety());
   executor_.Add(stack_.control(), &timing_);
-  executor_.Add(stack_.plant());
+  for (Task* task : stack_.drive_tasks()) executor_.Add(*task);
   executor_.Add(operator_);
   executor_.Add(recorder_);
   executor_.Start(MonotonicNow() + kEpochLeadNs);

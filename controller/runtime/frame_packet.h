@@ -13,10 +13,16 @@ namespace flexarm {
 
 /// Drive side -> control task, at every sampling instant.
 struct FramePacket {
-  SensorFrame frame;
+  SensorFrame frame;                        ///< a bus marks its own readings valid, and no other
   std::array<double, 2> applied_torque_nm;  ///< after the gate: mean since the last packet
   PlantTruth truth;                         ///< simulated backend only
 };
+
+/// Adds the readings of another bus to `packet`: what is valid in `part` replaces what was there,
+/// its instant kept; torques add, because a bus reports 0 for a drive that is not its own.
+/// Real-time: safe.
+void Join(const FramePacket& part, FramePacket* packet) noexcept;
+
 using FrameHistory = History<FramePacket, 4>;
 using FrameChannel = LatestValue<FrameHistory>;
 

@@ -123,7 +123,9 @@ Json OperatorTask::PressLine(const Json& command) {
                    "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop or "
                    "reset-button, and level 0 or 1");
   }
-  context_.stack->presses().Push({.line = *line, .level = level});
+  if (!context_.stack->Press({.line = *line, .level = level})) {
+    return Failure("this backend has no simulated switches", "press the real one");
+  }
   context_.report(
       false, std::string("simulated line ") + Name(*line) + " set to " + std::to_string(level));
   return {{"ok", true},

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "controller/runlog/event_queue.h"
+#include "controller/runtime/loop_stack.h"
 #include "controller/runtime/operator_socket.h"
-#include "controller/runtime/simulated_stack.h"
 #include "controller/runtime/task.h"
 #include "controller/runtime/unattended_run.h"
 
@@ -20,7 +20,7 @@ namespace flexarm {
 
 /// What the operator task needs of its daemon. All of it outlives the task.
 struct OperatorContext {
-  SimulatedStack* stack;
+  LoopStack* stack;
   EventQueue* events;  ///< to the recorder
   const Design* design;
   LoopGrid grid;

@@ -6,6 +6,7 @@
 
 #include "controller/runtime/frame_packet.h"
 #include "controller/runtime/loop_grid.h"
+#include "controller/runtime/loop_stack.h"
 #include "controller/runtime/messages.h"
 #include "controller/runtime/planned_run.h"
 #include "controller/runtime/simulated_lines.h"
@@ -17,12 +18,6 @@
 namespace flexarm {
 
 struct StackConfig;
-
-/// A simulated switch pressed by the operator: `flexarm sim LINE LEVEL`.
-struct LinePress {
-  Line line;
-  int level;
-};
 
 /// Everything that the plant task touches. All of it outlives the task.
 struct PlantChannels {

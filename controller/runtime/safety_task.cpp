@@ -1,5 +1,6 @@
 #include "controller/runtime/safety_task.h"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -37,15 +38,15 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const std::int64_t due_ns = activation.due_ns;
   const LineLevels levels = channels_.lines->Read(due_ns);
   const ControlReportHistory& control = channels_.control->Read();
-  const DriveReportHistory& drive = channels_.drive->Read();
+  const DriveSide drive = ReadDrives(due_ns);
   const auto [requested, request, earlier] = TakeRequest(due_ns);
 
   const SafetyInputs in{.due_ns = due_ns,
                         .levels = levels,
                         .control = control.At(due_ns).value,
                         .control_alive_ns = control.Newest().value.due_ns,
-                        .drive = drive.At(due_ns).value,
-                        .drive_alive_ns = drive.Newest().value.due_ns,
+                        .drive = drive.report,
+                        .drive_alive_ns = drive.alive_ns,
                         .request = request.kind,
                         .state = status_.state,
                         .state_since_ns = state_since_ns_,
@@ -82,6 +83,20 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   } else if (request.kind == RequestKind::kStop || request.kind == RequestKind::kDisarm) {
     CancelPlanned(earlier, facts.present);
   }
+}
+
+SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
+  DriveSide side{.report = {.due_ns = INT64_MAX, .bus_ok = true, .drive_ok = true},
+                 .alive_ns = INT64_MAX};
+  for (DriveReportChannel* channel : channels_.drives) {
+    const DriveReportHistory& history = channel->Read();
+    const DriveReport& report = history.At(due_ns).value;
+    side.report.due_ns = std::min(side.report.due_ns, report.due_ns);
+    side.report.bus_ok = side.report.bus_ok && report.bus_ok;
+    side.report.drive_ok = side.report.drive_ok && report.drive_ok;
+    side.alive_ns = std::min(side.alive_ns, history.Newest().value.due_ns);
+  }
+  return side;
 }
 
 SafetyTask::Taken SafetyTask::TakeRequest(std::int64_t due_ns) noexcept {

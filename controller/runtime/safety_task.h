@@ -18,12 +18,12 @@ namespace flexarm {
 /// Everything that the safety task touches. All of it outlives the task.
 struct SafetyChannels {
   SafetyLines* lines;
-  ControlReportChannel* control;         ///< read
-  DriveReportChannel* drive;             ///< read
-  SpscQueue<OperatorRequest>* requests;  ///< read
-  std::vector<PermitChannel*> permits;   ///< written: one a reader (drive, control, operator)
-  SpscQueue<RequestAnswer>* answers;     ///< written
-  SpscQueue<SafetyRecord>* records;      ///< written
+  ControlReportChannel* control;            ///< read
+  std::vector<DriveReportChannel*> drives;  ///< read: one a bus
+  SpscQueue<OperatorRequest>* requests;     ///< read
+  std::vector<PermitChannel*> permits;      ///< written: one a reader (drive, control, operator)
+  SpscQueue<RequestAnswer>* answers;        ///< written
+  SpscQueue<SafetyRecord>* records;         ///< written
 };
 
 /// The safety thread's body: 1 kHz, highest priority. Levels and reports in, relay and permit out.
@@ -57,6 +57,13 @@ class SafetyTask final : public Task {
     std::size_t earlier;  ///< requests that came before it and still wait for their time
   };
 
+  /// The report of a drive side made of several buses: as good as its worst, as old as its oldest.
+  struct DriveSide {
+    DriveReport report;
+    std::int64_t alive_ns;
+  };
+
+  DriveSide ReadDrives(std::int64_t due_ns) noexcept;
   Taken TakeRequest(std::int64_t due_ns) noexcept;
   void CancelPlanned(std::size_t first, TripCauses present) noexcept;
   void Enter(const SafetyStatus& next, const SafetyInputs& in) noexcept;

@@ -49,7 +49,7 @@ class StackRun {
   }
 
   void Press(Line line, int level) {
-    stack_.presses().Push({.line = line, .level = level});
+    stack_.Press({.line = line, .level = level});
     Run(now_ns_ + 20'000'000, false);
   }
 

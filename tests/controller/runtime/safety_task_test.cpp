@@ -172,7 +172,7 @@ class SafetyTaskTest : public testing::Test {
   SafetyTask safety_{kLimits,
                      {.lines = &lines_,
                       .control = &reports_,
-                      .drive = &drive_reports_,
+                      .drives = {&drive_reports_},
                       .requests = &requests_,
                       .permits = {&drive_permits_, &operator_permits_},
                       .answers = &answers_,

@@ -1,0 +1,73 @@
+#include "controller/runtime/bus_task.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "controller/runtime/stack_config.h"
+
+namespace flexarm {
+
+BusTask::BusTask(const StackConfig& config, BusDevice* device, BusChannels channels)
+    : device_(device),
+      grid_(config.loop),
+      limits_{.torque_nm = config.safety.torque_limit_nm,
+              .slew_nm_per_s = config.safety.slew_limit_nm_per_s,
+              .command_timeout_ns = 2 * grid_.period_ns,
+              .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
+      channels_(channels) {}
+
+Task::Traits BusTask::traits() const noexcept {
+  return {.name = device_->name(),
+          .period_ns = grid_.period_ns,
+          .phase_ns = 0,
+          .deadline_ns = grid_.phase_ns,
+          .priority = kPriority};
+}
+
+void BusTask::Run(const Activation& activation) noexcept {
+  applied_before_nm_ = applied_nm_;
+  const BusCommand command = Command(activation.due_ns);
+  SensorFrame part{};
+  const bool may_reconnect = failures_ > 0 && !command.enabled;
+  status_ = may_reconnect ? device_->Reconnect() : device_->Exchange(command, &part);
+  failures_ = status_ == BusStatus::kOk ? 0 : std::min(failures_ + 1, kFailuresToLose);
+  Publish(activation.due_ns, part);
+}
+
+// The last act before the drive. A bus that has just failed is told the same as a healthy one: what
+// it missed is gone, and the next command is the newest.
+BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
+  const CommandHistory::Entry& command = channels_.commands->Read().At(due_ns);
+  const Permit& permit = channels_.permits->Read().Newest().value;
+  const GateResult gated =
+      Gate({.asked_nm = command.value.torque_nm,
+            .asked_age_ns = AgeNs(due_ns, command.from_ns),
+            .permit = permit.state,
+            .permit_age_ns = std::max<std::int64_t>(AgeNs(due_ns, permit.renewed_ns), 0),
+            .previous_nm = applied_nm_,
+            .dt_s = grid_.period_s()},
+           limits_);
+  for (std::size_t i = 0; i < 2; ++i) {
+    applied_nm_[i] = (device_->drives() >> i & 1u) != 0 ? gated.torque_nm[i] : 0.0;
+  }
+  const bool powered = permit.state == SafetyState::kArmed || TorqueAllowed(permit.state);
+  return {.torque_nm = applied_nm_, .enabled = powered && (gated.why & kGatePermitOld) == 0};
+}
+
+void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
+  FramePacket packet{};
+  packet.frame.sampled_at_ns = due_ns;  // of a failed exchange: nothing is valid
+  if (status_ == BusStatus::kOk) {
+    packet.frame = part;
+    packet.frame.sampled_at_ns -= epoch_ns_;
+  }
+  packet.applied_torque_nm = applied_before_nm_;
+  frames_.Push(due_ns, packet);
+  channels_.frames->Publish(frames_);
+  reports_.Push(due_ns, {.due_ns = due_ns,
+                         .bus_ok = failures_ < kFailuresToLose,
+                         .drive_ok = status_ != BusStatus::kDriveFault});
+  channels_.reports->Publish(reports_);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,42 @@
+#include "controller/runtime/loop_stack.h"
+
+namespace flexarm {
+namespace {
+
+// At least 60 s deep: a recorder that is stuck that long loses nothing.
+constexpr std::size_t kTickDepth = 4'000;
+constexpr std::size_t kSafetyDepth = 60'000;
+constexpr std::size_t kOperatorDepth = 64;
+
+std::vector<PermitChannel*> Joined(std::vector<PermitChannel*> first,
+                                   const std::vector<PermitChannel*>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+}  // namespace
+
+LoopStack::LoopStack(const StackConfig& config, const Design& design, LoopWiring wiring)
+    : requests_(kOperatorDepth),
+      answers_(kOperatorDepth),
+      tick_records_(kTickDepth),
+      safety_records_(kSafetyDepth),
+      step_(config, design),
+      safety_(MakeSupervisorLimits(config.safety, config.loop),
+              {.lines = wiring.lines,
+               .control = &control_reports_,
+               .drives = wiring.drives,
+               .requests = &requests_,
+               .permits = Joined({&control_permits_, &operator_permits_}, wiring.permits),
+               .answers = &answers_,
+               .records = &safety_records_}),
+      control_(config.loop, &step_,
+               {.frames = wiring.frames,
+                .permits = &control_permits_,
+                .plans = &plans_,
+                .commands = wiring.commands,
+                .reports = &control_reports_,
+                .records = &tick_records_,
+                .telemetry = &telemetry_}) {}
+
+}  // namespace flexarm

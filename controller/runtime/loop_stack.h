@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "controller/law/control_step.h"
+#include "controller/law/design.h"
+#include "controller/runtime/control_task.h"
+#include "controller/runtime/safety_task.h"
+#include "controller/runtime/stack_config.h"
+
+namespace flexarm {
+
+/// A simulated switch pressed by the operator: `flexarm sim LINE LEVEL`.
+struct LinePress {
+  Line line;
+  int level;
+};
+
+/// The drive side of a backend, as safety and control see it. All of it outlives the stack.
+struct LoopWiring {
+  SafetyLines* lines;
+  std::vector<FrameChannel*> frames;        ///< each holds its own part of the readings
+  std::vector<CommandChannel*> commands;    ///< one a drive bus
+  std::vector<PermitChannel*> permits;      ///< one a drive bus
+  std::vector<DriveReportChannel*> drives;  ///< one a bus
+};
+
+/// The safety and control tasks of the daemon, whatever they drive, and the outside's ends:
+/// requests and plans in, permits, answers and records out. Construction allocates; running does
+/// not.
+class LoopStack {
+ public:
+  LoopStack(const StackConfig& config, const Design& design, LoopWiring wiring);
+  virtual ~LoopStack() = default;
+  LoopStack(const LoopStack&) = delete;
+  LoopStack& operator=(const LoopStack&) = delete;
+
+  SafetyTask& safety() { return safety_; }
+  ControlTask& control() { return control_; }
+  /// Of the backend, in order of priority.
+  virtual std::vector<Task*> drive_tasks() = 0;
+
+  // Operator's ends: one thread.
+  SpscQueue<OperatorRequest>& requests() { return requests_; }
+  SpscQueue<RequestAnswer>& answers() { return answers_; }
+  PermitChannel& operator_permits() { return operator_permits_; }
+  LatestValue<TickRecord>& telemetry() { return telemetry_; }
+  /// The experiment of the next run; see PlannedRun for how long it must live.
+  virtual void Plan(const PlannedRun& plan) noexcept { plans_.Publish(plan); }
+  /// Plans with a lower number than this are no longer used.
+  virtual std::uint32_t released_plans() const noexcept { return control_.released(); }
+  /// False: this backend has no simulated switches.
+  virtual bool Press(const LinePress& /*press*/) noexcept { return false; }
+
+  // Recorder's ends: one thread.
+  SpscQueue<TickRecord>& tick_records() { return tick_records_; }
+  SpscQueue<SafetyRecord>& safety_records() { return safety_records_; }
+
+ private:
+  PermitChannel control_permits_{PermitHistory(kNoPermit)};
+  PermitChannel operator_permits_{PermitHistory(kNoPermit)};
+  ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
+  PlanChannel plans_{PlannedRun{}};
+  LatestValue<TickRecord> telemetry_{TickRecord{}};
+  SpscQueue<OperatorRequest> requests_;
+  SpscQueue<RequestAnswer> answers_;
+  SpscQueue<TickRecord> tick_records_;
+  SpscQueue<SafetyRecord> safety_records_;
+  ControlStep step_;
+  SafetyTask safety_;
+  ControlTask control_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "controller/runtime/bus_task.h"
+#include "controller/runtime/loop_stack.h"
+
+namespace flexarm {
+
+/// What a rig is wired with: its buses, opened, and its safety chain. Outlives the stack.
+struct RigWires {
+  std::vector<BusDevice*> buses;  ///< at least one
+  SafetyLines* lines;
+};
+
+/// The channels between the loop and the buses. A base of WiredStack, so that they are there before
+/// the tasks that use them.
+struct BusWires {
+  struct Bus {
+    FrameChannel frames{FrameHistory(kNoFrame)};
+    CommandChannel commands{CommandHistory(kNoCommand)};
+    PermitChannel permits{PermitHistory(kNoPermit)};
+    DriveReportChannel reports{DriveReportHistory(kNoDriveReport)};
+  };
+
+  explicit BusWires(const RigWires& rig) : buses(rig.buses.size()) {}
+  LoopWiring Wiring(SafetyLines* lines);
+
+  std::deque<Bus> buses;
+};
+
+/// The daemon's real-time tasks on a real rig: one thread a bus.
+class WiredStack final : private BusWires, public LoopStack {
+ public:
+  WiredStack(const StackConfig& config, const Design& design, const RigWires& rig);
+
+  std::vector<Task*> drive_tasks() override;
+
+  /// Instant 0 of the loop in CLOCK_MONOTONIC. Before any task runs.
+  void SetEpoch(std::int64_t epoch_ns) noexcept;
+
+ private:
+  std::deque<BusTask> tasks_;
+};
+
+}  // namespace flexarm

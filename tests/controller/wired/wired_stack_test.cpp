@@ -1,0 +1,195 @@
+#include "controller/runtime/wired_stack.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "controller/runlog/metrics.h"
+#include "controller/runtime/lockstep_executor.h"
+#include "controller/runtime/unattended_run.h"
+#include "hal/sim/simulated_rig.h"
+#include "tests/controller/loop/simulated_runs.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// The arm behind two buses: encoders and drives on one, gauges on the other.
+struct World {
+  explicit World(const Config& config) : rig(config.arm, config.sensors, config.sim) {}
+
+  void AdvanceTo(std::int64_t instant_ns) {
+    for (; now_ns < instant_ns; now_ns += rig.step_ns()) rig.Step();
+  }
+
+  SimulatedRig rig;
+  std::int64_t now_ns = 0;
+  SensorFrame frame{};
+};
+
+class DriveBus final : public BusDevice {
+ public:
+  explicit DriveBus(World* world) : world_(world) {}
+
+  const char* name() const noexcept override { return "drives"; }
+  std::uint32_t drives() const noexcept override { return 0b11; }
+  std::int64_t worst_case_ns() const noexcept override { return 0; }
+  void Open() override {}
+  BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
+    ++exchanges;
+    last = command;
+    world_->AdvanceTo(exchanges * 20 * kMs);
+    world_->rig.SetTorque(command.enabled ? command.torque_nm : std::array<double, 2>{});
+    world_->frame = world_->rig.Sample(world_->now_ns);
+    *part = world_->frame;
+    part->strain_valid = 0;
+    return exchanges >= fail_from && exchanges < fail_until ? failure : BusStatus::kOk;
+  }
+  BusStatus Reconnect() noexcept override {
+    ++reconnects;
+    ++exchanges;
+    world_->AdvanceTo(exchanges * 20 * kMs);
+    return exchanges < fail_until ? failure : BusStatus::kOk;
+  }
+  void Close() noexcept override {}
+
+  std::int64_t exchanges = -1;  // the first is at instant 0
+  int reconnects = 0;
+  std::int64_t fail_from = INT64_MAX, fail_until = INT64_MAX;
+  BusStatus failure = BusStatus::kTimeout;
+  BusCommand last{};
+
+ private:
+  World* world_;
+};
+
+class GaugeBus final : public BusDevice {
+ public:
+  explicit GaugeBus(World* world) : world_(world) {}
+
+  const char* name() const noexcept override { return "gauges"; }
+  std::int64_t worst_case_ns() const noexcept override { return 0; }
+  void Open() override {}
+  BusStatus Exchange(const BusCommand&, SensorFrame* part) noexcept override {
+    *part = world_->frame;
+    part->counter_valid = 0;
+    return BusStatus::kOk;
+  }
+  BusStatus Reconnect() noexcept override { return BusStatus::kOk; }
+  void Close() noexcept override {}
+
+ private:
+  World* world_;
+};
+
+class Lines final : public SafetyLines {
+ public:
+  LineLevels Read(std::int64_t) noexcept override { return levels; }
+  void Write(std::int64_t, const Outputs& outputs) noexcept override {
+    relay = outputs.relay_closed;
+  }
+
+  LineLevels levels = kHealthyLevels;
+  bool relay = false;
+};
+
+class WiredStackTest : public testing::Test {
+ protected:
+  WiredStackTest() {
+    stack_.Plan({.experiment = &planned_, .number = 1});
+    executor_.Add(stack_.safety());
+    executor_.Add(stack_.control());
+    for (Task* task : stack_.drive_tasks()) executor_.Add(*task);
+  }
+
+  void RunUntil(std::int64_t end_ns) {
+    for (; now_ns_ < end_ns; now_ns_ += 20 * kMs) {
+      executor_.RunUntil(now_ns_ + 20 * kMs);
+      TickRecord record{};
+      while (stack_.tick_records().Pop(&record)) ticks_.push_back(record);
+      const OperatorRequest request = operator_.Update(now_ns_, permit());
+      if (request.kind != RequestKind::kNone) stack_.requests().Push(request);
+    }
+  }
+
+  Permit permit() { return stack_.operator_permits().Read().Newest().value; }
+
+  const Config config_ = ShippedRig();
+  const Experiment experiment_ = ShippedExperiment();
+  const Design design_ = DesignFor(config_);
+  const PlannedExperiment planned_{
+      experiment_, design_, 0.02, {0.0, 0.0}, SoftAngleRad(config_.safety)};
+  World world_{config_};
+  DriveBus drives_{&world_};
+  GaugeBus gauges_{&world_};
+  Lines lines_;
+  WiredStack stack_{config_, design_, {.buses = {&drives_, &gauges_}, .lines = &lines_}};
+  LockstepExecutor executor_;
+  UnattendedRun operator_;
+  std::vector<TickRecord> ticks_;
+  std::int64_t now_ns_ = 0;
+};
+
+// The bars of the in-process backend: the same arm, the same instants, only wired differently.
+TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend) {
+  RunUntil(9'000 * kMs);
+  EXPECT_EQ(permit().state, SafetyState::kIdle) << Name(permit().cause);
+  EXPECT_TRUE(operator_.ran());
+  const RunMetrics metrics = ComputeMetrics(ticks_, experiment_, 0.02, TipGeometryOf(config_.arm));
+  EXPECT_EQ(metrics.ticks, 300);
+  EXPECT_LE(metrics.joint_rms_error_deg[0], 0.90);  // control.md section 8, payload 0.1 kg
+  EXPECT_LE(metrics.joint_rms_error_deg[1], 1.35);
+}
+
+TEST_F(WiredStackTest, TheDriveBusGetsNoTorqueBeforeTheRunAndNoneAfter) {
+  RunUntil(600 * kMs);
+  EXPECT_FALSE(drives_.last.enabled);
+  RunUntil(9'000 * kMs);
+  EXPECT_FALSE(drives_.last.enabled);
+  EXPECT_EQ(drives_.last.torque_nm, (std::array<double, 2>{0.0, 0.0}));
+  EXPECT_FALSE(lines_.relay);
+}
+
+TEST_F(WiredStackTest, OneFailedExchangeIsSurvivedTwoAreALostBus) {
+  drives_.fail_from = 100;
+  drives_.fail_until = 101;
+  RunUntil(3'000 * kMs);
+  EXPECT_EQ(permit().state, SafetyState::kRunning) << Name(permit().cause);
+  drives_.fail_from = drives_.exchanges + 1;
+  drives_.fail_until = INT64_MAX;
+  RunUntil(now_ns_ + 100 * kMs);
+  EXPECT_EQ(permit().state, SafetyState::kTripped);
+  // The loop's word (no reading for two periods) and the bus's come in the same period.
+  EXPECT_TRUE(permit().cause == TripCause::kBusLost ||
+              permit().cause == TripCause::kNoCounterReading)
+      << Name(permit().cause);
+  EXPECT_FALSE(lines_.relay);
+}
+
+TEST_F(WiredStackTest, ADriveFaultTripsByItsName) {
+  RunUntil(2'000 * kMs);
+  drives_.failure = BusStatus::kDriveFault;
+  drives_.fail_from = drives_.exchanges + 1;
+  RunUntil(now_ns_ + 60 * kMs);
+  EXPECT_EQ(permit().cause, TripCause::kDriveFault) << Name(permit().cause);
+}
+
+TEST_F(WiredStackTest, ALostBusIsTakenBackOnlyWhileDisarmed) {
+  RunUntil(2'000 * kMs);
+  ASSERT_EQ(permit().state, SafetyState::kRunning);
+  drives_.fail_from = drives_.exchanges + 1;
+  drives_.fail_until = drives_.exchanges + 20;
+  RunUntil(now_ns_ + 40 * kMs);
+  EXPECT_EQ(drives_.reconnects, 0) << "powered: only exchanges";
+  RunUntil(now_ns_ + 600 * kMs);
+  EXPECT_EQ(permit().state, SafetyState::kTripped);
+  EXPECT_GT(drives_.reconnects, 0);
+  const std::int64_t before = drives_.reconnects;
+  RunUntil(now_ns_ + 200 * kMs);
+  EXPECT_EQ(drives_.reconnects, before) << "it is back: exchanges again";
+}
+
+}  // namespace
+}  // namespace flexarm
