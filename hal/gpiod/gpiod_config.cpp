@@ -1,0 +1,42 @@
+#include "hal/gpiod/gpiod_config.h"
+
+#include <map>
+
+#include "hal/line_names.h"
+#include "model/problem_list.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kMaxOffset = 1023;  // no chip has more lines
+
+std::string KeyOf(Line line) {
+  std::string key = Name(line);
+  for (char& c : key) {
+    if (c == '-') c = '_';
+  }
+  return key;
+}
+
+}  // namespace
+
+std::vector<Problem> GpiodConfig::Problems() const {
+  ProblemList list("hal.gpiod.");
+  list.Require(!chip.empty(), "chip", chip, "must name a GPIO chip, e.g. \"/dev/gpiochip0\"");
+  std::map<int, std::string> taken;
+  const auto check = [&](const std::string& key, int offset) {
+    list.Require(offset >= 0 && offset <= kMaxOffset, key, std::to_string(offset),
+                 "must be a line's offset on the chip, 0 to " + std::to_string(kMaxOffset));
+    const auto [other, is_new] = taken.emplace(offset, key);
+    list.Require(is_new, key, std::to_string(offset),
+                 "must be a line of its own: " + other->second + " has it already");
+  };
+  for (int i = 0; i < kLines; ++i) {
+    check(KeyOf(static_cast<Line>(i)), input[static_cast<std::size_t>(i)]);
+  }
+  check("relay", relay);
+  check("pump", pump);
+  return list.Take();
+}
+
+}  // namespace flexarm

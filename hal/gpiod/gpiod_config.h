@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hal/sensor_frame.h"
+#include "model/problem.h"
+
+namespace flexarm {
+
+/// The safety chain on the lines of one GPIO chip: [hal.gpiod]. Offsets on the chip.
+///
+/// Inputs read 1 when their contact is closed: limit switches and emergency stop are normally
+/// closed, so a cut wire reads as pressed. The relay closes at 1; the charge pump lives while its
+/// line toggles.
+struct GpiodConfig {
+  std::string chip;               ///< "/dev/gpiochip0", or a chip's name or label
+  std::array<int, kLines> input;  ///< keys by Name(Line), with underscores: limit_1_low, ..
+  int relay;
+  int pump;
+
+  /// Broken rules; every line has an offset of its own.
+  std::vector<Problem> Problems() const;
+};
+
+}  // namespace flexarm
