@@ -1,5 +1,6 @@
 #include "controller/law/loop_supervisor.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -30,11 +31,15 @@ LoopSupervisor::LoopSupervisor(const SafetyConfig& safety, const EstimatorConfig
       period_s_(period_s),
       counters_present_(counters_present),
       joint_stiffness_(joint_stiffness_nm_per_rad),
-      rest_ticks_needed_(static_cast<int>(std::ceil(safety.rest_time_s / period_s))) {}
+      // Never before the window is full of samples.
+      rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
+                                  static_cast<int>(kRestWindow) + 1)) {}
 
 void LoopSupervisor::Reset() noexcept {
   in_a_row_ = {};
   rest_ticks_ = 0;
+  ring_ = 0;
+  started_ = false;
 }
 
 void LoopSupervisor::Raise(TripCause cause, bool present, int ticks, double value, double limit,
@@ -128,6 +133,11 @@ void LoopSupervisor::JudgeEstimate(const LoopFacts& facts) noexcept {
 }
 
 bool LoopSupervisor::JudgeRest(const LoopFacts& facts) noexcept {
+  if (!started_) {  // as if the arm had always stood where it is
+    started_ = true;
+    hub_before_.fill({facts.counters->angle_rad[0], facts.counters->angle_rad[1]});
+    root_strain_before_ = facts.modes->root_strain;
+  }
   bool slow = true;
   for (std::size_t i = 0; i < 2; ++i) {
     const double angle = facts.counters->angle_rad[i];

@@ -39,6 +39,8 @@ class LoopSupervisor {
                  std::uint32_t counters_present,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 
+  /// Forgets everything: what follows depends on the samples after it alone, so that a log, which
+  /// begins here, replays.
   void Reset() noexcept;
   Verdict Judge(const LoopFacts& facts) noexcept;
 
@@ -66,6 +68,7 @@ class LoopSupervisor {
   std::array<std::array<double, 2>, kRestWindow> hub_before_{};  // ring of the last hub angles
   std::size_t ring_ = 0;
   std::array<double, 2> root_strain_before_{};
+  bool started_ = false;  // false: the two above hold nothing yet
   std::array<int, kTripCauses> in_a_row_{};
   Verdict verdict_{};
 };

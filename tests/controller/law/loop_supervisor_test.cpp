@@ -235,6 +235,38 @@ TEST_F(LoopSupervisorTest, ResetForgetsSamplesInARow) {
   EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
 }
 
+// Symptom: the log of a second run, armed away from zero, did not replay: a loop that had run
+// before saw rest five samples earlier than the one that began with the log.
+TEST_F(LoopSupervisorTest, ResetForgetsWhereTheArmWas) {
+  Facts elsewhere;
+  elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
+  elsewhere.modes.root_strain = {2e-4, 1e-4};
+  LoopSupervisor fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  for (int k = 0; k < 38; ++k) supervisor_.Judge(elsewhere.Now());  // 38: not a full ring
+  supervisor_.Reset();
+  for (int k = 1; k <= 60; ++k) {
+    // Moves from sample 30 to 33, so that the order in the ring shows.
+    if (k >= 30 && k <= 33) elsewhere.counters.angle_rad[0] += 0.002;
+    const bool at_rest = supervisor_.Judge(elsewhere.Now()).at_rest;
+    EXPECT_EQ(at_rest, fresh.Judge(elsewhere.Now()).at_rest) << k;
+    if (k < 30) {
+      EXPECT_EQ(at_rest, k >= 25) << "half a second, wherever it stands: " << k;
+    }
+  }
+}
+
+// safety.rest_time_s may be shorter than the window over which hub rates are measured.
+TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestHoweverShortTheRest) {
+  SafetyConfig safety = config_.safety;
+  safety.rest_time_s = 0.05;
+  LoopSupervisor hasty(safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  Facts moving;
+  for (int k = 0; k < 20; ++k) {
+    moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
+    EXPECT_FALSE(hasty.Judge(moving.Now()).at_rest) << k;
+  }
+}
+
 // At rest: half a second, 25 samples, of slow hubs and slow strain.
 TEST_F(LoopSupervisorTest, RestIsSeenAfterHalfASecondOfIt) {
   for (int k = 1; k < 25; ++k) EXPECT_FALSE(supervisor_.Judge(Facts().Now()).at_rest) << k;
