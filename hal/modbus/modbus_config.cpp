@@ -119,10 +119,13 @@ void CheckOverlaps(const ModbusDeviceConfig& d, const std::string& row, ProblemL
 // failure, a proof, looks different from what is asked first otherwise.
 void CheckResynchronisation(const ModbusDeviceConfig& d, const std::string& row,
                             const ModbusPlan& plan, ProblemList* list) {
-  if (d.transport != ModbusTransport::kRtu || plan.proofs.empty() || plan.reads.empty()) return;
-  const ModbusRequest& proof = plan.proofs.front();
-  for (const ModbusRequest& read : plan.reads) {
-    list->Require(proof.table != read.table || proof.count != read.count, row + ".identification",
+  if (d.transport != ModbusTransport::kRtu) return;
+  for (const ModbusRequest& proof : plan.proofs) {
+    const bool differs =
+        std::none_of(plan.reads.begin(), plan.reads.end(), [&](const ModbusRequest& read) {
+          return proof.table == read.table && proof.count == read.count;
+        });
+    list->Require(differs, row + ".identification",
                   NumberText(proof.count) + " x " + Name(proof.table),
                   "must differ in table or number from every request for readings, or a late reply "
                   "on the serial line could be taken for another; name one register more or less");

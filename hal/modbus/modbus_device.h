@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hal/bus_device.h"
+#include "hal/modbus/modbus_config.h"
+#include "hal/modbus/modbus_link.h"
+#include "hal/modbus/modbus_plan.h"
+#include "hal/sensor_frame.h"
+
+namespace flexarm {
+
+/// Strain amplifiers and remote inputs behind Modbus/TCP or Modbus RTU.
+///
+/// An exchange reads every row of the map, in as few requests as the plan has, and ends with the
+/// first that fails. Readings carry the middle of their request as their time: sampled_at_ns is
+/// that of the first request, the others' distance from it is their offset. A channel whose value
+/// is not a number, or does not fit, is not valid while the others are: a broken amplifier channel
+/// must not take its neighbours away.
+/// After a failure on a serial line, whose replies bear no number, the next exchange first reads an
+/// identification register: its reply looks unlike every reading's, so a late one is recognised.
+/// Statuses: an exception of the device is kMalformed, counted apart; a second mismatch in a row is
+/// kDisconnected, and so is everything until Reconnect has succeeded.
+/// Real-time: Exchange, Reconnect and Close do not allocate. Thread: the bus's own.
+class ModbusDevice final : public BusDevice {
+ public:
+  /// @param config  without problems
+  ModbusDevice(const ModbusDeviceConfig& config, ModbusClock clock);
+
+  const char* name() const noexcept override { return config_.name.c_str(); }
+  /// Of an exchange, or of connecting and identifying, whichever is longer.
+  std::int64_t worst_case_ns() const noexcept override;
+
+  /// Connects, reads the settings and the identification back, and reads every row once.
+  /// @throws HalError naming the device, the registers, what was found and what was expected
+  void Open() override;
+
+  [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
+
+  /// Connects and identifies again. An attempt that fails doubles the pause before the next, up to
+  /// 1.6 s; within the pause it returns at once.
+  [[nodiscard]] BusStatus Reconnect() noexcept override;
+
+  void Close() noexcept override { link_.Close(); }
+
+  /// The strain channels that an exchange gives; bit i is channel i.
+  std::uint32_t strain_channels() const noexcept { return strain_channels_; }
+  /// The digital inputs that an exchange gives; the other levels are 0, and all are after a
+  /// failure.
+  LineLevels lines() const noexcept { return lines_; }
+
+  const ModbusPlan& plan() const noexcept { return plan_; }
+  const ModbusCounters& counters() const noexcept { return link_.counters(); }
+  /// Readings that were no number, or did not fit.
+  std::uint64_t values_refused() const noexcept { return values_refused_; }
+
+ private:
+  struct Wrong {  // what a proof found
+    const ModbusIdentity* identity;
+    int found;
+  };
+
+  BusStatus ReadAll(SensorFrame* fresh) noexcept;
+  BusStatus Prove(const ModbusRequest& request, Wrong* wrong) noexcept;
+  BusStatus ConnectAndProve(Wrong* wrong) noexcept;
+  void Take(const ModbusRequest& request, const ModbusReply& reply, SensorFrame* fresh) noexcept;
+  void KeepAges(SensorFrame* fresh) const noexcept;
+  std::string Place() const;
+  std::string Refusal(const ModbusRequest& request, BusStatus status) const;
+
+  ModbusDeviceConfig config_;
+  ModbusPlan plan_;
+  ModbusClock clock_;
+  ModbusLink link_;
+  std::uint32_t strain_channels_ = 0;
+  LineLevels lines_ = 0;
+  SensorFrame last_{};  // good values, repeated while there are none
+  bool prove_first_ = false;
+  const ModbusRequest* failed_ = nullptr;  // the request asked last, for messages
+  std::int64_t pause_ns_;
+  std::int64_t next_attempt_ns_ = INT64_MIN;
+  std::uint64_t values_refused_ = 0;
+};
+
+}  // namespace flexarm

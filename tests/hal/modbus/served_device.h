@@ -1,0 +1,48 @@
+#pragma once
+
+#include <thread>
+
+#include "hal/modbus/modbus_server.h"
+#include "hal/modbus/register_image.h"
+#include "tests/hal/modbus/modbus_testing.h"
+
+namespace flexarm {
+
+/// Our own server on a thread of its own, and the config with which a driver finds it.
+class ServedDevice {
+ public:
+  explicit ServedDevice(ModbusDeviceConfig config)
+      : config_(Free(std::move(config))), image(config_), server(config_, image) {
+    config_.port = server.port();
+    if (config_.transport == ModbusTransport::kRtu) config_.device = server.path();
+    thread_ = std::jthread([this] { server.Run(); });
+  }
+  ~ServedDevice() {
+    server.Stop();
+    thread_.join();
+  }
+  ServedDevice(const ServedDevice&) = delete;
+  ServedDevice& operator=(const ServedDevice&) = delete;
+
+  const ModbusDeviceConfig& config() const { return config_; }
+
+ private:
+  // Any port, no link; and time enough for an ordinary thread on a busy machine.
+  static ModbusDeviceConfig Free(ModbusDeviceConfig config) {
+    config.port = 0;
+    config.device.clear();
+    config.response_timeout_ms = 500.0;
+    return config;
+  }
+
+  ModbusDeviceConfig config_;
+
+ public:
+  RegisterImage image;
+  ModbusServer server;
+
+ private:
+  std::jthread thread_;
+};
+
+}  // namespace flexarm
