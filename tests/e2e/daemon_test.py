@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import unittest
+import unittest.mock
 
 from program import BIN, HIL, SQUARE, ProgramTest, missed_deadlines, realtime_permitted, rows, ticks
 
@@ -170,6 +171,13 @@ class Daemon(ProgramTest):
         daemon = self.start_daemon("--run-for", "1.0")
         self.assertEqual(daemon.wait(timeout=30), 0, self.daemon_log())
         self.assertGreater(time.monotonic() - began, 0.9)
+
+    def test_messages_go_to_stderr_unless_that_is_the_journal_itself(self):
+        # A terminal, or a script, that a service of systemd started inherits this variable.
+        with unittest.mock.patch.dict(os.environ, {"JOURNAL_STREAM": "8:12345"}):
+            daemon = self.start_daemon("--run-for", "0.5")
+        self.assertEqual(daemon.wait(timeout=30), 0, self.daemon_log())
+        self.assertIn("Starting -> Idle", self.daemon_log())
 
     def test_a_verb_without_a_daemon_says_so(self):
         result = self.run_program("flexarm", "arm", "--socket", self.folder / "socket")
