@@ -1,0 +1,95 @@
+#include "hal/canopen/canopen_fault.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace flexarm {
+namespace {
+
+const CanopenNodeConfig* NodeOf(const CanopenConfig& config, int node_id) noexcept {
+  for (const CanopenNodeConfig& node : config.node) {
+    if (node.node_id == node_id) return &node;
+  }
+  return nullptr;
+}
+
+const char* Words(CanopenFaultKind kind) {
+  switch (kind) {
+    case CanopenFaultKind::kNone:
+      return "no fault";
+    case CanopenFaultKind::kEmergency:
+      return "emergency message";
+    case CanopenFaultKind::kHeartbeatLost:
+      return "heartbeat lost";
+    case CanopenFaultKind::kNotOperational:
+      return "left the operational state, NMT state";
+    case CanopenFaultKind::kSilent:
+      return "answers no SYNC";
+    case CanopenFaultKind::kDriveFault:
+      return "drive in fault, statusword";
+    case CanopenFaultKind::kLeftOperation:
+      return "has switched its torque off, statusword";
+    case CanopenFaultKind::kNotEnabled:
+      return "does not enable its torque, statusword";
+    case CanopenFaultKind::kNotDisabled:
+      return "does not switch its torque off, statusword";
+    case CanopenFaultKind::kSecondMaster:
+      return "somebody else sends SYNC";
+    case CanopenFaultKind::kTransmitStuck:
+      return "frames do not go out, no node acknowledges";
+    case CanopenFaultKind::kBusOff:
+      return "the CAN controller has left the bus (bus-off)";
+    case CanopenFaultKind::kInterfaceDown:
+      return "the interface is down";
+  }
+  return "?";
+}
+
+}  // namespace
+
+BusStatus StatusOf(const CanopenConfig& config, const CanopenFault& fault) noexcept {
+  switch (fault.kind) {
+    case CanopenFaultKind::kNone:
+      return BusStatus::kTimeout;
+    case CanopenFaultKind::kBusOff:
+      return BusStatus::kBusOff;
+    case CanopenFaultKind::kTransmitStuck:
+    case CanopenFaultKind::kInterfaceDown:
+      return BusStatus::kDisconnected;
+    case CanopenFaultKind::kSecondMaster:
+      return BusStatus::kMalformed;
+    case CanopenFaultKind::kEmergency:
+    case CanopenFaultKind::kHeartbeatLost:
+    case CanopenFaultKind::kNotOperational:
+    case CanopenFaultKind::kSilent:
+    case CanopenFaultKind::kDriveFault:
+    case CanopenFaultKind::kLeftOperation:
+    case CanopenFaultKind::kNotEnabled:
+    case CanopenFaultKind::kNotDisabled:
+      break;
+  }
+  const CanopenNodeConfig* node = NodeOf(config, fault.node_id);
+  return node != nullptr && IsDrive(node->role) ? BusStatus::kDriveFault : BusStatus::kDisconnected;
+}
+
+bool NeedsConfiguration(CanopenFaultKind kind) noexcept {
+  using enum CanopenFaultKind;
+  constexpr std::array kLost = {kHeartbeatLost, kNotOperational, kSilent,
+                                kTransmitStuck, kBusOff,         kInterfaceDown};
+  return std::find(kLost.begin(), kLost.end(), kind) != kLost.end();
+}
+
+std::string CanopenFaultText(const CanopenConfig& config, const CanopenFault& fault) {
+  std::string text = config.interface + ": ";
+  if (const CanopenNodeConfig* node = NodeOf(config, fault.node_id)) {
+    text += "node " + std::to_string(node->node_id) + " (" + CanopenRoleName(node->role) + "): ";
+  }
+  text += Words(fault.kind);
+  if (fault.code == 0) return text;
+  std::array<char, 4> hex{};
+  const auto [end, error] = std::to_chars(hex.data(), hex.data() + hex.size(), fault.code, 16);
+  return text + " 0x" + std::string(hex.data(), end);
+}
+
+}  // namespace flexarm

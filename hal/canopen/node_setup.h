@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hal/canopen/can_bus.h"
+#include "hal/canopen/canopen_config.h"
+#include "hal/canopen/object_dictionary.h"
+
+namespace flexarm {
+
+/// What a step of a node's start-up does.
+enum class SetupAction : std::uint8_t {
+  kResetNode,           ///< NMT: application and communication, as after power on
+  kResetCommunication,  ///< NMT: an incremental encoder keeps its count
+  kAwaitBoot,           ///< the boot-up message
+  kExpect,              ///< reads the object: it must have the value
+  kWrite,               ///< writes the object, and then expects the value
+  kStart,               ///< NMT: operational
+  kAwaitOperational,    ///< a heartbeat that says so
+};
+
+/// One step. What is not an SDO transfer has no object.
+struct SetupStep {
+  SetupAction action;
+  const char* what;  ///< for the operator
+  CanopenObject object{};
+  int size = 0;  ///< of the object, bytes
+  std::uint32_t value = 0;
+  std::uint32_t mask = 0xFFFF'FFFF;  ///< bits that count when it is read
+  std::uint32_t tolerance = 0;       ///< how far the value read may be off
+  bool optional = false;             ///< a node may be without the object
+};
+
+/// Everything that is asked of a node before it may take part, in this order: identity, PDOs on
+/// SYNC and nothing else, torque mode, what it does when the daemon dies, heartbeats. Start-up
+/// only.
+std::vector<SetupStep> SetupSteps(const CanopenConfig& config, const CanopenNodeConfig& node);
+
+/// Takes all nodes of a bus through their steps, one at a time. Advance is real-time safe: it can
+/// be left and entered again at any point. Thread: that of the bus.
+class NodeSetup {
+ public:
+  enum class Progress : std::uint8_t { kBusy, kDone, kFailed };
+
+  NodeSetup(const CanopenConfig& config, CanBus* bus);
+
+  /// Starts over with the first node.
+  void Begin() noexcept;
+  /// Goes on until all is done, one step has failed, or it is `until_ns`.
+  Progress Advance(std::int64_t until_ns) noexcept;
+
+  /// True if the step that failed got no answer at all.
+  bool without_answer() const noexcept { return failure_ == Failure::kNoAnswer; }
+  /// What failed: interface, node, object, found and expected. Not real-time.
+  std::string FailureText() const;
+
+ private:
+  enum class Failure : std::uint8_t {
+    kNone,
+    kNotSent,
+    kNoAnswer,
+    kMalformed,
+    kAborted,
+    kDiffers,
+  };
+  enum class Phase : std::uint8_t { kBegin, kWriting, kReading, kListening };
+
+  const SetupStep& step() const noexcept { return steps_[node_][step_]; }
+  void NextStep() noexcept;
+  void Fail(Failure failure, std::uint32_t found) noexcept;
+  void BeginStep() noexcept;
+  void Ask(Phase phase) noexcept;
+  void Handle(const ReceivedFrame& received) noexcept;
+  void HandleReply(const CanFrame& frame) noexcept;
+
+  const CanopenConfig& config_;
+  CanBus* bus_;
+  std::vector<std::vector<SetupStep>> steps_;
+  std::size_t node_ = 0;
+  std::size_t step_ = 0;
+  Phase phase_ = Phase::kBegin;
+  std::int64_t asked_ns_ = 0;
+  std::int64_t deadline_ns_ = 0;
+  Failure failure_ = Failure::kNone;
+  std::uint32_t found_ = 0;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "hal/canopen/can_bus.h"
+#include "hal/canopen/canopen_codec.h"
+#include "hal/canopen/drive_state.h"
+#include "hal/canopen/object_dictionary.h"
+#include "hal/canopen/sdo.h"
+
+namespace flexarm {
+
+/// What a simulated node is.
+struct SimulatedNodeConfig {
+  bool drive;  ///< CiA 402 drive, or CiA 406 encoder
+  int node_id;
+  std::uint32_t vendor;
+  std::uint32_t product;
+  std::uint32_t serial;
+  std::uint32_t rated_torque_mnm;  ///< of a drive's motor
+};
+
+/// What a simulated node does wrong.
+struct Misbehaviour {
+  bool silent = false;                                     ///< sends and hears nothing: no power
+  bool answers_no_sync = false;                            ///< heartbeats go on
+  bool no_heartbeat = false;                               ///< everything else goes on
+  bool cuts_pdos = false;                                  ///< sends its PDOs a byte too short
+  std::optional<std::uint16_t> statusword = std::nullopt;  ///< stuck
+  std::uint16_t refuses_index = 0;                         ///< aborts a write to this object
+  std::uint16_t forgets_index = 0;   ///< acknowledges a write to it, and keeps the old value
+  bool has_no_abort_option = false;  ///< object 6007 does not exist
+  bool keeps_torque = false;         ///< ignores its heartbeat consumer
+};
+
+/// A CiA 402 drive in cyclic synchronous torque mode, or a CiA 406 encoder, on a CanBus: object
+/// dictionary with SDO server, PDOs as they are mapped, on SYNC, heartbeat producer and consumer. A
+/// drive that no longer hears the heartbeat of its master does what 6007 says.
+///
+/// Everything starts anew by NMT reset; the encoder's position outlives a reset of communication
+/// only. Real-time: Run is safe. Thread: that of its bus.
+class SimulatedNode {
+ public:
+  SimulatedNode(CanBus* bus, const SimulatedNodeConfig& config);
+
+  /// Joins the bus and sends the boot-up message. @throws HalError
+  void Start();
+  /// Handles what has come and what is due. Call it often: its timers are as fine as that.
+  void Run() noexcept;
+
+  /// Torque on the motor's shaft in 0.1 % of rated: 0 unless operation is enabled.
+  int torque_per_mille() const noexcept;
+  DriveState state() const noexcept { return state_; }
+  NmtState nmt() const noexcept { return nmt_; }
+  /// What 6064 or 6004 shows from now on.
+  void SetPosition(std::uint32_t counts) noexcept;
+  /// The value of an object; 0 if there is none.
+  std::uint32_t Value(CanopenObject object) const noexcept;
+
+  /// Emergency message, and the fault state of a drive.
+  void RaiseFault(std::uint16_t code) noexcept;
+  /// Takes what is wrong with it from now on; all well again by `{}`.
+  void Misbehave(const Misbehaviour& wrong) noexcept { wrong_ = wrong; }
+
+ private:
+  struct Entry {
+    CanopenObject object;
+    int size;
+    bool writable;
+    std::uint32_t value;
+  };
+
+  void FillDictionary() noexcept;
+  void Add(CanopenObject object, int size, bool writable, std::uint32_t value) noexcept;
+  void AddPdo(std::uint16_t communication, std::uint32_t cob_id, std::uint16_t mapping,
+              int entries) noexcept;
+  Entry* Find(CanopenObject object) noexcept;
+  void Set(CanopenObject object, std::uint32_t value) noexcept;
+  void Transmit(const CanFrame& frame) noexcept;
+
+  void Handle(const CanFrame& frame) noexcept;
+  void HandleNmt(const NmtOrder& order) noexcept;
+  void HandleSdo(const CanFrame& frame) noexcept;
+  /// Abort code, or 0 if the value was taken.
+  std::uint32_t Write(CanopenObject object, std::uint32_t value, int size) noexcept;
+  std::uint32_t CheckMapping(std::uint16_t index, std::uint32_t count) const noexcept;
+  void HandleSync() noexcept;
+  void TakeCommand() noexcept;
+  void Follow(std::uint16_t control) noexcept;
+  void SendPdo() noexcept;
+  void Boot() noexcept;
+  void LoseMaster() noexcept;
+  void RemoveTorque(DriveState next) noexcept;
+
+  CanBus* bus_;
+  SimulatedNodeConfig config_;
+  Misbehaviour wrong_;
+  std::array<Entry, 64> dictionary_{};
+  std::size_t entries_ = 0;
+  NmtState nmt_ = NmtState::kBooting;
+  DriveState state_ = DriveState::kSwitchOnDisabled;
+  std::uint16_t last_control_ = 0;
+  std::optional<CanFrame> command_;  // RPDO that waits for SYNC
+  std::int64_t next_heartbeat_ns_ = 0;
+  std::optional<std::int64_t> master_heard_ns_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hal/canopen/canopen_device.h"
+#include "hal/canopen/memory_bus.h"
+#include "hal/canopen/simulated_node.h"
+
+namespace flexarm {
+
+inline constexpr std::int64_t kMs = 1'000'000;
+
+inline CanopenNodeConfig BenchDrive(CanopenRole role, int node_id) {
+  const bool first = role == CanopenRole::kDrive1;
+  return {.role = role,
+          .node_id = node_id,
+          .vendor = 0x2EF,
+          .product = 0x1234,
+          .serial = 0,
+          .torque_per_mille_nm = first ? 0.03 : 0.006,
+          .sign = first ? 1 : -1,
+          .torque_range_nm = first ? 36.0 : 7.2,
+          .gear = first ? 5.0 : 48.96,
+          .position_is_rotor = false};
+}
+
+inline CanopenNodeConfig BenchEncoder(CanopenRole role, int node_id) {
+  return {.role = role,
+          .node_id = node_id,
+          .vendor = 0x42,
+          .product = 0x58,
+          .serial = 0,
+          .torque_per_mille_nm = 0.0,
+          .sign = 0,
+          .torque_range_nm = 0.0,
+          .gear = 0.0,
+          .position_is_rotor = false};
+}
+
+/// The thesis rig's two gears on one bus with four encoders, at 1 Mbit/s and 50 Hz.
+inline CanopenConfig BenchConfig() {
+  return {.interface = "can0",
+          .bitrate_bps = 1'000'000,
+          .period_ms = 20.0,
+          .master_node_id = 127,
+          .answer_timeout_ms = 5.0,
+          .sdo_timeout_ms = 20,
+          .boot_timeout_ms = 500,
+          .node_heartbeat_ms = 50,
+          .node_timeout_ms = 120,
+          .master_timeout_ms = 60,
+          .node = {BenchDrive(CanopenRole::kDrive1, 1), BenchDrive(CanopenRole::kDrive2, 2),
+                   BenchEncoder(CanopenRole::kHub1, 11), BenchEncoder(CanopenRole::kHub2, 12),
+                   BenchEncoder(CanopenRole::kRotor1, 13), BenchEncoder(CanopenRole::kRotor2, 14)}};
+}
+
+/// A device on a bus in memory with the nodes that its config names, in virtual time.
+class CanopenBench {
+ public:
+  static constexpr std::size_t kNodes = 6;
+  static constexpr std::int64_t kPeriod_ns = 20 * kMs;
+  static constexpr BusCommand kOff{.torque_nm = {}, .enabled = false};
+
+  /// @param wired  what is really on the wire, in the order of the config's nodes
+  explicit CanopenBench(const CanopenConfig& config = BenchConfig(),
+                        std::vector<SimulatedNodeConfig> wired = Wired(BenchConfig())) {
+    for (const SimulatedNodeConfig& node : wired) {
+      ends_.push_back(std::make_unique<MemoryBus>(&wire));
+      nodes_.push_back(std::make_unique<SimulatedNode>(ends_.back().get(), node));
+      SimulatedNode* started = nodes_.back().get();
+      started->Start();
+      wire.AddRunner([started] { started->Run(); });
+    }
+    auto bus = std::make_unique<MemoryBus>(&wire, "can0");
+    master = bus.get();
+    device = std::make_unique<CanopenDevice>(config, std::move(bus));
+    spy.OpenForAll();
+    wire.AdvanceTo(10 * kMs);
+  }
+
+  static std::vector<SimulatedNodeConfig> Wired(const CanopenConfig& config) {
+    std::vector<SimulatedNodeConfig> wired;
+    for (const CanopenNodeConfig& node : config.node) {
+      const bool drive = IsDrive(node.role);
+      wired.push_back({.drive = drive,
+                       .node_id = node.node_id,
+                       .vendor = node.vendor,
+                       .product = node.product,
+                       .serial = 7,
+                       .rated_torque_mnm =
+                           drive ? static_cast<std::uint32_t>(node.rated_motor_torque_mnm()) : 0});
+    }
+    return wired;
+  }
+
+  SimulatedNode& node(std::size_t i) { return *nodes_[i]; }
+  std::int64_t now_ns() const { return wire.now_ns(); }
+
+  /// To the next instant of the grid, then one exchange.
+  BusStatus Exchange(const BusCommand& command) {
+    NextPeriod();
+    return device->Exchange(command, &frame);
+  }
+  BusStatus Reconnect() {
+    NextPeriod();
+    return device->Reconnect();
+  }
+  void NextPeriod() { wire.AdvanceTo((now_ns() / kPeriod_ns + 1) * kPeriod_ns); }
+
+  /// Opens and takes both drives to operation. True if that worked.
+  bool Enable(const BusCommand& command = {.torque_nm = {}, .enabled = true}) {
+    device->Open();
+    return EnableOpened(command);
+  }
+  bool EnableOpened(const BusCommand& command = {.torque_nm = {}, .enabled = true}) {
+    for (int k = 0; k < 8; ++k) {
+      if (Exchange(command) != BusStatus::kOk) return false;
+    }
+    return node(0).state() == DriveState::kOperationEnabled &&
+           node(1).state() == DriveState::kOperationEnabled;
+  }
+
+  /// What Reconnect returns in the end; at most `attempts` of them.
+  BusStatus ReconnectUntilOk(int attempts) {
+    BusStatus status = BusStatus::kTimeout;
+    for (int k = 0; k < attempts && status != BusStatus::kOk; ++k) status = Reconnect();
+    return status;
+  }
+
+  /// The frames that have been on the wire since the last call.
+  std::vector<ReceivedFrame> Heard() {
+    std::vector<ReceivedFrame> heard;
+    ReceivedFrame received{};
+    while (spy.Receive(&received)) heard.push_back(received);
+    return heard;
+  }
+
+  MemoryWire wire{1'000'000};
+  MemoryBus spy{&wire};
+  MemoryBus* master = nullptr;
+  std::unique_ptr<CanopenDevice> device;
+  SensorFrame frame{};
+
+ private:
+  std::vector<std::unique_ptr<MemoryBus>> ends_;
+  std::vector<std::unique_ptr<SimulatedNode>> nodes_;
+};
+
+}  // namespace flexarm
