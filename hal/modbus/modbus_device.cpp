@@ -173,6 +173,7 @@ BusStatus ModbusDevice::Exchange(const BusCommand&, SensorFrame* part) noexcept 
   fresh.levels = 0;
   const BusStatus status = ReadAll(&fresh);
   if (status == BusStatus::kOk) {
+    link_.ForgiveMismatches();
     KeepAges(&fresh);
     last_ = fresh;
     *part = fresh;

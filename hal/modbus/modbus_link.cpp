@@ -25,7 +25,9 @@ constexpr std::int64_t kSecondNs = 1'000'000'000;
 // Longer than the kernel's shortest retransmission time-out, 200 ms: one lost packet must not end a
 // connection.
 constexpr unsigned kUserTimeoutMs = 250;
-constexpr int kTcpHeader = 7;     // transaction, protocol, length, unit
+constexpr int kTcpHeader = 7;  // transaction, protocol, length, unit
+constexpr int kTcpRequest = kTcpHeader + 5;
+constexpr int kMostWaitingRequests = 4;
 constexpr int kSerialHeader = 1;  // unit
 constexpr int kMostMismatchesInARow = 2;
 constexpr int kMostDrainedFrames = 8;  // more waiting bytes than so many frames are a flood
@@ -127,6 +129,7 @@ BusStatus ModbusLink::Fail(const char* what, int error) noexcept {
 
 BusStatus ModbusLink::Connect() noexcept {
   Close();
+  ++counters_.connects;
   const auto timeout_ns = static_cast<std::int64_t>(std::ceil(config_.response_timeout_ms * 1e6));
   SetTimeout(context_->modbus, timeout_ns);
   if (modbus_connect(context_->modbus) != 0) {
@@ -195,7 +198,7 @@ BusStatus ModbusLink::Ask(const ModbusRequest& request, ModbusReply* reply) noex
   if (!open_) return BusStatus::kDisconnected;
   if (const BusStatus drained = Drain(); drained != BusStatus::kOk) return drained;
   WaitForSilence(request.silent_ns);
-  if (!LastRequestHasLeft()) {
+  if (!RequestsLeave()) {
     ++counters_.stale_dropped;
     in_step_ = false;
     return BusStatus::kTimeout;
@@ -208,10 +211,7 @@ BusStatus ModbusLink::Ask(const ModbusRequest& request, ModbusReply* reply) noex
   const BusStatus status = Receive(request, reply);
   last_traffic_ns_ = clock_();
   reply->middle_ns = sent_ns + (last_traffic_ns_ - sent_ns) / 2;
-  if (status == BusStatus::kOk) {
-    in_step_ = true;
-    mismatches_in_a_row_ = 0;
-  }
+  if (status == BusStatus::kOk) in_step_ = true;
   return status;
 }
 
@@ -223,6 +223,7 @@ BusStatus ModbusLink::Drain() noexcept {
       last_traffic_ns_ = clock_();
       modbus_flush(context_->modbus);
     }
+    if (waiting > kMostDrainedFrames * MODBUS_RTU_MAX_ADU_LENGTH) return Mismatch();
     return JudgeDrained(waiting);
   }
   int bytes = 0;
@@ -252,9 +253,11 @@ void ModbusLink::WaitForSilence(std::int64_t silent_ns) noexcept {
   ppoll(nullptr, 0, &wait, nullptr);  // a signal may end it early: the device then misses a frame
 }
 
-bool ModbusLink::LastRequestHasLeft() noexcept {
+// Serial: nothing may wait. TCP: a peer may acknowledge 40 ms late, which is two periods.
+bool ModbusLink::RequestsLeave() noexcept {
   int waiting = 0;
-  return ioctl(fd_, rtu() ? TIOCOUTQ : SIOCOUTQ, &waiting) != 0 || waiting == 0;
+  if (ioctl(fd_, rtu() ? TIOCOUTQ : SIOCOUTQ, &waiting) != 0) return true;
+  return waiting <= (rtu() ? 0 : (kMostWaitingRequests - 1) * kTcpRequest);
 }
 
 bool ModbusLink::Send(const ModbusRequest& request) noexcept {
@@ -267,8 +270,8 @@ bool ModbusLink::Send(const ModbusRequest& request) noexcept {
   }
   // libmodbus gives raw requests no transaction number of their own.
   ++transaction_;
-  std::array<std::uint8_t, 12> frame = {High(transaction_), Low(transaction_), 0, 0, 0,
-                                        body.size()};
+  std::array<std::uint8_t, kTcpRequest> frame = {High(transaction_), Low(transaction_), 0, 0, 0,
+                                                 body.size()};
   std::memcpy(frame.data() + 6, body.data(), body.size());
   const ssize_t sent = send(fd_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   return sent == static_cast<ssize_t>(frame.size());
@@ -299,7 +302,6 @@ BusStatus ModbusLink::Receive(const ModbusRequest& request, ModbusReply* reply) 
   if (body[0] == (function | kExceptionBit) && length == header + 2 + tail) {
     ++counters_.exceptions;
     counters_.last_exception = body[1];
-    mismatches_in_a_row_ = 0;
     in_step_ = true;
     return BusStatus::kMalformed;
   }

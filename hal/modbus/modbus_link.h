@@ -15,12 +15,13 @@ using ModbusClock = std::int64_t (*)() noexcept;
 
 /// What a link has met since it was made.
 struct ModbusCounters {
+  std::uint64_t connects;       ///< attempts to connect
   std::uint64_t requests;       ///< sent
   std::uint64_t timeouts;       ///< no reply, or not all of it, in time
   std::uint64_t mismatches;     ///< bytes that are no reply to the request
   std::uint64_t exceptions;     ///< the device refused a request
   std::uint64_t late_bytes;     ///< dropped: of replies that came after their time-out
-  std::uint64_t stale_dropped;  ///< requests not sent because the last one has not left yet
+  std::uint64_t stale_dropped;  ///< requests not sent because earlier ones do not leave
   std::uint64_t lost_links;     ///< closed by the peer, by the kernel, or after two mismatches
   int last_exception;           ///< code that the last reply refused with, 0: it did not
 };
@@ -43,13 +44,14 @@ struct ModbusReply {
 /// the unit and the length of a TCP reply, and does not tell a late reply from a broken one.
 /// Against what bites (each with a test in tests/hal/modbus/hostile_peer_test.cpp):
 /// - A late reply would make every later one late: whatever has arrived is thrown away before each
-///   request, transaction numbers are compared, and two mismatches in a row are a lost link.
-///   (modbus_flush itself reads for as long as a flooding peer sends: here the bytes are counted.)
+///   request, transaction numbers are compared, and two mismatches without a good exchange between
+///   them are a lost link. (modbus_flush itself reads for as long as a flooding peer sends: over
+///   TCP, this reads a bounded number of bytes.)
 /// - The byte time-out of libmodbus restarts with every byte: it is 0, so one time-out bounds the
 ///   whole reply.
 /// - Its error recovery sleeps and loops: it is off.
-/// - A pulled cable lets requests pile up and burst later: a request is not sent while the last one
-///   has not been acknowledged, and the kernel gives a silent connection up after 250 ms.
+/// - A pulled cable lets requests pile up and burst later: at most four wait for acknowledgement,
+///   and the kernel gives a connection up that acknowledges nothing for 250 ms.
 /// - Serial adapters hold bytes back: see serial_latency.h.
 ///
 /// Real-time: Ask is bounded by the request's worst_ns; nothing after the constructor allocates.
@@ -66,6 +68,10 @@ class ModbusLink {
   [[nodiscard]] BusStatus Connect() noexcept;
 
   [[nodiscard]] BusStatus Ask(const ModbusRequest& request, ModbusReply* reply) noexcept;
+
+  /// All of an exchange was right: mismatches before it no longer count. One right reply is not
+  /// enough: a serial peer that is late for ever gives those too.
+  void ForgiveMismatches() noexcept { mismatches_in_a_row_ = 0; }
 
   void Close() noexcept;
 
@@ -89,7 +95,7 @@ class ModbusLink {
   BusStatus Drain() noexcept;
   BusStatus JudgeDrained(int bytes) noexcept;
   void WaitForSilence(std::int64_t silent_ns) noexcept;
-  bool LastRequestHasLeft() noexcept;
+  bool RequestsLeave() noexcept;
   bool Send(const ModbusRequest& request) noexcept;
   BusStatus Receive(const ModbusRequest& request, ModbusReply* reply) noexcept;
   BusStatus Mismatch() noexcept;
