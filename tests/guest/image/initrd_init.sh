@@ -1,4 +1,5 @@
 #!/bin/busybox sh
+# shellcheck shell=dash
 # The first process of the guest: loads what mounting takes, mounts, and hands over to the root
 # image.
 # The kernel's command line says to whom: guest.init=PROGRAM.

@@ -1,0 +1,28 @@
+# Sourced inside the guest: puts the machine that `cmake --install` made over this one, as the
+# README says; two people with accounts, of whom one may operate the arm.
+# shellcheck shell=bash
+
+cp -a /mnt/share/machine/. /
+systemd-sysusers
+systemctl -q add-wants guest.target flexarmd  # systemd forgets how a unit ended that nobody wants
+systemctl daemon-reload
+useradd --groups flexarm member
+useradd stranger
+
+experiment=/usr/local/share/flexarm/config/experiments/square-30deg.toml
+
+as() { runuser -u "$1" -- "${@:2}"; }
+operate() { as member flexarm "$@"; }
+state() { operate status --json | jq -r .state; }
+in_state() { [[ $(state) == "$1" ]]; }
+service() { systemctl show flexarmd --value -p "$1"; }
+service_is() { [[ $(service ActiveState) == "$1" ]]; }
+
+# The arm must have been at rest for half a second before it may be armed.
+start_moving() {
+  within 5 operate arm 2>/dev/null
+  within 5 in_state Armed
+  operate run "$experiment"
+  within 5 in_state Running
+  sleep 0.6  # both joints are at their fastest
+}

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Inside the guest, on virtual time: the default experiment while the processor is kept busy. How
+# late the control thread wakes is shown beside cyclictest's figure, of the same priority and period
+# under the same load: the figures themselves are no machine's, the ratio is ours. Control wakes in
+# the same instant as safety and waits for it, so 1 cannot be reached. Leaves the log as
+# /mnt/out/loaded.flexarm.
+# shellcheck source=tests/guest/check.sh
+. "$(dirname "$0")/../check.sh"
+
+cp -a /mnt/share/machine/. /
+configs=/usr/local/share/flexarm/config
+idle_jiffies() { awk '$1 == "cpu" { print $5 + $6 }' /proc/stat; }
+
+# In /tmp: stress-ng does nothing in a folder that it cannot write.
+stress-ng --quiet --cpu 2 --io 1 --vm 1 --vm-bytes 64M &
+load=$!
+sleep 1
+before=$(idle_jiffies)
+cyclictest -q -m -t 1 -p 80 -i 20000 -l 300 >cyclictest.txt
+flexarmd --config $configs/hil.toml --experiment $configs/experiments/square-30deg.toml \
+  --log-dir runs --socket flexarmd.sock 2>daemon.log
+check "flexarmd ends with 0" equal $? 0
+idle=$(($(idle_jiffies) - before))  # of 100 a second, over 13 s
+kill -INT $load
+wait $load
+tail -n 5 daemon.log
+check "the processor was busy: idle for $idle of 1300 jiffies" at_least 65 $idle
+
+run=$(ls runs/*.flexarm)
+check "300 of 300 samples" equal \
+  "$(flexarm info "$run" --json | jq -c '[.metrics.ticks, .missing_ticks, .trip]')" "[300,0,null]"
+for thread in safety control plant; do
+  check "$thread missed and skipped nothing" \
+    grep -q " $thread: [0-9]* activations, 0 missed deadlines, 0 skipped periods" daemon.log
+done
+cp "$run" /mnt/out/loaded.flexarm
+
+ours=$(sqlite3 "$run" 'SELECT max(late_us) FROM timing')
+theirs=$(awk '/^T:/ { print $NF }' cyclictest.txt)
+awk -v ours="$ours" -v theirs="$theirs" 'BEGIN {
+  printf "worst wake-up under load: control %.0f us, cyclictest %d us, ratio %.2f\n",
+         ours, theirs, ours / theirs }' | tee /mnt/out/note
+conclude

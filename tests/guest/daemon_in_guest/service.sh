@@ -1,0 +1,123 @@
+#!/usr/bin/env bash
+# Inside the guest, with systemd: the daemon as the service that is shipped. Operated by a member of
+# the group, refused to others; stopped, hung and killed in mid-run. The logs go to /mnt/out/runs.
+# shellcheck source=tests/guest/check.sh
+. "$(dirname "$0")/../check.sh"
+# shellcheck source=tests/guest/daemon_in_guest/install.sh
+. "$(dirname "$0")/install.sh"
+
+logs=/var/lib/flexarm
+mkdir /mnt/out/runs kept
+
+# Copies the newest log, and SQLite's journal of it where there is one, for us and for the host: it
+# is looked at as it was left.
+keep_log() {  # keep_log NAME
+  local newest file
+  newest=$(find $logs -name '*.flexarm' -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d' ' -f2)
+  for file in "$newest" "$newest-wal"; do
+    if [[ -e $file ]]; then
+      cp "$file" "kept/$1.flexarm${file#"$newest"}"
+      cp "$file" "/mnt/out/runs/$1.flexarm${file#"$newest"}"
+    fi
+  done
+  log=kept/$1.flexarm
+  closed=$(flexarm info "$log" --json | jq .closed)
+}
+states() {  # the states of the log, in order
+  sqlite3 "$log" 'SELECT state_after FROM safety WHERE state_before <> state_after
+    ORDER BY number' | paste -sd' '
+}
+replays() {
+  equal "$(flexarm replay "$log" --json | jq -c '[.bit_exact, .safety_exact]')" "[true,true]"
+}
+
+echo "== start"
+check "the service starts" systemctl start flexarmd
+check "it is active once it said that it is ready" equal "$(service ActiveState)" active
+main=$(service MainPID)
+check "it runs as flexarm" equal "$(ps -o user= -p "$main")" flexarm
+check "it has no capability" grep -q '^CapEff:\s*0000000000000000$' "/proc/$main/status"
+check "its control thread is FIFO 80 all the same" equal \
+  "$(ps -L -o comm=,cls=,rtprio= -p "$main" | awk '$1 == "control" { print $2, $3 }')" "FF 80"
+locked=$(awk '$1 == "VmLck:" { print $2 }' "/proc/$main/status")
+check "its memory is locked ($locked kB)" at_least "$locked" 20000  # of about 170000
+
+echo "== who may"
+check "a member of the group sees the state" within 5 in_state Idle
+check "systemd shows the state too" within 5 equal "$(service StatusText)" Idle
+for verb in status arm stop; do
+  check "a stranger may not $verb" refused as stranger flexarm $verb
+done
+check "a stranger is told why" grep -q 'Permission denied' <(as stranger flexarm arm 2>&1)
+check "the stranger armed nothing" in_state Idle
+check "a stranger may not read the logs" refused as stranger ls $logs
+
+echo "== a run, stopped by the operator"
+start_moving
+check "the arm runs" in_state Running
+check "stop is accepted" operate stop
+check "the arm comes to rest" within 4 in_state Armed
+check "disarm is accepted" operate disarm
+check "the relay is open" within 2 in_state Idle
+sleep 1  # the recorder closes the log
+keep_log stop
+check "state by state" equal "$(states)" "Armed Running Stopping Armed Idle"
+check "the log is closed" equal "$closed" true
+check "the log replays" replays
+
+echo "== systemctl stop in mid-run"
+start_moving
+check "systemctl stop succeeds" systemctl stop flexarmd
+check "exit status 0" equal "$(service Result) $(service ExecMainCode) $(service ExecMainStatus)" \
+  "success 1 0"  # 1 is CLD_EXITED
+keep_log term
+check "a controlled stop, state by state" equal "$(states)" "Armed Running Stopping Armed Idle"
+check "the log is closed" equal "$closed" true
+check "the log replays" replays
+
+# What a dead process leaves. The recorder commits every half second, and a row is in flight: the
+# last row is at most 26 samples older than the last sample that anybody saw.
+left_behind() {  # left_behind NAME LAST_TICK
+  keep_log "$1"
+  check "the log was not closed" equal "$closed" false
+  check "it lost half a second at most" at_least \
+    "$(sqlite3 "$log" 'SELECT max(tick) FROM tick')" $(($2 - 26))
+  check "the arm was running in it" equal "$(states)" "Armed Running"
+  check "the log replays" replays
+}
+tick() { operate status --json | jq .tick; }
+
+echo "== hung"
+systemctl start flexarmd
+start_moving
+seen=$(tick)
+kill -STOP "$(service MainPID)"
+since=$SECONDS
+check "systemd's watchdog kills it" within 20 service_is failed
+echo "after $((SECONDS - since)) s"
+check "for that reason" equal "$(service Result)" watchdog
+left_behind hung "$seen"
+sleep 2
+check "it is not started again" equal "$(service ActiveState) $(service NRestarts)" "failed 0"
+
+echo "== killed"
+systemctl start flexarmd
+check "it starts after it was killed" within 5 in_state Idle
+start_moving
+seen=$(tick)
+kill -KILL "$(service MainPID)"
+check "systemd sees it" within 5 service_is failed
+check "for that reason" equal "$(service Result) $(service ExecMainStatus)" "signal 9"
+left_behind killed "$seen"
+sleep 2
+check "it is not started again" equal "$(service ActiveState) $(service NRestarts)" "failed 0"
+
+echo "== and again"
+systemctl start flexarmd
+check "it starts, idle" within 5 in_state Idle
+sleep 2
+check "nothing arms by itself" in_state Idle
+check "the old logs are all there" equal "$(find $logs -name '*.flexarm' | wc -l)" 4
+systemctl stop flexarmd
+check "idle, it stops too" equal "$(service Result)" success
+conclude

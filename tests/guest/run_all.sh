@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Runs everything in this folder, each in a guest of its own, and compares what the guests leave
+# with this machine. Installs nothing; builds the guest's image where it is out of date.
+#
+# usage: run_all.sh BUILD_FOLDER [--note FILE]     e.g. build/release, with all of it built
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+
+if (($# != 1 && $# != 3)) || [[ ${2:---note} != --note ]]; then
+  sed -n '/^# usage: /s/^# //p' "${BASH_SOURCE[0]}" >&2
+  exit 2
+fi
+build=$1
+note=${3:-/dev/null}
+
+"$here/guest.sh" build
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$work/share/guest"
+DESTDIR=$work/share/machine cmake --install "$build" >/dev/null
+cp -r "$here"/{check.sh,interfaces.sh,daemon_in_guest} "$work/share/guest"
+# What was installed, so that a build under way cannot change it between two comparisons.
+bin=$(dirname "$(find "$work/share/machine" -type f -name flexarm -path '*/bin/*')")
+[[ -x $bin/flexarmd ]] || { echo "run_all: $build holds no flexarmd" >&2; exit 1; }
+
+failed=()
+passed=0
+result() {  # result NAME STATUS
+  if (($2 == 0)); then
+    passed=$((passed + 1))
+    echo "== $1: pass"
+  else
+    failed+=("$1")
+    echo "== $1: FAIL"
+  fi
+}
+
+in_guest() {  # in_guest SCRIPT [OPTION..]: its output in $work/NAME/log
+  local name status=0 since=$SECONDS
+  name=$(basename "$1" .sh)
+  echo "== $name"
+  # 60 s is what the longest takes on two idle cores of 2020; a machine may be ten times slower.
+  "$here/guest.sh" run --share "$work/share" --out "$work/$name" --timeout 600 "${@:2}" -- \
+    "/mnt/share/guest/$1" || status=$?
+  cat "$work/$name/log" 2>/dev/null || true
+  result "$name ($((SECONDS - since)) s)" $status
+}
+
+on_host() {  # on_host NAME COMMAND..
+  local status=0
+  "${@:2}" || status=$?
+  result "$1" $status
+}
+
+replays() {  # replays RUN: to the bit, with the safety decisions, by the same build
+  local told
+  told=$("$bin/flexarm" replay "$1" --json)
+  python3 -c '
+import json, sys
+told = json.loads(sys.argv[1])
+sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "same_build")))
+' "$told" || { echo "$1: $told"; return 1; }
+}
+
+in_guest interfaces.sh
+in_guest daemon_in_guest/experiment.sh --det
+in_guest daemon_in_guest/load.sh --det
+in_guest daemon_in_guest/service.sh --det --systemd
+in_guest daemon_in_guest/refusal.sh --det --systemd
+
+# In lock step, the same seed, on this machine: the guest's real-time runs are the same to the bit.
+"$bin/flexarm" simulate -c "$root/config/hil.toml" --json -o "$work/lockstep.flexarm" \
+  --experiment "$root/config/experiments/square-30deg.toml" >/dev/null
+for run in experiment/guest load/loaded; do
+  on_host "$run equals the lock-step run" \
+    "$bin/flexarm" diff "$work/lockstep.flexarm" "$work/$run.flexarm"
+  on_host "$run replays on this machine" replays "$work/$run.flexarm"
+done
+for name in stop term hung killed; do
+  on_host "$name replays on this machine" replays "$work/service/runs/$name.flexarm"
+done
+
+ratio=$(cat "$work/load/note" 2>/dev/null || true)
+echo "$passed passed; ${ratio#*: }" | tee "$note"
+if ((${#failed[@]})); then
+  printf 'FAILED: %s\n' "${failed[@]}"
+  exit 1
+fi
