@@ -7,6 +7,10 @@
 cp -a /mnt/share/machine/. /
 configs=/usr/local/share/flexarm/config
 
+ldd /usr/local/bin/flexarm /usr/local/bin/flexarmd >libraries.txt
+check "the image holds every library (guest_packages of guest.sh)" refused \
+  grep 'not found' libraries.txt
+
 policy_of() {  # policy_of THREAD: as "FIFO 90"
   ps -L -o comm=,cls=,rtprio= -p "$daemon" | awk -v name="$1" '$1 == name { print $2, $3 }'
 }
