@@ -146,7 +146,8 @@ void HostilePeer::Serve() {
     const Misbehaviour how = how_;
     if (how == kFlood && client_ >= 0) {
       const Bytes rubbish(4096, 0xFF);
-      const ssize_t sent = write(client_, rubbish.data(), rubbish.size());
+      const ssize_t sent = rtu() ? write(client_, rubbish.data(), rubbish.size())
+                                 : send(client_, rubbish.data(), rubbish.size(), MSG_NOSIGNAL);
       if (sent > 0) flooded_ += sent;
     }
     const bool reads = client_ >= 0 && how != kNeverReads;

@@ -35,7 +35,7 @@ using enum BusStatus;
 
 constexpr BusCommand kNoCommand{.torque_nm = {}, .enabled = false};
 // An ordinary thread of the build machines was seen to wake 234 ms late. A call that waits for
-// something that it should not wait for is noticed by its median.
+// something that it should not wait for does so every time: the shortest one tells.
 constexpr std::int64_t kLateWakeNs = 500'000'000;
 
 // CLOCK_MONOTONIC, moved on by what a test does not want to wait for.
@@ -73,15 +73,18 @@ class Judge {
   Judge(ModbusTransport transport, double timeout_ms, bool strain_only = false)
       : peer(transport), device(ConfigFor(peer, transport, timeout_ms, strain_only), Clock) {}
 
+  // Opens, and has good readings: what it might take for new ones later.
   void Open() {
     for (int i = 0;; ++i) {
       try {
         device.Open();
-        return;
+        break;
       } catch (const HalError& error) {
         ASSERT_LT(i, 20) << error.what();  // a busy machine
       }
     }
+    ExpectRecovery();
+    took_ns_.clear();
   }
 
   BusStatus Exchange() {
@@ -140,9 +143,8 @@ class Judge {
     EXPECT_EQ(good, 3);
   }
 
-  std::int64_t MedianExchange_ns() {
-    std::nth_element(took_ns_.begin(), took_ns_.begin() + std::ssize(took_ns_) / 2, took_ns_.end());
-    return took_ns_[took_ns_.size() / 2];
+  std::int64_t ShortestExchange_ns() const {
+    return *std::min_element(took_ns_.begin(), took_ns_.end());
   }
 
   HostilePeer peer;
@@ -185,7 +187,9 @@ TEST_P(HostilePeerIs, BoundedNamedAndSurvived) {
   EXPECT_EQ(after.lost_links - before.lost_links, met.lost_links);
   EXPECT_LE(judge.peer.requests() - heard_before,
             static_cast<int>(after.requests - before.requests));
-  EXPECT_LT(judge.MedianExchange_ns(), judge.device.plan().exchange_worst_ns * 3 / 2);
+  // An exchange ends with its first failure: it may take as long as one request, and no longer.
+  const std::int64_t request_ns = judge.device.plan().reads.front().worst_ns;
+  EXPECT_LT(judge.ShortestExchange_ns(), request_ns * 3 / 2);
   judge.ExpectRecovery();
 }
 
