@@ -346,8 +346,10 @@ void CanopenDevice::Close() noexcept {
     static_cast<void>(bus_->Send(CommandFor(node, DriveWish::kOff, off)));
   }
   static_cast<void>(bus_->Send(EncodeSync()));
-  // Without the cyclic traffic a drive is to be out of the operational state.
+  // Without the cyclic traffic a drive is to be out of the operational state. No more than the
+  // drives: a socket takes about six frames at once.
   for (const Node& node : nodes()) {
+    if (!IsDrive(node.config->role)) continue;
     static_cast<void>(bus_->Send(EncodeNmt(NmtCommand::kPreOperational, node.config->node_id)));
   }
   bus_->Close();

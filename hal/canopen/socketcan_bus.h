@@ -1,0 +1,65 @@
+#pragma once
+
+#include <linux/can.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hal/canopen/can_bus.h"
+
+namespace flexarm {
+
+/// Clocks in ns since their epochs; they come from outside, as only executors read clocks.
+struct CanClocks {
+  std::int64_t (*monotonic_ns)() noexcept;
+  std::int64_t (*realtime_ns)() noexcept;  ///< CLOCK_REALTIME, in which the kernel stamps frames
+};
+
+/// An interface of the kernel (SocketCAN), hardware or virtual.
+///
+/// Only the identifiers asked for are received, as data frames with 11 bits, besides error frames
+/// of the controller's state. Frames carry the kernel's time stamp of their arrival. Send never
+/// waits: the socket holds a few frames, the interface's queue at most kMostQueued. The interface
+/// is set up by the system (bit rate, up), and refused if its queue is long, its bit rate another
+/// one, or if the kernel would leave bus-off by itself (restart-ms): a drive must not come back
+/// while armed.
+class SocketCanBus : public CanBus {
+ public:
+  static constexpr std::uint32_t kMostQueued = 16;  ///< frames; Linux gives a CAN interface 10
+
+  SocketCanBus(std::string interface, CanClocks clocks);
+  ~SocketCanBus() override;
+  SocketCanBus(const SocketCanBus&) = delete;
+  SocketCanBus& operator=(const SocketCanBus&) = delete;
+
+  const char* interface() const noexcept override { return interface_.c_str(); }
+  std::int64_t now_ns() const noexcept override { return clocks_.monotonic_ns(); }
+  void Open(std::span<const std::uint32_t> ids, int bitrate_bps) override;
+  [[nodiscard]] SendResult Send(const CanFrame& frame) noexcept override;
+  bool Receive(ReceivedFrame* received) noexcept override;
+  void WaitUntil(std::int64_t instant_ns) noexcept override;
+  CanState state() noexcept override;
+  bool unsent() noexcept override;
+  bool Restart() noexcept override;
+  void Close() noexcept override;
+  const CanCounts& counts() const noexcept override { return counts_; }
+
+ private:
+  void CheckLink();
+  void Configure(std::span<const std::uint32_t> ids);
+  bool Join() noexcept;
+  void TakeErrorFrame(std::uint32_t id, const std::uint8_t* data) noexcept;
+
+  std::string interface_;
+  CanClocks clocks_;
+  int fd_ = -1;
+  int index_ = 0;  // of the interface
+  std::vector<can_filter> filters_;
+  std::uint32_t bitrate_bps_ = 0;
+  bool gone_ = false;  // the interface has been removed, as an adapter that was pulled out
+  CanState state_ = CanState::kDown;
+  CanCounts counts_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,285 @@
+#include "hal/canopen/socketcan_bus.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "hal/bus_device.h"
+#include "hal/canopen/can_link.h"
+#include "tests/hal/canopen/canopen_bench.h"
+
+// The kernel's own CAN. Everything here needs an interface called vcan0, up; where there is none
+// (as on most build machines) it is skipped, and the guest with a PREEMPT_RT kernel runs it.
+
+namespace flexarm {
+namespace {
+
+std::int64_t Now(clockid_t clock) noexcept {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return now.tv_sec * 1'000'000'000 + now.tv_nsec;
+}
+std::int64_t Monotonic() noexcept { return Now(CLOCK_MONOTONIC); }
+std::int64_t Realtime() noexcept { return Now(CLOCK_REALTIME); }
+constexpr CanClocks kClocks{.monotonic_ns = Monotonic, .realtime_ns = Realtime};
+constexpr const char* kInterface = "vcan0";
+
+// A raw socket of its own, which sends what no SocketCanBus would.
+class RawPeer {
+ public:
+  RawPeer() : fd_(socket(PF_CAN, SOCK_RAW, CAN_RAW)) {
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(if_nametoindex(kInterface));
+    bound_ = bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  }
+  ~RawPeer() { close(fd_); }
+  RawPeer(const RawPeer&) = delete;
+  RawPeer& operator=(const RawPeer&) = delete;
+
+  bool Send(std::uint32_t can_id, std::uint8_t length = 1) {
+    can_frame frame{};
+    frame.can_id = can_id;
+    frame.len = length;
+    frame.data[0] = 0x5A;
+    return bound_ && write(fd_, &frame, sizeof(frame)) == sizeof(frame);
+  }
+
+ private:
+  int fd_;
+  bool bound_ = false;
+};
+
+TEST(SocketCan, AnInterfaceThatIsNotThereIsRefusedByName) {
+  SocketCanBus bus("nocan7", kClocks);
+  const std::array<std::uint32_t, 1> ids = {0x80};
+  try {
+    bus.Open(ids, 1'000'000);
+    FAIL() << "opened";
+  } catch (const HalError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("nocan7: no such interface"));
+  }
+}
+
+// The loopback interface is no CAN interface: whatever the kernel can do, it must be refused.
+TEST(SocketCan, AnInterfaceThatIsNoCanBusIsRefused) {
+  SocketCanBus bus("lo", kClocks);
+  const std::array<std::uint32_t, 1> ids = {0x80};
+  EXPECT_THROW(bus.Open(ids, 1'000'000), HalError);
+}
+
+class VirtualCan : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (if_nametoindex(kInterface) == 0) GTEST_SKIP() << "no " << kInterface << " here";
+  }
+
+  // The next frame, or an empty one with id 0 after 200 ms.
+  static ReceivedFrame Next(SocketCanBus* bus) {
+    ReceivedFrame received{};
+    const std::int64_t until_ns = Monotonic() + 200 * kMs;
+    while (!bus->Receive(&received) && Monotonic() < until_ns) bus->WaitUntil(until_ns);
+    return received;
+  }
+};
+
+TEST_F(VirtualCan, FramesArriveWithTheirTimeAndOnesOwnAsEchoes) {
+  SocketCanBus one(kInterface, kClocks), two(kInterface, kClocks);
+  const std::array<std::uint32_t, 2> ids = {0x80, 0x181};
+  one.Open(ids, 1'000'000);
+  two.Open(ids, 1'000'000);
+  const CanFrame frame{.id = 0x181, .length = 3, .data = {1, 2, 3}};
+  // The first stamps come after a moment in which the kernel switches stamping on.
+  for (int k = 0; k < 20; ++k) {
+    const std::int64_t before_ns = Monotonic();
+    ASSERT_EQ(one.Send(frame), SendResult::kSent);
+    const ReceivedFrame echo = Next(&one), heard = Next(&two);
+    const std::int64_t after_ns = Monotonic();
+    EXPECT_TRUE(echo.own);
+    EXPECT_FALSE(heard.own);
+    EXPECT_EQ(heard.frame, frame);
+    EXPECT_EQ(echo.frame, frame);
+    // The two clocks are read one after the other, and one of them may be slewed: 1 ms covers a
+    // preemption in between, and a mistaken clock would be off by decades.
+    EXPECT_GT(heard.at_ns, before_ns - kMs);
+    EXPECT_LE(heard.at_ns, after_ns);
+  }
+}
+
+// The stamp is that of the arrival, not that of reading.
+TEST_F(VirtualCan, AFrameThatHasWaitedHasItsAge) {
+  SocketCanBus one(kInterface, kClocks), two(kInterface, kClocks);
+  const std::array<std::uint32_t, 1> ids = {0x181};
+  one.Open({}, 1'000'000);
+  two.Open(ids, 1'000'000);
+  two.WaitUntil(Monotonic() + 50 * kMs);  // until stamping is on
+  ASSERT_EQ(one.Send({.id = 0x181, .length = 0}), SendResult::kSent);
+  const std::int64_t sent_ns = Monotonic();
+  one.WaitUntil(Monotonic() + 50 * kMs);
+  EXPECT_GE(Monotonic() - sent_ns, 45 * kMs);
+  const ReceivedFrame heard = Next(&two);
+  ASSERT_EQ(heard.frame.id, 0x181U);
+  EXPECT_LT(heard.at_ns - sent_ns, 20 * kMs);
+}
+
+// Pitfall 9: exactly the ids that are needed, extended and remote frames of the same number not.
+TEST_F(VirtualCan, TheFilterPassesExactlyTheDataFramesThatWereAskedFor) {
+  SocketCanBus bus(kInterface, kClocks);
+  const std::array<std::uint32_t, 2> ids = {0x181, 0x701};
+  bus.Open(ids, 1'000'000);
+  RawPeer peer;
+  for (const std::uint32_t id :
+       {0x180U, 0x182U, 0x181U | CAN_EFF_FLAG, 0x181U | CAN_RTR_FLAG, 0x000U, 0x7FFU, 0x701U}) {
+    ASSERT_TRUE(peer.Send(id));
+  }
+  EXPECT_EQ(Next(&bus).frame.id, 0x701U);
+  EXPECT_EQ(bus.counts().received, 1U);
+}
+
+TEST_F(VirtualCan, SendingNeverWaitsHoweverMuchIsSent) {
+  SocketCanBus bus(kInterface, kClocks);
+  bus.Open({}, 1'000'000);
+  const std::int64_t begin_ns = Monotonic();
+  for (int k = 0; k < 1000; ++k) static_cast<void>(bus.Send({.id = 0x200, .length = 8}));
+  EXPECT_LT(Monotonic() - begin_ns, 2000 * kMs);
+  EXPECT_EQ(bus.counts().sent + bus.counts().queue_full, 1000U);
+  bus.WaitUntil(Monotonic() + 20 * kMs);
+  EXPECT_FALSE(bus.unsent());
+}
+
+TEST_F(VirtualCan, AnInterfaceWithALongQueueIsRefused) {
+  if (system("ip link set vcan0 txqueuelen 1000") != 0) GTEST_SKIP() << "may not change it";
+  SocketCanBus bus(kInterface, kClocks);
+  try {
+    bus.Open({}, 1'000'000);
+    ADD_FAILURE() << "opened";
+  } catch (const HalError& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("vcan0: txqueuelen: found 1000, expected at most 16"));
+  }
+  ASSERT_EQ(system("ip link set vcan0 txqueuelen 10"), 0);
+  EXPECT_NO_THROW(bus.Open({}, 1'000'000));
+}
+
+TEST_F(VirtualCan, AnInterfaceThatGoesDownIsSeenAndRestartBringsItBack) {
+  SocketCanBus bus(kInterface, kClocks);
+  const std::array<std::uint32_t, 1> ids = {0x181};
+  bus.Open(ids, 1'000'000);
+  EXPECT_EQ(bus.state(), CanState::kActive);
+  if (system("ip link set vcan0 down") != 0) GTEST_SKIP() << "may not change it";
+  EXPECT_EQ(bus.state(), CanState::kDown);
+  EXPECT_NE(bus.Send({.id = 0x181, .length = 0}), SendResult::kSent);
+  const std::int64_t begin_ns = Monotonic();
+  bus.WaitUntil(begin_ns + 30 * kMs);
+  EXPECT_GE(Monotonic() - begin_ns, 30 * kMs) << "a dead interface must not make it spin";
+  ASSERT_TRUE(bus.Restart());
+  EXPECT_EQ(bus.state(), CanState::kActive);
+  EXPECT_EQ(bus.Send({.id = 0x181, .length = 0}), SendResult::kSent);
+  EXPECT_EQ(Next(&bus).frame.id, 0x181U);
+}
+
+// A USB adapter that is pulled out and plugged in again: another interface of the same name.
+TEST_F(VirtualCan, AnInterfaceThatWasRemovedIsTakenBackWhenItIsThereAgain) {
+  SocketCanBus bus(kInterface, kClocks);
+  const std::array<std::uint32_t, 1> ids = {0x181};
+  bus.Open(ids, 1'000'000);
+  if (system("ip link del vcan0") != 0) GTEST_SKIP() << "may not remove it";
+  ReceivedFrame received{};
+  EXPECT_FALSE(bus.Receive(&received));
+  EXPECT_EQ(bus.state(), CanState::kDown);
+  EXPECT_EQ(bus.Send({.id = 0x181, .length = 0}), SendResult::kFailed);
+  EXPECT_FALSE(bus.Restart());
+  ASSERT_EQ(system("ip link add vcan0 type vcan"), 0);
+  EXPECT_FALSE(bus.Restart()) << "not set up yet";
+  ASSERT_EQ(system("ip link set vcan0 txqueuelen 10 up"), 0);
+  ASSERT_TRUE(bus.Restart());
+  EXPECT_EQ(bus.state(), CanState::kActive);
+  EXPECT_EQ(bus.Send({.id = 0x181, .length = 0}), SendResult::kSent);
+  EXPECT_EQ(Next(&bus).frame.id, 0x181U);
+}
+
+TEST_F(VirtualCan, TheKernelTellsWhatTheInterfaceIs) {
+  CanLink link{};
+  ASSERT_TRUE(ReadCanLink(kInterface, &link));
+  EXPECT_TRUE(link.up);
+  EXPECT_FALSE(link.controller) << "virtual: no bit rate to compare";
+  EXPECT_EQ(link.index, static_cast<int>(if_nametoindex(kInterface)));
+  EXPECT_EQ(link.state, CanState::kActive);
+}
+
+// The whole device against the six simulated nodes, each on a socket of its own, as on the rig.
+// A machine that other work holds up for 100 ms fails exchanges, and rightly: then the test comes
+// back as the daemon would, and wants one undisturbed second of twenty exchanges. On virtual time
+// the first twenty are it.
+TEST_F(VirtualCan, ADeviceAndSixNodesRunOverTheKernelsBus) {
+  CanopenConfig config = BenchConfig();
+  config.interface = kInterface;
+  config.period_ms = 50.0;
+  config.answer_timeout_ms = 25.0;
+  config.sdo_timeout_ms = 500;
+  config.boot_timeout_ms = 5000;
+  config.node_timeout_ms = 1000;
+  config.master_timeout_ms = 200;
+  ASSERT_TRUE(config.Problems("").empty());
+  std::atomic<bool> stop = false;
+  std::atomic<int> torque = 0;
+  std::thread rig([&] {
+    std::vector<std::unique_ptr<SocketCanBus>> ends;
+    std::vector<std::unique_ptr<SimulatedNode>> nodes;
+    for (const SimulatedNodeConfig& node : CanopenBench::Wired(config)) {
+      ends.push_back(std::make_unique<SocketCanBus>(kInterface, kClocks));
+      nodes.push_back(std::make_unique<SimulatedNode>(ends.back().get(), node));
+      nodes.back()->Start();
+    }
+    nodes[3]->SetPosition(4321);
+    while (!stop) {
+      ends[0]->WaitUntil(Monotonic() + kMs / 2);
+      for (const auto& node : nodes) node->Run();
+      torque = nodes[0]->torque_per_mille();
+    }
+  });
+  const auto WaitFor_ms = [](std::int64_t ms) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+  };
+  WaitFor_ms(300);
+  CanopenDevice device(config, std::make_unique<SocketCanBus>(kInterface, kClocks));
+  EXPECT_NO_THROW(device.Open());
+  SensorFrame frame{};
+  int good = 0;
+  for (int k = 0; k < 400 && good < 20; ++k) {
+    WaitFor_ms(50);
+    const BusCommand command{.torque_nm = {3.0, 0.0}, .enabled = true};
+    const std::int64_t begin_ns = Monotonic();
+    if (device.Exchange(command, &frame) != BusStatus::kOk) {
+      good = 0;
+      for (int n = 0; n < 200 && device.Reconnect() != BusStatus::kOk; ++n) WaitFor_ms(10);
+      continue;
+    }
+    good += torque == 100 ? 1 : 0;
+    EXPECT_EQ(frame.counter[1], 4321U);
+    EXPECT_GE(frame.sampled_at_ns, begin_ns - kMs);
+    EXPECT_LE(frame.sampled_at_ns, Monotonic());
+  }
+  EXPECT_EQ(good, 20) << CanopenFaultText(config, device.fault());
+  WaitFor_ms(400);  // the daemon hangs: the drive's own time-out is 200 ms
+  EXPECT_EQ(torque, 0);
+  device.Close();
+  stop = true;
+  rig.join();
+}
+
+}  // namespace
+}  // namespace flexarm
