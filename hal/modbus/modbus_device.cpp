@@ -1,9 +1,11 @@
 #include "hal/modbus/modbus_device.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include "hal/modbus/modbus_value.h"
 
@@ -41,8 +43,8 @@ std::uint32_t Bit(int index) noexcept { return std::uint32_t{1} << static_cast<u
 
 }  // namespace
 
-ModbusDevice::ModbusDevice(const ModbusDeviceConfig& config, ModbusClock clock)
-    : config_(config),
+ModbusDevice::ModbusDevice(ModbusDeviceConfig config, ModbusClock clock)
+    : config_(std::move(config)),
       plan_(PlanModbus(config_)),
       clock_(clock),
       link_(config_, clock),
@@ -153,9 +155,9 @@ void ModbusDevice::Take(const ModbusRequest& request, const ModbusReply& reply,
       if (reply.Bit(at)) fresh->levels |= Bit(row.index);
       continue;
     }
-    std::uint16_t words[2] = {reply.Word(at), 0};
+    std::array<std::uint16_t, 2> words = {reply.Word(at), 0};
     if (WidthOf(row.type) == 2) words[1] = reply.Word(at + 1);
-    const std::optional<std::int32_t> counts = CountsFromWords(row, words);
+    const std::optional<std::int32_t> counts = CountsFromWords(row, words.data());
     if (!counts) {
       ++values_refused_;
       continue;

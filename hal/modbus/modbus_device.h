@@ -26,7 +26,7 @@ namespace flexarm {
 class ModbusDevice final : public BusDevice {
  public:
   /// @param config  without problems
-  ModbusDevice(const ModbusDeviceConfig& config, ModbusClock clock);
+  ModbusDevice(ModbusDeviceConfig config, ModbusClock clock);
 
   const char* name() const noexcept override { return config_.name.c_str(); }
   /// Of an exchange, or of connecting and identifying, whichever is longer.

@@ -102,7 +102,7 @@ struct ModbusLink::Context {
 };
 
 std::uint16_t ModbusReply::Word(int i) const noexcept {
-  const auto at = static_cast<std::size_t>(2 * i);
+  const std::size_t at = 2 * static_cast<std::size_t>(i);
   return static_cast<std::uint16_t>(Joined(payload[at], payload[at + 1]));
 }
 
@@ -173,15 +173,14 @@ BusStatus ModbusLink::SetUpSerial() noexcept {
         0);
   }
   // A pseudo-terminal has no wire, and keeps no parity bit.
-  const tcflag_t parity_flags = latency == SerialLatency::kNoWire ? 0 : PARENB | PARODD;
-  const tcflag_t parity = config_.parity == ModbusParity::kNone   ? 0
-                          : config_.parity == ModbusParity::kEven ? PARENB
-                                                                  : PARENB | PARODD;
+  const tcflag_t parity_kept = latency == SerialLatency::kNoWire ? 0 : PARENB | PARODD;
+  tcflag_t parity = config_.parity == ModbusParity::kNone ? 0 : PARENB;
+  if (config_.parity == ModbusParity::kOdd) parity |= PARODD;
   const bool as_set = cfgetispeed(&found) == SpeedOf(config_.baud) &&
                       cfgetospeed(&found) == SpeedOf(config_.baud) &&
                       (found.c_cflag & CSIZE) == CS8 &&
                       ((found.c_cflag & CSTOPB) != 0) == (config_.stop_bits == 2) &&
-                      (found.c_cflag & parity_flags) == (parity & parity_flags);
+                      (found.c_cflag & parity_kept) == (parity & parity_kept);
   if (!as_set) return Fail("baud rate, parity or stop bits do not read back as set", 0);
   ioctl(fd_, TIOCEXCL);  // nobody else opens the port; pseudo-terminals may ignore it
   return BusStatus::kOk;

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "hal/bus_device.h"
 
@@ -66,8 +67,10 @@ struct ModbusServer::Context {
   modbus_mapping_t* mapping = nullptr;
 };
 
-ModbusServer::ModbusServer(const ModbusDeviceConfig& config, const RegisterImage& image)
-    : config_(config), image_(image), context_(std::make_unique<Context>(config_, image)) {
+ModbusServer::ModbusServer(ModbusDeviceConfig config, const RegisterImage& image)
+    : config_(std::move(config)),
+      image_(image),
+      context_(std::make_unique<Context>(config_, image)) {
   stop_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (config_.transport == ModbusTransport::kTcp) {
     Listen();

@@ -25,7 +25,7 @@ class ModbusServer {
   /// pseudo-terminal and puts a symbolic link to it at config.device, if that is not empty.
   /// @param image  outlives the server
   /// @throws HalError
-  ModbusServer(const ModbusDeviceConfig& config, const RegisterImage& image);
+  ModbusServer(ModbusDeviceConfig config, const RegisterImage& image);
   ~ModbusServer();
   ModbusServer(const ModbusServer&) = delete;
   ModbusServer& operator=(const ModbusServer&) = delete;

@@ -1,6 +1,7 @@
 #include "hal/modbus/register_image.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "hal/modbus/modbus_value.h"
 
@@ -10,7 +11,7 @@ namespace flexarm {
 // acquire before the number is read again. A reader that meets a new cell therefore sees the number
 // that announced it.
 
-RegisterImage::RegisterImage(const ModbusDeviceConfig& config) : config_(config) {
+RegisterImage::RegisterImage(ModbusDeviceConfig config) : config_(std::move(config)) {
   const auto reach = [this](ModbusTable table, int address, int width) {
     Extent& extent = tables_[IndexOf(table)].extent;
     const int end = std::max(extent.count == 0 ? 0 : extent.start + extent.count, address + width);
@@ -20,8 +21,8 @@ RegisterImage::RegisterImage(const ModbusDeviceConfig& config) : config_(config)
   for (const ModbusIdentity& id : config_.identification) reach(id.table, id.address, 1);
   for (const ModbusRegister& row : config_.map) reach(row.table, row.address, WidthOf(row.type));
   for (Table& table : tables_) {
-    table.cells = std::make_unique<std::atomic<std::uint16_t>[]>(
-        static_cast<std::size_t>(table.extent.count));
+    table.cells =
+        std::vector<std::atomic<std::uint16_t>>(static_cast<std::size_t>(table.extent.count));
   }
   for (const ModbusIdentity& id : config_.identification) {
     Write(id.table, id.address, static_cast<std::uint16_t>(id.expected));
@@ -32,7 +33,7 @@ void RegisterImage::Begin() noexcept { sequence_.fetch_add(1, std::memory_order_
 void RegisterImage::End() noexcept { sequence_.fetch_add(1, std::memory_order_acq_rel); }
 
 void RegisterImage::Write(ModbusTable table, int address, std::uint16_t cell) noexcept {
-  const Table& t = tables_[IndexOf(table)];
+  Table& t = tables_[IndexOf(table)];
   const int at = address - t.extent.start;
   if (at < 0 || at >= t.extent.count) return;
   t.cells[static_cast<std::size_t>(at)].store(cell, std::memory_order_release);

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
+#include <vector>
 
 #include "hal/modbus/modbus_config.h"
 #include "hal/sensor_frame.h"
@@ -26,7 +26,7 @@ class RegisterImage {
   };
 
   /// @param config  as the driver's, without problems
-  explicit RegisterImage(const ModbusDeviceConfig& config);
+  explicit RegisterImage(ModbusDeviceConfig config);
 
   /// Writer's thread. Every row of the map shows this frame, valid or not.
   void Publish(const SensorFrame& frame) noexcept;
@@ -43,7 +43,7 @@ class RegisterImage {
  private:
   struct Table {
     Extent extent{.start = 0, .count = 0};
-    std::unique_ptr<std::atomic<std::uint16_t>[]> cells;
+    std::vector<std::atomic<std::uint16_t>> cells;
   };
 
   static std::size_t IndexOf(ModbusTable table) { return static_cast<std::size_t>(table) - 1; }

@@ -144,16 +144,18 @@ void HostilePeer::Serve() {
       continue;
     }
     const Misbehaviour how = how_;
+    bool flooding = false;
     if (how == kFlood && client_ >= 0) {
       const Bytes rubbish(4096, 0xFF);
       const ssize_t sent = rtu() ? write(client_, rubbish.data(), rubbish.size())
                                  : send(client_, rubbish.data(), rubbish.size(), MSG_NOSIGNAL);
-      if (sent > 0) flooded_ += sent;
+      flooding = sent > 0;  // or its buffers are full: wait for room
+      if (flooding) flooded_ += sent;
     }
     const bool reads = client_ >= 0 && how != kNeverReads;
     pollfd ready[2] = {{.fd = listener_, .events = POLLIN, .revents = 0},
                        {.fd = reads ? client_ : -1, .events = POLLIN, .revents = 0}};
-    if (poll(ready, 2, how == kFlood ? 0 : 1) <= 0) continue;
+    if (poll(ready, 2, flooding ? 0 : 1) <= 0) continue;
     if (ready[0].revents != 0) {
       CloseClient();  // a new connection replaces the old one
       client_ = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
