@@ -66,7 +66,7 @@ void CanopenDevice::BeginOperation() noexcept {
 
 BusStatus CanopenDevice::Exchange(const BusCommand& command, SensorFrame* part) noexcept {
   *part = SensorFrame{};
-  const bool on = command.enabled && fault_.kind == CanopenFaultKind::kNone && !configuring_;
+  const bool on = command.enabled && !configuring_;
   const BusStatus status = Cycle(on ? DriveWish::kOn : DriveWish::kOff, command);
   if (fault_.kind != CanopenFaultKind::kNone) return FaultStatus();
   if (status != BusStatus::kOk) return status;
@@ -87,7 +87,7 @@ BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexce
   if (BusIsGone()) return FaultStatus();
   CheckHeartbeats();
   first_ = false;
-  // What latched while draining holds for this very command.
+  // Also what has latched just now, while draining.
   if (fault_.kind != CanopenFaultKind::kNone && wish == DriveWish::kOn) wish = DriveWish::kOff;
   if (bus_->unsent() || !Send(wish, command)) return Stuck();
   Collect(until_ns);

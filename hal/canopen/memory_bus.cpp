@@ -44,7 +44,7 @@ void MemoryWire::BeginFrame() noexcept {
   }
   if (first == nullptr) return;
   const CanFrame& frame = first->sending_[0];
-  on_wire_ = {frame, now_ns_ + FrameTimeNs(frame.length, bitrate_bps_), first};
+  on_wire_ = {frame, now_ns_ + FrameTimeNs(frame.length, bitrate_bps_), 0, first};
   busy_ = true;
 }
 
@@ -57,6 +57,7 @@ void MemoryWire::EndFrame() noexcept {
   Delivery delivery = on_wire_;
   const Fate fate = tamper_ ? tamper_(&delivery.frame) : Fate{};
   delivery.at_ns = now_ns_ + fate.delay_ns;
+  delivery.waited_ns = fate.waited_ns;
   for (int copy = 0; copy < fate.copies; ++copy) {
     if (fate.delay_ns == 0) {
       Deliver(delivery);
@@ -68,7 +69,7 @@ void MemoryWire::EndFrame() noexcept {
 
 void MemoryWire::Deliver(const Delivery& delivery) noexcept {
   for (MemoryBus* end : ends_) {
-    end->Accept({delivery.frame, delivery.at_ns, end == delivery.from});
+    end->Accept({delivery.frame, delivery.at_ns - delivery.waited_ns, end == delivery.from});
   }
 }
 

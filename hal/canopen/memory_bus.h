@@ -18,8 +18,9 @@ class MemoryWire {
  public:
   /// What a test does to a frame; the frame itself it may change.
   struct Fate {
-    int copies = 1;             ///< 0: lost, though acknowledged
-    std::int64_t delay_ns = 0;  ///< on top of the wire's own
+    int copies = 1;              ///< 0: lost, though acknowledged
+    std::int64_t delay_ns = 0;   ///< on top of the wire's own
+    std::int64_t waited_ns = 0;  ///< in the receiver's queue: its time stamp is that much older
   };
 
   explicit MemoryWire(int bitrate_bps) : bitrate_bps_(bitrate_bps) {}
@@ -42,6 +43,7 @@ class MemoryWire {
   struct Delivery {
     CanFrame frame;
     std::int64_t at_ns;
+    std::int64_t waited_ns;
     const MemoryBus* from;
   };
 

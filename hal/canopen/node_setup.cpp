@@ -223,7 +223,7 @@ void NodeSetup::Ask(Phase phase) noexcept {
 
 void NodeSetup::Handle(const ReceivedFrame& received) noexcept {
   const int node_id = config_.node[node_].node_id;
-  if (received.own || received.at_ns < asked_ns_) return;  // an answer to an older question
+  if (received.own || received.at_ns <= asked_ns_) return;  // an answer to an older question
   if (phase_ == Phase::kListening && received.frame.id == CobId(kCobHeartbeat, node_id)) {
     const NmtState wanted =
         step().action == SetupAction::kAwaitBoot ? NmtState::kBooting : NmtState::kOperational;
@@ -242,7 +242,8 @@ void NodeSetup::HandleReply(const CanFrame& frame) noexcept {
     const bool missing = reply.value == kSdoAbortNoObject || reply.value == kSdoAbortNoSubIndex;
     return step().optional && missing ? NextStep() : Fail(Failure::kAborted, reply.value);
   }
-  if (reply.kind != awaited) return Fail(Failure::kMalformed, 0);
+  if (reply.kind == SdoReply::Kind::kMalformed) return Fail(Failure::kMalformed, 0);
+  if (reply.kind != awaited) return;  // the answer to the write once more
   if (phase_ == Phase::kWriting) return Ask(Phase::kReading);
   const std::uint32_t found = reply.value & step().mask, expected = step().value & step().mask;
   const std::uint32_t difference = found > expected ? found - expected : expected - found;

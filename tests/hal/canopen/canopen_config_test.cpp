@@ -110,6 +110,10 @@ TEST(CanopenConfig, RatedTorqueAndRangeFollowFromTheTorquePerMille) {
   const CanopenNodeConfig drive = BenchDrive(CanopenRole::kDrive1, 1);
   EXPECT_DOUBLE_EQ(drive.rated_motor_torque_mnm(), 6000.0);
   EXPECT_EQ(drive.torque_range_per_mille(), 1200);
+  CanopenNodeConfig rounded = drive;  // 0.3 / 0.1 is 2.9999999999999996
+  rounded.torque_per_mille_nm = 0.1;
+  rounded.torque_range_nm = 0.3;
+  EXPECT_EQ(rounded.torque_range_per_mille(), 3);
 }
 
 }  // namespace

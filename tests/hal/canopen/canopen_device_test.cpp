@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -161,6 +162,36 @@ TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRefused) {
   }
 }
 
+TEST(CanopenStartUp, AnswersThatComeTwiceOrToNobodyDoNotDisturbIt) {
+  CanopenBench bench;
+  bench.wire.SetTamper([](CanFrame* frame) {
+    return MemoryWire::Fate{.copies = (frame->id & 0x780) == kCobSdoReply ? 2 : 1};
+  });
+  bench.wire.AddRunner([&bench, next_ns = std::int64_t{0}]() mutable {
+    if (bench.now_ns() < next_ns) return;
+    next_ns = bench.now_ns() + kMs / 2;
+    static_cast<void>(bench.spy.Send(SdoValueReply(1, {0x2222, 0}, 5, 4)));
+  });
+  EXPECT_EQ(WhyNotOpened(&bench), "opened");
+}
+
+TEST(CanopenStartUp, AnAnswerFromBeforeTheQuestionIsNone) {
+  CanopenBench bench;
+  bench.wire.SetTamper([](CanFrame* frame) {
+    return MemoryWire::Fate{.waited_ns = frame->id == CobId(kCobSdoReply, 2) ? kMs : 0};
+  });
+  EXPECT_THAT(WhyNotOpened(&bench), AllOf(HasSubstr("node 2 (drive2)"), HasSubstr("no answer")));
+}
+
+// NMT's reset of communication, not of the node: an incremental encoder would count from 0 again.
+TEST(CanopenStartUp, AnEncoderKeepsItsCount) {
+  CanopenBench bench;
+  bench.node(2).SetPosition(777);
+  bench.device->Open();
+  ASSERT_EQ(bench.Exchange(CanopenBench::kOff), BusStatus::kOk);
+  EXPECT_EQ(bench.frame.counter[0], 777U);
+}
+
 TEST(CanopenStartUp, ARefusedStartCanBeTriedAgain) {
   CanopenBench bench;
   bench.node(1).Misbehave({.silent = true});
@@ -205,13 +236,15 @@ TEST(CanopenExchange, TorqueIsPerMilleOfRatedWithSignAndRange) {
   CanopenBench bench;
   ASSERT_TRUE(bench.Enable());
   const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
   struct Case {
     double torque1_nm, torque2_nm;
     int per_mille1, per_mille2;
   };
   for (const Case& c :
        {Case{3.0, 0.6, 100, -100}, Case{-0.044, -0.0091, -1, 2}, Case{1e9, 1e9, 1200, -1200},
-        Case{-40.0, -8.0, -1200, 1200}, Case{nan, 0.6, 0, -100}, Case{0.0, 0.0, 0, 0}}) {
+        Case{-40.0, -8.0, -1200, 1200}, Case{nan, 0.6, 0, -100}, Case{infinite, -infinite, 0, 0},
+        Case{0.0, 0.0, 0, 0}}) {
     ASSERT_EQ(bench.Exchange({.torque_nm = {c.torque1_nm, c.torque2_nm}, .enabled = true}),
               BusStatus::kOk);
     EXPECT_EQ(bench.node(0).torque_per_mille(), c.per_mille1) << c.torque1_nm;
@@ -296,11 +329,16 @@ TEST(CanopenExchange, CloseSwitchesTheDrivesOff) {
   ASSERT_EQ(bench.Exchange({.torque_nm = {9.0, 3.0}, .enabled = true}), BusStatus::kOk);
   ASSERT_NE(bench.node(1).torque_per_mille(), 0);
   // The master's end is closed with the frames in its queue: as the kernel sends what it has.
+  bench.Heard();
   bench.device->Close();
   bench.wire.AdvanceTo(bench.now_ns() + 5 * kMs);
   EXPECT_EQ(bench.node(0).torque_per_mille(), 0);
   EXPECT_EQ(bench.node(1).torque_per_mille(), 0);
   EXPECT_EQ(bench.node(1).nmt(), NmtState::kPreOperational);
+  // Off by the drives' own way first: NMT is for what comes after.
+  const std::vector<ReceivedFrame> heard = bench.Heard();
+  EXPECT_TRUE(std::any_of(heard.begin(), heard.end(),
+                          [](const ReceivedFrame& f) { return f.frame.id == kCobSync; }));
 }
 
 static_assert(noexcept(std::declval<CanopenDevice&>().Exchange({}, nullptr)));

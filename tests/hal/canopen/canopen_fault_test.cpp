@@ -110,16 +110,23 @@ TEST_F(CanopenFaults, ALateAnswerIsDroppedByItsTimeStamp) {
   EXPECT_EQ(device().counts().stale, 1U);
 }
 
-// Late by just one period it comes between the next SYNC (0.3 ms) and its answer (0.8 ms), when no
-// time stamp can tell: after a miss both are waited for, and the second counts.
+// Late by just one period, less half a frame, it comes last but for the fresh one, when no time
+// stamp can tell: after a miss both are waited for, and the second counts.
 TEST_F(CanopenFaults, AnAnswerThatIsLateByOnePeriodIsNotTakenForTheNext) {
-  bench_.node(2).SetPosition(41);
-  TamperOnce(CobId(kCobTpdo, 11), {.delay_ns = 20 * kMs - kMs / 5});
+  bench_.node(5).SetPosition(41);
+  TamperOnce(CobId(kCobTpdo, 14), {.delay_ns = 20 * kMs - kMs / 25});
   EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
-  bench_.node(2).SetPosition(42);
+  bench_.node(5).SetPosition(42);
   EXPECT_EQ(Exchange(kTorque), BusStatus::kOk);
-  EXPECT_EQ(bench_.frame.counter[0], 42U);
+  EXPECT_EQ(bench_.frame.counter[3], 42U);
   EXPECT_EQ(device().counts().duplicated, 1U) << "the late one came where this test wants it";
+}
+
+// It came after the queue was emptied and before SYNC went out: only its stamp tells.
+TEST_F(CanopenFaults, AnAnswerFromBeforeTheSyncIsStaleWheneverItIsRead) {
+  TamperOnce(CobId(kCobTpdo, 11), {.waited_ns = 2 * kMs});
+  EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
+  EXPECT_EQ(device().counts().stale, 1U);
 }
 
 TEST_F(CanopenFaults, AnAnswerWithoutItsQuestionIsStale) {
@@ -337,6 +344,20 @@ TEST_F(CanopenFaults, AFaultIsNeverResetByEnablingOnlyByReconnect) {
   EXPECT_EQ(ReconnectUntilOk(4), BusStatus::kOk);
   EXPECT_EQ(bench_.node(0).state(), DriveState::kSwitchOnDisabled);
   EXPECT_TRUE(bench_.EnableOpened());
+}
+
+// The cause is still there at the first reset. The drive acts on the rising edge of the bit, so the
+// second attempt has to take it back.
+TEST_F(CanopenFaults, AFaultThatOutlivesOneResetIsResetAgain) {
+  bench_.node(0).RaiseFault(0x2310);
+  EXPECT_EQ(Exchange(kOff), BusStatus::kDriveFault);
+  bench_.node(0).Misbehave({.statusword = EncodeDriveState(DriveState::kFault)});
+  EXPECT_EQ(Reconnect(), BusStatus::kDriveFault);
+  TamperOnce(CobId(kCobEmergency, 1), {.copies = 0});
+  bench_.node(0).RaiseFault(0x2310);
+  bench_.node(0).Misbehave({});
+  EXPECT_EQ(Reconnect(), BusStatus::kDriveFault);
+  EXPECT_EQ(Reconnect(), BusStatus::kOk);
 }
 
 TEST_F(CanopenFaults, ANodeThatWasWithoutPowerIsConfiguredAnewWithinBoundedCalls) {
