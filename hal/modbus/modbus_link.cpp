@@ -255,7 +255,8 @@ void ModbusLink::WaitForSilence(std::int64_t silent_ns) noexcept {
 // Serial: nothing may wait. TCP: a peer may acknowledge 40 ms late, which is two periods.
 bool ModbusLink::RequestsLeave() noexcept {
   int waiting = 0;
-  if (ioctl(fd_, rtu() ? TIOCOUTQ : SIOCOUTQ, &waiting) != 0) return true;
+  static_assert(SIOCOUTQ == TIOCOUTQ);
+  if (ioctl(fd_, SIOCOUTQ, &waiting) != 0) return true;
   return waiting <= (rtu() ? 0 : (kMostWaitingRequests - 1) * kTcpRequest);
 }
 

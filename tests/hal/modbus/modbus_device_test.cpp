@@ -214,7 +214,6 @@ TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
   ModbusDeviceConfig config = Config();
   auto served = std::make_unique<ServedDevice>(config);
   config = served->config();
-  if (GetParam() == ModbusTransport::kRtu) config.response_timeout_ms = 50.0;
   ModbusDevice device(config, MonotonicNow);
   device.Open();
   SensorFrame part{};
@@ -222,7 +221,6 @@ TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
   EXPECT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kTimeout);
   EXPECT_EQ(part.strain_valid, 0U);
   EXPECT_NE(device.Reconnect(), BusStatus::kOk);
-  EXPECT_EQ(device.Reconnect(), BusStatus::kDisconnected);  // within the pause: at once
   served->server.SetSilent(false);
   BusStatus status = BusStatus::kDisconnected;
   for (int i = 0; i < 500 && status != BusStatus::kOk; ++i) {
