@@ -273,18 +273,16 @@ void SimulatedNode::Follow(std::uint16_t control) noexcept {
     if (reset_edge) state_ = kSwitchOnDisabled;
     return;
   }
-  if ((control & 0x02U) == 0) {  // disable voltage
-    state_ = kSwitchOnDisabled;
-  } else if ((control & 0x04U) == 0) {  // quick stop: here the motor is without torque at once
+  // Voltage off, or quick stop, after which a motor without speed control has no voltage either.
+  if ((control & 0x02U) == 0 || (control & 0x04U) == 0) {
     state_ = kSwitchOnDisabled;
   } else if ((control & 0x07U) == kControlShutdown) {
     state_ = kReadyToSwitchOn;
-  } else if (state_ == kReadyToSwitchOn && (control & 0x0FU) == kControlSwitchOn) {
+  } else if ((state_ == kReadyToSwitchOn || state_ == kOperationEnabled) &&
+             (control & 0x0FU) == kControlSwitchOn) {
     state_ = kSwitchedOn;
   } else if (state_ == kSwitchedOn && (control & 0x0FU) == kControlEnableOperation) {
     state_ = kOperationEnabled;
-  } else if (state_ == kOperationEnabled && (control & 0x0FU) == kControlSwitchOn) {
-    state_ = kSwitchedOn;
   }
 }
 

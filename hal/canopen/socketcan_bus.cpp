@@ -31,6 +31,9 @@ constexpr int kReceiveBytes = 1 << 20;
 constexpr can_err_mask_t kErrorsWanted =
     CAN_ERR_BUSOFF | CAN_ERR_CRTL | CAN_ERR_RESTARTED | CAN_ERR_TX_TIMEOUT;
 
+// The first CAN_MTU bytes are a classic frame; can_frame itself has its length in a union.
+using ClassicFrame = canfd_frame;
+
 // What recvmsg puts beside a frame: three time stamps, of which the first is the kernel's.
 constexpr std::size_t kControlBytes = CMSG_SPACE(3 * sizeof(timespec));
 
@@ -141,11 +144,11 @@ bool SocketCanBus::Join() noexcept {
 }
 
 SendResult SocketCanBus::Send(const CanFrame& frame) noexcept {
-  can_frame raw{};
+  ClassicFrame raw{};
   raw.can_id = frame.id & CAN_SFF_MASK;
   raw.len = std::min<std::uint8_t>(frame.length, CAN_MAX_DLEN);
   std::copy_n(frame.data.begin(), raw.len, raw.data);
-  if (send(fd_, &raw, sizeof(raw), MSG_DONTWAIT | MSG_NOSIGNAL) == sizeof(raw)) {
+  if (send(fd_, &raw, CAN_MTU, MSG_DONTWAIT | MSG_NOSIGNAL) == CAN_MTU) {
     ++counts_.sent;
     return SendResult::kSent;
   }
@@ -157,15 +160,15 @@ SendResult SocketCanBus::Send(const CanFrame& frame) noexcept {
 bool SocketCanBus::Receive(ReceivedFrame* received) noexcept {
   // Error frames and frames that the filter should not have passed are skipped; a bounded number.
   for (int skipped = 0; skipped < 64; ++skipped) {
-    can_frame raw{};
-    iovec part{.iov_base = &raw, .iov_len = sizeof(raw)};
+    ClassicFrame raw{};
+    iovec part{.iov_base = &raw, .iov_len = CAN_MTU};
     alignas(cmsghdr) std::array<char, kControlBytes> control{};
     msghdr message{};
     message.msg_iov = &part;
     message.msg_iovlen = 1;
     message.msg_control = control.data();
     message.msg_controllen = control.size();
-    if (recvmsg(fd_, &message, MSG_DONTWAIT) != sizeof(raw)) {
+    if (recvmsg(fd_, &message, MSG_DONTWAIT) != CAN_MTU) {
       gone_ = gone_ || errno == ENODEV;
       return false;
     }

@@ -6,13 +6,13 @@
 #include <linux/can/raw.h>
 #include <net/if.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -51,11 +51,11 @@ class RawPeer {
   RawPeer& operator=(const RawPeer&) = delete;
 
   bool Send(std::uint32_t can_id, std::uint8_t length = 1) {
-    can_frame frame{};
+    canfd_frame frame{};  // its first CAN_MTU bytes are a classic one
     frame.can_id = can_id;
     frame.len = length;
     frame.data[0] = 0x5A;
-    return bound_ && write(fd_, &frame, sizeof(frame)) == sizeof(frame);
+    return bound_ && write(fd_, &frame, CAN_MTU) == CAN_MTU;
   }
 
  private:
