@@ -139,6 +139,11 @@ std::string AskDaemon(const std::string& path, const std::string& line, double t
     throw Refused(path + ": " + what);
   };
   if (connect(fd, Generic(address), sizeof(address)) != 0) {
+    if (errno == EACCES) {
+      fail(
+          "this user may not operate the arm (Permission denied): be a member of the socket's "
+          "group, which is flexarm for the service (adduser USER flexarm, and log in again)");
+    }
     fail("no daemon answers (" + Cause() +
          "); start flexarmd, or name its socket with --socket or -c FILE");
   }
