@@ -1,5 +1,6 @@
 #include "config/config.h"
 
+#include <cmath>
 #include <limits>
 
 #include "config/cross_rules.h"
@@ -34,6 +35,9 @@ void CheckRules(const Config& config, ProblemLog* log) {
   log->AddRules(config.safety.Problems());
   log->AddRules(config.loop.Problems());
   log->AddRules(config.daemon.Problems());
+  log->AddRules(config.hal.Problems(config.sensors,
+                                    std::llround(config.loop.acquire_before_ms * 1e6),
+                                    config.safety.torque_limit_nm));
   CheckCrossRules(config, log);
 }
 

@@ -17,7 +17,7 @@ namespace flexarm {
 /// and the rules between the structs. No key has a default but [hal] and controller.gains.
 struct Config : StackConfig {
   std::string rig_name;  ///< key rig.name
-  std::string backend;   ///< key hal.backend: "sim", or "" when the file has no [hal]
+  std::string backend;   ///< key hal.backend: "sim", "wired", or "" when the file has no [hal]
   /// The merged, overridden document as TOML: reading it again gives the same Config. Logged.
   std::string text;
 };

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "config/hal_binding.h"
+
 namespace flexarm {
 namespace {
 
@@ -147,11 +149,6 @@ void ReadTiming(TableReader root, Config* config) {
   root.Table("log").Read("directory", &config->daemon.log_directory);
 }
 
-void ReadHal(TableReader root, Config* config) {
-  if (!root.Has("hal")) return;
-  root.Table("hal").Read<std::string>("backend", &config->backend, {{"sim", "sim"}});
-}
-
 }  // namespace
 
 void ReadRig(TableReader root, Config* config) {
@@ -163,7 +160,9 @@ void ReadRig(TableReader root, Config* config) {
   ReadController(root.Table("controller"), &config->controller);
   ReadSafety(root, &config->safety);
   ReadTiming(root, config);
-  ReadHal(root, config);
+  if (root.Has("hal")) {
+    ReadHal(root.Table("hal"), config->loop.period_ms, &config->backend, &config->hal);
+  }
 }
 
 }  // namespace flexarm

@@ -69,7 +69,7 @@ class StrainFit {
   double family_limit_;
   double stuck_limit_;
   std::array<Channel, kMaxStrainChannels> channel_;
-  std::array<bool, 2> solvable_{};  // a link's channels tell its modes apart
+  std::array<bool, 2> solvable_{};                     // a link's channels tell its modes apart
   std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j''(0) a link
   std::array<double, 4> last_modal_{};
 };

@@ -8,6 +8,7 @@
 #include "controller/runlog/errors.h"
 #include "controller/runtime/daemon.h"
 #include "controller/runtime/realtime_setup.h"
+#include "hal/bus_device.h"
 
 namespace flexarm {
 namespace {
@@ -104,6 +105,9 @@ int Main(int argc, char** argv) {
     std::cerr << "flexarmd: " << error.what() << "\nTry: flexarmd --help\n";
   } catch (const RealtimeRefused& error) {
     std::cerr << "flexarmd: real time is refused.\n" << error.what() << '\n';
+    return kFailed;
+  } catch (const HalError& error) {
+    std::cerr << "flexarmd: a device cannot be used: " << error.what() << '\n';
     return kFailed;
   } catch (const ConfigError& error) {
     std::cerr << "flexarmd: " << error.what() << '\n';

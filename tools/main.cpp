@@ -25,6 +25,7 @@ void RegisterVerbs(CLI::App& app, Exit& exit) {
   RegisterCheck(app, exit);
   RegisterDiff(app, exit);
   RegisterOperate(app, exit);
+  RegisterRig(app, exit);
 }
 
 void Complain(const std::string& text) { std::cerr << "flexarm: " << text << '\n'; }

@@ -29,6 +29,7 @@ void RegisterModes(CLI::App& app, Exit& exit);
 void RegisterOperate(CLI::App& app, Exit& exit);  ///< status, arm, run, stop, disarm, reset, sim
 void RegisterPlot(CLI::App& app, Exit& exit);
 void RegisterReplay(CLI::App& app, Exit& exit);
+void RegisterRig(CLI::App& app, Exit& exit);
 void RegisterSimulate(CLI::App& app, Exit& exit);
 
 }  // namespace flexarm

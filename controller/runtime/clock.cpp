@@ -8,13 +8,17 @@ namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
-}  // namespace
-
-std::int64_t MonotonicNow() noexcept {
+std::int64_t Now(clockid_t clock) noexcept {
   timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return now.tv_sec * kSecondNs + now.tv_nsec;
 }
+
+}  // namespace
+
+std::int64_t MonotonicNow() noexcept { return Now(CLOCK_MONOTONIC); }
+
+std::int64_t RealtimeNow() noexcept { return Now(CLOCK_REALTIME); }
 
 void SleepUntil(std::int64_t instant_ns) noexcept {
   if (instant_ns < 0) return;  // before the clock's zero: passed

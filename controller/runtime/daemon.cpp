@@ -19,6 +19,8 @@
 #include "controller/runtime/realtime_setup.h"
 #include "controller/runtime/service_manager.h"
 #include "controller/runtime/simulated_stack.h"
+#include "controller/runtime/wired_stack.h"
+#include "hal/wired_rig.h"
 
 namespace flexarm {
 namespace {
@@ -74,20 +76,41 @@ nlohmann::json ThreadStatus(const RealtimeExecutor& executor) {
   return threads;
 }
 
+/// What the loop drives: the simulated arm in process, or the devices of a real rig.
+struct Backend {
+  std::unique_ptr<WiredRig> rig;  // outlives the stack
+  std::unique_ptr<LoopStack> stack;
+};
+
+// Opens the devices of a real rig: they are identified, configured and read back here.
+Backend MakeBackend(const DaemonOptions& options, const Design& design) {
+  const StackConfig& config = options.config;
+  Backend backend;
+  if (options.backend == "sim") {
+    backend.stack = std::make_unique<SimulatedStack>(config, design, config.arm.payload_mass_kg);
+  } else {
+    backend.rig = std::make_unique<WiredRig>(
+        config.hal, CanClocks{.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
+    backend.stack = std::make_unique<WiredStack>(
+        config, design, RigWires{.buses = backend.rig->buses(), .lines = backend.rig->lines()});
+  }
+  return backend;
+}
+
 /// The daemon's parts, in the order in which they are made.
 class Daemon {
  public:
   explicit Daemon(const DaemonOptions& options)
       : options_(options),
         design_(DesignFor(options.config)),
-        stack_(options.config, design_, options.config.arm.payload_mass_kg),
+        backend_(MakeBackend(options, design_)),
         events_(kEventDepth),
         timing_(kTimingDepth),
         recording_(
             InfoOf(options, design_), RunsInDirectory(options.config.daemon.log_directory),
             [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
-        recorder_({.ticks = &stack_.tick_records(),
-                   .safety = &stack_.safety_records(),
+        recorder_({.ticks = &stack().tick_records(),
+                   .safety = &stack().safety_records(),
                    .timing = &timing_,
                    .events = &events_},
                   &recording_),
@@ -97,6 +120,7 @@ class Daemon {
   DaemonResult Run();
 
  private:
+  LoopStack& stack() { return *backend_.stack; }
   OperatorContext Context();
   void PrepareHost();
   void Wait(const sigset_t& signals);
@@ -106,7 +130,7 @@ class Daemon {
   Journal journal_;
   ServiceManager service_;
   Design design_;
-  SimulatedStack stack_;
+  Backend backend_;
   EventQueue events_;
   SpscQueue<TimingRecord> timing_;
   RunRecording recording_;
@@ -117,7 +141,7 @@ class Daemon {
 
 OperatorContext Daemon::Context() {
   return {
-      .stack = &stack_,
+      .stack = &stack(),
       .events = &events_,
       .design = &design_,
       .grid = LoopGrid(options_.config.loop),
@@ -150,12 +174,14 @@ DaemonResult Daemon::Run() {
   }
   const sigset_t signals = BlockEndSignals();
   PrepareHost();
-  executor_.Add(stack_.safety());
-  executor_.Add(stack_.control(), &timing_);
-  for (Task* task : stack_.drive_tasks()) executor_.Add(*task);
+  executor_.Add(stack().safety());
+  executor_.Add(stack().control(), &timing_);
+  for (Task* task : stack().drive_tasks()) executor_.Add(*task);
   executor_.Add(operator_);
   executor_.Add(recorder_);
-  executor_.Start(MonotonicNow() + kEpochLeadNs);
+  const std::int64_t epoch_ns = MonotonicNow() + kEpochLeadNs;
+  stack().SetEpoch(epoch_ns);
+  executor_.Start(epoch_ns);
   service_.Ready();
   Wait(signals);
   service_.Stopping();

@@ -13,7 +13,7 @@ namespace flexarm {
 /// What the daemon is started with.
 struct DaemonOptions {
   StackConfig config;
-  std::string backend;  ///< of the config: "sim"
+  std::string backend;  ///< of the config: "sim" or "wired"
   std::string rig_name;
   std::string config_text;               ///< whole, for the log
   std::optional<Experiment> experiment;  ///< run once, unattended, then end
@@ -31,7 +31,7 @@ struct DaemonResult {
 
 /// Runs the daemon until its experiment or its time is over, or SIGTERM or SIGINT comes: then it
 /// brings the arm to rest, disarms, closes the log and returns. Blocks those signals.
-/// @throws Refused, RealtimeRefused, std::runtime_error before anything moves
+/// @throws Refused, RealtimeRefused, HalError, std::runtime_error before anything moves
 DaemonResult RunDaemon(const DaemonOptions& options);
 
 }  // namespace flexarm

@@ -41,6 +41,10 @@ class LoopStack {
   /// Of the backend, in order of priority.
   virtual std::vector<Task*> drive_tasks() = 0;
 
+  /// Instant 0 of the loop in CLOCK_MONOTONIC, for devices that stamp in that. Before any task
+  /// runs.
+  virtual void SetEpoch(std::int64_t /*epoch_ns*/) noexcept {}
+
   // Operator's ends: one thread.
   SpscQueue<OperatorRequest>& requests() { return requests_; }
   SpscQueue<RequestAnswer>& answers() { return answers_; }

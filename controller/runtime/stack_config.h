@@ -4,6 +4,7 @@
 #include "controller/runtime/runtime_config.h"
 #include "controller/safety/safety_config.h"
 #include "estimator/estimator_config.h"
+#include "hal/hal_config.h"
 #include "hal/sensor_config.h"
 #include "hal/sim/sim_config.h"
 #include "model/arm_parameters.h"
@@ -15,6 +16,7 @@ struct StackConfig {
   ArmParameters arm;
   SensorConfig sensors;
   SimConfig sim;
+  HalConfig hal;
   EstimatorConfig estimator;
   ControllerConfig controller;
   SafetyConfig safety;

@@ -37,8 +37,7 @@ class WiredStack final : private BusWires, public LoopStack {
 
   std::vector<Task*> drive_tasks() override;
 
-  /// Instant 0 of the loop in CLOCK_MONOTONIC. Before any task runs.
-  void SetEpoch(std::int64_t epoch_ns) noexcept;
+  void SetEpoch(std::int64_t epoch_ns) noexcept override;
 
  private:
   std::deque<BusTask> tasks_;

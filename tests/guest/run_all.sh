@@ -76,10 +76,13 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 }
 
 # A guest keeps one core busy, and virtual time makes each indifferent to the other.
-in_guest --det --systemd -- daemon_in_guest/service.sh daemon_in_guest/refusal.sh &
+(
+  in_guest --det --systemd -- daemon_in_guest/service.sh daemon_in_guest/refusal.sh
+  in_guest --det -- daemon_in_guest/wire.sh
+) &
 in_guest --det -- interfaces.sh daemon_in_guest/experiment.sh daemon_in_guest/load.sh &
 wait
-for name in interfaces experiment load service refusal; do report_guest $name; done
+for name in interfaces experiment load service refusal wire; do report_guest $name; done
 
 # In lock step, the same seed, on this machine: the guest's real-time runs are the same to the bit.
 "$bin/flexarm" simulate -c "$root/config/hil.toml" --json -o "$work/lockstep.flexarm" \
@@ -89,6 +92,7 @@ for run in experiment/guest load/loaded; do
     "$bin/flexarm" diff "$work/lockstep.flexarm" "$work/$run.flexarm"
   on_host "$run replays on this machine" replays "$work/$run.flexarm"
 done
+on_host "wire replays on this machine" replays "$work/wire/wire.flexarm"
 for name in stop term hung killed; do
   on_host "$name replays on this machine" replays "$work/service/runs/$name.flexarm"
 done

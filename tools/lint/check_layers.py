@@ -31,6 +31,7 @@ ROOMS = {
     "model/": [],
     "hal/": ["model/problem.h", "model/problem_list.h"],
     "hal/sim/": ["hal/", "model/"],
+    "hal/rig/": ["hal/", "hal/sim/", "model/"],
     "estimator/": ["model/", "hal/"],
     "controller/safety/": ["hal/", "model/problem.h", "model/problem_list.h",
                            "controller/runtime/messages.h", "controller/runtime/runtime_config.h"],
@@ -59,11 +60,11 @@ REALTIME = re.compile(
     r"(model/|estimator/|hal/|controller/(law|safety)/"
     r"|controller/runtime/(safety_task|control_task|plant_task|simulated_lines|history|latest_value"
     r"|spsc_queue|messages|frame_packet|loop_grid|task)\.)")
-# Off-line work that lives beside the loop, so that an equation and its use are read together; and
-# the rules of config structs.
+# Off-line work that lives beside the loop, so that an equation and its use are read together; the
+# rules of config structs; and the simulated devices, which are a program of their own.
 OFFLINE = re.compile(
     r"controller/law/(design|design_json|command_generator|reference|experiment)\."
-    r"|model/arm_parameters\.|.*_config\.cpp$")
+    r"|model/arm_parameters\.|hal/rig/|.*_config\.cpp$")
 REALTIME_HEADERS = re.compile(
     r"#\s*include\s*<(spdlog/|fmt/|iostream|fstream|sstream|ostream|istream|iomanip|print|cstdio"
     r"|stdio\.h|mutex|shared_mutex|condition_variable|semaphore|thread|future|chrono|ctime|time\.h"

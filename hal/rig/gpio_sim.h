@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace flexarm {
+
+/// The far side of the lines of a gpio-sim chip: pulls its inputs, and sees what its outputs are.
+/// Through sysfs, so a call is a few system calls. Simulated rig only. Thread: one.
+class GpioSim {
+ public:
+  /// @param chip  as GpiodConfig's: "/dev/gpiochip0" or "gpiochip0"
+  /// @throws HalError if that is not a gpio-sim chip
+  explicit GpioSim(const std::string& chip);
+  ~GpioSim();
+  GpioSim(const GpioSim&) = delete;
+  GpioSim& operator=(const GpioSim&) = delete;
+
+  /// Level of an input from now on. Nothing is written if it is that already.
+  void Pull(int offset, bool high) noexcept;
+
+  /// Level of an output; false if it cannot be read.
+  bool Value(int offset) noexcept;
+
+ private:
+  struct Line {
+    int pull_fd = -1;
+    int value_fd = -1;
+    int pulled = -1;  // -1: not known
+  };
+
+  Line& At(int offset) noexcept;
+
+  std::string folder_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "hal/canopen/can_bus.h"
+#include "hal/canopen/simulated_node.h"
+#include "hal/canopen/socketcan_bus.h"
+#include "hal/hal_config.h"
+#include "hal/modbus/modbus_server.h"
+#include "hal/modbus/register_image.h"
+#include "hal/rig/gpio_sim.h"
+#include "hal/sim/sim_config.h"
+#include "hal/sim/simulated_rig.h"
+
+namespace flexarm {
+
+/// The simulated arm behind the real protocols, as the daemon's config wires it: CANopen drives and
+/// encoders, Modbus strain amplifiers, switches, relay and charge pump on gpio-sim lines. The
+/// unchanged daemon with its real drivers runs against it.
+///
+/// Its hardware is what a test looks at afterwards: a drive makes torque only while its own state
+/// machine is in operation, the relay is closed, and the charge pump has toggled within 5 ms.
+/// Thread: one, but for the Modbus servers', which it starts.
+class WireRig {
+ public:
+  struct Observed {               ///< what the hardware saw, since the start
+    double torque_nm[2];          ///< now
+    bool relay_closed;            ///< now
+    bool pump_alive;              ///< now
+    std::int64_t powered_slices;  ///< milliseconds in which some drive made torque
+  };
+
+  /// @param arm  with the payload that the plant really carries
+  /// @throws HalError
+  WireRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
+          const HalConfig& hal, const CanClocks& clocks);
+  ~WireRig();
+  WireRig(const WireRig&) = delete;
+  WireRig& operator=(const WireRig&) = delete;
+
+  /// One millisecond of the rig, up to `now_ns` of CLOCK_MONOTONIC.
+  void Step(std::int64_t now_ns) noexcept;
+
+  /// Forces a switch or the button, as SimulatedRig::Press.
+  void Press(Line line, int level) noexcept { rig_.Press(line, level); }
+  /// A drive (joint 0 or 1) that has lost its power, or has it again.
+  void SilenceDrive(int joint, bool silent) noexcept;
+
+  const Observed& observed() const noexcept { return observed_; }
+
+ private:
+  struct Node {
+    CanopenNodeConfig config;
+    std::unique_ptr<CanBus> bus;
+    std::unique_ptr<SimulatedNode> node;
+  };
+  struct Amplifier {
+    explicit Amplifier(const ModbusDeviceConfig& config) : image(config), server(config, image) {}
+    RegisterImage image;
+    ModbusServer server;
+    std::thread thread;
+  };
+
+  void AddNodes(const CanopenConfig& bus, const CanClocks& clocks);
+  bool PowerOn(std::int64_t now_ns) noexcept;
+  void DriveArm(bool power) noexcept;
+  void Show(std::int64_t now_ns) noexcept;
+
+  SimulatedRig rig_;
+  GpiodConfig lines_;
+  GpioSim gpio_;
+  std::vector<Node> nodes_;
+  std::vector<std::unique_ptr<Amplifier>> amplifiers_;
+  bool pump_level_ = false;
+  std::int64_t pump_toggled_ns_ = INT64_MIN;
+  Observed observed_{};
+};
+
+}  // namespace flexarm

@@ -1,0 +1,94 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "config/config.h"
+
+// The wiring of a real rig: read from config/hil-wire.toml, and refused where it cannot work.
+
+namespace flexarm {
+namespace {
+
+const std::string kFile = FLEXARM_SOURCE_DIR "/config/hil-wire.toml";
+
+std::string Replaced(const std::string& from, const std::string& to) {
+  std::ifstream file(kFile);
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string wired = text.str();
+  const std::size_t at = wired.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  wired.replace(at, from.size(), to);
+  const std::string extends = "extends = \"";
+  wired.insert(wired.find(extends) + extends.size(), FLEXARM_SOURCE_DIR "/config/");
+  return wired;
+}
+
+// What is wrong with the shipped wiring once `from` has become `to`.
+std::string Complaint(const std::string& from, const std::string& to) {
+  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  const std::string name =
+      testing::TempDir() + "/" + test->name() + ".toml";  // tests run in parallel
+  std::ofstream(name) << Replaced(from, to);
+  try {
+    LoadConfig(name);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(HalConfig, TheShippedWiringIsRead) {
+  const Config config = LoadConfig(kFile);
+  EXPECT_EQ(config.backend, "wired");
+  ASSERT_EQ(config.hal.canopen.size(), 1u);
+  EXPECT_EQ(config.hal.canopen[0].node.size(), 6u);
+  EXPECT_EQ(config.hal.canopen[0].node[1].gear, 48.96);
+  EXPECT_EQ(config.hal.canopen[0].period_ms, config.loop.period_ms);
+  ASSERT_EQ(config.hal.modbus.device.size(), 2u);
+  EXPECT_EQ(config.hal.modbus.device[1].map[9].index, 19);
+  ASSERT_TRUE(config.hal.gpiod.has_value());
+  EXPECT_EQ(config.hal.gpiod->relay, 6);
+}
+
+TEST(HalConfig, TheLoggedTextGivesTheSameWiringAgain) {
+  const Config config = LoadConfig(kFile);
+  EXPECT_EQ(ParseConfig(config.text, "log").text, config.text);
+}
+
+TEST(HalConfig, AnEncoderThatNobodyReadsIsNamed) {
+  EXPECT_THAT(Complaint("role = \"hub2\"", "role = \"hub1\""),
+              testing::AllOf(testing::HasSubstr("canopen role hub2 = 0 times"),
+                             testing::HasSubstr("canopen role hub1 = 2 times")));
+}
+
+TEST(HalConfig, AStrainChannelThatIsReadTwiceIsNamed) {
+  EXPECT_THAT(Complaint("{ strain = 3,", "{ strain = 4,"),
+              testing::AllOf(testing::HasSubstr("modbus strain[3] = 0 times"),
+                             testing::HasSubstr("modbus strain[4] = 2 times")));
+}
+
+TEST(HalConfig, ADriveThatCannotGiveWhatTheLoopMayAskIsRefused) {
+  EXPECT_THAT(Complaint("torque_range_nm = 6.0", "torque_range_nm = 5.0"),
+              testing::HasSubstr("must cover limits.torque_limit_nm = 6"));
+}
+
+TEST(HalConfig, ARigWithoutItsSafetyChainIsRefused) {
+  EXPECT_THAT(Complaint("[hal.gpiod]", "[hal.gpio]"), testing::HasSubstr("hal.gpiod"));
+}
+
+TEST(HalConfig, AnExchangeThatDoesNotFitBeforeTheStepIsRefused) {
+  EXPECT_THAT(Complaint("answer_timeout_ms = 5.0", "answer_timeout_ms = 12.0"),
+              testing::HasSubstr("must leave room"));
+}
+
+TEST(HalConfig, ABackendThatDoesNotExistIsRefused) {
+  EXPECT_THAT(Complaint("backend = \"wired\"", "backend = \"real\""),
+              testing::HasSubstr("one of \"sim\" \"wired\""));
+}
+
+}  // namespace
+}  // namespace flexarm
