@@ -20,7 +20,8 @@ constexpr double kStep = 1e-30;  // any value whose square vanishes: nothing is 
 VectorXd SquaredFrequencies(const ArmModel& model, double theta2, const Eigen::VectorXi& keep) {
   VectorXd q = VectorXd::Zero(model.dof());
   q[kTheta2] = q[kTheta4] = theta2;
-  const MatrixXd M = model.MassMatrix(q), K = model.stiffness();
+  const MatrixXd M = model.MassMatrix(q);
+  const MatrixXd& K = model.stiffness();
   const MatrixXd M_kept = M(keep, keep), K_kept = K(keep, keep);
   // Scale to a unit diagonal of M first: tip-normalised masses spread over four decades.
   const VectorXd t = M_kept.diagonal().cwiseSqrt().cwiseInverse();

@@ -71,7 +71,8 @@ void RequireBackend(const Config& config, const Options& options) {
 int Serve(const Options& options) {
   const Config config = Load(options);
   RequireBackend(config, options);
-  DaemonOptions daemon{.config = config,
+  const StackConfig& stack = config;  // the daemon needs no more of it
+  DaemonOptions daemon{.config = stack,
                        .backend = config.backend,
                        .rig_name = config.rig_name,
                        .config_text = config.text,
@@ -82,6 +83,11 @@ int Serve(const Options& options) {
   if (!options.experiment.empty()) daemon.experiment = LoadExperiment(options.experiment);
   const DaemonResult result = RunDaemon(daemon);
   return result.tripped || result.refused || result.log_errors > 0 ? kFailed : kDone;
+}
+
+int Complain(const std::string& text, int code) {
+  std::cerr << "flexarmd: " << text << '\n';
+  return code;
 }
 
 int Main(int argc, char** argv) {
@@ -102,27 +108,29 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    std::cerr << "flexarmd: " << error.what() << "\nTry: flexarmd --help\n";
+    return Complain(std::string(error.what()) + "\nTry: flexarmd --help", kBadInput);
   } catch (const RealtimeRefused& error) {
-    std::cerr << "flexarmd: real time is refused.\n" << error.what() << '\n';
-    return kFailed;
+    return Complain(std::string("real time is refused.\n") + error.what(), kFailed);
   } catch (const HalError& error) {
-    std::cerr << "flexarmd: a device cannot be used: " << error.what() << '\n';
-    return kFailed;
+    return Complain(std::string("a device cannot be used: ") + error.what(), kFailed);
   } catch (const ConfigError& error) {
-    std::cerr << "flexarmd: " << error.what() << '\n';
+    return Complain(error.what(), kBadInput);
   } catch (const Refused& error) {
-    std::cerr << "flexarmd: " << error.what() << '\n';
+    return Complain(error.what(), kBadInput);
   } catch (const InputError& error) {
-    std::cerr << "flexarmd: " << error.what() << '\n';
+    return Complain(error.what(), kBadInput);
   } catch (const std::exception& error) {
-    std::cerr << "flexarmd: " << error.what() << '\n';
-    return kFailed;
+    return Complain(error.what(), kFailed);
   }
-  return kBadInput;
 }
 
 }  // namespace
 }  // namespace flexarm
 
-int main(int argc, char** argv) { return flexarm::Main(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return flexarm::Main(argc, argv);
+  } catch (...) {  // what even the message could not be made for
+    return 1;
+  }
+}

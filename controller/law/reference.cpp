@@ -58,8 +58,10 @@ void AddDoublet(const Doublet& doublet, std::size_t row, const Design& design, d
   const Eigen::Vector2d amplitude =
       design.rigid_inertia_kgm2 * move / Displacement(shape, period_s);
   for (int k = 0; k < count; ++k) {
+    ReferenceSample& sample =
+        (*samples)[static_cast<std::size_t>(first) + static_cast<std::size_t>(k)];
     for (std::size_t i = 0; i < 2; ++i) {
-      (*samples)[static_cast<std::size_t>(first + k)].u_m_nm[i] =
+      sample.u_m_nm[i] =
           amplitude(static_cast<Eigen::Index>(i)) * shape[static_cast<std::size_t>(k)];
     }
   }

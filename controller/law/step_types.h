@@ -36,8 +36,8 @@ struct StepInput {
   std::array<std::uint8_t, 5> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
-static_assert(sizeof(StepInput) ==
-                  24 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) + 8 * kCounters + 8,
+static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) +
+                                       sizeof(std::int64_t) * kCounters + 8,
               "no padding: the bytes are logged and compared");
 
 /// Why Step asked for less than the law computed. Bits of StepOutput::limits.

@@ -1,11 +1,13 @@
 #include "controller/runlog/csv.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "controller/runlog/errors.h"
 
@@ -17,9 +19,9 @@ std::uint64_t AllMask(std::uint32_t counters, std::size_t channels) {
 }
 
 std::string Shortest(double value) {
-  char text[40];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return error == std::errc() ? std::string(text, end) : std::string("nan");
+  std::array<char, 40> text;
+  const auto [end, error] = std::to_chars(text.begin(), text.end(), value);
+  return error == std::errc() ? std::string(text.begin(), end) : std::string("nan");
 }
 
 std::string ValidText(const SensorFrame& frame, std::uint64_t all) {
@@ -27,9 +29,9 @@ std::string ValidText(const SensorFrame& frame, std::uint64_t all) {
   const std::uint64_t mask = (frame.counter_valid | (strain << kCounters)) & all;
   if (mask == all) return "1";
   if (mask == 0) return "0";
-  char text[20];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, mask, 16);
-  return "0x" + std::string(text, end);
+  std::array<char, 20> text;
+  const auto [end, error] = std::to_chars(text.begin(), text.end(), mask, 16);
+  return "0x" + std::string(text.begin(), end);
 }
 
 std::string_view Trimmed(std::string_view text) {

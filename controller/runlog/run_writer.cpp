@@ -1,8 +1,10 @@
 #include "controller/runlog/run_writer.h"
 
+#include <array>
 #include <cctype>
 #include <ctime>
 #include <limits>
+#include <utility>
 
 #include "controller/runlog/blob.h"
 #include "controller/runlog/build_info.h"
@@ -20,9 +22,9 @@ std::string Utc(const char* format) {
   const std::time_t now = std::time(nullptr);
   std::tm parts{};
   gmtime_r(&now, &parts);
-  char text[32];
-  const std::size_t length = std::strftime(text, sizeof text, format, &parts);
-  return {text, length};
+  std::array<char, 32> text;
+  const std::size_t length = std::strftime(text.data(), text.size(), format, &parts);
+  return {text.data(), length};
 }
 
 // Binds values one after the other.
@@ -62,7 +64,7 @@ void BindReadable(Row& row, const TickRecord& record) {
 
 void BindTruth(Row& row, const PlantTruth& truth) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  row << std::int64_t{truth.known};
+  row << std::int64_t{truth.known ? 1 : 0};
   for (const auto& pair : {truth.hub_angle_rad, truth.tip_m, truth.tip_deflection_m}) {
     for (const double value : pair) row << (truth.known ? value : nothing);
   }
@@ -104,8 +106,10 @@ void RunWriter::Guarded(Action action) {
   }
 }
 
-RunWriter::RunWriter(const std::filesystem::path& file, const RunInfo& info)
-    : file_(file), start_ns_(info.start_ns), has_experiment_(!info.experiment_text.empty()) {
+RunWriter::RunWriter(std::filesystem::path file, const RunInfo& info)
+    : file_(std::move(file)),
+      start_ns_(info.start_ns),
+      has_experiment_(!info.experiment_text.empty()) {
   if (std::filesystem::exists(file_)) {
     throw RunLogError(file_.string() + ": exists already; a run is never overwritten");
   }

@@ -18,7 +18,7 @@ class RunWriter : public RunSink {
  public:
   /// Creates `file`, its folder if need be, and its tables.
   /// @throws RunLogError if it exists already, or cannot be written
-  RunWriter(const std::filesystem::path& file, const RunInfo& info);
+  RunWriter(std::filesystem::path file, const RunInfo& info);
   /// Closes without a result if Close was not called; an error is then lost.
   ~RunWriter() override;
 

@@ -1,6 +1,7 @@
 #include "controller/runtime/control_task.h"
 
 #include <cmath>
+#include <utility>
 
 namespace flexarm {
 namespace {
@@ -12,7 +13,7 @@ bool Powered(SafetyState state) noexcept {
 }  // namespace
 
 ControlTask::ControlTask(const LoopConfig& loop, ControlStep* step, ControlChannels channels)
-    : grid_(loop), step_(step), channels_(channels) {}
+    : grid_(loop), step_(step), channels_(std::move(channels)) {}
 
 Task::Traits ControlTask::traits() const noexcept {
   return {.name = "control",

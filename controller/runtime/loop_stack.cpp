@@ -16,7 +16,7 @@ std::vector<PermitChannel*> Joined(std::vector<PermitChannel*> first,
 
 }  // namespace
 
-LoopStack::LoopStack(const StackConfig& config, const Design& design, LoopWiring wiring)
+LoopStack::LoopStack(const StackConfig& config, const Design& design, const LoopWiring& wiring)
     : requests_(kOperatorDepth),
       answers_(kOperatorDepth),
       tick_records_(kTickDepth),

@@ -31,7 +31,7 @@ struct LoopWiring {
 /// not.
 class LoopStack {
  public:
-  LoopStack(const StackConfig& config, const Design& design, LoopWiring wiring);
+  LoopStack(const StackConfig& config, const Design& design, const LoopWiring& wiring);
   virtual ~LoopStack() = default;
   LoopStack(const LoopStack&) = delete;
   LoopStack& operator=(const LoopStack&) = delete;

@@ -85,7 +85,7 @@ class RealtimeExecutor {
 
   void StartThread(Thread& thread);
   void Loop(Thread& thread) noexcept;
-  static void* Main(void* thread) noexcept;
+  static void* Main(void* argument) noexcept;
 
   bool fifo_;
   std::vector<std::unique_ptr<Thread>> threads_;

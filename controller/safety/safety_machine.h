@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <type_traits>
@@ -13,14 +14,14 @@ namespace flexarm {
 /// Everything that the safety machine may depend on in one safety tick. Logged on every change, and
 /// replayed: no padding. Flags are 0 or 1; any other value counts as set.
 struct SafetyFacts {
-  TripCauses present;            ///< all causes present now, but kStopTimeout
-  std::uint8_t all_reported;     ///< every task has reported once
-  std::uint8_t at_rest;          ///< fresh word of the loop that the arm is at rest
-  std::uint8_t experiment_done;  ///< the reference of this run has ended
-  std::uint8_t stop_expired;     ///< Stopping has lasted longer than it may
-  std::uint8_t reset_pressed;    ///< the reset button went down after the trip
-  RequestKind request;           ///< what the operator asks for in this tick
-  std::uint8_t reserved[2];      ///< zero
+  TripCauses present;                    ///< all causes present now, but kStopTimeout
+  std::uint8_t all_reported;             ///< every task has reported once
+  std::uint8_t at_rest;                  ///< fresh word of the loop that the arm is at rest
+  std::uint8_t experiment_done;          ///< the reference of this run has ended
+  std::uint8_t stop_expired;             ///< Stopping has lasted longer than it may
+  std::uint8_t reset_pressed;            ///< the reset button went down after the trip
+  RequestKind request;                   ///< what the operator asks for in this tick
+  std::array<std::uint8_t, 2> reserved;  ///< zero
 };
 static_assert(std::has_unique_object_representations_v<SafetyFacts>, "no padding: it is logged");
 

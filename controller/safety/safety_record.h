@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 
@@ -20,7 +21,7 @@ struct SafetyRecord {
   SafetyStatus before;
   SafetyStatus after;
   Refusal refusal;
-  std::uint8_t reserved[7];  ///< zero
+  std::array<std::uint8_t, 7> reserved;  ///< zero
 };
 static_assert(std::is_trivially_copyable_v<SafetyRecord>);
 static_assert(sizeof(SafetyRecord) == 64, "no padding: the bytes are logged");

@@ -24,6 +24,8 @@ constexpr std::array<Switch, 5> kSwitches{{
     {Line::kEmergencyStop, TripCause::kEmergencyStop, 0},
 }};
 
+constexpr std::uint8_t Flag(bool set) noexcept { return set ? 1 : 0; }
+
 constexpr double Seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
 
 bool ControlReported(const SafetyInputs& in) noexcept { return in.control.tick >= 0; }
@@ -65,22 +67,22 @@ SafetyFacts Supervisor::Judge(const SafetyInputs& in) noexcept {
   }
 
   all_reported_ = all_reported_ || (ControlReported(in) && DriveReported(in));
-  facts.all_reported = all_reported_;
+  facts.all_reported = Flag(all_reported_);
   // Stopping must not end on the word of a step that did not know of the run.
   const bool heard_here =
       in.state != SafetyState::kStopping || in.control.due_ns > in.state_since_ns;
-  facts.at_rest = control_alive && in.control.at_rest && heard_here;
-  facts.experiment_done = control_alive && in.control.experiment_done &&
-                          in.state == SafetyState::kRunning &&
-                          in.control.due_ns > in.running_since_ns;
-  facts.stop_expired = in.state == SafetyState::kStopping &&
-                       AgeNs(in.due_ns, in.state_since_ns) > limits_.stop_timeout_ns;
+  facts.at_rest = Flag(control_alive && in.control.at_rest && heard_here);
+  facts.experiment_done =
+      Flag(control_alive && in.control.experiment_done && in.state == SafetyState::kRunning &&
+           in.control.due_ns > in.running_since_ns);
+  facts.stop_expired = Flag(in.state == SafetyState::kStopping &&
+                            AgeNs(in.due_ns, in.state_since_ns) > limits_.stop_timeout_ns);
 
   const bool button_down = (in.levels & LineBit(Line::kResetButton)) != 0;
   const bool pressed_now = button_down && !button_was_down_;
   button_was_down_ = button_down;
   reset_pressed_ = in.state == SafetyState::kTripped && (reset_pressed_ || pressed_now);
-  facts.reset_pressed = reset_pressed_;
+  facts.reset_pressed = Flag(reset_pressed_);
 
   facts.request = in.request;
   return facts;

@@ -87,8 +87,7 @@ void WireRig::DriveArm(bool power) noexcept {
         node.config.sign * node.node->torque_per_mille() * node.config.torque_per_mille_nm;
   }
   rig_.SetTorque(torque_nm);
-  observed_.torque_nm[0] = torque_nm[0];
-  observed_.torque_nm[1] = torque_nm[1];
+  observed_.torque_nm = torque_nm;
   if (torque_nm[0] != 0.0 || torque_nm[1] != 0.0) ++observed_.powered_slices;
 }
 

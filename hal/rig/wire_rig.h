@@ -1,6 +1,6 @@
 #pragma once
 
-#include <atomic>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <thread>
@@ -27,11 +27,11 @@ namespace flexarm {
 /// Thread: one, but for the Modbus servers', which it starts.
 class WireRig {
  public:
-  struct Observed {               ///< what the hardware saw, since the start
-    double torque_nm[2];          ///< now
-    bool relay_closed;            ///< now
-    bool pump_alive;              ///< now
-    std::int64_t powered_slices;  ///< milliseconds in which some drive made torque
+  struct Observed {                   ///< what the hardware saw, since the start
+    std::array<double, 2> torque_nm;  ///< now
+    bool relay_closed;                ///< now
+    bool pump_alive;                  ///< now
+    std::int64_t powered_slices;      ///< milliseconds in which some drive made torque
   };
 
   /// @param arm  with the payload that the plant really carries
