@@ -89,4 +89,10 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace flexarm
 
-int main(int argc, char** argv) { return flexarm::Main(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return flexarm::Main(argc, argv);
+  } catch (...) {  // what even the message could not be made for
+    return 1;
+  }
+}

@@ -13,15 +13,14 @@ namespace flexarm {
 namespace {
 
 // Okabe and Ito: told apart by everybody.
-constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                    "#56B4E9", "#E69F00", "#000000", "#7F7F7F"};
+constexpr std::array<const char*, 8> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                 "#56B4E9", "#E69F00", "#000000", "#7F7F7F"};
 
-const char* Colour(std::size_t run) { return kColours[run % std::size(kColours)]; }
+const char* Colour(std::size_t run) { return kColours[run % kColours.size()]; }
 
 const char* StateColour(SafetyState state) {
   switch (state) {
     case SafetyState::kStarting:
-      return "#E5E5E5";
     case SafetyState::kIdle:
       return "#E5E5E5";
     case SafetyState::kArmed:

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -16,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kTwoPi = 6.2831853071795864769;
-const char* const kCounterNames[] = {"hub1", "hub2", "rotor1", "rotor2"};
+constexpr std::array<const char*, kCounters> kCounterNames = {"hub1", "hub2", "rotor1", "rotor2"};
 
 struct Options {
   std::filesystem::path file;
@@ -45,7 +46,7 @@ Json ArmJson(const Config& config) {
 Json EncoderJson(const EncoderConfig& encoder, double period_s) {
   const double rad_per_count = kTwoPi / encoder.counts_per_turn;
   const double half_range = std::ldexp(1.0, encoder.counter_bits - 1);
-  return {{"joint", kCounterNames[encoder.counter]},
+  return {{"joint", kCounterNames[static_cast<std::size_t>(encoder.counter)]},
           {"resolution_deg", 360 / encoder.counts_per_turn},
           {"unwraps_below_rad_s", half_range * rad_per_count / (2 * period_s)}};
 }
@@ -54,7 +55,8 @@ Json StrainJson(const SensorConfig& sensors) {
   Json json;
   for (const int link : {1, 2}) {
     int channels = 0;
-    for (const StrainChannelConfig& channel : sensors.strain) channels += channel.link == link;
+    for (const StrainChannelConfig& channel : sensors.strain)
+      channels += channel.link == link ? 1 : 0;
     json["channels"].push_back(channels);
   }
   if (sensors.strain.empty()) return json;

@@ -37,7 +37,7 @@ struct Ran {
 
 Ran RunClient(const std::string& arguments) {
   const std::string command =
-      kPython + " " FLEXARM_SOURCE_DIR "/tests/hal/modbus/pymodbus_client.py " + arguments;
+      kPython + " '" FLEXARM_SOURCE_DIR "/tests/hal/modbus/pymodbus_client.py' " + arguments;
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return {.status = -1, .text = "popen"};
   std::string text;
