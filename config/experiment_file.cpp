@@ -2,6 +2,7 @@
 
 #include "config/config.h"
 #include "config/document.h"
+#include "config/line_key.h"
 #include "config/problem_log.h"
 #include "config/table_reader.h"
 
@@ -21,13 +22,7 @@ void ReadSimEvent(TableReader row, SimEvent* out) {
   const bool has_line = row.Has("line");
   if (has_line) {
     Line line{};
-    row.Read("line", &line,
-             {{"limit-1-low", Line::kLimit1Low},
-              {"limit-1-high", Line::kLimit1High},
-              {"limit-2-low", Line::kLimit2Low},
-              {"limit-2-high", Line::kLimit2High},
-              {"emergency-stop", Line::kEmergencyStop},
-              {"reset-button", Line::kResetButton}});
+    ReadLine(row, &line);
     out->line = line;
   }
   if (has_line) {

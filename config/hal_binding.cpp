@@ -1,5 +1,7 @@
 #include "config/hal_binding.h"
 
+#include "config/line_key.h"
+
 namespace flexarm {
 namespace {
 
@@ -21,13 +23,9 @@ void ReadModbusIdentity(TableReader row, ModbusIdentity* out) {
 void ReadModbusRole(TableReader row, ModbusRegister* out) {
   if (row.Has("line")) {
     out->role = ModbusRole::kInput;
-    row.Read<int>("line", &out->index,
-                  {{"limit-1-low", 0},
-                   {"limit-1-high", 1},
-                   {"limit-2-low", 2},
-                   {"limit-2-high", 3},
-                   {"emergency-stop", 4},
-                   {"reset-button", 5}});
+    Line line{};
+    ReadLine(row, &line);
+    out->index = static_cast<int>(line);
     return;
   }
   out->role = ModbusRole::kStrain;
