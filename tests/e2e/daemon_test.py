@@ -10,7 +10,8 @@ import time
 import unittest
 import unittest.mock
 
-from program import BIN, HIL, SQUARE, ProgramTest, missed_deadlines, realtime_permitted, rows, ticks
+from program import (BIN, HIL, SQUARE, ProgramTest, in_real_time, missed_deadlines,
+                     realtime_permitted, rows)
 
 SHORT = """
 name = "short"
@@ -45,6 +46,7 @@ class Daemon(ProgramTest):
         self.assertEqual(result.returncode, expect, f"{command}: {result.stdout}{result.stderr}")
         return result
 
+    @in_real_time
     def test_an_unattended_run_ends_in_idle_with_a_log_that_replays(self):
         daemon = self.start_daemon("--experiment", self.experiment(SHORT))
         self.assertEqual(daemon.wait(timeout=60), 0, self.daemon_log())
@@ -59,26 +61,19 @@ class Daemon(ProgramTest):
         self.assertIs(replay["safety_exact"], True)
         self.assertEqual(replay["max_torque_difference_nm"], [0, 0])
 
+    @in_real_time
     def test_a_run_in_real_time_equals_the_lock_step_run_tick_for_tick(self):
-        if not realtime_permitted():
-            self.skipTest("SCHED_FIFO is not permitted here")
         simulated, _ = self.simulate("lockstep.flexarm")
-        # A shared machine may take the processor away from the whole guest: then the run says
-        # nothing about us, and is done again.
-        for _ in range(3):
-            daemon = self.start_daemon("--experiment", SQUARE)
-            daemon.wait(timeout=60)
-            run = self.only_run()
-            if missed_deadlines(run) == 0 and daemon.returncode == 0:
-                columns = "tick, state, input, output"
-                query = f"SELECT {columns} FROM tick WHERE state = 'Running' ORDER BY tick"
-                self.assertEqual(len(rows(run, query)), 300)
-                difference = self.flexarm_json("diff", simulated, run)
-                self.assertIs(difference["identical"], True, difference)
-                return
-            run.unlink()
-        self.skipTest("this machine missed deadlines three times")
+        daemon = self.start_daemon("--experiment", SQUARE)
+        self.assertEqual(daemon.wait(timeout=60), 0, self.daemon_log())
+        run = self.only_run()
+        self.assertEqual(missed_deadlines(run), 0)
+        query = "SELECT tick, state, input, output FROM tick WHERE state = 'Running' ORDER BY tick"
+        self.assertEqual(len(rows(run, query)), 300)
+        difference = self.flexarm_json("diff", simulated, run)
+        self.assertIs(difference["identical"], True, difference)
 
+    @in_real_time
     def test_an_operator_arms_runs_stops_and_disarms(self):
         self.start_daemon()
         self.wait_for_state("Idle")
@@ -95,6 +90,7 @@ class Daemon(ProgramTest):
         self.operate("disarm")
         self.wait_for_state("Idle")
 
+    @in_real_time
     def test_a_trip_latches_until_button_and_reset(self):
         self.start_daemon()
         self.wait_for_state("Idle")
@@ -117,6 +113,7 @@ class Daemon(ProgramTest):
             time.sleep(0.2)
         self.wait_for_state("Idle")
 
+    @in_real_time
     def test_a_term_signal_ends_in_a_safe_logged_stop(self):
         daemon = self.start_daemon("--experiment", self.experiment(LONG))
         self.wait_for_state("Running")
@@ -129,6 +126,7 @@ class Daemon(ProgramTest):
         states = [row[0] for row in rows(self.only_run(), "SELECT state_after FROM safety")]
         self.assertIn("Stopping", states)
 
+    @in_real_time
     def test_a_killed_process_leaves_a_log_that_lost_half_a_second_at_most(self):
         daemon = self.start_daemon("--experiment", self.experiment(
             LONG + "\n[[sim_event]]\nat_s = 2.0\nkill = true\n"))
