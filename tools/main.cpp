@@ -16,6 +16,7 @@ namespace {
 void RegisterVerbs(CLI::App& app, Exit& exit) {
   RegisterConfig(app, exit);
   RegisterModes(app, exit);
+  RegisterAnalyze(app, exit);
   RegisterDesign(app, exit);
   RegisterSimulate(app, exit);
   RegisterReplay(app, exit);

@@ -1,0 +1,12 @@
+#include <CLI/CLI.hpp>
+
+#include "tools/verbs.h"
+
+namespace flexarm {
+
+void RegisterAnalyze(CLI::App& app, Exit&) {
+  CLI::App* verb = app.add_subcommand("analyze", "What the model says about the arm");
+  verb->require_subcommand(1);
+}
+
+}  // namespace flexarm
