@@ -3,7 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 
+#include "hal/bus_fault.h"
 #include "hal/sensor_frame.h"
 
 namespace flexarm {
@@ -23,6 +25,25 @@ enum class BusStatus : std::uint8_t {
   kBusOff,        ///< the CAN controller has left the bus
   kDriveFault,    ///< a drive reports a fault, or has left the operational state
 };
+
+/// "no answer in time", as in messages.
+constexpr const char* Words(BusStatus status) noexcept {
+  switch (status) {
+    case BusStatus::kOk:
+      return "answers";
+    case BusStatus::kTimeout:
+      return "no answer in time";
+    case BusStatus::kMalformed:
+      return "an answer that is none";
+    case BusStatus::kDisconnected:
+      return "connection lost";
+    case BusStatus::kBusOff:
+      return "the CAN controller has left the bus (bus-off)";
+    case BusStatus::kDriveFault:
+      return "a drive reports a fault";
+  }
+  return "?";
+}
 
 /// What a bus is told for one period. A bus without drives ignores it.
 struct BusCommand {
@@ -57,6 +78,16 @@ class BusDevice {
 
   /// One bounded attempt to come back after a failure.
   [[nodiscard]] virtual BusStatus Reconnect() noexcept = 0;
+
+  /// What the last Exchange or Reconnect met, which gave `status`, not kOk. Thread: the bus's.
+  virtual BusFault FaultOf(BusStatus status) const noexcept {
+    return {.kind = static_cast<std::uint8_t>(status), .node = 0, .code = 0};
+  }
+
+  /// What FaultOf gave, in words, with the device's name and the node's. Any thread; not real-time.
+  virtual std::string FaultText(const BusFault& fault) const {
+    return std::string(name()) + ": " + Words(static_cast<BusStatus>(fault.kind));
+  }
 
   /// Torque off by the shortest path there is, then lets go.
   virtual void Close() noexcept = 0;

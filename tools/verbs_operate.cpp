@@ -66,6 +66,9 @@ void PrintStatus(const Json& s) {
   if (s.contains("trip") && s["trip"].is_object()) {
     std::printf("trip           %s: %s\n", s["trip"].value("name", "").c_str(),
                 s["trip"].value("text", "").c_str());
+    if (s["trip"].contains("bus") && s["trip"]["bus"].is_string()) {
+      std::printf("               %s\n", s["trip"]["bus"].get<std::string>().c_str());
+    }
   }
   std::printf("time           %.2f s (tick %lld)\n", s.value("time_s", 0.0),
               static_cast<long long>(s.value("tick", std::int64_t{0})));
@@ -74,6 +77,12 @@ void PrintStatus(const Json& s) {
               pair("joint_angle_deg")[1]);
   std::printf("torque asked   %.3f, %.3f N m\n", pair("torque_nm")[0], pair("torque_nm")[1]);
   std::printf("at rest        %s\n", s.value("at_rest", false) ? "yes" : "no");
+  for (const Json& bus : s.value("buses", Json::array())) {
+    std::printf("%-14s %s, %u failed, %u times taken back%s%s\n", bus.value("name", "").c_str(),
+                bus.value("ok", false) ? "ok" : "lost", bus.value("failed", 0U),
+                bus.value("taken_back", 0U), bus["fault"].is_string() ? "; " : "",
+                bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
+  }
   for (const Json& thread : s.value("threads", Json::array())) {
     std::printf("%-14s %llu runs, %llu missed, %llu skipped, worst lateness %.0f us\n",
                 thread.value("name", "").c_str(),

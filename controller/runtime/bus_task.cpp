@@ -30,7 +30,13 @@ void BusTask::Run(const Activation& activation) noexcept {
   SensorFrame part{};
   const bool may_reconnect = failures_ > 0 && !command.enabled;
   status_ = may_reconnect ? device_->Reconnect() : device_->Exchange(command, &part);
-  failures_ = status_ == BusStatus::kOk ? 0 : std::min(failures_ + 1, kFailuresToLose);
+  if (status_ == BusStatus::kOk) {
+    if (failures_ >= kFailuresToLose) ++taken_back_;
+    failures_ = 0;
+  } else {
+    failures_ = std::min(failures_ + 1, kFailuresToLose);
+    ++failed_;
+  }
   Publish(activation.due_ns, part);
 }
 
@@ -64,10 +70,15 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
   packet.applied_torque_nm = applied_before_nm_;
   frames_.Push(due_ns, packet);
   channels_.frames->Publish(frames_);
-  reports_.Push(due_ns, {.due_ns = due_ns,
-                         .bus_ok = failures_ < kFailuresToLose,
-                         .drive_ok = status_ != BusStatus::kDriveFault});
+  reports_.Push(due_ns,
+                {.due_ns = due_ns,
+                 .bus_ok = failures_ < kFailuresToLose,
+                 .drive_ok = status_ != BusStatus::kDriveFault,
+                 .fault = status_ == BusStatus::kOk ? BusFault{} : device_->FaultOf(status_),
+                 .failed = failed_,
+                 .taken_back = taken_back_});
   channels_.reports->Publish(reports_);
+  channels_.health->Publish(reports_);
 }
 
 }  // namespace flexarm

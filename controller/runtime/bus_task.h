@@ -19,7 +19,8 @@ struct BusChannels {
   CommandChannel* commands;     ///< read
   PermitChannel* permits;       ///< read
   FrameChannel* frames;         ///< written: this bus's part of the readings
-  DriveReportChannel* reports;  ///< written
+  DriveReportChannel* reports;  ///< written: for the safety task
+  DriveReportChannel* health;   ///< written: the same, for the operator
 };
 
 /// The thread of one bus of a real rig: on the control grid, the gate, then the drive, then the
@@ -56,6 +57,8 @@ class BusTask final : public Task {
   std::array<double, 2> applied_before_nm_{};  // set at the one before: acted until now
   BusStatus status_ = BusStatus::kOk;
   int failures_ = 0;  // in a row
+  std::uint32_t failed_ = 0;
+  std::uint32_t taken_back_ = 0;
   FrameHistory frames_{kNoFrame};
   DriveReportHistory reports_{kNoDriveReport};
 };

@@ -115,7 +115,7 @@ void ControlTask::Publish(const Activation& activation, const StepInput& input,
                                .evidence = {.value = output.fault_value,
                                             .limit = output.fault_limit,
                                             .channel = output.fault_channel,
-                                            .reserved = 0},
+                                            .detail = 0},
                                .at_rest = output.at_rest != 0,
                                .experiment_done = output.experiment_done != 0,
                                .missed_in_a_row = activation.missed_in_a_row});

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "controller/law/control_step.h"
 #include "controller/law/design.h"
+#include "controller/runtime/bus_health.h"
 #include "controller/runtime/control_task.h"
 #include "controller/runtime/safety_task.h"
 #include "controller/runtime/stack_config.h"
@@ -54,6 +56,12 @@ class LoopStack {
   virtual void Plan(const PlannedRun& plan) noexcept { plans_.Publish(plan); }
   /// Plans with a lower number than this are no longer used.
   virtual std::uint32_t released_plans() const noexcept { return control_.released(); }
+  /// How the buses do. Empty: this backend has none.
+  virtual std::vector<BusHealth> buses() { return {}; }
+  /// Which bus, device and node a trip is of, and what it met; empty: no bus's.
+  virtual std::string BusText(TripCause /*cause*/, const Evidence& /*evidence*/) const {
+    return {};
+  }
   /// False: this backend has no simulated switches.
   virtual bool Press(const LinePress& /*press*/) noexcept { return false; }
 

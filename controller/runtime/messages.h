@@ -8,6 +8,7 @@
 #include "controller/runtime/latest_value.h"
 #include "controller/safety/safety_state.h"
 #include "controller/safety/trip_cause.h"
+#include "hal/bus_fault.h"
 
 // What the tasks tell each other. Every value is stamped with the instant from which it holds
 // (History), so that who sees what depends on the time grid and not on the scheduler.
@@ -18,8 +19,8 @@ namespace flexarm {
 struct Evidence {
   double value;           ///< what was measured
   double limit;           ///< what it broke
-  std::uint32_t channel;  ///< joint, counter or strain row, 1-based; 0: none
-  std::uint32_t reserved;
+  std::uint32_t channel;  ///< joint, counter, strain row or bus, 1-based; 0: none
+  std::uint32_t detail;   ///< of a bus: its BusFault, as bits; else 0
 };
 
 /// Control task -> drive. Holds from the instant at which it shall act.
@@ -54,6 +55,9 @@ struct DriveReport {
   std::int64_t due_ns;  ///< of its last run
   bool bus_ok;
   bool drive_ok;
+  BusFault fault{};              ///< of the last exchange; none if it went well
+  std::uint32_t failed = 0;      ///< exchanges that failed, and attempts to reconnect
+  std::uint32_t taken_back = 0;  ///< how often the bus was lost and came back
 };
 
 enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };

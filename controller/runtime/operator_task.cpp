@@ -23,6 +23,18 @@ Json Failure(const std::string& error, const std::string& remedy) {
   return {{"ok", false}, {"error", error}, {"remedy", remedy}};
 }
 
+Json BusStatusOf(const std::vector<BusHealth>& buses) {
+  Json all = Json::array();
+  for (const BusHealth& bus : buses) {
+    all.push_back({{"name", bus.name},
+                   {"ok", bus.ok},
+                   {"fault", bus.fault.empty() ? Json(nullptr) : Json(bus.fault)},
+                   {"failed", bus.failed},
+                   {"taken_back", bus.taken_back}});
+  }
+  return all;
+}
+
 std::optional<RequestKind> RequestByName(const std::string& name) {
   for (const RequestKind kind :
        {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
@@ -52,6 +64,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
   try {
     now_ns_ = activation.due_ns;
     FollowState();
+    bus_journal_.Follow(now_ns_, context_.stack->buses(), context_.report);
     telemetry_ = context_.stack->telemetry().Read();
     TakeAnswers();
     if (socket_) Serve();
@@ -74,9 +87,19 @@ void OperatorTask::FollowState() {
     const bool tripped = permit.state == SafetyState::kTripped;
     std::string text = std::string(Name(permit_.state)) + " -> " + Name(permit.state);
     if (tripped) {
-      text += std::string(": ") + Name(permit.cause) + " (value " +
-              std::to_string(permit.evidence.value) + ", limit " +
-              std::to_string(permit.evidence.limit) + "). " + OperatorText(permit.cause);
+      const std::string of_bus = context_.stack->BusText(permit.cause, permit.evidence);
+      text += std::string(": ") + Name(permit.cause) +
+              (of_bus.empty() ? " (value " + std::to_string(permit.evidence.value) + ", limit " +
+                                    std::to_string(permit.evidence.limit) + "). "
+                              : ": " + of_bus + ". ") +
+              OperatorText(permit.cause);
+      if (!of_bus.empty()) {
+        context_.events->Push({.time_ns = now_ns_,
+                               .kind = "bus",
+                               .name = Name(permit.cause),
+                               .text = of_bus,
+                               .value_json = {}});
+      }
       trip_.store(permit.cause, std::memory_order_relaxed);
     }
     context_.report(tripped, text);
@@ -202,12 +225,15 @@ Json OperatorTask::Status() {
               {"at_rest", out.at_rest != 0},
               {"levels", telemetry_.input.frame.levels},
               {"trip", nullptr},
+              {"buses", BusStatusOf(context_.stack->buses())},
               {"threads", context_.thread_status()}};
   if (permit_.state == SafetyState::kTripped) {
     status["trip"] = {
         {"name", Name(permit_.cause)},         {"number", static_cast<int>(permit_.cause)},
         {"value", permit_.evidence.value},     {"limit", permit_.evidence.limit},
         {"channel", permit_.evidence.channel}, {"text", OperatorText(permit_.cause)}};
+    const std::string of_bus = context_.stack->BusText(permit_.cause, permit_.evidence);
+    status["trip"]["bus"] = of_bus.empty() ? Json(nullptr) : Json(of_bus);
   }
   return status;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "controller/runlog/event_queue.h"
+#include "controller/runtime/bus_health.h"
 #include "controller/runtime/loop_stack.h"
 #include "controller/runtime/operator_socket.h"
 #include "controller/runtime/task.h"
@@ -85,6 +86,7 @@ class OperatorTask final : public Task {
   OperatorContext context_;
   std::unique_ptr<OperatorSocket> socket_;
   UnattendedRun unattended_;
+  BusJournal bus_journal_;
   std::deque<Waiting> waiting_;
   struct LivePlan {
     std::uint32_t number;

@@ -47,6 +47,7 @@ void SafetyTask::Run(const Activation& activation) noexcept {
                         .control_alive_ns = control.Newest().value.due_ns,
                         .drive = drive.report,
                         .drive_alive_ns = drive.alive_ns,
+                        .troubles = drive.troubles,
                         .request = request.kind,
                         .state = status_.state,
                         .state_since_ns = state_since_ns_,
@@ -87,14 +88,21 @@ void SafetyTask::Run(const Activation& activation) noexcept {
 
 SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
   DriveSide side{.report = {.due_ns = INT64_MAX, .bus_ok = true, .drive_ok = true},
-                 .alive_ns = INT64_MAX};
+                 .alive_ns = INT64_MAX,
+                 .troubles = {}};
+  std::uint32_t bus = 0;
   for (DriveReportChannel* channel : channels_.drives) {
     const DriveReportHistory& history = channel->Read();
+    ++bus;
     const DriveReport& report = history.At(due_ns).value;
     side.report.due_ns = std::min(side.report.due_ns, report.due_ns);
+    if (side.report.bus_ok && !report.bus_ok) side.troubles.lost = {bus, report.fault};
+    if (side.report.drive_ok && !report.drive_ok) side.troubles.drive = {bus, report.fault};
     side.report.bus_ok = side.report.bus_ok && report.bus_ok;
     side.report.drive_ok = side.report.drive_ok && report.drive_ok;
-    side.alive_ns = std::min(side.alive_ns, history.Newest().value.due_ns);
+    const std::int64_t alive_ns = history.Newest().value.due_ns;
+    if (alive_ns < side.alive_ns) side.troubles.oldest_bus = bus;
+    side.alive_ns = std::min(side.alive_ns, alive_ns);
   }
   return side;
 }

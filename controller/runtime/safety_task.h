@@ -61,6 +61,7 @@ class SafetyTask final : public Task {
   struct DriveSide {
     DriveReport report;
     std::int64_t alive_ns;
+    DriveTroubles troubles;
   };
 
   DriveSide ReadDrives(std::int64_t due_ns) noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "controller/runtime/bus_task.h"
@@ -22,12 +23,13 @@ struct BusWires {
     CommandChannel commands{CommandHistory(kNoCommand)};
     PermitChannel permits{PermitHistory(kNoPermit)};
     DriveReportChannel reports{DriveReportHistory(kNoDriveReport)};
+    DriveReportChannel health{DriveReportHistory(kNoDriveReport)};
   };
 
-  explicit BusWires(const RigWires& rig) : buses(rig.buses.size()) {}
+  explicit BusWires(const RigWires& rig) : wires(rig.buses.size()) {}
   LoopWiring Wiring(SafetyLines* lines);
 
-  std::deque<Bus> buses;
+  std::deque<Bus> wires;
 };
 
 /// The daemon's real-time tasks on a real rig: one thread a bus.
@@ -39,7 +41,11 @@ class WiredStack final : private BusWires, public LoopStack {
 
   void SetEpoch(std::int64_t epoch_ns) noexcept override;
 
+  std::vector<BusHealth> buses() override;
+  std::string BusText(TripCause cause, const Evidence& evidence) const override;
+
  private:
+  std::vector<BusDevice*> devices_;
   std::deque<BusTask> tasks_;
 };
 

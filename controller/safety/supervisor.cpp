@@ -90,17 +90,23 @@ SafetyFacts Supervisor::Judge(const SafetyInputs& in) noexcept {
 
 Evidence Supervisor::EvidenceOf(TripCause cause, const SafetyInputs& in) const noexcept {
   const auto evidence = [](double value, double limit, std::uint32_t channel) {
-    return Evidence{.value = value, .limit = limit, .channel = channel, .reserved = 0};
+    return Evidence{.value = value, .limit = limit, .channel = channel, .detail = 0};
+  };
+  const auto of_bus = [](double value, double limit, const DriveTroubles::Trouble& trouble) {
+    return Evidence{
+        .value = value, .limit = limit, .channel = trouble.bus, .detail = ToBits(trouble.fault)};
   };
   for (const Switch& s : kSwitches) {
     if (s.cause == cause && (in.levels & LineBit(s.line)) == 0) return evidence(0.0, 1.0, s.joint);
   }
   if (in.control.faults != 0 && LowestCause(in.control.faults) == cause) return in.control.evidence;
   if (cause == TripCause::kStaleFrame) {
-    return evidence(Seconds(AgeNs(in.due_ns, in.drive_alive_ns)),
-                    Seconds(limits_.heartbeat_timeout_ns), 0);
+    return of_bus(Seconds(AgeNs(in.due_ns, in.drive_alive_ns)),
+                  Seconds(limits_.heartbeat_timeout_ns),
+                  {in.troubles.oldest_bus, {.kind = kBusHangs}});
   }
-  if (cause == TripCause::kBusLost || cause == TripCause::kDriveFault) return evidence(0.0, 1.0, 0);
+  if (cause == TripCause::kBusLost) return of_bus(0.0, 1.0, in.troubles.lost);
+  if (cause == TripCause::kDriveFault) return of_bus(0.0, 1.0, in.troubles.drive);
   if (cause == TripCause::kMissedDeadlines) {
     return evidence(in.control.missed_in_a_row, limits_.missed_deadlines_to_trip, 0);
   }

@@ -19,6 +19,18 @@ struct SupervisorLimits {
 
 SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConfig& loop);
 
+/// Which of several buses is meant when the drive side as a whole is in trouble, from 1, and what
+/// it met. 0: none, or the drive side is no bus.
+struct DriveTroubles {
+  struct Trouble {
+    std::uint32_t bus = 0;
+    BusFault fault{};
+  };
+  Trouble lost{};                ///< the first that is lost
+  Trouble drive{};               ///< the first with a drive's fault
+  std::uint32_t oldest_bus = 0;  ///< whose newest report is the oldest
+};
+
 /// What one safety tick got to see.
 struct SafetyInputs {
   std::int64_t due_ns;
@@ -27,6 +39,7 @@ struct SafetyInputs {
   std::int64_t control_alive_ns;  ///< due instant of the newest one published; INT64_MIN: none
   DriveReport drive;              ///< the one that holds at `due_ns`
   std::int64_t drive_alive_ns;    ///< due instant of the newest one published; INT64_MIN: none
+  DriveTroubles troubles{};
   RequestKind request;
   SafetyState state;  ///< before this tick
   std::int64_t state_since_ns;

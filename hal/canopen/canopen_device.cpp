@@ -19,8 +19,6 @@ constexpr int kResetsBeforeSetup = 6;
 // More than a full socket holds: a flood cannot keep one call busy.
 constexpr int kMostFrames = 1024;
 
-constexpr std::uint32_t kFunction = 0x780, kNodeId = 0x07F;
-
 }  // namespace
 
 CanopenDevice::CanopenDevice(CanopenConfig config, std::unique_ptr<CanBus> bus)
@@ -82,7 +80,7 @@ BusStatus CanopenDevice::Exchange(const BusCommand& command, SensorFrame* part) 
 
 BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexcept {
   const std::int64_t until_ns = bus_->now_ns() + answer_ns();
-  malformed_ = false;
+  malformed_ = nullptr;
   Drain(until_ns);
   if (BusIsGone()) return FaultStatus();
   CheckHeartbeats();
@@ -98,7 +96,7 @@ BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexce
     if (node.answered && IsDrive(node.config->role)) FollowDrive(wish, &node);
   }
   const BusStatus missing = CountMissing();
-  return malformed_ ? BusStatus::kMalformed : missing;
+  return malformed_ != nullptr ? BusStatus::kMalformed : missing;
 }
 
 void CanopenDevice::Drain(std::int64_t until_ns) noexcept {
@@ -219,77 +217,6 @@ void CanopenDevice::FollowDrive(DriveWish wish, Node* node) noexcept {
   }
 }
 
-void CanopenDevice::Handle(const ReceivedFrame& received) noexcept {
-  if (received.frame.id == kCobSync) return HandleSync(received);
-  Node* node = Find(static_cast<int>(received.frame.id & kNodeId));
-  if (node == nullptr || received.own) return;
-  switch (received.frame.id & kFunction) {
-    case kCobTpdo:
-      return HandleFeedback(received, node);
-    case kCobEmergency:
-      return HandleEmergency(received, node);
-    case kCobHeartbeat:
-      return HandleHeartbeat(received, node);
-    default:
-      return;  // an SDO answer that came too late
-  }
-}
-
-void CanopenDevice::HandleSync(const ReceivedFrame& received) noexcept {
-  if (!received.own) return Latch(CanopenFaultKind::kSecondMaster, nullptr, 0);
-  if (collecting_ && received.at_ns >= sync_sent_ns_) sampled_ns_ = received.at_ns;
-}
-
-void CanopenDevice::HandleFeedback(const ReceivedFrame& received, Node* node) noexcept {
-  if (!collecting_ || received.at_ns < sync_sent_ns_) {
-    ++counts_.stale;
-    return;
-  }
-  if (node->answered) {
-    ++counts_.duplicated;
-    // After a miss the first may be the late answer to the SYNC before; a node sends in order.
-    if (node->missed == 0) return;
-  }
-  const bool answered_before = node->answered;
-  node->answered = false;
-  if (IsDrive(node->config->role)) {
-    if (const auto feedback = DecodeDriveFeedback(received.frame)) {
-      node->statusword = feedback->statusword;
-      node->torque_per_mille = feedback->torque_per_mille;
-      node->counts = static_cast<std::uint32_t>(feedback->position_counts);
-      node->answered = true;
-    }
-  } else if (const auto position = DecodeEncoderPosition(received.frame)) {
-    node->counts = *position;
-    node->answered = true;
-  }
-  if (node->answered) return;
-  node->answered = answered_before;
-  ++counts_.malformed;
-  malformed_ = true;
-}
-
-void CanopenDevice::HandleEmergency(const ReceivedFrame& received, const Node* node) noexcept {
-  const auto emergency = DecodeEmergency(received.frame);
-  if (!emergency) {
-    ++counts_.malformed;
-  } else if (emergency->code != 0) {  // 0: the error has gone; the statusword says so too
-    Latch(CanopenFaultKind::kEmergency, node, emergency->code);
-  }
-}
-
-void CanopenDevice::HandleHeartbeat(const ReceivedFrame& received, Node* node) noexcept {
-  const auto state = DecodeHeartbeat(received.frame);
-  if (!state) {
-    ++counts_.malformed;
-    return;
-  }
-  node->heartbeat_ns = std::max(node->heartbeat_ns, received.at_ns);
-  if (*state != NmtState::kOperational) {
-    Latch(CanopenFaultKind::kNotOperational, node, static_cast<unsigned>(*state));
-  }
-}
-
 BusStatus CanopenDevice::Reconnect() noexcept {
   const bool anew = NeedsConfiguration(fault_.kind) || resets_ >= kResetsBeforeSetup;
   return configuring_ || anew ? ConfigureAnew() : ResetFaults();
@@ -310,7 +237,10 @@ BusStatus CanopenDevice::ConfigureAnew() noexcept {
       return BusStatus::kTimeout;
     case NodeSetup::Progress::kFailed:
       configuring_ = false;
-      return setup_.without_answer() ? BusStatus::kTimeout : BusStatus::kMalformed;
+      fault_ = {setup_.without_answer() ? CanopenFaultKind::kSetupSilent
+                                        : CanopenFaultKind::kSetupRefused,
+                setup_.failed_node_id(), setup_.failed_index()};
+      return FaultStatus();
     case NodeSetup::Progress::kDone:
       break;
   }
@@ -335,6 +265,25 @@ BusStatus CanopenDevice::ResetFaults() noexcept {
   }
   resets_ = 0;
   return BusStatus::kOk;
+}
+
+// What has not latched yet is of one exchange: who did not answer, or not well.
+BusFault CanopenDevice::FaultOf(BusStatus /*status*/) const noexcept {
+  using enum CanopenFaultKind;
+  if (fault_.kind != kNone) return Packed(fault_);
+  if (malformed_ != nullptr) {
+    return Packed({.kind = kMalformed, .node_id = malformed_->config->node_id, .code = 0});
+  }
+  if (stuck_ > 0) return Packed({.kind = kTransmitStuck, .node_id = 0, .code = 0});
+  for (const Node& node : nodes_) {
+    if (node.config == nullptr || node.missed == 0) continue;
+    return Packed({.kind = kSilent, .node_id = node.config->node_id, .code = 0});
+  }
+  return {};
+}
+
+std::string CanopenDevice::FaultText(const BusFault& fault) const {
+  return CanopenFaultText(config_, Unpacked(fault));
 }
 
 void CanopenDevice::Close() noexcept {

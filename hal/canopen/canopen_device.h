@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "hal/bus_device.h"
 #include "hal/canopen/can_bus.h"
@@ -48,6 +49,8 @@ class CanopenDevice : public BusDevice {
   void Open() override;
   [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
   [[nodiscard]] BusStatus Reconnect() noexcept override;
+  BusFault FaultOf(BusStatus status) const noexcept override;
+  std::string FaultText(const BusFault& fault) const override;
   void Close() noexcept override;
 
   /// What latched, for the log. Thread: the bus's.
@@ -110,11 +113,11 @@ class CanopenDevice : public BusDevice {
   std::size_t node_count_ = 0;
   std::uint32_t drives_ = 0;
   bool open_ = false;
-  bool first_ = true;         // no exchange yet: the nodes' time-outs begin with it
-  bool configuring_ = false;  // Reconnect is in the middle of it
-  int resets_ = 0;            // attempts to reset the drives' faults
-  int stuck_ = 0;             // exchanges in a row whose frames did not go out
-  bool malformed_ = false;    // in this exchange
+  bool first_ = true;                // no exchange yet: the nodes' time-outs begin with it
+  bool configuring_ = false;         // Reconnect is in the middle of it
+  int resets_ = 0;                   // attempts to reset the drives' faults
+  int stuck_ = 0;                    // exchanges in a row whose frames did not go out
+  const Node* malformed_ = nullptr;  // whose PDO was none, in this exchange
   bool collecting_ = false;
   std::int64_t sync_sent_ns_ = 0;
   std::int64_t sampled_ns_ = 0;  // the SYNC's end on the bus; 0: it has not gone out

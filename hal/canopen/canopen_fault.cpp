@@ -42,6 +42,12 @@ const char* Words(CanopenFaultKind kind) {
       return "the CAN controller has left the bus (bus-off)";
     case CanopenFaultKind::kInterfaceDown:
       return "the interface is down";
+    case CanopenFaultKind::kMalformed:
+      return "sends a PDO that is none";
+    case CanopenFaultKind::kSetupRefused:
+      return "is not, or does not become, what the config says, object";
+    case CanopenFaultKind::kSetupSilent:
+      return "does not answer while it is configured, object";
   }
   return "?";
 }
@@ -57,7 +63,11 @@ BusStatus StatusOf(const CanopenConfig& config, const CanopenFault& fault) noexc
     case CanopenFaultKind::kTransmitStuck:
     case CanopenFaultKind::kInterfaceDown:
       return BusStatus::kDisconnected;
+    case CanopenFaultKind::kSetupSilent:
+      return BusStatus::kTimeout;
     case CanopenFaultKind::kSecondMaster:
+    case CanopenFaultKind::kMalformed:
+    case CanopenFaultKind::kSetupRefused:
       return BusStatus::kMalformed;
     case CanopenFaultKind::kEmergency:
     case CanopenFaultKind::kHeartbeatLost:
@@ -75,9 +85,20 @@ BusStatus StatusOf(const CanopenConfig& config, const CanopenFault& fault) noexc
 
 bool NeedsConfiguration(CanopenFaultKind kind) noexcept {
   using enum CanopenFaultKind;
-  constexpr std::array kLost = {kHeartbeatLost, kNotOperational, kSilent,
-                                kTransmitStuck, kBusOff,         kInterfaceDown};
+  constexpr std::array kLost = {kHeartbeatLost, kNotOperational, kSilent,       kTransmitStuck,
+                                kBusOff,        kInterfaceDown,  kSetupRefused, kSetupSilent};
   return std::find(kLost.begin(), kLost.end(), kind) != kLost.end();
+}
+
+BusFault Packed(const CanopenFault& fault) noexcept {
+  return {.kind = static_cast<std::uint8_t>(fault.kind),
+          .node = static_cast<std::uint8_t>(fault.node_id),
+          .code = fault.code};
+}
+
+CanopenFault Unpacked(const BusFault& fault) noexcept {
+  return {
+      .kind = static_cast<CanopenFaultKind>(fault.kind), .node_id = fault.node, .code = fault.code};
 }
 
 std::string CanopenFaultText(const CanopenConfig& config, const CanopenFault& fault) {

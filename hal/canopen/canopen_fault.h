@@ -23,6 +23,9 @@ enum class CanopenFaultKind : std::uint8_t {
   kTransmitStuck,   ///< frames do not go out: nobody acknowledges, or the bus is too busy
   kBusOff,          ///< the controller has left the bus
   kInterfaceDown,   ///< there is no interface any more
+  kMalformed,       ///< a PDO of a length or content that it does not have
+  kSetupRefused,    ///< code: object whose value is not what it must be, or is not taken
+  kSetupSilent,     ///< code: object; no answer while it is configured anew
 };
 
 /// A fault, and of which node: 0 is the bus.
@@ -37,6 +40,10 @@ BusStatus StatusOf(const CanopenConfig& config, const CanopenFault& fault) noexc
 
 /// A node, or the bus, was lost: its configuration may be gone with it.
 bool NeedsConfiguration(CanopenFaultKind kind) noexcept;
+
+/// As four bytes, and back.
+BusFault Packed(const CanopenFault& fault) noexcept;
+CanopenFault Unpacked(const BusFault& fault) noexcept;
 
 /// "can0: node 1 (drive1): emergency message 0x2310". For the log, not real-time.
 std::string CanopenFaultText(const CanopenConfig& config, const CanopenFault& fault);

@@ -54,6 +54,9 @@ class NodeSetup {
 
   /// True if the step that failed got no answer at all.
   bool without_answer() const noexcept { return failure_ == Failure::kNoAnswer; }
+  /// Node of the step that failed, and the index of its object: 0 if it is no SDO transfer.
+  int failed_node_id() const noexcept { return config_.node[node_].node_id; }
+  std::uint16_t failed_index() const noexcept { return step().object.index; }
   /// What failed: interface, node, object, found and expected. Not real-time.
   std::string FailureText() const;
 

@@ -188,7 +188,9 @@ void SimulatedNode::HandleSdo(const CanFrame& frame) noexcept {
              (wrong_.has_no_abort_option && request.object == kObjectAbortConnection)) {
     abort = kSdoAbortNoObject;
   } else if (request.kind == SdoRequest::Kind::kRead) {
-    Transmit(SdoValueReply(config_.node_id, request.object, entry->value, entry->size));
+    const bool lies = wrong_.another_product && request.object == kObjectProduct;
+    Transmit(SdoValueReply(config_.node_id, request.object, entry->value + (lies ? 1U : 0U),
+                           entry->size));
     return;
   } else {
     abort = Write(request.object, request.value, request.size);

@@ -34,6 +34,7 @@ struct Misbehaviour {
   std::uint16_t forgets_index = 0;   ///< acknowledges a write to it, and keeps the old value
   bool has_no_abort_option = false;  ///< object 6007 does not exist
   bool keeps_torque = false;         ///< ignores its heartbeat consumer
+  bool another_product = false;      ///< 1018:2 is not what it was: somebody has changed the node
 };
 
 /// A CiA 402 drive in cyclic synchronous torque mode, or a CiA 406 encoder, on a CanBus: object

@@ -16,23 +16,6 @@ constexpr std::int64_t kFirstPauseNs = 50'000'000;
 constexpr std::int64_t kLongestPauseNs = 1'600'000'000;
 constexpr int kOpenAttempts = 5;  // a device may still be starting, or this machine be busy
 
-const char* Meaning(BusStatus status) noexcept {
-  switch (status) {
-    case BusStatus::kOk:
-      return "answered";
-    case BusStatus::kTimeout:
-      return "no answer in time";
-    case BusStatus::kMalformed:
-      return "an answer that is none";
-    case BusStatus::kDisconnected:
-      return "connection lost";
-    case BusStatus::kBusOff:
-    case BusStatus::kDriveFault:
-      break;
-  }
-  return "?";
-}
-
 std::string Hexadecimal(int word) {
   std::string text = "0x0000";
   for (std::size_t i = 5; i >= 2; --i, word >>= 4) text[i] = "0123456789abcdef"[word & 0xF];
@@ -73,8 +56,20 @@ std::string ModbusDevice::Refusal(const ModbusRequest& request, BusStatus status
   const ModbusCounters& met = counters();
   const bool refused = status == BusStatus::kMalformed && met.last_exception != 0;
   return Place() + range + " cannot be read: found " +
-         (refused ? "exception " + std::to_string(met.last_exception) : Meaning(status)) +
+         (refused ? "exception " + std::to_string(met.last_exception) : Words(status)) +
          ", expected " + std::to_string(request.count) + " values";
+}
+
+BusFault ModbusDevice::FaultOf(BusStatus status) const noexcept {
+  const bool refused = status == BusStatus::kMalformed;
+  return {.kind = static_cast<std::uint8_t>(status),
+          .node = static_cast<std::uint8_t>(config_.unit),
+          .code = static_cast<std::uint16_t>(refused ? counters().last_exception : 0)};
+}
+
+std::string ModbusDevice::FaultText(const BusFault& fault) const {
+  if (fault.code != 0) return Place() + "answers with exception " + std::to_string(fault.code);
+  return Place() + Words(static_cast<BusStatus>(fault.kind));
 }
 
 void ModbusDevice::Open() {

@@ -42,6 +42,9 @@ class ModbusDevice final : public BusDevice {
   /// 1.6 s; within the pause it returns at once.
   [[nodiscard]] BusStatus Reconnect() noexcept override;
 
+  BusFault FaultOf(BusStatus status) const noexcept override;
+  std::string FaultText(const BusFault& fault) const override;
+
   void Close() noexcept override { link_.Close(); }
 
   /// The strain channels that an exchange gives; bit i is channel i.

@@ -73,7 +73,7 @@ TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
   Ticks(1, 400, 1);
   SafetyRecord trip = MakeSafety(kSecond, kRunningStatus, RequestKind::kNone,
                                  CauseBit(TripCause::kLimitSwitch2High));
-  trip.evidence = {.value = 1.5, .limit = 1.25, .channel = 2, .reserved = 0};
+  trip.evidence = {.value = 1.5, .limit = 1.25, .channel = 2, .detail = 0};
   safety_.Push(trip);
   RunUntil(9 * kSecond);
   EXPECT_FALSE(recording_->is_open());

@@ -122,7 +122,7 @@ TEST_F(SafetyTaskTest, AFaultOfTheLoopTripsWhenItsReportHoldsAndBringsItsEvidenc
   GoTo(kRunning);
   control_.report.faults =
       CauseBit(TripCause::kSoftLimit2) | CauseBit(TripCause::kEstimatorResidual);
-  control_.report.evidence = {.value = 1.6, .limit = 1.57, .channel = 2, .reserved = 0};
+  control_.report.evidence = {.value = 1.6, .limit = 1.57, .channel = 2, .detail = 0};
   const std::int64_t tripped_ns = RunUntilTripped(100 * kMs);
   EXPECT_EQ((tripped_ns - kPhaseNs) % kPeriodNs, kDeadlineNs);
   EXPECT_EQ(permit().cause, TripCause::kSoftLimit2);

@@ -112,6 +112,24 @@ TEST(Supervisor, BusAndDriveAreTakenAtTheirWord) {
   EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kDriveFault));
 }
 
+TEST(Supervisor, TheEvidenceOfABusSaysWhichAndWhatItMet) {
+  SafetyInputs in = Fine();
+  in.drive.bus_ok = in.drive.drive_ok = false;
+  in.troubles = {.lost = {.bus = 3, .fault = {.kind = 1, .node = 2, .code = 7}},
+                 .drive = {.bus = 1, .fault = {.kind = 5, .node = 0, .code = 0x2310}},
+                 .oldest_bus = 2};
+  const Supervisor supervisor(kLimits);
+  const Evidence lost = supervisor.EvidenceOf(TripCause::kBusLost, in);
+  EXPECT_EQ(lost.channel, 3u);
+  EXPECT_EQ(FaultFromBits(lost.detail), in.troubles.lost.fault);
+  const Evidence drive = supervisor.EvidenceOf(TripCause::kDriveFault, in);
+  EXPECT_EQ(drive.channel, 1u);
+  EXPECT_EQ(FaultFromBits(drive.detail), in.troubles.drive.fault);
+  const Evidence stale = supervisor.EvidenceOf(TripCause::kStaleFrame, in);
+  EXPECT_EQ(stale.channel, 2u);
+  EXPECT_EQ(FaultFromBits(stale.detail).kind, kBusHangs);
+}
+
 TEST(Supervisor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
   SafetyInputs in = Fine();
   in.control.missed_in_a_row = 2;
@@ -124,7 +142,7 @@ TEST(Supervisor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
 TEST(Supervisor, FaultsOfTheLoopCountWhileItLives) {
   SafetyInputs in = Fine();
   in.control.faults = CauseBit(TripCause::kHubRate2) | CauseBit(TripCause::kEstimatorResidual);
-  in.control.evidence = {.value = 10.5, .limit = 10.0, .channel = 2, .reserved = 0};
+  in.control.evidence = {.value = 10.5, .limit = 10.0, .channel = 2, .detail = 0};
   EXPECT_EQ(PresentIn(in), in.control.faults);
   ExpectEvidence(TripCause::kHubRate2, in, 10.5, 10.0, 2);
   in.control_alive_ns = in.due_ns - 41 * kMs;

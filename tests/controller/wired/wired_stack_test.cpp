@@ -75,10 +75,12 @@ class GaugeBus final : public BusDevice {
   BusStatus Exchange(const BusCommand&, SensorFrame* part) noexcept override {
     *part = world_->frame;
     part->counter_valid = 0;
-    return BusStatus::kOk;
+    return status;
   }
-  BusStatus Reconnect() noexcept override { return BusStatus::kOk; }
+  BusStatus Reconnect() noexcept override { return status; }
   void Close() noexcept override {}
+
+  BusStatus status = BusStatus::kOk;
 
  private:
   World* world_;
@@ -161,11 +163,33 @@ TEST_F(WiredStackTest, OneFailedExchangeIsSurvivedTwoAreALostBus) {
   drives_.fail_until = INT64_MAX;
   RunUntil(now_ns_ + 100 * kMs);
   EXPECT_EQ(permit().state, SafetyState::kTripped);
-  // The loop's word (no reading for two periods) and the bus's come in the same period.
-  EXPECT_TRUE(permit().cause == TripCause::kBusLost ||
-              permit().cause == TripCause::kNoCounterReading)
-      << Name(permit().cause);
+  EXPECT_EQ(permit().cause, TripCause::kBusLost) << Name(permit().cause);
   EXPECT_FALSE(lines_.relay);
+}
+
+// The trip says which bus, and the stack says what that bus met, in words.
+TEST_F(WiredStackTest, ALostBusIsNamedInTheTripAndInTheHealth) {
+  RunUntil(2'000 * kMs);
+  ASSERT_EQ(stack_.buses().size(), 2U);
+  EXPECT_TRUE(stack_.buses()[1].ok);
+  EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "");
+  gauges_.status = BusStatus::kMalformed;
+  RunUntil(now_ns_ + 100 * kMs);
+  EXPECT_EQ(permit().cause, TripCause::kBusLost) << Name(permit().cause);
+  EXPECT_EQ(permit().evidence.channel, 2U);
+  EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: an answer that is none");
+  const std::vector<BusHealth> health = stack_.buses();
+  EXPECT_TRUE(health[0].ok);
+  EXPECT_EQ(health[0].failed, 0U);
+  EXPECT_FALSE(health[1].ok);
+  EXPECT_EQ(health[1].fault, "gauges: an answer that is none");
+  EXPECT_GE(health[1].failed, 2U);
+  gauges_.status = BusStatus::kOk;
+  RunUntil(now_ns_ + 100 * kMs);
+  EXPECT_TRUE(stack_.buses()[1].ok);
+  EXPECT_EQ(stack_.buses()[1].taken_back, 1U);
+  EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: an answer that is none")
+      << "the trip keeps what caused it";
 }
 
 TEST_F(WiredStackTest, ADriveFaultTripsByItsName) {

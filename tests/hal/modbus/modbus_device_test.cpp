@@ -210,6 +210,20 @@ TEST(ModbusDevice, ASerialPortThatCannotBeQuickIsRefused) {
   EXPECT_NE(OpenError(config), "opened");
 }
 
+TEST(ModbusDevice, SaysWhatAnExchangeMetWithItsNamePlaceAndUnit) {
+  ModbusDeviceConfig config = Amplifier();
+  config.port = 1;
+  ModbusDevice device(config, MonotonicNow);
+  const std::string place = "modbus 'amplifier' (127.0.0.1:1, unit 1): ";
+  SensorFrame part{};
+  const BusStatus status = device.Exchange({.torque_nm = {}, .enabled = false}, &part);
+  EXPECT_EQ(status, BusStatus::kDisconnected);
+  EXPECT_EQ(device.FaultText(device.FaultOf(status)), place + "connection lost");
+  EXPECT_EQ(device.FaultText(device.FaultOf(BusStatus::kTimeout)), place + "no answer in time");
+  EXPECT_EQ(device.FaultText({.kind = 2, .node = 1, .code = 4}),
+            place + "answers with exception 4");
+}
+
 TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
   ModbusDeviceConfig config = Config();
   auto served = std::make_unique<ServedDevice>(config);
