@@ -9,13 +9,13 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <string>
 
 #include "controller/law/refused.h"
 #include "controller/runtime/clock.h"
-#include "hal/line_names.h"
 #include "hal/rig/wire_rig.h"
 #include "tools/options.h"
+#include "tools/rig_commands.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -33,23 +33,6 @@ struct Options {
 volatile std::sig_atomic_t end_asked = 0;
 
 void AskEnd(int /*signal*/) { end_asked = 1; }
-
-// Commands on stdin, one a line: "press LINE LEVEL", "silence JOINT 0|1".
-void Obey(const std::string& text, WireRig* rig) {
-  std::istringstream words(text);
-  std::string command, what;
-  int value = 0;
-  words >> command >> what >> value;
-  const std::optional<Line> line = LineByName(what);
-  if (command == "press" && line) {
-    rig->Press(*line, value);
-  } else if (command == "silence" && (what == "1" || what == "2")) {
-    rig->SilenceDrive(what == "1" ? 0 : 1, value != 0);
-  } else if (!command.empty()) {
-    std::cerr << "flexarm rig: not understood: " << text
-              << "; expected `press LINE 0|1` or `silence 1|2 0|1`\n";
-  }
-}
 
 /// Reads whole lines from stdin without waiting.
 class Commands {
@@ -82,6 +65,7 @@ void Report(const WireRig& rig, bool json) {
     out["relay_closed"] = seen.relay_closed;
     out["pump_alive"] = seen.pump_alive;
     out["powered_ms"] = seen.powered_slices;
+    out["drives_active_ms"] = seen.active_slices;
     std::cout << out.dump() << std::endl;
     return;
   }
@@ -119,7 +103,8 @@ int Run(const Options& options) {
       if (line == "report") {
         Report(rig, options.json);
       } else {
-        Obey(line, &rig);
+        const std::string complaint = ObeyRig(line, &rig);
+        if (!complaint.empty()) std::cerr << "flexarm rig: " << line << ": " << complaint << '\n';
       }
     }
   }
@@ -142,10 +127,17 @@ void RegisterRig(CLI::App& app, Exit& exit) {
       ->check(CLI::PositiveNumber);
   AddJson(verb, &options->json);
   verb->footer(
-      "Serves Modbus, CANopen nodes and gpio-sim lines as the config wires them; then start\n"
-      "flexarmd with the same config. Commands on stdin: press LINE 0|1, silence 1|2 0|1, report.\n"
-      "At the end it prints what the hardware saw.\n"
-      "Example: flexarm rig -c config/hil-wire.toml");
+      std::string(
+          "Serves Modbus, CANopen nodes and gpio-sim lines as the config wires them; then start\n"
+          "flexarmd with the same config. An amplifier with transport = \"rtu\" is served on a\n"
+          "pseudo-terminal, to which the rig puts a link at the configured `device`: any path "
+          "that\n"
+          "is free, as /tmp/strain-amplifier-1; the daemon opens that.\n"
+          "At the end it prints what the hardware saw.\n\n") +
+      kRigCommands +
+      "\nExamples: flexarm rig -c config/hil-wire.toml\n"
+      "          mkfifo rig.in; flexarm rig -c config/hil-wire.toml <rig.in & exec 3>rig.in\n"
+      "          echo amplifier strain-amplifier-1 late 30 >&3");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }
 

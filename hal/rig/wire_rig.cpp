@@ -22,15 +22,7 @@ WireRig::WireRig(const ArmParameters& arm, const SensorConfig& sensors, const Si
     : rig_(arm, sensors, sim), lines_(LinesOf(hal)), gpio_(lines_.chip) {
   for (const CanopenConfig& bus : hal.canopen) AddNodes(bus, clocks);
   for (const ModbusDeviceConfig& device : hal.modbus.device) {
-    Amplifier& amplifier = *amplifiers_.emplace_back(std::make_unique<Amplifier>(device));
-    amplifier.thread = std::thread([&amplifier] { amplifier.server.Run(); });
-  }
-}
-
-WireRig::~WireRig() {
-  for (const auto& amplifier : amplifiers_) {
-    amplifier->server.Stop();
-    amplifier->thread.join();
+    amplifiers_.push_back(std::make_unique<SimulatedAmplifier>(device, sensors));
   }
 }
 
@@ -54,10 +46,18 @@ void WireRig::AddNodes(const CanopenConfig& bus, const CanClocks& clocks) {
   }
 }
 
-void WireRig::SilenceDrive(int joint, bool silent) noexcept {
-  for (Node& node : nodes_) {
-    if (static_cast<int>(node.config.role) == joint) node.node->Misbehave({.silent = silent});
+SimulatedNode* WireRig::FindNode(std::string_view role) noexcept {
+  for (const Node& node : nodes_) {
+    if (role == CanopenRoleName(node.config.role)) return node.node.get();
   }
+  return nullptr;
+}
+
+SimulatedAmplifier* WireRig::FindAmplifier(std::string_view name) noexcept {
+  for (const auto& amplifier : amplifiers_) {
+    if (amplifier->name() == name) return amplifier.get();
+  }
+  return nullptr;
 }
 
 void WireRig::Step(std::int64_t now_ns) noexcept {
@@ -81,11 +81,15 @@ bool WireRig::PowerOn(std::int64_t now_ns) noexcept {
 
 void WireRig::DriveArm(bool power) noexcept {
   std::array<double, 2> torque_nm{};
+  bool active = false;
   for (const Node& node : nodes_) {
-    if (!IsDrive(node.config.role) || !power) continue;
+    if (!IsDrive(node.config.role)) continue;
+    active = active || node.node->torque_per_mille() != 0;
+    if (!power) continue;
     torque_nm[static_cast<std::size_t>(node.config.role)] =
         node.config.sign * node.node->torque_per_mille() * node.config.torque_per_mille_nm;
   }
+  if (active) ++observed_.active_slices;
   rig_.SetTorque(torque_nm);
   observed_.torque_nm = torque_nm;
   if (torque_nm[0] != 0.0 || torque_nm[1] != 0.0) ++observed_.powered_slices;
@@ -97,7 +101,7 @@ void WireRig::Show(std::int64_t now_ns) noexcept {
     const int counter = node.config.counter();
     if (counter >= 0) node.node->SetPosition(frame.counter[static_cast<std::size_t>(counter)]);
   }
-  for (const auto& amplifier : amplifiers_) amplifier->image.Publish(frame);
+  for (const auto& amplifier : amplifiers_) amplifier->Show(frame);
   for (int i = 0; i < kLines; ++i) {
     const bool level = (frame.levels & LineBit(static_cast<Line>(i))) != 0;
     gpio_.Pull(lines_.input[static_cast<std::size_t>(i)], level);

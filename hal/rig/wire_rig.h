@@ -3,16 +3,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <thread>
+#include <string_view>
 #include <vector>
 
 #include "hal/canopen/can_bus.h"
 #include "hal/canopen/simulated_node.h"
 #include "hal/canopen/socketcan_bus.h"
 #include "hal/hal_config.h"
-#include "hal/modbus/modbus_server.h"
-#include "hal/modbus/register_image.h"
 #include "hal/rig/gpio_sim.h"
+#include "hal/rig/simulated_amplifier.h"
 #include "hal/sim/sim_config.h"
 #include "hal/sim/simulated_rig.h"
 
@@ -32,23 +31,23 @@ class WireRig {
     bool relay_closed;                ///< now
     bool pump_alive;                  ///< now
     std::int64_t powered_slices;      ///< milliseconds in which some drive made torque
+    std::int64_t active_slices;       ///< or would have, with its power on
   };
 
   /// @param arm  with the payload that the plant really carries
   /// @throws HalError
   WireRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
           const HalConfig& hal, const CanClocks& clocks);
-  ~WireRig();
-  WireRig(const WireRig&) = delete;
-  WireRig& operator=(const WireRig&) = delete;
 
   /// One millisecond of the rig, up to `now_ns` of CLOCK_MONOTONIC.
   void Step(std::int64_t now_ns) noexcept;
 
   /// Forces a switch or the button, as SimulatedRig::Press.
   void Press(Line line, int level) noexcept { rig_.Press(line, level); }
-  /// A drive (joint 0 or 1) that has lost its power, or has it again.
-  void SilenceDrive(int joint, bool silent) noexcept;
+
+  // What can be made to misbehave: null if the rig has none of that name.
+  SimulatedNode* FindNode(std::string_view role) noexcept;  ///< "drive1" .. "rotor2"
+  SimulatedAmplifier* FindAmplifier(std::string_view name) noexcept;
 
   const Observed& observed() const noexcept { return observed_; }
 
@@ -57,12 +56,6 @@ class WireRig {
     CanopenNodeConfig config;
     std::unique_ptr<CanBus> bus;
     std::unique_ptr<SimulatedNode> node;
-  };
-  struct Amplifier {
-    explicit Amplifier(const ModbusDeviceConfig& config) : image(config), server(config, image) {}
-    RegisterImage image;
-    ModbusServer server;
-    std::thread thread;
   };
 
   void AddNodes(const CanopenConfig& bus, const CanClocks& clocks);
@@ -74,7 +67,7 @@ class WireRig {
   GpiodConfig lines_;
   GpioSim gpio_;
   std::vector<Node> nodes_;
-  std::vector<std::unique_ptr<Amplifier>> amplifiers_;
+  std::vector<std::unique_ptr<SimulatedAmplifier>> amplifiers_;
   bool pump_level_ = false;
   std::int64_t pump_toggled_ns_ = INT64_MIN;
   Observed observed_{};

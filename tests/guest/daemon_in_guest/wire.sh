@@ -104,9 +104,12 @@ start_rig
 start_daemon
 start_run
 sleep 1
-echo silence 2 1 >&3
+echo node drive2 silent >&3
 within 5 grep -q -- '-> Tripped' daemon.log
-grep -- '-> Tripped' daemon.log
+check "the trip names the drive" \
+  grep -q -- '-> Tripped: bus-lost: vcan0: node 2 (drive2): answers no SYNC' daemon.log
+check "so does the status" equal "$(flexarm status --json | jq -r .trip.bus)" \
+  'vcan0: node 2 (drive2): answers no SYNC'
 check "the hardware is dead" equal "$(hardware)" "$dead"
 kill -TERM $daemon
 wait $daemon

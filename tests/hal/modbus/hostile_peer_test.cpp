@@ -31,7 +31,7 @@ std::ostream& operator<<(std::ostream& out, BusStatus status) {
 
 namespace {
 
-using enum Misbehaviour;
+using enum WireFault;
 using enum BusStatus;
 
 constexpr BusCommand kNoCommand{.torque_nm = {}, .enabled = false};
@@ -44,7 +44,7 @@ std::atomic<std::int64_t> skipped_ns{0};
 std::int64_t Clock() noexcept { return MonotonicNow() + skipped_ns; }
 
 struct Met {
-  Misbehaviour how;
+  WireFault how;
   double timeout_ms;              // long where an answer is expected: the machine may be busy
   std::vector<BusStatus> status;  // of the first exchanges
   std::uint64_t requests;         // sent in all of them
@@ -184,7 +184,7 @@ TEST_P(HostilePeerIs, BoundedNamedAndSurvived) {
   }
   for (const BusStatus expected : met.status) {
     EXPECT_EQ(judge.Exchange(), expected);
-    if (met.how == kHeld) judge.peer.ReleaseHeld();
+    if (met.how == kLate) judge.peer.ReleaseHeld();
   }
   const ModbusCounters& after = judge.device.counters();
   if (met.how == kFlood) {  // one, if the flood pauses just then
@@ -212,7 +212,7 @@ constexpr double kPatient = 400.0;  // where the machine might make one late
 const std::vector<Met> kOverTcp = {
     {kNone, kPatient, {kOk, kOk, kOk}, 6, 0, 0, 0},
     {kSilent, kSoon, {kTimeout, kTimeout, kTimeout, kTimeout}, 4, 4, 0, 0},
-    {kHeld, kSoon, {kTimeout, kTimeout, kTimeout, kTimeout}, 4, 4, 0, 0},
+    {kLate, kSoon, {kTimeout, kTimeout, kTimeout, kTimeout}, 4, 4, 0, 0},
     // The reply to the last request before is the first that it sends.
     {kOneBehind, kPatient, {kMalformed, kDisconnected, kDisconnected}, 2, 0, 2, 1},
     {kByteByByte, kSoon, {kTimeout, kTimeout, kTimeout, kTimeout}, 4, 4, 0, 0},
@@ -241,7 +241,7 @@ const std::vector<Met> kOverTcp = {
 const std::vector<Met> kOverRtu = {
     {kNone, kPatient, {kOk, kOk, kOk}, 6, 0, 0, 0},
     {kSilent, kSoon, {kTimeout, kTimeout, kTimeout}, 3, 3, 0, 0},
-    {kHeld, kSoon, {kTimeout, kTimeout, kTimeout}, 3, 3, 0, 0},
+    {kLate, kSoon, {kTimeout, kTimeout, kTimeout}, 3, 3, 0, 0},
     {kOneBehind, kPatient, {kMalformed, kDisconnected, kDisconnected}, 2, 0, 2, 1},
     {kByteByByte, kSoon, {kTimeout, kTimeout, kTimeout}, 3, 3, 0, 0},
     {kWrongUnit, kPatient, {kMalformed, kDisconnected, kDisconnected}, 2, 0, 2, 1},
@@ -266,7 +266,7 @@ std::vector<Case> AllCases() {
 
 std::string CaseName(const testing::TestParamInfo<Case>& tested) {
   constexpr const char* kNames[] = {"None",          "Silent",
-                                    "Held",          "OneBehind",
+                                    "Late",          "OneBehind",
                                     "ByteByByte",    "WrongTransaction",
                                     "WrongProtocol", "WrongFrameLength",
                                     "WrongUnit",     "WrongFunction",
@@ -309,7 +309,7 @@ TEST_P(HostilePeerOver, APeerThatIsLateForEverIsNeverBelieved) {
 TEST(HostilePeer, ASerialReplyOfThePeriodBeforeIsNotBelieved) {
   Judge judge(ModbusTransport::kRtu, 100.0, true);
   judge.Open();
-  judge.peer.Behave(kHeld);
+  judge.peer.Behave(kLate);
   EXPECT_EQ(judge.Exchange(), kTimeout);
   judge.peer.Behave(kOneBehind);
   EXPECT_EQ(judge.Exchange(), kMalformed);
@@ -321,7 +321,7 @@ TEST(HostilePeer, ASerialReplyOfThePeriodBeforeIsNotBelieved) {
 TEST_P(HostilePeerOver, OneLateReplyCostsOneExchange) {
   Judge judge(GetParam(), 300.0);
   judge.Open();
-  judge.peer.Behave(kHeld);
+  judge.peer.Behave(kLate);
   EXPECT_EQ(judge.Exchange(), kTimeout);
   judge.peer.ReleaseHeld();
   judge.peer.Behave(kNone);

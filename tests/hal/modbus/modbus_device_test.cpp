@@ -139,12 +139,12 @@ TEST_P(ModbusDeviceOver, ExchangeAndReconnectDoNotAllocate) {
     const NoAlloc guard;
     for (int i = 0; i < 20; ++i) exchanged = device.Exchange(kNoCommand, &part);
   }
-  served.server.SetSilent(true);
+  served.SetSilent(true);
   {
     const NoAlloc guard;
     silent = device.Exchange(kNoCommand, &part);
   }
-  served.server.SetSilent(false);
+  served.SetSilent(false);
   {
     const NoAlloc guard;
     back = device.Reconnect();
@@ -231,11 +231,11 @@ TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
   ModbusDevice device(config, MonotonicNow);
   device.Open();
   SensorFrame part{};
-  served->server.SetSilent(true);
+  served->SetSilent(true);
   EXPECT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kTimeout);
   EXPECT_EQ(part.strain_valid, 0U);
   EXPECT_NE(device.Reconnect(), BusStatus::kOk);
-  served->server.SetSilent(false);
+  served->SetSilent(false);
   BusStatus status = BusStatus::kDisconnected;
   for (int i = 0; i < 500 && status != BusStatus::kOk; ++i) {
     SleepUntil(MonotonicNow() + 10'000'000);

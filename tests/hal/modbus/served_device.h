@@ -1,9 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <thread>
 
-#include "hal/modbus/modbus_server.h"
-#include "hal/modbus/register_image.h"
+#include "hal/rig/modbus_server.h"
+#include "hal/rig/register_image.h"
 #include "tests/hal/modbus/modbus_testing.h"
 
 namespace flexarm {
@@ -25,6 +26,12 @@ class ServedDevice {
   ServedDevice& operator=(const ServedDevice&) = delete;
 
   const ModbusDeviceConfig& config() const { return config_; }
+
+  /// In force when this returns.
+  void SetSilent(bool silent) {
+    server.Behave(silent ? WireFault::kSilent : WireFault::kNone);
+    while (!server.settled()) std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
 
  private:
   // Any port, no link; and time enough for an ordinary thread on a busy machine.

@@ -31,6 +31,10 @@ class RegisterImage {
   /// Writer's thread. Every row of the map shows this frame, valid or not.
   void Publish(const SensorFrame& frame) noexcept;
 
+  /// Writer's thread. True: 32-bit values are published with their registers the wrong way round.
+  void SwapWords(bool swapped) noexcept { swapped_ = swapped; }
+  bool has_words_to_swap() const noexcept;
+
   /// Writer's thread. Registers (or bits, 0 or 1) from `address` on; what lies outside is left out.
   void Set(ModbusTable table, int address, std::span<const std::uint16_t> cells) noexcept;
 
@@ -52,6 +56,7 @@ class RegisterImage {
   void End() noexcept;
 
   const ModbusDeviceConfig config_;
+  bool swapped_ = false;
   std::array<Table, 4> tables_;
   std::atomic<std::uint32_t> sequence_{0};  // odd: the writer is at it
 };

@@ -1,4 +1,4 @@
-#include "hal/modbus/register_image.h"
+#include "hal/rig/register_image.h"
 
 #include <algorithm>
 #include <utility>
@@ -49,11 +49,17 @@ void RegisterImage::Publish(const SensorFrame& frame) noexcept {
     }
     std::array<std::uint16_t, 2> words{};
     WordsFromCounts(row, frame.strain[static_cast<std::size_t>(row.index)], words.data());
+    if (swapped_ && WidthOf(row.type) == 2) std::swap(words[0], words[1]);
     for (int i = 0; i < WidthOf(row.type); ++i) {
       Write(row.table, row.address + i, words[static_cast<std::size_t>(i)]);
     }
   }
   End();
+}
+
+bool RegisterImage::has_words_to_swap() const noexcept {
+  return std::any_of(config_.map.begin(), config_.map.end(),
+                     [](const ModbusRegister& row) { return WidthOf(row.type) == 2; });
 }
 
 void RegisterImage::Set(ModbusTable table, int address,
