@@ -1,6 +1,7 @@
 #include "model/arm_constants.h"
 
 #include <stdexcept>
+#include <string>
 
 namespace flexarm {
 namespace {
@@ -11,7 +12,8 @@ const ArmParameters& Checked(const ArmParameters& p, ModeCount count) {
   }
   if (count.link1 < 1 || count.link1 > kMaxModesPerLink || count.link2 < 1 ||
       count.link2 > kMaxModesPerLink) {
-    throw std::invalid_argument("ModeCount: 1 to 6 modes a link");
+    throw std::invalid_argument("ModeCount: 1 to " + std::to_string(kMaxModesPerLink) +
+                                " modes a link");
   }
   return p;
 }

@@ -7,15 +7,16 @@
 
 namespace flexarm {
 
-/// Number of modes kept on each link, 1..6 each.
+/// Number of modes kept on each link, 1..kMaxModesPerLink each.
 struct ModeCount {
   int link1;
   int link2;
 };
 
-constexpr int kMaxModesPerLink = 6;
+constexpr int kMaxModesPerLink = 12;  ///< of the equations; order reduction asks for 10
+constexpr int kMaxSteppedModes = 6;   ///< of ArmSimulator, whose steps are compiled for each count
 constexpr int kRigidCoordinates = 4;  ///< th1 th2 th3 th4 come first in q
-constexpr int kMaxDof = kRigidCoordinates + 2 * kMaxModesPerLink;
+constexpr int kMaxSteppedDof = kRigidCoordinates + 2 * kMaxSteppedModes;
 
 /// Places of the four angles in q; the modal coordinates of link 1 and then link 2 follow.
 enum Coordinate : int { kTheta1 = 0, kTheta2 = 1, kTheta3 = 2, kTheta4 = 3, kPhi1 = 4 };
@@ -25,7 +26,8 @@ enum Coordinate : int { kTheta1 = 0, kTheta2 = 1, kTheta3 = 2, kTheta4 = 3, kPhi
 /// Shapes stay those of `shape_payload_mass_kg`, whatever the payload is; so N and G are full.
 /// "Outboard" is all that turns with hub 2, with its moments about the elbow.
 struct ArmConstants {
-  /// @throws std::invalid_argument if the parameters have Problems() or a count is outside 1..6.
+  /// @throws std::invalid_argument if the parameters have Problems() or a count is outside its
+  /// bounds.
   ArmConstants(const ArmParameters& p, ModeCount count);
 
   int m1, m2;  ///< modes of link 1, link 2

@@ -18,7 +18,8 @@ namespace flexarm {
 /// with the errata. Real-time: start-up only (allocates).
 class ArmModel {
  public:
-  /// @throws std::invalid_argument if the parameters have Problems() or a count is outside 1..6.
+  /// @throws std::invalid_argument if the parameters have Problems() or a count is outside its
+  /// bounds.
   ArmModel(const ArmParameters& parameters, ModeCount count);
 
   int dof() const { return constants_.dof(); }

@@ -5,6 +5,17 @@
 #include "model/step_kernel.h"
 
 namespace flexarm {
+namespace {
+
+// ArmVector has no room for more, and in a release build does not say so.
+ArmVector RestingVector(int dof) {
+  if (dof > kMaxSteppedDof) throw std::invalid_argument("ArmState: too many modes to be stepped");
+  return ArmVector::Zero(dof);
+}
+
+}  // namespace
+
+ArmState::ArmState(int dof) : q(RestingVector(dof)), v(q), a(q) {}
 
 ArmSimulator::ArmSimulator(const ArmModel& model, const SimulatorOptions& options)
     : dof_(model.dof()), options_(options) {

@@ -9,14 +9,14 @@ namespace flexarm {
 
 class StepKernel;
 
-/// A vector of up to kMaxDof entries that lives without the heap.
-using ArmVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDof, 1>;
+/// A vector of up to kMaxSteppedDof entries that lives without the heap.
+using ArmVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSteppedDof, 1>;
 
 /// State of the simulated arm. q and v as ArmModel's.
 struct ArmState {
   /// At rest at zero.
-  explicit ArmState(int dof)
-      : q(ArmVector::Zero(dof)), v(ArmVector::Zero(dof)), a(ArmVector::Zero(dof)) {}
+  /// @throws std::invalid_argument if dof is above kMaxSteppedDof.
+  explicit ArmState(int dof);
 
   ArmVector q;  ///< rad and m
   ArmVector v;  ///< rad/s and m/s
@@ -49,7 +49,8 @@ class ArmSimulator {
  public:
   static constexpr double kDefaultStep_s = 5e-4;
 
-  /// @throws std::invalid_argument if an option is below its bound.
+  /// @throws std::invalid_argument if an option is below its bound, or the model has a link
+  /// with more than kMaxSteppedModes modes.
   explicit ArmSimulator(const ArmModel& model, const SimulatorOptions& options = {});
   ~ArmSimulator();
   ArmSimulator(ArmSimulator&&) noexcept;

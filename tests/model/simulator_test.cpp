@@ -75,8 +75,8 @@ ArmState BusyState(const ArmModel& model) {
 // M a + bias + D v + K q - force at the midpoint, over the largest force. What is left after 12
 // passes is the round-off of (v1 - v0) / h: 8e-11 at worst. Dropping the payload's I_p leaves 1e-6.
 TEST(ArmSimulator, StepSolvesTheMidpointEquationsForAnyModeCount) {
-  for (int m1 = 1; m1 <= kMaxModesPerLink; ++m1) {
-    for (int m2 = 1; m2 <= kMaxModesPerLink; ++m2) {
+  for (int m1 = 1; m1 <= kMaxSteppedModes; ++m1) {
+    for (int m2 = 1; m2 <= kMaxSteppedModes; ++m2) {
       ArmParameters p = Frictionless();
       p.payload_inertia_kgm2 = 1e-3;  // large enough to be seen
       p.payload_mass_kg = 0.3;        // not the shapes' payload
@@ -259,7 +259,10 @@ TEST(ArmSimulator, RefusesOptionsOutOfBounds) {
   EXPECT_THROW(ArmSimulator(model, {.passes = 0}), std::invalid_argument);
   EXPECT_THROW(ArmSimulator(model, {.substeps = 0}), std::invalid_argument);
   EXPECT_THROW(ArmModel(ThesisRig(), {0, 1}), std::invalid_argument);
-  EXPECT_THROW(ArmModel(ThesisRig(), {1, 7}), std::invalid_argument);
+  EXPECT_THROW(ArmModel(ThesisRig(), {1, kMaxModesPerLink + 1}), std::invalid_argument);
+  const ArmModel fine(ThesisRig(), {2, kMaxSteppedModes + 1});
+  EXPECT_THROW(ArmSimulator{fine}, std::invalid_argument);
+  EXPECT_THROW(ArmState(kMaxSteppedDof + 1), std::invalid_argument);
 }
 
 }  // namespace
