@@ -38,9 +38,12 @@ VectorXd InHz(const VectorXd& squared) { return squared.cwiseMax(0.0).cwiseSqrt(
 
 LinearModel Linearize(const ArmModel& model, const VectorXd& q, const VectorXd& v,
                       const Eigen::Vector2d& torque_nm) {
+  return LinearizeAlong(model, q, v, model.Acceleration(q, v, model.InputMatrix() * torque_nm));
+}
+
+LinearModel LinearizeAlong(const ArmModel& model, const VectorXd& q, const VectorXd& v,
+                           const VectorXd& a) {
   const Eigen::Index n = model.dof();
-  const MatrixXd E = model.InputMatrix();
-  const VectorXd a = model.Acceleration(q, v, E * torque_nm);
   const VectorX<Complex> qc = q.cast<Complex>(), vc = v.cast<Complex>(), ac = a.cast<Complex>();
   const auto derivative = [&](const VectorX<Complex>& at_q, const VectorX<Complex>& at_v) {
     return VectorXd(InertialForces<Complex>(model.constants(), at_q, at_v, ac).imag() / kStep);
@@ -58,7 +61,7 @@ LinearModel Linearize(const ArmModel& model, const VectorXd& q, const VectorXd& 
   linear.A.topRightCorner(n, n).setIdentity();
   linear.A.bottomLeftCorner(n, n) = -M.solve(F_q);
   linear.A.bottomRightCorner(n, n) = -M.solve(F_v);
-  linear.B.bottomRows(n) = M.solve(E);
+  linear.B.bottomRows(n) = M.solve(model.InputMatrix());
   return linear;
 }
 

@@ -21,6 +21,12 @@ struct LinearModel {
 LinearModel Linearize(const ArmModel& model, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                       const Eigen::Vector2d& torque_nm);
 
+/// The same along a motion whose accelerations are given: those of a nominal trajectory, held by
+/// whatever forces it takes. With a = 0 the nominal trajectory has constant rates.
+/// @param a  nominal accelerations, dof, rad/s^2 and m/s^2
+LinearModel LinearizeAlong(const ArmModel& model, const Eigen::VectorXd& q,
+                           const Eigen::VectorXd& v, const Eigen::VectorXd& a);
+
 /// Undamped natural frequencies at rest, unbent, elbow at theta2_rad, Hz, ascending. Motors free:
 /// the two rigid-body zeros are left out.
 Eigen::VectorXd FreeMotorFrequenciesHz(const ArmModel& model, double theta2_rad);
