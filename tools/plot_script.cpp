@@ -3,20 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <iomanip>
 #include <sstream>
-#include <stdexcept>
+
+#include "tools/gnuplot.h"
 
 namespace flexarm {
 namespace {
-
-// Okabe and Ito: told apart by everybody.
-constexpr std::array<const char*, 8> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                 "#56B4E9", "#E69F00", "#000000", "#7F7F7F"};
-
-const char* Colour(std::size_t run) { return kColours[run % kColours.size()]; }
 
 const char* StateColour(SafetyState state) {
   switch (state) {
@@ -33,22 +26,6 @@ const char* StateColour(SafetyState state) {
       return "#E9A49C";
   }
   return "#000000";
-}
-
-// In single quotes gnuplot runs no commands. Enhanced text has its own special characters.
-std::string QuotedPath(const std::string& path) {
-  std::string quoted = "'";
-  for (const char c : path) quoted += c == '\'' ? "''" : std::string(1, c == '\n' ? ' ' : c);
-  return quoted + "'";
-}
-
-std::string Quoted(const std::string& text) {
-  std::string plain;
-  for (const char c : text) {
-    if (std::strchr("\\_^{}@&~", c) != nullptr) plain += '\\';
-    plain += c;
-  }
-  return QuotedPath(plain);
 }
 
 // Columns 2.. of the data block of a run.
@@ -107,11 +84,7 @@ class Script {
   }
 
   void Terminal(const std::filesystem::path& output) {
-    const bool svg = output.extension() == ".svg";
-    text_ << "set encoding utf8\nset terminal "
-          << (svg ? "svg size 1400,1300 dynamic enhanced font 'DejaVu Sans,12' background '#ffffff'"
-                  : "pngcairo size 1400,1300 enhanced font 'DejaVu Sans,12'")
-          << "\nset output " << QuotedPath(output.string()) << '\n';
+    text_ << TerminalFor(output, static_cast<int>(kWidth), static_cast<int>(kHeight));
   }
 
   void DataBlocks() {
@@ -372,17 +345,6 @@ class Script {
 
 std::string PlotScript(const std::vector<PlotRun>& runs, const std::filesystem::path& output) {
   return Script(runs, output).Text();
-}
-
-void RunGnuplot(const std::string& script) {
-  std::FILE* pipe = ::popen("gnuplot", "w");
-  if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");
-  const bool written = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
-  const int status = ::pclose(pipe);
-  if (!written || status != 0) {
-    throw std::runtime_error(
-        "gnuplot failed or is missing; it is in the Debian package gnuplot-nox");
-  }
 }
 
 }  // namespace flexarm

@@ -12,7 +12,4 @@ namespace flexarm {
 /// torques, deflections, the tip's distance from rest, the safety state, and the arm from above.
 std::string PlotScript(const std::vector<PlotRun>& runs, const std::filesystem::path& output);
 
-/// Pipes a script through gnuplot. @throws std::runtime_error if gnuplot is missing or fails
-void RunGnuplot(const std::string& script);
-
 }  // namespace flexarm

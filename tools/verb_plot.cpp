@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <iostream>
 #include <memory>
 
 #include "controller/runlog/errors.h"
+#include "tools/gnuplot.h"
 #include "tools/options.h"
 #include "tools/plot_script.h"
 #include "tools/verbs.h"
@@ -29,7 +29,6 @@ void Plot(const Options& options) {
       throw InputError(file.string() + ": has no ticks; expected a run with at least one");
     }
   }
-  std::signal(SIGPIPE, SIG_IGN);  // a missing gnuplot is a message, not a silent death
   RunGnuplot(PlotScript(runs, options.output));
   std::cerr << "wrote " << options.output.string() << '\n';
 }
