@@ -1,6 +1,7 @@
 #include "tools/options.h"
 
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 #include "controller/runlog/errors.h"
 
@@ -27,6 +28,17 @@ std::filesystem::path ExperimentFile(const std::filesystem::path& given,
   const std::filesystem::path name = "experiments/square-30deg.toml";
   const std::filesystem::path beside = config.parent_path() / name;
   return std::filesystem::exists(beside) ? beside : "config" / name;
+}
+
+std::function<std::string(const std::string&)> NumberWithin(double low, double high) {
+  return [low, high](const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high)
+      return std::string();
+    std::ostringstream told;
+    told << "found " << text << ", expected a number from " << low << " to " << high;
+    return told.str();
+  };
 }
 
 void AddJson(CLI::App* verb, bool* json) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct ConfigOptions {
 /// config, or in config/ of the present folder.
 std::filesystem::path ExperimentFile(const std::filesystem::path& given,
                                      const std::filesystem::path& config);
+
+/// Check of a numeric option: low <= value <= high. Unlike CLI::Range it refuses a NaN.
+std::function<std::string(const std::string&)> NumberWithin(double low, double high);
 
 /// --json: one JSON object on stdout and nothing else.
 void AddJson(CLI::App* verb, bool* json);

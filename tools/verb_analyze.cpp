@@ -4,9 +4,10 @@
 
 namespace flexarm {
 
-void RegisterAnalyze(CLI::App& app, Exit&) {
+void RegisterAnalyze(CLI::App& app, Exit& exit) {
   CLI::App* verb = app.add_subcommand("analyze", "What the model says about the arm");
   verb->require_subcommand(1);
+  RegisterAnalyzeReduce(*verb, exit);
 }
 
 }  // namespace flexarm

@@ -19,7 +19,8 @@ struct Exit {
 // One function a verb, in verb_<name>.cpp: adds the verb, which sets `exit.code` when it runs.
 // Bad input is thrown (InputError, ConfigError, Refused); main turns it into a message and
 // kBadInput, and any other exception into kFailed.
-void RegisterAnalyze(CLI::App& app, Exit& exit);  ///< its own verbs: verb_analyze.cpp
+void RegisterAnalyze(CLI::App& app, Exit& exit);
+void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);
 void RegisterConfig(CLI::App& app, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);

@@ -1,0 +1,149 @@
+"""flexarm analyze: what the model says about the arm, and about any linear system."""
+
+import csv
+import json
+import math
+import resource
+import unittest
+
+from program import ROOT, ProgramTest
+
+RIG = ROOT / "config/thesis-rig.toml"
+REFERENCE = ("-c", RIG, "--set", "arm.link1_tip_inertia=motor")  # the basis of the reference table
+
+# Two unit masses between walls: springs 4 to the walls, 2.5 between. Roots 2 and 3 rad/s.
+TWO_MASSES = {"name": "two masses", "M": [[1, 0], [0, 1]], "K": [[6.5, -2.5], [-2.5, 6.5]],
+              "B": [[1], [0]], "C": [[0, 1]]}
+
+
+def cpu_seconds():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+class Reduce(ProgramTest):
+    def reduce(self, *arguments):
+        return self.flexarm_json("analyze", "reduce", *arguments)
+
+    def system(self, content):
+        file = self.folder / "system.json"
+        file.write_text(content if isinstance(content, str) else json.dumps(content),
+                        encoding="utf-8")
+        return file
+
+    def test_contributions_at_the_thesis_motions(self):
+        rows = (((), (99.50, 99.23)),
+                (("--scaling", "length"), (95.37, 98.18)),
+                (("--theta2-deg", 45, "--theta1-rate", -1, "--theta2-rate", 3), (99.52, 99.30)),
+                (("--theta2-deg", 90, "--theta1-rate", -4, "--theta2-rate", -6), (99.76, 99.84)))
+        for options, expected in rows:
+            with self.subTest(options=options):
+                result = self.reduce(*REFERENCE, *options)
+                for link, first in zip(result["links"], expected):
+                    self.assertAlmostEqual(link["epsilon_percent"][0], first, delta=0.00501)
+                    self.assertGreater(link["epsilon_percent"][1], 99.4)
+                    self.assertEqual(len(link["epsilon_percent"]), 10)
+                self.assertEqual(result["power"]["condition"], "diagonalisable")
+                self.assertTrue(result["notes"])
+
+    def test_text_says_what_was_left_out_and_how_phi_is_scaled(self):
+        text = self.flexarm("analyze", "reduce", "-c", RIG).stdout
+        for said in ("scaling of phi: mass", "left out: root", "rigid", "Hankel"):
+            self.assertIn(said, text)
+
+    def test_the_grid_has_every_cell_and_agrees_with_single_motions(self):
+        result = self.reduce(*REFERENCE, "--grid", "--grid-cells", 4, "-o", self.folder / "out")
+        grid = result["grid"]
+        self.assertEqual(grid["cells"], 64)
+        with open(self.folder / "out/grid.csv", encoding="utf-8") as file:
+            cells = list(csv.DictReader(file))
+        self.assertEqual(len(cells), 64)
+        self.assertAlmostEqual(min(float(c["link2_epsilon_1_percent"]) for c in cells),
+                               grid["links"][1]["epsilon_1"]["least"]["percent"], places=7)
+        cell = cells[37]
+        alone = self.reduce(*REFERENCE, "--theta2-deg", cell["theta2_deg"], "--theta1-rate",
+                            cell["theta1_rate_rad_s"], "--theta2-rate", cell["theta2_rate_rad_s"])
+        for link in (1, 2):
+            self.assertAlmostEqual(float(cell[f"link{link}_epsilon_2_percent"]),
+                                   alone["links"][link - 1]["epsilon_percent"][1], places=7)
+        for number in range(3, 10):
+            picture = self.folder / f"out/figure-6.{number}.png"
+            self.assertGreater(picture.stat().st_size, 5000, picture.name)
+
+    def test_the_whole_grid_of_the_thesis_is_a_matter_of_seconds(self):
+        before = cpu_seconds()
+        grid = self.reduce(*REFERENCE, "--grid")["grid"]
+        used = cpu_seconds() - before
+        self.assertEqual(grid["cells"], 8000)
+        for link in grid["links"]:  # two modes dominate everywhere
+            self.assertGreater(link["epsilon_2"]["least"]["percent"], 99.4)
+        self.assertLess(used, 15, "processor time of what two cores are to do in 10 s")
+
+    def test_a_system_of_masses_and_springs(self):
+        result = self.reduce("--system", self.system(TWO_MASSES))
+        power = result["power"]
+        self.assertEqual(power["condition"], "symmetric")
+        for mode, omega in zip(power["modes"], (2, 3)):
+            self.assertAlmostEqual(mode["frequency_hz"], omega / (2 * math.pi), places=12)
+            self.assertAlmostEqual(mode["rho"], 0.5 / omega, places=12)
+        self.assertEqual(result["gramians"]["states_kept_whole"], 4)  # nothing damps it
+        damped = self.reduce("--system", self.system(
+            {**TWO_MASSES, "D": [[0.2, 0], [0, 0.2]]}))
+        self.assertEqual(damped["gramians"]["states_kept_whole"], 0)
+        self.assertTrue(damped["power"]["damping_left_out"])
+        self.assertEqual(damped["power"]["mu"], power["mu"])
+
+    def test_a_system_in_first_order_form(self):
+        result = self.reduce("--system", self.system(
+            {"A": [[0, 0, 1, 0], [0, 0, 0, 1], [-4, 1, 0, 0], [0, -9, 0, -0.1]],
+             "B": [[0], [0], [1], [1]], "C": [[1, 1, 0, 0]]}))
+        self.assertEqual(result["power"]["condition"], "diagonalisable")
+        # x' = -4 x + 3 u, y = -2 x has the one Hankel value 6/8, and no form to be power balanced.
+        lag = self.reduce("--system", self.system({"A": [[-4]], "B": [[3]], "C": [[-2]]}))
+        self.assertIsNone(lag["power"])
+        self.assertIn("odd number", lag["power_refused"])
+        self.assertAlmostEqual(lag["gramians"]["hankel"][0], 0.75, places=14)
+
+    def test_each_bad_system_is_refused_with_file_and_what_was_expected(self):
+        cases = {
+            "no JSON": ("{", "is not JSON"),
+            "no object": ("[1]", "expected one JSON object"),
+            "nothing in it": ("{}", "A: is missing"),
+            "an unknown key": ({**TWO_MASSES, "Q": [[1]]}, "Q: is not a key"),
+            "a ragged matrix": ({**TWO_MASSES, "K": [[1, 2], [3]]}, "K, row 2: has 1 numbers"),
+            "a text in it": ({**TWO_MASSES, "K": [[1, "x"], [0, 1]]}, "K, row 1: expected finite"),
+            "wrong height": ({**TWO_MASSES, "B": [[1]]}, "B: is 1 x 1; expected 2 x any"),
+            "wrong width": ({**TWO_MASSES, "C": [[1]]}, "C: is 1 x 1; expected any x 2"),
+            "no mass": ({**TWO_MASSES, "M": [[1, 0], [0, 0]]}, "positive definite"),
+            "an empty matrix": ({**TWO_MASSES, "M": []}, "at least one number"),
+            "A not square": ({"A": [[1, 2]], "B": [[1]], "C": [[1]]}, "square"),
+            "a number too large": ('{"A": [[1e999]], "B": [[1]], "C": [[1]]}', "not JSON"),
+        }
+        for what, (content, said) in cases.items():
+            with self.subTest(what):
+                file = self.system(content)
+                self.assert_refused(self.run_program("flexarm", "analyze", "reduce", "--system",
+                                                     file), "system.json", said)
+
+    def test_bad_usage_is_refused(self):
+        for arguments, said in (
+                ((), "subcommand"),
+                (("reduc",), ""),
+                (("reduce",), "--config"),
+                (("reduce", "-c", RIG, "--system", "x.json"), "either"),
+                (("reduce", "-c", "missing.toml"), "missing.toml"),
+                (("reduce", "--system", "missing.json"), "missing.json"),
+                (("reduce", "-c", RIG, "--modes", 0), "--modes"),
+                (("reduce", "-c", RIG, "--modes", 13), "--modes"),
+                (("reduce", "-c", RIG, "--theta2-deg", 200), "--theta2-deg"),
+                (("reduce", "-c", RIG, "--theta2-deg", "nan"), "--theta2-deg"),
+                (("reduce", "-c", RIG, "--scaling", "big"), "--scaling"),
+                (("reduce", "-c", RIG, "--grid", "--grid-cells", 0), "--grid-cells"),
+                (("reduce", "-c", RIG, "--grid", "--grid-theta2-deg", 30, 30), "grid of nothing"),
+                (("reduce", "-c", RIG, "--grid", "--grid-theta1-rate", 0), "--grid-theta1-rate")):
+            with self.subTest(arguments):
+                self.assert_refused(self.run_program("flexarm", "analyze", *arguments), said)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,152 @@
+#include "tools/analysis/reduction_figures.h"
+
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/analysis/reduction_report.h"
+#include "tools/gnuplot.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kRadPerDeg = 0.017453292519943295769;
+constexpr int kRatePoints = 20;
+
+struct Curve {
+  const char* file;
+  double theta2_deg, theta1_rate_rad_s, theta2_rate_rad_s;
+};
+
+// Captions of figures 6.3 to 6.5, mended: the errata name the variables that are meant.
+constexpr Curve kCurves[] = {{"figure-6.3.png", 0.0, 0.0, 0.0},
+                             {"figure-6.4.png", 45.0, -1.0, 3.0},
+                             {"figure-6.5.png", 90.0, -4.0, -6.0}};
+
+struct Surface {
+  const char* file;
+  double theta2_deg;
+};
+
+// Captions of figures 6.6 to 6.9.
+constexpr Surface kSurfaces[] = {{"figure-6.6.png", 0.0},
+                                 {"figure-6.7.png", 28.4},
+                                 {"figure-6.8.png", 61.6},
+                                 {"figure-6.9.png", 90.0}};
+
+std::string Caption(double theta2_deg, const std::string& rest, ModalScaling scaling) {
+  std::ostringstream text;
+  text << "elbow " << theta2_deg << " deg" << rest << ", phi scaled by " << Name(scaling);
+  return text.str();
+}
+
+// Curves of both links; `value` says what of column c is shown.
+std::string BothLinks(const std::string& value) {
+  std::ostringstream curves;
+  for (const int link : {1, 2}) {
+    curves << (link == 2 ? ", " : "") << "c=" << link + 1 << " $data using 1:" << value
+           << " with linespoints lw 2 pt " << (link == 1 ? 7 : 4) << " lc rgb '"
+           << Colour(static_cast<std::size_t>(link - 1)) << "' title 'link " << link << "'";
+  }
+  return curves.str() + "\n";
+}
+
+void DrawCurve(const ArmModel& model, ModalScaling scaling, const Curve& curve,
+               const std::filesystem::path& output) {
+  const ArmReduction reduction = ReduceArm(
+      model, {curve.theta2_deg * kRadPerDeg, curve.theta1_rate_rad_s, curve.theta2_rate_rad_s},
+      scaling);
+  std::ostringstream script;
+  script << TerminalFor(output, 1100, 500) << std::setprecision(10) << "$data << EOD\n0 0 0\n";
+  for (Eigen::Index k = 0; k < model.mode_count().link1; ++k) {
+    script << k + 1;
+    for (const LinkContribution& link : reduction.link) script << ' ' << link.epsilon_percent[k];
+    script << '\n';
+  }
+  std::ostringstream rates;
+  rates << ", rates " << curve.theta1_rate_rad_s << " and " << curve.theta2_rate_rad_s << " rad/s";
+  script << "EOD\nset multiplot layout 1,2 title "
+         << Quoted("Power of the first k modes: " + Caption(curve.theta2_deg, rates.str(), scaling))
+         << "\nset xlabel 'modes k'\nset grid lc rgb '#D9D9D9'\nset key bottom right\n"
+            "set xrange [0:"
+         << model.mode_count().link1 << "]\nset yrange [0:105]\nset ylabel 'contribution, %'\nplot "
+         << BothLinks("(column(c))")
+         << "set key top right\nset logscale y\nset format y '10^{%T}'\nset yrange [1e-8:200]\n"
+            "set ylabel 'what the other modes contribute, %'\nplot "
+         << BothLinks("(100-column(c))") << "unset multiplot\n";
+  RunGnuplot(script.str());
+}
+
+// Two views a link, as in the thesis: from the side, which shows the least value, and at an angle.
+void DrawSurface(const ArmModel& model, ModalScaling scaling, const Surface& surface,
+                 const std::filesystem::path& output) {
+  ReductionGrid grid;
+  grid.cells = kRatePoints;
+  std::vector<NominalMotion> motions;
+  for (int j = 0; j < kRatePoints; ++j) {
+    for (int k = 0; k < kRatePoints; ++k) {
+      motions.push_back(grid.Centre(0, j, k));
+      motions.back().theta2_rad = surface.theta2_deg * kRadPerDeg;
+    }
+  }
+  const std::vector<ReductionCell> cells = ReduceCells(model, motions, scaling);
+  std::ostringstream script;
+  script << TerminalFor(output, 1200, 950) << std::setprecision(10) << "$data << EOD\n";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0 && i % kRatePoints == 0) script << '\n';
+    script << cells[i].motion.theta1_rate_rad_s << ' ' << cells[i].motion.theta2_rate_rad_s << ' '
+           << cells[i].epsilon_2_percent[0] << ' ' << cells[i].epsilon_2_percent[1] << '\n';
+  }
+  script << "EOD\nset multiplot layout 2,2 title "
+         << Quoted("Contribution of the first two modes, %: " +
+                   Caption(surface.theta2_deg, "", scaling))
+         << "\nset hidden3d\nset xlabel \"th1', rad/s\"\nset format z '%.4f'\n"
+            "set xyplane relative 0\nset xtics 2\n";
+  const char* side = "set view 90,0\nunset ytics\nunset ylabel\n";
+  const char* above = "set view 60,30\nset ytics 3\nset ylabel \"th2', rad/s\"\n";
+  for (const char* view : {side, above}) {
+    for (const int link : {1, 2}) {
+      script << view << "set title 'link " << link << "'\nsplot $data using 1:2:" << link + 2
+             << " with lines lc rgb '" << Colour(static_cast<std::size_t>(link - 1))
+             << "' notitle\n";
+    }
+  }
+  RunGnuplot(script.str() + "unset multiplot\n");
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> DrawReductionFigures(const ArmModel& model, ModalScaling scaling,
+                                                        const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::vector<std::filesystem::path> files;
+  for (const Curve& curve : kCurves) {
+    files.push_back(folder / curve.file);
+    DrawCurve(model, scaling, curve, files.back());
+  }
+  for (const Surface& surface : kSurfaces) {
+    files.push_back(folder / surface.file);
+    DrawSurface(model, scaling, surface, files.back());
+  }
+  return files;
+}
+
+void WriteCells(const std::vector<ReductionCell>& cells, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  out << "theta2_deg,theta1_rate_rad_s,theta2_rate_rad_s,link1_epsilon_1_percent,"
+         "link1_epsilon_2_percent,link2_epsilon_1_percent,link2_epsilon_2_percent,"
+         "rigid_share_percent,negative_roots\n"
+      << std::setprecision(10);
+  for (const ReductionCell& cell : cells) {
+    out << cell.motion.theta2_rad / kRadPerDeg << ',' << cell.motion.theta1_rate_rad_s << ','
+        << cell.motion.theta2_rate_rad_s;
+    for (std::size_t link = 0; link < 2; ++link) {
+      out << ',' << cell.epsilon_1_percent[link] << ',' << cell.epsilon_2_percent[link];
+    }
+    out << ',' << cell.rigid_share_percent << ',' << cell.negative_roots << '\n';
+  }
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+}  // namespace flexarm

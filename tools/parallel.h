@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace flexarm {
+
+/// Runs body(0) .. body(count - 1) on all cores, in no particular order.
+///
+/// `progress` is called on the calling thread with the number done so far, now and then and at the
+/// end; it may be empty. The first exception of a body stops the rest and is thrown again here.
+void ForAllOnAllCores(std::size_t count, const std::function<void(std::size_t)>& body,
+                      const std::function<void(std::size_t)>& progress = {});
+
+/// A bar on standard error while it is a terminal, and nothing otherwise.
+std::function<void(std::size_t)> ProgressBar(const char* what, std::size_t count);
+
+}  // namespace flexarm
