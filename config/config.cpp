@@ -33,6 +33,7 @@ void CheckRules(const Config& config, ProblemLog* log) {
   log->AddRules(config.estimator.Problems());
   log->AddRules(config.controller.Problems());
   log->AddRules(config.safety.Problems());
+  log->AddRules(config.commissioning.Problems());
   log->AddRules(config.loop.Problems());
   log->AddRules(config.daemon.Problems());
   log->AddRules(config.hal.Problems(config.sensors,

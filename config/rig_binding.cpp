@@ -138,6 +138,26 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   safety.Read("stop_timeout_s", &out->stop_timeout_s);
   safety.Read("permit_timeout_ms", &out->permit_timeout_ms);
   safety.Read("missed_deadlines_to_trip", &out->missed_deadlines_to_trip);
+  safety.Read("homing_contact_s", &out->homing_contact_s);
+}
+
+void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {
+  commissioning.Read("calibration_file", &out->calibration_file);
+  commissioning.Read("angles_at_start", &out->angles_at_start,
+                     {{"at_zero", AnglesAtStart::kAtZero},
+                      {"absolute", AnglesAtStart::kAbsolute},
+                      {"lost", AnglesAtStart::kLost}});
+  commissioning.Read("prove_before_run", &out->prove_before_run);
+  commissioning.Read("measure_s", &out->measure_s);
+  commissioning.Read("pluck_torque_nm", &out->pluck_torque_nm);
+  commissioning.Read("pluck_pulse_s", &out->pluck_pulse_s);
+  commissioning.Read("pluck_rest_s", &out->pluck_rest_s);
+  commissioning.Read("motion_tolerance", &out->motion_tolerance);
+  commissioning.Read("gauge_tolerance", &out->gauge_tolerance);
+  commissioning.Read("home_rate_deg_per_s", &out->home_rate_deg_per_s);
+  commissioning.Read("home_travel_deg", &out->home_travel_deg);
+  commissioning.Read("home_back_deg", &out->home_back_deg);
+  commissioning.Read("switch_angle_deg", &out->switch_angle_deg);
 }
 
 void ReadTiming(TableReader root, Config* config) {
@@ -159,6 +179,7 @@ void ReadRig(TableReader root, Config* config) {
   ReadEstimator(root.Table("estimator"), &config->estimator);
   ReadController(root.Table("controller"), &config->controller);
   ReadSafety(root, &config->safety);
+  ReadCommissioning(root.Table("commissioning"), &config->commissioning);
   ReadTiming(root, config);
   if (root.Has("hal")) {
     ReadHal(root.Table("hal"), config->loop.period_ms, &config->backend, &config->hal);

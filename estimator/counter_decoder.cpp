@@ -16,9 +16,11 @@ CounterDecoder::CounterDecoder(const SensorConfig& sensors, double period_s, dou
   }
 }
 
-void CounterDecoder::Reset(const std::array<std::int64_t, kCounters>& counts) noexcept {
+void CounterDecoder::Reset(const std::array<std::int64_t, kCounters>& counts,
+                           const std::array<std::int64_t, kCounters>& zero) noexcept {
   for (std::size_t i = 0; i < channel_.size(); ++i) {
     channel_[i].count = counts[i];
+    channel_[i].zero = zero[i];
     channel_[i].last_change = 0;
     channel_[i].missing = 0;
   }
@@ -56,7 +58,7 @@ void CounterDecoder::DecodeChannel(std::size_t i, const SensorFrame& frame,
   }
   if ((out->good & bit) == 0) ++c.missing;
   out->counts[i] = c.count;
-  out->angle_rad[i] = static_cast<double>(c.count) * c.rad_per_count;
+  out->angle_rad[i] = static_cast<double>(c.count - c.zero) * c.rad_per_count;
   out->missing_ticks[i] = c.missing;
 }
 

@@ -21,16 +21,18 @@ struct DecodedCounters {
 /// Unwraps the encoder counters into joint angles, and refuses impossible jumps.
 ///
 /// A counter of n bits is unwrapped to the value nearest to the expected one: the last count after
-/// one period, or the last count extrapolated at the last rate when readings were missed. Counts
-/// are zero at the joint's zero. A rig without some encoder reads 0 there, never good. Real-time:
-/// Reset and Decode are safe.
+/// one period, or the last count extrapolated at the last rate when readings were missed. A rig
+/// without some encoder reads 0 there, never good. Real-time: Reset and Decode are safe.
 class CounterDecoder {
  public:
   /// @param max_rate_rad_s  a faster mean rate between two readings is a jump
   CounterDecoder(const SensorConfig& sensors, double period_s, double max_rate_rad_s);
 
-  /// Forgets rates and misses; `counts` are the unwrapped counts known so far.
-  void Reset(const std::array<std::int64_t, kCounters>& counts) noexcept;
+  /// Forgets rates and misses.
+  /// @param counts  the unwrapped counts known so far
+  /// @param zero    the unwrapped counts at which the joints are at zero (Calibration)
+  void Reset(const std::array<std::int64_t, kCounters>& counts,
+             const std::array<std::int64_t, kCounters>& zero) noexcept;
 
   DecodedCounters Decode(const SensorFrame& frame) noexcept;
 
@@ -40,6 +42,7 @@ class CounterDecoder {
     std::int64_t modulus = 1;
     double max_counts_per_period = 0.0;
     std::int64_t count = 0;
+    std::int64_t zero = 0;
     std::int64_t last_change = 0;  // counts a period, from the last good reading
     int missing = 0;
   };

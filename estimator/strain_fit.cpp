@@ -42,9 +42,10 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     const StrainChannelConfig& row = sensors.strain[i];
     Channel& c = channel_[i];
     c.link = row.link - 1;
-    c.unit_per_count = row.face * sensors.strain_input.volts_per_count() / row.gain_v_per_unit;
-    c.offset_counts = row.offset_counts;
-    c.weight = 1.0 / (counts_variance * c.unit_per_count * c.unit_per_count);
+    const double unit = row.face * sensors.strain_input.volts_per_count() / row.gain_v_per_unit;
+    c.config_unit_per_count = unit;
+    c.config_offset_counts = row.offset_counts;
+    c.weight = 1.0 / (counts_variance * unit * unit);
     for (std::size_t j = 0; j < static_cast<std::size_t>(modes_); ++j) {
       c.shape[j] = shape(static_cast<std::size_t>(c.link), j, row.position_m);
     }
@@ -64,11 +65,19 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     const std::size_t first = channel_[i].link == 0 ? 0 : 2;
     channel_[i].inverse = {modal[first], modal[first + 1]};
   }
+  Reset({});
 }
 
-void StrainFit::Reset() noexcept {
+void StrainFit::Reset(const Calibration& calibration) noexcept {
   last_modal_ = {};
-  for (Channel& c : channel_) c.seen = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
+    Channel& c = channel_[i];
+    c.seen = false;
+    c.unit_per_count =
+        c.config_unit_per_count / (1.0 + static_cast<double>(calibration.strain_gain_error[i]));
+    c.offset_counts =
+        c.config_offset_counts + static_cast<double>(calibration.strain_zero_counts[i]);
+  }
 }
 
 std::uint32_t StrainFit::LinkMask(int link) const noexcept {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "estimator/calibration.h"
 #include "estimator/estimator_config.h"
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
@@ -37,13 +38,15 @@ class StrainFit {
  public:
   StrainFit(const ArmParameters& arm, const SensorConfig& sensors, const EstimatorConfig& config);
 
-  void Reset() noexcept;
+  void Reset(const Calibration& calibration) noexcept;
   FittedModes Fit(const SensorFrame& frame) noexcept;
 
  private:
   struct Channel {
     int link = 0;
-    double unit_per_count = 0.0;  // signed by face and gain
+    double config_unit_per_count = 0.0;  // signed by face and gain
+    double config_offset_counts = 0.0;
+    double unit_per_count = 0.0;  // the same, calibrated
     double offset_counts = 0.0;
     double weight = 0.0;              // 1 / variance
     std::array<double, 2> shape{};    // (h/2) psi_j''(x)

@@ -92,6 +92,8 @@ void CheckStrainChannels(const std::vector<StrainChannelConfig>& strain,
 
 }  // namespace
 
+const char* CounterName(int counter) { return kJointNames.at(static_cast<std::size_t>(counter)); }
+
 double StrainInputConfig::volts_per_count() const {
   return 2.0 * range_v / std::ldexp(1.0, converter_bits);
 }

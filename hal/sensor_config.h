@@ -8,6 +8,9 @@
 
 namespace flexarm {
 
+/// "hub1" "hub2" "rotor1" "rotor2": as key `joint` has it. @param counter  0..3
+const char* CounterName(int counter);
+
 /// One incremental encoder and the counter behind it: [[sensors.encoder]].
 ///
 /// angle = sign * 2 pi * unwrapped counts / counts_per_turn, counter-clockwise positive.

@@ -26,6 +26,7 @@ void RegisterVerbs(CLI::App& app, Exit& exit) {
   RegisterCheck(app, exit);
   RegisterDiff(app, exit);
   RegisterOperate(app, exit);
+  RegisterCommission(app, exit);
   RegisterRig(app, exit);
 }
 

@@ -22,6 +22,7 @@ struct Exit {
 void RegisterAnalyze(CLI::App& app, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);
+void RegisterCommission(CLI::App& app, Exit& exit);  ///< tare, zero, calibrate, pluck, home
 void RegisterConfig(CLI::App& app, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);
 void RegisterDiff(CLI::App& app, Exit& exit);

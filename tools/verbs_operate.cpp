@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -10,8 +9,7 @@
 #include <thread>
 
 #include "controller/runlog/errors.h"
-#include "controller/runtime/operator_socket.h"
-#include "tools/options.h"
+#include "tools/daemon_client.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -19,47 +17,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kAnswerWithin_s = 5.0;
-
 struct Options {
-  ConfigOptions config;
-  std::string socket;
+  DaemonClient daemon;
   std::filesystem::path experiment;
   std::string line;
   int level = 0;
   bool watch = false;
-  bool json = false;
 };
-
-std::string SocketOf(const Options& options) {
-  if (!options.socket.empty()) return options.socket;
-  if (options.config.given()) return options.config.Load().daemon.socket;
-  const char* named = std::getenv("FLEXARM_SOCKET");
-  return named != nullptr ? named : "/run/flexarm/flexarmd.sock";
-}
-
-Json Ask(const Options& options, const Json& command) {
-  const std::string reply = AskDaemon(SocketOf(options), command.dump(), kAnswerWithin_s);
-  Json answer = Json::parse(reply, nullptr, false);
-  if (!answer.is_object()) throw InputError("the daemon answered with something that is not JSON");
-  return answer;
-}
-
-int Print(const Options& options, const Json& answer) {
-  const bool ok = answer.value("ok", false);
-  if (options.json) {
-    std::cout << answer.dump(2) << '\n';
-  } else if (ok) {
-    std::cout << answer.value("command", "done") << ": ok, state " << answer.value("state", "-")
-              << '\n';
-  }
-  if (!ok) {
-    std::cerr << "flexarm: " << answer.value("error", "refused");
-    if (answer.contains("remedy")) std::cerr << "; " << answer.value("remedy", "");
-    std::cerr << '\n';
-  }
-  return ok ? Exit::kDone : Exit::kFailed;
-}
 
 void PrintStatus(const Json& s) {
   std::printf("state          %s\n", s.value("state", "-").c_str());
@@ -95,8 +59,8 @@ void PrintStatus(const Json& s) {
 
 int Status(const Options& options) {
   for (;;) {
-    const Json answer = Ask(options, {{"command", "status"}});
-    if (options.json) {
+    const Json answer = options.daemon.Ask({{"command", "status"}});
+    if (options.daemon.json) {
       std::cout << answer.dump(2) << '\n';
     } else {
       if (options.watch) std::printf("\033[H\033[2J");
@@ -116,29 +80,18 @@ int RunExperiment(const Options& options) {
   std::stringstream text;
   text << file.rdbuf();
   ParseExperiment(text.str(), options.experiment.string());  // complains here, with file and line
-  return Print(options, Ask(options, {{"command", "run"},
-                                      {"name", options.experiment.filename().string()},
-                                      {"experiment", text.str()}}));
-}
-
-CLI::App* AddVerb(CLI::App& app, const char* name, const char* what,
-                  const std::shared_ptr<Options>& options) {
-  CLI::App* verb = app.add_subcommand(name, what);
-  options->config.AddTo(verb, false);
-  verb->add_option("--socket", options->socket,
-                   "Socket of the daemon (default: of the config, $FLEXARM_SOCKET, or "
-                   "/run/flexarm/flexarmd.sock)")
-      ->type_name("PATH");
-  AddJson(verb, &options->json);
-  return verb;
+  return options.daemon.Conclude(
+      options.daemon.Ask({{"command", "run"},
+                          {"name", options.experiment.filename().string()},
+                          {"experiment", text.str()}}));
 }
 
 void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
   const auto options = std::make_shared<Options>();
-  CLI::App* verb = AddVerb(app, name, what, options);
+  CLI::App* verb = options->daemon.AddVerb(app, name, what);
   verb->footer(footer);
   verb->callback([options, &exit, name] {
-    exit.code = Print(*options, Ask(*options, {{"command", name}}));
+    exit.code = options->daemon.Conclude(options->daemon.Ask({{"command", name}}));
   });
 }
 
@@ -146,7 +99,7 @@ void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, c
 
 void RegisterOperate(CLI::App& app, Exit& exit) {
   const auto status = std::make_shared<Options>();
-  CLI::App* verb = AddVerb(app, "status", "What the running daemon is doing", status);
+  CLI::App* verb = status->daemon.AddVerb(app, "status", "What the running daemon is doing");
   verb->add_flag("--watch", status->watch, "Again and again, until interrupted");
   verb->footer("Example: flexarm status --watch");
   verb->callback([status, &exit] { exit.code = Status(*status); });
@@ -155,7 +108,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
              "Only from Idle, at rest, with no fault present. Example: flexarm arm");
 
   const auto run = std::make_shared<Options>();
-  verb = AddVerb(app, "run", "Run an experiment on the armed arm", run);
+  verb = run->daemon.AddVerb(app, "run", "Run an experiment on the armed arm");
   verb->add_option("experiment", run->experiment, "Experiment, a TOML file")
       ->required()
       ->type_name("EXPERIMENT");
@@ -171,7 +124,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
              "Example: flexarm reset");
 
   const auto sim = std::make_shared<Options>();
-  verb = AddVerb(app, "sim", "Press a switch of the simulated rig", sim);
+  verb = sim->daemon.AddVerb(app, "sim", "Press a switch of the simulated rig");
   verb->add_option(
           "line", sim->line,
           "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop, reset-button")
@@ -185,8 +138,8 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
       "Examples: flexarm sim emergency-stop 0    somebody hits it\n"
       "          flexarm sim reset-button 1      and 0 again: pressed and released");
   verb->callback([sim, &exit] {
-    exit.code =
-        Print(*sim, Ask(*sim, {{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));
+    exit.code = sim->daemon.Conclude(
+        sim->daemon.Ask({{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));
   });
 }
 

@@ -47,9 +47,9 @@ struct ControlStep::Stages {
         A(design.A),
         B(design.B) {}
 
-  void Reset(const std::array<std::int64_t, kCounters>& counts_before) noexcept {
-    decoder.Reset(counts_before);
-    fit.Reset();
+  void Reset(const StepInput& input) noexcept {
+    decoder.Reset(input.counts_before, input.calibration.counter_zero);
+    fit.Reset(input.calibration);
     estimator.Reset();
     supervisor.Reset();
     law.Reset();
@@ -67,9 +67,15 @@ struct ControlStep::Stages {
 
   SobelLaw::Result Decide(const StepInput& input, const StateVector& x,
                           bool sensors_good) noexcept {
+    if (input.mode == LoopMode::kOpenLoop) return OpenLoop(input);
     if (input.safety_state == SafetyState::kRunning) {
       stopping = false;
-      return law.Compute(x, input.reference_next, sensors_good);
+      if (input.mode == LoopMode::kFollow) {
+        return law.Compute(x, input.reference_next, sensors_good);
+      }
+      StateVector goal = StateVector::Zero(x.size());
+      goal.head<2>() << input.reference_next.x_m[0], input.reference_next.x_m[1];
+      return law.Regulate(x, goal);
     }
     // Damp the arm towards a goal that gives way: it starts where the reference ended, or where the
     // stop found the hubs, and follows them, so that a heavy payload is not dragged back for long.
@@ -84,6 +90,16 @@ struct ControlStep::Stages {
     }
     stop_goal.head<2>() += (period_s / kStopGoalFollow_s) * (x.head<2>() - stop_goal.head<2>());
     return law.Regulate(x, stop_goal);
+  }
+
+  SobelLaw::Result OpenLoop(const StepInput& input) const noexcept {
+    Eigen::Vector2d u = Eigen::Vector2d::Zero();
+    if (input.safety_state == SafetyState::kRunning) {
+      u << input.reference_next.u_m_nm[0], input.reference_next.u_m_nm[1];
+    }
+    SobelLaw::Result result = law.Clip(u);
+    result.limits |= kAdaptationHeld;
+    return result;
   }
 
   const double period_s;
@@ -108,7 +124,7 @@ ControlStep::~ControlStep() = default;
 
 StepOutput ControlStep::Step(const StepInput& input) noexcept {
   Stages& s = *stages_;
-  if (input.reset != 0) s.Reset(input.counts_before);
+  if (input.reset != 0) s.Reset(input);
 
   const double frame_age_s =
       static_cast<double>(input.sampling_instant_ns - input.frame.sampled_at_ns) * 1e-9;
@@ -124,7 +140,8 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
                           .modes = &modes,
                           .estimate = &estimate,
                           .applied_torque_nm = input.applied_torque_nm,
-                          .frame_age_s = frame_age_s});
+                          .frame_age_s = frame_age_s,
+                          .mode = input.mode});
   const StateVector x_next = s.prediction ? s.Predict(estimate.x) : estimate.x;
   // Start again from the next measurement. A trip needs its cause gone before the arm can be armed,
   // and so reset: a state that stayed bad would be tripped for ever.

@@ -73,7 +73,8 @@ void LoopSupervisor::JudgeJoints(const LoopFacts& facts) noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     const double angle = std::fabs(facts.counters->angle_rad[i]);
     const double soft = safety_.soft_angle_deg[i] * kRadPerDeg;
-    Raise(PerJoint(TripCause::kSoftLimit1, i), angle > soft, 1, angle, soft, i + 1);
+    Raise(PerJoint(TripCause::kSoftLimit1, i), angle > soft && facts.mode != LoopMode::kRegulate, 1,
+          angle, soft, i + 1);
     const double rate = std::fabs(facts.estimate->x(dof + static_cast<Eigen::Index>(i)));
     Raise(PerJoint(TripCause::kHubRate1, i), rate > safety_.hub_rate_rad_s[i], kRateTicks, rate,
           safety_.hub_rate_rad_s[i], i + 1);
@@ -108,18 +109,20 @@ void LoopSupervisor::JudgeCounters(const LoopFacts& facts) noexcept {
     worst = apart;
     joint = i + 1;
   }
-  Raise(TripCause::kHubAgainstRotor, worst > estimator_.hub_rotor_limit_rad, estimator_.fault_ticks,
-        worst, estimator_.hub_rotor_limit_rad, joint);
+  const bool judged = facts.mode != LoopMode::kOpenLoop;
+  Raise(TripCause::kHubAgainstRotor, judged && worst > estimator_.hub_rotor_limit_rad,
+        estimator_.fault_ticks, worst, estimator_.hub_rotor_limit_rad, joint);
 }
 
 void LoopSupervisor::JudgeStrain(const LoopFacts& facts) noexcept {
   const FittedModes& modes = *facts.modes;
   const int ticks = estimator_.fault_ticks;
-  Raise(TripCause::kStrainStuck, modes.stuck != 0, ticks, 0.0, estimator_.strain_stuck_limit,
-        FirstChannel(modes.stuck));
+  const bool judged = facts.mode != LoopMode::kOpenLoop;
+  Raise(TripCause::kStrainStuck, judged && modes.stuck != 0, ticks, 0.0,
+        estimator_.strain_stuck_limit, FirstChannel(modes.stuck));
   Raise(TripCause::kStrainSaturated, modes.saturated != 0, ticks, 0.0, 0.0,
         FirstChannel(modes.saturated));
-  Raise(TripCause::kStrainOutOfFamily, modes.outlier != 0, ticks, modes.worst_outlier,
+  Raise(TripCause::kStrainOutOfFamily, judged && modes.outlier != 0, ticks, modes.worst_outlier,
         estimator_.strain_family_limit, FirstChannel(modes.outlier));
 }
 
@@ -128,7 +131,8 @@ void LoopSupervisor::JudgeEstimate(const LoopFacts& facts) noexcept {
   Raise(TripCause::kStateNotFinite, !estimate.x.allFinite(), 1, 0.0, 0.0, 0);
   const double hub1 = std::fabs(estimate.innovation[0]), hub2 = std::fabs(estimate.innovation[1]);
   const double worst = std::fmax(hub1, hub2);
-  Raise(TripCause::kEstimatorResidual, worst > estimator_.innovation_limit_rad,
+  const bool judged = facts.mode != LoopMode::kOpenLoop;
+  Raise(TripCause::kEstimatorResidual, judged && worst > estimator_.innovation_limit_rad,
         estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2);
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "controller/law/step_types.h"
 #include "controller/safety/safety_config.h"
 #include "controller/safety/trip_cause.h"
 #include "estimator/counter_decoder.h"
@@ -19,12 +20,16 @@ struct LoopFacts {
   const StateEstimator::Estimate* estimate;
   std::array<double, 2> applied_torque_nm;
   double frame_age_s;  ///< of the newest frame, at the sampling instant
+  LoopMode mode;
 };
 
 /// Judges what only the loop can see: soft limits, rates, strain, sensors, estimator.
 ///
 /// Angle, strain and jumps count in the sample that shows them; hub rate after two samples;
-/// judgements of single sensors and of the estimator after `fault_ticks` samples in a row.
+/// judgements of single sensors and of the estimator after `fault_ticks` samples in a row. Homing
+/// (LoopMode::kRegulate) has no soft limits: they lie inside the switches, and the angle is in
+/// doubt. The pluck test (kOpenLoop) does not judge sensors against each other: that is what it is
+/// for, and its torque does not depend on them.
 /// Real-time: safe.
 class LoopSupervisor {
  public:

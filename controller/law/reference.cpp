@@ -95,6 +95,11 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
   }
 }
 
+ReferenceTable::ReferenceTable(const std::vector<std::array<double, 2>>& torque_nm)
+    : samples_(torque_nm.size() + 1) {
+  for (std::size_t k = 0; k < torque_nm.size(); ++k) samples_[k].u_m_nm = torque_nm[k];
+}
+
 const ReferenceSample& ReferenceTable::At(int k) const noexcept {
   if (k < 0) return rest_;
   return samples_[static_cast<std::size_t>(std::min(k, periods()))];

@@ -25,6 +25,10 @@ class ReferenceTable {
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
                  const std::array<double, 2>& start_rad, const std::array<double, 2>& limit_rad);
 
+  /// Torques without a reference model, for LoopMode::kOpenLoop.
+  /// @param torque_nm  sample by sample, not empty; zero follows
+  explicit ReferenceTable(const std::vector<std::array<double, 2>>& torque_nm);
+
   int periods() const noexcept { return static_cast<int>(samples_.size()) - 1; }
 
   /// Sample k; before 0 the rest at the start, after the end the last one. Real-time: safe.

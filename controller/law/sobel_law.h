@@ -46,6 +46,9 @@ class SobelLaw {
   /// Stopping.
   Result Regulate(const StateVector& x, const StateVector& x_goal) const noexcept;
 
+  /// A torque that no law computed, clipped.
+  Result Clip(const Eigen::Vector2d& u) const noexcept;
+
   double adaptive_gain_change() const noexcept;  ///< Frobenius norm of K_I - K_I(0)
 
  private:
@@ -54,7 +57,6 @@ class SobelLaw {
   using AdaptiveGain = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 20>;
 
   Eigen::Vector2d Feedforward(const StateVector& x_m, const Eigen::Vector2d& u_m) const noexcept;
-  Result Clip(const Eigen::Vector2d& u) const noexcept;
 
   ControllerConfig config_;
   std::array<double, 2> torque_limit_nm_;

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "controller/safety/safety_state.h"
+#include "estimator/calibration.h"
 #include "hal/sensor_frame.h"
 
 namespace flexarm {
@@ -16,6 +17,13 @@ inline constexpr int kMaxFilterOutputs = 8;
 struct ReferenceSample {
   std::array<double, 2> u_m_nm;               ///< command torque u_m held from this sample on
   std::array<double, kMaxNominalStates> x_m;  ///< state of the reference model, SI, psi(L) = 1
+};
+
+/// What the torque follows while it is allowed. The value is logged: never renumber.
+enum class LoopMode : std::uint8_t {
+  kFollow = 0,    ///< the law follows the reference model; Stopping damps the arm
+  kOpenLoop = 1,  ///< reference_next.u_m, whatever the sensors say; Stopping: no torque
+  kRegulate = 2,  ///< a slow goal, reference_next.x_m, by the regulator that Stopping has
 };
 
 /// Everything that one Step may depend on, beyond what it remembers since its Reset.
@@ -30,14 +38,16 @@ struct StepInput {
   ReferenceSample reference_now;            ///< at k Ts
   ReferenceSample reference_next;           ///< at (k+1) Ts, when the torque computed now acts
   std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts known before a reset
+  Calibration calibration;                            ///< taken over at a reset
   SafetyState safety_state;
-  std::uint8_t reset;  ///< 1: forget everything but counts_before (the arm was just armed)
+  std::uint8_t reset;  ///< 1: forget everything but counts_before (just armed, or calibrated)
   std::uint8_t reference_ended;  ///< 1: reference_next is the last sample of the experiment
-  std::array<std::uint8_t, 5> reserved;
+  LoopMode mode;
+  std::array<std::uint8_t, 4> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
 static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) +
-                                       sizeof(std::int64_t) * kCounters + 8,
+                                       sizeof(std::int64_t) * kCounters + sizeof(Calibration) + 8,
               "no padding: the bytes are logged and compared");
 
 /// Why Step asked for less than the law computed. Bits of StepOutput::limits.

@@ -17,9 +17,9 @@ namespace flexarm {
 static_assert(std::endian::native == std::endian::little, "run logs are little-endian");
 
 /// Versions of the BLOBs. Raise when the struct changes its layout or the meaning of a field.
-inline constexpr std::uint32_t kStepInputVersion = 1;
+inline constexpr std::uint32_t kStepInputVersion = 2;
 inline constexpr std::uint32_t kStepOutputVersion = 1;
-static_assert(sizeof(StepInput) == 680, "the layout changed: raise kStepInputVersion");
+static_assert(sizeof(StepInput) == 968, "the layout changed: raise kStepInputVersion");
 static_assert(sizeof(StepOutput) == 520, "the layout changed: raise kStepOutputVersion");
 
 /// A logged struct with the version before it.

@@ -38,7 +38,7 @@ void ControlTask::Run(const Activation& activation) noexcept {
   hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
   Publish(activation, record.input, record.output);
   channels_.records->Push(record);
-  channels_.telemetry->Publish(record);
+  channels_.operator_ticks->Push(record);
 }
 
 FramePacket ControlTask::ReadFrames(std::int64_t sampled_ns) noexcept {
@@ -56,6 +56,15 @@ void ControlTask::FollowState(const Permit& permit) noexcept {
     ++sample_;
   }
   state_ = permit.state;
+  levels_ = permit.levels;
+  if (!TorqueAllowed(state_)) TakeCalibration();
+}
+
+void ControlTask::TakeCalibration() noexcept {
+  const Calibration& newest = channels_.calibrations->Read();
+  if (newest == calibration_) return;
+  calibration_ = newest;
+  reset_ = true;
 }
 
 void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
@@ -66,6 +75,9 @@ void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
   released_.store(plan_.number, std::memory_order_release);
   sample_ = -1;
   if (plan_.experiment == nullptr) return;
+  if (plan_.experiment->mode == LoopMode::kRegulate) {
+    homing_.Start(plan_.experiment->homing, hub_angle_rad_);
+  }
   for (const SimEvent& event : plan_.experiment->sim_events) {
     if (event.freeze != FreezeTarget::kControl) continue;
     frozen_from_ns_ = grid_.ExperimentStart(running_since_ns) + std::llround(event.at_s * 1e9);
@@ -81,25 +93,35 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
   input.sampling_instant_ns = grid_.SamplingInstant(input.tick);
   input.frame = packet.frame;
   input.applied_torque_nm = packet.applied_torque_nm;
+  input.frame.levels = levels_;
   input.counts_before = counts_;
+  input.calibration = calibration_;
   input.safety_state = state;
   input.reset = reset_ ? 1 : 0;
   reset_ = false;
-  if (!TorqueAllowed(state)) return input;
-  if (plan_.experiment == nullptr) {  // nothing to follow: end at once, where the hubs are
-    input.reference_now.x_m[0] = input.reference_next.x_m[0] = hub_angle_rad_[0];
-    input.reference_now.x_m[1] = input.reference_next.x_m[1] = hub_angle_rad_[1];
-    input.reference_ended = 1;
-    return input;
-  }
+  if (TorqueAllowed(state)) FollowReference(state, &input);
+  return input;
+}
 
+void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept {
+  if (plan_.experiment == nullptr) {  // nothing to follow: end at once, where the hubs are
+    input->reference_now.x_m[0] = input->reference_next.x_m[0] = hub_angle_rad_[0];
+    input->reference_now.x_m[1] = input->reference_next.x_m[1] = hub_angle_rad_[1];
+    input->reference_ended = 1;
+    return;
+  }
+  input->mode = plan_.experiment->mode;
+  if (input->mode == LoopMode::kRegulate) {
+    input->reference_next = homing_.Next(levels_, hub_angle_rad_);
+    input->reference_ended = homing_.ended() ? 1 : 0;
+    return;
+  }
   const ReferenceTable& reference = plan_.experiment->reference;
   const int last = reference.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
-  input.reference_now = reference.At(sample_ - 1);
-  input.reference_next = reference.At(sample_);
-  input.reference_ended = sample_ >= last ? 1 : 0;
-  return input;
+  input->reference_now = reference.At(sample_ - 1);
+  input->reference_next = reference.At(sample_);
+  input->reference_ended = sample_ >= last ? 1 : 0;
 }
 
 void ControlTask::Publish(const Activation& activation, const StepInput& input,

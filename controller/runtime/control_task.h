@@ -7,6 +7,7 @@
 #include "controller/law/control_step.h"
 #include "controller/runlog/records.h"
 #include "controller/runtime/frame_packet.h"
+#include "controller/runtime/homing_goal.h"
 #include "controller/runtime/loop_grid.h"
 #include "controller/runtime/messages.h"
 #include "controller/runtime/planned_run.h"
@@ -20,16 +21,18 @@ struct ControlChannels {
   std::vector<FrameChannel*> frames;      ///< read: each holds its own part of the readings
   PermitChannel* permits;                 ///< read
   PlanChannel* plans;                     ///< read
+  CalibrationChannel* calibrations;       ///< read
   std::vector<CommandChannel*> commands;  ///< written: one a drive bus
   ControlReportChannel* reports;          ///< written
   SpscQueue<TickRecord>* records;         ///< written: every step, for the log
-  LatestValue<TickRecord>* telemetry;     ///< written: the newest step, for status
+  SpscQueue<TickRecord>* operator_ticks;  ///< written: every step, for status and commissioning
 };
 
 /// The control thread's body: newest frame -> Step -> asked torque, 50 Hz. Never waits.
 ///
 /// Step k is due `acquire_before` after the sampling instant k Ts, and takes the frame and the
-/// permit that held before it was due. It is reset when it finds the arm newly armed. Its torque
+/// permit that held before it was due. It is reset when it finds the arm newly armed, or newly
+/// calibrated; a calibration is taken over while no torque is allowed. Its torque
 /// acts at (k+1) Ts; a fault that it sees takes the torque away at its deadline. Real-time: safe
 /// after construction.
 class ControlTask final : public Task {
@@ -48,6 +51,8 @@ class ControlTask final : public Task {
   FramePacket ReadFrames(std::int64_t sampled_ns) noexcept;
   void FollowState(const Permit& permit) noexcept;
   void StartRun(std::int64_t running_since_ns) noexcept;
+  void TakeCalibration() noexcept;
+  void FollowReference(SafetyState state, StepInput* input) noexcept;
   StepInput Gather(const Activation& activation, const FramePacket& packet,
                    SafetyState state) noexcept;
   void Publish(const Activation& activation, const StepInput& input,
@@ -58,9 +63,12 @@ class ControlTask final : public Task {
   ControlChannels channels_;
   PlannedRun plan_;
   std::atomic<std::uint32_t> released_{0};
+  HomingGoal homing_;
+  Calibration calibration_{};
   SafetyState state_ = SafetyState::kStarting;
-  int sample_ = -1;    // of the experiment, at the instant the torque acts
-  bool reset_ = true;  // the next step starts afresh
+  LineLevels levels_ = kHealthyLevels;  // as the safety task read them last
+  int sample_ = -1;                     // of the experiment, at the instant the torque acts
+  bool reset_ = true;                   // the next step starts afresh
   std::int64_t frozen_from_ns_ = INT64_MAX;
   std::array<std::int64_t, kCounters> counts_{};  // of the last step
   std::array<double, 2> hub_angle_rad_{};         // of the last step

@@ -144,6 +144,7 @@ OperatorContext Daemon::Context() {
       .stack = &stack(),
       .events = &events_,
       .design = &design_,
+      .config = &options_.config,
       .grid = LoopGrid(options_.config.loop),
       .soft_limit_rad = SoftAngleRad(options_.config.safety),
       .socket = options_.config.daemon.socket,

@@ -7,6 +7,7 @@ namespace {
 constexpr std::size_t kTickDepth = 4'000;
 constexpr std::size_t kSafetyDepth = 60'000;
 constexpr std::size_t kOperatorDepth = 64;
+constexpr std::size_t kOperatorTickDepth = 500;  // 10 s of steps: commissioning misses none
 
 std::vector<PermitChannel*> Joined(std::vector<PermitChannel*> first,
                                    const std::vector<PermitChannel*>& then) {
@@ -20,6 +21,7 @@ LoopStack::LoopStack(const StackConfig& config, const Design& design, const Loop
     : requests_(kOperatorDepth),
       answers_(kOperatorDepth),
       tick_records_(kTickDepth),
+      operator_ticks_(kOperatorTickDepth),
       safety_records_(kSafetyDepth),
       step_(config, design),
       safety_(MakeSupervisorLimits(config.safety, config.loop),
@@ -34,9 +36,10 @@ LoopStack::LoopStack(const StackConfig& config, const Design& design, const Loop
                {.frames = wiring.frames,
                 .permits = &control_permits_,
                 .plans = &plans_,
+                .calibrations = &calibrations_,
                 .commands = wiring.commands,
                 .reports = &control_reports_,
                 .records = &tick_records_,
-                .telemetry = &telemetry_}) {}
+                .operator_ticks = &operator_ticks_}) {}
 
 }  // namespace flexarm

@@ -51,7 +51,10 @@ class LoopStack {
   SpscQueue<OperatorRequest>& requests() { return requests_; }
   SpscQueue<RequestAnswer>& answers() { return answers_; }
   PermitChannel& operator_permits() { return operator_permits_; }
-  LatestValue<TickRecord>& telemetry() { return telemetry_; }
+  /// Every step, for status and commissioning.
+  SpscQueue<TickRecord>& operator_ticks() { return operator_ticks_; }
+  /// Taken over by the loop as soon as no torque is allowed.
+  void Calibrate(const Calibration& calibration) noexcept { calibrations_.Publish(calibration); }
   /// The experiment of the next run; see PlannedRun for how long it must live.
   virtual void Plan(const PlannedRun& plan) noexcept { plans_.Publish(plan); }
   /// Plans with a lower number than this are no longer used.
@@ -74,10 +77,11 @@ class LoopStack {
   PermitChannel operator_permits_{PermitHistory(kNoPermit)};
   ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
   PlanChannel plans_{PlannedRun{}};
-  LatestValue<TickRecord> telemetry_{TickRecord{}};
+  CalibrationChannel calibrations_{Calibration{}};
   SpscQueue<OperatorRequest> requests_;
   SpscQueue<RequestAnswer> answers_;
   SpscQueue<TickRecord> tick_records_;
+  SpscQueue<TickRecord> operator_ticks_;
   SpscQueue<SafetyRecord> safety_records_;
   ControlStep step_;
   SafetyTask safety_;

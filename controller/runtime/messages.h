@@ -36,6 +36,7 @@ struct Permit {
   std::int64_t renewed_ns;        ///< safety tick that wrote it
   std::int64_t running_since_ns;  ///< instant of the last change to Running; INT64_MIN: never
   Evidence evidence;              ///< of `cause`
+  LineLevels levels;              ///< digital inputs, as that tick read them
 };
 
 /// Control task -> safety: its heartbeat, and what only the loop can see. Holds from the deadline
@@ -67,6 +68,7 @@ struct OperatorRequest {
   RequestKind kind;
   std::uint32_t number;  ///< echoed in the answer
   std::int64_t not_before_ns;
+  LineLevels may_open = 0;  ///< of a homing run: the limit switch that it looks for
 };
 
 enum class Refusal : std::uint8_t {
@@ -102,7 +104,8 @@ inline constexpr Permit kNoPermit{.state = SafetyState::kStarting,
                                   .cause = TripCause::kNone,
                                   .renewed_ns = INT64_MIN,
                                   .running_since_ns = INT64_MIN,
-                                  .evidence = {}};
+                                  .evidence = {},
+                                  .levels = kHealthyLevels};
 inline constexpr ControlReport kNoControlReport{.tick = -1,
                                                 .due_ns = INT64_MIN,
                                                 .faults = 0,

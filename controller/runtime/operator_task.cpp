@@ -45,9 +45,11 @@ std::optional<RequestKind> RequestByName(const std::string& name) {
 
 }  // namespace
 
-OperatorTask::OperatorTask(OperatorContext context) : context_(std::move(context)) {
+OperatorTask::OperatorTask(OperatorContext context)
+    : context_(std::move(context)), commissioner_(*context_.config) {
+  context_.stack->Calibrate(commissioner_.calibration());
   if (!context_.socket.empty()) socket_ = std::make_unique<OperatorSocket>(context_.socket);
-  if (context_.unattended) Plan(*context_.unattended, {0.0, 0.0});
+  if (context_.unattended) PlanExperiment(*context_.unattended, {0.0, 0.0});
 }
 
 OperatorTask::~OperatorTask() = default;
@@ -65,7 +67,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     now_ns_ = activation.due_ns;
     FollowState();
     bus_journal_.Follow(now_ns_, context_.stack->buses(), context_.report);
-    telemetry_ = context_.stack->telemetry().Read();
+    TakeTicks();
     TakeAnswers();
     if (socket_) Serve();
     FollowUnattended();
@@ -107,6 +109,13 @@ void OperatorTask::FollowState() {
   permit_ = permit;
 }
 
+void OperatorTask::TakeTicks() {
+  while (context_.stack->operator_ticks().Pop(&telemetry_)) commissioner_.Take(telemetry_);
+  if (std::optional<Json> answer = commissioner_.TakeAnswer()) {
+    FinishCommissioning(std::move(*answer));
+  }
+}
+
 void OperatorTask::Serve() {
   for (const OperatorSocket::Message& message : socket_->Poll()) {
     Json answer;
@@ -130,12 +139,14 @@ Json OperatorTask::Answer(const OperatorSocket::Message& message) {
   if (name == "status") return Status();
   if (name == "sim") return PressLine(command);
   if (name == "run") return StartRun(command, message.client);
+  if (Commissioner::Knows(name)) return StartCommissioning(command, message.client);
   if (const std::optional<RequestKind> kind = RequestByName(name)) {
     Ask(*kind, message.client);
     return nullptr;
   }
   return Failure("no such command: '" + name + "'",
-                 "one of status, arm, run, stop, disarm, reset, sim");
+                 "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
+                 "home, sim");
 }
 
 Json OperatorTask::PressLine(const Json& command) {
@@ -165,29 +176,59 @@ Json OperatorTask::StartRun(const Json& command, int client) {
             {"state", Name(permit_.state)},
             {"error", RefusalText(RequestKind::kRun, Refusal::kWrongState, permit_.state)}};
   }
+  if (const std::string why = commissioner_.WhyNoRun(); !why.empty())
+    return Failure(why, "then run");
   const std::string name = command.value("name", "experiment");
-  Plan(context_.parse_experiment(command.value("experiment", ""), name),
-       {telemetry_.output.angle_rad[0], telemetry_.output.angle_rad[1]});
+  PlanExperiment(context_.parse_experiment(command.value("experiment", ""), name),
+                 {telemetry_.output.angle_rad[0], telemetry_.output.angle_rad[1]});
   Ask(RequestKind::kRun, client);
   return nullptr;
 }
 
-void OperatorTask::Plan(const Experiment& experiment, const std::array<double, 2>& start_rad) {
-  auto planned = std::make_unique<PlannedExperiment>(
-      experiment, *context_.design, context_.grid.period_s(), start_rad, context_.soft_limit_rad);
-  context_.stack->Plan({.experiment = planned.get(), .number = ++plan_number_});
-  plans_.push_back({.number = plan_number_, .experiment = std::move(planned)});
-  experiment_name_ = experiment.name;
-  context_.events->Push({.time_ns = now_ns_,
-                         .kind = "experiment",
-                         .name = experiment.name,
-                         .text = experiment.text,
-                         .value_json = {}});
+// Null: the answer comes when the command has ended.
+Json OperatorTask::StartCommissioning(const Json& command, int client) {
+  CommissioningMotion motion = commissioner_.Start(command, permit_.state);
+  commissioning_client_ = client;
+  commissioning_request_ = 0;
+  if (motion.planned != nullptr) {
+    Plan(std::move(motion.planned), command["command"], command.dump());
+    Ask(RequestKind::kRun, kNoClient, motion.may_open);
+    commissioning_request_ = request_number_;
+  }
+  return nullptr;
 }
 
-void OperatorTask::Ask(RequestKind kind, int client) {
+void OperatorTask::FinishCommissioning(Json answer) {
+  const bool ok = answer.value("ok", false);
+  answer["state"] = Name(permit_.state);
+  if (permit_.state == SafetyState::kTripped) answer["trip"] = Name(permit_.cause);
+  context_.stack->Calibrate(commissioner_.calibration());
+  context_.report(!ok, answer.value("command", "") + (ok ? std::string(": done, kept in ") +
+                                                               answer.value("calibration_file", "")
+                                                         : ": " + answer.value("error", "failed")));
+  if (commissioning_client_ != kNoClient) socket_->Reply(commissioning_client_, answer.dump());
+  commissioning_client_ = kNoClient;
+}
+
+void OperatorTask::PlanExperiment(const Experiment& experiment,
+                                  const std::array<double, 2>& start_rad) {
+  Plan(std::make_unique<PlannedExperiment>(experiment, *context_.design, context_.grid.period_s(),
+                                           start_rad, context_.soft_limit_rad),
+       experiment.name, experiment.text);
+}
+
+void OperatorTask::Plan(std::unique_ptr<PlannedExperiment> planned, const std::string& name,
+                        const std::string& text) {
+  context_.stack->Plan({.experiment = planned.get(), .number = ++plan_number_});
+  plans_.push_back({.number = plan_number_, .experiment = std::move(planned)});
+  experiment_name_ = name;
+  context_.events->Push(
+      {.time_ns = now_ns_, .kind = "experiment", .name = name, .text = text, .value_json = {}});
+}
+
+void OperatorTask::Ask(RequestKind kind, int client, LineLevels may_open) {
   const OperatorRequest request{
-      .kind = kind, .number = ++request_number_, .not_before_ns = now_ns_};
+      .kind = kind, .number = ++request_number_, .not_before_ns = now_ns_, .may_open = may_open};
   if (client != kNoClient) waiting_.push_back({.number = request.number, .client = client});
   context_.stack->requests().Push(request);
 }
@@ -200,6 +241,10 @@ void OperatorTask::TakeAnswers() {
     const std::string why = RefusalText(answer.kind, answer.refusal, answer.state);
     context_.report(!ok,
                     std::string(Name(answer.kind)) + (ok ? ": accepted" : ": refused: " + why));
+    if (!ok && commissioner_.busy() && answer.number == commissioning_request_) {
+      commissioner_.Abort();
+      FinishCommissioning({{"ok", false}, {"refusal", Name(answer.refusal)}, {"error", why}});
+    }
     if (waiting_.empty() || waiting_.front().number != answer.number) continue;
     Json reply{{"ok", ok}, {"command", Name(answer.kind)}, {"state", Name(permit_.state)}};
     if (!ok) {

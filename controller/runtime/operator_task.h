@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/commissioning/commissioner.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/runtime/bus_health.h"
 #include "controller/runtime/loop_stack.h"
@@ -24,6 +25,7 @@ struct OperatorContext {
   LoopStack* stack;
   EventQueue* events;  ///< to the recorder
   const Design* design;
+  const StackConfig* config;
   LoopGrid grid;
   std::array<double, 2> soft_limit_rad;
   std::string socket;                    ///< path; empty: no socket
@@ -74,11 +76,16 @@ class OperatorTask final : public Task {
   nlohmann::json Answer(const OperatorSocket::Message& message);
   nlohmann::json PressLine(const nlohmann::json& command);
   nlohmann::json StartRun(const nlohmann::json& command, int client);
+  nlohmann::json StartCommissioning(const nlohmann::json& command, int client);
   nlohmann::json Status();
-  void Ask(RequestKind kind, int client);
+  void Ask(RequestKind kind, int client, LineLevels may_open = 0);
   void TakeAnswers();
+  void TakeTicks();
+  void FinishCommissioning(nlohmann::json answer);
   /// Plans `experiment` from where the hubs are. @throws Refused
-  void Plan(const Experiment& experiment, const std::array<double, 2>& start_rad);
+  void PlanExperiment(const Experiment& experiment, const std::array<double, 2>& start_rad);
+  void Plan(std::unique_ptr<PlannedExperiment> planned, const std::string& name,
+            const std::string& text);
   void FollowUnattended();
   void FollowShutdown();
   void FollowState();
@@ -87,6 +94,9 @@ class OperatorTask final : public Task {
   std::unique_ptr<OperatorSocket> socket_;
   UnattendedRun unattended_;
   BusJournal bus_journal_;
+  Commissioner commissioner_;
+  int commissioning_client_ = -1;            // -1: nobody waits
+  std::uint32_t commissioning_request_ = 0;  // of its run; 0: none
   std::deque<Waiting> waiting_;
   struct LivePlan {
     std::uint32_t number;

@@ -13,4 +13,10 @@ PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design&
                    [](const SimEvent& a, const SimEvent& b) { return a.at_s < b.at_s; });
 }
 
+PlannedExperiment::PlannedExperiment(const std::vector<std::array<double, 2>>& torque_nm)
+    : reference(torque_nm), mode(LoopMode::kOpenLoop) {}
+
+PlannedExperiment::PlannedExperiment(const HomingPlan& plan)
+    : reference(std::vector<std::array<double, 2>>(1)), mode(LoopMode::kRegulate), homing(plan) {}
+
 }  // namespace flexarm

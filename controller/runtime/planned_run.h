@@ -6,6 +6,7 @@
 
 #include "controller/law/experiment.h"
 #include "controller/law/reference.h"
+#include "controller/runtime/homing_goal.h"
 #include "controller/runtime/latest_value.h"
 
 namespace flexarm {
@@ -16,8 +17,15 @@ struct PlannedExperiment {
   PlannedExperiment(const Experiment& experiment, const Design& design, double period_s,
                     const std::array<double, 2>& start_rad, const std::array<double, 2>& limit_rad);
 
-  ReferenceTable reference;
+  /// Torques in open loop: the pluck test.
+  explicit PlannedExperiment(const std::vector<std::array<double, 2>>& torque_nm);
+  /// A search for a limit switch.
+  explicit PlannedExperiment(const HomingPlan& plan);
+
+  ReferenceTable reference;          ///< of a homing run: nothing
   std::vector<SimEvent> sim_events;  ///< in order of time; simulated backend only
+  LoopMode mode = LoopMode::kFollow;
+  HomingPlan homing{};  ///< if mode is kRegulate
 };
 
 /// The experiment that the next run follows. The operator's side keeps it alive until every reader
@@ -27,5 +35,6 @@ struct PlannedRun {
   std::uint32_t number = 0;                       ///< ascending
 };
 using PlanChannel = LatestValue<PlannedRun>;
+using CalibrationChannel = LatestValue<Calibration>;
 
 }  // namespace flexarm

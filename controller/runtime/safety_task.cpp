@@ -51,13 +51,17 @@ void SafetyTask::Run(const Activation& activation) noexcept {
                         .request = request.kind,
                         .state = status_.state,
                         .state_since_ns = state_since_ns_,
-                        .running_since_ns = running_since_ns_};
+                        .running_since_ns = running_since_ns_,
+                        .may_open = may_open_};
   const SafetyFacts facts = supervisor_.Judge(in);
   const SafetyStatus before = status_;
   const SafetyDecision decision = NextSafetyState(before, facts);
   Enter(decision.status, in);
+  if (decision.status.state != before.state) {
+    may_open_ = decision.status.state == SafetyState::kRunning ? request.may_open : 0;
+  }
   Drive(due_ns);
-  Publish(due_ns);
+  Publish(due_ns, levels);
 
   const bool tripped = status_ != before && status_.state == SafetyState::kTripped;
   if (requested || !recorded_ || status_ != before || !SameFacts(facts, last_facts_)) {
@@ -155,12 +159,13 @@ void SafetyTask::Drive(std::int64_t due_ns) noexcept {
   channels_.lines->Write(due_ns, {.relay_closed = closed, .pump_level = pump_level_});
 }
 
-void SafetyTask::Publish(std::int64_t due_ns) noexcept {
+void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {
   permits_.Push(due_ns, {.state = status_.state,
                          .cause = status_.cause,
                          .renewed_ns = due_ns,
                          .running_since_ns = running_since_ns_,
-                         .evidence = evidence_});
+                         .evidence = evidence_,
+                         .levels = levels});
   for (PermitChannel* channel : channels_.permits) channel->Publish(permits_);
 }
 

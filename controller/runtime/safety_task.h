@@ -69,7 +69,7 @@ class SafetyTask final : public Task {
   void CancelPlanned(std::size_t first, TripCauses present) noexcept;
   void Enter(const SafetyStatus& next, const SafetyInputs& in) noexcept;
   void Drive(std::int64_t due_ns) noexcept;
-  void Publish(std::int64_t due_ns) noexcept;
+  void Publish(std::int64_t due_ns, LineLevels levels) noexcept;
 
   SafetyChannels channels_;
   Supervisor supervisor_;
@@ -78,6 +78,7 @@ class SafetyTask final : public Task {
   Evidence evidence_{};
   std::int64_t state_since_ns_ = INT64_MIN;
   std::int64_t running_since_ns_ = INT64_MIN;
+  LineLevels may_open_ = 0;  // of the run that goes on
   bool pump_level_ = false;
   bool recorded_ = false;
   std::array<OperatorRequest, kMaxWaiting> waiting_{};

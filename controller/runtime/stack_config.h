@@ -1,5 +1,6 @@
 #pragma once
 
+#include "controller/commissioning/commissioning_config.h"
 #include "controller/law/controller_config.h"
 #include "controller/runtime/runtime_config.h"
 #include "controller/safety/safety_config.h"
@@ -20,6 +21,7 @@ struct StackConfig {
   EstimatorConfig estimator;
   ControllerConfig controller;
   SafetyConfig safety;
+  CommissioningConfig commissioning;
   LoopConfig loop;
   DaemonConfig daemon;
 };

@@ -34,6 +34,8 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
                "the permit is renewed every 1 ms; an older one means zero torque");
   list->Within("safety.missed_deadlines_to_trip", c.missed_deadlines_to_trip, 1, 10,
                "consecutive deadlines of the control task");
+  list->Within("safety.homing_contact_s", c.homing_contact_s, 0.1, 10.0,
+               "how long a homing run may stand on the switch that it looks for");
 }
 
 }  // namespace

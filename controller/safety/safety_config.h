@@ -22,6 +22,7 @@ struct SafetyConfig {
   double stop_timeout_s;          ///< Stopping longer than this trips
   double permit_timeout_ms;       ///< a permit older than this means zero torque
   int missed_deadlines_to_trip;   ///< consecutive missed deadlines of the control task
+  double homing_contact_s;        ///< homing may stand on its switch this long, then it trips
 
   std::vector<Problem> Problems() const;
 };

@@ -24,6 +24,9 @@ constexpr std::array<Switch, 5> kSwitches{{
     {Line::kEmergencyStop, TripCause::kEmergencyStop, 0},
 }};
 
+constexpr LineLevels kLimitLines = LineBit(Line::kLimit1Low) | LineBit(Line::kLimit1High) |
+                                   LineBit(Line::kLimit2Low) | LineBit(Line::kLimit2High);
+
 constexpr std::uint8_t Flag(bool set) noexcept { return set ? 1 : 0; }
 
 constexpr double Seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
@@ -36,15 +39,27 @@ bool DriveReported(const SafetyInputs& in) noexcept { return in.drive.due_ns != 
 SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConfig& loop) {
   return {.heartbeat_timeout_ns = std::llround(2e6 * loop.period_ms),
           .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
-          .missed_deadlines_to_trip = safety.missed_deadlines_to_trip};
+          .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,
+          .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s)};
+}
+
+bool Supervisor::HomingContact(const SafetyInputs& in) noexcept {
+  const bool runs = in.state == SafetyState::kRunning;
+  if (!runs || (~in.levels & in.may_open) == 0) {
+    contact_since_ns_ = INT64_MAX;
+    return false;
+  }
+  if (contact_since_ns_ == INT64_MAX) contact_since_ns_ = in.due_ns;
+  return in.due_ns - contact_since_ns_ <= limits_.homing_contact_ns;
 }
 
 SafetyFacts Supervisor::Judge(const SafetyInputs& in) noexcept {
   SafetyFacts facts{};
   const auto add = [&facts](TripCause cause) { facts.present |= CauseBit(cause); };
 
+  const LineLevels excused = HomingContact(in) ? in.may_open & kLimitLines : 0;
   for (const Switch& s : kSwitches) {
-    if ((in.levels & LineBit(s.line)) == 0) add(s.cause);  // normally closed
+    if (((in.levels | excused) & LineBit(s.line)) == 0) add(s.cause);  // normally closed
   }
 
   const bool control_alive =

@@ -15,6 +15,7 @@ struct SupervisorLimits {
   std::int64_t heartbeat_timeout_ns;  ///< two control periods, for control and drive side
   std::int64_t stop_timeout_ns;       ///< safety.stop_timeout_s
   int missed_deadlines_to_trip;       ///< safety.missed_deadlines_to_trip
+  std::int64_t homing_contact_ns;     ///< how long homing may stand on its switch
 };
 
 SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConfig& loop);
@@ -44,14 +45,17 @@ struct SafetyInputs {
   SafetyState state;  ///< before this tick
   std::int64_t state_since_ns;
   std::int64_t running_since_ns;  ///< INT64_MIN: never
+  LineLevels may_open;            ///< limit switches that a homing run looks for
 };
 
 /// Turns what a safety tick sees into the facts of the safety machine: every judgement about time,
-/// levels and freshness. Remembers the reset button, nothing else; reads no clock.
+/// levels and freshness. Remembers the reset button, and since when homing stands on its switch,
+/// nothing else; reads no clock.
 ///
 /// A report counts only while its sender is alive; before the first report of a task, nothing is
 /// said about it. Word of rest and of the experiment's end counts only if the step that gave it was
-/// due after the machine came to its state, so the last run cannot end the next one.
+/// due after the machine came to its state, so the last run cannot end the next one. The switch
+/// that a homing run looks for may open while it runs, for a bounded time; the others trip as ever.
 /// Real-time: safe.  Thread: safety.
 class Supervisor {
  public:
@@ -65,7 +69,11 @@ class Supervisor {
   Evidence EvidenceOf(TripCause cause, const SafetyInputs& in) const noexcept;
 
  private:
+  /// True while homing stands on the switch that it looks for, and has not for too long.
+  bool HomingContact(const SafetyInputs& in) noexcept;
+
   SupervisorLimits limits_;
+  std::int64_t contact_since_ns_ = INT64_MAX;
   bool all_reported_ = false;
   bool button_was_down_ = true;  // a button that is down from the start has not been pressed
   bool reset_pressed_ = false;

@@ -114,6 +114,44 @@ class Daemon(ProgramTest):
         self.wait_for_state("Idle")
 
     @in_real_time
+    def test_an_operator_commissions_the_rig(self):
+        self.start_daemon("--set", "commissioning.prove_before_run=true",
+                          "--set", "commissioning.angles_at_start=lost")
+        self.wait_for_state("Idle")
+        refused = self.operate("pluck", expect=1)
+        self.assertIn("flexarm arm", refused.stderr)
+        tared = json.loads(self.operate("tare", "--json").stdout)
+        self.assertEqual(len(tared["strain"]), 20)
+        refused = self.operate("calibrate", "--link", "1", "--force-n", "5", "--at-m", "0.8", expect=1)
+        self.assertIn("strain_1_01", refused.stderr)  # nothing hangs there
+        time.sleep(0.8)
+        self.operate("arm")
+        refused = self.operate("run", self.experiment(LONG), expect=1)
+        self.assertIn("flexarm pluck", refused.stderr)
+        plucked = json.loads(self.operate("pluck", "--json").stdout)
+        self.assertIs(plucked["passed"], True)
+        self.assertEqual(len(plucked["answer"]), 26)
+        refused = self.operate("run", self.experiment(LONG), expect=1)
+        self.assertIn("flexarm zero", refused.stderr)
+        self.operate("disarm")
+        time.sleep(2.0)  # the elbow creeps for a while after its pulse
+        self.operate("zero", "--angle-deg", "5", "-5")
+        time.sleep(0.8)
+        self.operate("arm")
+        status = json.loads(self.operate("status", "--json").stdout)
+        self.assertAlmostEqual(status["joint_angle_deg"][0], 5.0, delta=0.2)
+        self.operate("run", self.experiment(SHORT))
+        self.wait_for_state("Running")
+        self.wait_for_state("Armed")
+        self.operate("disarm")
+        self.wait_for_state("Idle")
+        time.sleep(0.5)
+        for run in (self.folder / "runs").glob("*.flexarm"):
+            replay = self.flexarm_json("replay", run)
+            self.assertIs(replay["bit_exact"], True)
+            self.assertIs(replay["safety_exact"], True)
+
+    @in_real_time
     def test_a_term_signal_ends_in_a_safe_logged_stop(self):
         daemon = self.start_daemon("--experiment", self.experiment(LONG))
         self.wait_for_state("Running")

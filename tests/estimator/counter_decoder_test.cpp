@@ -114,16 +114,24 @@ TEST(CounterDecoder, TheFastestPossibleChangeIsNoJump) {
 
 TEST(CounterDecoder, ResetStartsFromTheCountsItIsGiven) {
   CounterDecoder decoder(OneEncoder(8), kPeriod_s, Rate(60.0));
-  decoder.Reset({1'000'000, 0, 0, 0});
+  decoder.Reset({1'000'000, 0, 0, 0}, {});
   const DecodedCounters out = decoder.Decode(Reading(1'000'020, 8));
   EXPECT_EQ(out.counts[0], 1'000'020);
   EXPECT_EQ(out.good, 1u);
 }
 
+TEST(CounterDecoder, AnglesCountFromTheZeroItIsGiven) {
+  CounterDecoder decoder(OneEncoder(8), kPeriod_s, Rate(60.0));
+  decoder.Reset({1000, 0, 0, 0}, {700, 0, 0, 0});
+  const DecodedCounters out = decoder.Decode(Reading(1010, 8));
+  EXPECT_EQ(out.counts[0], 1010) << "counts are raw";
+  EXPECT_NEAR(out.angle_rad[0], 310.0 * 2.0 * M_PI / 1000.0, 1e-12);
+}
+
 TEST(CounterDecoder, ResetForgetsTheRate) {
   CounterDecoder decoder(OneEncoder(8), kPeriod_s, Rate(110.0));
   for (int k = 1; k <= 3; ++k) decoder.Decode(Reading(100 * k, 8));
-  decoder.Reset({300, 0, 0, 0});
+  decoder.Reset({300, 0, 0, 0}, {});
   decoder.Decode(NoReading());
   // At rest since the reset: without a rate, 310 after a miss is 310.
   EXPECT_EQ(decoder.Decode(Reading(310, 8)).counts[0], 310);

@@ -193,5 +193,20 @@ TEST(StrainFit, AChannelCountsByTheInverseOfItsVariance) {
   EXPECT_LT(ratio, 0.02);
 }
 
+// A channel with a zero and a gain of its own reads the same strain once both are known.
+TEST(StrainFit, ACalibratedChannelReadsAsIfItWereRight) {
+  const SensorConfig sensors = FineSensors();
+  SensorFrame frame = FrameOf(sensors, Strains(sensors, kBend));
+  Calibration calibration{};
+  calibration.strain_zero_counts[4] = 1'000.0f;
+  calibration.strain_gain_error[4] = 0.125f;  // exact in binary, as the product below
+  frame.strain[4] = static_cast<std::int32_t>(std::lround(1.125 * frame.strain[4])) + 1'000;
+  StrainFit fit(ThesisRig(), sensors, ThesisEstimator());
+  fit.Reset(calibration);
+  const FittedModes out = fit.Fit(frame);
+  EXPECT_EQ(out.used, 0xFFFFFu);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(out.modal_m[i], kBend[i], kRounding_m) << i;
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -129,7 +129,7 @@ TEST_F(StrainJudgement, ResetForgetsWhatWasStuck) {
   SensorFrame frame = FrameOf(kBend);
   frame.strain[0] = 0;
   EXPECT_NE(fit.Fit(frame).stuck, 0u);
-  fit.Reset();
+  fit.Reset({});
   EXPECT_EQ(fit.Fit(frame).stuck, 0u);
 }
 

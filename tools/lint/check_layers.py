@@ -40,16 +40,23 @@ ROOMS = {
                         "controller/safety/trip_cause.h",
                         "controller/runtime/stack_config.h",
                         "controller/runtime/runtime_config.h"],
+    "controller/commissioning/": ["model/", "hal/", "estimator/", "controller/law/",
+                                  "controller/safety/", "controller/runlog/",
+                                  "controller/runtime/planned_run.h",
+                                  "controller/runtime/stack_config.h"],
     "controller/runlog/": ["model/", "hal/", "estimator/", "controller/law/", "controller/safety/",
                            "controller/runtime/float_environment.h",
                            "controller/runtime/loop_grid.h", "controller/runtime/messages.h",
                            "controller/runtime/runtime_config.h", "controller/runtime/spsc_queue.h",
                            "controller/runtime/stack_config.h", "controller/runtime/task.h"],
-    "controller/": ["model/", "hal/", "hal/sim/", "estimator/", "controller/law/",
+    "controller/": ["controller/commissioning/",
+                    "model/", "hal/", "hal/sim/", "estimator/", "controller/law/",
                     "controller/safety/", "controller/runlog/", "controller/runtime/"],
     "controller/runtime/": ["model/", "hal/", "hal/sim/", "estimator/", "controller/",
+                            "controller/commissioning/",
                             "controller/law/", "controller/safety/", "controller/runlog/"],
     "config/": ["model/", "hal/", "hal/sim/", "estimator/", "controller/", "controller/law/",
+                "controller/commissioning/",
                 "controller/safety/", "controller/runlog/", "controller/runtime/"],
     "tools/": ["*"],
     "tests/": ["*"],
@@ -59,7 +66,7 @@ ROOMS = {
 REALTIME = re.compile(
     r"(model/|estimator/|hal/|controller/(law|safety)/"
     r"|controller/runtime/(safety_task|control_task|plant_task|simulated_lines|history|latest_value"
-    r"|spsc_queue|messages|frame_packet|loop_grid|task)\.)")
+    r"|spsc_queue|messages|frame_packet|homing_goal|loop_grid|task)\.)")
 # Off-line work that lives beside the loop, so that an equation and its use are read together; the
 # rules of config structs; and the simulated devices, which are a program of their own.
 OFFLINE = re.compile(

@@ -218,5 +218,52 @@ TEST_F(ControlStepTest, EchoesItsTickAndTheEndOfTheReference) {
   EXPECT_EQ(step_.Step(input).experiment_done, 1);
 }
 
+TEST_F(ControlStepTest, InOpenLoopTheTorqueIsTheReferencesWhateverTheSensorsSay) {
+  StepInput input = Moving(0);
+  input.mode = LoopMode::kOpenLoop;
+  input.reference_next.u_m_nm = {1.5, -0.25};
+  EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{1.5, -0.25}));
+  input.reference_next.u_m_nm = {1000.0, -1000.0};
+  EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{30.0, -6.0})) << "the limits";
+}
+
+TEST_F(ControlStepTest, InOpenLoopStoppingAsksForNothing) {
+  StepInput input = Moving(0, SafetyState::kStopping);
+  input.mode = LoopMode::kOpenLoop;
+  input.reference_next.u_m_nm = {1.5, -0.25};
+  EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{0.0, 0.0}));
+}
+
+TEST_F(ControlStepTest, RegulatingPullsTheHubsToTheirGoal) {
+  StepInput input = Moving(0);
+  input.mode = LoopMode::kRegulate;
+  const StepOutput out = step_.Step(input);
+  EXPECT_GT(out.torque_nm[0], 0.0);
+  EXPECT_LT(out.torque_nm[1], 0.0);
+  EXPECT_NE(out.limits & kAdaptationHeld, 0u);
+}
+
+// Homing looks for a switch that lies outside the soft limits, with an angle that is in doubt.
+TEST_F(ControlStepTest, SoftLimitsHoldInEveryModeButHoming) {
+  for (const LoopMode mode : {LoopMode::kFollow, LoopMode::kOpenLoop, LoopMode::kRegulate}) {
+    StepInput input = Moving(0);
+    input.reset = 1;
+    input.mode = mode;
+    input.counts_before = {800, 0, 800, 0};  // 113 degrees
+    input.frame.counter[0] = input.frame.counter[2] = 800 & 0xFF;
+    const bool soft = (step_.Step(input).faults & CauseBit(TripCause::kSoftLimit1)) != 0;
+    EXPECT_EQ(soft, mode != LoopMode::kRegulate) << static_cast<int>(mode);
+  }
+}
+
+TEST_F(ControlStepTest, ACalibrationCountsFromTheResetOn) {
+  StepInput input = AtRest(0, SafetyState::kArmed);
+  input.calibration.counter_zero = {-254, 0, 0, 0};
+  EXPECT_EQ(step_.Step(input).angle_rad[0], 0.0);
+  input.tick = 1;
+  input.reset = 1;
+  EXPECT_NEAR(step_.Step(input).angle_rad[0], 0.2 * M_PI, 1e-12) << "a tenth of 2540 counts";
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -24,6 +24,7 @@ struct Facts {
   StateEstimator::Estimate estimate{};
   std::array<double, 2> torque_nm{};
   double frame_age_s = 0.0;
+  LoopMode mode = LoopMode::kFollow;
 
   Facts() {
     counters.good = 0b1111;
@@ -36,7 +37,8 @@ struct Facts {
             .modes = &modes,
             .estimate = &estimate,
             .applied_torque_nm = torque_nm,
-            .frame_age_s = frame_age_s};
+            .frame_age_s = frame_age_s,
+            .mode = mode};
   }
 };
 

@@ -20,7 +20,8 @@ inline constexpr std::int64_t kPhaseNs = 5 * kMs;
 inline constexpr std::int64_t kDeadlineNs = 10 * kMs;
 inline constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
                                           .stop_timeout_ns = 3000 * kMs,
-                                          .missed_deadlines_to_trip = 3};
+                                          .missed_deadlines_to_trip = 3,
+                                          .homing_contact_ns = 500 * kMs};
 
 struct FakeLines final : SafetyLines {
   struct Written {

@@ -11,8 +11,10 @@ namespace {
 using enum SafetyState;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr SupervisorLimits kLimits{
-    .heartbeat_timeout_ns = 40 * kMs, .stop_timeout_ns = 3000 * kMs, .missed_deadlines_to_trip = 3};
+constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
+                                   .stop_timeout_ns = 3000 * kMs,
+                                   .missed_deadlines_to_trip = 3,
+                                   .homing_contact_ns = 500 * kMs};
 
 // Running for a second, all well.
 SafetyInputs Fine() {
@@ -30,7 +32,8 @@ SafetyInputs Fine() {
           .request = RequestKind::kNone,
           .state = kRunning,
           .state_since_ns = due_ns - 1000 * kMs,
-          .running_since_ns = due_ns - 1000 * kMs};
+          .running_since_ns = due_ns - 1000 * kMs,
+          .may_open = 0};
 }
 
 TripCauses PresentIn(const SafetyInputs& in) {
@@ -259,6 +262,61 @@ TEST(Supervisor, TakesItsLimitsFromTheConfiguration) {
   EXPECT_EQ(limits.heartbeat_timeout_ns, 40 * kMs);
   EXPECT_EQ(limits.stop_timeout_ns, 3000 * kMs);
   EXPECT_EQ(limits.missed_deadlines_to_trip, 5);
+}
+
+// A homing run looks for one limit switch: that one may open while it runs, and not for long.
+class HomingContact : public testing::Test {
+ protected:
+  SafetyInputs OnSwitch(std::int64_t after_ms = 0) const {
+    SafetyInputs in = Fine();
+    in.due_ns += after_ms * kMs;
+    in.control_alive_ns = in.control.due_ns = in.due_ns - 20 * kMs;
+    in.drive_alive_ns = in.drive.due_ns = in.due_ns - kMs;
+    in.may_open = LineBit(Line::kLimit2High);
+    in.levels &= ~LineBit(Line::kLimit2High);
+    return in;
+  }
+
+  Supervisor supervisor_{kLimits};
+};
+
+TEST_F(HomingContact, TheSwitchThatIsLookedForDoesNotTripAtOnce) {
+  EXPECT_EQ(supervisor_.Judge(OnSwitch()).present, 0u);
+  EXPECT_EQ(supervisor_.Judge(OnSwitch(500)).present, 0u);
+}
+
+TEST_F(HomingContact, StandingOnItForTooLongTrips) {
+  supervisor_.Judge(OnSwitch());
+  EXPECT_EQ(supervisor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
+}
+
+TEST_F(HomingContact, TheClockStartsAgainWhenTheSwitchHasClosed) {
+  supervisor_.Judge(OnSwitch());
+  SafetyInputs off = OnSwitch(400);
+  off.levels = kHealthyLevels;
+  supervisor_.Judge(off);
+  EXPECT_EQ(supervisor_.Judge(OnSwitch(600)).present, 0u);
+}
+
+TEST_F(HomingContact, EveryOtherSwitchTripsAsEver) {
+  SafetyInputs in = OnSwitch();
+  in.levels &= ~LineBit(Line::kLimit2Low);
+  EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2Low));
+}
+
+TEST_F(HomingContact, TheEmergencyStopCanNeverBeExcused) {
+  SafetyInputs in = OnSwitch();
+  in.may_open |= LineBit(Line::kEmergencyStop);
+  in.levels &= ~LineBit(Line::kEmergencyStop);
+  EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kEmergencyStop));
+}
+
+TEST_F(HomingContact, OnlyARunningArmIsExcused) {
+  for (const SafetyState state : {kIdle, kArmed, kStopping, kTripped}) {
+    SafetyInputs in = OnSwitch();
+    in.state = state;
+    EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High)) << Name(state);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,157 @@
+#include "controller/commissioning/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "controller/law/refused.h"
+#include "controller/runlog/csv.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kSteadySigmas = 6.0;
+constexpr double kQuantisation = 0.29;  // 1/sqrt(12) counts, of a converter that stands still
+constexpr double kLargestZero = 0.25;   // of the converter's range to either side
+constexpr double kStill_deg = 0.1;  // that a joint may creep while it is zeroed; one count at least
+constexpr double kSmallestStrain_counts = 20.0;
+constexpr double kLargestGainError = 0.3;
+
+std::string Text(const char* format, double a, double b) {
+  std::array<char, 160> text{};
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): two numbers into one sentence
+  std::snprintf(text.data(), text.size(), format, a, b);
+  return text.data();
+}
+
+// Every problem on a line of its own, or nothing.
+class Findings {
+ public:
+  explicit Findings(std::string what) : what_(std::move(what)) {}
+  void Add(const std::string& channel, const std::string& problem) {
+    text_ += "\n  " + channel + ": " + problem;
+  }
+  void RefuseIfAny() const {
+    if (!text_.empty()) throw Refused(what_ + text_);
+  }
+
+ private:
+  std::string what_;
+  std::string text_;
+};
+
+// Missing or unsteady: true if the channel can be used.
+bool CheckSteady(const SensorConfig& sensors, const RestReadings& readings, std::size_t i,
+                 const std::string& name, Findings* findings) {
+  if (readings.strain_missing[i] > 0) {
+    findings->Add(name, Text("%.0f of %.0f readings are missing", readings.strain_missing[i],
+                             readings.ticks));
+    return false;
+  }
+  const double expected = std::hypot(sensors.strain_input.noise_counts, kQuantisation);
+  if (readings.strain_sigma[i] > kSteadySigmas * expected) {
+    findings->Add(name,
+                  Text("varies by %.1f counts (standard deviation); at rest %.1f are expected",
+                       readings.strain_sigma[i], expected));
+    return false;
+  }
+  return true;
+}
+
+double CountsPerUnit(const SensorConfig& sensors, const StrainChannelConfig& row) {
+  return row.face * row.gain_v_per_unit / sensors.strain_input.volts_per_count();
+}
+
+const BeamSection& SectionAt(const LinkParameters& link, double x_m) {
+  double end_m = 0.0;
+  for (const BeamSection& section : link.section) {
+    end_m += section.length_m;
+    if (x_m <= end_m) return section;
+  }
+  return link.section.back();
+}
+
+}  // namespace
+
+Calibration Tare(const SensorConfig& sensors, const RestReadings& readings, Calibration before) {
+  Findings findings("the strain channels cannot be tared:");
+  const std::vector<std::string> names = StrainColumns(sensors);
+  const double largest = kLargestZero * sensors.strain_input.highest_count();
+  for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
+    if (!CheckSteady(sensors, readings, i, names[i], &findings)) continue;
+    const double zero = readings.strain_mean[i] - sensors.strain[i].offset_counts;
+    if (std::fabs(zero) > largest) {
+      findings.Add(names[i], Text("stands %.0f counts from its zero, more than %.0f: a gauge under "
+                                  "load, a broken bridge, or a wrong word order",
+                                  zero, largest));
+    }
+    before.strain_zero_counts[i] = static_cast<float>(zero);
+  }
+  findings.RefuseIfAny();
+  return before;
+}
+
+Calibration Zero(const SensorConfig& sensors, const RestReadings& readings,
+                 const std::array<double, 2>& hub_rad, Calibration before) {
+  Findings findings("the encoders cannot be zeroed:");
+  for (const EncoderConfig& encoder : sensors.encoder) {
+    const auto i = static_cast<std::size_t>(encoder.counter);
+    const double allowed = std::max(1.0, kStill_deg / 360.0 * encoder.counts_per_turn);
+    if ((readings.counters_good >> i & 1u) == 0) {
+      findings.Add(CounterName(encoder.counter), "was not read all the time");
+    } else if (static_cast<double>(readings.travel_counts[i]) > allowed) {
+      findings.Add(CounterName(encoder.counter),
+                   Text("moved by %.0f counts; at rest %.0f are allowed",
+                        static_cast<double>(readings.travel_counts[i]), std::floor(allowed)));
+    }
+    const double counts_at_angle =
+        encoder.sign * hub_rad[i % 2] * encoder.counts_per_turn / (2.0 * std::numbers::pi);
+    before.counter_zero[i] = readings.counts[i] - std::llround(counts_at_angle);
+  }
+  findings.RefuseIfAny();
+  return before;
+}
+
+double StaticStrain(const LinkParameters& link, const StaticLoad& load, double x_m) {
+  if (x_m >= load.at_m) return 0.0;
+  const BeamSection& section = SectionAt(link, x_m);
+  const double EI = section.youngs_modulus_pa * section.second_moment_m4;
+  return section.half_thickness_m * load.force_n * (load.at_m - x_m) / EI;
+}
+
+Calibration GainCalibration::Add(const StaticLoad& load, const RestReadings& readings,
+                                 Calibration before) {
+  Findings findings("the strain gains cannot be calibrated with this load:");
+  const std::vector<std::string> names = StrainColumns(sensors_);
+  std::array<Sums, kMaxStrainChannels> sums = sums_;
+  bool learned = false;
+  for (std::size_t i = 0; i < sensors_.strain.size(); ++i) {
+    const StrainChannelConfig& row = sensors_.strain[i];
+    if (row.link != load.link || !CheckSteady(sensors_, readings, i, names[i], &findings)) continue;
+    const LinkParameters& link = arm_.link[static_cast<std::size_t>(row.link - 1)];
+    const double expected = CountsPerUnit(sensors_, row) * StaticStrain(link, load, row.position_m);
+    if (std::fabs(expected) < kSmallestStrain_counts) continue;
+    const double measured = readings.strain_mean[i] - row.offset_counts -
+                            static_cast<double>(before.strain_zero_counts[i]);
+    sums[i].expected_squared += expected * expected;
+    sums[i].expected_times_measured += expected * measured;
+    const double error = sums[i].expected_times_measured / sums[i].expected_squared - 1.0;
+    if (std::fabs(error) > kLargestGainError) {
+      findings.Add(names[i],
+                   Text("reads %.0f counts where the load explains %.0f", measured, expected));
+    }
+    before.strain_gain_error[i] = static_cast<float>(error);
+    learned = true;
+  }
+  findings.RefuseIfAny();
+  if (!learned) {
+    throw Refused("this load strains no channel of link " + std::to_string(load.link) +
+                  " by 20 counts: use a larger one, or further out");
+  }
+  sums_ = sums;
+  return before;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,297 @@
+#include "controller/commissioning/commissioner.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
+
+#include "controller/commissioning/calibration_file.h"
+#include "controller/law/refused.h"
+#include "controller/runlog/csv.h"
+#include "hal/line_names.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+void RequireIdle(const std::string& command, SafetyState state) {
+  if (state == SafetyState::kIdle) return;
+  throw Refused(command + " needs the arm in Idle, and it is " + Name(state) +
+                ": `flexarm disarm`, or `flexarm reset` after a trip");
+}
+
+void RequireArmed(const std::string& command, SafetyState state) {
+  if (state == SafetyState::kArmed) return;
+  throw Refused(command + " moves the arm, so it needs Armed, and it is " + Name(state) +
+                ": `flexarm arm`");
+}
+
+double Number(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_number()) {
+    throw Refused(std::string("expected a number in '") + key + "'");
+  }
+  return found->get<double>();
+}
+
+int OneOrTwo(const Json& command, const char* key) {
+  const double value = Number(command, key);
+  if (value != 1.0 && value != 2.0) throw Refused(std::string(key) + " must be 1 or 2");
+  return static_cast<int>(value);
+}
+
+Json StrainJson(const SensorConfig& sensors, const Calibration& calibration,
+                const RestReadings& readings) {
+  Json rows = Json::array();
+  const std::vector<std::string> names = StrainColumns(sensors);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    rows.push_back({{"channel", names[i]},
+                    {"zero_counts", calibration.strain_zero_counts[i]},
+                    {"gain_error", calibration.strain_gain_error[i]},
+                    {"mean_counts", readings.strain_mean[i]},
+                    {"sigma_counts", readings.strain_sigma[i]}});
+  }
+  return rows;
+}
+
+Json EncoderJson(const SensorConfig& sensors, const Calibration& calibration) {
+  Json rows = Json::array();
+  for (const EncoderConfig& encoder : sensors.encoder) {
+    rows.push_back(
+        {{"joint", CounterName(encoder.counter)},
+         {"zero_counts", calibration.counter_zero[static_cast<std::size_t>(encoder.counter)]}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+// Exactly one of the two ends is set.
+struct Commissioner::Job {
+  std::string command;
+  RestMeter rest{1};
+  FromRest from_rest;
+  FromRun from_run;
+  std::vector<TickRecord> run;
+};
+
+Commissioner::Commissioner(const StackConfig& config)
+    : config_(config),
+      file_(std::filesystem::path(config.daemon.log_directory) /
+            config.commissioning.calibration_file),
+      gains_(config.arm, config.sensors) {
+  const AnglesAtStart angles = config.commissioning.angles_at_start;
+  angle_known_.fill(angles != AnglesAtStart::kLost);
+  const std::optional<Calibration> found = ReadCalibration(file_, config.sensors);
+  if (!found) return;
+  calibration_ = *found;
+  if (angles != AnglesAtStart::kAbsolute) calibration_.counter_zero = {};
+}
+
+Commissioner::~Commissioner() = default;
+
+void Commissioner::Abort() { job_.reset(); }
+
+bool Commissioner::Knows(const std::string& command) {
+  return command == "tare" || command == "zero" || command == "calibrate" || command == "pluck" ||
+         command == "home";
+}
+
+std::string Commissioner::WhyNoRun() const {
+  if (config_.commissioning.prove_before_run && !proven_) {
+    return "The wiring has not been proven since the daemon started. First `flexarm pluck`.";
+  }
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    if (angle_known_[joint]) continue;
+    return "The angle of joint " + std::to_string(joint + 1) +
+           " is not known since the daemon started. First `flexarm zero`, or `flexarm home`.";
+  }
+  return {};
+}
+
+CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) {
+  if (busy()) throw Refused("busy with " + job_->command + ": wait for its end, or `flexarm stop`");
+  const std::string name = command.value("command", "");
+  if (name == "pluck") return StartPluck(state);
+  if (name == "home") return StartHome(command, state);
+  if (name == "zero") {
+    StartZero(command, state);
+  } else if (name == "calibrate") {
+    StartCalibrate(command, state);
+  } else {
+    StartRest(name, state, [this](const RestReadings& readings) {
+      Adopt(Tare(config_.sensors, readings, calibration_));
+      gains_ = GainCalibration(config_.arm, config_.sensors);  // loads count from their own zero
+      return Json{{"strain", StrainJson(config_.sensors, calibration_, readings)}};
+    });
+  }
+  return {};
+}
+
+void Commissioner::StartRest(const std::string& command, SafetyState state, FromRest then) {
+  RequireIdle(command, state);
+  const double ticks = config_.commissioning.measure_s / (config_.loop.period_ms * 1e-3);
+  job_ = std::make_unique<Job>(Job{.command = command,
+                                   .rest = RestMeter(static_cast<int>(std::lround(ticks))),
+                                   .from_rest = std::move(then),
+                                   .from_run = {},
+                                   .run = {}});
+}
+
+void Commissioner::StartZero(const Json& command, SafetyState state) {
+  std::array<double, 2> hub_rad{};
+  if (const auto found = command.find("angle_deg"); found != command.end()) {
+    if (!found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
+        !(*found)[1].is_number()) {
+      throw Refused("angle_deg must be two numbers");
+    }
+    for (std::size_t i = 0; i < 2; ++i) hub_rad[i] = (*found)[i].get<double>() * kRadPerDeg;
+  }
+  StartRest("zero", state, [this, hub_rad](const RestReadings& readings) {
+    Adopt(Zero(config_.sensors, readings, hub_rad, calibration_));
+    angle_known_.fill(true);
+    return Json{{"encoder", EncoderJson(config_.sensors, calibration_)}};
+  });
+}
+
+void Commissioner::StartCalibrate(const Json& command, SafetyState state) {
+  const StaticLoad load{.link = OneOrTwo(command, "link"),
+                        .force_n = Number(command, "force_n"),
+                        .at_m = Number(command, "at_m")};
+  double length_m = 0.0;
+  for (const BeamSection& section :
+       config_.arm.link[static_cast<std::size_t>(load.link - 1)].section) {
+    length_m += section.length_m;
+  }
+  if (!(load.at_m > 0.0) || load.at_m > length_m) {
+    throw Refused("at_m must lie on link " + std::to_string(load.link) + ", above 0 and at most " +
+                  std::to_string(length_m) + " m");
+  }
+  if (load.force_n == 0.0) throw Refused("force_n must not be zero");
+  StartRest("calibrate", state, [this, load](const RestReadings& readings) {
+    Adopt(gains_.Add(load, readings, calibration_));
+    return Json{{"strain", StrainJson(config_.sensors, calibration_, readings)}};
+  });
+}
+
+CommissioningMotion Commissioner::StartPluck(SafetyState state) {
+  RequireArmed("pluck", state);
+  job_ = std::make_unique<Job>();
+  job_->command = "pluck";
+  job_->from_run = [this](const std::vector<TickRecord>& run) { return Pluck(run); };
+  const double period_s = config_.loop.period_ms * 1e-3;
+  return {
+      .planned = std::make_unique<PlannedExperiment>(PluckTorques(config_.commissioning, period_s)),
+      .may_open = 0};
+}
+
+CommissioningMotion Commissioner::StartHome(const Json& command, SafetyState state) {
+  RequireArmed("home", state);
+  if (config_.commissioning.prove_before_run && !proven_) {
+    throw Refused("homing is a controlled motion, and the wiring is not proven: `flexarm pluck`");
+  }
+  const auto joint = static_cast<std::size_t>(OneOrTwo(command, "joint") - 1);
+  const std::string side = command.value("side", "");
+  if (side != "low" && side != "high") throw Refused("side must be low or high");
+  const std::size_t number = 2 * joint + (side == "high" ? 1 : 0);
+  const auto line = static_cast<Line>(number);  // limit 1 low, 1 high, 2 low, 2 high
+  const CommissioningConfig& c = config_.commissioning;
+  const double step_rad = c.home_rate_deg_per_s * kRadPerDeg * config_.loop.period_ms * 1e-3;
+  const HomingPlan plan{.line = line,
+                        .joint = joint,
+                        .step_rad = side == "high" ? step_rad : -step_rad,
+                        .travel_rad = c.home_travel_deg * kRadPerDeg,
+                        .back_rad = c.home_back_deg * kRadPerDeg};
+  job_ = std::make_unique<Job>();
+  job_->command = "home";
+  const double switch_deg = c.switch_angle_deg[number];
+  job_->from_run = [this, joint, line, switch_deg](const std::vector<TickRecord>& run) {
+    return Home(run, joint, line, switch_deg);
+  };
+  return {.planned = std::make_unique<PlannedExperiment>(plan), .may_open = LineBit(line)};
+}
+
+Json Commissioner::Pluck(const std::vector<TickRecord>& run) {
+  const PluckVerdict verdict = JudgePluck(config_, run);
+  proven_ = verdict.passed();
+  Json answer{{"passed", verdict.passed()}, {"answer", Json::array()}, {"finding", Json::array()}};
+  for (const PluckAnswer& a : verdict.answer) {
+    answer["answer"].push_back(
+        {{"channel", a.channel}, {"gain", a.gain}, {"match", a.match}, {"provable", a.provable}});
+  }
+  std::string text;
+  for (const PluckFinding& f : verdict.finding) {
+    answer["finding"].push_back({{"channel", f.channel}, {"problem", f.problem}});
+    text += "\n  " + f.channel + ": " + f.problem;
+  }
+  if (!verdict.passed()) {
+    answer["ok"] = false;
+    answer["error"] = "the wiring is not what the config says:" + text;
+  }
+  return answer;
+}
+
+Json Commissioner::Home(const std::vector<TickRecord>& run, std::size_t joint, Line line,
+                        double switch_deg) {
+  for (const TickRecord& tick : run) {
+    if ((tick.input.frame.levels & LineBit(line)) != 0) continue;
+    Calibration found = calibration_;
+    for (const EncoderConfig& encoder : config_.sensors.encoder) {
+      const auto i = static_cast<std::size_t>(encoder.counter);
+      if (i % 2 != joint) continue;
+      found.counter_zero[i] = tick.output.counts[i] - std::llround(encoder.sign * switch_deg /
+                                                                   360.0 * encoder.counts_per_turn);
+    }
+    Adopt(found);
+    angle_known_[joint] = true;
+    return {{"encoder", EncoderJson(config_.sensors, calibration_)},
+            {"contact_before_deg", tick.output.angle_rad[joint] / kRadPerDeg},
+            {"contact_deg", switch_deg}};
+  }
+  throw Refused(std::string(Name(line)) + " did not open: put the joint within " +
+                std::to_string(config_.commissioning.home_travel_deg) +
+                " deg of it by hand, and see that the switch works");
+}
+
+void Commissioner::Take(const TickRecord& tick) {
+  if (job_ == nullptr) return;
+  const SafetyState state = tick.input.safety_state;
+  Json answer;
+  try {
+    if (job_->from_rest) {
+      if (state != SafetyState::kIdle) {
+        throw Refused("the arm left Idle while it was measured; ask again");
+      }
+      if (!job_->rest.Take(tick)) return;
+      answer = job_->from_rest(job_->rest.Result());
+    } else {
+      const bool moves = TorqueAllowed(state);
+      if (state == SafetyState::kRunning) job_->run.push_back(tick);
+      if (moves || job_->run.empty()) return;
+      answer = job_->from_run(job_->run);
+    }
+  } catch (const std::exception& error) {
+    answer = {{"ok", false}, {"error", error.what()}};
+  }
+  if (!answer.contains("ok")) answer["ok"] = true;
+  answer["command"] = job_->command;
+  answer["calibration_file"] = file_.string();
+  answer_ = std::make_unique<Json>(std::move(answer));
+  job_.reset();
+}
+
+std::optional<Json> Commissioner::TakeAnswer() {
+  if (answer_ == nullptr) return std::nullopt;
+  const std::unique_ptr<Json> answer = std::move(answer_);
+  return *answer;
+}
+
+void Commissioner::Adopt(const Calibration& calibration) {
+  WriteCalibration(file_, config_.sensors, calibration);
+  calibration_ = calibration;
+}
+
+}  // namespace flexarm

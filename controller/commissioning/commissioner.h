@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controller/commissioning/calibrate.h"
+#include "controller/commissioning/pluck.h"
+#include "controller/runtime/planned_run.h"
+#include "controller/runtime/stack_config.h"
+
+namespace flexarm {
+
+/// A motion that a commissioning command asks for, to be run like an experiment.
+struct CommissioningMotion {
+  std::unique_ptr<PlannedExperiment> planned;
+  LineLevels may_open;  ///< the limit switch that it looks for
+};
+
+/// Proves the wiring of a rig and calibrates its sensors: tare, zero, calibrate, pluck, home. One
+/// command at a time; each ends in one JSON answer. Keeps the calibration file.
+///
+/// Commands, as JSON: {"command": "tare"}, {"command": "zero", "angle_deg": [a, b]},
+/// {"command": "calibrate", "link": 1, "force_n": F, "at_m": x}, {"command": "pluck"},
+/// {"command": "home", "joint": 1, "side": "low"}.
+/// Not real-time. Thread: the operator's.
+class Commissioner {
+ public:
+  /// Reads the calibration file, if there is one.
+  /// @throws InputError if it is not for these sensors
+  explicit Commissioner(const StackConfig& config);
+  ~Commissioner();
+
+  static bool Knows(const std::string& command);
+
+  /// What the loop shall use now.
+  const Calibration& calibration() const { return calibration_; }
+
+  /// Why no experiment may run yet, and what to do; empty: it may.
+  std::string WhyNoRun() const;
+
+  bool busy() const { return job_ != nullptr; }
+
+  /// Begins a command. A motion, if any, is the caller's to run.
+  /// @throws Refused if it cannot be done now, or makes no sense
+  CommissioningMotion Start(const nlohmann::json& command, SafetyState state);
+
+  /// Every step of the loop, in order.
+  void Take(const TickRecord& tick);
+
+  /// The motion was not permitted.
+  void Abort();
+
+  /// The answer of a command that has ended; once.
+  std::optional<nlohmann::json> TakeAnswer();
+
+ private:
+  struct Job;
+  using FromRest = std::function<nlohmann::json(const RestReadings&)>;
+  using FromRun = std::function<nlohmann::json(const std::vector<TickRecord>&)>;
+
+  void StartRest(const std::string& command, SafetyState state, FromRest then);
+  CommissioningMotion StartPluck(SafetyState state);
+  CommissioningMotion StartHome(const nlohmann::json& command, SafetyState state);
+  void StartZero(const nlohmann::json& command, SafetyState state);
+  void StartCalibrate(const nlohmann::json& command, SafetyState state);
+  nlohmann::json Home(const std::vector<TickRecord>& run, std::size_t joint, Line line,
+                      double switch_deg);
+  nlohmann::json Pluck(const std::vector<TickRecord>& run);
+  /// Saves, and from now on gives, `calibration`.
+  void Adopt(const Calibration& calibration);
+
+  StackConfig config_;
+  std::filesystem::path file_;
+  Calibration calibration_{};
+  GainCalibration gains_;
+  bool proven_ = false;
+  std::array<bool, 2> angle_known_{};
+  std::unique_ptr<Job> job_;
+  std::unique_ptr<nlohmann::json> answer_;
+};
+
+}  // namespace flexarm

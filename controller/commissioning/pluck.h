@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "controller/commissioning/commissioning_config.h"
+#include "controller/runlog/records.h"
+#include "controller/runtime/stack_config.h"
+
+namespace flexarm {
+
+// The pluck test proves the wiring: a small torque on one joint, then on the other, in open loop,
+// and what every encoder and gauge says to it is held against the model. Not real-time.
+
+/// The torques of the test, sample by sample: rest, a pulse each way on joint 1, rest, the same on
+/// joint 2, rest. Each pair of pulses has zero area, so the arm ends at rest near where it began.
+std::vector<std::array<double, 2>> PluckTorques(const CommissioningConfig& config, double period_s);
+
+/// How one channel answered.
+struct PluckAnswer {
+  std::string channel;  ///< "hub1", "strain_1_01", "drive1" (the median of its joint's channels)
+  double gain;          ///< measured over expected motion: 1 is right
+  double match;         ///< share of the motion that `gain` times the expected one explains
+  bool provable;        ///< the test moves this channel enough to say anything
+};
+
+/// A channel that is wired wrong, and how.
+struct PluckFinding {
+  std::string channel;
+  std::string problem;
+};
+
+struct PluckVerdict {
+  std::vector<PluckAnswer> answer;    ///< drives, encoders, strain channels
+  std::vector<PluckFinding> finding;  ///< empty: the wiring is proven
+  bool passed() const { return finding.empty(); }
+};
+
+/// @param run  the samples from the start of the test to its end, or to the trip that ended it
+PluckVerdict JudgePluck(const StackConfig& config, const std::vector<TickRecord>& run);
+
+}  // namespace flexarm

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "controller/runlog/records.h"
+#include "hal/sensor_frame.h"
+
+namespace flexarm {
+
+/// What the sensors of a still arm read, averaged over some samples. Raw counts.
+struct RestReadings {
+  int ticks;
+  std::array<double, kMaxStrainChannels> strain_mean;   ///< raw counts
+  std::array<double, kMaxStrainChannels> strain_sigma;  ///< standard deviation
+  std::array<int, kMaxStrainChannels> strain_missing;   ///< samples without a valid reading
+  std::array<std::int64_t, kCounters> counts;           ///< unwrapped, of the last sample
+  std::array<std::int64_t, kCounters> travel_counts;    ///< largest less smallest
+  std::uint32_t counters_good;                          ///< bit i: good in every sample
+};
+
+/// Collects RestReadings. Not real-time safe only because nobody needs it to be.
+class RestMeter {
+ public:
+  /// @param ticks  to average over, at least 2
+  explicit RestMeter(int ticks) : wanted_(ticks) {}
+
+  /// True if this was the last one that was needed.
+  bool Take(const TickRecord& tick);
+
+  bool started() const { return ticks_ > 0; }
+  RestReadings Result() const;
+
+ private:
+  int wanted_;
+  int ticks_ = 0;
+  std::array<double, kMaxStrainChannels> sum_{};
+  std::array<double, kMaxStrainChannels> sum_of_squares_{};
+  std::array<int, kMaxStrainChannels> valid_{};
+  std::array<std::int64_t, kCounters> lowest_{};
+  std::array<std::int64_t, kCounters> highest_{};
+  std::array<std::int64_t, kCounters> counts_{};
+  std::uint32_t counters_good_ = ~std::uint32_t{0};
+};
+
+}  // namespace flexarm

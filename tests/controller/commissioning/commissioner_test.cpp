@@ -1,0 +1,245 @@
+// Commissioning of the simulated arm by the whole stack, in lock step.
+
+#include "controller/commissioning/commissioner.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "controller/law/refused.h"
+#include "controller/runtime/lockstep_executor.h"
+#include "controller/runtime/simulated_stack.h"
+#include "tests/controller/commissioning/rest_ticks.h"
+#include "tests/controller/law/shipped_rig.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+constexpr std::int64_t kLookNs = 20'000'000;
+
+Config CommissionedRig(std::vector<std::string> overrides) {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const std::string folder = testing::TempDir() + "commissioner_" + test->name();
+  std::filesystem::remove_all(folder);
+  overrides.push_back("log.directory='" + folder + "'");
+  return ShippedRig(overrides);
+}
+
+// The operator's side of the stack, reduced to commissioning.
+class Bench {
+ public:
+  explicit Bench(const std::vector<std::string>& overrides = {})
+      : config_(CommissionedRig(overrides)),
+        stack_(config_, ShippedDesign(), config_.arm.payload_mass_kg),
+        commissioner_(config_) {
+    executor_.Add(stack_.safety());
+    executor_.Add(stack_.control());
+    executor_.Add(stack_.plant());
+    Run(1.0);
+  }
+
+  void Run(double seconds) {
+    const std::int64_t end_ns = now_ns_ + std::llround(seconds * 1e9);
+    while (now_ns_ < end_ns) Look();
+  }
+
+  void Ask(RequestKind kind, LineLevels may_open = 0) {
+    stack_.requests().Push({.kind = kind, .number = 1, .not_before_ns = 0, .may_open = may_open});
+    Run(0.04);
+  }
+
+  void Begin(const Json& command) {
+    CommissioningMotion motion = commissioner_.Start(command, state());
+    if (motion.planned == nullptr) return;
+    motions_.push_back(std::move(motion.planned));
+    stack_.Plan({.experiment = motions_.back().get(), .number = ++plans_});
+    Ask(RequestKind::kRun, motion.may_open);
+  }
+
+  /// Begins the command and runs until its answer.
+  Json Do(const Json& command, double within_s = 40.0) {
+    Begin(command);
+    const std::int64_t end_ns = now_ns_ + std::llround(within_s * 1e9);
+    while (now_ns_ < end_ns) {
+      Look();
+      if (const std::optional<Json> answer = commissioner_.TakeAnswer()) {
+        stack_.Calibrate(commissioner_.calibration());
+        Run(1.0);
+        return *answer;
+      }
+    }
+    return {{"ok", false}, {"error", "no answer"}};
+  }
+
+  SafetyState state() { return stack_.operator_permits().Read().Newest().value.state; }
+  TripCause trip() { return stack_.operator_permits().Read().Newest().value.cause; }
+  double angle_deg(std::size_t joint) const { return last_.output.angle_rad[joint] * 180.0 / M_PI; }
+  double truth_deg(std::size_t joint) const {
+    return last_.truth.hub_angle_rad[joint] * 180.0 / M_PI;
+  }
+  Commissioner& commissioner() { return commissioner_; }
+  const Config& config() const { return config_; }
+  void Press(Line line, int level) { stack_.Press({.line = line, .level = level}); }
+
+ private:
+  void Look() {
+    now_ns_ += kLookNs;
+    executor_.RunUntil(now_ns_);
+    while (stack_.operator_ticks().Pop(&last_)) commissioner_.Take(last_);
+  }
+
+  Config config_;
+  SimulatedStack stack_;
+  Commissioner commissioner_;
+  LockstepExecutor executor_;
+  std::vector<std::unique_ptr<PlannedExperiment>> motions_;
+  std::uint32_t plans_ = 0;
+  TickRecord last_{};
+  std::int64_t now_ns_ = 0;
+};
+
+// Switches within the travel of a search, and the soft limits within them.
+const std::vector<std::string> kNearSwitches = {
+    "sim.switch_angle_deg=[25.0, 25.0]", "limits.soft_angle_deg=[20.0, 20.0]",
+    "commissioning.switch_angle_deg=[-125.0, 25.0, -25.0, 25.0]",
+    "commissioning.home_back_deg=10.0"};
+
+TEST(Commissioner, TareTakesAwayWhatTheAmplifiersAddAndKeepsIt) {
+  Bench bench;
+  const Json answer = bench.Do({{"command", "tare"}});
+  EXPECT_TRUE(answer["ok"]) << answer;
+  EXPECT_EQ(answer["strain"].size(), 20u);
+  const Commissioner again(bench.config());
+  EXPECT_EQ(again.calibration(), bench.commissioner().calibration());
+}
+
+TEST(Commissioner, ZeroMakesTheAnglesWhatTheOperatorSays) {
+  Bench bench;
+  const Json answer = bench.Do({{"command", "zero"}, {"angle_deg", {10.0, -15.0}}});
+  EXPECT_TRUE(answer["ok"]) << answer;
+  EXPECT_NEAR(bench.angle_deg(0), 10.0, 360.0 / 2540.0);
+  EXPECT_NEAR(bench.angle_deg(1), -15.0, 360.0 / 2540.0);
+}
+
+TEST(Commissioner, PluckProvesTheWiringAndEndsArmed) {
+  Bench bench({"commissioning.prove_before_run=true"});
+  EXPECT_THAT(bench.commissioner().WhyNoRun(), HasSubstr("flexarm pluck"));
+  bench.Ask(RequestKind::kArm);
+  const Json answer = bench.Do({{"command", "pluck"}});
+  EXPECT_TRUE(answer["ok"]) << answer;
+  EXPECT_TRUE(answer["passed"]);
+  EXPECT_EQ(bench.state(), SafetyState::kArmed);
+  EXPECT_EQ(bench.commissioner().WhyNoRun(), "");
+}
+
+TEST(Commissioner, HomeFindsTheSwitchAndWithItTheAngle) {
+  Bench bench(kNearSwitches);
+  bench.Ask(RequestKind::kArm);
+  const Json answer = bench.Do({{"command", "home"}, {"joint", 2}, {"side", "high"}});
+  EXPECT_TRUE(answer["ok"]) << answer;
+  EXPECT_EQ(bench.state(), SafetyState::kArmed);
+  EXPECT_NEAR(answer["contact_before_deg"].get<double>(), 25.0, 0.5);
+  EXPECT_NEAR(bench.truth_deg(1), 15.0, 2.0) << "back off the switch";
+  // What a sample at 5 deg/s and a count leave open.
+  EXPECT_NEAR(bench.angle_deg(1), bench.truth_deg(1), 0.3);
+}
+
+TEST(Commissioner, HomeGivesTheAngleOfAnArmThatWasLost) {
+  std::vector<std::string> overrides = kNearSwitches;
+  overrides.push_back("commissioning.angles_at_start=lost");
+  Bench bench(overrides);
+  EXPECT_THAT(bench.commissioner().WhyNoRun(), HasSubstr("angle of joint 1"));
+  bench.Ask(RequestKind::kArm);
+  // The config has the low switch of joint 1 at -125 degrees, and the rig at -25.
+  EXPECT_TRUE(bench.Do({{"command", "home"}, {"joint", 1}, {"side", "low"}})["ok"]);
+  EXPECT_NEAR(bench.angle_deg(0), bench.truth_deg(0) - 100.0, 0.3);
+  EXPECT_THAT(bench.commissioner().WhyNoRun(), HasSubstr("angle of joint 2"));
+}
+
+TEST(Commissioner, HomeThatFindsNoSwitchSaysSo) {
+  Bench bench({"commissioning.home_travel_deg=5.0"});
+  bench.Ask(RequestKind::kArm);
+  const Json answer = bench.Do({{"command", "home"}, {"joint", 1}, {"side", "low"}});
+  EXPECT_FALSE(answer["ok"]);
+  EXPECT_THAT(answer["error"].get<std::string>(), HasSubstr("limit-1-low did not open"));
+  EXPECT_EQ(bench.state(), SafetyState::kArmed);
+  EXPECT_EQ(bench.commissioner().calibration(), Calibration{});
+}
+
+TEST(Commissioner, HomeOntoAnotherSwitchTrips) {
+  Bench bench(kNearSwitches);
+  bench.Ask(RequestKind::kArm);
+  bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
+  bench.Run(1.0);
+  EXPECT_EQ(bench.state(), SafetyState::kRunning);
+  bench.Press(Line::kLimit2High, 0);
+  bench.Run(0.02);
+  EXPECT_EQ(bench.state(), SafetyState::kTripped);
+  EXPECT_EQ(bench.trip(), TripCause::kLimitSwitch2High);
+}
+
+TEST(Commissioner, HomeThatDoesNotComeOffItsSwitchTrips) {
+  Bench bench({"commissioning.home_back_deg=60.0", "safety.homing_contact_s=1.0"});
+  bench.Ask(RequestKind::kArm);
+  bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
+  bench.Run(1.0);
+  bench.Press(Line::kLimit1Low, 0);
+  bench.Run(0.9);
+  EXPECT_EQ(bench.state(), SafetyState::kRunning) << "on its way back";
+  bench.Run(0.2);
+  EXPECT_EQ(bench.state(), SafetyState::kTripped);
+  EXPECT_EQ(bench.trip(), TripCause::kLimitSwitch1Low);
+}
+
+TEST(Commissioner, RefusesWhatTheStateDoesNotAllow) {
+  Bench bench;
+  Commissioner& commissioner = bench.commissioner();
+  const auto told = [&](const Json& command) {
+    return Refusal<Refused>([&] { commissioner.Start(command, bench.state()); });
+  };
+  EXPECT_THAT(told({{"command", "pluck"}}), HasSubstr("flexarm arm"));
+  EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "low"}}), HasSubstr("flexarm arm"));
+  bench.Ask(RequestKind::kArm);
+  for (const char* name : {"tare", "zero"}) {
+    EXPECT_THAT(told({{"command", name}}), HasSubstr("needs the arm in Idle")) << name;
+  }
+}
+
+TEST(Commissioner, RefusesWhatMakesNoSense) {
+  Bench bench;
+  const auto told = [&](const Json& command) {
+    return Refusal<Refused>([&] { bench.commissioner().Start(command, SafetyState::kArmed); });
+  };
+  EXPECT_THAT(told({{"command", "home"}, {"joint", 3}, {"side", "low"}}), HasSubstr("1 or 2"));
+  EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "up"}}), HasSubstr("low or high"));
+  EXPECT_THAT(told({{"command", "home"}, {"side", "low"}}), HasSubstr("'joint'"));
+  EXPECT_THAT(told({{"command", "calibrate"}, {"link", 1}, {"force_n", 5}, {"at_m", 2.0}}),
+              HasSubstr("lie on link 1"));
+  EXPECT_THAT(told({{"command", "zero"}, {"angle_deg", {1}}}), HasSubstr("two numbers"));
+}
+
+TEST(Commissioner, DoesOneThingAtATime) {
+  Bench bench;
+  bench.commissioner().Start({{"command", "tare"}}, bench.state());
+  EXPECT_THAT(Refusal<Refused>([&] {
+                bench.commissioner().Start({{"command", "zero"}}, bench.state());
+              }),
+              HasSubstr("busy with tare"));
+}
+
+TEST(Commissioner, HomingNeedsProvenWires) {
+  Bench bench({"commissioning.prove_before_run=true"});
+  bench.Ask(RequestKind::kArm);
+  EXPECT_THAT(Refusal<Refused>([&] {
+                bench.commissioner().Start({{"command", "home"}, {"joint", 1}, {"side", "low"}},
+                                           bench.state());
+              }),
+              HasSubstr("flexarm pluck"));
+}
+
+}  // namespace
+}  // namespace flexarm
