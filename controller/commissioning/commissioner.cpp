@@ -259,6 +259,7 @@ Json Commissioner::Home(const std::vector<TickRecord>& run, std::size_t joint, L
 void Commissioner::Take(const TickRecord& tick) {
   if (job_ == nullptr) return;
   const SafetyState state = tick.input.safety_state;
+  const Calibration before = calibration_;
   Json answer;
   try {
     if (job_->from_rest) {
@@ -278,7 +279,7 @@ void Commissioner::Take(const TickRecord& tick) {
   }
   if (!answer.contains("ok")) answer["ok"] = true;
   answer["command"] = job_->command;
-  answer["calibration_file"] = file_.string();
+  if (calibration_ != before) answer["calibration_file"] = file_.string();
   answer_ = std::make_unique<Json>(std::move(answer));
   job_.reset();
 }

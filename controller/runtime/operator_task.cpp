@@ -203,9 +203,10 @@ void OperatorTask::FinishCommissioning(Json answer) {
   answer["state"] = Name(permit_.state);
   if (permit_.state == SafetyState::kTripped) answer["trip"] = Name(permit_.cause);
   context_.stack->Calibrate(commissioner_.calibration());
-  context_.report(!ok, answer.value("command", "") + (ok ? std::string(": done, kept in ") +
-                                                               answer.value("calibration_file", "")
-                                                         : ": " + answer.value("error", "failed")));
+  const std::string kept = answer.value("calibration_file", "");
+  context_.report(
+      !ok, answer.value("command", "") + (ok ? ": done" + (kept.empty() ? "" : ", kept in " + kept)
+                                             : ": " + answer.value("error", "failed")));
   if (commissioning_client_ != kNoClient) socket_->Reply(commissioning_client_, answer.dump());
   commissioning_client_ = kNoClient;
 }
