@@ -1,8 +1,9 @@
 #include "controller/commissioning/calibrate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
@@ -18,13 +19,6 @@ constexpr double kLargestZero = 0.25;   // of the converter's range to either si
 constexpr double kStill_deg = 0.1;  // that a joint may creep while it is zeroed; one count at least
 constexpr double kSmallestStrain_counts = 20.0;
 constexpr double kLargestGainError = 0.3;
-
-std::string Text(const char* format, double a, double b) {
-  std::array<char, 160> text{};
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): two numbers into one sentence
-  std::snprintf(text.data(), text.size(), format, a, b);
-  return text.data();
-}
 
 // Every problem on a line of its own, or nothing.
 class Findings {
@@ -46,15 +40,16 @@ class Findings {
 bool CheckSteady(const SensorConfig& sensors, const RestReadings& readings, std::size_t i,
                  const std::string& name, Findings* findings) {
   if (readings.strain_missing[i] > 0) {
-    findings->Add(name, Text("%.0f of %.0f readings are missing", readings.strain_missing[i],
-                             readings.ticks));
+    findings->Add(name, fmt::format("{} of {} readings are missing", readings.strain_missing[i],
+                                    readings.ticks));
     return false;
   }
   const double expected = std::hypot(sensors.strain_input.noise_counts, kQuantisation);
   if (readings.strain_sigma[i] > kSteadySigmas * expected) {
-    findings->Add(name,
-                  Text("varies by %.1f counts (standard deviation); at rest %.1f are expected",
-                       readings.strain_sigma[i], expected));
+    findings->Add(
+        name,
+        fmt::format("varies by {:.1f} counts (standard deviation); at rest {:.1f} are expected",
+                    readings.strain_sigma[i], expected));
     return false;
   }
   return true;
@@ -83,9 +78,11 @@ Calibration Tare(const SensorConfig& sensors, const RestReadings& readings, Cali
     if (!CheckSteady(sensors, readings, i, names[i], &findings)) continue;
     const double zero = readings.strain_mean[i] - sensors.strain[i].offset_counts;
     if (std::fabs(zero) > largest) {
-      findings.Add(names[i], Text("stands %.0f counts from its zero, more than %.0f: a gauge under "
-                                  "load, a broken bridge, or a wrong word order",
-                                  zero, largest));
+      findings.Add(
+          names[i],
+          fmt::format("stands {:.0f} counts from its zero, more than {:.0f}: a gauge under "
+                      "load, a broken bridge, or a wrong word order",
+                      zero, largest));
     }
     before.strain_zero_counts[i] = static_cast<float>(zero);
   }
@@ -102,9 +99,10 @@ Calibration Zero(const SensorConfig& sensors, const RestReadings& readings,
     if ((readings.counters_good >> i & 1u) == 0) {
       findings.Add(CounterName(encoder.counter), "was not read all the time");
     } else if (static_cast<double>(readings.travel_counts[i]) > allowed) {
-      findings.Add(CounterName(encoder.counter),
-                   Text("moved by %.0f counts; at rest %.0f are allowed",
-                        static_cast<double>(readings.travel_counts[i]), std::floor(allowed)));
+      findings.Add(
+          CounterName(encoder.counter),
+          fmt::format("moved by {:.0f} counts; at rest {:.0f} are allowed",
+                      static_cast<double>(readings.travel_counts[i]), std::floor(allowed)));
     }
     const double counts_at_angle =
         encoder.sign * hub_rad[i % 2] * encoder.counts_per_turn / (2.0 * std::numbers::pi);
@@ -139,8 +137,8 @@ Calibration GainCalibration::Add(const StaticLoad& load, const RestReadings& rea
     sums[i].expected_times_measured += expected * measured;
     const double error = sums[i].expected_times_measured / sums[i].expected_squared - 1.0;
     if (std::fabs(error) > kLargestGainError) {
-      findings.Add(names[i],
-                   Text("reads %.0f counts where the load explains %.0f", measured, expected));
+      findings.Add(names[i], fmt::format("reads {:.0f} counts where the load explains {:.0f}",
+                                         measured, expected));
     }
     before.strain_gain_error[i] = static_cast<float>(error);
     learned = true;

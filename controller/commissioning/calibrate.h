@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <vector>
+#include <utility>
 
 #include "controller/commissioning/rest_readings.h"
 #include "estimator/calibration.h"
@@ -38,8 +38,8 @@ double StaticStrain(const LinkParameters& link, const StaticLoad& load, double x
 /// The gains of a link's strain channels by least squares over several known loads.
 class GainCalibration {
  public:
-  GainCalibration(const ArmParameters& arm, const SensorConfig& sensors)
-      : arm_(arm), sensors_(sensors) {}
+  GainCalibration(ArmParameters arm, SensorConfig sensors)
+      : arm_(std::move(arm)), sensors_(std::move(sensors)) {}
 
   /// One more load. A channel that it strains by less than twenty counts learns nothing from it.
   /// @returns `before` with the gains of that link's channels

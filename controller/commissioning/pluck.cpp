@@ -1,8 +1,10 @@
 #include "controller/commissioning/pluck.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <numbers>
 
 #include "controller/commissioning/pluck_model.h"
 #include "controller/runlog/csv.h"
@@ -35,13 +37,6 @@ double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
-
-std::string Text(const char* format, double a, double b = 0.0) {
-  std::array<char, 200> text{};
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): numbers into one sentence
-  std::snprintf(text.data(), text.size(), format, a, b);
-  return text.data();
 }
 
 int Samples(double time_s, double period_s) {
@@ -102,7 +97,7 @@ class Judge {
   double CountsPerUnit(Eigen::Index column) const {
     if (column < kCounters) {
       for (const EncoderConfig& encoder : config_.sensors.encoder) {
-        if (encoder.counter == column) return encoder.counts_per_turn / (2.0 * 3.14159265);
+        if (encoder.counter == column) return encoder.counts_per_turn / (2.0 * std::numbers::pi);
       }
       return 0.0;
     }
@@ -180,9 +175,11 @@ class Judge {
     } else if (gain < 0.0) {
       Find(drive, "pushes the wrong way: its sign is inverted");
     } else if (std::fabs(gain - 1.0) > limits_.motion_tolerance) {
-      Find(drive, Text("moves the arm %.2f times as far as the model (tolerance %.2f): torque per "
-                       "volt or per mille, gear, or payload",
-                       gain, limits_.motion_tolerance));
+      Find(drive,
+           fmt::format(
+               "moves the arm {:.2f} times as far as the model (tolerance {:.2f}): torque per "
+               "volt or per mille, gear, or payload",
+               gain, limits_.motion_tolerance));
     } else {
       return true;
     }
@@ -217,8 +214,8 @@ class Judge {
       if (std::fabs(ratio - 1.0) <= kHubAgainstRotor) continue;
       const bool rotor = std::fabs(relative[joint + 2] - 1.0) > std::fabs(relative[joint] - 1.0);
       Find(CounterName(static_cast<int>(rotor ? joint + 2 : joint)),
-           Text("turns %.3f times as far as the joint's other encoder: counts_per_turn",
-                rotor ? ratio : 1.0 / ratio));
+           fmt::format("turns {:.3f} times as far as the joint's other encoder: counts_per_turn",
+                       rotor ? ratio : 1.0 / ratio));
     }
   }
 
@@ -232,10 +229,12 @@ class Judge {
     } else if (relative < 0.0) {
       Find(name, "counts the wrong way: its sign is inverted");
     } else if (answer.match < kGoodMatch) {
-      Find(name, Text("does not follow the motion (%.0f %% explained)", 100.0 * answer.match));
+      Find(name,
+           fmt::format("does not follow the motion ({:.0f} % explained)", 100.0 * answer.match));
     } else if (std::fabs(relative - 1.0) > limits_.motion_tolerance) {
-      Find(name, Text("turns %.2f times as far as the model (tolerance %.2f): counts_per_turn",
-                      relative, limits_.motion_tolerance));
+      Find(name,
+           fmt::format("turns {:.2f} times as far as the model (tolerance {:.2f}): counts_per_turn",
+                       relative, limits_.motion_tolerance));
     } else {
       return true;
     }
@@ -288,7 +287,8 @@ class Judge {
     } else if (std::fabs(relative) < kSilent) {
       Find(names_[i], "does not move with its link: not connected, or the wrong channel");
     } else if (answer.match < kGoodMatch) {
-      Find(names_[i], Text("does not follow its link (%.0f %% explained)", 100.0 * answer.match));
+      Find(names_[i],
+           fmt::format("does not follow its link ({:.0f} % explained)", 100.0 * answer.match));
     } else if (relative < 0.0) {
       Find(names_[i], "is inverted: its face, or the polarity of its bridge");
     } else {
@@ -312,8 +312,9 @@ class Judge {
     if (gauges->empty()) return;
     if (std::fabs(family - 1.0) > limits_.motion_tolerance) {
       Find("strain_" + std::to_string(link) + "_*",
-           Text("all read %.2f times what the model does (tolerance %.2f): the amplifier's gain",
-                family, limits_.motion_tolerance));
+           fmt::format(
+               "all read {:.2f} times what the model does (tolerance {:.2f}): the amplifier's gain",
+               family, limits_.motion_tolerance));
     }
     double largest = 0.0;
     for (const Gauge& g : *gauges) largest = std::max(largest, g.amplitude);
@@ -331,9 +332,10 @@ class Judge {
         partner->suspect = false;
         Find(names_[g.channel] + ", " + names_[partner->channel], "are exchanged");
       } else {
-        Find(names_[g.channel], Text("reads %.2f times what the rest of its link says (tolerance "
-                                     "%.2f): gain, position, or wrong channel",
-                                     g.relative / family, limits_.gauge_tolerance));
+        Find(names_[g.channel],
+             fmt::format("reads {:.2f} times what the rest of its link says (tolerance "
+                         "{:.2f}): gain, position, or wrong channel",
+                         g.relative / family, limits_.gauge_tolerance));
       }
       g.suspect = false;
     }
