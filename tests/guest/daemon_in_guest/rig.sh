@@ -1,0 +1,76 @@
+# Sourced inside the guest: the machine that `cmake --install` made, a CAN interface and GPIO lines,
+# and the programs between them: `flexarm rig`, which plays the devices, and the unchanged daemon
+# with its real drivers.
+# shellcheck shell=bash disable=SC2034
+
+cp -a /mnt/share/machine/. /
+configs=/usr/local/share/flexarm/config
+experiment=$configs/experiments/square-30deg.toml
+export FLEXARM_SOCKET=$PWD/flexarmd.sock
+
+modprobe -a vcan can-raw gpio-sim
+ip link add vcan0 type vcan
+ip link set vcan0 txqueuelen 10 up  # the driver refuses a long queue
+mountpoint -q /sys/kernel/config || mount -t configfs none /sys/kernel/config
+mkdir -p /sys/kernel/config/gpio-sim/rig/bank
+echo 8 >/sys/kernel/config/gpio-sim/rig/bank/num_lines
+echo 1 >/sys/kernel/config/gpio-sim/rig/live
+chip=$(cat /sys/kernel/config/gpio-sim/rig/bank/chip_name)
+sed "s/^chip = .*/chip = \"$chip\"/" $configs/hil-wire.toml >wire.toml
+sed -i "s#^extends = .*#extends = \"$configs/thesis-rig.toml\"#" wire.toml
+
+start_rig() {
+  rm -f rig.in rig.out
+  mkfifo rig.in
+  chrt -f 75 flexarm rig -c wire.toml --json <rig.in >>rig.out 2>rig.err &
+  rig=$!
+  exec 3>rig.in
+  within 20 grep -q playing rig.err
+}
+
+stop_rig() {
+  kill $rig
+  wait $rig
+  exec 3>&-
+}
+
+start_daemon() {
+  flexarmd --config wire.toml --log-dir runs --socket "$FLEXARM_SOCKET" 2>daemon.log &
+  daemon=$!
+  within 30 grep -q 'Starting -> Idle' daemon.log
+  sleep 1 # at rest for half a second
+}
+
+start_run() {
+  check "armed" flexarm arm
+  check "running" flexarm run $experiment
+}
+
+# What the hardware sees now: torque, relay, charge pump.
+hardware() {
+  : >rig.out
+  echo report >&3
+  within 5 grep -q torque_nm rig.out
+  tail -n 1 rig.out | jq -c '[.torque_nm, .relay_closed, .pump_alive]'
+}
+dead='[[0,0],false,false]'
+
+# What a reset takes after a trip.
+press_and_reset() {
+  echo press reset-button 1 >&3
+  sleep 0.1
+  echo press reset-button 0 >&3
+  sleep 0.6 # at rest for half a second
+  flexarm reset
+}
+
+state() { flexarm status --json | jq -r .state; }
+bus() { flexarm status --json | jq -r ".buses[] | select(.name == \"$1\") | .$2"; }
+bus_is_ok() { [[ $(bus "$1" ok) == true ]]; }
+missed_nothing() {  # missed_nothing THREAD..
+  local thread
+  for thread; do
+    check "$thread missed and skipped nothing" \
+      grep -q " $thread: [0-9]* activations, 0 missed deadlines, 0 skipped periods" daemon.log
+  done
+}
