@@ -1,0 +1,153 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <semaphore>
+#include <thread>
+#include <vector>
+
+#include "controller/runtime/task.h"
+
+namespace flexarm {
+
+/// Runs tasks on a simulated clock and lets some of them block: while one waits, the others run.
+/// One processor that costs no time; a task that is behind skips whole periods, as under
+/// RealtimeExecutor.
+///
+/// A task that may block has a thread of its own, but only one thread runs at a time, and which is
+/// decided by instant and priority alone: every run is the same.
+class BlockingExecutor {
+ public:
+  struct Statistics {
+    std::int64_t activations = 0;
+    std::int64_t late = 0;     ///< began after the due instant
+    std::int64_t missed = 0;   ///< ended after the deadline
+    std::int64_t skipped = 0;  ///< whole periods
+  };
+
+  BlockingExecutor() = default;
+  ~BlockingExecutor() { Stop(); }
+  BlockingExecutor(const BlockingExecutor&) = delete;
+  BlockingExecutor& operator=(const BlockingExecutor&) = delete;
+
+  void Add(Task& task, bool may_block = false) {
+    const auto behind = std::find_if(slots_.begin(), slots_.end(), [&task](const auto& slot) {
+      return slot->traits.priority < task.traits().priority;
+    });
+    auto& slot = *slots_.insert(behind, std::make_unique<Slot>());
+    slot->task = &task;
+    slot->traits = task.traits();
+    slot->next_ns = slot->traits.phase_ns;
+    if (may_block) slot->thread = std::thread([this, s = slot.get()] { Loop(s); });
+  }
+
+  /// Ends the threads; what waits goes on at once, so all that the tasks use must still be there.
+  void Stop() {
+    over_ = true;
+    for (const auto& slot : slots_) {
+      if (!slot->thread.joinable()) continue;
+      slot->go.release();
+      slot->thread.join();
+    }
+  }
+
+  std::int64_t now_ns() const { return now_ns_; }
+
+  /// Everything that is due before `end_ns`.
+  void RunUntil(std::int64_t end_ns) {
+    while (Slot* next = Next(end_ns)) {
+      now_ns_ = std::max(now_ns_, next->next_ns);
+      next->blocked ? Resume(next) : Begin(next);
+    }
+    now_ns_ = std::max(now_ns_, end_ns);
+  }
+
+  /// From within a task that may block: it goes on at `instant_ns`.
+  void BlockUntil(std::int64_t instant_ns) {
+    Slot* slot = running_;
+    if (over_ || instant_ns <= now_ns_) return;
+    slot->blocked = true;
+    slot->next_ns = instant_ns;
+    back_.release();
+    slot->go.acquire();
+    slot->blocked = false;
+  }
+
+  Statistics statistics(const Task& task) const {
+    for (const auto& slot : slots_) {
+      if (slot->task == &task) return slot->statistics;
+    }
+    return {};
+  }
+
+ private:
+  struct Slot {
+    Task* task = nullptr;
+    Task::Traits traits{};
+    std::int64_t due_ns = 0;   // of the activation under way
+    std::int64_t next_ns = 0;  // when it is due again, or goes on
+    bool blocked = false;      // in the middle of an activation
+    int missed_in_a_row = 0;
+    Statistics statistics{};
+    std::binary_semaphore go{0};
+    std::thread thread;
+  };
+
+  // The first that is due, of those the one with the highest priority.
+  Slot* Next(std::int64_t end_ns) {
+    Slot* next = nullptr;
+    for (const auto& slot : slots_) {
+      const bool sooner = next == nullptr || slot->next_ns < next->next_ns;
+      if (slot->next_ns < end_ns && sooner) next = slot.get();
+    }
+    return next;
+  }
+
+  void Begin(Slot* slot) {
+    const std::int64_t behind = (now_ns_ - slot->next_ns) / slot->traits.period_ns;
+    slot->due_ns = slot->next_ns + behind * slot->traits.period_ns;
+    slot->missed_in_a_row += static_cast<int>(behind);
+    slot->statistics.skipped += behind;
+    slot->statistics.late += now_ns_ > slot->due_ns ? 1 : 0;
+    ++slot->statistics.activations;
+    Resume(slot);
+  }
+
+  void Resume(Slot* slot) {
+    if (slot->thread.joinable()) {
+      running_ = slot;
+      slot->go.release();
+      back_.acquire();  // it has ended, or it waits
+      if (slot->blocked) return;
+    } else {
+      RunTask(slot);
+    }
+    const bool missed = now_ns_ > slot->due_ns + slot->traits.deadline_ns;
+    slot->statistics.missed += missed ? 1 : 0;
+    slot->missed_in_a_row = missed ? slot->missed_in_a_row + 1 : 0;
+    slot->next_ns = slot->due_ns + slot->traits.period_ns;
+  }
+
+  static void RunTask(Slot* slot) {
+    slot->task->Run({.due_ns = slot->due_ns, .missed_in_a_row = slot->missed_in_a_row});
+  }
+
+  void Loop(Slot* slot) {
+    for (;;) {
+      slot->go.acquire();
+      if (over_) return;
+      RunTask(slot);
+      if (over_) return;
+      back_.release();
+    }
+  }
+
+  std::int64_t now_ns_ = 0;
+  Slot* running_ = nullptr;
+  bool over_ = false;
+  std::binary_semaphore back_{0};
+  std::vector<std::unique_ptr<Slot>> slots_;  // in order of priority, then of Add
+};
+
+}  // namespace flexarm

@@ -1,0 +1,214 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "config/config.h"
+#include "controller/runtime/task.h"
+#include "hal/canopen/canopen_device.h"
+#include "hal/canopen/memory_bus.h"
+#include "hal/canopen/simulated_node.h"
+#include "hal/rig/simulated_amplifier.h"
+#include "hal/safety_lines.h"
+#include "hal/sim/simulated_rig.h"
+#include "tests/controller/wired/blocking_executor.h"
+
+// The rig of config/hil-wire.toml without a kernel's CAN and GPIO, so that its time is a test's.
+
+namespace flexarm {
+
+/// The switches, the button, the relay and the charge pump.
+class WorldLines final : public SafetyLines {
+ public:
+  LineLevels Read(std::int64_t) noexcept override { return levels; }
+  void Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+    relay = outputs.relay_closed;
+    if (outputs.pump_level != pump_) pump_toggled_ns_ = now_ns;
+    pump_ = outputs.pump_level;
+  }
+  bool PowerOn(std::int64_t now_ns) const {
+    return relay && now_ns - pump_toggled_ns_ <= 5'000'000;
+  }
+
+  LineLevels levels = kHealthyLevels;
+  bool relay = false;
+
+ private:
+  bool pump_ = false;
+  std::int64_t pump_toggled_ns_ = -1'000'000'000;
+};
+
+/// Nodes on a CAN bus in memory, amplifiers behind real sockets, the simulated arm between them: a
+/// millisecond a time, after everybody else who is due in it.
+class WiredWorld final : public Task {
+ public:
+  /// What the gauges and counters showed from an instant on.
+  struct Shown {
+    std::int64_t from_ns;
+    SensorFrame frame;
+  };
+
+  WiredWorld(const Config& config, BlockingExecutor* executor)
+      : executor_(executor), rig_(config.arm, config.sensors, config.sim) {
+    for (const CanopenNodeConfig& node : config.hal.canopen[0].node) AddNode(node);
+    for (const ModbusDeviceConfig& device : config.hal.modbus.device) {
+      amplifiers.push_back(std::make_unique<SimulatedAmplifier>(device, config.sensors));
+    }
+    Show(0);
+    for (const auto& amplifier : amplifiers) Settle(amplifier.get());
+  }
+
+  Traits traits() const noexcept override {
+    return {.name = "world",
+            .period_ns = kSliceNs,
+            .phase_ns = 0,
+            .deadline_ns = kSliceNs,
+            .priority = 1};
+  }
+
+  void Run(const Activation& activation) noexcept override {
+    wire.AdvanceTo(monotonic_ns());
+    std::array<double, 2> torque_nm{};
+    for (const Node& node : nodes_) {
+      if (!IsDrive(node.config.role) || !lines.PowerOn(activation.due_ns)) continue;
+      torque_nm[static_cast<std::size_t>(node.config.role)] =
+          node.config.sign * node.node->torque_per_mille() * node.config.torque_per_mille_nm;
+    }
+    rig_.SetTorque(torque_nm);
+    for (std::int64_t t = 0; t < kSliceNs; t += rig_.step_ns()) rig_.Step();
+    Show(activation.due_ns);
+  }
+
+  std::int64_t monotonic_ns() const { return executor_->now_ns() + epoch_ns; }
+
+  SimulatedNode& node(CanopenRole role) {
+    for (Node& node : nodes_) {
+      if (node.config.role == role) return *node.node;
+    }
+    std::abort();
+  }
+  bool drives_make_torque() {
+    return node(CanopenRole::kDrive1).torque_per_mille() != 0 ||
+           node(CanopenRole::kDrive2).torque_per_mille() != 0;
+  }
+
+  /// Whether strain row `i` really showed `counts` at `instant_ns`, or just before.
+  bool Showed(std::size_t i, std::int32_t counts, std::int64_t instant_ns) const {
+    return WasThere(instant_ns, [&](const SensorFrame& f) { return f.strain[i] == counts; });
+  }
+  bool CounterWas(std::size_t i, std::uint32_t counts, std::int64_t instant_ns) const {
+    return WasThere(instant_ns, [&](const SensorFrame& f) { return f.counter[i] == counts; });
+  }
+
+  /// What was asked of the amplifier's server is in force when this returns.
+  static void Settle(SimulatedAmplifier* amplifier) {
+    while (!amplifier->server().settled()) {
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  }
+
+  std::int64_t epoch_ns = 0;  ///< instant 0 of the loop, in the time of the wire
+  MemoryWire wire{1'000'000};
+  std::vector<std::unique_ptr<SimulatedAmplifier>> amplifiers;
+  WorldLines lines;
+
+ private:
+  static constexpr std::int64_t kSliceNs = 1'000'000;
+  struct Node {
+    CanopenNodeConfig config;
+    std::unique_ptr<MemoryBus> bus;
+    std::unique_ptr<SimulatedNode> node;
+  };
+
+  void AddNode(const CanopenNodeConfig& config) {
+    auto bus = std::make_unique<MemoryBus>(&wire, "vcan0");
+    const SimulatedNodeConfig simulated{
+        .drive = IsDrive(config.role),
+        .node_id = config.node_id,
+        .vendor = config.vendor,
+        .product = config.product,
+        .serial = config.serial,
+        .rated_torque_mnm = IsDrive(config.role)
+                                ? static_cast<std::uint32_t>(config.rated_motor_torque_mnm() + 0.5)
+                                : 0};
+    auto node = std::make_unique<SimulatedNode>(bus.get(), simulated);
+    node->Start();
+    wire.AddRunner([node = node.get()] { node->Run(); });
+    nodes_.push_back({.config = config, .bus = std::move(bus), .node = std::move(node)});
+  }
+
+  void Show(std::int64_t now_ns) noexcept {
+    const SensorFrame frame = rig_.Sample(now_ns);
+    for (Node& node : nodes_) {
+      const int counter = node.config.counter();
+      if (counter >= 0) node.node->SetPosition(frame.counter[static_cast<std::size_t>(counter)]);
+    }
+    for (const auto& amplifier : amplifiers) amplifier->Show(frame);
+    shown_.push_back({.from_ns = now_ns, .frame = frame});
+    if (shown_.size() > 500) shown_.pop_front();
+  }
+
+  // Who is due at the same instant is there first, and finds what was shown before.
+  bool WasThere(std::int64_t instant_ns,
+                const std::function<bool(const SensorFrame&)>& found) const {
+    return std::any_of(shown_.begin(), shown_.end(), [&](const Shown& shown) {
+      const std::int64_t age_ns = instant_ns - shown.from_ns;
+      return age_ns >= 0 && age_ns <= 2 * kSliceNs && found(shown.frame);
+    });
+  }
+
+  BlockingExecutor* executor_;
+  SimulatedRig rig_;
+  std::vector<Node> nodes_;
+  std::deque<Shown> shown_;
+};
+
+/// A real driver on the test's clock: each of its calls takes as long as its peer makes it take, or
+/// as the test says.
+class OnTestTime final : public BusDevice {
+ public:
+  /// From the instant of a call and what it gave: when it shall return.
+  using Returns = std::function<std::int64_t(std::int64_t call_ns, BusStatus status)>;
+
+  OnTestTime(BusDevice* driver, BlockingExecutor* executor, WiredWorld* world, Returns returns)
+      : driver_(driver), executor_(executor), world_(world), returns_(std::move(returns)) {}
+
+  const char* name() const noexcept override { return driver_->name(); }
+  std::uint32_t drives() const noexcept override { return driver_->drives(); }
+  std::int64_t worst_case_ns() const noexcept override { return driver_->worst_case_ns(); }
+  void Open() override { driver_->Open(); }
+  BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
+    world_->wire.AdvanceTo(world_->monotonic_ns());
+    return Wait(driver_->Exchange(command, part));
+  }
+  BusStatus Reconnect() noexcept override {
+    world_->wire.AdvanceTo(world_->monotonic_ns());
+    reconnects_under_power += world_->lines.relay ? 1 : 0;
+    return Wait(driver_->Reconnect());
+  }
+  BusFault FaultOf(BusStatus status) const noexcept override { return driver_->FaultOf(status); }
+  std::string FaultText(const BusFault& fault) const override { return driver_->FaultText(fault); }
+  void Close() noexcept override { driver_->Close(); }
+
+  int reconnects_under_power = 0;
+
+ private:
+  BusStatus Wait(BusStatus status) {
+    executor_->BlockUntil(returns_(executor_->now_ns(), status));
+    return status;
+  }
+
+  BusDevice* driver_;
+  BlockingExecutor* executor_;
+  WiredWorld* world_;
+  Returns returns_;
+};
+
+}  // namespace flexarm
