@@ -30,11 +30,20 @@ void ReadJoint(TableReader joint, JointParameters* out) {
   joint.Read("coulomb_friction_nm", &out->coulomb_friction_nm);
 }
 
+void ReadBacklash(TableReader joint2, BacklashParameters* out) {
+  joint2.Read("backlash_model", &out->model,
+              {{"dead_zone", BacklashModel::kDeadZone}, {"thesis", BacklashModel::kThesis}});
+  joint2.Read("backlash_rad", &out->clearance_rad);
+  joint2.Read("restitution_slope_s_per_rad", &out->restitution_slope_s_per_rad);
+}
+
 void ReadArm(TableReader root, ArmParameters* out) {
   ReadLink(root.Table("link1"), &out->link.front());
   ReadLink(root.Table("link2"), &out->link.back());
   ReadJoint(root.Table("joint1"), &out->joint.front());
-  ReadJoint(root.Table("joint2"), &out->joint.back());
+  TableReader joint2 = root.Table("joint2");
+  ReadJoint(joint2, &out->joint.back());
+  ReadBacklash(joint2, &out->joint2_backlash);
   TableReader arm = root.Table("arm");
   arm.Read("hub2_mass_kg", &out->hub2_mass_kg);
   arm.Read("motor2_mass_kg", &out->motor2_mass_kg);
@@ -42,6 +51,7 @@ void ReadArm(TableReader root, ArmParameters* out) {
   arm.Read("payload_mass_kg", &out->payload_mass_kg);
   arm.Read("payload_inertia_kgm2", &out->payload_inertia_kgm2);
   arm.Read("shape_payload_mass_kg", &out->shape_payload_mass_kg);
+  arm.Read("foreshortening", &out->foreshortening);
   arm.Read("damping", &out->damping,
            {{"none", DampingReading::kNone},
             {"ca_rho", DampingReading::kCurvatureRho},

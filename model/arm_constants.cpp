@@ -26,12 +26,14 @@ ArmConstants::ArmConstants(const ArmParameters& p, ModeCount count)
       link1(Link1Modes(Checked(p, count), count.link1)),
       link2(Link2Modes(p, count.link2)),
       L1(link1.length_m),
-      L2(link2.length_m) {
+      L2(link2.length_m),
+      I2(p.joint[1].hub_inertia_kgm2 + link2.second_moment + p.payload_mass_kg * L2 * L2),
+      backlash(p, I2 + p.payload_inertia_kgm2),
+      foreshortening(p.foreshortening) {
   const double m_p = p.payload_mass_kg;
   I1 = p.joint[0].hub_inertia_kgm2 + link1.second_moment;
   m_outboard = p.motor2_mass_kg + p.hub2_mass_kg + link2.m + m_p;
   Sx = link2.first_moment + m_p * L2;
-  I2 = p.joint[1].hub_inertia_kgm2 + link2.second_moment + m_p * L2 * L2;
   k2 = link2.k + m_p * link2.psi_tip;
   a2 = link2.a + m_p * L2 * link2.psi_tip;
   N2 = link2.N + m_p * link2.psi_tip * link2.psi_tip.transpose();
@@ -42,6 +44,10 @@ ArmConstants::ArmConstants(const ArmParameters& p, ModeCount count)
   K1 = p.joint[0].stiffness_nm_per_rad;
   K2 = p.joint[1].stiffness_nm_per_rad;
   friction_nm = {p.joint[0].coulomb_friction_nm, p.joint[1].coulomb_friction_nm};
+  if (!foreshortening) return;
+  shortening1 = ForeshorteningOf(link1, p.link[0]);
+  shortening2 = ForeshorteningOf(link2, p.link[1]);
+  AddTipMass(link2, m_p, &shortening2);
 }
 
 }  // namespace flexarm

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 
 #include "model/arm_parameters.h"
+#include "model/backlash.h"
+#include "model/foreshortening.h"
 #include "model/link_modes.h"
 
 namespace flexarm {
@@ -43,6 +45,9 @@ struct ArmConstants {
   double Ir2, J1, J2, Ip;       ///< motor 2, rotors 1 and 2, payload, kg m^2
   double K1, K2;                ///< joint stiffnesses, N m/rad
   Eigen::Vector2d friction_nm;  ///< K_F of joints 1 and 2
+  Backlash backlash;            ///< of joint 2
+  bool foreshortening;          ///< else the two below are empty
+  Foreshortening<> shortening1, shortening2;  ///< of link 1; of link 2 with the payload
 
   int dof() const { return kRigidCoordinates + m1 + m2; }
   int phi2() const { return kPhi1 + m1; }  ///< place of link 2's first modal coordinate

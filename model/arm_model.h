@@ -13,9 +13,10 @@ namespace flexarm {
 /// q = [th1 th2 th3 th4 phi1_1.. phi2_1..]; th1 and th3 against the base, th2 and th4 against the
 /// tangent at the end of link 1; counter-clockwise seen from above is positive. phi in metres of
 /// tip deflection. Off-line form in dynamic-size matrices; ArmSimulator steps the same equations
-/// fast. Not modelled: foreshortening (no centrifugal stiffening), gravity, backlash, friction
-/// (friction is a generalised force, see ArmSimulator). Source: thesis chapter 3, (3.15)-(3.22),
-/// with the errata. Real-time: start-up only (allocates).
+/// fast. Options: foreshortening (foreshortening.h; the thesis has none) and play between the gears
+/// of joint 2 (backlash.h). Not modelled: gravity; friction is a generalised force, see
+/// ArmSimulator. Source: thesis chapter 3, (3.15)-(3.22), with the errata. Real-time: start-up only
+/// (allocates).
 class ArmModel {
  public:
   /// @throws std::invalid_argument if the parameters have Problems() or a count is outside its
@@ -34,11 +35,15 @@ class ArmModel {
   Eigen::MatrixXd MassMatrix(const Eigen::VectorXd& q) const;
   /// Coriolis and centrifugal forces, quadratic in v.
   Eigen::VectorXd Bias(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
-  /// M^-1 (force - bias - D v - K q).
+  /// What the play at joint 2 adds to -K q on the right: zero without play.
+  Eigen::VectorXd BacklashForce(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
+  /// M^-1 (force - bias - D v - K q + backlash).
   Eigen::VectorXd Acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                const Eigen::VectorXd& generalized_force) const;
-  const Eigen::MatrixXd& stiffness() const { return stiffness_; }  ///< K, constant
-  const Eigen::MatrixXd& damping() const { return damping_; }      ///< D, constant
+  const Eigen::MatrixXd& stiffness() const {
+    return stiffness_;
+  }                                                            ///< K, constant; gears without play
+  const Eigen::MatrixXd& damping() const { return damping_; }  ///< D, constant
   /// dof x 2: motor torques act on th3 and th4, at the gearbox output.
   Eigen::MatrixXd InputMatrix() const;
 
@@ -47,7 +52,7 @@ class ArmModel {
 
   /// Point of the neutral line of link 1 or 2 at u_m from its root, in the base frame, m.
   Eigen::Vector2d Point(int link, double u_m, const Eigen::VectorXd& q) const;
-  /// Its velocity, m/s.
+  /// With foreshortening, u_m counts along the bent link. Its velocity, m/s.
   Eigen::Vector2d PointVelocity(int link, double u_m, const Eigen::VectorXd& q,
                                 const Eigen::VectorXd& v) const;
   Eigen::Vector2d TipPosition(const Eigen::VectorXd& q) const;
@@ -59,6 +64,7 @@ class ArmModel {
 
  private:
   double Deflection(int link, double u_m, const Eigen::VectorXd& coordinates) const;
+  double Shortening(int link, double u_m, const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
   Eigen::VectorXd ModalPart(int link, const Eigen::VectorXd& q) const;
 
   ArmParameters parameters_;

@@ -36,6 +36,13 @@ class Rules {
             joint.coulomb_friction_nm, "must not be negative");
   }
 
+  void CheckBacklash(const BacklashParameters& backlash) {
+    Require(backlash.clearance_rad >= 0.0 && backlash.clearance_rad < 1.0, "joint2.backlash_rad",
+            backlash.clearance_rad, "must lie in 0 <= d_b < 1 rad; 0: no play");
+    Require(backlash.restitution_slope_s_per_rad >= 0.0, "joint2.restitution_slope_s_per_rad",
+            backlash.restitution_slope_s_per_rad, "must not be negative");
+  }
+
   void CheckNotNegative(const std::string& key, double value) {
     Require(value >= 0.0, key, value, "must not be negative");
   }
@@ -78,6 +85,7 @@ std::vector<Problem> ArmParameters::Problems() const {
   rules.CheckLink(link[1], "link2");
   rules.CheckJoint(joint[0], "joint1");
   rules.CheckJoint(joint[1], "joint2");
+  rules.CheckBacklash(joint2_backlash);
   rules.CheckNotNegative("arm.hub2_mass_kg", hub2_mass_kg);
   rules.CheckNotNegative("arm.motor2_mass_kg", motor2_mass_kg);
   rules.CheckNotNegative("arm.motor2_inertia_kgm2", motor2_inertia_kgm2);

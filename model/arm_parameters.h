@@ -51,6 +51,18 @@ struct JointParameters {
   double coulomb_friction_nm;   ///< K_F >= 0, acts between hub and its base (3.12)
 };
 
+/// What the play between the gears of joint 2 does (backlash.h).
+enum class BacklashModel : std::uint8_t {
+  kDeadZone,  ///< "dead_zone": no torque inside the play, spring and impact loss at its ends
+  kThesis,    ///< "thesis": the dissipation (3.9)-(3.11) on the rotor, faults included
+};
+
+struct BacklashParameters {
+  BacklashModel model;
+  double clearance_rad;                ///< d_b >= 0: free rotation, end to end; 0: no play
+  double restitution_slope_s_per_rad;  ///< zeta >= 0: e = 1 - zeta |impact rate|
+};
+
 /// Physical constants of the arm, thesis Table 2 with names. SI units.
 ///
 /// Joint 1 is the shoulder, joint 2 the elbow. Index 0 is link or joint 1.
@@ -66,6 +78,8 @@ struct ArmParameters {
       shape_payload_mass_kg;  ///< payload for which the mode shapes are computed: the nominal one
   DampingReading damping;
   Link1TipInertia link1_tip_inertia;
+  bool foreshortening;  ///< a bent link is shorter by 1/2 int w'^2: centrifugal stiffening
+  BacklashParameters joint2_backlash;
 
   /// Every broken rule, keys relative to the config sections [link1] [link2] [joint1] [joint2]
   /// [arm]. Empty means that a model can be built.

@@ -57,6 +57,8 @@ struct AppliedForces {
   using Vec = Eigen::Matrix<double, M, 1>;
   double th1, th2, th4;  // th3 is eliminated beforehand
   Vec f1, f2;
+  double K2h;    // joint 2 on the left: h^2/4 of its stiffness and h/2 of its damping
+  double drag4;  // h/2 of the drag's slope on th4
 };
 
 /// Solves (M(q) + h/2 D + h^2/4 K) a = r - bias(q, v) from the tip inwards.
@@ -70,6 +72,8 @@ struct AppliedForces {
 template <int M>
 class ArticulatedArm {
  public:
+  static constexpr int kModes = M;
+  using Constants = FixedConstants<M>;
   using Vec = Eigen::Matrix<double, M, 1>;
 
   ArticulatedArm(const FixedConstants<M>& c, const StepConstants<M>& k) noexcept : c_(c), k_(k) {}

@@ -21,7 +21,7 @@ FixedConstants<M>::FixedConstants(const ArmConstants& c)
       K2(c.K2) {
   const auto pad = [](const Eigen::VectorXd& x) {
     Vec y = Vec::Zero();
-    y.head(x.size()) = x;
+    for (Eigen::Index i = 0; i < x.size(); ++i) y[i] = x[i];  // no packets: M may be 1
     return y;
   };
   const auto pad_matrix = [](const Eigen::MatrixXd& x, double diagonal) {
@@ -112,8 +112,8 @@ void ArticulatedArm<M>::AssembleHub(const ArmCoordinates<M>& q, const ArmCoordin
   const double along = -Sy_ * tx_ + Sx_ * ty_, nu = -Sy_ * sb_ + Sx_ * cb_;
   S11_ = c_.m * tx_ * tx_ + m_y_ * ty_ * ty_ + 2.0 * along + I_ + motor + c_.I1 + N1f1.dot(q.f1) +
          k_.K1h * (1.0 - k_.rotor1);
-  S12_ = along + I_, S22_ = I_ + k_.K2h;
-  S14_ = c_.J2, S24_ = -k_.K2h, S44_ = c_.J2 + k_.K2h;
+  S12_ = along + I_, S22_ = I_ + r.K2h;
+  S14_ = c_.J2, S24_ = -r.K2h, S44_ = c_.J2 + r.K2h + r.drag4;
   S1w_ = c_.m * tx_ * sb_ + m_y_ * ty_ * cb_ + nu, S2w_ = nu;
   Sww_ = c_.m * sb_ * sb_ + m_y_ * cb_ * cb_;
   S1s_ = e_ * (along + I_ + motor), S2s_ = e_ * I_, S4s_ = e_ * c_.J2;

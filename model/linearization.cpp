@@ -32,23 +32,36 @@ VectorXd SquaredFrequencies(const ArmModel& model, double theta2, const Eigen::V
   return eigen.eigenvalues();
 }
 
-VectorXd InHz(const VectorXd& squared) { return squared.cwiseMax(0.0).cwiseSqrt() / (2.0 * kPi); }
-
-}  // namespace
-
-LinearModel Linearize(const ArmModel& model, const VectorXd& q, const VectorXd& v,
-                      const Eigen::Vector2d& torque_nm) {
-  return LinearizeAlong(model, q, v, model.Acceleration(q, v, model.InputMatrix() * torque_nm));
+void AddBacklashSlopes(const ArmModel& model, const VectorXd& q, const VectorXd& v, MatrixXd* F_q,
+                       MatrixXd* F_v) {
+  const Backlash& backlash = model.constants().backlash;
+  if (!backlash.active()) return;
+  const Joint2Torque joint =
+      backlash.At(q[kTheta4] - q[kTheta2], v[kTheta4] - v[kTheta2], v[kTheta4]);
+  const auto add = [](MatrixXd* F, double slope) {  // of a torque between th4 and th2
+    (*F)(kTheta2, kTheta2) += slope;
+    (*F)(kTheta4, kTheta4) += slope;
+    (*F)(kTheta2, kTheta4) -= slope;
+    (*F)(kTheta4, kTheta2) -= slope;
+  };
+  add(F_q, joint.stiffness_nm_per_rad - model.constants().K2);
+  add(F_v, joint.damping_nms_per_rad);
+  (*F_v)(kTheta4, kTheta4) += joint.drag_slope_nms;
 }
 
-LinearModel LinearizeAlong(const ArmModel& model, const VectorXd& q, const VectorXd& v,
-                           const VectorXd& a) {
+VectorXd InHz(const VectorXd& squared) { return squared.cwiseMax(0.0).cwiseSqrt() / (2.0 * kPi); }
+
+// At accelerations a; `hub_damping` of smoothed friction at th1 and th2, N m s/rad.
+LinearModel Jacobians(const ArmModel& model, const VectorXd& q, const VectorXd& v,
+                      const VectorXd& a, const Eigen::Vector2d& hub_damping) {
   const Eigen::Index n = model.dof();
+  MatrixXd F_q = model.stiffness(), F_v = model.damping();
+  AddBacklashSlopes(model, q, v, &F_q, &F_v);
+  F_v.diagonal().head<2>() += hub_damping;
   const VectorX<Complex> qc = q.cast<Complex>(), vc = v.cast<Complex>(), ac = a.cast<Complex>();
   const auto derivative = [&](const VectorX<Complex>& at_q, const VectorX<Complex>& at_v) {
     return VectorXd(InertialForces<Complex>(model.constants(), at_q, at_v, ac).imag() / kStep);
   };
-  MatrixXd F_q = model.stiffness(), F_v = model.damping();
   for (Eigen::Index i = 0; i < n; ++i) {
     VectorX<Complex> q_step = qc, v_step = vc;
     q_step[i] += Complex(0.0, kStep);
@@ -63,6 +76,23 @@ LinearModel LinearizeAlong(const ArmModel& model, const VectorXd& q, const Vecto
   linear.A.bottomRightCorner(n, n) = -M.solve(F_v);
   linear.B.bottomRows(n) = M.solve(model.InputMatrix());
   return linear;
+}
+
+}  // namespace
+
+LinearModel Linearize(const ArmModel& model, const VectorXd& q, const VectorXd& v,
+                      const Eigen::Vector2d& torque_nm, double friction_gain_s_per_rad) {
+  const double k = friction_gain_s_per_rad;
+  const Eigen::Array2d K_F = model.constants().friction_nm,
+                       smooth = (k * v.head<2>()).array().tanh();
+  VectorXd force = model.InputMatrix() * torque_nm;
+  force.head<2>() -= (K_F * smooth).matrix();
+  return Jacobians(model, q, v, model.Acceleration(q, v, force), k * K_F * (1.0 - smooth.square()));
+}
+
+LinearModel LinearizeAlong(const ArmModel& model, const VectorXd& q, const VectorXd& v,
+                           const VectorXd& a) {
+  return Jacobians(model, q, v, a, Eigen::Vector2d::Zero());
 }
 
 VectorXd FreeMotorFrequenciesHz(const ArmModel& model, double theta2_rad) {

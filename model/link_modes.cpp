@@ -1,18 +1,11 @@
 #include "model/link_modes.h"
 
-#include <array>
 #include <cmath>
+
+#include "model/quadrature.h"
 
 namespace flexarm {
 namespace {
-
-// 10-point Gauss-Legendre rule on [-1, 1]: exact to degree 19. Abramowitz and Stegun, table 25.4.
-constexpr std::array<double, 5> kNode = {0.14887433898163121089, 0.43339539412924719080,
-                                         0.67940956829902440623, 0.86506336668898451073,
-                                         0.97390652851717172008};
-constexpr std::array<double, 5> kWeight = {0.29552422471475287017, 0.26926671930999635509,
-                                           0.21908636251598204400, 0.14945134915058059315,
-                                           0.06667134430868813759};
 
 // C_a of (3.8), per section, by the chosen reading. Units Pa s for kCurvatureRho.
 double DampingCoefficient(const BeamSection& s, double xi, double L, DampingReading reading) {
@@ -98,9 +91,9 @@ LinkModes MakeLinkModes(const LinkParameters& p, const BeamTip& tip, DampingRead
   for (const BeamMode::Piece& piece : link.mode.back().piece()) {
     beta_max = std::max(beta_max, piece.beta_per_m);
   }
-  const double panel = 2.0 / beta_max;
-  FillSingleIntegrals(&link, p, panel);
-  FillPairIntegrals(&link, p, panel, reading);
+  link.panel_m = 2.0 / beta_max;
+  FillSingleIntegrals(&link, p, link.panel_m);
+  FillPairIntegrals(&link, p, link.panel_m, reading);
   if (reading == DampingReading::kModal) link.D = ModalDamping(link, tip, p.damping_ratio);
   return link;
 }
@@ -115,9 +108,9 @@ double IntegrateAlong(const std::vector<BeamSection>& section, double panel_m,
     const double half = 0.5 * s.length_m / panels;
     for (int i = 0; i < panels; ++i) {
       const double middle = start + half * (2 * i + 1);
-      for (std::size_t g = 0; g < kNode.size(); ++g) {
-        const double d = half * kNode[g];
-        sum += half * kWeight[g] * (f(middle - d, s) + f(middle + d, s));
+      for (std::size_t g = 0; g < kGaussNode.size(); ++g) {
+        const double d = half * kGaussNode[g];
+        sum += half * kGaussWeight[g] * (f(middle - d, s) + f(middle + d, s));
       }
     }
     start += s.length_m;

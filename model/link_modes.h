@@ -26,6 +26,7 @@ struct LinkModes {
   double first_moment;        ///< int lam u, kg m
   double second_moment;       ///< int lam u^2, kg m^2
   double length_m;
+  double panel_m;  ///< beta * panel_m = 2 for the shortest wave: quadrature panels
 
   int count() const { return static_cast<int>(mode.size()); }
 };

@@ -3,142 +3,33 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "model/articulated_arm.h"
+#include "model/fixed_kernel.h"
 
 namespace flexarm {
 namespace {
 
 template <int M>
-class FixedKernel final : public StepKernel {
- public:
-  FixedKernel(const ArmConstants& c, bool coulomb_friction)
-      : m1_(c.m1),
-        m2_(c.m2),
-        friction_{coulomb_friction ? c.friction_nm[0] : 0.0,
-                  coulomb_friction ? c.friction_nm[1] : 0.0},
-        has_friction_(friction_[0] > 0.0 || friction_[1] > 0.0),
-        c_(c),
-        mass_(c_, 0.0),
-        k_(c_, ArmSimulator::kDefaultStep_s) {}
-
-  void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h,
-            int passes) noexcept override {
-    if (h != k_.h) k_ = StepConstants<M>(c_, h);
-    const Coordinates q = Load(state->q), v = Load(state->v);
-    Coordinates a = Load(state->a);
-    const double spring1 = c_.K1 * (q.th[2] - q.th[0] + 0.5 * h * (v.th[2] - v.th[0]));
-    const AppliedForces<M> r = Applied(q, v, torque_nm, spring1);
-    ArticulatedArm<M> arm(c_, k_);
-    FrictionSolution hubs{};
-    for (int pass = 0; pass < passes; ++pass) {
-      const Coordinates v_m = Advanced(v, a, 0.5 * h);
-      arm.Reduce(Advanced(q, v_m, 0.5 * h), v_m, r);
-      hubs = has_friction_ ? arm.hubs().Solve({v.th[0], v.th[1]}, friction_, h)
-                           : arm.hubs().SolveFree();
-      arm.Expand(hubs.acceleration, &a);
-      a.th[2] = (torque_nm[0] - spring1 + k_.K1h * a.th[0]) / (c_.J1 + k_.K1h);
-    }
-    const Coordinates v_m = Advanced(v, a, 0.5 * h);
-    const Coordinates q_end = Advanced(q, v_m, h);
-    Coordinates v_end = Advanced(v, a, h);
-    Settle(hubs, q_end, &v_end);
-    Store(q_end, &state->q);
-    Store(v_end, &state->v);
-    Store(a, &state->a);
-  }
-
- private:
-  using Coordinates = ArmCoordinates<M>;
-
-  static Coordinates Advanced(const Coordinates& x, const Coordinates& rate, double t) noexcept {
-    Coordinates y;
-    for (std::size_t i = 0; i < 4; ++i) y.th[i] = x.th[i] + t * rate.th[i];
-    y.f1 = x.f1 + t * rate.f1;
-    y.f2 = x.f2 + t * rate.f2;
-    return y;
-  }
-
-  Coordinates Load(const ArmVector& x) const noexcept {
-    Coordinates y;
-    for (int i = 0; i < 4; ++i) y.th[static_cast<std::size_t>(i)] = x[i];
-    for (int i = 0; i < M; ++i) y.f1[i] = i < m1_ ? x[kPhi1 + i] : 0.0;
-    for (int i = 0; i < M; ++i) y.f2[i] = i < m2_ ? x[kPhi1 + m1_ + i] : 0.0;
-    return y;
-  }
-
-  void Store(const Coordinates& y, ArmVector* x) const noexcept {
-    for (int i = 0; i < 4; ++i) (*x)[i] = y.th[static_cast<std::size_t>(i)];
-    for (int i = 0; i < m1_; ++i) (*x)[kPhi1 + i] = y.f1[i];
-    for (int i = 0; i < m2_; ++i) (*x)[kPhi1 + m1_ + i] = y.f2[i];
-  }
-
-  // Forces that do not change between passes: torques, springs at q + h/2 v, damping at v. th3 is
-  // eliminated: J1 th3'' + K1h (th3'' - th1'') = tau1 - spring1.
-  AppliedForces<M> Applied(const Coordinates& q, const Coordinates& v,
-                           const Eigen::Vector2d& torque, double spring1) const noexcept {
-    const double h = k_.h;
-    const double spring2 = c_.K2 * (q.th[3] - q.th[1] + 0.5 * h * (v.th[3] - v.th[1]));
-    AppliedForces<M> r;
-    r.th1 = spring1 + k_.rotor1 * (torque[0] - spring1);
-    r.th2 = spring2;
-    r.th4 = torque[1] - spring2;
-    r.f1.noalias() = -(c_.G1 * q.f1);
-    r.f1.noalias() -= k_.DhG1 * v.f1;
-    r.f2.noalias() = -(c_.G2 * q.f2);
-    r.f2.noalias() -= k_.DhG2 * v.f2;
-    return r;
-  }
-
-  // A hub that stuck in this step stands still at its end. If it moved at the start, midpoint alone
-  // would leave it with the opposite velocity; an impulse at the hub takes that away.
-  void Settle(const FrictionSolution& hubs, const Coordinates& q, Coordinates* v) const noexcept {
-    const bool stop1 = has_friction_ && hubs.contact[0] == Contact::kStuck;
-    const bool stop2 = has_friction_ && hubs.contact[1] == Contact::kStuck;
-    if (!(stop1 && v->th[0] != 0.0) && !(stop2 && v->th[1] != 0.0)) return;
-    AppliedForces<M> none;
-    none.th1 = none.th2 = none.th4 = 0.0;
-    none.f1.setZero();
-    none.f2.setZero();
-    Coordinates rest;
-    rest.th.fill(0.0);
-    rest.f1.setZero();
-    rest.f2.setZero();
-    ArticulatedArm<M> arm(c_, mass_);
-    arm.Reduce(q, rest, none);
-    double jump1 = stop1 ? -v->th[0] : 0.0, jump2 = stop2 ? -v->th[1] : 0.0;
-    if (!stop1) jump1 = -arm.z12() * jump2 / arm.z11();
-    if (!stop2) jump2 = -arm.z12() * jump1 / arm.z22();
-    Coordinates jump = rest;
-    arm.Expand({jump1, jump2}, &jump);
-    *v = Advanced(*v, jump, 1.0);
-    if (stop1) v->th[0] = 0.0;
-    if (stop2) v->th[1] = 0.0;
-  }
-
-  int m1_, m2_;
-  std::array<double, 2> friction_;
-  bool has_friction_;
-  FixedConstants<M> c_;
-  StepConstants<M> mass_;
-  StepConstants<M> k_;
-};
+std::unique_ptr<StepKernel> MakeArticulated(const ArmConstants& c, bool coulomb_friction) {
+  return std::make_unique<FixedKernel<ArticulatedArm<M>>>(c, coulomb_friction);
+}
 
 }  // namespace
 
 std::unique_ptr<StepKernel> MakeStepKernel(const ArmConstants& c, bool coulomb_friction) {
+  if (c.foreshortening) return MakeForeshortenedKernel(c, coulomb_friction);
   switch (std::max(c.m1, c.m2)) {
     case 1:
-      return std::make_unique<FixedKernel<1>>(c, coulomb_friction);
+      return MakeArticulated<1>(c, coulomb_friction);
     case 2:
-      return std::make_unique<FixedKernel<2>>(c, coulomb_friction);
+      return MakeArticulated<2>(c, coulomb_friction);
     case 3:
-      return std::make_unique<FixedKernel<3>>(c, coulomb_friction);
+      return MakeArticulated<3>(c, coulomb_friction);
     case 4:
-      return std::make_unique<FixedKernel<4>>(c, coulomb_friction);
+      return MakeArticulated<4>(c, coulomb_friction);
     case 5:
-      return std::make_unique<FixedKernel<5>>(c, coulomb_friction);
+      return MakeArticulated<5>(c, coulomb_friction);
     case 6:
-      return std::make_unique<FixedKernel<6>>(c, coulomb_friction);
+      return MakeArticulated<6>(c, coulomb_friction);
     default:
       throw std::invalid_argument("MakeStepKernel: 1 to 6 modes a link");
   }

@@ -20,4 +20,8 @@ class StepKernel {
 /// of unit mass that nothing excites.
 std::unique_ptr<StepKernel> MakeStepKernel(const ArmConstants& constants, bool coulomb_friction);
 
+/// The same for an arm with foreshortening: MakeStepKernel's own choice.
+std::unique_ptr<StepKernel> MakeForeshortenedKernel(const ArmConstants& constants,
+                                                    bool coulomb_friction);
+
 }  // namespace flexarm

@@ -80,7 +80,11 @@ SimulatedRig::Truth SimulatedRig::truth() const noexcept {
   double slope = 0.0;
   for (Eigen::Index i = 0; i < m1; ++i) slope += link1.slope_tip(i) * state_.q(kPhi1 + i);
   const double th1 = state_.q(kTheta1), gamma = th1 + std::atan(slope) + state_.q(kTheta2);
-  const double L1 = link1.length_m, L2 = arm_.link_modes(2).length_m;
+  double L1 = link1.length_m, L2 = arm_.link_modes(2).length_m;
+  if (arm_.constants().foreshortening) {
+    L1 -= TipShortening(arm_.constants().shortening1, state_.q.segment(kPhi1, m1));
+    L2 -= TipShortening(arm_.constants().shortening2, state_.q.tail(m2));
+  }
   return {.hub_angle_rad = {th1, state_.q(kTheta2)},
           .tip_m = {L1 * std::cos(th1) - w1 * std::sin(th1) + L2 * std::cos(gamma) -
                         w2 * std::sin(gamma),

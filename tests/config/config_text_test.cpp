@@ -15,7 +15,8 @@ namespace flexarm {
 namespace {
 
 TEST(ConfigText, OfEveryShippedRigReadsBackToTheSameText) {
-  for (const char* name : {"thesis-rig.toml", "thesis-rig-printed.toml", "hil.toml"}) {
+  for (const char* name :
+       {"thesis-rig.toml", "thesis-rig-printed.toml", "thesis-rig-stiffened.toml", "hil.toml"}) {
     const std::string text = LoadConfig(Shipped(name)).text;
     EXPECT_EQ(ParseConfig(text, "log").text, text);
   }

@@ -18,7 +18,9 @@ Config With(const std::vector<std::string>& overrides) {
 TEST(RigBinding, PutsEveryKeyOfTheArmInItsField) {
   const ArmParameters arm =
       With({"arm.hub2_mass_kg=1", "arm.motor2_mass_kg=2", "arm.motor2_inertia_kgm2=3",
-            "arm.payload_mass_kg=4", "arm.payload_inertia_kgm2=5", "arm.shape_payload_mass_kg=6"})
+            "arm.payload_mass_kg=4", "arm.payload_inertia_kgm2=5", "arm.shape_payload_mass_kg=6",
+            "arm.foreshortening=true", "joint2.backlash_rad=0.07", "joint2.backlash_model=thesis",
+            "joint2.restitution_slope_s_per_rad=0.08"})
           .arm;
   EXPECT_EQ(arm.hub2_mass_kg, 1.0);
   EXPECT_EQ(arm.motor2_mass_kg, 2.0);
@@ -26,6 +28,10 @@ TEST(RigBinding, PutsEveryKeyOfTheArmInItsField) {
   EXPECT_EQ(arm.payload_mass_kg, 4.0);
   EXPECT_EQ(arm.payload_inertia_kgm2, 5.0);
   EXPECT_EQ(arm.shape_payload_mass_kg, 6.0);
+  EXPECT_TRUE(arm.foreshortening);
+  EXPECT_EQ(arm.joint2_backlash.clearance_rad, 0.07);
+  EXPECT_EQ(arm.joint2_backlash.model, BacklashModel::kThesis);
+  EXPECT_EQ(arm.joint2_backlash.restitution_slope_s_per_rad, 0.08);
 }
 
 TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {

@@ -67,6 +67,15 @@ TEST(ShippedFiles, ThesisRigIsTheArmOfTheGoldenNumbers) {
   EXPECT_EQ(arm.shape_payload_mass_kg, golden.shape_payload_mass_kg);
   EXPECT_EQ(arm.damping, golden.damping);
   EXPECT_EQ(arm.link1_tip_inertia, golden.link1_tip_inertia);
+  EXPECT_FALSE(arm.foreshortening);
+  EXPECT_EQ(arm.joint2_backlash.clearance_rad, 0.0);
+}
+
+TEST(ShippedFiles, StiffenedRigDiffersFromTheThesisRigInForeshorteningOnly) {
+  std::string stiffened = LoadConfig(Shipped("thesis-rig-stiffened.toml")).text;
+  stiffened = Replaced(stiffened, "foreshortening = true", "foreshortening = false");
+  stiffened = Replaced(stiffened, "thesis-rig-stiffened", "thesis-rig");
+  EXPECT_EQ(stiffened, LoadConfig(Shipped("thesis-rig.toml")).text);
 }
 
 TEST(ShippedFiles, PrintedRigDiffersFromTheCorrectedOneInDensityAndModulusOnly) {

@@ -17,7 +17,7 @@ using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 // Two sections on link 1, a payload other than the shapes', and a payload inertia that counts.
-ArmParameters Awkward() {
+ArmParameters Awkward(bool foreshortening) {
   ArmParameters p = ThesisRig();
   BeamSection root = p.link[0].section[0], end = root;
   root.length_m = 0.3;
@@ -26,6 +26,7 @@ ArmParameters Awkward() {
   p.link[0].section = {root, end};
   p.payload_mass_kg = 0.35;
   p.payload_inertia_kgm2 = 2e-3;
+  p.foreshortening = foreshortening;
   return p;
 }
 
@@ -41,9 +42,10 @@ VectorXd Rates() {
   return v;
 }
 
-class Arm : public testing::Test {
+// Whether links get shorter as they bend.
+class Arm : public testing::TestWithParam<bool> {
  protected:
-  const ArmModel arm_{Awkward(), {2, 3}};
+  const ArmModel arm_{Awkward(GetParam()), {2, 3}};
   const VectorXd q_ = Angles(1.0), v_ = Rates();
 
   double SlopeRate(int link) const {  // d/dt atan of the tip slope
@@ -54,10 +56,14 @@ class Arm : public testing::Test {
   }
 };
 
+INSTANTIATE_TEST_SUITE_P(Links, Arm, testing::Bool(), [](const auto& shown) {
+  return shown.param ? "Foreshortened" : "AsTheThesis";
+});
+
 // (3.19) summed over every mass point, with velocities from differentiated positions. Shares the
 // positions with the model, but neither its frames nor its integrals. The central difference leaves
 // 1e-10; the smallest term, the payload's inertia, is 1e-3 of the whole.
-TEST_F(Arm, KineticEnergyEqualsTheSumOverMassPoints) {
+TEST_P(Arm, KineticEnergyEqualsTheSumOverMassPoints) {
   const ArmParameters& p = arm_.parameters();
   const auto speed2 = [&](int link, double u) {
     const double h = 1e-5;
@@ -66,7 +72,7 @@ TEST_F(Arm, KineticEnergyEqualsTheSumOverMassPoints) {
   };
   double T = 0.0;
   for (int link = 1; link <= 2; ++link) {
-    T += 0.5 * IntegrateAlong(p.link[static_cast<std::size_t>(link - 1)].section, 0.1,
+    T += 0.5 * IntegrateAlong(p.link[static_cast<std::size_t>(link - 1)].section, 0.05,
                               [&](double u, const BeamSection& s) {
                                 return s.mass_per_length_kg_m() * speed2(link, u);
                               });
@@ -84,7 +90,7 @@ TEST_F(Arm, KineticEnergyEqualsTheSumOverMassPoints) {
   EXPECT_NEAR(0.5 * v_.dot(arm_.MassMatrix(q_) * v_) / T, 1.0, 1e-9);
 }
 
-TEST_F(Arm, PotentialEnergyEqualsTheIntegralOverTheLinks) {
+TEST_P(Arm, PotentialEnergyEqualsTheIntegralOverTheLinks) {
   double U = 0.5 * 761.59 * std::pow(q_[2] - q_[0], 2) + 0.5 * 497.96 * std::pow(q_[3] - q_[1], 2);
   for (int link = 1; link <= 2; ++link) {
     const auto& section = arm_.parameters().link[static_cast<std::size_t>(link - 1)].section;
@@ -96,7 +102,7 @@ TEST_F(Arm, PotentialEnergyEqualsTheIntegralOverTheLinks) {
   EXPECT_NEAR(arm_.PotentialEnergy(q_) / U, 1.0, 1e-12);
 }
 
-TEST_F(Arm, MassMatrixIsSymmetricPositiveDefiniteAndBlindToTheBase) {
+TEST_P(Arm, MassMatrixIsSymmetricPositiveDefiniteAndBlindToTheBase) {
   const MatrixXd M = arm_.MassMatrix(q_);
   EXPECT_EQ(M, M.transpose());
   EXPECT_GT(M.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
@@ -113,7 +119,7 @@ TEST_F(Arm, MassMatrixIsSymmetricPositiveDefiniteAndBlindToTheBase) {
 
 // Lagrange: bias = Mdot v - 1/2 grad(v'Mv). Central differences with h = 1e-5 leave 1e-9 of the
 // largest entry; a missing centrifugal term leaves 1e-3 and more.
-TEST_F(Arm, BiasIsWhatLagrangeMakesOfTheMassMatrix) {
+TEST_P(Arm, BiasIsWhatLagrangeMakesOfTheMassMatrix) {
   const double h = 1e-5;
   const MatrixXd M_dot = (arm_.MassMatrix(q_ + h * v_) - arm_.MassMatrix(q_ - h * v_)) / (2.0 * h);
   VectorXd gradient(arm_.dof());
@@ -129,7 +135,7 @@ TEST_F(Arm, BiasIsWhatLagrangeMakesOfTheMassMatrix) {
 }
 
 // dE/dt = torque work - dissipation, from the equations at one instant.
-TEST_F(Arm, PowerBalances) {
+TEST_P(Arm, PowerBalances) {
   const Vector2d torque(2.0, -0.7);
   const VectorXd force = arm_.InputMatrix() * torque;
   const VectorXd a = arm_.Acceleration(q_, v_, force);
@@ -143,7 +149,7 @@ TEST_F(Arm, PowerBalances) {
   EXPECT_NEAR(power, expected, 1e-5 * std::fabs(expected));
 }
 
-TEST_F(Arm, PointVelocityIsTheDerivativeOfThePoint) {
+TEST_P(Arm, PointVelocityIsTheDerivativeOfThePoint) {
   const double h = 1e-5;
   for (int link = 1; link <= 2; ++link) {
     const Vector2d d =
@@ -153,7 +159,7 @@ TEST_F(Arm, PointVelocityIsTheDerivativeOfThePoint) {
 }
 
 // Sign of thesis B.2: face +1 reads +(h/2) w''. The second difference leaves 1e-8.
-TEST_F(Arm, StrainIsHalfTheThicknessTimesCurvature) {
+TEST_P(Arm, StrainIsHalfTheThicknessTimesCurvature) {
   VectorXd q = VectorXd::Zero(arm_.dof());
   q[6] = 0.01;
   const double h = 1e-4, x = 0.4;
@@ -186,7 +192,7 @@ TEST(RigidLimit, MassMatrixIsTheTextbookTwoLinkArm) {
 
 // The recursion of forces and the assembled matrix are written apart; together they must be one
 // model: forces at unit acceleration are the columns of M.
-TEST_F(Arm, ForcesAtUnitAccelerationAreTheColumnsOfTheMassMatrix) {
+TEST_P(Arm, ForcesAtUnitAccelerationAreTheColumnsOfTheMassMatrix) {
   const MatrixXd M = arm_.MassMatrix(q_);
   for (int i = 0; i < arm_.dof(); ++i) {
     const VectorXd column = InertialForces<double>(arm_.constants(), q_, VectorXd::Zero(arm_.dof()),

@@ -74,12 +74,19 @@ ArmState BusyState(const ArmModel& model) {
 // The structured solver against the equations in dense form: what is left of
 // M a + bias + D v + K q - force at the midpoint, over the largest force. What is left after 12
 // passes is the round-off of (v1 - v0) / h: 8e-11 at worst. Dropping the payload's I_p leaves 1e-6.
-TEST(ArmSimulator, StepSolvesTheMidpointEquationsForAnyModeCount) {
+class AnyArm : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(Links, AnyArm, testing::Bool(), [](const auto& shown) {
+  return shown.param ? "Foreshortened" : "AsTheThesis";
+});
+
+TEST_P(AnyArm, StepSolvesTheMidpointEquationsForAnyModeCount) {
   for (int m1 = 1; m1 <= kMaxSteppedModes; ++m1) {
     for (int m2 = 1; m2 <= kMaxSteppedModes; ++m2) {
       ArmParameters p = Frictionless();
       p.payload_inertia_kgm2 = 1e-3;  // large enough to be seen
       p.payload_mass_kg = 0.3;        // not the shapes' payload
+      p.foreshortening = GetParam();
       const ArmModel model(p, {m1, m2});
       ArmSimulator simulator(model, {.passes = 12});
       const ArmState start = BusyState(model);
