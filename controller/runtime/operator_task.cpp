@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "controller/law/refused.h"
+#include "controller/runtime/trip_channel.h"
 #include "hal/line_names.h"
 
 namespace flexarm {
@@ -90,7 +91,9 @@ void OperatorTask::FollowState() {
     std::string text = std::string(Name(permit_.state)) + " -> " + Name(permit.state);
     if (tripped) {
       const std::string of_bus = context_.stack->BusText(permit.cause, permit.evidence);
-      text += std::string(": ") + Name(permit.cause) +
+      const std::string channel =
+          TripChannelName(permit.cause, permit.evidence.channel, context_.config->sensors);
+      text += std::string(": ") + Name(permit.cause) + (channel.empty() ? "" : ": " + channel) +
               (of_bus.empty() ? " (value " + std::to_string(permit.evidence.value) + ", limit " +
                                     std::to_string(permit.evidence.limit) + "). "
                               : ": " + of_bus + ". ") +
@@ -122,7 +125,7 @@ void OperatorTask::Serve() {
     try {
       answer = Answer(message);
     } catch (const std::exception& error) {
-      answer = Failure(error.what(), "mend the experiment and send it again");
+      answer = {{"ok", false}, {"error", error.what()}};
     }
     if (!answer.is_null()) socket_->Reply(message.client, answer.dump());
   }
@@ -274,10 +277,14 @@ Json OperatorTask::Status() {
               {"buses", BusStatusOf(context_.stack->buses())},
               {"threads", context_.thread_status()}};
   if (permit_.state == SafetyState::kTripped) {
-    status["trip"] = {
-        {"name", Name(permit_.cause)},         {"number", static_cast<int>(permit_.cause)},
-        {"value", permit_.evidence.value},     {"limit", permit_.evidence.limit},
-        {"channel", permit_.evidence.channel}, {"text", OperatorText(permit_.cause)}};
+    status["trip"] = {{"name", Name(permit_.cause)},
+                      {"number", static_cast<int>(permit_.cause)},
+                      {"value", permit_.evidence.value},
+                      {"limit", permit_.evidence.limit},
+                      {"channel", permit_.evidence.channel},
+                      {"channel_name", TripChannelName(permit_.cause, permit_.evidence.channel,
+                                                       context_.config->sensors)},
+                      {"text", OperatorText(permit_.cause)}};
     const std::string of_bus = context_.stack->BusText(permit_.cause, permit_.evidence);
     status["trip"]["bus"] = of_bus.empty() ? Json(nullptr) : Json(of_bus);
   }

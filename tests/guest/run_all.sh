@@ -81,9 +81,9 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
   in_guest --det --systemd -- daemon_in_guest/service.sh daemon_in_guest/refusal.sh
   in_guest --det -- daemon_in_guest/wire.sh
 ) &
-in_guest --det -- interfaces.sh daemon_in_guest/{experiment,load,hostile}.sh &
+in_guest --det -- interfaces.sh daemon_in_guest/{experiment,load,hostile,commission}.sh &
 wait
-for name in interfaces experiment load hostile service refusal wire; do report_guest $name; done
+for name in interfaces experiment load hostile commission service refusal wire; do report_guest $name; done
 
 # In lock step, the same seed, on this machine: the guest's real-time runs are the same to the bit.
 "$bin/flexarm" simulate -c "$root/config/hil.toml" --json -o "$work/lockstep.flexarm" \
