@@ -130,6 +130,75 @@ void ReadCanopen(TableReader row, double period_ms, CanopenConfig* out) {
   for (const TableReader& node : row.Rows("node")) ReadNode(node, &out->node.emplace_back());
 }
 
+// Role of a drive or of an encoder, as in the other buses.
+void ReadJoint(TableReader row, int* out) { row.Read("role", out, {{"drive1", 0}, {"drive2", 1}}); }
+void ReadCounter(TableReader row, int* out) {
+  row.Read("role", out, {{"hub1", 0}, {"hub2", 1}, {"rotor1", 2}, {"rotor2", 3}});
+}
+
+void ReadComediInput(TableReader input, ComediInputConfig* out) {
+  input.Read("subdevice", &out->subdevice);
+  input.Read("channels", &out->channels);
+  input.Read("bits", &out->bits);
+  input.Read("range_v", &out->range_v);
+  input.Read("reference", &out->reference,
+             {{"ground", ComediReference::kGround},
+              {"common", ComediReference::kCommon},
+              {"differential", ComediReference::kDifferential}});
+  input.Read("acquisition", &out->acquisition,
+             {{"stream", ComediAcquisition::kStream}, {"single", ComediAcquisition::kSingle}});
+  if (out->acquisition == ComediAcquisition::kStream) {
+    input.Read("scan_interval_us", &out->scan_interval_us);
+    input.Read("convert_interval_us", &out->convert_interval_us);
+    input.Read("transfer_us", &out->transfer_us);
+  }
+  for (TableReader& row : input.Rows("channel")) {
+    ComediStrainConfig& channel = out->channel.emplace_back();
+    row.Read("strain", &channel.strain);
+    row.Read("channel", &channel.channel);
+  }
+}
+
+void ReadComediOutput(TableReader output, ComediOutputConfig* out) {
+  output.Read("subdevice", &out->subdevice);
+  output.Read("channels", &out->channels);
+  output.Read("bits", &out->bits);
+  output.Read("range_v", &out->range_v);
+  for (TableReader& row : output.Rows("drive")) {
+    ComediDriveConfig& drive = out->drive.emplace_back();
+    ReadJoint(row, &drive.joint);
+    row.Read("channel", &drive.channel);
+    row.Read("motor_torque_per_volt_nm", &drive.motor_torque_per_volt_nm);
+    row.Read("gear", &drive.gear);
+    row.Read("sign", &drive.sign);
+    row.Read("torque_range_nm", &drive.torque_range_nm);
+  }
+}
+
+void ReadComedi(TableReader row, double period_ms, ComediBoardConfig* out) {
+  *out = ComediBoardConfig{};
+  out->period_ms = period_ms;
+  row.Read("device", &out->device);
+  row.Read("driver", &out->driver);
+  row.Read("board", &out->board);
+  row.Read("instruction_us", &out->instruction_us);
+  if (row.Has("input")) ReadComediInput(row.Table("input"), &out->input.emplace());
+  if (row.Has("output")) ReadComediOutput(row.Table("output"), &out->output.emplace());
+  for (TableReader& entry : row.OptionalRows("counter")) {
+    ComediCounterConfig& counter = out->counter.emplace_back();
+    ReadCounter(entry, &counter.counter);
+    entry.Read("subdevice", &counter.subdevice);
+    entry.Read("channel", &counter.channel);
+    entry.Read("bits", &counter.bits);
+  }
+  for (TableReader& entry : row.OptionalRows("line")) {
+    ComediLineConfig& line = out->line.emplace_back();
+    ReadLine(entry, &line.line);
+    entry.Read("subdevice", &line.subdevice);
+    entry.Read("channel", &line.channel);
+  }
+}
+
 void ReadGpiod(TableReader gpiod, GpiodConfig* out) {
   constexpr std::array<const char*, kLines> kKeys = {"limit_1_low",    "limit_1_high",
                                                      "limit_2_low",    "limit_2_high",
@@ -149,6 +218,9 @@ void ReadHal(TableReader hal, double period_ms, std::string* backend, HalConfig*
   }
   for (const TableReader& row : hal.OptionalRows("canopen")) {
     ReadCanopen(row, period_ms, &out->canopen.emplace_back());
+  }
+  for (const TableReader& row : hal.OptionalRows("comedi")) {
+    ReadComedi(row, period_ms, &out->comedi.emplace_back());
   }
   if (hal.Has("gpiod")) ReadGpiod(hal.Table("gpiod"), &out->gpiod.emplace());
 }

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "hal/canopen/canopen_config.h"
+#include "hal/comedi/comedi_config.h"
 #include "hal/gpiod/gpiod_config.h"
 #include "hal/modbus/modbus_config.h"
 #include "hal/sensor_config.h"
@@ -15,14 +17,18 @@ namespace flexarm {
 /// How a real rig is wired, section [hal]: buses in any mixture, and the safety chain. All empty
 /// for the simulated backend in process.
 struct HalConfig {
-  ModbusConfig modbus;                 ///< [[hal.modbus]]
-  std::vector<CanopenConfig> canopen;  ///< [[hal.canopen]]
-  std::optional<GpiodConfig> gpiod;    ///< [hal.gpiod]
+  ModbusConfig modbus;                    ///< [[hal.modbus]]
+  std::vector<CanopenConfig> canopen;     ///< [[hal.canopen]]
+  std::vector<ComediBoardConfig> comedi;  ///< [[hal.comedi]]
+  std::optional<GpiodConfig> gpiod;       ///< [hal.gpiod]
 
-  bool empty() const { return modbus.device.empty() && canopen.empty() && !gpiod; }
+  bool empty() const {
+    return modbus.device.empty() && canopen.empty() && comedi.empty() && !gpiod;
+  }
 
   /// Broken rules of every part, and of the whole: each sensor of the rig, each drive and the
-  /// safety chain must be wired exactly once, and every exchange must fit into the time there is.
+  /// safety chain must be wired exactly once, over all buses, and every exchange must fit into the
+  /// time there is.
   /// @param available_ns     from the sampling instant until the step is due
   /// @param torque_limit_nm  that the loop may ask for
   std::vector<Problem> Problems(const SensorConfig& sensors, std::int64_t available_ns,

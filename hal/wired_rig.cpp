@@ -2,6 +2,8 @@
 
 #include "hal/canopen/canopen_device.h"
 #include "hal/canopen/socketcan_bus.h"
+#include "hal/comedi/comedi_device.h"
+#include "hal/comedi/libcomedi_board.h"
 #include "hal/gpiod/gpiod_lines.h"
 #include "hal/modbus/modbus_device.h"
 
@@ -15,6 +17,10 @@ WiredRig::WiredRig(const HalConfig& config, const CanClocks& clocks) {
   }
   for (const ModbusDeviceConfig& device : config.modbus.device) {
     buses_.push_back(std::make_unique<ModbusDevice>(device, clocks.monotonic_ns));
+  }
+  for (const ComediBoardConfig& board : config.comedi) {
+    buses_.push_back(std::make_unique<ComediDevice>(
+        board, std::make_unique<LibcomediBoard>(board.device, clocks.monotonic_ns)));
   }
   for (const auto& bus : buses_) bus->Open();
 }

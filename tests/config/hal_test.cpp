@@ -60,15 +60,17 @@ TEST(HalConfig, TheLoggedTextGivesTheSameWiringAgain) {
 }
 
 TEST(HalConfig, AnEncoderThatNobodyReadsIsNamed) {
-  EXPECT_THAT(Complaint("role = \"hub2\"", "role = \"hub1\""),
-              testing::AllOf(testing::HasSubstr("canopen role hub2 = 0 times"),
-                             testing::HasSubstr("canopen role hub1 = 2 times")));
+  EXPECT_THAT(
+      Complaint("role = \"hub2\"", "role = \"hub1\""),
+      testing::AllOf(testing::HasSubstr("hal.role hub2 = 0 times"),
+                     testing::HasSubstr("it is in canopen[0].node[2], canopen[0].node[3]")));
 }
 
 TEST(HalConfig, AStrainChannelThatIsReadTwiceIsNamed) {
-  EXPECT_THAT(Complaint("{ strain = 3,", "{ strain = 4,"),
-              testing::AllOf(testing::HasSubstr("modbus strain[3] = 0 times"),
-                             testing::HasSubstr("modbus strain[4] = 2 times")));
+  EXPECT_THAT(
+      Complaint("{ strain = 3,", "{ strain = 4,"),
+      testing::AllOf(testing::HasSubstr("hal.strain[3] = 0 times"),
+                     testing::HasSubstr("it is in modbus[0].register[3], modbus[0].register[4]")));
 }
 
 TEST(HalConfig, ADriveThatCannotGiveWhatTheLoopMayAskIsRefused) {

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hal/bus_device.h"
+#include "hal/comedi/board_proof.h"
+#include "hal/comedi/comedi_config.h"
+#include "hal/comedi/comedi_fault.h"
+#include "hal/comedi/comedi_plan.h"
+#include "hal/comedi/daq_board.h"
+#include "hal/comedi/scan_clock.h"
+#include "hal/sensor_frame.h"
+
+namespace flexarm {
+
+/// A DAQ board: gauges on analogue inputs, amplifiers on analogue outputs, encoders on counters.
+///
+/// One exchange: a voltage to each amplifier; then the newest complete scan of the streamed inputs,
+/// or one read an input; then the counters and lines, one read each. sampled_at_ns is the instant
+/// after the outputs. A streamed reading is older than that, by its offset: the scan's end comes
+/// from ScanClock, and every channel lies convert_interval before the next. What is read singly
+/// has the middle of its read.
+///
+/// Torque goes out only while enabled, and 0 V otherwise, while a fault lasts, and on Close. An
+/// output keeps its last voltage when this process dies: the relay and the charge pump of the
+/// safety chain are what stops the arm then.
+///
+/// Each instruction is the board's own: comedi lets a stuck one busy-wait for a second at most, and
+/// no program can shorten that. An exchange reads nothing more after the first that takes it beyond
+/// its declared time; the outputs are written whatever happened. So the bound holds for a board
+/// that keeps instruction_us, and one stuck instruction an output is all that can come on top.
+/// Real-time: Exchange, Reconnect and Close do not allocate; reading the stream does not wait.
+/// Thread: the bus's own.
+class ComediDevice final : public BusDevice {
+ public:
+  /// @param config  without problems
+  ComediDevice(ComediBoardConfig config, std::unique_ptr<DaqBoard> board);
+  ~ComediDevice() override { Close(); }
+  ComediDevice(const ComediDevice&) = delete;
+  ComediDevice& operator=(const ComediDevice&) = delete;
+
+  const char* name() const noexcept override { return config_.device.c_str(); }
+  std::uint32_t drives() const noexcept override { return drives_; }
+  /// Of an exchange, or of a reconnection, whichever is longer.
+  std::int64_t worst_case_ns() const noexcept override;
+
+  /// Identifies the board, reads everything configured back, starts the scan and reads every
+  /// channel once.
+  /// @throws HalError naming the device, what was found and what was expected
+  void Open() override;
+
+  [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
+
+  /// 0 V, and the scan anew; kOk with a later call, once a scan has come. A board that is gone
+  /// stays gone: to open it again would allocate.
+  [[nodiscard]] BusStatus Reconnect() noexcept override;
+
+  /// node: 1 + the channel's place in plan().channels, 0: the board.
+  BusFault FaultOf(BusStatus status) const noexcept override;
+  std::string FaultText(const BusFault& fault) const override;
+
+  void Close() noexcept override;
+
+  /// Of the last exchange, or what lasts.
+  ComediFault fault() const noexcept { return fault_; }
+  const ComediPlan& plan() const noexcept { return plan_; }
+
+ private:
+  /// At most kMostReads of kChunk samples are read; with more than that nobody has read for too
+  /// long.
+  static constexpr std::size_t kChunk = 4096;
+  static constexpr int kMostReads = 10;
+  static constexpr std::size_t kNoChannel = 254;  ///< there are fewer
+
+  bool streams() const noexcept { return plan_.oldest_ns > 0; }
+  void Fail(ComediFault fault, std::size_t channel = kNoChannel) noexcept;
+  bool Went(DaqResult result, ComediFault refused, std::size_t channel) noexcept;
+  void Drive(const BusCommand& command) noexcept;
+  void ReadAll(SensorFrame* fresh) noexcept;
+  void ReadStream(SensorFrame* fresh) noexcept;
+  std::int64_t Drain() noexcept;
+  void ReadSingles(SensorFrame* fresh) noexcept;
+  void ReadCounters(SensorFrame* fresh) noexcept;
+  void ReadLines(SensorFrame* fresh) noexcept;
+  bool ReadOne(const DaqChannel& channel, std::size_t number, std::int64_t sampled_at_ns,
+               std::uint32_t* value, std::int32_t* offset_ns) noexcept;
+  void StartStream() noexcept;
+  void AwaitFirstScan();
+
+  ComediBoardConfig config_;
+  ComediPlan plan_;
+  std::unique_ptr<DaqBoard> board_;
+  ComediChannels channels_;
+  ScanClock scan_clock_;
+  std::uint32_t drives_ = 0;
+  bool open_ = false;
+  bool restarting_ = false;  // Reconnect waits for the first scan
+  ComediFault fault_ = ComediFault::kNone;
+  std::size_t fault_channel_ = kNoChannel;  // place in plan_.channels
+  std::int64_t begin_ns_ = 0;               // of this exchange
+  std::array<std::uint32_t, kChunk> samples_{};
+  std::array<std::uint32_t, kMaxStrainChannels> partial_{};  // the scan that is coming in
+  std::array<std::uint32_t, kMaxStrainChannels> newest_{};
+  std::size_t position_ = 0;  // in partial_
+  SensorFrame last_{};        // good values, repeated while there are none
+};
+
+}  // namespace flexarm

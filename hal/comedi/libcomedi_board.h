@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "hal/comedi/daq_board.h"
+
+namespace flexarm {
+
+/// A board of the kernel, through libcomedi. The only file that knows its interface.
+///
+/// What libcomedi 0.11 does in the calls that the loop makes (read in its source, and held to by
+/// the guest's test): comedi_data_read, comedi_data_write and comedi_dio_bitfield2 are one ioctl
+/// each on stack memory, comedi_command and comedi_cancel one ioctl; it allocates in comedi_open
+/// and in questions about ranges and commands only. The kernel takes the board's mutex and a small
+/// buffer for each ioctl. The stream is read with read(2) on a descriptor that does not block.
+/// Real-time: as DaqBoard says; how long an instruction takes is the board's.  Thread: one.
+class LibcomediBoard final : public DaqBoard {
+ public:
+  /// CLOCK_MONOTONIC in ns; comes from outside, as only executors read clocks.
+  using Clock = std::int64_t (*)() noexcept;
+
+  LibcomediBoard(std::string device, Clock clock);
+  ~LibcomediBoard() override;
+  LibcomediBoard(const LibcomediBoard&) = delete;
+  LibcomediBoard& operator=(const LibcomediBoard&) = delete;
+
+  const char* device() const noexcept override { return device_.c_str(); }
+  std::int64_t now_ns() const noexcept override { return clock_(); }
+  DaqIdentity Open() override;
+  DaqSubdevice Describe(int subdevice) override;
+  std::vector<DaqRange> Ranges(int subdevice, int channel) override;
+  bool Lock(int subdevice) override;
+  bool SetInput(int subdevice, int channel) override;
+  DaqScan SetScan(const DaqScan& scan) override;
+  [[nodiscard]] DaqResult StartScan() noexcept override;
+  void StopScan() noexcept override;
+  [[nodiscard]] DaqResult ReadScan(std::span<std::uint32_t> samples,
+                                   std::size_t* count) noexcept override;
+  void WaitUntil(std::int64_t instant_ns) noexcept override;
+  [[nodiscard]] DaqResult Read(const DaqChannel& channel, std::uint32_t* value) noexcept override;
+  [[nodiscard]] DaqResult Write(const DaqChannel& channel, std::uint32_t value) noexcept override;
+  [[nodiscard]] DaqResult ReadBits(int subdevice, std::uint32_t* bits) noexcept override;
+  void Close() noexcept override;
+
+ private:
+  struct Handle;  // libcomedi's, and the command
+
+  std::string device_;
+  Clock clock_;
+  std::unique_ptr<Handle> handle_;
+};
+
+}  // namespace flexarm
