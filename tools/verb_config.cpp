@@ -10,6 +10,7 @@
 #include "model/linearization.h"
 #include "tools/options.h"
 #include "tools/verbs.h"
+#include "tools/wiring_report.h"
 
 namespace flexarm {
 namespace {
@@ -78,6 +79,20 @@ Json Derived(const Config& config) {
     json["encoders"].push_back(EncoderJson(encoder, period_s));
   }
   json["strain"] = StrainJson(config.sensors);
+  AddWiring(config, &json);
+  return json;
+}
+
+Json ProblemsJson(const ConfigError& error) {
+  Json json;
+  json["valid"] = false;
+  for (const ConfigProblem& problem : error.problems()) {
+    json["problems"].push_back({{"file", problem.file},
+                                {"line", problem.line},
+                                {"key", problem.key},
+                                {"value", problem.value},
+                                {"rule", problem.rule}});
+  }
   return json;
 }
 
@@ -117,6 +132,21 @@ void PrintText(const Options& options, const Json& json) {
     line("strain resolution", Number(strain["resolution_microstrain"]) + " microstrain of +-" +
                                   Number(strain["full_scale_microstrain"]));
   }
+  PrintWiring(json);
+}
+
+void Check(const Options& options) {
+  try {
+    const Json json = Derived(LoadConfig(options.file, options.overrides));
+    if (options.json) {
+      std::cout << json.dump(2) << '\n';
+    } else {
+      PrintText(options, json);
+    }
+  } catch (const ConfigError& error) {
+    if (options.json) std::cout << ProblemsJson(error).dump(2) << '\n';
+    throw;
+  }
 }
 
 }  // namespace
@@ -126,7 +156,9 @@ void RegisterConfig(CLI::App& app, Exit&) {
   CLI::App* verb = app.add_subcommand("config", "Look at configs");
   verb->require_subcommand(1);
   CLI::App* check = verb->add_subcommand(
-      "check", "Validate a config: every problem with its line, or what follows from the numbers");
+      "check",
+      "Validate a config: every problem with its line, or what follows from the numbers; of a "
+      "wired rig also what every channel costs, and how torques become volts");
   check->add_option("file", options->file, "Config of the rig, a TOML file")
       ->required()
       ->type_name("FILE");
@@ -135,14 +167,7 @@ void RegisterConfig(CLI::App& app, Exit&) {
       ->allow_extra_args(false);
   AddJson(check, &options->json);
   check->footer("Example: flexarm config check config/thesis-rig.toml");
-  check->callback([options] {
-    const Json json = Derived(LoadConfig(options->file, options->overrides));
-    if (options->json) {
-      std::cout << json.dump(2) << '\n';
-    } else {
-      PrintText(*options, json);
-    }
-  });
+  check->callback([options] { Check(*options); });
 }
 
 }  // namespace flexarm

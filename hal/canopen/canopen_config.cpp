@@ -127,13 +127,18 @@ int CanopenNodeConfig::torque_range_per_mille() const noexcept {
   return static_cast<int>(std::floor(torque_range_nm / torque_per_mille_nm * (1.0 + 1e-9)));
 }
 
-std::int64_t CanopenConfig::wire_time_ns() const noexcept {
-  int bits = WorstCaseBits(8) + WorstCaseBits(0) + WorstCaseBits(1);  // foreign, SYNC, heartbeat
-  for (const CanopenNodeConfig& n : node) {
-    if (IsDrive(n.role)) bits += WorstCaseBits(kCommandBytes);
-    bits += WorstCaseBits(FeedbackBytes(n)) + WorstCaseBits(1) + WorstCaseBits(kEmergencyBytes);
-  }
+std::int64_t CanopenConfig::wire_time_ns(const CanopenNodeConfig& n) const noexcept {
+  int bits = WorstCaseBits(FeedbackBytes(n)) + WorstCaseBits(1) + WorstCaseBits(kEmergencyBytes);
+  if (IsDrive(n.role)) bits += WorstCaseBits(kCommandBytes);
   return std::int64_t{bits} * 1'000'000'000 / std::max(bitrate_bps, 1);
+}
+
+std::int64_t CanopenConfig::wire_time_ns() const noexcept {
+  // Foreign, SYNC, heartbeat.
+  const int bits = WorstCaseBits(8) + WorstCaseBits(0) + WorstCaseBits(1);
+  std::int64_t time_ns = std::int64_t{bits} * 1'000'000'000 / std::max(bitrate_bps, 1);
+  for (const CanopenNodeConfig& n : node) time_ns += wire_time_ns(n);
+  return time_ns;
 }
 
 double CanopenConfig::bus_load() const noexcept {

@@ -58,6 +58,8 @@ struct CanopenConfig {
   /// Longest time on the wire of everything that one exchange moves, and of what may get in
   /// between: a heartbeat and an emergency of every node, and one frame that had already begun.
   std::int64_t wire_time_ns() const noexcept;
+  /// The part of one node.
+  std::int64_t wire_time_ns(const CanopenNodeConfig& of) const noexcept;
   /// Part of the bus's time that is used, 0..1, every frame at its longest.
   double bus_load() const noexcept;
   /// Bound of CanopenDevice::Exchange.

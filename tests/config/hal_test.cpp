@@ -84,7 +84,8 @@ TEST(HalConfig, ARigWithoutItsSafetyChainIsRefused) {
 
 TEST(HalConfig, AnExchangeThatDoesNotFitBeforeTheStepIsRefused) {
   EXPECT_THAT(Complaint("answer_timeout_ms = 5.0", "answer_timeout_ms = 12.0"),
-              testing::HasSubstr("must leave room"));
+              testing::AllOf(testing::HasSubstr("must leave room"),
+                             testing::HasSubstr("drive1 430 us, drive2 430 us, hub1 295 us")));
 }
 
 TEST(HalConfig, ABackendThatDoesNotExistIsRefused) {

@@ -121,6 +121,57 @@ TEST_F(ProgramTest, ConfigCheckPrintsWhatFollowsFromTheNumbers) {
   EXPECT_EQ(json["strain"]["channels"], Json({10, 10}));
 }
 
+TEST_F(ProgramTest, ConfigCheckSaysWhatEveryChannelOfAWiredRigCosts) {
+  const std::string daq = FLEXARM_SOURCE_DIR "/config/daq-rig.toml";
+  const Json json = RunJson("config check '" + daq + "'");
+  const Json& acquisition = json["acquisition"];
+  EXPECT_EQ(acquisition["available_ms"], 10.0);
+  ASSERT_EQ(acquisition["buses"].size(), 2U);
+  const Json& board = acquisition["buses"][0];
+  EXPECT_EQ(board["name"], "/dev/comedi0");
+  EXPECT_EQ(board["channels"].size(), 14U);  // two drives, ten gauges, two encoders
+  EXPECT_EQ(board["channels"][2]["channel"], "strain[0]");
+  EXPECT_EQ(board["channels"][2]["shared_by"], 10);
+  EXPECT_EQ(board["channels"][2]["convert_ms"], 0.2);
+  // Drives and encoders at 0.05 ms, the buffer 0.3 ms, the exchange itself 0.2 ms.
+  EXPECT_NEAR(board["worst_case_ms"].get<double>(), 0.7, 1e-9);
+  EXPECT_NEAR(board["spare_ms"].get<double>(), 9.3, 1e-9);
+  EXPECT_EQ(acquisition["slowest_bus"], "/dev/comedi0");
+  const std::string text = Run("config check '" + daq + "'").out;
+  EXPECT_NE(text.find("subdevice 5 hub1        0.05 ms"), std::string::npos) << text;
+}
+
+TEST_F(ProgramTest, ConfigCheckSaysHowTorquesBecomeVoltsOrPerMille) {
+  const Json volts = RunJson("config check '" FLEXARM_SOURCE_DIR "/config/daq-rig.toml'")["drives"];
+  ASSERT_EQ(volts.size(), 2U);
+  EXPECT_NEAR(volts[0]["torque_per_volt_nm"].get<double>(), 3.0, 1e-12);
+  EXPECT_EQ(volts[1]["gear"], 48.96);
+  EXPECT_EQ(volts[1]["range_v"], 10.0);
+  const Json wire = RunJson("config check '" FLEXARM_SOURCE_DIR "/config/hil-wire.toml'");
+  EXPECT_EQ(wire["acquisition"]["slowest_bus"], "vcan0");
+  EXPECT_EQ(wire["drives"][0]["torque_per_mille_nm"], 0.03);
+  EXPECT_EQ(wire["drives"][0]["sign"], 1);
+  EXPECT_EQ(wire["drives"][0]["torque_range_nm"], 30.0);
+  EXPECT_EQ(wire["drives"][0]["range_per_mille"], 1000.0);
+}
+
+TEST_F(ProgramTest, ConfigCheckRefusesInJsonToo) {
+  const Answer answer = Run("config check '" FLEXARM_SOURCE_DIR
+                            "/config/daq-rig.toml' --json --set "
+                            "'hal.comedi[0].instruction_us=3000.0'");
+  EXPECT_EQ(answer.code, 2);
+  const Json json = Json::parse(answer.out);
+  EXPECT_EQ(json["valid"], false);
+  ASSERT_EQ(json["problems"].size(), 1U);
+  EXPECT_EQ(json["problems"][0]["key"], "hal.comedi[0].instruction_us");
+  // Drives end at 6.2 ms, the scan at 6.5 ms.
+  EXPECT_NE(
+      json["problems"][0]["rule"].get<std::string>().find("hub2 costs 3 ms and ends at 12.5 ms"),
+      std::string::npos)
+      << json.dump(2);
+  EXPECT_NE(answer.err.find("hub2 costs 3 ms"), std::string::npos);
+}
+
 TEST_F(ProgramTest, ModesHaveTheKeysOfTheContract) {
   // control.md section 2: clamped and torque-mode frequencies of the nominal rig.
   const Json json = RunJson("modes -c '" + kRig + "' --modes 2");
