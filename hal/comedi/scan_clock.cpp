@@ -5,7 +5,8 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kSlowness = 64;  // 1.3 s at 50 Hz: 100 ppm of drift are 0.13 ms
+constexpr std::int64_t kSlowness = 64;          // 1.3 s at 50 Hz: 100 ppm of drift are 0.13 ms
+constexpr std::int64_t kStartNs = 100'000'000;  // for a board to begin, and a driver that polls it
 
 }  // namespace
 
@@ -20,7 +21,7 @@ void ScanClock::Take(std::int64_t begin_ns, std::int64_t end_ns, std::int64_t sc
   const std::int64_t patience_ns = interval_ns_ + transfer_ns_;
   if (!running_ && scans == 0) {
     // Boards begin to convert up to an interval after the start; then a whole scan has to end.
-    late_ = begin_ns - newest_end_ns_ > 2 * interval_ns_ + patience_ns;
+    late_ = begin_ns - newest_end_ns_ > 2 * interval_ns_ + patience_ns + kStartNs;
     return;
   }
   const std::int64_t earliest_ns = begin_ns - patience_ns;

@@ -31,7 +31,7 @@ guest_packages=(
   can-utils gpiod jq libcomedi0 libgpiod2 libmodbus5 rt-tests sqlite3 stress-ng
 )
 # Modules beside gpio-sim, for the root image and for the initial RAM disk.
-root_modules=(autofs4 can can-raw comedi comedi_test configfs vcan)
+root_modules=(autofs4 can can-raw comedi comedi_parport comedi_test configfs vcan)
 boot_modules=(9p 9pnet_virtio crc32c_generic ext4 virtio_blk virtio_pci virtio_rng)
 
 fail() {
@@ -248,6 +248,7 @@ run() {
     -device virtio-9p-pci,fsdev=s,mount_tag=share \
     -fsdev "local,id=o,path=$out,security_model=none" -device virtio-9p-pci,fsdev=o,mount_tag=out \
     -device virtio-rng-pci -device isa-debug-exit,iobase=0x501,iosize=1 \
+    -chardev null,id=port -device isa-parallel,chardev=port,iobase=0x378 \
     -append "console=ttyS0 quiet panic=-1 mitigations=off tsc=reliable guest.init=$init $append" \
     </dev/null >"$out/console.log" 2>&1 || qemu=$?
   local status=125

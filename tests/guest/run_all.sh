@@ -20,8 +20,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/share/guest"
 DESTDIR=$work/share/machine cmake --install "$build" >/dev/null
-cp -r "$here"/{check.sh,interfaces.sh,daemon_in_guest} "$work/share/guest"
-cp "$build/tests/hal/canopen/hal_canopen_socketcan_test" "$work/share"
+cp -r "$here"/{check.sh,interfaces.sh,daq.sh,daemon_in_guest} "$work/share/guest"
+cp "$build"/tests/{guest/guest_daq_test,hal/canopen/hal_canopen_socketcan_test} "$work/share"
 # What was installed, so that a build under way cannot change it between two comparisons.
 bin=$(dirname "$(find "$work/share/machine" -type f -name flexarm -path '*/bin/*')")
 [[ -x $bin/flexarmd ]] || { echo "run_all: $build holds no flexarmd" >&2; exit 1; }
@@ -81,9 +81,11 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
   in_guest --det --systemd -- daemon_in_guest/service.sh daemon_in_guest/refusal.sh
   in_guest --det -- daemon_in_guest/wire.sh
 ) &
-in_guest --det -- interfaces.sh daemon_in_guest/{experiment,load,hostile,commission}.sh &
+in_guest --det -- interfaces.sh daq.sh daemon_in_guest/{experiment,load,hostile,commission}.sh &
 wait
-for name in interfaces experiment load hostile commission service refusal wire; do report_guest $name; done
+for name in interfaces daq experiment load hostile commission service refusal wire; do
+  report_guest $name
+done
 
 # In lock step, the same seed, on this machine: the guest's real-time runs are the same to the bit.
 "$bin/flexarm" simulate -c "$root/config/hil.toml" --json -o "$work/lockstep.flexarm" \
