@@ -59,7 +59,7 @@ struct CanopenConfig {
   /// between: a heartbeat and an emergency of every node, and one frame that had already begun.
   std::int64_t wire_time_ns() const noexcept;
   /// The part of one node.
-  std::int64_t wire_time_ns(const CanopenNodeConfig& of) const noexcept;
+  std::int64_t wire_time_ns(const CanopenNodeConfig& n) const noexcept;
   /// Part of the bus's time that is used, 0..1, every frame at its longest.
   double bus_load() const noexcept;
   /// Bound of CanopenDevice::Exchange.

@@ -64,7 +64,7 @@ class Planner {
   void AddLines() {
     std::map<int, int> of_subdevice;
     for (const ComediLineConfig& row : config_.line) {
-      if (of_subdevice.count(row.subdevice) == 0) {
+      if (!of_subdevice.contains(row.subdevice)) {
         of_subdevice[row.subdevice] = NewTransaction(instruction_ns_);
       }
       plan_.channels.push_back({.channel = ChannelName(row),
