@@ -70,7 +70,7 @@ void ModbusServer::Listen() {
     throw HalError("modbus server '" + config_.name + "': cannot listen on " + config_.host + ":" +
                    std::to_string(port_) + ": " + std::strerror(errno));
   }
-  port_ = ntohs(address.sin_port);
+  if (port_ == 0) port_ = ntohs(address.sin_port);  // it comes back to the same
 }
 
 void ModbusServer::OpenPseudoTerminal() {

@@ -48,8 +48,9 @@ class ModbusServer {
   /// What was asked for last is in force.
   bool settled() const noexcept { return taken_.load() == asked_.load(); }
 
-  int port() const noexcept { return port_; }                 ///< TCP
-  const std::string& path() const noexcept { return path_; }  ///< RTU: the pseudo-terminal
+  int port() const noexcept { return port_; }  ///< TCP
+  /// RTU: the pseudo-terminal. Another one after kAway: the link leads there.
+  const std::string& path() const noexcept { return path_; }
   std::uint64_t requests() const noexcept { return requests_.load(); }
   std::int64_t bytes_flooded() const noexcept { return flooded_.load(); }
 
