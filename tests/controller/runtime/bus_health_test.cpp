@@ -40,7 +40,7 @@ TEST(BusJournal, SaysWhenABusIsLostAndWhenItIsBack) {
 TEST(BusJournal, TellsOfSurvivedFailuresOnceASecondAtMost) {
   Journal told;
   for (std::uint32_t k = 0; k < 150; ++k) {
-    told.Follow(k * 20 * kMs,
+    told.Follow(std::int64_t{k} * 20 * kMs,
                 {Bus(true, k % 2 == 0 ? "" : "can0: no answer in time", (k + 1) / 2)});
   }
   EXPECT_EQ(told.lines.size(), 3U);

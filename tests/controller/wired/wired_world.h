@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -135,9 +136,9 @@ class WiredWorld final : public Task {
         .vendor = config.vendor,
         .product = config.product,
         .serial = config.serial,
-        .rated_torque_mnm = IsDrive(config.role)
-                                ? static_cast<std::uint32_t>(config.rated_motor_torque_mnm() + 0.5)
-                                : 0};
+        .rated_torque_mnm = IsDrive(config.role) ? static_cast<std::uint32_t>(
+                                                       std::lround(config.rated_motor_torque_mnm()))
+                                                 : 0};
     auto node = std::make_unique<SimulatedNode>(bus.get(), simulated);
     node->Start();
     wire.AddRunner([node = node.get()] { node->Run(); });
