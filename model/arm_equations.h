@@ -29,6 +29,7 @@ VectorX<Scalar> InertialForces(const ArmConstants& c, const VectorX<Scalar>& q,
                                const VectorX<Scalar>& v, const VectorX<Scalar>& a) {
   using std::cos, std::sin, std::sqrt;
   using Vector = VectorX<Scalar>;
+  // NOLINTNEXTLINE(readability-const-return-type): Eigen's own type, a reference where it can be
   const auto cast = [](const auto& x) -> decltype(auto) { return x.template cast<Scalar>(); };
   const auto dot = [&](const Eigen::VectorXd& x, const Vector& y) {
     return (cast(x).array() * y.array()).sum();

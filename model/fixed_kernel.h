@@ -14,7 +14,7 @@ namespace flexarm {
 /// Inside of step_kernel.cpp and foreshortened_kernel.cpp. Real-time: Step is safe.
 template <typename Arm>
 class FixedKernel final : public StepKernel {
-  static constexpr int M = Arm::kModes;
+  static constexpr int kModes = Arm::kModes;
 
  public:
   FixedKernel(const ArmConstants& c, bool coulomb_friction)
@@ -30,11 +30,11 @@ class FixedKernel final : public StepKernel {
 
   void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h,
             int passes) noexcept override {
-    if (h != k_.h) k_ = StepConstants<M>(c_, h);
+    if (h != k_.h) k_ = StepConstants<kModes>(c_, h);
     const Coordinates q = Load(state->q), v = Load(state->v);
     Coordinates a = Load(state->a);
     const double spring1 = c_.K1 * (q.th[2] - q.th[0] + 0.5 * h * (v.th[2] - v.th[0]));
-    AppliedForces<M> r = Applied(q, v, torque_nm, spring1);
+    AppliedForces<kModes> r = Applied(q, v, torque_nm, spring1);
     Arm arm(c_, k_);
     FrictionSolution hubs{};
     for (int pass = 0; pass < passes; ++pass) {
@@ -57,7 +57,7 @@ class FixedKernel final : public StepKernel {
   }
 
  private:
-  using Coordinates = ArmCoordinates<M>;
+  using Coordinates = ArmCoordinates<kModes>;
 
   static Coordinates Advanced(const Coordinates& x, const Coordinates& rate, double t) noexcept {
     Coordinates y;
@@ -70,8 +70,8 @@ class FixedKernel final : public StepKernel {
   Coordinates Load(const ArmVector& x) const noexcept {
     Coordinates y;
     for (int i = 0; i < 4; ++i) y.th[static_cast<std::size_t>(i)] = x[i];
-    for (int i = 0; i < M; ++i) y.f1[i] = i < m1_ ? x[kPhi1 + i] : 0.0;
-    for (int i = 0; i < M; ++i) y.f2[i] = i < m2_ ? x[kPhi1 + m1_ + i] : 0.0;
+    for (int i = 0; i < kModes; ++i) y.f1[i] = i < m1_ ? x[kPhi1 + i] : 0.0;
+    for (int i = 0; i < kModes; ++i) y.f2[i] = i < m2_ ? x[kPhi1 + m1_ + i] : 0.0;
     return y;
   }
 
@@ -83,11 +83,11 @@ class FixedKernel final : public StepKernel {
 
   // Forces that do not change between passes: torques, springs at q + h/2 v, damping at v. th3 is
   // eliminated: J1 th3'' + K1h (th3'' - th1'') = tau1 - spring1.
-  AppliedForces<M> Applied(const Coordinates& q, const Coordinates& v,
-                           const Eigen::Vector2d& torque, double spring1) const noexcept {
+  AppliedForces<kModes> Applied(const Coordinates& q, const Coordinates& v,
+                                const Eigen::Vector2d& torque, double spring1) const noexcept {
     const double h = k_.h;
     const double spring2 = c_.K2 * (q.th[3] - q.th[1] + 0.5 * h * (v.th[3] - v.th[1]));
-    AppliedForces<M> r;
+    AppliedForces<kModes> r;
     r.th1 = spring1 + k_.rotor1 * (torque[0] - spring1);
     r.th2 = spring2;
     r.th4 = torque[1] - spring2;
@@ -103,7 +103,7 @@ class FixedKernel final : public StepKernel {
   // Joint 2 with play, as Newton sees it about the middle of the step that accelerations `a` give:
   // its slopes go to the left side. A drag that falls with speed is left on the right.
   void ApplyJoint2(const Coordinates& q_m, const Coordinates& v_m, const Coordinates& a,
-                   double torque2, AppliedForces<M>* r) const noexcept {
+                   double torque2, AppliedForces<kModes>* r) const noexcept {
     const double h = k_.h;
     const Joint2Torque joint =
         backlash_.At(q_m.th[3] - q_m.th[1], v_m.th[3] - v_m.th[1], v_m.th[3]);
@@ -120,7 +120,7 @@ class FixedKernel final : public StepKernel {
     const bool stop1 = has_friction_ && hubs.contact[0] == Contact::kStuck;
     const bool stop2 = has_friction_ && hubs.contact[1] == Contact::kStuck;
     if (!(stop1 && v->th[0] != 0.0) && !(stop2 && v->th[1] != 0.0)) return;
-    AppliedForces<M> none;
+    AppliedForces<kModes> none;
     none.th1 = none.th2 = none.th4 = none.K2h = none.drag4 = 0.0;
     none.f1.setZero();
     none.f2.setZero();
@@ -145,8 +145,8 @@ class FixedKernel final : public StepKernel {
   bool has_friction_;
   Backlash backlash_;
   typename Arm::Constants c_;
-  StepConstants<M> mass_;
-  StepConstants<M> k_;
+  StepConstants<kModes> mass_;
+  StepConstants<kModes> k_;
 };
 
 }  // namespace flexarm
