@@ -43,7 +43,7 @@ class Reader {
 
   void AllowOnly(const std::set<std::string>& keys) const {
     for (const auto& [key, value] : json_.items()) {
-      if (keys.count(key) > 0) continue;
+      if (keys.contains(key)) continue;
       std::string list;
       for (const std::string& known : keys) list += (list.empty() ? "" : ", ") + known;
       Refuse(key, "is not a key here; expected " + list);
