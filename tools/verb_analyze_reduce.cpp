@@ -49,8 +49,8 @@ nlohmann::ordered_json Reduce(const Options& options) {
   nlohmann::ordered_json json = ArmReductionJson(model, motion, options.reduction);
   if (options.with_grid) {
     const std::vector<NominalMotion> centres = CentresOf(options.grid);
-    const std::vector<ReductionCell> cells = ReduceCells(model, centres, options.reduction.scaling,
-                                                         ProgressBar("cells", centres.size()));
+    const std::vector<ReductionCell> cells =
+        ReduceCells(model, centres, options.reduction, ProgressBar("cells", centres.size()));
     json["grid"] = GridJson(options.grid, cells);
     if (!options.output.empty()) {
       std::filesystem::create_directories(options.output);
@@ -58,8 +58,7 @@ nlohmann::ordered_json Reduce(const Options& options) {
     }
   }
   if (!options.output.empty()) {
-    for (const auto& file :
-         DrawReductionFigures(model, options.reduction.scaling, options.output)) {
+    for (const auto& file : DrawReductionFigures(model, options.reduction, options.output)) {
       std::cerr << "wrote " << file.string() << '\n';
     }
   }

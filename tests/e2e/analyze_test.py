@@ -70,6 +70,16 @@ class Reduce(ProgramTest):
             picture = self.folder / f"out/figure-6.{number}.png"
             self.assertGreater(picture.stat().st_size, 5000, picture.name)
 
+    def test_the_bound_on_rigid_body_roots_counts_in_the_grid_too(self):
+        def shares(*options):
+            self.reduce(*REFERENCE, "--grid", "--grid-cells", 2, "-o", self.folder / "out",
+                        *options)
+            with open(self.folder / "out/grid.csv", encoding="utf-8") as file:
+                return [float(cell["rigid_share_percent"]) for cell in csv.DictReader(file)]
+
+        self.assertGreater(min(shares()), 50)  # the elbow's slow oscillation
+        self.assertEqual(max(shares("--rigid-below", 1000)), 0)  # lowest bending: 1730 rad^2/s^2
+
     def test_the_whole_grid_of_the_thesis_is_a_matter_of_seconds(self):
         before = cpu_seconds()
         grid = self.reduce(*REFERENCE, "--grid")["grid"]

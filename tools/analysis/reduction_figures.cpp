@@ -1,5 +1,6 @@
 #include "tools/analysis/reduction_figures.h"
 
+#include <array>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
@@ -20,9 +21,9 @@ struct Curve {
 };
 
 // Captions of figures 6.3 to 6.5, mended: the errata name the variables that are meant.
-constexpr Curve kCurves[] = {{"figure-6.3.png", 0.0, 0.0, 0.0},
-                             {"figure-6.4.png", 45.0, -1.0, 3.0},
-                             {"figure-6.5.png", 90.0, -4.0, -6.0}};
+constexpr std::array<Curve, 3> kCurves = {{{"figure-6.3.png", 0.0, 0.0, 0.0},
+                                           {"figure-6.4.png", 45.0, -1.0, 3.0},
+                                           {"figure-6.5.png", 90.0, -4.0, -6.0}}};
 
 struct Surface {
   const char* file;
@@ -30,10 +31,10 @@ struct Surface {
 };
 
 // Captions of figures 6.6 to 6.9.
-constexpr Surface kSurfaces[] = {{"figure-6.6.png", 0.0},
-                                 {"figure-6.7.png", 28.4},
-                                 {"figure-6.8.png", 61.6},
-                                 {"figure-6.9.png", 90.0}};
+constexpr std::array<Surface, 4> kSurfaces = {{{"figure-6.6.png", 0.0},
+                                               {"figure-6.7.png", 28.4},
+                                               {"figure-6.8.png", 61.6},
+                                               {"figure-6.9.png", 90.0}}};
 
 std::string Caption(double theta2_deg, const std::string& rest, ModalScaling scaling) {
   std::ostringstream text;
@@ -52,11 +53,11 @@ std::string BothLinks(const std::string& value) {
   return curves.str() + "\n";
 }
 
-void DrawCurve(const ArmModel& model, ModalScaling scaling, const Curve& curve,
+void DrawCurve(const ArmModel& model, const ReductionOptions& options, const Curve& curve,
                const std::filesystem::path& output) {
   const ArmReduction reduction = ReduceArm(
       model, {curve.theta2_deg * kRadPerDeg, curve.theta1_rate_rad_s, curve.theta2_rate_rad_s},
-      scaling);
+      options.scaling, options.rigid_below_rad2_s2);
   std::ostringstream script;
   script << TerminalFor(output, 1100, 500) << std::setprecision(10) << "$data << EOD\n0 0 0\n";
   for (Eigen::Index k = 0; k < model.mode_count().link1; ++k) {
@@ -67,7 +68,8 @@ void DrawCurve(const ArmModel& model, ModalScaling scaling, const Curve& curve,
   std::ostringstream rates;
   rates << ", rates " << curve.theta1_rate_rad_s << " and " << curve.theta2_rate_rad_s << " rad/s";
   script << "EOD\nset multiplot layout 1,2 title "
-         << Quoted("Power of the first k modes: " + Caption(curve.theta2_deg, rates.str(), scaling))
+         << Quoted("Power of the first k modes: " +
+                   Caption(curve.theta2_deg, rates.str(), options.scaling))
          << "\nset xlabel 'modes k'\nset grid lc rgb '#D9D9D9'\nset key bottom right\n"
             "set xrange [0:"
          << model.mode_count().link1 << "]\nset yrange [0:105]\nset ylabel 'contribution, %'\nplot "
@@ -79,7 +81,7 @@ void DrawCurve(const ArmModel& model, ModalScaling scaling, const Curve& curve,
 }
 
 // Two views a link, as in the thesis: from the side, which shows the least value, and at an angle.
-void DrawSurface(const ArmModel& model, ModalScaling scaling, const Surface& surface,
+void DrawSurface(const ArmModel& model, const ReductionOptions& options, const Surface& surface,
                  const std::filesystem::path& output) {
   ReductionGrid grid;
   grid.cells = kRatePoints;
@@ -90,7 +92,7 @@ void DrawSurface(const ArmModel& model, ModalScaling scaling, const Surface& sur
       motions.back().theta2_rad = surface.theta2_deg * kRadPerDeg;
     }
   }
-  const std::vector<ReductionCell> cells = ReduceCells(model, motions, scaling);
+  const std::vector<ReductionCell> cells = ReduceCells(model, motions, options);
   std::ostringstream script;
   script << TerminalFor(output, 1200, 950) << std::setprecision(10) << "$data << EOD\n";
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -100,7 +102,7 @@ void DrawSurface(const ArmModel& model, ModalScaling scaling, const Surface& sur
   }
   script << "EOD\nset multiplot layout 2,2 title "
          << Quoted("Contribution of the first two modes, %: " +
-                   Caption(surface.theta2_deg, "", scaling))
+                   Caption(surface.theta2_deg, "", options.scaling))
          << "\nset hidden3d\nset xlabel \"th1', rad/s\"\nset format z '%.4f'\n"
             "set xyplane relative 0\nset xtics 2\n";
   const char* side = "set view 90,0\nunset ytics\nunset ylabel\n";
@@ -117,17 +119,18 @@ void DrawSurface(const ArmModel& model, ModalScaling scaling, const Surface& sur
 
 }  // namespace
 
-std::vector<std::filesystem::path> DrawReductionFigures(const ArmModel& model, ModalScaling scaling,
+std::vector<std::filesystem::path> DrawReductionFigures(const ArmModel& model,
+                                                        const ReductionOptions& options,
                                                         const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::vector<std::filesystem::path> files;
   for (const Curve& curve : kCurves) {
     files.push_back(folder / curve.file);
-    DrawCurve(model, scaling, curve, files.back());
+    DrawCurve(model, options, curve, files.back());
   }
   for (const Surface& surface : kSurfaces) {
     files.push_back(folder / surface.file);
-    DrawSurface(model, scaling, surface, files.back());
+    DrawSurface(model, options, surface, files.back());
   }
   return files;
 }

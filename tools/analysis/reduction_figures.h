@@ -13,7 +13,8 @@ namespace flexarm {
 /// the first two modes' contribution over both rates at its four elbow angles.
 /// @returns the files
 /// @throws std::runtime_error if gnuplot or the folder fails
-std::vector<std::filesystem::path> DrawReductionFigures(const ArmModel& model, ModalScaling scaling,
+std::vector<std::filesystem::path> DrawReductionFigures(const ArmModel& model,
+                                                        const ReductionOptions& options,
                                                         const std::filesystem::path& folder);
 
 /// One row a cell, as CSV.

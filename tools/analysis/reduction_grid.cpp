@@ -19,9 +19,11 @@ NominalMotion ReductionGrid::Centre(int i, int j, int k) const {
           CentreOf(-theta2_rate_rad_s, theta2_rate_rad_s, k, cells)};
 }
 
-ReductionCell ReduceCell(const ArmModel& model, const NominalMotion& motion, ModalScaling scaling) {
-  const ArmReduction reduction = ReduceArm(model, motion, scaling);
-  ReductionCell cell{motion, {}, {}, 0.0, 0};
+ReductionCell ReduceCell(const ArmModel& model, const NominalMotion& motion,
+                         const ReductionOptions& options) {
+  const ArmReduction reduction =
+      ReduceArm(model, motion, options.scaling, options.rigid_below_rad2_s2);
+  ReductionCell cell{motion, {}, {}, 0.0, 0, 0};
   for (std::size_t link = 0; link < 2; ++link) {
     const Eigen::VectorXd& epsilon = reduction.link[link].epsilon_percent;
     cell.epsilon_1_percent[link] = epsilon[0];
@@ -34,18 +36,18 @@ ReductionCell ReduceCell(const ArmModel& model, const NominalMotion& motion, Mod
   }
   cell.rigid_share_percent *= 100.0 / sum;
   for (const DroppedRoot& root : reduction.balance.dropped) {
-    cell.negative_roots += root.reason == DroppedRoot::Reason::kRigid ? 0 : 1;
+    ++(root.reason == DroppedRoot::Reason::kRigid ? cell.zero_roots : cell.negative_roots);
   }
   return cell;
 }
 
 std::vector<ReductionCell> ReduceCells(const ArmModel& model,
                                        const std::vector<NominalMotion>& motions,
-                                       ModalScaling scaling,
+                                       const ReductionOptions& options,
                                        const std::function<void(std::size_t)>& progress) {
   std::vector<ReductionCell> cells(motions.size());
   ForAllOnAllCores(
-      motions.size(), [&](std::size_t i) { cells[i] = ReduceCell(model, motions[i], scaling); },
+      motions.size(), [&](std::size_t i) { cells[i] = ReduceCell(model, motions[i], options); },
       progress);
   return cells;
 }

@@ -8,6 +8,13 @@
 
 namespace flexarm {
 
+/// What `analyze reduce` is asked about one nominal motion, or about any system.
+struct ReductionOptions {
+  ModalScaling scaling = ModalScaling::kMass;
+  double rigid_below_rad2_s2 = PowerOptions{}.rigid_below_rad2_s2;
+  double margin_per_s = 1e-2;  ///< a stable mode decays faster; the others are kept whole
+};
+
 /// The space of nominal motions of thesis 6.5.2, cut into equal cells.
 ///
 /// Defaults are the thesis's: the elbow from 0 to 90 degrees, 4 and 6 rad/s, 20 intervals each.
@@ -25,17 +32,19 @@ struct ReductionCell {
   NominalMotion motion;
   std::array<double, 2> epsilon_1_percent, epsilon_2_percent;  ///< of link 1, link 2
   double rigid_share_percent;  ///< of the sum of rho, of a rigid-body root that turned positive
+  int zero_roots;              ///< dropped: rigid-body motions
   int negative_roots;          ///< dropped: negative or complex
 };
 
 /// One cell.
-ReductionCell ReduceCell(const ArmModel& model, const NominalMotion& motion, ModalScaling scaling);
+ReductionCell ReduceCell(const ArmModel& model, const NominalMotion& motion,
+                         const ReductionOptions& options = {});
 
 /// All motions, on all cores, in their order.
 /// @param progress  as ForAllOnAllCores
 std::vector<ReductionCell> ReduceCells(const ArmModel& model,
                                        const std::vector<NominalMotion>& motions,
-                                       ModalScaling scaling,
+                                       const ReductionOptions& options,
                                        const std::function<void(std::size_t)>& progress = {});
 
 /// All centres of a grid; th2' runs fastest, then th1', then th2.

@@ -9,13 +9,6 @@
 
 namespace flexarm {
 
-/// What `analyze reduce` is asked about one nominal motion, or about any system.
-struct ReductionOptions {
-  ModalScaling scaling = ModalScaling::kMass;
-  double rigid_below_rad2_s2 = PowerOptions{}.rigid_below_rad2_s2;
-  double margin_per_s = 1e-2;  ///< a stable mode decays faster; the others are kept whole
-};
-
 /// Power balancing and truncation by Gramians of the arm at one nominal motion.
 nlohmann::ordered_json ArmReductionJson(const ArmModel& model, const NominalMotion& motion,
                                         const ReductionOptions& options);
