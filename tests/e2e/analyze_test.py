@@ -15,6 +15,8 @@ REFERENCE = ("-c", RIG, "--set", "arm.link1_tip_inertia=motor")  # the basis of 
 TWO_MASSES = {"name": "two masses", "M": [[1, 0], [0, 1]], "K": [[6.5, -2.5], [-2.5, 6.5]],
               "B": [[1], [0]], "C": [[0, 1]]}
 
+VERDICTS = ("holds", "holds in part", "depends on the excitation", "does not hold", "not testable")
+
 
 def cpu_seconds():
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -151,6 +153,41 @@ class Reduce(ProgramTest):
                 (("reduce", "-c", RIG, "--grid", "--grid-cells", 0), "--grid-cells"),
                 (("reduce", "-c", RIG, "--grid", "--grid-theta2-deg", 30, 30), "grid of nothing"),
                 (("reduce", "-c", RIG, "--grid", "--grid-theta1-rate", 0), "--grid-theta1-rate")):
+            with self.subTest(arguments):
+                self.assert_refused(self.run_program("flexarm", "analyze", *arguments), said)
+
+
+class Parametric(ProgramTest):
+    def test_every_figure_and_the_table_are_written(self):
+        out = self.folder / "out"
+        result = self.flexarm_json("analyze", "parametric", "-c", RIG, "-o", out)
+        sweeps = {sweep["parameter"]: sweep["points"] for sweep in result["sweeps"]}
+        for name in ("payload_kg", "joint1_stiffness_nm_per_rad", "joint2_stiffness_nm_per_rad",
+                     "friction_factor", "backlash_deg", "link1_length_m", "link2_length_m"):
+            self.assertGreaterEqual(len(sweeps[name]), 9, name)
+            pictures = list(out.glob(f"figure-5.?-{name}.png"))
+            self.assertEqual(len(pictures), 1, name)
+            self.assertGreater(pictures[0].stat().st_size, 10000, name)
+        payloads = [point["motors_free_frequency_hz"][0] for point in sweeps["payload_kg"]]
+        self.assertAlmostEqual(payloads[0], 7.9197, places=3)  # exact dynamic stiffness: 7.919741
+        self.assertEqual(payloads, sorted(payloads, reverse=True))
+        with open(out / "parametric.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), sum(map(len, sweeps.values())))
+        table = (out / "statements.md").read_text(encoding="utf-8")
+        for statement in result["statements"]:
+            self.assertIn(statement["model"], table)
+            self.assertIn(statement["verdict"], VERDICTS)
+
+    def test_it_takes_seconds(self):
+        before = cpu_seconds()
+        self.flexarm("analyze", "parametric", "-c", RIG)
+        self.assertLess(cpu_seconds() - before, 60, "processor time")
+
+    def test_bad_usage_is_refused(self):
+        for arguments, said in ((("parametric",), "--config"),
+                                (("parametric", "-c", RIG, "--torque-nm", 0, 1), "--torque-nm"),
+                                (("parametric", "-c", RIG, "--torque-nm", 1), "--torque-nm")):
             with self.subTest(arguments):
                 self.assert_refused(self.run_program("flexarm", "analyze", *arguments), said)
 

@@ -1,0 +1,196 @@
+#include "tools/analysis/parametric_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/gnuplot.h"
+#include "tools/run_summary.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDrawn_hz = 15.0;
+
+struct SignalName {
+  const char* title;
+  const char* column;
+};
+
+constexpr std::array<SignalName, kSignals> kSignalNames = {
+    {{"bending of link 1, mm", "bending_1_mm"},
+     {"bending of link 2, mm", "bending_2_mm"},
+     {"twist of joint 1, mrad", "twist_1_mrad"},
+     {"twist of joint 2, mrad", "twist_2_mrad"}}};
+
+constexpr std::array<const char*, kSweeps> kFigureOf = {"5.1", "5.2", "5.2", "5.3",
+                                                        "5.4", "5.4", "5.5", "5.5"};
+
+Json PointJson(const ParametricPoint& point) {
+  Json json{{"value", point.value}};
+  for (std::size_t i = 0; i < kSignals; ++i) {
+    const std::string name = kSignalNames[i].column;
+    const std::string plain = name.substr(0, name.rfind('_'));
+    json["peak_" + name] = NumberOrNull(point.signal[i].peak);
+    json["spectral_peak_" + name] = NumberOrNull(point.signal[i].spectral_peak);
+    json["free_rms_" + name] = NumberOrNull(point.signal[i].free_rms);
+    json["free_frequency_" + plain + "_hz"] = NumberOrNull(point.signal[i].free_frequency_hz);
+  }
+  json["motors_free_frequency_hz"] = point.free_hz;
+  json["motors_held_frequency_hz"] = point.held_hz;
+  return json;
+}
+
+// Spectra as a surface that is looked at from above, in logarithmic colours.
+void DrawSpectrum(const ParametricSweep& sweep, std::size_t signal, std::ostringstream* script) {
+  double most = 0.0;
+  for (const ParametricPoint& point : sweep.point) {
+    const double peak = point.signal[signal].spectral_peak;
+    if (std::isfinite(peak)) most = std::max(most, peak);
+  }
+  *script << "set title " << Quoted(kSignalNames[signal].title) << "\nset cbrange [" << 1e-3 * most
+          << ':' << most << "]\nsplot $signal" << signal << " using 1:2:3 with pm3d notitle\n";
+}
+
+void WriteSpectrum(const ParametricSweep& sweep, std::size_t signal, std::ostringstream* script) {
+  *script << "$signal" << signal << " << EOD\n";
+  for (const ParametricPoint& point : sweep.point) {
+    const Spectrum& spectrum = point.signal[signal].spectrum;
+    for (std::size_t i = 0; i < spectrum.amplitude.size(); ++i) {
+      if (spectrum.FrequencyHz(i) > kDrawn_hz) break;
+      // Logarithmic colours have no place for exactly nothing.
+      *script << spectrum.FrequencyHz(i) << ' ' << point.value << ' '
+              << std::max(spectrum.amplitude[i], 1e-12) << '\n';
+    }
+    *script << '\n';
+  }
+  *script << "EOD\n";
+}
+
+void DrawPeaks(std::size_t first, const char* label, std::ostringstream* script) {
+  *script << "set ylabel '" << label << "'\nset title 'largest magnitude'\nplot";
+  for (const std::size_t which : {0U, 1U}) {
+    *script << (which > 0 ? ", " : " ") << "$peaks using 1:" << first + which + 2
+            << " with linespoints lw 2 pt 7 lc rgb '" << Colour(which) << "' title '" << which + 1
+            << "'";
+  }
+  *script << '\n';
+}
+
+// Axes of the spectra's maps, and of the curves beside them.
+std::string MapAxes(const ParametricSweep& sweep) {
+  std::ostringstream axes;
+  axes << std::setprecision(8) << "set xlabel 'Hz'\nset xrange [0:" << kDrawn_hz
+       << "]\nset yrange [" << sweep.point.front().value << ':' << sweep.point.back().value
+       << "]\nset ylabel " << Quoted(sweep.label) << '\n';
+  return axes.str();
+}
+
+std::string CurveAxes(const ParametricSweep& sweep) {
+  return "set xlabel " + Quoted(sweep.label) +
+         "\nset autoscale x\nset yrange [0:*]\nset key bottom\n";
+}
+
+void WritePeaks(const ParametricSweep& sweep, std::ostringstream* script) {
+  *script << "$peaks << EOD\n";
+  for (const ParametricPoint& point : sweep.point) {
+    *script << point.value;
+    for (const SignalMeasures& signal : point.signal) *script << ' ' << signal.peak;
+    *script << '\n';
+  }
+  *script << "EOD\n";
+}
+
+void DrawSweep(const ParametricStudy& study, const ParametricSweep& sweep,
+               const std::filesystem::path& output) {
+  std::ostringstream script;
+  script << TerminalFor(output, 1500, 850) << std::setprecision(8);
+  for (std::size_t signal = 0; signal < kSignals; ++signal) WriteSpectrum(sweep, signal, &script);
+  WritePeaks(sweep, &script);
+  std::ostringstream title;
+  title << "Effect of the " << sweep.label << ": amplitude spectra, and largest magnitudes, after "
+        << study.excitation.torque_nm[0] << " and " << study.excitation.torque_nm[1] << " N m";
+  script << "set multiplot layout 2,3 title " << Quoted(title.str())
+         << "\nset palette defined (0 '#FFFFFF', 1 '#9ECAE1', 2 '#08519C', 3 '#000000')\n"
+            "set view map\nset logscale cb\nset format cb '10^{%T}'\n"
+         << MapAxes(sweep);
+  for (const std::size_t signal : {kBending1, kBending2}) DrawSpectrum(sweep, signal, &script);
+  script << CurveAxes(sweep);
+  DrawPeaks(kBending1, "links, mm", &script);
+  script << MapAxes(sweep);
+  for (const std::size_t signal : {kTwist1, kTwist2}) DrawSpectrum(sweep, signal, &script);
+  script << CurveAxes(sweep);
+  DrawPeaks(kTwist1, "joints, mrad", &script);
+  RunGnuplot(script.str() + "unset multiplot\n");
+}
+
+void WriteCsv(const ParametricStudy& study, std::ostream& out) {
+  out << "parameter,value";
+  for (const char* measure : {"peak_", "spectral_peak_", "free_rms_"}) {
+    for (const SignalName& name : kSignalNames) out << ',' << measure << name.column;
+  }
+  out << ",motors_free_1_hz,motors_free_2_hz,motors_held_hz\n" << std::setprecision(8);
+  for (const ParametricSweep& sweep : study.sweep) {
+    for (const ParametricPoint& point : sweep.point) {
+      out << sweep.name << ',' << point.value;
+      for (const SignalMeasures& signal : point.signal) out << ',' << signal.peak;
+      for (const SignalMeasures& signal : point.signal) out << ',' << signal.spectral_peak;
+      for (const SignalMeasures& signal : point.signal) out << ',' << signal.free_rms;
+      out << ',' << point.free_hz[0] << ',' << point.free_hz[1] << ',' << point.held_hz << '\n';
+    }
+  }
+}
+
+}  // namespace
+
+Json ParametricJson(const ParametricStudy& study, const std::vector<Statement>& statements) {
+  Json json{{"torque_nm", study.excitation.torque_nm},
+            {"excitation_s", Excitation::kPeriod_s},
+            {"sweeps", Json::array()}};
+  json.update(StatementsJson(statements));
+  for (const ParametricSweep& sweep : study.sweep) {
+    Json points = Json::array();
+    for (const ParametricPoint& point : sweep.point) points.push_back(PointJson(point));
+    json["sweeps"].push_back(
+        {{"parameter", sweep.name}, {"nominal", sweep.nominal}, {"points", std::move(points)}});
+  }
+  return json;
+}
+
+void PrintStatements(const std::vector<Statement>& statements) {
+  for (const Statement& s : statements) {
+    std::printf("%s  %s\n     model: %s\n     %s\n", s.section.c_str(), s.thesis.c_str(),
+                s.model.c_str(), Name(s.verdict));
+  }
+}
+
+std::vector<std::filesystem::path> WriteParametricFolder(const ParametricStudy& study,
+                                                         const std::vector<Statement>& statements,
+                                                         const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::vector<std::filesystem::path> files;
+  for (std::size_t i = 0; i < study.sweep.size(); ++i) {
+    files.push_back(folder /
+                    ("figure-" + std::string(kFigureOf[i]) + "-" + study.sweep[i].name + ".png"));
+    DrawSweep(study, study.sweep[i], files.back());
+  }
+  files.push_back(folder / "parametric.csv");
+  std::ofstream csv(files.back());
+  WriteCsv(study, csv);
+  files.push_back(folder / "statements.md");
+  std::ofstream table(files.back());
+  table << StatementTable(statements);
+  if (!csv.flush() || !table.flush()) {
+    throw std::runtime_error(folder.string() + ": cannot be written to");
+  }
+  return files;
+}
+
+}  // namespace flexarm

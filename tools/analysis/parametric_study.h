@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "tools/analysis/spectrum.h"
+
+namespace flexarm {
+
+/// What chapter 5 looks at: bending of the links at their tips, twist of the joints' springs.
+enum Signal : std::size_t { kBending1, kBending2, kTwist1, kTwist2 };
+constexpr std::size_t kSignals = 4;
+
+/// Excitation of chapter 4: one period of a square wave of 1 s, from rest, elbow straight, then
+/// nothing. The thesis does not say how strong it is.
+struct Excitation {
+  std::array<double, 2> torque_nm = {0.4, 0.1};
+  static constexpr double kPeriod_s = 1.0;
+};
+
+/// One signal of one run. mm for bending, mrad for twist. All infinite if the run diverged.
+struct SignalMeasures {
+  double peak;               ///< largest magnitude of the whole run
+  double spectral_peak;      ///< largest amplitude of the whole run's spectrum
+  double free_rms;           ///< about its mean, after the excitation
+  double free_frequency_hz;  ///< strongest line after the excitation
+  Spectrum spectrum;         ///< of the whole run, up to kShown_hz
+};
+
+/// One value of the parameter under study.
+struct ParametricPoint {
+  double value;
+  std::array<SignalMeasures, kSignals> signal;
+  std::array<double, 2> free_hz;  ///< the two lowest frequencies of the arm, motors free, undamped
+  double held_hz;                 ///< the lowest with the motors held
+};
+
+/// One parameter varied, all others as in the config.
+struct ParametricSweep {
+  std::string name;  ///< "payload_kg": key of the JSON and of the files, with its unit
+  std::string label;
+  double nominal;                      ///< value in the config
+  std::vector<ParametricPoint> point;  ///< ascending values
+};
+
+/// Payload, joint stiffnesses, friction, backlash (as a dead zone with impacts, and in the thesis's
+/// dissipation form) and link lengths, in this order.
+enum SweepPlace : std::size_t {
+  kPayload,
+  kStiffness1,
+  kStiffness2,
+  kFriction,
+  kBacklash,
+  kThesisBacklash,
+  kLength1,
+  kLength2,
+  kSweeps
+};
+
+struct ParametricStudy {
+  Excitation excitation;
+  std::vector<ParametricSweep> sweep;  ///< by SweepPlace
+
+  const ParametricSweep& At(SweepPlace place) const { return sweep[place]; }
+};
+
+constexpr double kStrongExcitation = 5.0;  ///< times the torque, to see what depends on it
+constexpr double kShown_hz = 25.0;         ///< spectra are kept up to here
+
+/// Runs every point of every sweep on all cores.
+/// @param progress  as ForAllOnAllCores, with the number of runs done of `ParametricRuns`
+ParametricStudy RunParametricStudy(const Config& config, const Excitation& excitation,
+                                   const std::function<void(std::size_t)>& progress = {});
+
+/// How many runs a study is.
+std::size_t ParametricRuns(const Config& config);
+
+}  // namespace flexarm
