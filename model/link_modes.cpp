@@ -118,18 +118,24 @@ double IntegrateAlong(const std::vector<BeamSection>& section, double panel_m,
   return sum;
 }
 
-LinkModes Link1Modes(const ArmParameters& p, int count) {
+BeamTip Link1Tip(const ArmParameters& p) {
   const double rotor =
       p.link1_tip_inertia == Link1TipInertia::kMotorAndRotor ? p.joint[1].rotor_inertia_kgm2 : 0.0;
-  const BeamTip tip{
+  return {
       .mass_kg = p.motor2_mass_kg + p.hub2_mass_kg + p.link[1].mass_kg() + p.shape_payload_mass_kg,
       .inertia_kgm2 = p.motor2_inertia_kgm2 + rotor};
-  return MakeLinkModes(p.link[0], tip, p.damping, count);
+}
+
+BeamTip Link2Tip(const ArmParameters& p) {
+  return {.mass_kg = p.shape_payload_mass_kg, .inertia_kgm2 = p.payload_inertia_kgm2};
+}
+
+LinkModes Link1Modes(const ArmParameters& p, int count) {
+  return MakeLinkModes(p.link[0], Link1Tip(p), p.damping, count);
 }
 
 LinkModes Link2Modes(const ArmParameters& p, int count) {
-  const BeamTip tip{.mass_kg = p.shape_payload_mass_kg, .inertia_kgm2 = p.payload_inertia_kgm2};
-  return MakeLinkModes(p.link[1], tip, p.damping, count);
+  return MakeLinkModes(p.link[1], Link2Tip(p), p.damping, count);
 }
 
 }  // namespace flexarm

@@ -31,6 +31,12 @@ struct LinkModes {
   int count() const { return static_cast<int>(mode.size()); }
 };
 
+/// What the tip of link 1 carries when its shapes are computed.
+BeamTip Link1Tip(const ArmParameters& p);
+
+/// What the tip of link 2 carries when its shapes are computed.
+BeamTip Link2Tip(const ArmParameters& p);
+
 /// Link 1: clamped; its tip carries motor 2, hub 2, link 2 and the payload as a mass, and the
 /// rotary inertia chosen by `link1_tip_inertia` (link 2 hangs on a free joint).
 /// @throws std::invalid_argument as ClampedModes.

@@ -7,6 +7,7 @@ namespace flexarm {
 void RegisterAnalyze(CLI::App& app, Exit& exit) {
   CLI::App* verb = app.add_subcommand("analyze", "What the model says about the arm");
   verb->require_subcommand(1);
+  RegisterAnalyzeCheck(*verb, exit);
   RegisterAnalyzeParametric(*verb, exit);
   RegisterAnalyzeReduce(*verb, exit);
 }

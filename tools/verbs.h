@@ -20,6 +20,7 @@ struct Exit {
 // Bad input is thrown (InputError, ConfigError, Refused); main turns it into a message and
 // kBadInput, and any other exception into kFailed.
 void RegisterAnalyze(CLI::App& app, Exit& exit);
+void RegisterAnalyzeCheck(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeParametric(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);

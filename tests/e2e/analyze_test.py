@@ -1,8 +1,10 @@
 """flexarm analyze: what the model says about the arm, and about any linear system."""
 
+import contextlib
 import csv
 import json
 import math
+import re
 import resource
 import unittest
 
@@ -187,9 +189,51 @@ class Parametric(ProgramTest):
     def test_bad_usage_is_refused(self):
         for arguments, said in ((("parametric",), "--config"),
                                 (("parametric", "-c", RIG, "--torque-nm", 0, 1), "--torque-nm"),
-                                (("parametric", "-c", RIG, "--torque-nm", 1), "--torque-nm")):
+                                (("parametric", "-c", RIG, "--torque-nm", 1), "--torque-nm"),
+                                (("check", "-c", RIG, "--chapter", 3), "--chapter"),
+                                (("check",), "--config")):
             with self.subTest(arguments):
                 self.assert_refused(self.run_program("flexarm", "analyze", *arguments), said)
+
+
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+
+
+def last_digit(number):
+    """What one more in the last printed digit is worth."""
+    mantissa, _, exponent = number.partition("e")
+    return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+
+
+class Check(ProgramTest):
+    """The committed page is what the program writes: the same words and verdicts, and numbers that
+    differ by no more than two in their last printed digit, which is what another compiler or
+    processor may change."""
+
+    def compare(self, committed, written):
+        self.assertEqual(NUMBER.sub("#", committed), NUMBER.sub("#", written))
+        for was, now in zip(NUMBER.findall(committed), NUMBER.findall(written)):
+            self.assertLessEqual(abs(float(was) - float(now)), 2.01 * last_digit(was),
+                                 f"{was} in docs/thesis-check.md is now {now}")
+
+    def test_the_page_is_up_to_date(self):
+        page = self.folder / "thesis-check.md"
+        self.flexarm("analyze", "check", "-c", RIG, "-o", page)
+        self.compare((ROOT / "docs/thesis-check.md").read_text(encoding="utf-8"),
+                     page.read_text(encoding="utf-8"))
+
+    def test_the_comparison_sees_another_verdict_and_another_number(self):
+        page = (ROOT / "docs/thesis-check.md").read_text(encoding="utf-8")
+        self.compare(page, page)
+        with self.assertRaises(AssertionError):
+            self.compare(page, page.replace("| does not hold |", "| holds |", 1))
+        figure = max((n for n in NUMBER.findall(page) if "." in n), key=len)
+        for other, differs in ((float(figure) + 3 * last_digit(figure), True),
+                               (float(figure) - last_digit(figure), False)):
+            changed = page.replace(figure, f"{other:.{len(figure.partition('.')[2])}f}", 1)
+            self.assertNotEqual(changed, page)
+            with self.assertRaises(AssertionError) if differs else contextlib.nullcontext():
+                self.compare(page, changed)
 
 
 if __name__ == "__main__":

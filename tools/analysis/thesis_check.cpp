@@ -1,0 +1,66 @@
+#include "tools/analysis/thesis_check.h"
+
+#include <algorithm>
+
+#include "tools/analysis/parametric_statements.h"
+
+namespace flexarm {
+namespace {
+
+std::vector<Statement> Chapter5Statements(const Config& config) {
+  const Excitation weak;
+  Excitation strong;
+  for (double& torque : strong.torque_nm) torque *= kStrongExcitation;
+  return ParametricStatements(RunParametricStudy(config, weak), RunParametricStudy(config, strong));
+}
+
+std::string Counted(const std::vector<Statement>& statements) {
+  std::string text;
+  for (const Verdict verdict : {Verdict::kHolds, Verdict::kInPart, Verdict::kDepends,
+                                Verdict::kDoesNot, Verdict::kNotTested}) {
+    const auto count =
+        std::count_if(statements.begin(), statements.end(),
+                      [verdict](const Statement& s) { return s.verdict == verdict; });
+    text += (text.empty() ? "" : ", ") + std::string(Name(verdict)) + ": " + std::to_string(count);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<Statement> ThesisStatements(const Config& config,
+                                        const std::function<void(std::size_t)>& progress) {
+  std::vector<Statement> all;
+  std::size_t done = 0;
+  for (auto* chapter :
+       {Chapter3Statements, Chapter4Statements, Chapter5Statements, Chapter6Statements}) {
+    for (Statement& statement : chapter(config)) all.push_back(std::move(statement));
+    if (progress) progress(++done);
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Statement& a, const Statement& b) { return a.section < b.section; });
+  return all;
+}
+
+std::string ThesisCheckPage(const Config& config, const std::vector<Statement>& statements) {
+  const Excitation weak;
+  return "# What the thesis says, and what the model says\n\n"
+         "Statements of chapters 3 to 6, in our words, against the model of this project with the "
+         "config `" +
+         config.rig_name +
+         "`. Written by `flexarm analyze check -c FILE -o docs/thesis-check.md`: every number in "
+         "the third column is computed, every verdict follows from numbers by a rule, and a test "
+         "writes the page again and compares. The model is checked by other means elsewhere "
+         "(`tests/model/`).\n\n"
+         "Chapter 5 does not say how strongly the arm was excited. Here: one period of a square "
+         "wave of " +
+         Figure(Excitation::kPeriod_s, 1) + " s, " + Figure(weak.torque_nm[0], 1) + " and " +
+         Figure(weak.torque_nm[1], 1) + " N m, elbow straight, and again with " +
+         Figure(kStrongExcitation, 1) +
+         " times as much. Bending is the deflection of a link's tip, twist the deflection of a "
+         "joint's spring; \"largest\" is over the whole run, \"after the excitation\" the free "
+         "vibration.\n\n" +
+         StatementTable(statements) + "\n" + Counted(statements) + ".\n";
+}
+
+}  // namespace flexarm

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "tools/analysis/statement.h"
+
+namespace flexarm {
+
+/// Chapter 3 against the model: beams, damping, backlash, kinematics.
+std::vector<Statement> Chapter3Statements(const Config& config);
+
+/// Chapter 4: the rig's choice of flexibilities and its table of parameters, the experiment.
+std::vector<Statement> Chapter4Statements(const Config& config);
+
+/// Chapter 6: linearisation, power balancing, order reduction over the whole grid.
+std::vector<Statement> Chapter6Statements(const Config& config);
+
+/// All of chapters 3 to 6, chapter 5 by ParametricStatements, in the order of their sections.
+/// @param progress  called with the number of chapters done; may be empty
+std::vector<Statement> ThesisStatements(const Config& config,
+                                        const std::function<void(std::size_t)>& progress = {});
+
+/// The page docs/thesis-check.md: what was asked, and the table. No number in it is written by hand
+/// but those that the thesis states.
+std::string ThesisCheckPage(const Config& config, const std::vector<Statement>& statements);
+
+}  // namespace flexarm

@@ -1,0 +1,52 @@
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tools/analysis/thesis_check.h"
+#include "tools/options.h"
+#include "tools/parallel.h"
+#include "tools/verbs.h"
+
+namespace flexarm {
+namespace {
+
+struct Options {
+  ConfigOptions config;
+  bool json = false;
+  std::filesystem::path output;
+};
+
+void Analyze(const Options& options) {
+  const Config config = options.config.Load();
+  const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 4));
+  const std::string page = ThesisCheckPage(config, statements);
+  if (!options.output.empty()) {
+    std::ofstream out(options.output);
+    out << page;
+    if (!out.flush()) throw std::runtime_error(options.output.string() + ": cannot be written");
+    std::cerr << "wrote " << options.output.string() << '\n';
+  }
+  if (options.json) {
+    std::cout << StatementsJson(statements).dump(2) << '\n';
+  } else if (options.output.empty()) {
+    std::cout << page;
+  }
+}
+
+}  // namespace
+
+void RegisterAnalyzeCheck(CLI::App& analyze, Exit&) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = analyze.add_subcommand(
+      "check", "Which statements of the thesis come out of the model, with numbers");
+  options->config.AddTo(verb, true);
+  AddJson(verb, &options->json);
+  verb->add_option("-o,--output", options->output, "Page to write, in Markdown")->type_name("FILE");
+  verb->footer("Example: flexarm analyze check -c config/thesis-rig.toml -o docs/thesis-check.md");
+  verb->callback([options] { Analyze(*options); });
+}
+
+}  // namespace flexarm
