@@ -18,12 +18,29 @@ Eigen::RowVector4d BasisRow(const BeamSection& s, double omega, double x, int or
   return scale * Eigen::RowVector4d(f[0], f[1], f[2], f[3]);
 }
 
+Eigen::Matrix4d StaticStiffness(double length_m, double bending_stiffness_nm2) {
+  const double l = length_m, EI = bending_stiffness_nm2;
+  Eigen::Matrix4d K;
+  // clang-format off
+  K <<  12.0,     6.0 * l,     -12.0,     6.0 * l,
+      6.0 * l, 4.0 * l * l, -6.0 * l, 2.0 * l * l,
+       -12.0,    -6.0 * l,      12.0,    -6.0 * l,
+      6.0 * l, 2.0 * l * l, -6.0 * l, 4.0 * l * l;
+  // clang-format on
+  return EI / (l * l * l) * K;
+}
+
 Eigen::MatrixXd MatchingMatrix(const std::vector<BeamSection>& section, const BeamTip& tip,
-                               double omega) {
+                               double omega, BeamRoot root) {
   const Eigen::Index n = 4 * static_cast<Eigen::Index>(section.size());
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
   A.block<1, 4>(0, 0) = BasisRow(section.front(), omega, 0.0, 0);
   A.block<1, 4>(1, 0) = BasisRow(section.front(), omega, 0.0, 1);
+  if (!root.clamped()) {
+    A.block<1, 4>(1, 0) *= -root.stiffness_nm_per_rad;
+    A.block<1, 4>(1, 0) +=
+        section.front().bending_stiffness_nm2() * BasisRow(section.front(), omega, 0.0, 2);
+  }
   Eigen::Index row = 2;
   for (std::size_t i = 0; i + 1 < section.size(); ++i) {
     const BeamSection &a = section[i], &b = section[i + 1];

@@ -14,9 +14,13 @@ double Beta(const BeamSection& s, double omega_rad_s);
 /// @param order  derivative, 0..3; in SI units, 1/m^order
 Eigen::RowVector4d BasisRow(const BeamSection& s, double omega_rad_s, double x_m, int order);
 
-/// Homogeneous conditions on the four coefficients of each section: clamp (rows 0 and 1: w(0),
-/// w'(0)), continuity, tip. Rows scaled to a largest entry of 1. Singular at a natural frequency.
+/// Static stiffness of a part of length l, [w0 w0' wl wl'] -> end forces (Hermite's cubics).
+Eigen::Matrix4d StaticStiffness(double length_m, double bending_stiffness_nm2);
+
+/// Homogeneous conditions on the four coefficients of each section: root (rows 0 and 1: w(0), and
+/// w'(0) or its moment), continuity, tip. Rows scaled to a largest entry of 1. Singular at a
+/// natural frequency.
 Eigen::MatrixXd MatchingMatrix(const std::vector<BeamSection>& section, const BeamTip& tip,
-                               double omega_rad_s);
+                               double omega_rad_s, BeamRoot root = BeamRoot::Clamped());
 
 }  // namespace flexarm

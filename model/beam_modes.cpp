@@ -6,15 +6,33 @@
 
 #include "model/beam_basis.h"
 #include "model/beam_equations.h"
+#include "model/root_search_error.h"
 
 namespace flexarm {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+// int of the products of Hermite's cubics: consistent mass at unit mass per length.
+Eigen::Matrix4d StaticMass(double l) {
+  Eigen::Matrix4d M;
+  // clang-format off
+  M <<  156.0,    22.0 * l,       54.0,    -13.0 * l,
+     22.0 * l,  4.0 * l * l,  13.0 * l,  -3.0 * l * l,
+         54.0,    13.0 * l,      156.0,    -22.0 * l,
+    -13.0 * l, -3.0 * l * l, -22.0 * l,   4.0 * l * l;
+  // clang-format on
+  return l / 420.0 * M;
+}
+
 // Exact dynamic stiffness of a section: [w0 w0' wl wl'] -> end forces, beam held at nothing.
 Eigen::Matrix4d SectionStiffness(const BeamSection& s, double omega) {
   const double EI = s.bending_stiffness_nm2(), l = s.length_m;
+  // Below beta l = 0.02 the next term of the series, (beta l)^8, is lost in round-off, and so are
+  // the digits of the general form, which subtracts.
+  if (Beta(s, omega) * l < 0.02) {
+    return StaticStiffness(l, EI) - omega * omega * s.mass_per_length_kg_m() * StaticMass(l);
+  }
   Eigen::Matrix4d displacement, force;
   displacement << BasisRow(s, omega, 0, 0), BasisRow(s, omega, 0, 1), BasisRow(s, omega, l, 0),
       BasisRow(s, omega, l, 1);
@@ -46,39 +64,48 @@ int CountNegativeEigenvalues(const Eigen::MatrixXd& K) {
   return static_cast<int>((eigen.eigenvalues().array() < 0.0).count());
 }
 
+// Frequencies beyond these bounds are no beam's: something is wrong with its numbers.
+constexpr double kLowest_rad_s = 1e-9, kHighest_rad_s = 1e12;
+
 double FindFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order,
-                     BeamRoot root) {
+                     BeamRoot root, const std::string& name) {
+  const auto count = [&](double omega) { return CountFrequenciesBelow(section, tip, omega, root); };
   double high = 1.0;
-  while (CountFrequenciesBelow(section, tip, high, root) < order) high *= 2.0;
+  while (high < kHighest_rad_s && count(high) < order) high *= 2.0;
   double low = high;
-  while (CountFrequenciesBelow(section, tip, low, root) >= order) low *= 0.5;
+  while (low > kLowest_rad_s && count(low) >= order) low *= 0.5;
+  if (high >= kHighest_rad_s || low <= kLowest_rad_s) {
+    throw RootSearchError(name, order, kLowest_rad_s, kHighest_rad_s, "no natural frequency");
+  }
   for (;;) {
     const double middle = 0.5 * (low + high);
     if (middle <= low || middle >= high) return middle;
-    (CountFrequenciesBelow(section, tip, middle, root) < order ? low : high) = middle;
+    (count(middle) < order ? low : high) = middle;
   }
 }
 
 // Newton on the smallest singular value of the matching matrix. Counting is certain but, with very
 // short sections, loses digits in their stiffness (12 EI/l^3); matching does not. A step beyond
 // counting's own uncertainty means two roots that close: then the counted value stands.
-double Polished(const std::vector<BeamSection>& section, const BeamTip& tip, double counted) {
+double Polished(const std::vector<BeamSection>& section, const BeamTip& tip, BeamRoot root,
+                double counted) {
   constexpr double kDelta = 1e-4;  // of the derivative: its error only slows the convergence
   double omega = counted;
   for (int i = 0; i < 3; ++i) {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(MatchingMatrix(section, tip, omega),
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(MatchingMatrix(section, tip, omega, root),
                                                 Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Index last = svd.singularValues().size() - 1;
     const Eigen::VectorXd u = svd.matrixU().col(last), v = svd.matrixV().col(last);
-    const double above = u.dot(MatchingMatrix(section, tip, omega * (1.0 + kDelta)) * v);
-    const double below = u.dot(MatchingMatrix(section, tip, omega * (1.0 - kDelta)) * v);
+    const double above = u.dot(MatchingMatrix(section, tip, omega * (1.0 + kDelta), root) * v);
+    const double below = u.dot(MatchingMatrix(section, tip, omega * (1.0 - kDelta), root) * v);
     omega -= svd.singularValues()[last] * 2.0 * kDelta * omega / (above - below);
   }
   return std::abs(omega / counted - 1.0) < 1e-6 ? omega : counted;
 }
 
-BeamMode ModeAt(const std::vector<BeamSection>& section, const BeamTip& tip, double omega) {
-  const Eigen::MatrixXd A = MatchingMatrix(section, tip, omega);
+BeamMode ModeAt(const std::vector<BeamSection>& section, const BeamTip& tip, BeamRoot root,
+                double omega) {
+  const Eigen::MatrixXd A = MatchingMatrix(section, tip, omega, root);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullV);
   Eigen::VectorXd c = svd.matrixV().col(A.cols() - 1);
   c /= BasisRow(section.back(), omega, section.back().length_m, 0).dot(c.tail<4>());
@@ -93,20 +120,6 @@ BeamMode ModeAt(const std::vector<BeamSection>& section, const BeamTip& tip, dou
     start += s.length_m;
   }
   return BeamMode(omega, std::move(piece));
-}
-
-void CheckBeam(const std::vector<BeamSection>& section, const BeamTip& tip, int count) {
-  if (section.empty()) throw std::invalid_argument("ClampedModes: a beam needs a section");
-  if (count < 1) throw std::invalid_argument("ClampedModes: count must be at least 1");
-  if (!(tip.mass_kg >= 0.0) || !(tip.inertia_kgm2 >= 0.0)) {
-    throw std::invalid_argument("ClampedModes: tip mass and inertia must not be negative");
-  }
-  for (const BeamSection& s : section) {
-    if (!(s.length_m > 0.0) || !(s.mass_per_length_kg_m() > 0.0) ||
-        !(s.bending_stiffness_nm2() > 0.0)) {
-      throw std::invalid_argument("ClampedModes: length, rho A and EI must be positive");
-    }
-  }
 }
 
 }  // namespace
@@ -138,25 +151,50 @@ int CountFrequenciesBelow(const std::vector<BeamSection>& section, const BeamTip
   const double w2 = frequency_rad_s * frequency_rad_s;
   K(n, n) -= w2 * tip.mass_kg;
   K(n + 1, n + 1) -= w2 * tip.inertia_kgm2;
-  const Eigen::Index free = root == BeamRoot::kClamped ? n : n + 1;  // w(0) = 0 in any case
+  if (!root.clamped()) K(1, 1) += root.stiffness_nm_per_rad;
+  const Eigen::Index free = root.clamped() ? n : n + 1;  // w(0) = 0 in any case
   return count + CountNegativeEigenvalues(K.bottomRightCorner(free, free));
 }
 
+void CheckBeam(const std::vector<BeamSection>& section, const BeamTip& tip, BeamRoot root,
+               int count, const std::string& name) {
+  const auto require = [&](bool ok, const char* rule) {
+    if (!ok) throw std::invalid_argument(name + ": " + rule);
+  };
+  require(!section.empty(), "a beam needs a section");
+  require(count >= 1, "at least one mode");
+  require(tip.mass_kg >= 0.0 && tip.inertia_kgm2 >= 0.0,
+          "tip mass and inertia must not be negative");
+  require(root.stiffness_nm_per_rad >= 0.0, "the root's stiffness must not be negative");
+  for (const BeamSection& s : section) {
+    require(s.length_m > 0.0 && s.mass_per_length_kg_m() > 0.0 && s.bending_stiffness_nm2() > 0.0,
+            "length, rho A and EI must be positive");
+  }
+}
+
 double PinnedFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order) {
-  CheckBeam(section, tip, order);
-  return order == 1 ? 0.0 : FindFrequency(section, tip, order, BeamRoot::kPinned);
+  CheckBeam(section, tip, BeamRoot::Pinned(), order, "pinned beam");
+  if (order == 1) return 0.0;
+  return NaturalModes(section, tip, BeamRoot::Pinned(), order - 1, "pinned beam")
+      .back()
+      .frequency_rad_s();
+}
+
+std::vector<BeamMode> NaturalModes(const std::vector<BeamSection>& section, const BeamTip& tip,
+                                   BeamRoot root, int count, const std::string& name) {
+  CheckBeam(section, tip, root, count, name);
+  const int rigid = root.stiffness_nm_per_rad == 0.0 ? 1 : 0;
+  std::vector<BeamMode> mode;
+  for (int order = 1 + rigid; order <= count + rigid; ++order) {
+    const double counted = FindFrequency(section, tip, order, root, name);
+    mode.push_back(ModeAt(section, tip, root, Polished(section, tip, root, counted)));
+  }
+  return mode;
 }
 
 std::vector<BeamMode> ClampedModes(const std::vector<BeamSection>& section, const BeamTip& tip,
-                                   int count) {
-  CheckBeam(section, tip, count);
-  std::vector<BeamMode> mode;
-  for (int order = 1; order <= count; ++order) {
-    const double omega =
-        Polished(section, tip, FindFrequency(section, tip, order, BeamRoot::kClamped));
-    mode.push_back(ModeAt(section, tip, omega));
-  }
-  return mode;
+                                   int count, const std::string& name) {
+  return NaturalModes(section, tip, BeamRoot::Clamped(), count, name);
 }
 
 }  // namespace flexarm

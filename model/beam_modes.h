@@ -1,7 +1,8 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "model/arm_parameters.h"
@@ -14,7 +15,19 @@ struct BeamTip {
   double inertia_kgm2;  ///< J_t >= 0, about the tip point
 };
 
-/// One bending mode psi(x) of a clamped Euler-Bernoulli beam of uniform sections.
+/// What holds the root of a beam, whose deflection is zero there: a torsion spring of any
+/// stiffness, EI psi''(0) = k psi'(0).
+struct BeamRoot {
+  double stiffness_nm_per_rad;  ///< k: 0 pinned, infinite clamped
+
+  static constexpr BeamRoot Clamped() { return {std::numeric_limits<double>::infinity()}; }
+  static constexpr BeamRoot Pinned() { return {0.0}; }
+  static constexpr BeamRoot Spring(double k_nm_per_rad) { return {k_nm_per_rad}; }
+  bool clamped() const { return stiffness_nm_per_rad > std::numeric_limits<double>::max(); }
+};
+
+/// One bending mode psi(x) of a Euler-Bernoulli beam of uniform sections, clamped unless said
+/// otherwise.
 ///
 /// In every section EI psi'''' = w^2 rho A psi with the section's own beta = (w^2 rho A/EI)^(1/4);
 /// psi, psi', EI psi'' and EI psi''' are continuous; at the tip EI psi'' = w^2 J_t psi' and
@@ -57,28 +70,33 @@ class BeamMode {
   std::vector<Piece> piece_;
 };
 
-/// What holds the root of a beam. The deflection there is zero in any case.
-enum class BeamRoot : std::uint8_t {
-  kClamped,  ///< psi'(0) = 0
-  kPinned,   ///< psi''(0) = 0; the rigid-body root, 0 Hz, counts as the first
-};
-
-/// Number of natural frequencies of the beam that lie below `frequency_rad_s`.
+/// Number of natural frequencies of the beam that lie below `frequency_rad_s`; a pinned beam's
+/// rigid-body root, 0, is one of them.
 ///
 /// Wittrick and Williams, Q. J. Mech. Appl. Math. 24 (1971) 263: clamped-clamped frequencies of the
 /// sections plus negative eigenvalues of the exact dynamic stiffness. Exact for any w, so that a
 /// search built on it can miss no root, however close two of them are.
 int CountFrequenciesBelow(const std::vector<BeamSection>& section, const BeamTip& tip,
-                          double frequency_rad_s, BeamRoot root = BeamRoot::kClamped);
+                          double frequency_rad_s, BeamRoot root = BeamRoot::Clamped());
 
 /// Frequency `order` of the pinned beam, rad/s; 0 for order 1, the rigid-body root.
 double PinnedFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order);
 
-/// The lowest `count` modes, ascending. Frequencies are good to a few units of round-off (uniform
-/// beams: beta*L within 1e-12 of the closed form).
+/// The lowest `count` elastic modes, ascending: a pinned beam's rigid-body mode is left out.
+/// Frequencies are good to a few units of round-off (uniform beams: beta*L within 1e-12 of the
+/// closed form).
+/// @param name  of the beam in messages, "link 1"
 /// @throws std::invalid_argument if there is no section, a property is not positive, a tip property
-/// is negative, or count < 1.
+/// or the root's stiffness is negative, or count < 1; RootSearchError if a frequency is not found.
+std::vector<BeamMode> NaturalModes(const std::vector<BeamSection>& section, const BeamTip& tip,
+                                   BeamRoot root, int count, const std::string& name = "beam");
+
+/// NaturalModes of the clamped beam.
 std::vector<BeamMode> ClampedModes(const std::vector<BeamSection>& section, const BeamTip& tip,
-                                   int count);
+                                   int count, const std::string& name = "beam");
+
+/// What NaturalModes requires of a beam. @throws std::invalid_argument if it is broken.
+void CheckBeam(const std::vector<BeamSection>& section, const BeamTip& tip, BeamRoot root,
+               int count, const std::string& name);
 
 }  // namespace flexarm

@@ -81,9 +81,9 @@ void FillSingleIntegrals(LinkModes* link, const LinkParameters& p, double panel)
 }
 
 LinkModes MakeLinkModes(const LinkParameters& p, const BeamTip& tip, DampingReading reading,
-                        int count) {
+                        int count, const std::string& name) {
   LinkModes link;
-  link.mode = ClampedModes(p.section, tip, count);
+  link.mode = ClampedModes(p.section, tip, count, name);
   link.a = link.k = link.psi_tip = link.slope_tip = Eigen::VectorXd::Zero(count);
   link.N = link.G = link.D = Eigen::MatrixXd::Zero(count, count);
   link.length_m = p.length_m();
@@ -131,11 +131,11 @@ BeamTip Link2Tip(const ArmParameters& p) {
 }
 
 LinkModes Link1Modes(const ArmParameters& p, int count) {
-  return MakeLinkModes(p.link[0], Link1Tip(p), p.damping, count);
+  return MakeLinkModes(p.link[0], Link1Tip(p), p.damping, count, "link 1");
 }
 
 LinkModes Link2Modes(const ArmParameters& p, int count) {
-  return MakeLinkModes(p.link[1], Link2Tip(p), p.damping, count);
+  return MakeLinkModes(p.link[1], Link2Tip(p), p.damping, count, "link 2");
 }
 
 }  // namespace flexarm

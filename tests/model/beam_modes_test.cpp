@@ -128,8 +128,7 @@ TEST(BeamModes, HeavyTipMassRecoversTheMasslessSpring) {
   EXPECT_NEAR(ClampedModes({s}, {100.0 * mass, 0.0}, 1)[0].frequency_rad_s() / expected, 1.0, 1e-6);
 }
 
-// Pinned-free roots of tan z = tanh z (plant.md), after the rigid-body root. Counting without
-// polishing leaves 7e-11.
+// Pinned-free roots of tan z = tanh z (plant.md), after the rigid-body root, to the digits given.
 TEST(BeamModes, PinnedBeamHasTheRootsOfTheClosedForm) {
   const BeamSection s = Strip(0.9);
   const auto beta_length = [&](int order) {
@@ -137,8 +136,43 @@ TEST(BeamModes, PinnedBeamHasTheRootsOfTheClosedForm) {
     return 0.9 * std::sqrt(w * std::sqrt(s.mass_per_length_kg_m() / s.bending_stiffness_nm2()));
   };
   EXPECT_EQ(PinnedFrequency({s}, {0.0, 0.0}, 1), 0.0);
-  EXPECT_NEAR(beta_length(2), 3.926602312047919, 2e-10);
-  EXPECT_NEAR(beta_length(3), 7.068582745628732, 2e-10);
+  EXPECT_NEAR(beta_length(2), 3.926602312047919, 1e-12);
+  EXPECT_NEAR(beta_length(3), 7.068582745628732, 1e-12);
+}
+
+// A bare uniform beam on a root spring k: z (sin z cosh z - cos z sinh z) = k L/(EI) (1 + cos z
+// cosh z), from the free end's conditions by hand. Both sides over cosh z: a slip of 1e-11 in z
+// shows.
+TEST(BeamModes, BeamOnARootSpringSatisfiesTheClosedForm) {
+  const BeamSection s = Strip(0.9);
+  for (const double k : {0.01, 1.0, 50.0, 3000.0}) {
+    const double kappa = k * 0.9 / s.bending_stiffness_nm2();
+    for (const BeamMode& mode : NaturalModes({s}, {0.0, 0.0}, BeamRoot::Spring(k), 4)) {
+      const double z = mode.beta_length();
+      const double left = z * (std::sin(z) - std::cos(z) * std::tanh(z));
+      const double right = kappa * (1.0 / std::cosh(z) + std::cos(z));
+      EXPECT_NEAR(left, right, 1e-10 * (z + kappa)) << "k = " << k << " z = " << z;
+      EXPECT_NEAR(s.bending_stiffness_nm2() * mode.Curvature(0.0), k * mode.Slope(0.0),
+                  1e-9 * s.bending_stiffness_nm2() * z * z)
+          << k;
+    }
+  }
+}
+
+// The two ends of the spring's range. First order in 1/k and k: 1e-9 of the range's middle.
+TEST(BeamModes, RootSpringGoesFromPinnedToClamped) {
+  const BeamTip tip{0.1, 1e-4};
+  const auto clamped = ClampedModes({Strip(0.9)}, tip, 3);
+  const auto pinned = NaturalModes({Strip(0.9)}, tip, BeamRoot::Pinned(), 3);
+  const auto stiff = NaturalModes({Strip(0.9)}, tip, BeamRoot::Spring(1e10), 3);
+  const auto soft = NaturalModes({Strip(0.9)}, tip, BeamRoot::Spring(1e-8), 4);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(stiff[i].frequency_rad_s() / clamped[i].frequency_rad_s(), 1.0, 1e-7) << i;
+    EXPECT_NEAR(soft[i + 1].frequency_rad_s() / pinned[i].frequency_rad_s(), 1.0, 1e-8) << i;
+    EXPECT_GT(clamped[i].frequency_rad_s(), soft[i].frequency_rad_s());
+    EXPECT_NEAR(pinned[i].Curvature(0.0), 0.0, 1e-7);
+  }
+  EXPECT_LT(soft[0].frequency_rad_s(), 1e-3) << "nearly a rigid body on a soft spring";
 }
 
 // The example of plant.md, its digits being the tolerance: link 1 with I_r2 at its tip, 0.16 N m.
@@ -161,6 +195,8 @@ TEST(BeamModes, BrokenBeamsAreRefused) {
   EXPECT_THROW(ClampedModes({Strip(0.9)}, {0.0, 0.0}, 0), std::invalid_argument);
   EXPECT_THROW(ClampedModes({Strip(0.9)}, {-0.1, 0.0}, 1), std::invalid_argument);
   EXPECT_THROW(ClampedModes({Strip(-0.9)}, {0.1, 0.0}, 1), std::invalid_argument);
+  EXPECT_THROW(NaturalModes({Strip(0.9)}, {0.1, 0.0}, BeamRoot::Spring(-1.0), 1),
+               std::invalid_argument);
 }
 
 // Distinct clamped modes are orthogonal in mass (with the tip) and in stiffness, and w^2 is their
@@ -216,6 +252,21 @@ TEST(LinkModes, DampingReadingsGiveTheirStatedRatios) {
               0.015 * std::pow(1.4551580656, 2) / std::sqrt(2707.0), 1e-9);
   EXPECT_NEAR(ratio(DampingReading::kModal, 2), 0.03, 1e-12);
   EXPECT_EQ(ratio(DampingReading::kNone, 0), 0.0);
+}
+
+// plant.md: zeta_k = xi (beta_k L)^2 / 2; link 1 (I_r2 at its tip) 0.008, 0.119, link 2 0.032,
+// 0.256.
+TEST(LinkModes, DampingOfTheRigIsThatOfTheReference) {
+  ArmParameters p = ThesisRig();
+  p.link1_tip_inertia = Link1TipInertia::kMotor;
+  const LinkModes links[] = {Link1Modes(p, 2), Link2Modes(p, 2)};
+  const double expected[2][2] = {{0.008, 0.119}, {0.032, 0.256}};
+  for (std::size_t link = 0; link < 2; ++link) {
+    for (int i = 0; i < 2; ++i) {
+      const double w = links[link].mode[static_cast<std::size_t>(i)].frequency_rad_s();
+      EXPECT_NEAR(0.5 * links[link].D(i, i) * w / links[link].G(i, i), expected[link][i], 5e-4);
+    }
+  }
 }
 
 }  // namespace
