@@ -123,7 +123,7 @@ TEST_P(Oracle, MassMatrixBiasAndSpringForcesAgree) {
   const VectorXd t = TipNormalised(VectorXd::Ones(8));
   const MatrixXd M = t.asDiagonal() * arm_.MassMatrix(q) * t.asDiagonal();
   EXPECT_LT(RelativeError(M, AsMatrix(state_["M"])), 1e-9);
-  EXPECT_LT(RelativeError(MassNormalisedForce(arm_.Bias(q, v)), AsVector(state_["bias"])), 1e-8);
+  EXPECT_LT(RelativeError(MassNormalisedForce(arm_.Bias(q, v)), AsVector(state_["bias"])), 1e-9);
   EXPECT_LT(RelativeError(MassNormalisedForce(arm_.stiffness() * q), AsVector(state_["Kq"])), 1e-9);
 }
 
@@ -132,10 +132,10 @@ TEST_P(Oracle, AccelerationsAgreeWithAndWithoutDamping) {
   const VectorXd force = arm_.InputMatrix() * AsVector(state_["tau"]);
   EXPECT_LT(RelativeError(arm_.Acceleration(q, v, force),
                           TipNormalised(AsVector(state_["qdd_damp_rho"]))),
-            1e-8);
+            1e-9);
   EXPECT_LT(RelativeError(arm_.Acceleration(q, v, force + arm_.damping() * v),
                           TipNormalised(AsVector(state_["qdd_nodamp"]))),
-            1e-8);
+            1e-9);
 }
 
 TEST_P(Oracle, EnergiesAndTipAgree) {

@@ -18,17 +18,31 @@ using Eigen::VectorXd;
 // Away from any equilibrium: rates, bending, torque. Differences of fourth order, accelerations of
 // 1e4 with a mass matrix of condition 4e4 behind them: 1e-6 of the largest entry of a column is
 // what round-off leaves; a forgotten dM/dq a leaves 1e-2.
-TEST(Linearize, JacobiansMatchCentralDifferencesAtAMovingState) {
-  const ArmModel arm(ThesisRig(), {2, 2});
+class AnyArm : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(Links, AnyArm, testing::Bool(), [](const auto& shown) {
+  return shown.param ? "ForeshortenedWithPlayAndFriction" : "AsTheThesis";
+});
+
+TEST_P(AnyArm, JacobiansMatchCentralDifferencesAtAMovingState) {
+  ArmParameters p = ThesisRig();
+  const double k = GetParam() ? 0.7 : 0.0;  // of tanh(k th'), s/rad
+  if (GetParam()) {
+    p.foreshortening = true;
+    p.joint2_backlash = {BacklashModel::kDeadZone, 0.01, 0.2};  // on a flank, 0.015 rad inside
+  }
+  const ArmModel arm(p, {2, 2});
   const Eigen::Index n = arm.dof();
   VectorXd q(n), v(n);
   q << 0.3, -0.8, 0.31, -0.82, 0.02, -0.001, 0.015, 0.002;
   v << 1.0, -3.0, 1.1, -2.9, 0.2, 0.02, -0.3, 0.04;
   const Vector2d torque(2.0, -0.5);
-  const LinearModel linear = Linearize(arm, q, v, torque);
+  const LinearModel linear = Linearize(arm, q, v, torque, k);
   const auto rate = [&](const VectorXd& x, const Vector2d& u) {
-    VectorXd out(2 * n);
-    out << x.tail(n), arm.Acceleration(x.head(n), x.tail(n), arm.InputMatrix() * u);
+    VectorXd out(2 * n), force = arm.InputMatrix() * u;
+    force[kTheta1] -= 0.16 * std::tanh(k * x[n + kTheta1]);
+    force[kTheta2] -= 0.01 * std::tanh(k * x[n + kTheta2]);
+    out << x.tail(n), arm.Acceleration(x.head(n), x.tail(n), force);
     return out;
   };
   VectorXd x(2 * n);
@@ -94,6 +108,37 @@ TEST(Frequencies, FreeMotorsConvergeToTheExactArm) {
       }
     }
   }
+}
+
+// plant.md: error of f1..f4 of the assumed modes against the exact arm, in percent as printed: M =
+// 1 and M = 2 to the digits given, M = 3 and 4 by their bounds.
+TEST(Frequencies, AssumedModesConvergeAsTheReferenceSays) {
+  ArmParameters p = ThesisRig();
+  p.link1_tip_inertia = Link1TipInertia::kMotor;
+  const double exact[] = {6.620644715, 8.758385487, 16.67434804, 17.35428850};
+  const auto error = [&](int modes, Eigen::Index i) {
+    return 100.0 * (FreeMotorFrequenciesHz(ArmModel(p, {modes, modes}), 0.0)[i] / exact[i] - 1.0);
+  };
+  const double one[] = {2.0, 11.5, 310.0, 347.0}, one_digit[] = {0.05, 0.05, 0.5, 0.5};
+  const double two[] = {0.019, 0.106, 0.490, 0.048};
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    EXPECT_NEAR(error(1, i), one[i], 1.001 * one_digit[i]) << i;
+    EXPECT_NEAR(error(2, i), two[i], 5.01e-4) << i;
+    EXPECT_LT(error(3, i), 0.0115) << i;
+    EXPECT_LT(error(4, i), 0.00105) << i;
+  }
+}
+
+// plant.md: shapes for a tip mass alone have psi''(L) = 0 and cannot carry the moment of motor 2's
+// inertia; those for the inertia can.
+TEST(Frequencies, ShapesForATipMassAloneCarryNoMoment) {
+  ArmParameters p = ThesisRig();
+  p.link1_tip_inertia = Link1TipInertia::kMotor;
+  ArmParameters massless = p;  // the same arm on shapes that do not know I_r2
+  massless.motor2_inertia_kgm2 = 0.0;
+  const LinkModes shapes = Link1Modes(massless, 2), own = Link1Modes(p, 2);
+  EXPECT_NEAR(shapes.mode[0].Curvature(0.8), 0.0, 1e-9);
+  EXPECT_GT(std::fabs(own.mode[1].Curvature(0.8)), 1.0);
 }
 
 // Locked rotors, 0.1 kg (plant.md, printed to 4 digits).
