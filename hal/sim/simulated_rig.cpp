@@ -27,7 +27,7 @@ SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors
       step_ns_(std::llround(sim.step_ms * 1e6)),
       filter_blend_(Blend(sim.step_ms * 1e-3, FilterTimeConstant(sensors.strain_input))) {
   for (std::size_t i = 0; i < 2; ++i) {
-    motor_blend_[i] = Blend(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
+    motor_[i] = DcMotor(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
     switch_angle_rad_[i] = sim.switch_angle_deg[i] * std::numbers::pi / 180.0;
   }
 }
@@ -36,10 +36,7 @@ void SimulatedRig::Step() noexcept {
   // Lags use the middle of the step on either side, so they stay second order like the arm.
   Eigen::Vector2d torque;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double before = torque_nm_[i];
-    torque_nm_[i] += motor_blend_[i] * (set_point_nm_[i] - before);
-    torque(static_cast<Eigen::Index>(i)) =
-        motor_blend_[i] == 1.0 ? torque_nm_[i] : 0.5 * (before + torque_nm_[i]);
+    torque(static_cast<Eigen::Index>(i)) = motor_[i].Step(set_point_nm_[i]);
   }
   const ArmVector before = state_.q.tail(filtered_.size());
   simulator_.Step(state_, torque, static_cast<double>(step_ns_) * 1e-9);

@@ -9,6 +9,7 @@
 #include "hal/sim/simulated_sensors.h"
 #include "model/arm_model.h"
 #include "model/arm_simulator.h"
+#include "model/dc_motor.h"
 
 namespace flexarm {
 
@@ -58,11 +59,10 @@ class SimulatedRig {
   ArmState state_;
   ArmVector filtered_;  // modal coordinates behind the gauge filter
   std::int64_t step_ns_;
-  double filter_blend_;                // 1 - exp(-w_f h)
-  std::array<double, 2> motor_blend_;  // 1 - exp(-h / T_e)
+  double filter_blend_;  // 1 - exp(-w_f h)
+  std::array<DcMotor, 2> motor_;
   std::array<double, 2> switch_angle_rad_;
   std::array<double, 2> set_point_nm_{};
-  std::array<double, 2> torque_nm_{};  // behind the electrical lag
   LineLevels forced_ = kHealthyLevels;
 };
 
