@@ -19,19 +19,28 @@ void ReadModbusIdentity(TableReader row, ModbusIdentity* out) {
   row.Read("expected", &out->expected);
 }
 
-// Exactly one of `strain` (row of [[sensors.strain]]) and `line`.
-void ReadModbusRole(TableReader row, ModbusRegister* out) {
-  if (row.Has("line")) {
-    out->role = ModbusRole::kInput;
-    Line line{};
-    ReadLine(row, &line);
-    out->index = static_cast<int>(line);
-    return;
-  }
-  out->role = ModbusRole::kStrain;
-  row.Read("strain", &out->index);
+void ReadModbusLine(TableReader row, ModbusRegister* out) {
+  out->role = ModbusRole::kInput;
+  out->type = ModbusType::kBit;
+  Line line{};
+  ReadLine(row, &line);
+  out->index = static_cast<int>(line);
 }
 
+void ReadModbusStrain(TableReader row, ModbusRegister* out) {
+  row.Read("strain", &out->index);
+  row.Read("type", &out->type,
+           {{"int16", ModbusType::kInt16},
+            {"uint16", ModbusType::kUint16},
+            {"int32", ModbusType::kInt32},
+            {"float32", ModbusType::kFloat32}});
+  row.Read("word_order", &out->word_order,
+           {{"big", ModbusWordOrder::kBig}, {"little", ModbusWordOrder::kLittle}});
+  row.Read("scale", &out->scale);
+  row.Read("offset_counts", &out->offset_counts);
+}
+
+// Exactly one of `strain` (row of [[sensors.strain]]) and `line`.
 void ReadModbusRegister(TableReader row, ModbusRegister* out) {
   *out = {.role = ModbusRole::kStrain,
           .index = -1,
@@ -41,19 +50,13 @@ void ReadModbusRegister(TableReader row, ModbusRegister* out) {
           .word_order = ModbusWordOrder::kBig,
           .scale = 1.0,
           .offset_counts = 0.0};
-  ReadModbusRole(row, out);
   ReadTable(row, &out->table);
   row.Read("address", &out->address);
-  row.Read("type", &out->type,
-           {{"bit", ModbusType::kBit},
-            {"int16", ModbusType::kInt16},
-            {"uint16", ModbusType::kUint16},
-            {"int32", ModbusType::kInt32},
-            {"float32", ModbusType::kFloat32}});
-  row.Read("word_order", &out->word_order,
-           {{"big", ModbusWordOrder::kBig}, {"little", ModbusWordOrder::kLittle}});
-  row.Read("scale", &out->scale);
-  row.Read("offset_counts", &out->offset_counts);
+  if (row.Has("line")) {
+    ReadModbusLine(row, out);
+  } else {
+    ReadModbusStrain(row, out);
+  }
 }
 
 void ReadModbusTransport(TableReader row, ModbusDeviceConfig* out) {

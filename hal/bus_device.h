@@ -64,6 +64,9 @@ class BusDevice {
   /// Bit i: the drive of joint i + 1 is on this bus.
   virtual std::uint32_t drives() const noexcept { return 0; }
 
+  /// The digital inputs that an exchange reads; the other levels of its frame are 0.
+  virtual LineLevels lines() const noexcept { return 0; }
+
   /// Declared bound of one Exchange or Reconnect, whatever the peer does. A test asserts it.
   virtual std::int64_t worst_case_ns() const noexcept = 0;
 

@@ -34,6 +34,11 @@ inline constexpr LineLevels kHealthyLevels =
     LineBit(Line::kLimit1Low) | LineBit(Line::kLimit1High) | LineBit(Line::kLimit2Low) |
     LineBit(Line::kLimit2High) | LineBit(Line::kEmergencyStop);
 
+/// Two readings of the same lines: a switch is open, and the button pressed, when either says so.
+constexpr LineLevels Either(LineLevels a, LineLevels b) {
+  return (a & b & kHealthyLevels) | ((a | b) & ~kHealthyLevels);
+}
+
 /// Everything that the rig measured around one sampling instant, as raw counts.
 ///
 /// A reading that is not valid repeats the last good value. The offset tells when a reading was

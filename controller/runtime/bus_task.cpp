@@ -66,6 +66,7 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
   if (status_ == BusStatus::kOk) {
     packet.frame = part;
     packet.frame.sampled_at_ns -= epoch_ns_;
+    levels_ = (part.levels & device_->lines()) | (kHealthyLevels & ~device_->lines());
   }
   packet.applied_torque_nm = applied_before_nm_;
   frames_.Push(due_ns, packet);
@@ -76,7 +77,8 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
                  .drive_ok = status_ != BusStatus::kDriveFault,
                  .fault = status_ == BusStatus::kOk ? BusFault{} : device_->FaultOf(status_),
                  .failed = failed_,
-                 .taken_back = taken_back_});
+                 .taken_back = taken_back_,
+                 .levels = levels_});
   channels_.reports->Publish(reports_);
   channels_.health->Publish(reports_);
 }

@@ -59,6 +59,7 @@ class BusTask final : public Task {
   int failures_ = 0;  // in a row
   std::uint32_t failed_ = 0;
   std::uint32_t taken_back_ = 0;
+  LineLevels levels_ = kHealthyLevels;
   FrameHistory frames_{kNoFrame};
   DriveReportHistory reports_{kNoDriveReport};
 };

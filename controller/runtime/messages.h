@@ -56,9 +56,10 @@ struct DriveReport {
   std::int64_t due_ns;  ///< of its last run
   bool bus_ok;
   bool drive_ok;
-  BusFault fault{};              ///< of the last exchange; none if it went well
-  std::uint32_t failed = 0;      ///< exchanges that failed, and attempts to reconnect
-  std::uint32_t taken_back = 0;  ///< how often the bus was lost and came back
+  BusFault fault{};                    ///< of the last exchange; none if it went well
+  std::uint32_t failed = 0;            ///< exchanges that failed, and attempts to reconnect
+  std::uint32_t taken_back = 0;        ///< how often the bus was lost and came back
+  LineLevels levels = kHealthyLevels;  ///< as the buses read them last; healthy where they do not
 };
 
 enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };

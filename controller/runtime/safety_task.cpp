@@ -36,9 +36,9 @@ Task::Traits SafetyTask::traits() const noexcept {
 
 void SafetyTask::Run(const Activation& activation) noexcept {
   const std::int64_t due_ns = activation.due_ns;
-  const LineLevels levels = channels_.lines->Read(due_ns);
   const ControlReportHistory& control = channels_.control->Read();
   const DriveSide drive = ReadDrives(due_ns);
+  const LineLevels levels = Either(channels_.lines->Read(due_ns), drive.report.levels);
   const auto [requested, request, earlier] = TakeRequest(due_ns);
 
   const SafetyInputs in{.due_ns = due_ns,
@@ -104,6 +104,7 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
     if (side.report.drive_ok && !report.drive_ok) side.troubles.drive = {bus, report.fault};
     side.report.bus_ok = side.report.bus_ok && report.bus_ok;
     side.report.drive_ok = side.report.drive_ok && report.drive_ok;
+    side.report.levels = Either(side.report.levels, report.levels);
     const std::int64_t alive_ns = history.Newest().value.due_ns;
     if (alive_ns < side.alive_ns) side.troubles.oldest_bus = bus;
     side.alive_ns = std::min(side.alive_ns, alive_ns);

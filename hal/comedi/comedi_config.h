@@ -75,7 +75,8 @@ struct ComediCounterConfig {
   int bits;  ///< wraps at 2^bits
 };
 
-/// A digital input: [[hal.comedi.line]]. It is logged; the safety chain has lines of its own.
+/// A digital input: [[hal.comedi.line]]. A second reading of a line of the safety chain, once a
+/// period: see Either.
 struct ComediLineConfig {
   Line line;
   int subdevice;

@@ -31,6 +31,7 @@ ComediDevice::ComediDevice(ComediBoardConfig config, std::unique_ptr<DaqBoard> b
       plan_(PlanComedi(config_)),
       board_(std::move(board)),
       scan_clock_(ClockOf(config_)) {
+  for (const ComediLineConfig& row : config_.line) lines_ |= LineBit(row.line);
   if (!config_.output) return;
   for (const ComediDriveConfig& drive : config_.output->drive) drives_ |= Bit(drive.joint);
 }

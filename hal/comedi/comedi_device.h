@@ -45,6 +45,7 @@ class ComediDevice final : public BusDevice {
 
   const char* name() const noexcept override { return config_.device.c_str(); }
   std::uint32_t drives() const noexcept override { return drives_; }
+  LineLevels lines() const noexcept override { return lines_; }
   /// Of an exchange, or of a reconnection, whichever is longer.
   std::int64_t worst_case_ns() const noexcept override;
 
@@ -97,6 +98,7 @@ class ComediDevice final : public BusDevice {
   ComediChannels channels_;
   ScanClock scan_clock_;
   std::uint32_t drives_ = 0;
+  LineLevels lines_ = 0;
   bool open_ = false;
   bool restarting_ = false;  // Reconnect waits for the first scan
   ComediFault fault_ = ComediFault::kNone;

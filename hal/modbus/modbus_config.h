@@ -35,7 +35,7 @@ enum class ModbusParity : std::uint8_t { kNone, kEven, kOdd };
 /// What a row of the register map is to the rig.
 enum class ModbusRole : std::uint8_t {
   kStrain,  ///< a strain channel; index: row of [[sensors.strain]], from 0
-  kInput,   ///< a digital input; index: the Line
+  kInput,   ///< a digital input, a second reading of the Line `index` once a period: see Either
 };
 
 /// One reading: [[hal.modbus.register]].

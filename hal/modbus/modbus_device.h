@@ -42,6 +42,8 @@ class ModbusDevice final : public BusDevice {
   /// 1.6 s; within the pause it returns at once.
   [[nodiscard]] BusStatus Reconnect() noexcept override;
 
+  LineLevels lines() const noexcept override { return lines_; }
+
   BusFault FaultOf(BusStatus status) const noexcept override;
   std::string FaultText(const BusFault& fault) const override;
 
@@ -49,9 +51,6 @@ class ModbusDevice final : public BusDevice {
 
   /// The strain channels that an exchange gives; bit i is channel i.
   std::uint32_t strain_channels() const noexcept { return strain_channels_; }
-  /// The digital inputs that an exchange gives; the other levels are 0, and all are after a
-  /// failure.
-  LineLevels lines() const noexcept { return lines_; }
 
   const ModbusPlan& plan() const noexcept { return plan_; }
   const ModbusCounters& counters() const noexcept { return link_.counters(); }

@@ -59,6 +59,14 @@ TEST(HalConfig, TheLoggedTextGivesTheSameWiringAgain) {
   EXPECT_EQ(ParseConfig(config.text, "log").text, config.text);
 }
 
+TEST(HalConfig, ASwitchThatRemoteIoReadsAsWellIsALineATableAndAnAddress) {
+  const std::string line =
+      R"(register = [{ line = "limit-1-low", table = "discrete_input", address = 3)";
+  EXPECT_EQ(Complaint("register = [", line + " },"), "");
+  EXPECT_THAT(Complaint("register = [", line + ", scale = 2.0 },"),
+              testing::AllOf(testing::HasSubstr("scale"), testing::HasSubstr("unknown key")));
+}
+
 TEST(HalConfig, AnEncoderThatNobodyReadsIsNamed) {
   EXPECT_THAT(
       Complaint("role = \"hub2\"", "role = \"hub1\""),

@@ -75,12 +75,16 @@ class GaugeBus final : public BusDevice {
   BusStatus Exchange(const BusCommand&, SensorFrame* part) noexcept override {
     *part = world_->frame;
     part->counter_valid = 0;
+    part->levels = levels;
     return status;
   }
+  LineLevels lines() const noexcept override { return own_lines; }
   BusStatus Reconnect() noexcept override { return status; }
   void Close() noexcept override {}
 
   BusStatus status = BusStatus::kOk;
+  LineLevels own_lines = LineBit(Line::kLimit2High) | LineBit(Line::kResetButton);
+  LineLevels levels = LineBit(Line::kLimit2High);
 
  private:
   World* world_;
@@ -198,6 +202,36 @@ TEST_F(WiredStackTest, ADriveFaultTripsByItsName) {
   drives_.fail_from = drives_.exchanges + 1;
   RunUntil(now_ns_ + 60 * kMs);
   EXPECT_EQ(permit().cause, TripCause::kDriveFault) << Name(permit().cause);
+}
+
+// A remote input reads limit switch 2 as well, once a period; its other inputs are not wired.
+TEST_F(WiredStackTest, ASwitchThatABusReadsTripsThoughTheLineOfTheSafetyChainIsClosed) {
+  RunUntil(2'000 * kMs);
+  ASSERT_EQ(permit().state, SafetyState::kRunning) << Name(permit().cause);
+  gauges_.levels = 0;
+  RunUntil(now_ns_ + 40 * kMs);
+  EXPECT_EQ(permit().state, SafetyState::kTripped);
+  EXPECT_EQ(permit().cause, TripCause::kLimitSwitch2High) << Name(permit().cause);
+  EXPECT_EQ(permit().levels, kHealthyLevels & ~LineBit(Line::kLimit2High));
+  EXPECT_FALSE(lines_.relay);
+}
+
+TEST_F(WiredStackTest, ASwitchOfTheSafetyChainTripsThoughTheBusReadsItAsClosed) {
+  RunUntil(2'000 * kMs);
+  lines_.levels &= ~LineBit(Line::kLimit2High);
+  RunUntil(now_ns_ + 20 * kMs);
+  EXPECT_EQ(permit().cause, TripCause::kLimitSwitch2High) << Name(permit().cause);
+}
+
+TEST_F(WiredStackTest, AFailedExchangeOpensNoSwitchAndAButtonOnTheBusIsPressed) {
+  RunUntil(200 * kMs);
+  gauges_.levels |= LineBit(Line::kResetButton);
+  RunUntil(now_ns_ + 40 * kMs);
+  EXPECT_EQ(permit().levels, kHealthyLevels | LineBit(Line::kResetButton));
+  gauges_.levels = 0;
+  gauges_.status = BusStatus::kTimeout;
+  RunUntil(now_ns_ + 20 * kMs);
+  EXPECT_EQ(permit().levels, kHealthyLevels | LineBit(Line::kResetButton));
 }
 
 TEST_F(WiredStackTest, ALostBusIsTakenBackOnlyWhileDisarmed) {
