@@ -20,10 +20,13 @@ class FeArm {
   FeArm(const ArmParameters& p, double theta2_rad, int elements_per_section)
       : n1_(elements_per_section * static_cast<int>(p.link[0].section.size())),
         n2_(elements_per_section * static_cast<int>(p.link[1].section.size())),
+        L1_(p.link[0].length_m()),
+        L2_(p.link[1].length_m()),
+        cos_(std::cos(theta2_rad)),
         M_(Eigen::MatrixXd::Zero(dof(), dof())),
         K_(M_) {
     const Row elbow = Unit(Deflection1(n1_)), slope = Unit(Slope1(n1_));
-    const Row across = std::cos(theta2_rad) * elbow, along = std::sin(theta2_rad) * elbow;
+    const Row across = cos_ * elbow, along = std::sin(theta2_rad) * elbow;
     AddLink(p.link[0], elements_per_section, [&](int node, bool turn) -> Row {
       if (turn) return Unit(Slope1(node));
       return node == 0 ? Row(Row::Zero(dof())) : Unit(Deflection1(node));
@@ -46,7 +49,7 @@ class FeArm {
     AddSquare(&K_, th3 - hub1, p.joint[0].stiffness_nm_per_rad);
     AddSquare(&K_, th4 - (hub2 - slope), p.joint[1].stiffness_nm_per_rad);
     tip_ = Eigen::MatrixXd::Zero(2, dof());  // displacement of the tip in frame 1
-    const double c = std::cos(theta2_rad), s = std::sin(theta2_rad);
+    const double c = cos_, s = std::sin(theta2_rad);
     const Row own = Unit(Deflection2(n2_));
     tip_.row(0) = c * along - s * own;
     tip_.row(1) = s * along + c * own;
@@ -56,10 +59,47 @@ class FeArm {
 
   /// Non-zero frequencies with free motors, Hz, ascending.
   Eigen::VectorXd FreeFrequenciesHz() const {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K_, M_,
-                                                                          Eigen::EigenvaluesOnly);
-    const Eigen::VectorXd squares = eigen.eigenvalues().tail(dof() - 2);
+    return FreeFrequenciesHz(Eigen::MatrixXd::Identity(dof(), dof()));
+  }
+
+  /// The same for an arm that moves by the columns of `basis` only.
+  Eigen::VectorXd FreeFrequenciesHz(const Eigen::MatrixXd& basis) const {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        basis.transpose() * K_ * basis, basis.transpose() * M_ * basis, Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd squares = eigen.eigenvalues().tail(basis.cols() - 2);
     return squares.cwiseSqrt() / (2.0 * M_PI);
+  }
+
+  /// Unknowns while hubs and rotors turn and uniform links bend by shapes psi(x), psi'(x): columns
+  /// th1, th2, th3, th4, shapes of link 1, shapes of link 2.
+  template <typename Shape>
+  Eigen::MatrixXd Basis(const std::vector<Shape>& psi1, const std::vector<Shape>& psi2) const {
+    const auto m1 = static_cast<Eigen::Index>(psi1.size());
+    const auto m2 = static_cast<Eigen::Index>(psi2.size());
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(dof(), 4 + m1 + m2);
+    T(Slope1(0), 0) = T(Rotor(1), 2) = T(Rotor(2), 3) = 1.0;
+    for (int node = 1; node <= n1_; ++node) {
+      const double x = L1_ * node / n1_;
+      T(Deflection1(node), 0) = x;
+      T(Slope1(node), 0) = 1.0;
+      for (Eigen::Index j = 0; j < m1; ++j) {
+        T(Deflection1(node), 4 + j) = psi1[static_cast<std::size_t>(j)].Value(x);
+        T(Slope1(node), 4 + j) = psi1[static_cast<std::size_t>(j)].Slope(x);
+      }
+    }
+    const Row across = cos_ * T.row(Deflection1(n1_));
+    const Row hub2 = T.row(Slope1(n1_)) + Row::Unit(T.cols(), 1);
+    T.row(Slope2(0)) = hub2;
+    for (int node = 1; node <= n2_; ++node) {
+      const double x = L2_ * node / n2_;
+      T.row(Deflection2(node)) = across + x * hub2;
+      T.row(Slope2(node)) = hub2;
+      for (Eigen::Index j = 0; j < m2; ++j) {
+        T(Deflection2(node), 4 + m1 + j) = psi2[static_cast<std::size_t>(j)].Value(x);
+        T(Slope2(node), 4 + m1 + j) = psi2[static_cast<std::size_t>(j)].Slope(x);
+      }
+    }
+    return T;
   }
 
   /// Displacement of the tip under a small force there, both in frame 1, with both rotors held.
@@ -109,6 +149,7 @@ class FeArm {
   }
 
   int n1_, n2_;
+  double L1_, L2_, cos_;
   Eigen::MatrixXd M_, K_, tip_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "model/arm_model.h"
 #include "model/linearization.h"
+#include "model/link_modes.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
@@ -48,6 +49,24 @@ TEST(FeArm, SixModesGiveTheFirstSixFrequencies) {
       }
     }
   }
+}
+
+// Which shapes link 1 bends in: those for a tip mass alone have psi''(L) = 0, cannot carry the
+// moment of motor 2's inertia, and are 2.9 % off in f2 with two modes and converge like 1/M; those
+// for the inertia too are off by 0.106 % (plant.md, to its digits).
+TEST(FeArm, ShapesForATipMassAloneConvergeSlowly) {
+  const ArmParameters p = Rig(0.1);
+  const FeArm fe(p, 0.0, kElements);
+  const double exact = fe.FreeFrequenciesHz()[1];
+  const auto error_percent = [&](double tip_inertia, int modes) {
+    const auto psi1 = ClampedModes(p.link[0].section, {Link1Tip(p).mass_kg, tip_inertia}, modes);
+    const auto psi2 = ClampedModes(p.link[1].section, Link2Tip(p), modes);
+    return 100.0 * (fe.FreeFrequenciesHz(fe.Basis(psi1, psi2))[1] / exact - 1.0);
+  };
+  EXPECT_NEAR(error_percent(0.0, 2), 2.9, 0.05);
+  EXPECT_NEAR(error_percent(p.motor2_inertia_kgm2, 2), 0.106, 1e-3);
+  EXPECT_NEAR(error_percent(0.0, 2) / error_percent(0.0, 4), 2.0, 0.4);
+  EXPECT_LT(error_percent(p.motor2_inertia_kgm2, 4), 1e-3);
 }
 
 // Links with a step and with two sections of different material.
