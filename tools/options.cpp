@@ -45,6 +45,13 @@ void AddJson(CLI::App* verb, bool* json) {
   verb->add_flag("--json", *json, "Print one JSON object instead of text");
 }
 
+void CheckPicture(const std::filesystem::path& output) {
+  const auto extension = output.extension();
+  if (extension == ".png" || extension == ".svg") return;
+  throw InputError(output.string() + ": found extension \"" + extension.string() +
+                   "\", expected .png or .svg");
+}
+
 void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what) {
   verb->add_option("-o,--output", *file, what)->required()->type_name("FILE");
 }

@@ -35,6 +35,9 @@ std::function<std::string(const std::string&)> NumberWithin(double low, double h
 /// --json: one JSON object on stdout and nothing else.
 void AddJson(CLI::App* verb, bool* json);
 
+/// @throws InputError unless the file is a .png or a .svg
+void CheckPicture(const std::filesystem::path& output);
+
 /// -o/--output FILE.
 void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what);
 

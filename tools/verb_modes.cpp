@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "controller/runlog/errors.h"
 #include "model/arm_model.h"
 #include "model/linearization.h"
 #include "model/link_modes.h"
+#include "tools/analysis/beam_report.h"
 #include "tools/options.h"
 #include "tools/verbs.h"
 
@@ -15,25 +17,26 @@ namespace flexarm {
 namespace {
 
 constexpr double kRadPerDeg = 0.017453292519943295769;
-constexpr double kTwoPi = 6.2831853071795864769;
 
 struct Options {
   ConfigOptions config;
   int modes = 4;
   double theta2_deg = 0;
   std::optional<double> payload_kg;
+  std::string base = "clamped";
+  std::optional<double> base_spring_nm_per_rad;
+  bool convergence = false;
   bool json = false;
+  std::filesystem::path output;
 };
 
-nlohmann::ordered_json LinkJson(int link, const LinkModes& modes) {
-  nlohmann::ordered_json json{{"link", link}, {"base", "clamped"}};
-  json["beta_l"] = nlohmann::ordered_json::array();
-  json["frequency_hz"] = nlohmann::ordered_json::array();
-  for (const BeamMode& mode : modes.mode) {
-    json["beta_l"].push_back(mode.beta_length());
-    json["frequency_hz"].push_back(mode.frequency_rad_s() / kTwoPi);
+BeamRoot RootOf(const Options& options) {
+  const bool spring = options.base == "spring";
+  if (spring != options.base_spring_nm_per_rad.has_value()) {
+    throw InputError("modes: --base spring and --base-spring-nm-per-rad go together");
   }
-  return json;
+  if (spring) return BeamRoot::Spring(*options.base_spring_nm_per_rad);
+  return options.base == "pinned" ? BeamRoot::Pinned() : BeamRoot::Clamped();
 }
 
 nlohmann::ordered_json ArmJson(const Options& options, const ArmModel& model, bool held) {
@@ -49,14 +52,32 @@ nlohmann::ordered_json ArmJson(const Options& options, const ArmModel& model, bo
 }
 
 nlohmann::ordered_json Modes(const Options& options) {
+  if (!options.output.empty()) CheckPicture(options.output);
   ArmParameters arm = options.config.Load().arm;
   // The modes of an arm with this payload: its shapes too, or the figures would converge slower.
   if (options.payload_kg) arm.payload_mass_kg = arm.shape_payload_mass_kg = *options.payload_kg;
+  const BeamRoot root = RootOf(options);
   const ArmModel model(arm, {options.modes, options.modes});
+  const std::vector<LinkBeam> beams = {{1, arm.link[0].section, Link1Tip(arm), root, options.base},
+                                       {2, arm.link[1].section, Link2Tip(arm), root, options.base}};
+  std::vector<std::vector<BeamMode>> modes;
   nlohmann::ordered_json json;
-  json["links"] = {LinkJson(1, model.link_modes(1)), LinkJson(2, model.link_modes(2))};
+  for (const LinkBeam& beam : beams) {
+    modes.push_back(NaturalModes(beam.section, beam.tip, root, options.modes,
+                                 "link " + std::to_string(beam.link)));
+    json["links"].push_back(BeamJson(beam, modes.back()));
+  }
   json["arm"] = ArmJson(options, model, false);
   json["arm_motors_held"] = ArmJson(options, model, true);
+  if (options.convergence) {
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      json["convergence"].push_back(ConvergenceJson(beams[i], modes[i]));
+    }
+  }
+  if (!options.output.empty()) {
+    DrawBeams(beams, modes, options.output);
+    std::cerr << "wrote " << options.output.string() << '\n';
+  }
   return json;
 }
 
@@ -69,12 +90,36 @@ void PrintRow(const std::string& name, const nlohmann::ordered_json& values) {
 void PrintText(const nlohmann::ordered_json& json) {
   std::cout << std::setprecision(6);
   for (const auto& link : json["links"]) {
-    const std::string name = "link " + std::to_string(link["link"].get<int>()) + ", clamped: ";
+    const std::string name = "link " + std::to_string(link["link"].get<int>()) + ", " +
+                             link["base"].get<std::string>() + ": ";
     PrintRow(name + "beta L", link["beta_l"]);
     PrintRow(name + "Hz", link["frequency_hz"]);
   }
   PrintRow("arm, motors free: Hz", json["arm"]["frequency_hz"]);
   PrintRow("arm, motors held: Hz", json["arm_motors_held"]["frequency_hz"]);
+  if (!json.contains("convergence")) return;
+  std::cout << std::setprecision(4);
+  for (const auto& link : json["convergence"]) {
+    const std::string name = "link " + std::to_string(link["link"].get<int>()) + ", ";
+    for (std::size_t i = 0; i < link["parts"].size(); ++i) {
+      PrintRow(name + std::to_string(link["parts"][i].get<int>()) + " parts: error %",
+               link["error_percent"][i]);
+    }
+    PrintRow(name + "fit (3.7): residual", link["fit_rms_residual"]);
+  }
+}
+
+void AddBase(CLI::App* verb, Options* options) {
+  verb->add_option("--base", options->base, "What holds the roots of the links by themselves")
+      ->check(CLI::IsMember({"clamped", "pinned", "spring"}))
+      ->capture_default_str();
+  verb->add_option("--base-spring-nm-per-rad", options->base_spring_nm_per_rad,
+                   "Torsion spring of --base spring")
+      ->check(NumberWithin(1e-9, 1e12));
+  verb->add_flag(
+      "--convergence", options->convergence,
+      "Also the thesis's lumped transfer matrix over its number of parts, and the fit of "
+      "its shapes");
 }
 
 }  // namespace
@@ -88,11 +133,15 @@ void RegisterModes(CLI::App& app, Exit&) {
       ->check(CLI::Range(1, 6))
       ->capture_default_str();
   verb->add_option("--theta2-deg", options->theta2_deg, "Elbow angle")
-      ->check(CLI::Range(-180.0, 180.0))
+      ->check(NumberWithin(-180.0, 180.0))
       ->capture_default_str();
   verb->add_option("--payload-kg", options->payload_kg, "Payload, instead of the config's")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(NumberWithin(0.0, 1000.0));
+  AddBase(verb, options.get());
   AddJson(verb, &options->json);
+  verb->add_option("-o,--output", options->output,
+                   "Picture of shapes, frequencies and convergence, .png or .svg")
+      ->type_name("FILE");
   verb->footer("Example: flexarm modes -c config/thesis-rig.toml --theta2-deg 45 --payload-kg 0.2");
   verb->callback([options] {
     const nlohmann::ordered_json json = Modes(*options);

@@ -17,11 +17,7 @@ struct Options {
 };
 
 void Plot(const Options& options) {
-  const auto extension = options.output.extension();
-  if (extension != ".png" && extension != ".svg") {
-    throw InputError(options.output.string() + ": found extension \"" + extension.string() +
-                     "\", expected .png or .svg");
-  }
+  CheckPicture(options.output);
   std::vector<PlotRun> runs;
   for (const auto& file : options.runs) {
     runs.push_back(PlotDataOf(LoadRun(file)));

@@ -1,0 +1,65 @@
+"""flexarm modes: what the model says of the links as beams, and of the arm at rest."""
+
+import unittest
+
+from program import ROOT, ProgramTest
+
+RIG = ROOT / "config/thesis-rig.toml"
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Modes(ProgramTest):
+    def modes(self, *arguments):
+        return self.flexarm_json("modes", "-c", RIG, *arguments)
+
+    def test_clamped_links_are_those_of_the_reference(self):
+        links = self.modes("--modes", 3, "--set", "arm.link1_tip_inertia=motor")["links"]
+        self.assertEqual([link["base"] for link in links], ["clamped", "clamped"])
+        for found, expected in zip(links[0]["frequency_hz"], (0.8542954, 12.958359, 39.649129)):
+            self.assertAlmostEqual(found / expected, 1.0, delta=2e-7)
+        self.assertAlmostEqual(links[1]["beta_l"][0], 1.4551580656, delta=1e-10)
+
+    def test_the_root_may_be_pinned_or_a_spring(self):
+        clamped, pinned = self.modes()["links"], self.modes("--base", "pinned")["links"]
+        spring = self.modes("--base", "spring", "--base-spring-nm-per-rad", 20)["links"]
+        for link in range(2):
+            self.assertEqual(spring[link]["base"], "spring")
+            # The spring's modes lie between: the pinned beam's rigid body is left out of its list.
+            for mode in range(1, 4):
+                self.assertLess(pinned[link]["frequency_hz"][mode - 1],
+                                spring[link]["frequency_hz"][mode])
+                self.assertLess(spring[link]["frequency_hz"][mode],
+                                clamped[link]["frequency_hz"][mode])
+
+    def test_the_lumped_beam_converges_as_the_square_of_its_parts(self):
+        links = self.modes("--convergence")["convergence"]
+        # Of link 1 the lowest two: in its higher modes the heavy end hardly moves, the N^-2 term is
+        # next to nothing and the following one shows.
+        for link, modes in zip(links, (2, 4)):
+            errors = dict(zip(link["parts"], link["error_percent"]))
+            for coarse, fine in list(zip(errors[100], errors[200]))[:modes]:
+                self.assertAlmostEqual(coarse / fine, 4.0, delta=0.02)
+            self.assertEqual(len(link["fit_coefficients"][0][0]), 4)
+            self.assertLess(max(link["fit_rms_residual"]), 1e-6)  # falls as N^-4: 4e-8 at 200
+        self.assertNotIn("convergence", self.modes())
+
+    def test_it_draws(self):
+        picture = self.folder / "modes.png"
+        self.flexarm("modes", "-c", RIG, "--modes", 2, "-o", picture)
+        self.assertTrue(picture.read_bytes().startswith(PNG))
+
+    def test_bad_options_are_refused(self):
+        for options, said in ((("--modes", 0), "--modes"),
+                              (("--base", "spring"), "--base-spring-nm-per-rad"),
+                              (("--base-spring-nm-per-rad", 3), "--base spring"),
+                              (("--base", "glued"), "--base"),
+                              (("-o", "modes.gif"), "expected .png or .svg"),
+                              (("--set", "link1.section[0].length_m=-1"), "length_m"),
+                              (("--set", "joint2.stiffness_nm_per_rad=0"), "stiffness_nm_per_rad"),
+                              (("--set", "joint2.backlash_rad=-1"), "backlash_rad")):
+            with self.subTest(options=options):
+                self.assert_refused(self.run_program("flexarm", "modes", "-c", RIG, *options), said)
+
+
+if __name__ == "__main__":
+    unittest.main()
