@@ -1,10 +1,12 @@
-"""flexarm modes: what the model says of the links as beams, and of the arm at rest."""
+"""flexarm modes and analyze linearize: what the model says of beams, and of the arm at a state."""
 
+import math
 import unittest
 
 from program import ROOT, ProgramTest
 
 RIG = ROOT / "config/thesis-rig.toml"
+STIFFENED = ROOT / "config/thesis-rig-stiffened.toml"
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -59,6 +61,51 @@ class Modes(ProgramTest):
                               (("--set", "joint2.backlash_rad=-1"), "backlash_rad")):
             with self.subTest(options=options):
                 self.assert_refused(self.run_program("flexarm", "modes", "-c", RIG, *options), said)
+
+
+class Linearize(ProgramTest):
+    def linearize(self, config, *arguments):
+        return self.flexarm_json("analyze", "linearize", "-c", config, *arguments)
+
+    def test_roots_at_rest_are_the_natural_frequencies(self):
+        undamped = ("--set", "arm.damping=none", "--theta2-deg", 60, "--duration-s", 0.01)
+        roots = self.linearize(RIG, *undamped)["roots"]
+        found = [root["frequency_hz"] for root in roots if root["frequency_hz"] > 0.1]
+        expected = self.flexarm_json("modes", "-c", RIG, "--theta2-deg", 60)["arm"]["frequency_hz"]
+        self.assertEqual(len(found), len(expected))
+        for a, b in zip(found, expected):
+            self.assertAlmostEqual(a / b, 1.0, delta=1e-6)
+
+    def test_speed_makes_the_thesis_arm_unstable_and_not_the_stiffened_one(self):
+        fast = ("--theta1-rate", 5.229, "--set", "arm.damping=none", "--duration-s", 0.01)
+        self.assertGreater(self.linearize(RIG, *fast)["largest_real_part_1_s"], 1.0)
+        self.assertLess(self.linearize(STIFFENED, *fast)["largest_real_part_1_s"], 0.01)
+
+    def test_the_perturbation_test_is_close_for_small_waves_and_draws(self):
+        picture = self.folder / "perturbation.png"
+        result = self.linearize(RIG, "--modes", 2, "--theta2-deg", 45, "--theta1-rate", 1,
+                                "--delta-nm", 0.01, 0.0025, "--duration-s", 1, "-o", picture)
+        self.assertTrue(picture.read_bytes().startswith(PNG))
+        for name, error in result["perturbation"]["relative_error"].items():
+            self.assertLess(error, 0.05, name)
+        self.assertEqual(len(result["A"]), 16)
+        self.assertEqual(len(result["B"][0]), 2)
+
+    def test_smoothed_friction_damps(self):
+        still = ("--modes", 1, "--duration-s", 0.01)
+        without = self.linearize(RIG, *still)["A"]
+        smoothed = self.linearize(RIG, *still, "--friction-gain", 2)["A"]
+        self.assertLess(smoothed[6][6], without[6][6])
+        self.assertTrue(math.isfinite(smoothed[6][6]))
+
+    def test_bad_options_are_refused(self):
+        for options, said in ((("--modes", 0), "--modes"), (("--theta2-deg", "nan"), "--theta2-deg"),
+                              (("--duration-s", 0), "--duration-s"),
+                              (("--torque-nm", 1), "--torque-nm"),
+                              (("-o", "picture.gif"), "expected .png or .svg")):
+            with self.subTest(options=options):
+                self.assert_refused(self.run_program("flexarm", "analyze", "linearize", "-c", RIG,
+                                                     *options), said)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,49 @@
+#include "tools/analysis/perturbation_figures.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include "tools/gnuplot.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kDegPerRad = 57.295779513082320877;
+
+// th1, th2 in deg and the tips' deflections in mm: with psi(L) = 1 the sum of the coordinates.
+void AddRow(const ArmModel& model, const Eigen::VectorXd& q, std::ostream* out) {
+  *out << ' ' << kDegPerRad * q[kTheta1] << ' ' << kDegPerRad * q[kTheta2] << ' '
+       << 1e3 * q.segment(kPhi1, model.mode_count().link1).sum() << ' '
+       << 1e3 * q.tail(model.mode_count().link2).sum();
+}
+
+}  // namespace
+
+void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
+                      const std::filesystem::path& output) {
+  std::ostringstream script;
+  script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
+  const std::size_t stride = std::max<std::size_t>(1, run.time_s.size() / 2000);
+  for (std::size_t i = 0; i < run.time_s.size(); i += stride) {
+    script << run.time_s[i];
+    AddRow(model, run.nonlinear[i], &script);
+    AddRow(model, run.linear[i], &script);
+    script << '\n';
+  }
+  script << "EOD\nset multiplot layout 2,2 title 'Deviation from the motion, linear over "
+            "nonlinear'\nset grid lc rgb '#D9D9D9'\nset key top right\nset xlabel 's'\n";
+  int column = 2;
+  for (const char* label :
+       {"joint 1, deg", "joint 2, deg", "tip of link 1, mm", "tip of link 2, mm"}) {
+    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column
+           << " with lines lw 5 lc rgb '" << Colour(4)
+           << "' title 'nonlinear', '' using 1:" << column + 4 << " with lines lw 2 dt 2 lc rgb '"
+           << Colour(1) << "' title 'linear'\n";
+    ++column;
+  }
+  script << "unset multiplot\n";
+  RunGnuplot(script.str());
+}
+
+}  // namespace flexarm
