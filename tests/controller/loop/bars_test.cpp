@@ -8,10 +8,14 @@
 //   0.1 kg            0.75 (0.77)   1.09 (1.10)   0.09, 0.16 (0.27)    1.02 (1.18)  2.5 (3.1)
 //   0.2 kg            0.94 (0.94)   2.66 (2.67)   0.05, 0.11 (0.17)    0.76 (1.06)  2.6 (3.4)
 //   0, 0.5 and 1 kg: rms th1 1.19, 1.79, 2.42; rms th2 0.86, 7.02, 10.84
+// They were set for the thesis's kinematics; the arm with foreshortening, under the same gains, is
+// held to them too. Its medians, and why they differ: docs/stiffened-arm.md.
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "tests/controller/loop/simulated_runs.h"
 
@@ -32,12 +36,23 @@ void ExpectMet(const char* what, const std::vector<double>& values, double bar) 
   EXPECT_LE(Largest(values), kStray * bar) << what;
 }
 
-class ClosedLoopBars : public testing::TestWithParam<Bars> {};
+Runs RunsOf(double payload_kg, bool foreshortening) {
+  std::printf("payload %.2f kg, %s\n", payload_kg,
+              foreshortening ? "with foreshortening" : "the thesis's kinematics");
+  return RunSeeds(payload_kg,
+                  {foreshortening ? "arm.foreshortening=true" : "arm.foreshortening=false"});
+}
+
+std::string NameOf(double payload_kg, bool foreshortening) {
+  return "Grams" + std::to_string(std::lround(1e3 * payload_kg)) +
+         (foreshortening ? "Stiffened" : "");
+}
+
+class ClosedLoopBars : public testing::TestWithParam<std::tuple<Bars, bool>> {};
 
 TEST_P(ClosedLoopBars, AreMetByTheMedianAndByNoSeedOverstretched) {
-  const Bars& bars = GetParam();
-  const Runs runs = RunSeeds(bars.payload_kg);
-  std::printf("payload %.2f kg\n", bars.payload_kg);
+  const auto& [bars, foreshortening] = GetParam();
+  const Runs runs = RunsOf(bars.payload_kg, foreshortening);
   EXPECT_EQ(runs.tripped, 0);
   ExpectMet("rms th1", runs.rms1_deg, bars.rms1_deg);
   ExpectMet("rms th2", runs.rms2_deg, bars.rms2_deg);
@@ -49,58 +64,60 @@ TEST_P(ClosedLoopBars, AreMetByTheMedianAndByNoSeedOverstretched) {
   ExpectMet("peak u2", runs.peak2_nm, bars.peak2_nm);
 }
 
+constexpr Bars kBars[] = {{.payload_kg = 0.01,
+                           .rms1_deg = 1.25,
+                           .rms2_deg = 0.85,
+                           .final_deg = 0.35,
+                           .settling_s = 1.7,
+                           .residual_mm = 6.0,
+                           .peak1_nm = 10.0,
+                           .peak2_nm = 2.2},
+                          {.payload_kg = 0.1,
+                           .rms1_deg = 0.90,
+                           .rms2_deg = 1.35,
+                           .final_deg = 0.35,
+                           .settling_s = 1.3,
+                           .residual_mm = 6.0,
+                           .peak1_nm = 9.0,
+                           .peak2_nm = 2.2},
+                          {.payload_kg = 0.2,
+                           .rms1_deg = 1.10,
+                           .rms2_deg = 3.0,
+                           .final_deg = 0.35,
+                           .settling_s = 1.2,
+                           .residual_mm = 6.0,
+                           .peak1_nm = 10.0,
+                           .peak2_nm = 2.2}};
+
 INSTANTIATE_TEST_SUITE_P(Payloads, ClosedLoopBars,
-                         testing::Values(Bars{.payload_kg = 0.01,
-                                              .rms1_deg = 1.25,
-                                              .rms2_deg = 0.85,
-                                              .final_deg = 0.35,
-                                              .settling_s = 1.7,
-                                              .residual_mm = 6.0,
-                                              .peak1_nm = 10.0,
-                                              .peak2_nm = 2.2},
-                                         Bars{.payload_kg = 0.1,
-                                              .rms1_deg = 0.90,
-                                              .rms2_deg = 1.35,
-                                              .final_deg = 0.35,
-                                              .settling_s = 1.3,
-                                              .residual_mm = 6.0,
-                                              .peak1_nm = 9.0,
-                                              .peak2_nm = 2.2},
-                                         Bars{.payload_kg = 0.2,
-                                              .rms1_deg = 1.10,
-                                              .rms2_deg = 3.0,
-                                              .final_deg = 0.35,
-                                              .settling_s = 1.2,
-                                              .residual_mm = 6.0,
-                                              .peak1_nm = 10.0,
-                                              .peak2_nm = 2.2}),
+                         testing::Combine(testing::ValuesIn(kBars), testing::Bool()),
                          [](const auto& shown) {
-                           return "Grams" + std::to_string(static_cast<int>(
-                                                1e3 * shown.param.payload_kg + 0.5));
+                           return NameOf(std::get<0>(shown.param).payload_kg,
+                                         std::get<1>(shown.param));
                          });
 
 struct StableBars {
   double payload_kg, rms1_deg, rms2_deg;
 };
 
-class FarPayload : public testing::TestWithParam<StableBars> {};
+class FarPayload : public testing::TestWithParam<std::tuple<StableBars, bool>> {};
 
 // Five and ten times the design's payload, and none: stable, and no worse than the study's bars.
 TEST_P(FarPayload, IsCarriedToTheEndWithoutATrip) {
-  const StableBars& bars = GetParam();
-  const Runs runs = RunSeeds(bars.payload_kg);
-  std::printf("payload %.2f kg\n", bars.payload_kg);
+  const auto& [bars, foreshortening] = GetParam();
+  const Runs runs = RunsOf(bars.payload_kg, foreshortening);
   EXPECT_EQ(runs.tripped, 0);
   ExpectMet("rms th1", runs.rms1_deg, bars.rms1_deg);
   ExpectMet("rms th2", runs.rms2_deg, bars.rms2_deg);
 }
 
+constexpr StableBars kFarBars[] = {{0.0, 1.4, 1.0}, {0.5, 2.0, 7.5}, {1.0, 2.8, 11.5}};
+
 INSTANTIATE_TEST_SUITE_P(Payloads, FarPayload,
-                         testing::Values(StableBars{0.0, 1.4, 1.0}, StableBars{0.5, 2.0, 7.5},
-                                         StableBars{1.0, 2.8, 11.5}),
+                         testing::Combine(testing::ValuesIn(kFarBars), testing::Bool()),
                          [](const auto& shown) {
-                           return "Grams" + std::to_string(static_cast<int>(
-                                                1e3 * shown.param.payload_kg + 0.5));
+                           return NameOf(std::get<0>(shown.param).payload_kg,
+                                         std::get<1>(shown.param));
                          });
 
 }  // namespace
