@@ -21,6 +21,7 @@ struct Exit {
 // kBadInput, and any other exception into kFailed.
 void RegisterAnalyze(CLI::App& app, Exit& exit);
 void RegisterAnalyzeCheck(CLI::App& analyze, Exit& exit);
+void RegisterAnalyzeExcite(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeLinearize(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeParametric(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);

@@ -1,4 +1,4 @@
-"""flexarm modes and analyze linearize: what the model says of beams, and of the arm at a state."""
+"""flexarm modes, analyze excite and analyze linearize: the model's beams, motions and linear arm."""
 
 import math
 import unittest
@@ -61,6 +61,36 @@ class Modes(ProgramTest):
                               (("--set", "joint2.backlash_rad=-1"), "backlash_rad")):
             with self.subTest(options=options):
                 self.assert_refused(self.run_program("flexarm", "modes", "-c", RIG, *options), said)
+
+
+class Excite(ProgramTest):
+    def excite(self, *arguments):
+        return self.flexarm_json("analyze", "excite", "-c", RIG, *arguments)
+
+    def test_the_square_wave_of_chapter_4_moves_the_arm_as_the_reference_does(self):
+        # An eighth-order integrator's tip at 3 s; the default one, second order, is 6 um off.
+        picture = self.folder / "square-wave.png"
+        result = self.excite("--without-dissipation", "--modes", 2, "--set",
+                             "arm.link1_tip_inertia=motor", "-o", picture)
+        for found, expected in zip(result["final_tip_m"], (1.690807100, 0.145161223)):
+            self.assertAlmostEqual(found, expected, delta=2e-5)
+        # Link 2's peak lies between the reference's samples, 10 ms apart.
+        self.assertAlmostEqual(result["peak_bending_mm"][0], 18.56, delta=0.03)
+        self.assertAlmostEqual(result["peak_bending_mm"][1], 15.06, delta=0.03)
+        self.assertTrue(picture.read_bytes().startswith(PNG))
+
+    def test_friction_and_damping_take_bending_away(self):
+        free = self.excite("--without-dissipation")["peak_bending_mm"]
+        for with_losses, without in zip(self.excite()["peak_bending_mm"], free):
+            self.assertLess(with_losses, 0.8 * without)
+
+    def test_bad_options_are_refused(self):
+        for options, said in ((("--modes", 0), "--modes"), (("--duration-s", "nan"), "--duration-s"),
+                              (("--torque-nm", 1), "--torque-nm"),
+                              (("-o", "picture.gif"), "expected .png or .svg")):
+            with self.subTest(options=options):
+                self.assert_refused(self.run_program("flexarm", "analyze", "excite", "-c", RIG,
+                                                     *options), said)
 
 
 class Linearize(ProgramTest):
