@@ -167,6 +167,7 @@ double ArmModel::Shortening(int link, double u_m, const VectorXd& a, const Vecto
   if (!constants_.foreshortening) return 0.0;
   const LinkModes& modes = link_modes(link);
   const VectorXd phi_a = ModalPart(link, a), phi_b = ModalPart(link, b);
+  if (phi_a.isZero(0.0) || phi_b.isZero(0.0)) return 0.0;  // unbent: no need for the slopes
   double sum = 0.0, start = 0.0;
   for (const BeamSection& s : parameters_.link[static_cast<std::size_t>(link - 1)].section) {
     const double length = std::min(s.length_m, u_m - start);

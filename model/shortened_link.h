@@ -21,11 +21,11 @@ class ShortenedLink {
   ShortenedLink(const Foreshortening<M>& link, const Vec& f, const Vec& f_dot, const Vec& f_ddot)
       : link_(link), f_(f), p_(Scalar(0.5) * Products(f, f)), p_dot_(Products(f, f_dot)) {
     p_ddot_ = Products(f, f_ddot) + Products(f_dot, f_dot);
-    const VecP Qp = link_.Q.template cast<Scalar>() * p_;
-    const VecP Qp_ddot = link_.Q.template cast<Scalar>() * p_ddot_;
-    const VecP Cf = link_.C.template cast<Scalar>() * f;
-    const VecP Cf_dot = link_.C.template cast<Scalar>() * f_dot;
-    const auto Ct = link_.C.transpose().template cast<Scalar>();
+    const VecP Qp = link_.Q * p_;
+    const VecP Qp_ddot = link_.Q * p_ddot_;
+    const VecP Cf = link_.C * f;
+    const VecP Cf_dot = link_.C * f_dot;
+    const auto Ct = link_.C.transpose();
     const Vec Ctp = Ct * p_;
     tip = Dot(link_.tip, p_), tip_dot = Dot(link_.tip, p_dot_), tip_ddot = Dot(link_.tip, p_ddot_);
     k = Dot(link_.k, p_), k_dot = Dot(link_.k, p_dot_), k_ddot = Dot(link_.k, p_ddot_);
