@@ -50,6 +50,15 @@ TEST(Chapter3Statements, SayTheReferenceNumbers) {
   ExpectSaid(About(s, "the M that are kept"), {"0.019, 0.11, 0.49, 0.048 %"});
 }
 
+TEST(BeamStatements, SayTheReferenceNumbers) {
+  const std::vector<Statement> s = BeamStatements(ReferenceConfig().arm);
+  // Bare link 2 with N = 10: -0.457 -1.564 -2.550 -3.565 %; the claim needs N >= 31, 86 for four.
+  ExpectSaid(About(s, "transfer matrix"),
+             {"-0.457, -1.56, -2.55, -3.5", "31 parts for the first", "86 for 4; if pinned"});
+  EXPECT_EQ(About(s, "concentrated moment").verdict, Verdict::kDoesNot);
+  EXPECT_EQ(About(s, "one beta").verdict, Verdict::kDoesNot);
+}
+
 TEST(Chapter4Statements, SayTheReferenceNumbers) {
   const std::vector<Statement> s = Chapter4Statements(ReferenceConfig());
   // Uniform beam: (L^3 / 3EI) / (L^2 / K) = K L / 3EI.

@@ -177,7 +177,9 @@ Statement Softening(ArmParameters arm) {
 }  // namespace
 
 std::vector<Statement> Chapter3Statements(const Config& config) {
-  std::vector<Statement> out = {FrictionSwitch(config.arm), DampingRatios(config.arm)};
+  std::vector<Statement> out = BeamStatements(config.arm);
+  out.push_back(FrictionSwitch(config.arm));
+  out.push_back(DampingRatios(config.arm));
   AddBacklash(config.arm, &out);
   out.push_back(HigherModes(config.arm));
   out.push_back(Softening(config.arm));

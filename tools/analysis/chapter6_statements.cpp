@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/arm_simulator.h"
-#include "model/discretize.h"
-#include "model/linearization.h"
+#include "model/perturbation.h"
 #include "tools/analysis/reduction_grid.h"
 #include "tools/analysis/thesis_check.h"
 
@@ -14,37 +12,24 @@ namespace {
 constexpr double kRadPerDeg = 0.017453292519943295769;
 constexpr int kModes = 10;  // 6.5: the M of figures 6.3 to 6.9
 
-ArmParameters WithoutFriction(ArmParameters arm) {
-  for (JointParameters& joint : arm.joint) joint.coulomb_friction_nm = 0.0;
-  return arm;
-}
-
 constexpr double kPerturbedAt_deg = 45.0;
 constexpr int kPerturbed_s = 3;
 
-// Largest difference of bending and joint angles, relative to the largest of each, between the arm
-// and its linearisation at rest, during and after one period of a square wave of 1 s.
+// Largest difference of any coordinate, relative to its largest deviation, between the arm and its
+// linearisation at rest, during and after one period of a square wave of 1 s.
 double LinearisationError(const ArmParameters& arm, const std::array<double, 2>& torque_nm) {
-  const ArmModel model(WithoutFriction(arm), {2, 2});
-  ArmSimulator simulator(model, {.passes = 4, .substeps = 10});
-  ArmState x(model.dof());
-  x.q[kTheta2] = x.q[kTheta4] = kPerturbedAt_deg * kRadPerDeg;
-  const Eigen::VectorXd q0 = x.q, v0 = x.v;
-  const LinearModel linear = Linearize(model, q0, v0, Eigen::Vector2d::Zero());
-  constexpr double kStep_s = 1e-3;
-  const DiscreteModel step = ZeroOrderHold(linear.A, linear.B, kStep_s);
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(2 * model.dof());
-  Eigen::VectorXd most = Eigen::VectorXd::Zero(model.dof()), off = most;
-  for (int k = 0; k < kPerturbed_s * 1000; ++k) {
-    const double sign = k < 500 ? 1.0 : k < 1000 ? -1.0 : 0.0;
-    const Eigen::Vector2d torque(torque_nm[0] * sign, torque_nm[1] * sign);
-    simulator.Step(x, torque, kStep_s);
-    z = (step.A * z + step.B * torque).eval();
-    const Eigen::VectorXd moved = x.q - q0;
-    most = most.cwiseMax(moved.cwiseAbs());
-    off = off.cwiseMax((moved - z.head(model.dof())).cwiseAbs());
-  }
-  return off.cwiseQuotient(most).maxCoeff();
+  const ArmModel model(arm, {2, 2});
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(model.dof()), v = q;
+  q[kTheta2] = q[kTheta4] = kPerturbedAt_deg * kRadPerDeg;
+  const auto none = [](double) { return Eigen::Vector2d(0.0, 0.0); };
+  const auto square = [&](double time_s) {
+    const double sign = time_s < 0.5 ? 1.0 : time_s < 1.0 ? -1.0 : 0.0;
+    return Eigen::Vector2d(sign * torque_nm[0], sign * torque_nm[1]);
+  };
+  const PerturbationRun run = Perturb(model, q, v, none, square, kPerturbed_s, 2e-4);
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < model.dof(); ++i) worst = std::max(worst, run.RelativeError(i));
+  return worst;
 }
 
 Statement Linearised(const ArmParameters& arm) {
@@ -186,7 +171,8 @@ std::string OfBoth(const std::array<Range, 2>& range) {
 // For how many pairs of rates the first mode's share is largest at the last elbow angle.
 int LargestAtRightAngle(const ReductionGrid& grid, const std::vector<ReductionCell>& cells,
                         std::size_t link) {
-  const auto pairs = static_cast<std::size_t>(grid.cells * grid.cells);
+  const auto cells_an_axis = static_cast<std::size_t>(grid.cells);
+  const std::size_t pairs = cells_an_axis * cells_an_axis;
   int count = 0;
   for (std::size_t pair = 0; pair < pairs; ++pair) {
     std::size_t best = pair;

@@ -9,6 +9,9 @@
 
 namespace flexarm {
 
+/// Chapter 3's beams: the lumped transfer matrix and the fitted shapes against the exact ones.
+std::vector<Statement> BeamStatements(const ArmParameters& arm);
+
 /// Chapter 3 against the model: beams, damping, backlash, kinematics.
 std::vector<Statement> Chapter3Statements(const Config& config);
 
