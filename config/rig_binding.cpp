@@ -28,6 +28,7 @@ void ReadJoint(TableReader joint, JointParameters* out) {
   joint.Read("rotor_inertia_kgm2", &out->rotor_inertia_kgm2);
   joint.Read("hub_inertia_kgm2", &out->hub_inertia_kgm2);
   joint.Read("coulomb_friction_nm", &out->coulomb_friction_nm);
+  joint.Read("viscous_friction_nm_s_per_rad", &out->viscous_friction_nm_s_per_rad);
 }
 
 void ReadBacklash(TableReader joint2, BacklashParameters* out) {
@@ -88,6 +89,9 @@ void ReadSensors(TableReader sensors, SensorConfig* out) {
   input.Read("converter_bits", &out->strain_input.converter_bits);
   input.Read("range_v", &out->strain_input.range_v);
   input.Read("filter_hz", &out->strain_input.filter_hz);
+  if (input.Has("filter_damping")) {
+    input.Read("filter_damping", &out->strain_input.filter_damping);
+  }
   input.Read("noise_counts", &out->strain_input.noise_counts);
 }
 

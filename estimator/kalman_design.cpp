@@ -23,24 +23,35 @@ struct Augmented {
   Eigen::MatrixXd A, B, G;  // G: generalised forces on all degrees of freedom
 };
 
-Augmented Augment(const NominalModel& nominal, double filter_hz) {
+Augmented Augment(const NominalModel& nominal, const StrainInputConfig& input) {
+  const bool second_order = input.filter_hz > 0.0 && input.filter_damping > 0.0;
   const Eigen::Index n = nominal.A.rows(), dof = n / 2, flex = dof - 2;
-  const double w_f = kTwoPi * filter_hz;
-  Augmented out{.A = Eigen::MatrixXd::Zero(n + flex, n + flex),
-                .B = Eigen::MatrixXd::Zero(n + flex, 2),
-                .G = Eigen::MatrixXd::Zero(n + flex, dof)};
+  const Eigen::Index states = n + (second_order ? 2 : 1) * flex;
+  const double w_f = kTwoPi * (input.filter_hz > 0.0 ? input.filter_hz : kNoFilterHz);
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(flex, flex);
+  Augmented out{.A = Eigen::MatrixXd::Zero(states, states),
+                .B = Eigen::MatrixXd::Zero(states, 2),
+                .G = Eigen::MatrixXd::Zero(states, dof)};
   out.A.topLeftCorner(n, n) = nominal.A;
-  out.A.block(n, 2, flex, flex) = w_f * Eigen::MatrixXd::Identity(flex, flex);
-  out.A.bottomRightCorner(flex, flex) = -w_f * Eigen::MatrixXd::Identity(flex, flex);
+  if (second_order) {  // phi_f'' = w_f^2 (phi - phi_f) - 2 zeta w_f phi_f'
+    const Eigen::Index rate = n + flex;
+    out.A.block(n, rate, flex, flex) = I;
+    out.A.block(rate, 2, flex, flex) = w_f * w_f * I;
+    out.A.block(rate, n, flex, flex) = -w_f * w_f * I;
+    out.A.block(rate, rate, flex, flex) = -2.0 * input.filter_damping * w_f * I;
+  } else {
+    out.A.block(n, 2, flex, flex) = w_f * I;
+    out.A.bottomRightCorner(flex, flex) = -w_f * I;
+  }
   out.B.topRows(n) = nominal.B;
   out.G.middleRows(dof, dof) = nominal.M.llt().solve(Eigen::MatrixXd::Identity(dof, dof));
   return out;
 }
 
-Eigen::MatrixXd OutputMatrix(Eigen::Index n, Eigen::Index flex) {
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(4 + flex, n + flex);
+Eigen::MatrixXd OutputMatrix(Eigen::Index n, Eigen::Index flex, Eigen::Index states) {
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(4 + flex, states);
   C(0, 0) = C(1, 1) = C(2, 0) = C(3, 1) = 1.0;
-  C.bottomRightCorner(flex, flex).setIdentity();
+  C.block(4, n, flex, flex).setIdentity();
   return C;
 }
 
@@ -84,12 +95,10 @@ Eigen::MatrixXd ProcessNoise(const Augmented& system, const EstimatorConfig& est
 
 KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig& sensors,
                                 const EstimatorConfig& estimator, double period_s) {
-  const double filter_hz =
-      sensors.strain_input.filter_hz > 0.0 ? sensors.strain_input.filter_hz : kNoFilterHz;
-  const Augmented system = Augment(nominal, filter_hz);
+  const Augmented system = Augment(nominal, sensors.strain_input);
   const DiscreteModel discrete = ZeroOrderHold(system.A, system.B, period_s);
-  const Eigen::Index n = nominal.A.rows(), flex = system.A.rows() - n;
-  const Eigen::MatrixXd C_all = OutputMatrix(n, flex);
+  const Eigen::Index n = nominal.A.rows(), flex = n / 2 - 2;
+  const Eigen::MatrixXd C_all = OutputMatrix(n, flex, system.A.rows());
   const Eigen::VectorXd R_all = OutputVariance(sensors, estimator, flex);
 
   std::vector<Eigen::Index> present;  // rows of C that the rig measures
@@ -109,7 +118,7 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
   KalmanDesign design{.A = discrete.A,
                       .B = discrete.B,
                       .C = C_all,
-                      .L = Eigen::MatrixXd::Zero(n + flex, C_all.rows()),
+                      .L = Eigen::MatrixXd::Zero(system.A.rows(), C_all.rows()),
                       .residual = DareResidual(A_t, C_t, W, R, P)};
   for (std::size_t i = 0; i < present.size(); ++i) {
     design.L.col(present[i]) = gain.col(static_cast<Eigen::Index>(i));

@@ -10,9 +10,11 @@ namespace flexarm {
 
 /// Steady-state Kalman filter on the nominal model with the gauges' analogue filter in it.
 ///
-/// States: the nominal model's n, then the filtered modal coordinates phi_f' = w_f (phi - phi_f).
-/// Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f..]: 4 + 2 m rows, u the torque applied
-/// during the last interval. The gain column of an encoder that the rig does not have is zero.
+/// States: the nominal model's n, then the filtered modal coordinates phi_f' = w_f (phi - phi_f),
+/// or phi_f and phi_f' of phi_f'' = w_f^2 (phi - phi_f) - 2 zeta w_f phi_f' behind a second-order
+/// filter. Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f..]: 4 + 2 m rows, u the torque
+/// applied during the last interval. The gain column of an encoder that the rig does not have is
+/// zero.
 ///   x(k|k) = x(k|k-1) + L (y - C x(k|k-1)),  x(k+1|k) = A x(k|k) + B u(k)
 /// Source: control.md section 4, "Kalman filter".
 struct KalmanDesign {

@@ -22,6 +22,22 @@ double HalfThicknessAt(const LinkParameters& link, double x_m) {
   return link.section.back().half_thickness_m;
 }
 
+// (h/2) psi_j'' at the root of the section where the first mode strains the surface most: at the
+// root of the link, unless it is stiffer there.
+std::array<double, 2> ShapeWhereItBendsMost(const LinkParameters& link, const LinkModes& modes) {
+  std::array<double, 2> most{};
+  double start = 0.0;
+  for (const BeamSection& section : link.section) {
+    std::array<double, 2> here{};
+    for (std::size_t j = 0; j < modes.mode.size(); ++j) {
+      here[j] = section.half_thickness_m * modes.mode[j].Curvature(start);
+    }
+    if (std::fabs(here[0]) > std::fabs(most[0])) most = here;
+    start += section.length_m;
+  }
+  return most;
+}
+
 }  // namespace
 
 StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
@@ -51,9 +67,7 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     }
   }
   for (std::size_t link = 0; link < 2; ++link) {
-    for (std::size_t j = 0; j < static_cast<std::size_t>(modes_); ++j) {
-      root_shape_[link][j] = shape(link, j, 0.0);
-    }
+    root_shape_[link] = ShapeWhereItBendsMost(arm.link[link], modes[link]);
   }
   // Columns of the pseudo-inverse: the fit to a unit strain on one channel, with all channels used.
   for (std::size_t i = 0; i < sensors.strain.size(); ++i) {

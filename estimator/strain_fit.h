@@ -14,15 +14,16 @@ namespace flexarm {
 
 /// Modal coordinates fitted to the strain channels of one sample.
 struct FittedModes {
-  std::array<double, 4> modal_m;      ///< f11 f12 f21 f22; the last good fit if not valid
-  std::array<bool, 2> valid;          ///< per link: enough good channels
-  std::array<double, 2> root_strain;  ///< surface strain of the fit at the root of each link
-  std::array<double, 2> residual;     ///< rms of channel minus fit, unit strain
-  std::uint32_t used;                 ///< bit i: channel i took part
-  std::uint32_t saturated;            ///< bit i: at a rail of the converter
-  std::uint32_t stuck;                ///< bit i: does not move while its link does
-  std::uint32_t outlier;              ///< bit i: far from what the others agree on
-  double worst_outlier;               ///< its distance, unit strain
+  std::array<double, 4> modal_m;  ///< f11 f12 f21 f22; the last good fit if not valid
+  std::array<bool, 2> valid;      ///< per link: enough good channels
+  /// Surface strain of the fit at the root of each link, or of the section where it bends most.
+  std::array<double, 2> root_strain;
+  std::array<double, 2> residual;  ///< rms of channel minus fit, unit strain
+  std::uint32_t used;              ///< bit i: channel i took part
+  std::uint32_t saturated;         ///< bit i: at a rail of the converter
+  std::uint32_t stuck;             ///< bit i: does not move while its link does
+  std::uint32_t outlier;           ///< bit i: far from what the others agree on
+  double worst_outlier;            ///< its distance, unit strain
 };
 
 /// Weighted least-squares fit of one or two modal coordinates a link to the strain channels.
@@ -73,7 +74,7 @@ class StrainFit {
   double stuck_limit_;
   std::array<Channel, kMaxStrainChannels> channel_;
   std::array<bool, 2> solvable_{};                     // a link's channels tell its modes apart
-  std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j''(0) a link
+  std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j'' there
   std::array<double, 4> last_modal_{};
 };
 

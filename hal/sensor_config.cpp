@@ -48,6 +48,11 @@ void CheckStrainInput(const StrainInputConfig& input, ProblemList* list) {
                "full scale is -range_v .. +range_v");
   list->Within("strain_input.filter_hz", input.filter_hz, 0.0, 1e5,
                "corner of the analogue filter, 0 for none");
+  list->Require(
+      input.filter_damping == 0.0 || (input.filter_damping >= 0.1 && input.filter_damping <= 2.0),
+      "strain_input.filter_damping", NumberText(input.filter_damping),
+      "must lie in 0.1 .. 2: damping ratio of a second-order filter; leave the key out "
+      "for a first-order one");
   list->Within("strain_input.noise_counts", input.noise_counts, 0.0, 1e4,
                "standard deviation before quantising");
 }

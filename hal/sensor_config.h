@@ -34,10 +34,11 @@ struct StrainChannelConfig {
 
 /// The converter and amplifier that all strain channels share: [sensors.strain_input].
 struct StrainInputConfig {
-  int converter_bits;   ///< 8..24, two's complement, clips at its rails
-  double range_v;       ///< full scale is -range_v .. +range_v
-  double filter_hz;     ///< corner of the first-order analogue filter; 0: no filter
-  double noise_counts;  ///< standard deviation before quantising
+  int converter_bits;     ///< 8..24, two's complement, clips at its rails
+  double range_v;         ///< full scale is -range_v .. +range_v
+  double filter_hz;       ///< natural frequency of the analogue filter; 0: no filter
+  double noise_counts;    ///< standard deviation before quantising
+  double filter_damping;  ///< of a second-order filter; 0, without such a key: of first order
 
   double volts_per_count() const;  ///< 2 range / 2^bits
   int lowest_count() const;        ///< -2^(bits-1)

@@ -44,6 +44,7 @@ ArmConstants::ArmConstants(const ArmParameters& p, ModeCount count)
   K1 = p.joint[0].stiffness_nm_per_rad;
   K2 = p.joint[1].stiffness_nm_per_rad;
   friction_nm = {p.joint[0].coulomb_friction_nm, p.joint[1].coulomb_friction_nm};
+  viscous = {p.joint[0].viscous_friction_nm_s_per_rad, p.joint[1].viscous_friction_nm_s_per_rad};
   if (!foreshortening) return;
   shortening1 = ForeshorteningOf(link1, p.link[0]);
   shortening2 = ForeshorteningOf(link2, p.link[1]);

@@ -45,6 +45,7 @@ struct ArmConstants {
   double Ir2, J1, J2, Ip;       ///< motor 2, rotors 1 and 2, payload, kg m^2
   double K1, K2;                ///< joint stiffnesses, N m/rad
   Eigen::Vector2d friction_nm;  ///< K_F of joints 1 and 2
+  Eigen::Vector2d viscous;      ///< their viscous friction, N m s/rad
   Backlash backlash;            ///< of joint 2
   bool foreshortening;          ///< else the two below are empty
   Foreshortening<> shortening1, shortening2;  ///< of link 1; of link 2 with the payload

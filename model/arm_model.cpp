@@ -62,6 +62,8 @@ ArmModel::ArmModel(const ArmParameters& parameters, ModeCount count)
   }
   stiffness_.block(kPhi1, kPhi1, c.m1, c.m1) = c.link1.G;
   stiffness_.bottomRightCorner(c.m2, c.m2) = c.link2.G;
+  damping_(kTheta1, kTheta1) = c.viscous[0];
+  damping_(kTheta2, kTheta2) = c.viscous[1];
   damping_.block(kPhi1, kPhi1, c.m1, c.m1) = c.link1.D;
   damping_.bottomRightCorner(c.m2, c.m2) = c.link2.D;
 }

@@ -34,6 +34,8 @@ class Rules {
             "must not be negative");
     Require(joint.coulomb_friction_nm >= 0.0, name + ".coulomb_friction_nm",
             joint.coulomb_friction_nm, "must not be negative");
+    Require(joint.viscous_friction_nm_s_per_rad >= 0.0, name + ".viscous_friction_nm_s_per_rad",
+            joint.viscous_friction_nm_s_per_rad, "must not be negative");
   }
 
   void CheckBacklash(const BacklashParameters& backlash) {

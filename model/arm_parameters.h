@@ -45,10 +45,11 @@ struct LinkParameters {
 };
 
 struct JointParameters {
-  double stiffness_nm_per_rad;  ///< K > 0: spring between rotor and hub
-  double rotor_inertia_kgm2;    ///< J > 0, at the gearbox output
-  double hub_inertia_kgm2;      ///< I_h >= 0
-  double coulomb_friction_nm;   ///< K_F >= 0, acts between hub and its base (3.12)
+  double stiffness_nm_per_rad;           ///< K > 0: spring between rotor and hub
+  double rotor_inertia_kgm2;             ///< J > 0, at the gearbox output
+  double hub_inertia_kgm2;               ///< I_h >= 0
+  double coulomb_friction_nm;            ///< K_F >= 0, acts between hub and its base (3.12)
+  double viscous_friction_nm_s_per_rad;  ///< >= 0, there too; the thesis has none
 };
 
 /// What the play between the gears of joint 2 does (backlash.h).

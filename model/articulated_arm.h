@@ -25,7 +25,7 @@ struct FixedConstants {
 
   explicit FixedConstants(const ArmConstants& c);
 
-  double L1, I1, m, Sx, I2, Ir2, J1, J2, Ip, K1, K2;
+  double L1, I1, m, Sx, I2, Ir2, J1, J2, Ip, K1, K2, b1, b2;
   Vec a1, p1, s1;  // link 1: int lam u psi, psi(L) and psi'(L)
   Vec k2, a2, s2;  // link 2: int lam psi and int lam u psi with payload, psi'(L)
   Mat N1, D1, G1, N2, D2, G2;
@@ -48,6 +48,7 @@ struct StepConstants {
   Eigen::Matrix3d X1, X2;  // [a1 p1 s1]' A1^-1 [a1 p1 s1], the same of link 2
   Mat DhG1, DhG2;          // D + h/2 G
   double K1h, K2h;         // h^2/4 K
+  double b1h, b2h;         // h/2 of the viscous friction
   double rotor1;           // K1h / (J1 + K1h)
 };
 

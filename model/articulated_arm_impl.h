@@ -18,7 +18,9 @@ FixedConstants<M>::FixedConstants(const ArmConstants& c)
       J2(c.J2),
       Ip(c.Ip),
       K1(c.K1),
-      K2(c.K2) {
+      K2(c.K2),
+      b1(c.viscous[0]),
+      b2(c.viscous[1]) {
   const auto pad = [](const Eigen::VectorXd& x) {
     Vec y = Vec::Zero();
     for (Eigen::Index i = 0; i < x.size(); ++i) y[i] = x[i];  // no packets: M may be 1
@@ -53,6 +55,7 @@ StepConstants<M>::StepConstants(const FixedConstants<M>& c, double step) : h(ste
   x_k2 = Y2.col(0), x_a2 = Y2.col(1), x_s2 = Y2.col(2);
   X1 = C1.transpose() * Y1, X2 = C2.transpose() * Y2;
   K1h = quarter * c.K1, K2h = quarter * c.K2;
+  b1h = half * c.b1, b2h = half * c.b2;
   rotor1 = K1h / (c.J1 + K1h);
 }
 
@@ -111,8 +114,8 @@ void ArticulatedArm<M>::AssembleHub(const ArmCoordinates<M>& q, const ArmCoordin
   const double motor = c_.Ir2 + c_.J2, w1 = v.th[0];
   const double along = -Sy_ * tx_ + Sx_ * ty_, nu = -Sy_ * sb_ + Sx_ * cb_;
   S11_ = c_.m * tx_ * tx_ + m_y_ * ty_ * ty_ + 2.0 * along + I_ + motor + c_.I1 + N1f1.dot(q.f1) +
-         k_.K1h * (1.0 - k_.rotor1);
-  S12_ = along + I_, S22_ = I_ + r.K2h;
+         k_.b1h + k_.K1h * (1.0 - k_.rotor1);
+  S12_ = along + I_, S22_ = I_ + r.K2h + k_.b2h;
   S14_ = c_.J2, S24_ = -r.K2h, S44_ = c_.J2 + r.K2h + r.drag4;
   S1w_ = c_.m * tx_ * sb_ + m_y_ * ty_ * cb_ + nu, S2w_ = nu;
   Sww_ = c_.m * sb_ * sb_ + m_y_ * cb_ * cb_;

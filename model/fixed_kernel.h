@@ -88,8 +88,8 @@ class FixedKernel final : public StepKernel {
     const double h = k_.h;
     const double spring2 = c_.K2 * (q.th[3] - q.th[1] + 0.5 * h * (v.th[3] - v.th[1]));
     AppliedForces<kModes> r;
-    r.th1 = spring1 + k_.rotor1 * (torque[0] - spring1);
-    r.th2 = spring2;
+    r.th1 = spring1 + k_.rotor1 * (torque[0] - spring1) - c_.b1 * v.th[0];
+    r.th2 = spring2 - c_.b2 * v.th[1];
     r.th4 = torque[1] - spring2;
     r.f1.noalias() = -(c_.G1 * q.f1);
     r.f1.noalias() -= k_.DhG1 * v.f1;
@@ -110,7 +110,7 @@ class FixedKernel final : public StepKernel {
     r->K2h = 0.25 * h * h * joint.stiffness_nm_per_rad + 0.5 * h * joint.damping_nms_per_rad;
     r->drag4 = joint.drag_slope_nms > 0.0 ? 0.5 * h * joint.drag_slope_nms : 0.0;
     const double spring = joint.spring_nm - r->K2h * (a.th[3] - a.th[1]);
-    r->th2 = spring;
+    r->th2 = spring - c_.b2 * (v_m.th[1] - 0.5 * h * a.th[1]);
     r->th4 = torque2 - spring - joint.drag_nm + r->drag4 * a.th[3];
   }
 

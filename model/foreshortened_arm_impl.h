@@ -66,7 +66,8 @@ void ForeshortenedArm<M>::AssembleOuter(const ArmCoordinates<M>& q, const Link& 
   const Vec to_th1 = c_.a1 + link1.coupling;
   A_.template block<M, 1>(0, M) += to_th1;
   A_.template block<1, M>(M, 0) += to_th1.transpose();
-  A_(M, M) += c_.I1 + q.f1.dot(c_.N1 * q.f1) + link1.second_moment + k_.K1h * (1.0 - k_.rotor1);
+  A_(M, M) +=
+      c_.I1 + q.f1.dot(c_.N1 * q.f1) + link1.second_moment + k_.b1h + k_.K1h * (1.0 - k_.rotor1);
   B_.noalias() = c_.k2 * y_row_.transpose();
   B_.noalias() -= link2.k_slope * x_.transpose();
   B_.noalias() += to_gamma_ * gamma_.transpose();
@@ -119,7 +120,7 @@ void ForeshortenedArm<M>::Factorise(const AppliedForces<M>& r) noexcept {
       B_.template rightCols<2>(), r.f2 - f2_;
   L_.matrixL().solveInPlace(V_);
   Z_ = A_.template bottomRightCorner<2, 2>();
-  Z_(1, 1) += r.K2h;
+  Z_(1, 1) += r.K2h + k_.b2h;
   Z_.noalias() -= V_.template leftCols<2>().transpose() * V_.template leftCols<2>();
   y_ << r.th1 - f_[M], r.th2 - f_[M + 1];
   y_.noalias() -= V_.template leftCols<2>().transpose() * V_.col(2);

@@ -1,8 +1,8 @@
 #include "controller/commissioning/pluck_model.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "hal/gauge_filter.h"
 #include "model/arm_model.h"
 #include "model/arm_simulator.h"
 
@@ -17,27 +17,6 @@ double UnitPerCount(const SensorConfig& sensors, std::size_t i, const Calibratio
   return row.face * sensors.strain_input.volts_per_count() / row.gain_v_per_unit /
          (1.0 + static_cast<double>(calibration.strain_gain_error[i]));
 }
-
-// The first-order analogue filter between gauge and converter, by the trapezoidal rule.
-class GaugeFilter {
- public:
-  GaugeFilter(double filter_hz, double step_s, Eigen::Index size)
-      : blend_(filter_hz > 0.0 ? 1.0 - std::exp(-2.0 * std::numbers::pi * filter_hz * step_s)
-                               : 1.0),
-        before_(Eigen::VectorXd::Zero(size)),
-        output_(Eigen::VectorXd::Zero(size)) {}
-
-  void Step(const Eigen::VectorXd& input) {
-    output_ += blend_ * (0.5 * (before_ + input) - output_);
-    before_ = input;
-  }
-  const Eigen::VectorXd& output() const { return output_; }
-
- private:
-  double blend_;
-  Eigen::VectorXd before_;
-  Eigen::VectorXd output_;
-};
 
 // Rows: strain channels; columns: the arm's coordinates.
 Eigen::MatrixXd StrainOfCoordinates(const ArmModel& arm, const SensorConfig& sensors) {
@@ -81,7 +60,7 @@ PluckMotion ExpectedMotion(const StackConfig& config, const std::vector<TickReco
   const double period_s = config.loop.period_ms * 1e-3;
   const int steps = static_cast<int>(std::ceil(period_s / ArmSimulator::kDefaultStep_s));
   const double step_s = period_s / steps;
-  GaugeFilter filter(config.sensors.strain_input.filter_hz, step_s, strain.rows());
+  GaugeFilter filter(config.sensors.strain_input, step_s, strain.rows());
 
   ArmState state(arm.dof());
   PluckMotion motion =

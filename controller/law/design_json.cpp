@@ -49,7 +49,7 @@ void AddArm(const ArmParameters& arm, Digest* digest) {
     }
     const JointParameters& joint = arm.joint[i];
     *digest << joint.stiffness_nm_per_rad << joint.rotor_inertia_kgm2 << joint.hub_inertia_kgm2
-            << joint.coulomb_friction_nm;
+            << joint.coulomb_friction_nm << joint.viscous_friction_nm_s_per_rad;
   }
   *digest << arm.hub2_mass_kg << arm.motor2_mass_kg << arm.motor2_inertia_kgm2
           << arm.payload_mass_kg << arm.payload_inertia_kgm2 << arm.shape_payload_mass_kg
@@ -176,7 +176,7 @@ std::string DesignHash(const StackConfig& config) {
   Digest digest;
   AddArm(config.arm, &digest);
   for (const EncoderConfig& e : config.sensors.encoder) digest << e.counter << e.counts_per_turn;
-  digest << config.sensors.strain_input.filter_hz;
+  digest << config.sensors.strain_input.filter_hz << config.sensors.strain_input.filter_damping;
   const EstimatorConfig& estimator = config.estimator;
   digest << estimator.modes_per_link << estimator.process_force << estimator.rotor_extra_sigma_rad
          << estimator.modal_sigma_m;

@@ -4,18 +4,6 @@
 #include <numbers>
 
 namespace flexarm {
-namespace {
-
-// Share of the way to its input that a first-order lag goes in a step; 1 without lag.
-double Blend(double step_s, double time_constant_s) {
-  return time_constant_s > 0.0 ? 1.0 - std::exp(-step_s / time_constant_s) : 1.0;
-}
-
-double FilterTimeConstant(const StrainInputConfig& input) {
-  return input.filter_hz > 0.0 ? 1.0 / (2.0 * std::numbers::pi * input.filter_hz) : 0.0;
-}
-
-}  // namespace
 
 SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
                            const SimConfig& sim)
@@ -23,9 +11,8 @@ SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors
       simulator_(arm_),
       sensors_(arm_, sensors, sim.seed),
       state_(arm_.dof()),
-      filtered_(ArmVector::Zero(arm_.dof() - kRigidCoordinates)),
-      step_ns_(std::llround(sim.step_ms * 1e6)),
-      filter_blend_(Blend(sim.step_ms * 1e-3, FilterTimeConstant(sensors.strain_input))) {
+      filter_(sensors.strain_input, sim.step_ms * 1e-3, arm_.dof() - kRigidCoordinates),
+      step_ns_(std::llround(sim.step_ms * 1e6)) {
   for (std::size_t i = 0; i < 2; ++i) {
     motor_[i] = DcMotor(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
     switch_angle_rad_[i] = sim.switch_angle_deg[i] * std::numbers::pi / 180.0;
@@ -33,20 +20,17 @@ SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors
 }
 
 void SimulatedRig::Step() noexcept {
-  // Lags use the middle of the step on either side, so they stay second order like the arm.
+  // The lag uses the middle of the step on either side, so it stays second order like the arm.
   Eigen::Vector2d torque;
   for (std::size_t i = 0; i < 2; ++i) {
     torque(static_cast<Eigen::Index>(i)) = motor_[i].Step(set_point_nm_[i]);
   }
-  const ArmVector before = state_.q.tail(filtered_.size());
   simulator_.Step(state_, torque, static_cast<double>(step_ns_) * 1e-9);
-  const ArmVector after = state_.q.tail(filtered_.size());
-  const ArmVector input = filter_blend_ == 1.0 ? after : ArmVector(0.5 * (before + after));
-  filtered_ += filter_blend_ * (input - filtered_);
+  filter_.Step(state_.q.tail(filter_.output().size()));
 }
 
 SensorFrame SimulatedRig::Sample(std::int64_t now_ns) noexcept {
-  return sensors_.Sample(now_ns, state_.q, filtered_, levels());
+  return sensors_.Sample(now_ns, state_.q, ArmVector(filter_.output()), levels());
 }
 
 LineLevels SimulatedRig::levels() const noexcept {

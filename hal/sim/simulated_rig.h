@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/gauge_filter.h"
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
 #include "hal/sim/sim_config.h"
@@ -57,9 +58,8 @@ class SimulatedRig {
   ArmSimulator simulator_;
   SimulatedSensors sensors_;
   ArmState state_;
-  ArmVector filtered_;  // modal coordinates behind the gauge filter
+  GaugeFilter filter_;  // of the modal coordinates
   std::int64_t step_ns_;
-  double filter_blend_;  // 1 - exp(-w_f h)
   std::array<DcMotor, 2> motor_;
   std::array<double, 2> switch_angle_rad_;
   std::array<double, 2> set_point_nm_{};

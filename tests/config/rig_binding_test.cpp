@@ -41,7 +41,7 @@ TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
             "sensors.strain[11].face=-1", "sensors.strain[11].gain_v_per_unit=4000",
             "sensors.strain[11].offset_counts=7", "sensors.strain_input.converter_bits=13",
             "sensors.strain_input.range_v=11", "sensors.strain_input.filter_hz=21",
-            "sensors.strain_input.noise_counts=2"})
+            "sensors.strain_input.noise_counts=2", "sensors.strain_input.filter_damping=0.7"})
           .sensors;
   for (std::size_t i = 0; i < s.encoder.size(); ++i) {
     EXPECT_EQ(s.encoder[i].counter, static_cast<int>(i));
@@ -58,6 +58,8 @@ TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
   EXPECT_EQ(s.strain_input.range_v, 11.0);
   EXPECT_EQ(s.strain_input.filter_hz, 21.0);
   EXPECT_EQ(s.strain_input.noise_counts, 2.0);
+  EXPECT_EQ(s.strain_input.filter_damping, 0.7);
+  EXPECT_EQ(With({}).sensors.strain_input.filter_damping, 0.0);  // no key: of first order
 }
 
 TEST(RigBinding, PutsEveryKeyOfTheSimulationInItsField) {

@@ -48,6 +48,7 @@ void ExpectSame(const JointParameters& a, const JointParameters& b) {
   EXPECT_EQ(a.rotor_inertia_kgm2, b.rotor_inertia_kgm2);
   EXPECT_EQ(a.hub_inertia_kgm2, b.hub_inertia_kgm2);
   EXPECT_EQ(a.coulomb_friction_nm, b.coulomb_friction_nm);
+  EXPECT_EQ(a.viscous_friction_nm_s_per_rad, b.viscous_friction_nm_s_per_rad);
 }
 
 TEST(ShippedFiles, ThesisRigIsTheArmOfTheGoldenNumbers) {

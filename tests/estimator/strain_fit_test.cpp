@@ -97,6 +97,31 @@ TEST(StrainFit, FiveHalfBridgesALinkAreFiveRows) {
   ExpectRecovered(sensors, ThesisEstimator(), kBend);
 }
 
+// A hub as stiff as a block ahead of the flexible part: the strain that may break the link is where
+// that begins, and the limit is about it.
+TEST(StrainFit, BehindAStiffHubTheRootStrainIsThatOfTheFlexiblePart) {
+  ArmParameters arm = ThesisRig();
+  BeamSection hub = arm.link[0].section[0];
+  hub.length_m = 0.1;
+  hub.second_moment_m4 *= 1000.0;
+  hub.half_thickness_m *= 5.0;
+  arm.link[0].section.insert(arm.link[0].section.begin(), hub);
+  const ArmModel model(arm, ModeCount{.link1 = 2, .link2 = 2});
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(model.dof());
+  q.tail(4) << kBend[0], kBend[1], kBend[2], kBend[3];
+  const SensorConfig sensors = FineSensors();
+  std::vector<double> strains;
+  for (const StrainChannelConfig& row : sensors.strain) {
+    strains.push_back(model.Strain(row.link, row.position_m, q));
+  }
+  StrainFit fit(arm, sensors, ThesisEstimator());
+  const FittedModes out = fit.Fit(FrameOf(sensors, strains));
+  // Just behind the joint of the sections; 1e-9 m of it bend by 1e-9 of the strain.
+  const double expected = model.Strain(1, 0.1 + 1e-9, q);
+  EXPECT_NEAR(out.root_strain[0], expected, 1e-5 * std::abs(expected));
+  EXPECT_GT(std::abs(expected), 50.0 * std::abs(model.Strain(1, 0.0, q)));
+}
+
 TEST(StrainFit, OneGaugeALinkFitsOneMode) {
   SensorConfig sensors = FineSensors();
   sensors.strain = {sensors.strain[0], sensors.strain[10]};

@@ -22,8 +22,11 @@ inline SensorConfig ThesisSensors(double noise_counts = 1.0) {
                                 .offset_counts = 0.0});
     }
   }
-  sensors.strain_input = {
-      .converter_bits = 12, .range_v = 10.0, .filter_hz = 20.0, .noise_counts = noise_counts};
+  sensors.strain_input = {.converter_bits = 12,
+                          .range_v = 10.0,
+                          .filter_hz = 20.0,
+                          .noise_counts = noise_counts,
+                          .filter_damping = 0.0};  // of first order
   return sensors;
 }
 

@@ -225,5 +225,25 @@ TEST(ArmParametersProblems, EveryBrokenRuleIsReportedAtOnce) {
   EXPECT_THROW(ArmModel(p, {2, 2}), std::invalid_argument);
 }
 
+// Between hub and base: link 2's base is the end of link 1, which feels the reaction by th2 being
+// relative to it. So nothing else is damped.
+TEST(ArmModel, ViscousFrictionTakesTheHubsRatesTimesItself) {
+  for (const bool foreshortening : {false, true}) {
+    ArmParameters p = Awkward(foreshortening);
+    const ArmModel without(p, {2, 3});
+    p.joint[0].viscous_friction_nm_s_per_rad = 2.0;
+    p.joint[1].viscous_friction_nm_s_per_rad = 3.0;
+    const ArmModel with(p, {2, 3});
+    const VectorXd q = Angles(1.0), v = Rates(), none = VectorXd::Zero(9);
+    const VectorXd lost =
+        with.MassMatrix(q) * (without.Acceleration(q, v, none) - with.Acceleration(q, v, none));
+    VectorXd expected = VectorXd::Zero(9);
+    expected(kTheta1) = 2.0 * v(kTheta1);
+    expected(kTheta2) = 3.0 * v(kTheta2);
+    // Round-off of a solve with M: forces of 1e3 N cancel.
+    EXPECT_LT((lost - expected).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -192,6 +192,8 @@ TEST(Backlash, StepSolvesTheMidpointEquations) {
       for (const double twist : {0.002, 0.0099, -0.013}) {
         ArmParameters p = WithPlay(backlash, kPlay, 0.2);
         p.foreshortening = foreshortening;
+        p.joint[0].viscous_friction_nm_s_per_rad = 0.7;
+        p.joint[1].viscous_friction_nm_s_per_rad = 0.2;
         const ArmModel model(p, {3, 2});
         ArmSimulator simulator(model, {.passes = 12});
         ArmState start = Shaking(model);

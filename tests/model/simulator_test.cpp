@@ -84,6 +84,8 @@ TEST_P(AnyArm, StepSolvesTheMidpointEquationsForAnyModeCount) {
   for (int m1 = 1; m1 <= kMaxSteppedModes; ++m1) {
     for (int m2 = 1; m2 <= kMaxSteppedModes; ++m2) {
       ArmParameters p = Frictionless();
+      p.joint[0].viscous_friction_nm_s_per_rad = 0.7;
+      p.joint[1].viscous_friction_nm_s_per_rad = 0.2;
       p.payload_inertia_kgm2 = 1e-3;  // large enough to be seen
       p.payload_mass_kg = 0.3;        // not the shapes' payload
       p.foreshortening = GetParam();

@@ -27,11 +27,13 @@ inline ArmParameters ThesisRig() {
   p.joint[0] = {.stiffness_nm_per_rad = 761.59,
                 .rotor_inertia_kgm2 = 1.07e-2,
                 .hub_inertia_kgm2 = 1.43e-7,
-                .coulomb_friction_nm = 0.16};
+                .coulomb_friction_nm = 0.16,
+                .viscous_friction_nm_s_per_rad = 0.0};
   p.joint[1] = {.stiffness_nm_per_rad = 497.96,
                 .rotor_inertia_kgm2 = 9.25e-3,
                 .hub_inertia_kgm2 = 1.05e-7,
-                .coulomb_friction_nm = 0.01};
+                .coulomb_friction_nm = 0.01,
+                .viscous_friction_nm_s_per_rad = 0.0};
   p.hub2_mass_kg = 0.24;
   p.motor2_mass_kg = 3.03;
   p.motor2_inertia_kgm2 = 1.15e-2;
