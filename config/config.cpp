@@ -39,6 +39,7 @@ void CheckRules(const Config& config, ProblemLog* log) {
   log->AddRules(config.hal.Problems(config.sensors,
                                     std::llround(config.loop.acquire_before_ms * 1e6),
                                     config.safety.torque_limit_nm));
+  if (config.csv && log->Clear({"sensors"})) log->AddRules(config.csv->Problems(config.sensors));
   CheckCrossRules(config, log);
 }
 
@@ -67,6 +68,16 @@ Config LoadConfig(const std::filesystem::path& file, const std::vector<std::stri
 
 Config ParseConfig(const std::string& text, const std::string& name) {
   return ReadConfig(name, ParseToml(text, name), {});
+}
+
+Config WithOverrides(const Config& config, const std::vector<std::string>& overrides) {
+  return ReadConfig(config.rig_name, ParseToml(config.text, config.rig_name), overrides);
+}
+
+std::optional<double> NumberAt(const Config& config, const std::string& key) {
+  const toml::table document = ParseToml(config.text, config.rig_name);
+  const toml::node_view<const toml::node> node = document.at_path(key);
+  return node.is_number() ? node.value<double>() : std::nullopt;
 }
 
 }  // namespace flexarm

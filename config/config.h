@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controller/law/experiment.h"
+#include "controller/runlog/csv_import.h"
 #include "controller/runtime/stack_config.h"
 
 namespace flexarm {
@@ -14,12 +15,13 @@ namespace flexarm {
 /// A rig, read from one TOML file and the files that it extends.
 ///
 /// Each struct belongs to the folder that uses it and owns its rules; here are the files, the keys
-/// and the rules between the structs. No key has a default but [hal] and controller.gains.
+/// and the rules between the structs. No key has a default but [hal], [csv] and controller.gains.
 struct Config : StackConfig {
   std::string rig_name;  ///< key rig.name
   std::string backend;   ///< key hal.backend: "sim", "wired", or "" when the file has no [hal]
   /// The merged, overridden document as TOML: reading it again gives the same Config. Logged.
   std::string text;
+  std::optional<CsvImport> csv;  ///< table [csv]: how to read what another recorder wrote
 };
 
 /// One thing wrong with a file, and where: the file in which the value really stands, which may be
@@ -54,6 +56,13 @@ Config LoadConfig(const std::filesystem::path& file,
 /// The same from text, as a run log holds it: `extends` is refused. `name` stands for the file in
 /// messages.
 Config ParseConfig(const std::string& text, const std::string& name);
+
+/// The same rig with other values, in the form of --set: a search over parameters asks for many.
+/// @throws ConfigError with every problem found
+Config WithOverrides(const Config& config, const std::vector<std::string>& overrides);
+
+/// The number that stands at a dotted key of the config, "sensors.strain[3].position_m".
+std::optional<double> NumberAt(const Config& config, const std::string& key);
 
 /// Reads what one run does. Whether the arm may do it (its soft limits) is judged by who runs it.
 /// @throws ConfigError with every problem found

@@ -1,5 +1,6 @@
 #include "config/rig_binding.h"
 
+#include <numbers>
 #include <string>
 
 #include "config/hal_binding.h"
@@ -174,6 +175,32 @@ void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {
   commissioning.Read("switch_angle_deg", &out->switch_angle_deg);
 }
 
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+CsvImport ReadCsvImport(TableReader csv) {
+  CsvImport import{};
+  csv.Read("decimation", &import.decimation);
+  for (TableReader row : csv.Rows("column")) {
+    CsvColumn& column = import.column.emplace_back();
+    row.Read("column", &column.column);
+    row.Read<double>("unit", &column.unit,
+                     {{"s", 1.0},
+                      {"ms", 1e-3},
+                      {"rad", 1.0},
+                      {"deg", kRadPerDeg},
+                      {"A", 1.0},
+                      {"V", 1.0},
+                      {"mV", 1e-3},
+                      {"Nm", 1.0},
+                      {"1", 1.0},
+                      {"microstrain", 1e-6}});
+    row.Read("scale", &column.scale);
+    if (row.Has("offset")) row.Read("offset", &column.offset);
+    row.Read("target", &column.target);
+  }
+  return import;
+}
+
 void ReadTiming(TableReader root, Config* config) {
   TableReader loop = root.Table("loop");
   loop.Read("period_ms", &config->loop.period_ms);
@@ -195,6 +222,7 @@ void ReadRig(TableReader root, Config* config) {
   ReadSafety(root, &config->safety);
   ReadCommissioning(root.Table("commissioning"), &config->commissioning);
   ReadTiming(root, config);
+  if (root.Has("csv")) config->csv = ReadCsvImport(root.Table("csv"));
   if (root.Has("hal")) {
     ReadHal(root.Table("hal"), config->loop.period_ms, &config->backend, &config->hal);
   }

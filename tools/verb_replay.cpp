@@ -6,7 +6,7 @@
 #include "controller/law/control_step.h"
 #include "controller/law/design.h"
 #include "controller/runlog/build_info.h"
-#include "controller/runlog/csv.h"
+#include "controller/runlog/csv_import.h"
 #include "controller/runlog/errors.h"
 #include "controller/runlog/replay.h"
 #include "tools/options.h"
@@ -61,7 +61,8 @@ Outcome ReplayCsv(const Options& options) {
                      ": a CSV file needs the config of its rig: add -c FILE");
   }
   const Config config = options.config.Load();
-  const auto inputs = ReadCsv(options.source, config.sensors, config.loop.period_ms * 1e-3);
+  const auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr,
+                                 config.sensors, config.loop.period_ms * 1e-3);
   Replay replay(Fresh(config, DesignFor(config)), true);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     TickRecord record{};
@@ -84,6 +85,9 @@ nlohmann::ordered_json ToJson(const Outcome& outcome) {
   json["bit_exact"] = OrNull(result.bit_exact);
   json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
                                       NumberOrNull(result.max_torque_difference_nm[1])};
+  json["hub_innovation_rms_rad"] = {NumberOrNull(result.hub_innovation_rms_rad[0]),
+                                    NumberOrNull(result.hub_innovation_rms_rad[1])};
+  json["faulty_ticks"] = result.faulty_ticks;
   json["safety_exact"] = OrNull(result.safety_exact);
   json["first_gap_tick"] = OrNull(result.first_gap_tick);
   json["first_different_tick"] = OrNull(result.first_different_tick);
@@ -103,6 +107,9 @@ void PrintText(const Outcome& outcome) {
             << "bit exact                 " << Word(result.bit_exact) << '\n'
             << "max torque difference     " << result.max_torque_difference_nm[0] << ", "
             << result.max_torque_difference_nm[1] << " N m\n"
+            << "hub innovations, rms      " << result.hub_innovation_rms_rad[0] << ", "
+            << result.hub_innovation_rms_rad[1] << " rad\n"
+            << "ticks with a fault        " << result.faulty_ticks << '\n'
             << "safety exact              " << Word(result.safety_exact) << " ("
             << result.safety_records << " records)\n";
   if (result.first_gap_tick)
@@ -144,6 +151,7 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "A run log brings its own config and gains, and must give the same bytes: exit code 1 if "
       "not.\n"
       "With -c the loop is built from another config, and the difference is reported.\n"
+      "A CSV file is one that export wrote, or one that the table [csv] of the config describes.\n"
       "Examples: flexarm replay runs/today.flexarm\n"
       "          flexarm replay today.csv -c config/thesis-rig.toml");
   verb->callback([options, &exit] { exit.code = Run(*options); });

@@ -33,10 +33,15 @@ class CsvWriter {
   std::int64_t start_ns_;
 };
 
-/// Reads such a file, in any order of columns; more columns are ignored. Every input is in state
-/// Running with references zero; the first one resets the loop. Lines that begin with # are
-/// skipped.
-/// @param period_s  of the loop: the tick is the time since the first row in periods, rounded
+inline constexpr double kLongestCsv_s = 1e8;  ///< three years; beyond, nanoseconds lose meaning
+
+/// A row of a CSV file at time_s as an input without readings: state Running, references zero; the
+/// first one resets the loop. The tick is the time since the first row in periods, rounded.
+StepInput CsvInput(double time_s, double period_s, const std::vector<StepInput>& before);
+
+/// Reads such a file, in any order of columns; more columns are ignored. Inputs are
+/// CsvInput's. Lines that begin with # are skipped.
+/// @param period_s  of the loop
 /// @throws InputError "file:line: column: found .., expected .."
 std::vector<StepInput> ReadCsv(const std::filesystem::path& file, const SensorConfig& sensors,
                                double period_s);

@@ -39,7 +39,9 @@ void Replay::Tick(const TickRecord& record) {
     double& largest = result_.max_torque_difference_nm[joint];
     largest =
         std::max(largest, Difference(output.torque_nm[joint], record.output.torque_nm[joint]));
+    innovation_square_[joint] += output.innovation[joint] * output.innovation[joint];
   }
+  if (output.faults != 0) ++result_.faulty_ticks;
   if (SameBytes(output, record.output)) return;
   if (result_.bit_exact) result_.bit_exact = false;
   if (!result_.first_different_tick) result_.first_different_tick = tick;
@@ -58,6 +60,10 @@ void Replay::Safety(const SafetyRecord& record) {
 ReplayResult Replay::Result() const {
   ReplayResult result = result_;
   if (result.safety_records == 0) result.safety_exact.reset();
+  for (std::size_t joint = 0; joint < 2 && result.ticks > 0; ++joint) {
+    result.hub_innovation_rms_rad[joint] =
+        std::sqrt(innovation_square_[joint] / static_cast<double>(result.ticks));
+  }
   return result;
 }
 

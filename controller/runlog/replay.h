@@ -18,7 +18,10 @@ struct ReplayResult {
   /// file, another config).
   std::optional<bool> bit_exact = true;
   std::array<double, 2> max_torque_difference_nm{};  ///< of the asked torque, against the recorded
-  std::optional<bool> safety_exact = true;           ///< nothing: there were no safety records
+  /// What the estimator had not expected of the hubs' encoders, rms; 0 without a filter.
+  std::array<double, 2> hub_innovation_rms_rad{};
+  std::int64_t faulty_ticks = 0;            ///< in which the loop itself found a fault
+  std::optional<bool> safety_exact = true;  ///< nothing: there were no safety records
   std::int64_t safety_records = 0;
   std::optional<std::int64_t> first_gap_tick;        ///< first tick number that is missing
   std::optional<std::int64_t> first_different_tick;  ///< first tick with other bytes
@@ -46,6 +49,7 @@ class Replay {
  private:
   StepFunction step_;
   ReplayResult result_;
+  std::array<double, 2> innovation_square_{};  // sums
   std::optional<std::int64_t> previous_tick_;
   std::optional<SafetyStatus> previous_status_;
 };

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <numbers>
 #include <string>
 
 #include "config/config.h"
@@ -60,6 +61,42 @@ TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
   EXPECT_EQ(s.strain_input.noise_counts, 2.0);
   EXPECT_EQ(s.strain_input.filter_damping, 0.7);
   EXPECT_EQ(With({}).sensors.strain_input.filter_damping, 0.0);  // no key: of first order
+}
+
+TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
+  EXPECT_FALSE(With({}).csv.has_value());
+  const Config rig =
+      LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[3].offset=0.25", "csv.decimation=5"});
+  ASSERT_TRUE(rig.csv.has_value());
+  EXPECT_EQ(rig.csv->decimation, 5);
+  ASSERT_EQ(rig.csv->column.size(), 7U);
+  const CsvColumn& torque = rig.csv->column[3];
+  EXPECT_EQ(torque.column, "motor1_current_a");
+  EXPECT_EQ(torque.unit, 1.0);
+  EXPECT_EQ(torque.scale, 8.925);
+  EXPECT_EQ(torque.offset, 0.25);
+  EXPECT_EQ(torque.target, "torque_1");
+  EXPECT_DOUBLE_EQ(rig.csv->column[1].unit * 180.0, std::numbers::pi);  // degrees
+  EXPECT_EQ(rig.csv->column[0].offset, 0.0);                            // no key
+  EXPECT_THROW(LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[0].unit=parsec"}),
+               ConfigError);
+  EXPECT_THROW(LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[0].target=hub3"}),
+               ConfigError);
+}
+
+// What a search over parameters does many times.
+TEST(RigBinding, ANumberIsFoundAndReplacedByItsKey) {
+  const Config rig = With({});
+  EXPECT_EQ(NumberAt(rig, "link1.section[0].length_m"), 0.8);
+  EXPECT_EQ(NumberAt(rig, "sensors.encoder[3].counter_bits"), 16.0);
+  EXPECT_EQ(NumberAt(rig, "limits.soft_angle_deg[1]"), 90.0);
+  for (const char* none : {"rig.name", "link1.section", "link3.length_m", "arm.nothing", ""}) {
+    EXPECT_FALSE(NumberAt(rig, none).has_value()) << none;
+  }
+  const Config other = WithOverrides(rig, {"link1.section[0].length_m=0.83"});
+  EXPECT_EQ(other.arm.link[0].section[0].length_m, 0.83);
+  EXPECT_EQ(WithOverrides(other, {"link1.section[0].length_m=0.8"}).text, rig.text);
+  EXPECT_THROW(WithOverrides(rig, {"link1.section[0].length_m=-1"}), ConfigError);
 }
 
 TEST(RigBinding, PutsEveryKeyOfTheSimulationInItsField) {
