@@ -20,6 +20,7 @@ void RegisterVerbs(CLI::App& app, Exit& exit) {
   RegisterDesign(app, exit);
   RegisterSimulate(app, exit);
   RegisterReplay(app, exit);
+  RegisterIdentify(app, exit);
   RegisterInfo(app, exit);
   RegisterPlot(app, exit);
   RegisterExport(app, exit);

@@ -31,6 +31,7 @@ void RegisterConfig(CLI::App& app, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);
 void RegisterDiff(CLI::App& app, Exit& exit);
 void RegisterExport(CLI::App& app, Exit& exit);
+void RegisterIdentify(CLI::App& app, Exit& exit);
 void RegisterInfo(CLI::App& app, Exit& exit);
 void RegisterModes(CLI::App& app, Exit& exit);
 void RegisterOperate(CLI::App& app, Exit& exit);  ///< status, arm, run, stop, disarm, reset, sim

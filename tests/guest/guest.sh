@@ -27,7 +27,7 @@ guest_packages=(
   base-files base-passwd bash coreutils dash findutils grep iproute2 kmod libc-bin mawk mount passwd
   perl-base procps sed util-linux
   dbus systemd systemd-sysv
-  libfmt9 libspdlog1.10 libsqlite3-0 libstdc++6 libsystemd0 libtomlplusplus3
+  libfmt9 libnlopt0 libspdlog1.10 libsqlite3-0 libstdc++6 libsystemd0 libtomlplusplus3
   can-utils gpiod jq libcomedi0 libgpiod2 libmodbus5 rt-tests sqlite3 stress-ng
 )
 # Modules beside gpio-sim, for the root image and for the initial RAM disk.

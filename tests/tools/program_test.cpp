@@ -78,7 +78,7 @@ TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(Run("--help").code, 0);
   EXPECT_NE(Run("--version").out.find("flexarm 0."), std::string::npos);
   for (const char* verb :
-       {"config check", "modes", "replay", "info", "plot", "export", "check", "diff"}) {
+       {"config check", "modes", "replay", "info", "plot", "export", "check", "diff", "identify"}) {
     const Answer answer = Run(std::string(verb) + " --help");
     EXPECT_EQ(answer.code, 0) << verb;
     EXPECT_NE(answer.out.find("Example"), std::string::npos) << verb << " has no example";
@@ -227,6 +227,35 @@ TEST_F(ProgramTest, WhatExportWritesReplayReads) {
   ExpectBadInput("replay data.csv", "add -c FILE");
   WriteText(File("bad.csv"), "time_s\n0\n");
   ExpectBadInput("replay bad.csv -c '" + kRig + "'", "bad.csv:1: found no column");
+}
+
+TEST_F(ProgramTest, IdentifyFindsThePayloadOfAShortRun) {
+  const std::string rig = "'" FLEXARM_SOURCE_DIR "/config/hil.toml'";
+  ASSERT_EQ(Run("simulate -c " + rig + " --seed 3 -o run.flexarm").code, 0);
+  const Json json = RunJson(
+      "identify --run run.flexarm --validate run.flexarm --span 0 3 --validate-span 3 6 "
+      "--set arm.payload_mass_kg=0.2 --free arm.payload_mass_kg=0:1 -o found");
+  EXPECT_EQ(json["converged"], true);
+  // The rig has 0.1 kg; 20 channels of one count and encoders of 0.14 degrees let it see to 10 g.
+  EXPECT_NEAR(json["parameters"][0]["found"].get<double>(), 0.1, 0.01);
+  EXPECT_EQ(json["identification"]["fit"].size(), 6U);
+  EXPECT_EQ(json["validation"]["fit"][0]["signal"], "joint1");
+  EXPECT_EQ(Bytes(File("found/identification.png")).substr(1, 3), "PNG");
+  EXPECT_EQ(Run("config check found/identified.toml").code, 0);
+}
+
+TEST_F(ProgramTest, IdentifyRefusesBadInput) {
+  WriteRun("run.flexarm", 20);
+  WriteText(File("bad.csv"), "time_s\n0\n");
+  const std::string free = " --free link1.damping_ratio";
+  ExpectBadInput("identify --run bad.csv" + free, "add -c FILE");
+  ExpectBadInput("identify --run bad.csv -c '" + kRig + "'" + free, "bad.csv:1: found no column");
+  ExpectBadInput("identify --run run.flexarm", "--free is required");
+  ExpectBadInput("identify --run run.flexarm --free link1.xi", "no number at link1.xi");
+  ExpectBadInput("identify --run run.flexarm" + free, "joint1 never changes");
+  ExpectBadInput("identify --run run.flexarm --span 3 2" + free, "FROM < TO");
+  ExpectBadInput("identify --run run.flexarm --span 3 4" + free, "fewer than 2 samples");
+  ExpectBadInput("identify --run missing.flexarm" + free, "No such file");
 }
 
 TEST_F(ProgramTest, InfoTellsTheRun) {

@@ -1,0 +1,73 @@
+#include "tools/identification/comparison_picture.h"
+
+#include <array>
+#include <cstdio>
+#include <iomanip>
+#include <numbers>
+#include <sstream>
+
+#include "tools/gnuplot.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kColumnWidth = 800;
+constexpr int kRowHeight = 240;
+
+std::string DataName(std::size_t column) { return "$run" + std::to_string(column); }
+
+// time, then measured and predicted of every signal, in degrees and millimetres.
+void WriteData(std::size_t number, const ComparisonColumn& column, std::ostringstream* script) {
+  const RunComparison& run = *column.run;
+  *script << DataName(number) << " << EOD\n";
+  for (Eigen::Index k = 0; k < run.measured().rows(); ++k) {
+    *script << run.time_s()(k);
+    for (std::size_t i = 0; i < run.signal().size(); ++i) {
+      const auto signal = static_cast<Eigen::Index>(i);
+      const double unit = run.signal()[i].angle ? 180.0 / std::numbers::pi : 1e3;
+      *script << ' ' << unit * run.measured()(k, signal) << ' '
+              << unit * column.predicted(k, signal);
+    }
+    *script << '\n';
+  }
+  *script << "EOD\n";
+}
+
+void DrawSignal(std::size_t number, const ComparisonColumn& column, std::size_t signal,
+                double fit_percent, std::ostringstream* script) {
+  const ComparedSignal& shown = column.run->signal()[signal];
+  std::array<char, 32> fit{};
+  std::snprintf(fit.data(), fit.size(), "fit %.1f %%", fit_percent);
+  const std::string title =
+      (signal == 0 ? column.title + ": " : std::string()) + shown.name + ", " + fit.data();
+  *script << "set title " << Quoted(title) << "\nset ylabel '"
+          << (shown.angle ? "angle, deg" : "tip deflection, mm") << "'\nplot " << DataName(number)
+          << " using 1:" << 2 + 2 * signal << " with lines lw 2 lc rgb '" << Colour(0)
+          << "' title 'measured', " << DataName(number) << " using 1:" << 3 + 2 * signal
+          << " with lines lw 1.5 lc rgb '" << Colour(1) << "' title 'predicted'\n";
+}
+
+}  // namespace
+
+void DrawComparison(const std::vector<ComparisonColumn>& column,
+                    const std::filesystem::path& output) {
+  const std::size_t rows = column.front().run->signal().size();
+  std::ostringstream script;
+  script << std::setprecision(8)
+         << TerminalFor(output, kColumnWidth * static_cast<int>(column.size()),
+                        kRowHeight * static_cast<int>(rows));
+  for (std::size_t i = 0; i < column.size(); ++i) WriteData(i, column[i], &script);
+  script << "set multiplot layout " << rows << ',' << column.size()
+         << " columnsfirst\nset grid lc rgb '#D9D9D9'\nset key tmargin right horizontal\n"
+            "set xlabel 'time, s'\n";
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const Eigen::VectorXd fit = FitPercent(*column[i].run, column[i].predicted);
+    for (std::size_t signal = 0; signal < rows; ++signal) {
+      DrawSignal(i, column[i], signal, fit(static_cast<Eigen::Index>(signal)), &script);
+    }
+  }
+  script << "unset multiplot\n";
+  RunGnuplot(script.str());
+}
+
+}  // namespace flexarm
