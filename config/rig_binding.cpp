@@ -122,7 +122,14 @@ void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
 
 void ReadController(TableReader controller, ControllerConfig* out) {
   controller.Read("name", &out->kind,
-                  {{"sobel", ControllerKind::kSobel}, {"lqr-cgt", ControllerKind::kLqrCgt}});
+                  {{"sobel", ControllerKind::kSobel},
+                   {"sobel-original", ControllerKind::kSobelOriginal},
+                   {"lqr-cgt", ControllerKind::kLqrCgt},
+                   {"lqr-um", ControllerKind::kLqrUm},
+                   {"lqg", ControllerKind::kLqg},
+                   {"pd", ControllerKind::kPd},
+                   {"pd-zv", ControllerKind::kPdZv},
+                   {"pd-zvd", ControllerKind::kPdZvd}});
   controller.Read("alpha", &out->alpha);
   controller.Read("vartheta", &out->vartheta);
   controller.Read("sigma", &out->sigma);
@@ -134,6 +141,8 @@ void ReadController(TableReader controller, ControllerConfig* out) {
   controller.Read("torque_weight", &out->torque_weight);
   controller.Read("passivity_margin", &out->passivity_margin);
   controller.Read("adaptation_gain", &out->adaptation_gain);
+  controller.Read("pd_stiffness_nm_per_rad", &out->pd_stiffness_nm_per_rad);
+  controller.Read("pd_damping_nms_per_rad", &out->pd_damping_nms_per_rad);
   controller.Read("prediction", &out->prediction);
   controller.Read("adaptation", &out->adaptation);
   if (controller.Has("gains")) controller.Read("gains", &out->gains_file);

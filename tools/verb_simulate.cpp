@@ -113,7 +113,9 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
           "--experiment", options->experiment,
           "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config)")
       ->type_name("FILE");
-  verb->add_option("--controller", options->controller, "controller.name: sobel, lqr-cgt");
+  verb->add_option(
+      "--controller", options->controller,
+      "controller.name: sobel, sobel-original, lqr-cgt, lqr-um, lqg, pd, pd-zv, pd-zvd");
   verb->add_option("--estimator", options->estimator, "estimator.name: kalman, difference");
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payload that the plant carries; the design keeps the config's")

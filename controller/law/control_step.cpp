@@ -4,7 +4,7 @@
 
 #include "controller/law/design.h"
 #include "controller/law/loop_supervisor.h"
-#include "controller/law/sobel_law.h"
+#include "controller/law/tracking_law.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/counter_decoder.h"
 #include "estimator/reading_age.h"
@@ -65,8 +65,8 @@ struct ControlStep::Stages {
     return next;
   }
 
-  SobelLaw::Result Decide(const StepInput& input, const StateVector& x,
-                          bool sensors_good) noexcept {
+  TrackingLaw::Result Decide(const StepInput& input, const StateVector& x,
+                             bool sensors_good) noexcept {
     if (input.mode == LoopMode::kOpenLoop) return OpenLoop(input);
     if (input.safety_state == SafetyState::kRunning) {
       stopping = false;
@@ -92,12 +92,12 @@ struct ControlStep::Stages {
     return law.Regulate(x, stop_goal);
   }
 
-  SobelLaw::Result OpenLoop(const StepInput& input) const noexcept {
+  TrackingLaw::Result OpenLoop(const StepInput& input) const noexcept {
     Eigen::Vector2d u = Eigen::Vector2d::Zero();
     if (input.safety_state == SafetyState::kRunning) {
       u << input.reference_next.u_m_nm[0], input.reference_next.u_m_nm[1];
     }
-    SobelLaw::Result result = law.Clip(u);
+    TrackingLaw::Result result = law.Clip(u);
     result.limits |= kAdaptationHeld;
     return result;
   }
@@ -109,7 +109,7 @@ struct ControlStep::Stages {
   StrainFit fit;
   StateEstimator estimator;
   LoopSupervisor supervisor;
-  SobelLaw law;
+  TrackingLaw law;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 16, 16> A;
   Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 16, 2> B;
   std::array<double, 2> pending_nm{};  // asked in the last step, acts from this sample on
@@ -152,7 +152,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   out.faults = verdict.faults;
   if (TorqueAllowed(input.safety_state) && verdict.faults == 0) {
     const bool sensors_good = modes.valid[0] && modes.valid[1] && (counters.good & 3u) == 3u;
-    const SobelLaw::Result decision = s.Decide(input, x_next, sensors_good);
+    const TrackingLaw::Result decision = s.Decide(input, x_next, sensors_good);
     out.torque_nm = decision.torque_nm;
     out.limits = decision.limits;
     if (!decision.finite) out.faults |= CauseBit(TripCause::kStateNotFinite);

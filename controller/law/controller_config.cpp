@@ -16,6 +16,10 @@ std::vector<Problem> ControllerConfig::Problems() const {
   list.Positive("torque_weight", torque_weight, 1e6, "the Riccati equation divides by it");
   list.Positive("passivity_margin", passivity_margin, 1e4,
                 "G = J + margin I must exceed J, or the adaptive loop is not passive");
+  list.EachPositive("pd_stiffness_nm_per_rad", pd_stiffness_nm_per_rad, 1e4,
+                    "a hub without stiffness goes where it likes");
+  list.EachWithin("pd_damping_nms_per_rad", pd_damping_nms_per_rad, 0.0, 1e3,
+                  "a negative one feeds the vibration");
   list.Within("adaptation_gain", adaptation_gain, 0.0, 100.0, "0 adapts nothing");
   return list.Take();
 }

@@ -9,11 +9,28 @@
 
 namespace flexarm {
 
+/// The law by its name in the config; controller/law/tracking_law.h has the equations.
 enum class ControllerKind : std::uint8_t {
-  kSobel,   ///< "sobel": modified Sobel model-reference adaptive control
-  kLqrCgt,  ///< "lqr-cgt": the same with T = Tbar = 0: LQR around the command generator's
-            ///< trajectory
+  kSobel,          ///< "sobel": modified Sobel model-reference adaptive control
+  kSobelOriginal,  ///< "sobel-original": as Sobel published it, alpha = 0 and vartheta = 0
+  kLqrCgt,         ///< "lqr-cgt": LQR around the command generator's trajectory, T = Tbar = 0
+  kLqrUm,          ///< "lqr-um": LQR towards the reference model, its command fed forward
+  kLqg,            ///< "lqg": LQR with alpha = 0 towards the reference's hubs, links at rest
+  kPd,             ///< "pd": proportional and derivative of each hub alone
+  kPdZv,           ///< "pd-zv": the same, the reference shaped to leave no vibration
+  kPdZvd,          ///< "pd-zvd": with a second derivative zero, robust to the frequency
 };
+
+/// Whether the law corrects its gains while it runs.
+constexpr bool IsAdaptive(ControllerKind kind) {
+  return kind == ControllerKind::kSobel || kind == ControllerKind::kSobelOriginal;
+}
+
+/// Whether the law is a PD of the hubs.
+constexpr bool IsPd(ControllerKind kind) {
+  return kind == ControllerKind::kPd || kind == ControllerKind::kPdZv ||
+         kind == ControllerKind::kPdZvd;
+}
 
 enum class FeedforwardSign : std::uint8_t {
   kPrinted,    ///< (7.25) as printed: u_f = (B'B)^-1 B' (-(A_m - A) x_m + B_m u_m)
@@ -23,17 +40,25 @@ enum class FeedforwardSign : std::uint8_t {
 /// Section [controller]. Symbols as in the thesis, chapter 7.
 struct ControllerConfig {
   ControllerKind kind;  ///< key `name`
-  double alpha;         ///< prescribed degree of stability, 1/s, 0..10
+  double alpha;         ///< prescribed degree of stability, 1/s, 0..10; see design_alpha
   double vartheta;      ///< weight of (7.24) against the CGT feedforward, 0..1
   double sigma;         ///< leak of the adaptive gains a sample, 0..1
   FeedforwardSign feedforward_sign;
-  std::array<double, 2> hub_angle_weight;  ///< Q on th1 th2
-  std::array<double, 2> hub_rate_weight;   ///< Q on their rates
-  double torque_weight;                    ///< R = rho I
-  double passivity_margin;                 ///< G = J + margin I, > 0
-  double adaptation_gain;                  ///< T = Tbar = gain I_16, >= 0
-  bool prediction;                         ///< one-sample open-loop prediction
+  std::array<double, 2> hub_angle_weight;         ///< Q on th1 th2
+  std::array<double, 2> hub_rate_weight;          ///< Q on their rates
+  double torque_weight;                           ///< R = rho I
+  double passivity_margin;                        ///< G = J + margin I, > 0
+  double adaptation_gain;                         ///< T = Tbar = gain I_16, >= 0
+  std::array<double, 2> pd_stiffness_nm_per_rad;  ///< of the PD laws, on th1 th2
+  std::array<double, 2> pd_damping_nms_per_rad;   ///< on their rates
+  bool prediction;                                ///< one-sample open-loop prediction
   bool adaptation;  ///< false: u = u* + y_e, the same feedforward and feedback
+
+  /// The alpha that the law is designed with: 0 for sobel-original and lqg.
+  double design_alpha() const {
+    return kind == ControllerKind::kSobelOriginal || kind == ControllerKind::kLqg ? 0.0 : alpha;
+  }
+
   std::string
       gains_file;  ///< key `gains`, optional: written by `flexarm design`; empty: design at start
 

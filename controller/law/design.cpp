@@ -12,7 +12,9 @@
 #include <stdexcept>
 
 #include "controller/law/command_generator.h"
+#include "controller/law/input_shaper.h"
 #include "controller/law/refused.h"
+#include "controller/law/tracking_law.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/kalman_design.h"
 #include "estimator/nominal_model.h"
@@ -47,7 +49,7 @@ Eigen::MatrixXd CalmGain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
 // W = 0 and J = B'P'B/2.
 void DesignRegulator(const StackConfig& config, Design* design) {
   const ControllerConfig& controller = config.controller;
-  const double a = std::exp(controller.alpha * config.loop.period_ms * 1e-3);
+  const double a = std::exp(controller.design_alpha() * config.loop.period_ms * 1e-3);
   const Eigen::MatrixXd& A = design->A;
   const Eigen::MatrixXd& B = design->B;
   const Eigen::MatrixXd Q = StateWeight(controller, A.rows()) / controller.torque_weight;
@@ -140,6 +142,15 @@ void CheckLemma(double alpha, double period_s, Design* design) {
                             std::exp(-alpha * period_s) + 1e-9, true});
 }
 
+void DesignShaper(const StackConfig& config, Design* design) {
+  const ControllerKind kind = config.controller.kind;
+  design->shaper = Eigen::RowVectorXd::Ones(1);
+  if (kind != ControllerKind::kPdZv && kind != ControllerKind::kPdZvd) return;
+  const Eigen::MatrixXd closed = design->A - design->B * FeedbackGain(*design, config.controller);
+  design->shaper = DesignInputShaper(closed, kind == ControllerKind::kPdZv ? 1 : 2);
+  design->checks.push_back({"pd-spectral-radius", SpectralRadius(closed), 1.0, true});
+}
+
 }  // namespace
 
 bool Design::sound() const {
@@ -160,8 +171,9 @@ Design DesignController(const StackConfig& config) {
   design.Bm = followed.B;
   design.rigid_inertia_kgm2 = nominal.M.topLeftCorner<2, 2>();
   DesignRegulator(config, &design);
-  CheckLemma(config.controller.alpha, period_s, &design);
+  CheckLemma(config.controller.design_alpha(), period_s, &design);
   DesignCommandGenerator(nominal, &design);
+  DesignShaper(config, &design);
 
   const KalmanDesign filter =
       DesignKalmanFilter(nominal, config.sensors, config.estimator, period_s);

@@ -32,6 +32,8 @@ struct Design {
   Eigen::MatrixXd S11, S12, S21, S22;  ///< command generator: x* = S11 x_m + S12 u_m, u_c likewise
   Eigen::MatrixXd Ufx, Ufu;            ///< (7.25): u_f = -+Ufx x_m + Ufu u_m
   Eigen::MatrixXd filter_A, filter_B, filter_C, filter_L;  ///< estimator/kalman_design.h
+  Eigen::RowVectorXd
+      shaper;  ///< weights of the samples of an input shaper (input_shaper.h); [1]: none
   Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: a doublet moves by M_r^-1 a T^2/4
   std::vector<DesignCheck> checks;
 

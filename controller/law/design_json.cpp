@@ -78,6 +78,7 @@ void ForEachMatrix(D& design, F&& visit) {
   visit("filter_B", design.filter_B);
   visit("filter_C", design.filter_C);
   visit("filter_L", design.filter_L);
+  visit("shaper", design.shaper);
   visit("rigid_inertia_kgm2", design.rigid_inertia_kgm2);
 }
 
@@ -109,6 +110,17 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name, M* matr
       }
       read(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j].get<double>();
     }
+  }
+  *matrix = read;
+}
+
+template <>
+void MatrixFromJson(const nlohmann::json& rows, const std::string& name,
+                    Eigen::RowVectorXd* matrix) {
+  Eigen::MatrixXd read;
+  MatrixFromJson(rows, name, &read);
+  if (read.rows() != 1 || read.cols() == 0) {
+    throw Refused("gains file: '" + name + "' must be one row");
   }
   *matrix = read;
 }
@@ -181,8 +193,11 @@ std::string DesignHash(const StackConfig& config) {
   digest << estimator.modes_per_link << estimator.process_force << estimator.rotor_extra_sigma_rad
          << estimator.modal_sigma_m;
   const ControllerConfig& c = config.controller;
-  digest << c.alpha << c.hub_angle_weight << c.hub_rate_weight << c.torque_weight
+  digest << c.design_alpha() << c.hub_angle_weight << c.hub_rate_weight << c.torque_weight
          << c.passivity_margin << config.loop.period_ms;
+  if (IsPd(c.kind)) {
+    digest << static_cast<double>(c.kind) << c.pd_stiffness_nm_per_rad << c.pd_damping_nms_per_rad;
+  }
   return digest.Hex();
 }
 

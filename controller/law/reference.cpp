@@ -93,6 +93,39 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
     }
     x_m = design.Am * x_m + design.Bm * Eigen::Vector2d(sample.u_m_nm[0], sample.u_m_nm[1]);
   }
+  if (design.shaper.size() > 1) Shape(design.shaper, period_s);
+}
+
+// Weights that sum to one and are not negative: the shaped reference stays between the extremes of
+// the unshaped one, so its limits hold.
+void ReferenceTable::Shape(const Eigen::RowVectorXd& shaper, double period_s) {
+  const auto moving = std::find_if(samples_.rbegin(), samples_.rend(), [](const auto& sample) {
+    return sample.u_m_nm[0] != 0.0 || sample.u_m_nm[1] != 0.0;
+  });
+  const auto last_move = samples_.rend() - moving;
+  const Eigen::Index end = last_move + shaper.size() - 1;
+  if (end > periods()) {
+    throw Refused("duration_s: the shaped reference takes " +
+                  std::to_string(static_cast<double>(shaper.size() - 1) * period_s) +
+                  " s longer than the moves and ends after " +
+                  std::to_string(static_cast<double>(end) * period_s) +
+                  " s: the experiment must last that long");
+  }
+  const std::vector<ReferenceSample> plain = samples_;
+  const auto plain_at = [&](Eigen::Index k) -> const ReferenceSample& {
+    return k < 0 ? rest_ : plain[static_cast<std::size_t>(k)];
+  };
+  for (Eigen::Index k = 0; k <= periods(); ++k) {
+    ReferenceSample shaped{};
+    for (Eigen::Index i = 0; i < shaper.size(); ++i) {
+      const ReferenceSample& before = plain_at(k - i);
+      for (std::size_t j = 0; j < 2; ++j) shaped.u_m_nm[j] += shaper(i) * before.u_m_nm[j];
+      for (std::size_t j = 0; j < kMaxNominalStates; ++j) {
+        shaped.x_m[j] += shaper(i) * before.x_m[j];
+      }
+    }
+    samples_[static_cast<std::size_t>(k)] = shaped;
+  }
 }
 
 ReferenceTable::ReferenceTable(const std::vector<std::array<double, 2>>& torque_nm)

@@ -19,9 +19,11 @@ class ReferenceTable {
   ///
   /// A doublet of amplitude a = M_r dtheta / d moves by dtheta, d the displacement of a unit
   /// inertia under the doublet's sampled shape (T^2/4 for a square, thesis 7.5). Its area is zero,
-  /// so the reference model, a double integrator, ends at rest.
+  /// so the reference model, a double integrator, ends at rest. A design with a shaper convolves
+  /// all that with its weights: every move then ends as much later as the shaper is long.
   /// @throws Refused naming the doublet whose times do not lie on the grid of `period_s`,
-  ///         or the instant at which the reference would leave +-`limit_rad`
+  ///         or the instant at which the reference would leave +-`limit_rad`, or that the
+  ///         shaped moves would end after the experiment
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
                  const std::array<double, 2>& start_rad, const std::array<double, 2>& limit_rad);
 
@@ -35,6 +37,8 @@ class ReferenceTable {
   const ReferenceSample& At(int k) const noexcept;
 
  private:
+  void Shape(const Eigen::RowVectorXd& shaper, double period_s);
+
   ReferenceSample rest_{};
   std::vector<ReferenceSample> samples_;
 };

@@ -140,7 +140,9 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
       With({"controller.alpha=0.1", "controller.vartheta=0.2", "controller.sigma=0.3",
             "controller.hub_angle_weight=[4, 5]", "controller.hub_rate_weight=[6, 7]",
             "controller.torque_weight=8", "controller.passivity_margin=9",
-            "controller.adaptation_gain=10", "controller.prediction=false"})
+            "controller.adaptation_gain=10", "controller.prediction=false",
+            "controller.pd_stiffness_nm_per_rad=[11, 12]",
+            "controller.pd_damping_nms_per_rad=[13, 14]"})
           .controller;
   EXPECT_EQ(c.alpha, 0.1);
   EXPECT_EQ(c.vartheta, 0.2);
@@ -150,6 +152,8 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
   EXPECT_EQ(c.torque_weight, 8.0);
   EXPECT_EQ(c.passivity_margin, 9.0);
   EXPECT_EQ(c.adaptation_gain, 10.0);
+  EXPECT_EQ(c.pd_stiffness_nm_per_rad, (std::array{11.0, 12.0}));
+  EXPECT_EQ(c.pd_damping_nms_per_rad, (std::array{13.0, 14.0}));
   EXPECT_FALSE(c.prediction);
   EXPECT_TRUE(c.adaptation);
   EXPECT_EQ(c.gains_file, "");
@@ -203,6 +207,13 @@ TEST(RigBinding, KnowsEveryNamedChoice) {
   EXPECT_EQ(With({"estimator.name=difference"}).estimator.kind, EstimatorKind::kDifference);
   EXPECT_EQ(With({}).controller.kind, ControllerKind::kSobel);
   EXPECT_EQ(With({"controller.name=lqr-cgt"}).controller.kind, ControllerKind::kLqrCgt);
+  EXPECT_EQ(With({"controller.name=sobel-original"}).controller.kind,
+            ControllerKind::kSobelOriginal);
+  EXPECT_EQ(With({"controller.name=lqr-um"}).controller.kind, ControllerKind::kLqrUm);
+  EXPECT_EQ(With({"controller.name=lqg"}).controller.kind, ControllerKind::kLqg);
+  EXPECT_EQ(With({"controller.name=pd"}).controller.kind, ControllerKind::kPd);
+  EXPECT_EQ(With({"controller.name=pd-zv"}).controller.kind, ControllerKind::kPdZv);
+  EXPECT_EQ(With({"controller.name=pd-zvd"}).controller.kind, ControllerKind::kPdZvd);
   EXPECT_EQ(With({}).controller.feedforward_sign, FeedforwardSign::kPrinted);
   EXPECT_EQ(With({"controller.feedforward_sign=corrected"}).controller.feedforward_sign,
             FeedforwardSign::kCorrected);

@@ -84,7 +84,7 @@ REALTIME_WORDS = re.compile(
 # What ControlStep::Step runs.
 STEP = re.compile(
     r"(estimator/(counter_decoder|state_estimator|strain_fit)"
-    r"|controller/law/(control_step|sobel_law|loop_supervisor)|controller/safety/gate)\.")
+    r"|controller/law/(control_step|tracking_law|loop_supervisor)|controller/safety/gate)\.")
 LIBM = re.compile(
     r"\bstd::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|expm1|log(?:2|10|1p)?|pow|hypot"
     r"|cbrt|fmod|remainder|erf|tgamma)\s*\(")

@@ -171,15 +171,28 @@ TEST_F(GainsFile, WithAFailedCheckIsRefusedByItsName) {
 // The hash covers what a design depends on, and nothing else.
 TEST(DesignHash, ChangesWithWhatADesignDependsOn) {
   const std::string shipped = DesignHash(ShippedRig());
-  for (const char* changed :
-       {"controller.alpha=2.9", "controller.torque_weight=2.1", "controller.passivity_margin=4.0",
-        "controller.hub_angle_weight=[100.0, 21.0]", "controller.hub_rate_weight=[5.0, 1.1]",
-        "arm.payload_mass_kg=0.11", "link1.damping_ratio=0.031", "joint2.rotor_inertia_kgm2=0.01",
-        "sensors.strain_input.filter_hz=21.0", "sensors.strain_input.filter_damping=0.9",
-        "joint1.viscous_friction_nm_s_per_rad=0.1", "sensors.encoder[0].counts_per_turn=2000.0",
-        "estimator.process_force=[0.3, 0.05, 5.0, 5.0, 1.5, 1.6]", "estimator.modes_per_link=1",
-        "estimator.modal_sigma_m=[2e-4, 1e-4, 2e-4, 2e-4]", "arm.damping=modal",
-        "arm.link1_tip_inertia=motor", "loop.period_ms=10.0"}) {
+  for (const char* changed : {"controller.alpha=2.9",
+                              "controller.torque_weight=2.1",
+                              "controller.passivity_margin=4.0",
+                              "controller.hub_angle_weight=[100.0, 21.0]",
+                              "controller.hub_rate_weight=[5.0, 1.1]",
+                              "arm.payload_mass_kg=0.11",
+                              "link1.damping_ratio=0.031",
+                              "joint2.rotor_inertia_kgm2=0.01",
+                              "sensors.strain_input.filter_hz=21.0",
+                              "sensors.strain_input.filter_damping=0.9",
+                              "joint1.viscous_friction_nm_s_per_rad=0.1",
+                              "sensors.encoder[0].counts_per_turn=2000.0",
+                              "estimator.process_force=[0.3, 0.05, 5.0, 5.0, 1.5, 1.6]",
+                              "estimator.modes_per_link=1",
+                              "estimator.modal_sigma_m=[2e-4, 1e-4, 2e-4, 2e-4]",
+                              "arm.damping=modal",
+                              "arm.link1_tip_inertia=motor",
+                              "loop.period_ms=10.0",
+                              "controller.name=sobel-original",
+                              "controller.name=lqg",
+                              "controller.name=pd",
+                              "controller.name=pd-zv"}) {
     Config config;
     try {
       config = ShippedRig({changed});
@@ -188,8 +201,9 @@ TEST(DesignHash, ChangesWithWhatADesignDependsOn) {
     }
     EXPECT_NE(DesignHash(config), shipped) << changed;
   }
-  for (const char* same : {"sim.seed=2", "controller.vartheta=0.5", "controller.name=lqr-cgt",
-                           "safety.rest_time_s=0.6", "controller.adaptation_gain=0.001"}) {
+  for (const char* same :
+       {"sim.seed=2", "controller.vartheta=0.5", "controller.name=lqr-cgt",
+        "controller.name=lqr-um", "safety.rest_time_s=0.6", "controller.adaptation_gain=0.001"}) {
     EXPECT_EQ(DesignHash(ShippedRig({same})), shipped) << same;
   }
 }

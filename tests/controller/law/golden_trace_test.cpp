@@ -9,7 +9,7 @@
 
 #include <numbers>
 
-#include "controller/law/sobel_law.h"
+#include "controller/law/tracking_law.h"
 #include "model/arm_simulator.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/model/golden_data.h"
@@ -47,14 +47,14 @@ Difference AgainstGolden(double step_s, bool friction) {
   const ArmModel model(ThesisRig(), ModeCount{.link1 = kModes, .link2 = kModes});
   ArmSimulator plant(model, {.coulomb_friction = friction});
   ArmState state(model.dof());
-  SobelLaw law(ShippedDesign(), ShippedRig().controller, {30.0, 6.0});
+  TrackingLaw law(ShippedDesign(), ShippedRig().controller, {30.0, 6.0});
   const int steps = static_cast<int>(std::lround(0.02 / step_s));
   Difference worst;
   for (int k = 0; k < 300; ++k) {
     ReferenceSample reference{};
     for (int i = 0; i < 12; ++i) reference.x_m[static_cast<std::size_t>(i)] = x_m(k, i);
     reference.u_m_nm = {u_m(k, 0), u_m(k, 1)};
-    const SobelLaw::Result result = law.Compute(NominalState(state), reference, true);
+    const TrackingLaw::Result result = law.Compute(NominalState(state), reference, true);
     EXPECT_EQ(result.limits, 0u) << "the golden trace never saturates";
     for (int i = 0; i < 2; ++i) {
       const double torque = result.torque_nm[static_cast<std::size_t>(i)];

@@ -174,5 +174,39 @@ TEST(ReferenceTable, LeavingTheSoftLimitIsRefusedWithJointAndInstant) {
   EXPECT_EQ(RefusalOf(Doublets({Move(80, 0, 0.0, 2.0)})), "accepted");
 }
 
+// Half the command now and half of it ten samples later: the mean of two unshaped references.
+TEST(ReferenceTable, AShaperSharesTheCommandOutOverItsSamples) {
+  Design shaped = ShippedDesign();
+  shaped.shaper = Eigen::RowVectorXd::Zero(11);
+  shaped.shaper(0) = shaped.shaper(10) = 0.5;
+  const std::array<double, 2> start = {0.2, -0.1};
+  const ReferenceTable plain = Table(kBase, start);
+  const ReferenceTable table(kBase, shaped, kPeriod_s, start, kSoft);
+  ASSERT_EQ(table.periods(), plain.periods());
+  for (int k = 0; k <= 300; ++k) {
+    for (std::size_t i = 0; i < 12; ++i) {
+      EXPECT_NEAR(table.At(k).x_m[i], 0.5 * (plain.At(k).x_m[i] + plain.At(k - 10).x_m[i]), 1e-14);
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(table.At(k).u_m_nm[i], 0.5 * (plain.At(k).u_m_nm[i] + plain.At(k - 10).u_m_nm[i]),
+                  1e-14);
+    }
+  }
+}
+
+// The last move of the base command ends at 4 s of 6: 100 periods more are there, not 101.
+TEST(ReferenceTable, AShapedMoveThatDoesNotEndWithTheExperimentIsRefused) {
+  Design shaped = ShippedDesign();
+  shaped.shaper = Eigen::RowVectorXd::Constant(101, 1.0 / 101);
+  EXPECT_NO_THROW(ReferenceTable(kBase, shaped, kPeriod_s, {0.0, 0.0}, kSoft));
+  shaped.shaper = Eigen::RowVectorXd::Constant(102, 1.0 / 102);
+  try {
+    const ReferenceTable table(kBase, shaped, kPeriod_s, {0.0, 0.0}, kSoft);
+    FAIL() << "accepted";
+  } catch (const Refused& refused) {
+    EXPECT_THAT(refused.what(), HasSubstr("ends after 6.02"));
+  }
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -1,4 +1,4 @@
-#include "controller/law/sobel_law.h"
+#include "controller/law/tracking_law.h"
 
 #include <gtest/gtest.h>
 
@@ -43,11 +43,11 @@ struct Sample {
 
 ControllerConfig Controller() { return ShippedRig().controller; }
 
-SobelLaw Law(const ControllerConfig& config, std::array<double, 2> limit_nm = kWide) {
+TrackingLaw Law(const ControllerConfig& config, std::array<double, 2> limit_nm = kWide) {
   return {ShippedDesign(), config, limit_nm};
 }
 
-Vector2d Torque(const SobelLaw::Result& result) {
+Vector2d Torque(const TrackingLaw::Result& result) {
   return {result.torque_nm[0], result.torque_nm[1]};
 }
 
@@ -81,13 +81,13 @@ Vector2d LoopMismatch(const Sample& s, const MatrixXd& K_I, const ControllerConf
 
 // The mismatch is round-off times G rho, about 1e2; a loop solved with the last u misses by
 // newtons.
-TEST(SobelLaw, TheTorqueSatisfiesItsOwnAlgebraicLoop) {
+TEST(TrackingLaw, TheTorqueSatisfiesItsOwnAlgebraicLoop) {
   for (const double gain : {1e-4, 0.01, 1.0}) {
     for (const FeedforwardSign sign : {FeedforwardSign::kPrinted, FeedforwardSign::kCorrected}) {
       ControllerConfig config = Controller();
       config.adaptation_gain = gain;
       config.feedforward_sign = sign;
-      SobelLaw law = Law(config);
+      TrackingLaw law = Law(config);
       const Sample s;
       const Vector2d u = Torque(law.Compute(s.x, s.reference, true));
       EXPECT_LT(LoopMismatch(s, KI0(), config, u).cwiseAbs().maxCoeff(), 1e-6) << gain;
@@ -97,9 +97,9 @@ TEST(SobelLaw, TheTorqueSatisfiesItsOwnAlgebraicLoop) {
 
 // The second sample must use K_I <- (1 - sigma)(K_I - K_I0) + K_I0 + v (T r)' of the first, v the z
 // of the loop above.
-TEST(SobelLaw, TheGainAdaptsByTheOuterProductAndLeaks) {
+TEST(TrackingLaw, TheGainAdaptsByTheOuterProductAndLeaks) {
   const ControllerConfig config = Controller();
-  SobelLaw law = Law(config);
+  TrackingLaw law = Law(config);
   const Sample s;
   MatrixXd K_I = KI0();
   for (int k = 0; k < 5; ++k) {
@@ -116,11 +116,11 @@ TEST(SobelLaw, TheGainAdaptsByTheOuterProductAndLeaks) {
 
 // T = Tbar = 0 leaves K_I(0) r, whatever vartheta is: LQR around the command generator's
 // trajectory.
-TEST(SobelLaw, WithoutAdaptationGainItIsLqrWithCgt) {
+TEST(TrackingLaw, WithoutAdaptationGainItIsLqrWithCgt) {
   ControllerConfig none = Controller(), lqr = Controller();
   none.adaptation_gain = 0.0;
   lqr.kind = ControllerKind::kLqrCgt;
-  SobelLaw sobel = Law(none), cgt = Law(lqr);
+  TrackingLaw sobel = Law(none), cgt = Law(lqr);
   const Sample s;
   const Design& d = ShippedDesign();
   const Vector2d expected = d.K * (s.x_m() - VectorXd(s.x)) + d.S21 * s.x_m() + d.S22 * s.u_m();
@@ -131,10 +131,52 @@ TEST(SobelLaw, WithoutAdaptationGainItIsLqrWithCgt) {
   EXPECT_EQ(cgt.adaptive_gain_change(), 0.0);
 }
 
-TEST(SobelLaw, WithAdaptationOffItIsTheSameFeedforwardAndFeedback) {
+// u = feedforward + feedback, written out here for each law that does not adapt.
+TEST(TrackingLaw, EveryFixedLawIsItsFeedforwardAndItsFeedback) {
+  const Sample s;
+  const Design& d = ShippedDesign();
+  ControllerConfig config = Controller();
+  config.pd_stiffness_nm_per_rad = {7.0, 3.0};
+  config.pd_damping_nms_per_rad = {2.0, 0.5};
+  const auto torque = [&](ControllerKind kind) {
+    config.kind = kind;
+    TrackingLaw law = Law(config);
+    const Vector2d u = Torque(law.Compute(s.x, s.reference, true));
+    EXPECT_EQ(law.adaptive_gain_change(), 0.0);
+    return u;
+  };
+  const VectorXd error = s.x_m() - VectorXd(s.x);
+  EXPECT_LT((torque(ControllerKind::kLqrUm) - (s.u_m() + d.K * error)).norm(), 1e-10);
+
+  VectorXd hubs_only = VectorXd::Zero(12);  // the links of the goal are straight and at rest
+  hubs_only.head(2) = s.x_m().head(2);
+  hubs_only.segment(6, 2) = s.x_m().segment(6, 2);
+  EXPECT_LT((torque(ControllerKind::kLqg) - d.K * (hubs_only - VectorXd(s.x))).norm(), 1e-10);
+
+  const Vector2d pd(7.0 * error(0) + 2.0 * error(6), 3.0 * error(1) + 0.5 * error(7));
+  for (const ControllerKind kind :
+       {ControllerKind::kPd, ControllerKind::kPdZv, ControllerKind::kPdZvd}) {
+    EXPECT_LT((torque(kind) - (s.u_m() + pd)).norm(), 1e-10);
+  }
+}
+
+// Sobel as published is the modified law with vartheta = 0 (and, in the design, alpha = 0).
+TEST(TrackingLaw, TheOriginalLawIsTheModifiedOneWithoutVartheta) {
+  ControllerConfig original = Controller(), modified = Controller();
+  original.kind = ControllerKind::kSobelOriginal;
+  modified.vartheta = 0.0;
+  TrackingLaw a = Law(original), b = Law(modified);
+  const Sample s;
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(Torque(a.Compute(s.x, s.reference, true)), Torque(b.Compute(s.x, s.reference, true)));
+  }
+  EXPECT_GT(a.adaptive_gain_change(), 0.0);
+}
+
+TEST(TrackingLaw, WithAdaptationOffItIsTheSameFeedforwardAndFeedback) {
   ControllerConfig config = Controller();
   config.adaptation = false;
-  SobelLaw law = Law(config);
+  TrackingLaw law = Law(config);
   const Sample s;
   const Vector2d expected = UStar(s, config) + ShippedDesign().K * (s.x_m() - VectorXd(s.x));
   EXPECT_LT((Torque(law.Compute(s.x, s.reference, true)) - expected).norm(), 1e-9);
@@ -143,10 +185,10 @@ TEST(SobelLaw, WithAdaptationOffItIsTheSameFeedforwardAndFeedback) {
 
 // rho -> infinity: u -> u* + (I + G^-1) C_p e, from v -> 0 in the loop. The rest falls as 1 / rho:
 // at a gain of 1e8 it is 1e-8 of some newton metres.
-TEST(SobelLaw, TheProportionalPartRaisesTheLoopGainUpToOnePlusOneOverG) {
+TEST(TrackingLaw, TheProportionalPartRaisesTheLoopGainUpToOnePlusOneOverG) {
   ControllerConfig config = Controller();
   config.adaptation_gain = 1e8;
-  SobelLaw law = Law(config);
+  TrackingLaw law = Law(config);
   const Sample s;
   const Design& d = ShippedDesign();
   const Vector2d y_e = d.K * (s.x_m() - VectorXd(s.x));
@@ -156,9 +198,9 @@ TEST(SobelLaw, TheProportionalPartRaisesTheLoopGainUpToOnePlusOneOverG) {
 }
 
 // At rest on a reference at rest at zero r vanishes: nothing but the leak is left.
-TEST(SobelLaw, TheLeakReturnsTheGainToItsStart) {
+TEST(TrackingLaw, TheLeakReturnsTheGainToItsStart) {
   const ControllerConfig config = Controller();
-  SobelLaw law = Law(config);
+  TrackingLaw law = Law(config);
   const Sample s;
   for (int k = 0; k < 20; ++k) law.Compute(s.x, s.reference, true);
   double before = law.adaptive_gain_change();
@@ -171,31 +213,31 @@ TEST(SobelLaw, TheLeakReturnsTheGainToItsStart) {
   }
 }
 
-TEST(SobelLaw, AdaptationIsHeldWhileSaturatedOrForbidden) {
+TEST(TrackingLaw, AdaptationIsHeldWhileSaturatedOrForbidden) {
   const Sample s;
-  SobelLaw saturated = Law(Controller(), {0.5, 1e9});
-  const SobelLaw::Result clipped = saturated.Compute(s.x, s.reference, true);
+  TrackingLaw saturated = Law(Controller(), {0.5, 1e9});
+  const TrackingLaw::Result clipped = saturated.Compute(s.x, s.reference, true);
   EXPECT_EQ(clipped.limits, kLimitTorque1 | kAdaptationHeld);
   EXPECT_EQ(saturated.adaptive_gain_change(), 0.0);
 
-  SobelLaw forbidden = Law(Controller());
+  TrackingLaw forbidden = Law(Controller());
   EXPECT_EQ(forbidden.Compute(s.x, s.reference, false).limits, kAdaptationHeld);
   EXPECT_EQ(forbidden.adaptive_gain_change(), 0.0);
 
-  SobelLaw free = Law(Controller());
+  TrackingLaw free = Law(Controller());
   EXPECT_EQ(free.Compute(s.x, s.reference, true).limits, 0u);
   EXPECT_GT(free.adaptive_gain_change(), 0.0);
 }
 
-TEST(SobelLaw, TorqueIsClippedToEachLimitWithItsFlag) {
+TEST(TrackingLaw, TorqueIsClippedToEachLimitWithItsFlag) {
   const Sample s;
-  SobelLaw wide = Law(Controller());
+  TrackingLaw wide = Law(Controller());
   const Vector2d free = Torque(wide.Compute(s.x, s.reference, true));
   for (int i = 0; i < 2; ++i) {
     std::array<double, 2> limit = kWide;
     limit[static_cast<std::size_t>(i)] = 0.5 * std::abs(free(i));
-    SobelLaw narrow = Law(Controller(), limit);
-    const SobelLaw::Result result = narrow.Compute(s.x, s.reference, true);
+    TrackingLaw narrow = Law(Controller(), limit);
+    const TrackingLaw::Result result = narrow.Compute(s.x, s.reference, true);
     EXPECT_EQ(result.limits & (kLimitTorque1 | kLimitTorque2),
               i == 0 ? kLimitTorque1 : kLimitTorque2);
     EXPECT_DOUBLE_EQ(result.torque_nm[static_cast<std::size_t>(i)], 0.5 * free(i));
@@ -203,8 +245,8 @@ TEST(SobelLaw, TorqueIsClippedToEachLimitWithItsFlag) {
   }
 }
 
-TEST(SobelLaw, ResetForgetsTheAdaptation) {
-  SobelLaw law = Law(Controller());
+TEST(TrackingLaw, ResetForgetsTheAdaptation) {
+  TrackingLaw law = Law(Controller());
   const Sample s;
   const Vector2d first = Torque(law.Compute(s.x, s.reference, true));
   for (int k = 0; k < 5; ++k) law.Compute(s.x, s.reference, true);
@@ -215,8 +257,8 @@ TEST(SobelLaw, ResetForgetsTheAdaptation) {
 
 // The calm regulator brings the nominal arm to any goal at rest. Its slowest pole decides how far
 // it is after 10 s.
-TEST(SobelLaw, RegulateDrivesTheNominalArmToItsGoal) {
-  const SobelLaw law = Law(Controller());
+TEST(TrackingLaw, RegulateDrivesTheNominalArmToItsGoal) {
+  const TrackingLaw law = Law(Controller());
   const Design& d = ShippedDesign();
   StateVector x = Sample().x, goal = StateVector::Zero(12);
   goal(0) = -0.4;
@@ -225,7 +267,7 @@ TEST(SobelLaw, RegulateDrivesTheNominalArmToItsGoal) {
   ASSERT_LT(slowest, 1.0);
   const double at_start = (x - goal).norm();
   for (int k = 0; k < 500; ++k) {
-    const SobelLaw::Result result = law.Regulate(x, goal);
+    const TrackingLaw::Result result = law.Regulate(x, goal);
     EXPECT_EQ(result.limits & kAdaptationHeld, kAdaptationHeld);
     x = d.A * VectorXd(x) + d.B * Torque(result);
   }

@@ -11,19 +11,34 @@
 
 namespace flexarm {
 
-/// The modified Sobel model-reference adaptive law (thesis 7.2 to 7.4, control.md section 4).
+/// C_p of the law, 2 x n: the torque a deviation from the reference is answered with, N m per SI
+/// unit.
+Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& config);
+
+/// Every law that follows the reference model: a feedforward and a feedback, and Sobel's adapts.
+///
+///   u = u* + C_p (x_m - x), clipped to the torque limits
+///
+/// | name           | u*                                              | C_p                       |
+/// |----------------|-------------------------------------------------|---------------------------|
+/// | sobel          | vartheta u_f + (1 - vartheta) u_c (7.24)         | LQR with alpha | |
+/// sobel-original | u_c                                             | LQR with alpha = 0        |
+/// | lqr-cgt        | u_c = S21 x_m + S22 u_m                         | LQR with alpha            |
+/// | lqr-um         | u_m                                             | LQR with alpha            |
+/// | lqg            | 0, of x_m only the hubs' angles and rates       | LQR with alpha = 0        |
+/// | pd, pd-zv(d)   | u_m                                             | stiffness, damping a hub  |
+///
+/// u_f is (7.25). The adaptive laws (thesis 7.2 to 7.4, control.md section 4) give instead
 ///
 ///   x* = S11 x_m + S12 u_m,  e = x* - x,  y_e = C_p (x_m - x) = C_p e
-///   u* = vartheta u_f + (1 - vartheta) (S21 x_m + S22 u_m)                        (7.24), (7.25)
 ///   r  = [y_e; x_m; u_m],  rho = r' Tbar r
 ///   v  = (I + rho G)^-1 (F e + G (u* + K_e C_p e - K_I r)),  F = C_p, K_e = I
-///   u  = K_I r + rho v,  clipped to the torque limits
+///   u  = K_I r + rho v, clipped
 ///   K_I <- (1 - sigma) (K_I - K_I0) + K_I0 + v (T r)'
 ///
-/// The algebraic loop between v and u is solved, not delayed. `lqr-cgt` is the same with
-/// T = Tbar = 0: u = y_e + S21 x_m + S22 u_m. Without adaptation u = u* + y_e.
+/// The algebraic loop between v and u is solved, not delayed. With T = Tbar = 0 it is lqr-cgt.
 /// Real-time: Reset and Compute are safe.
-class SobelLaw {
+class TrackingLaw {
  public:
   struct Result {
     std::array<double, 2> torque_nm;
@@ -31,8 +46,8 @@ class SobelLaw {
     bool finite;           ///< false: the law computed no number; the torque is zero
   };
 
-  SobelLaw(const Design& design, const ControllerConfig& config,
-           const std::array<double, 2>& torque_limit_nm);
+  TrackingLaw(const Design& design, const ControllerConfig& config,
+              const std::array<double, 2>& torque_limit_nm);
 
   /// K_I back to [I, S21, S22].
   void Reset() noexcept;
@@ -56,6 +71,7 @@ class SobelLaw {
   using Regressor = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 20, 1>;
   using AdaptiveGain = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 20>;
 
+  void SetFeedforward(const Design& design);
   Eigen::Vector2d Feedforward(const StateVector& x_m, const Eigen::Vector2d& u_m) const noexcept;
 
   ControllerConfig config_;

@@ -1,0 +1,144 @@
+#include "controller/law/tracking_law.h"
+
+#include <cmath>
+
+namespace flexarm {
+
+namespace {
+
+// The proportional and derivative feedback of each hub alone, 2 x n.
+Eigen::MatrixXd PdGain(const ControllerConfig& config, Eigen::Index n) {
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(2, n);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    K(i, i) = config.pd_stiffness_nm_per_rad[static_cast<std::size_t>(i)];
+    K(i, n / 2 + i) = config.pd_damping_nms_per_rad[static_cast<std::size_t>(i)];
+  }
+  return K;
+}
+
+// -K on what is not a hub's angle or rate: the reference's links are at rest then.
+Eigen::MatrixXd LinksAtRest(const Eigen::MatrixXd& K) {
+  const Eigen::Index dof = K.cols() / 2;
+  Eigen::MatrixXd without = -K;
+  without.leftCols<2>().setZero();
+  without.middleCols<2>(dof).setZero();
+  return without;
+}
+
+}  // namespace
+
+Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& config) {
+  return IsPd(config.kind) ? PdGain(config, design.A.rows()) : design.K;
+}
+
+TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
+                         const std::array<double, 2>& torque_limit_nm)
+    : config_(config),
+      torque_limit_nm_(torque_limit_nm),
+      states_(design.A.rows()),
+      Cp_(FeedbackGain(design, config)),
+      K_stop_(design.K_stop),
+      G_(design.G),
+      feedforward_x_(Matrix2n::Zero(2, states_)),
+      feedforward_u_(Eigen::Matrix2d::Zero()) {
+  config_.adaptation = config.adaptation && IsAdaptive(config.kind);
+  SetFeedforward(design);
+  K_I0_.resize(2, 2 + states_ + 2);
+  K_I0_.leftCols<2>().setIdentity();
+  K_I0_.middleCols(2, states_) = design.S21;
+  K_I0_.rightCols<2>() = design.S22;
+  Reset();
+}
+
+void TrackingLaw::SetFeedforward(const Design& design) {
+  switch (config_.kind) {
+    case ControllerKind::kSobel: {
+      // (7.24) with (7.25): the printed minus sign in front of (A_m - A), or the one that follows.
+      const double sign = config_.feedforward_sign == FeedforwardSign::kPrinted ? -1.0 : 1.0;
+      const double vartheta = config_.vartheta;
+      feedforward_x_ = vartheta * sign * design.Ufx + (1.0 - vartheta) * design.S21;
+      feedforward_u_ = vartheta * design.Ufu + (1.0 - vartheta) * design.S22;
+      break;
+    }
+    case ControllerKind::kSobelOriginal:
+    case ControllerKind::kLqrCgt:
+      feedforward_x_ = design.S21;
+      feedforward_u_ = design.S22;
+      break;
+    case ControllerKind::kLqrUm:
+    case ControllerKind::kPd:
+    case ControllerKind::kPdZv:
+    case ControllerKind::kPdZvd:
+      feedforward_u_.setIdentity();
+      break;
+    case ControllerKind::kLqg:
+      feedforward_x_ = LinksAtRest(Cp_);
+      break;
+  }
+}
+
+void TrackingLaw::Reset() noexcept { K_I_ = K_I0_; }
+
+Eigen::Vector2d TrackingLaw::Feedforward(const StateVector& x_m,
+                                         const Eigen::Vector2d& u_m) const noexcept {
+  const Eigen::Vector2d from_state = feedforward_x_.lazyProduct(x_m);
+  const Eigen::Vector2d from_command = feedforward_u_.lazyProduct(u_m);
+  return from_state + from_command;
+}
+
+TrackingLaw::Result TrackingLaw::Compute(const StateVector& x, const ReferenceSample& reference,
+                                         bool may_adapt) noexcept {
+  StateVector x_m(states_);
+  for (Eigen::Index i = 0; i < states_; ++i) x_m(i) = reference.x_m[static_cast<std::size_t>(i)];
+  const Eigen::Vector2d u_m(reference.u_m_nm[0], reference.u_m_nm[1]);
+  const Eigen::Vector2d y_e = Cp_.lazyProduct(x_m - x);
+  const Eigen::Vector2d u_star = Feedforward(x_m, u_m);
+  if (!config_.adaptation) return Clip(u_star + y_e);
+
+  Regressor r(2 + states_ + 2);
+  r.head<2>() = y_e;
+  r.segment(2, states_) = x_m;
+  r.tail<2>() = u_m;
+  const double rho = config_.adaptation_gain * r.squaredNorm();
+  const Eigen::Vector2d from_gain = K_I_.lazyProduct(r);
+
+  // F e = K_e C_p e = y_e, because C_p S11 = C_m and C_p S12 = 0 make C_p x* = C_m x_m.
+  const Eigen::Vector2d drive = y_e + G_.lazyProduct(u_star + y_e - from_gain);
+  const Eigen::Matrix2d loop = Eigen::Matrix2d::Identity() + rho * G_;
+  const double determinant = loop(0, 0) * loop(1, 1) - loop(0, 1) * loop(1, 0);
+  const Eigen::Vector2d v((loop(1, 1) * drive(0) - loop(0, 1) * drive(1)) / determinant,
+                          (loop(0, 0) * drive(1) - loop(1, 0) * drive(0)) / determinant);
+
+  Result result = Clip(from_gain + rho * v);
+  if (!may_adapt || result.limits != 0 || !result.finite) {
+    result.limits |= kAdaptationHeld;
+    return result;
+  }
+  K_I_ -= config_.sigma * (K_I_ - K_I0_);
+  K_I_ += (config_.adaptation_gain * v).lazyProduct(r.transpose());
+  return result;
+}
+
+TrackingLaw::Result TrackingLaw::Regulate(const StateVector& x,
+                                          const StateVector& x_goal) const noexcept {
+  const Eigen::Vector2d u = K_stop_.lazyProduct(x_goal - x);
+  Result result = Clip(u);
+  result.limits |= kAdaptationHeld;
+  return result;
+}
+
+TrackingLaw::Result TrackingLaw::Clip(const Eigen::Vector2d& u) const noexcept {
+  Result result{.torque_nm = {0.0, 0.0}, .limits = 0, .finite = u.allFinite()};
+  if (!result.finite) return result;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double limit = torque_limit_nm_[i];
+    const double asked = u(static_cast<Eigen::Index>(i));
+    result.torque_nm[i] = std::fmin(std::fmax(asked, -limit), limit);
+    if (result.torque_nm[i] != asked) result.limits |= i == 0 ? kLimitTorque1 : kLimitTorque2;
+  }
+  return result;
+}
+
+double TrackingLaw::adaptive_gain_change() const noexcept { return (K_I_ - K_I0_).norm(); }
+
+}  // namespace flexarm
