@@ -14,6 +14,8 @@ struct DesignCheck {
   double value;
   double limit;
   bool below;  ///< true: the value must be below the limit; false: above it
+  bool waived =
+      false;  ///< it failed, and somebody took that upon himself: `flexarm design --force`
 
   bool passed() const { return below ? value < limit : value > limit; }
 };
@@ -37,7 +39,7 @@ struct Design {
   Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: a doublet moves by M_r^-1 a T^2/4
   std::vector<DesignCheck> checks;
 
-  bool sound() const;  ///< every check passed
+  bool sound() const;  ///< every check passed or was waived
 };
 
 /// Designs nominal model, reference model, gains and filter for a rig. Takes tens of milliseconds.

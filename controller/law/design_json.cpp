@@ -145,7 +145,7 @@ std::string TextAt(const nlohmann::json& in, const char* key, const char* missin
 DesignCheck CheckFromJson(const nlohmann::json& in) {
   try {
     return {in.at("name").get<std::string>(), in.at("value").get<double>(),
-            in.at("limit").get<double>(), in.at("below").get<bool>()};
+            in.at("limit").get<double>(), in.at("below").get<bool>(), in.value("waived", false)};
   } catch (const nlohmann::json::exception&) {
     throw Refused("gains file: a row of 'checks' lacks its name, value, limit or below");
   }
@@ -211,7 +211,8 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
                              {"value", check.value},
                              {"limit", check.limit},
                              {"below", check.below},
-                             {"passed", check.passed()}});
+                             {"passed", check.passed()},
+                             {"waived", check.waived}});
   }
   return out.dump(1);
 }

@@ -168,6 +168,17 @@ TEST_F(GainsFile, WithAFailedCheckIsRefusedByItsName) {
   }
 }
 
+TEST_F(GainsFile, WithAFailedCheckThatWasWaivedIsUsed) {
+  Design bad = ShippedDesign();
+  bad.checks[0].value = 2.0 * bad.checks[0].limit;
+  bad.checks[0].waived = true;
+  Write(DesignToJson(bad, DesignHash(ShippedRig())));
+  const Design read = DesignFor(RigWithGains());
+  EXPECT_TRUE(read.checks[0].waived);
+  EXPECT_FALSE(read.checks[0].passed());
+  EXPECT_FALSE(read.checks[1].waived);
+}
+
 // The hash covers what a design depends on, and nothing else.
 TEST(DesignHash, ChangesWithWhatADesignDependsOn) {
   const std::string shipped = DesignHash(ShippedRig());

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Gains: designed, screened, refused, forced, and run with."""
+
+import json
+import sys
+import unittest
+
+from program import HIL, ProgramTest
+
+
+class Design(ProgramTest):
+    def design(self, *arguments, expect=0):
+        gains = self.folder / "gains.json"
+        return gains, self.flexarm_json("design", "-c", HIL, "-o", gains, *arguments, expect=expect)
+
+    def test_shipped_gains_pass_are_written_and_give_the_same_run(self):
+        gains, result = self.design()
+        self.assertIs(result["sound"], True)
+        self.assertTrue(all(check["passed"] for check in result["checks"]))
+        self.assertEqual(len(result["screen"]["cases"]), 54)
+        self.assertGreater(result["screen"]["gain_margin_up"], 1.4)
+        self.assertGreater(result["screen"]["delay_margin_ms"], 4)
+        designed, _ = self.simulate("designed.flexarm")
+        read, _ = self.simulate("read.flexarm", "--set", f'controller.gains="{gains}"')
+        self.assertIs(self.flexarm_json("diff", designed, read)["identical"], True)
+
+    def test_gains_that_the_screen_fails_are_written_by_force_only_and_say_so(self):
+        bad = ("--set", "controller.prediction=false")  # diverges with 0.01 kg
+        gains, result = self.design(*bad, expect=1)
+        self.assertIs(result["sound"], False)
+        self.assertIsNone(result["gains"])
+        self.assertFalse(gains.exists())
+        told = self.flexarm("design", "-c", HIL, "-o", gains, *bad, expect=1).stderr
+        for text in ("screen-spectral-radius", "unstable with", "--force"):
+            self.assertIn(text, told)
+        gains, result = self.design(*bad, "--force")
+        self.assertEqual(result["gains"], str(gains))
+        waived = [check["name"] for check in json.loads(gains.read_text())["checks"]
+                  if check["waived"]]
+        self.assertIn("screen-spectral-radius", waived)
+
+    def test_bad_options_are_refused(self):
+        nowhere = self.folder / "nowhere" / "gains.json"
+        gains = self.folder / "gains.json"
+        for options, said in ((("-o", gains, "--payload-kg", -1), "--payload-kg"),
+                              (("-o", gains, "--payload-kg"), "--payload-kg"),
+                              (("-o", nowhere), str(nowhere))):
+            with self.subTest(options=options):
+                self.assert_refused(self.run_program("flexarm", "design", "-c", HIL, *options), said)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
