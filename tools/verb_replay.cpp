@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/commissioning/calibration_file.h"
 #include "controller/law/control_step.h"
 #include "controller/law/design.h"
 #include "controller/runlog/build_info.h"
@@ -19,6 +20,7 @@ namespace {
 struct Options {
   std::filesystem::path source;
   ConfigOptions config;
+  std::filesystem::path calibration;  // empty: none
   bool json = false;
 };
 
@@ -41,6 +43,9 @@ Design GainsOf(const RunReader& reader, const Config& config) {
 }
 
 Outcome ReplayRun(const Options& options) {
+  if (!options.calibration.empty()) {
+    throw InputError("--calibration: a run log brings its own; it is for CSV files");
+  }
   RunReader reader(options.source);
   const Config own = ConfigOf(reader);
   const bool asks_for_other = options.config.given() || !options.config.overrides.empty();
@@ -63,10 +68,17 @@ Outcome ReplayCsv(const Options& options) {
   const Config config = options.config.Load();
   const auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr,
                                  config.sensors, config.loop.period_ms * 1e-3);
+  Calibration calibration{};
+  if (!options.calibration.empty()) {
+    const auto read = ReadCalibration(options.calibration, config.sensors);
+    if (!read) throw InputError(options.calibration.string() + ": there is no such file");
+    calibration = *read;
+  }
   Replay replay(Fresh(config, DesignFor(config)), true);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     TickRecord record{};
     record.input = inputs[i];
+    record.input.calibration = calibration;
     record.output.torque_nm = inputs[std::min(i + 1, inputs.size() - 1)].applied_torque_nm;
     replay.Tick(record);
   }
@@ -146,6 +158,9 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       ->required()
       ->type_name("RUN_OR_CSV");
   options->config.AddTo(verb, false);
+  verb->add_option("--calibration", options->calibration,
+                   "Of the rig that a CSV file was recorded on: what export wrote beside it")
+      ->type_name("FILE");
   AddJson(verb, &options->json);
   verb->footer(
       "A run log brings its own config and gains, and must give the same bytes: exit code 1 if "

@@ -164,6 +164,18 @@ class Daemon(ProgramTest):
             replay = self.flexarm_json("replay", run)
             self.assertIs(replay["bit_exact"], True)
             self.assertIs(replay["safety_exact"], True)
+        self.assert_export_brings_the_calibration(run)
+
+    def assert_export_brings_the_calibration(self, run):
+        table = self.folder / "run.csv"
+        self.assertIn("--calibration", self.flexarm("export", run, "-o", table).stderr)
+        brought = self.folder / "run.calibration.json"
+        replay = self.flexarm_json("replay", table, "-c", HIL, "--calibration", brought)
+        self.assertEqual(replay["faulty_ticks"], 0)
+        self.assert_refused(self.run_program("flexarm", "replay", table, "-c", HIL,
+                                             "--calibration", self.folder / "none.json"), "none.json")
+        self.assert_refused(self.run_program("flexarm", "replay", run, "--calibration", brought),
+                            "--calibration")
 
     @in_real_time
     def test_a_term_signal_ends_in_a_safe_logged_stop(self):
