@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "estimator/polynomial_fit.h"
 #include "model/problem_list.h"
 
 namespace flexarm {
@@ -23,7 +24,7 @@ bool IsMultiple(double value, double step) {
 }
 
 void CheckChannelsForFit(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
-  if (!log->Clear({"sensors.strain", "estimator.modes_per_link"})) return;
+  if (!log->Clear({"sensors.strain", "estimator.modes_per_link", "estimator.name"})) return;
   for (int link = 1; link <= 2; ++link) {
     std::vector<double> positions;
     for (const StrainChannelConfig& s : c.sensors.strain) {
@@ -31,6 +32,12 @@ void CheckChannelsForFit(const Config& c, ProblemLog* log, std::vector<Problem>*
     }
     std::sort(positions.begin(), positions.end());
     positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    if (c.estimator.kind == EstimatorKind::kPolynomial && positions.size() < kPolynomialTerms) {
+      out->push_back({"estimator.name", "polynomial",
+                      "needs strain at five different positions a link, for its five coefficients: "
+                      "link " +
+                          NumberText(link) + " has " + NumberText(positions.size())});
+    }
     if (positions.size() >= static_cast<std::size_t>(c.estimator.modes_per_link)) continue;
     out->push_back({"estimator.modes_per_link", NumberText(c.estimator.modes_per_link),
                     "must be at most the number of different strain positions of a link: link " +

@@ -107,7 +107,9 @@ void ReadSim(TableReader sim, SimConfig* out) {
 
 void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
   estimator.Read("name", &out->kind,
-                 {{"kalman", EstimatorKind::kKalman}, {"difference", EstimatorKind::kDifference}});
+                 {{"kalman", EstimatorKind::kKalman},
+                  {"difference", EstimatorKind::kDifference},
+                  {"polynomial", EstimatorKind::kPolynomial}});
   estimator.Read("modes_per_link", &out->modes_per_link);
   estimator.Read("process_force", &out->process_force);
   estimator.Read("rotor_extra_sigma_rad", &out->rotor_extra_sigma_rad);

@@ -11,6 +11,7 @@ namespace flexarm {
 enum class EstimatorKind : std::uint8_t {
   kKalman,      ///< "kalman": steady-state filter, gauge filter in its model (control.md section 4)
   kDifference,  ///< "difference": rates are backward differences, as in the thesis
+  kPolynomial,  ///< "polynomial": the same, on the thesis's polynomial fit (polynomial_fit.h)
 };
 
 /// Section [estimator].

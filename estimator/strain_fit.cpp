@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "estimator/polynomial_fit.h"
 #include "model/link_modes.h"
 
 namespace flexarm {
@@ -79,7 +80,31 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     const std::size_t first = channel_[i].link == 0 ? 0 : 2;
     channel_[i].inverse = {modal[first], modal[first + 1]};
   }
+  if (config.kind == EstimatorKind::kPolynomial) FitPolynomials(arm, sensors, modes);
   Reset({});
+}
+
+void StrainFit::FitPolynomials(const ArmParameters& arm, const SensorConfig& sensors,
+                               const std::array<LinkModes, 2>& modes) {
+  for (std::size_t link = 0; link < 2; ++link) {
+    std::vector<StrainStation> stations;
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
+      if (channel_[i].link != static_cast<int>(link)) continue;
+      const double x_m = sensors.strain[i].position_m;
+      stations.push_back({.position_m = x_m,
+                          .half_thickness_m = HalfThicknessAt(arm.link[link], x_m),
+                          .weight = channel_[i].weight});
+      rows.push_back(i);
+    }
+    const Eigen::MatrixXd map = PolynomialModalMap(modes[link], stations, modes_);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      for (int j = 0; j < modes_; ++j) {
+        channel_[rows[k]].inverse[static_cast<std::size_t>(j)] =
+            map(j, static_cast<Eigen::Index>(k));
+      }
+    }
+  }
 }
 
 void StrainFit::Reset(const Calibration& calibration) noexcept {

@@ -9,6 +9,7 @@
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
 #include "model/arm_parameters.h"
+#include "model/link_modes.h"
 
 namespace flexarm {
 
@@ -29,6 +30,9 @@ struct FittedModes {
 /// Weighted least-squares fit of one or two modal coordinates a link to the strain channels.
 ///
 ///   strain_i = face_i (h/2) sum_j psi_j''(x_i) f_j        (thesis B.2, and 7.4)
+///
+/// With the estimator `polynomial` the thesis's fit of (B.1) takes its place, as long as all
+/// channels of the link are good.
 ///
 /// Channels are weighted by the inverse variance of their noise. With all channels good the fit is
 /// one product with a precomputed pseudo-inverse; otherwise the 2 x 2 normal equations of the good
@@ -60,6 +64,8 @@ class StrainFit {
 
   double Predicted(const Channel& channel, const std::array<double, 4>& modal) const noexcept;
   std::uint32_t LinkMask(int link) const noexcept;
+  void FitPolynomials(const ArmParameters& arm, const SensorConfig& sensors,
+                      const std::array<LinkModes, 2>& modes);
   bool Solve(int link, std::uint32_t used, const std::array<double, kMaxStrainChannels>& strain,
              std::array<double, 4>* modal) const noexcept;
   void FitLink(int link, const std::array<double, kMaxStrainChannels>& strain,

@@ -205,6 +205,7 @@ TEST(RigBinding, KnowsEveryNamedChoice) {
   EXPECT_EQ(inertia("motor_and_rotor"), Link1TipInertia::kMotorAndRotor);
   EXPECT_EQ(With({}).estimator.kind, EstimatorKind::kKalman);
   EXPECT_EQ(With({"estimator.name=difference"}).estimator.kind, EstimatorKind::kDifference);
+  EXPECT_EQ(With({"estimator.name=polynomial"}).estimator.kind, EstimatorKind::kPolynomial);
   EXPECT_EQ(With({}).controller.kind, ControllerKind::kSobel);
   EXPECT_EQ(With({"controller.name=lqr-cgt"}).controller.kind, ControllerKind::kLqrCgt);
   EXPECT_EQ(With({"controller.name=sobel-original"}).controller.kind,

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "model/link_modes.h"
+
+namespace flexarm {
+
+/// Where a strain channel of one link sits, and how much it counts.
+struct StrainStation {
+  double position_m;        ///< from the root
+  double half_thickness_m;  ///< h/2 there
+  double weight;            ///< 1 / variance of its strain
+};
+
+inline constexpr int kPolynomialTerms = 5;
+
+/// The thesis's way from strains to bending (B.1), (B.2), as one matrix: modal coordinates a unit
+/// strain, modes x stations.
+///
+///   w(u) = a1 u^2 + a2 u^3 + a3 u^4 + a4 u^5 + a5 u^6,  strain_i = (h/2) w''(x_i)
+///
+/// The a's by weighted least squares (at five stations exactly, as in the thesis), then the modal
+/// coordinates by least squares of sum_j psi_j f_j to w over the link. The direct fit of modes
+/// (strain_fit.h) knows the shapes already; this one only that the link is smooth, and passes on to
+/// the first modes what bends in others.
+/// @param station  five or more, at five different positions at least
+/// @param modes    how many modal coordinates, at most modes known to `link`
+Eigen::MatrixXd PolynomialModalMap(const LinkModes& link, const std::vector<StrainStation>& station,
+                                   int modes);
+
+}  // namespace flexarm
