@@ -19,6 +19,7 @@ void RegisterVerbs(CLI::App& app, Exit& exit) {
   RegisterAnalyze(app, exit);
   RegisterDesign(app, exit);
   RegisterSimulate(app, exit);
+  RegisterSweep(app, exit);
   RegisterReplay(app, exit);
   RegisterIdentify(app, exit);
   RegisterInfo(app, exit);

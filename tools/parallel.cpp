@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <exception>
@@ -18,10 +19,10 @@ namespace {
 
 class Crew {
  public:
-  Crew(std::size_t count, const std::function<void(std::size_t)>& body)
+  Crew(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t jobs)
       : count_(count), body_(body) {
     const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-    left_ = std::min(cores, count);
+    left_ = std::min(jobs == 0 ? cores : jobs, count);
     for (std::size_t i = left_; i > 0; --i) {
       workers_.emplace_back([this] { Work(); });
     }
@@ -70,21 +71,32 @@ class Crew {
   std::vector<std::thread> workers_;
 };
 
+// ", 3 min 20 s left": as if the rest took as long a piece as what is done.
+std::string TimeLeft(std::chrono::steady_clock::time_point started, std::size_t done,
+                     std::size_t count) {
+  if (done == 0 || done == count) return {};
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
+  const double pieces = static_cast<double>(count - done) / static_cast<double>(done);
+  const auto left_s = std::llround(spent.count() * pieces);
+  const std::string minutes = left_s < 60 ? "" : std::to_string(left_s / 60) + " min ";
+  return ", " + minutes + std::to_string(left_s % 60) + " s left";
+}
+
 }  // namespace
 
 void ForAllOnAllCores(std::size_t count, const std::function<void(std::size_t)>& body,
-                      const std::function<void(std::size_t)>& progress) {
-  Crew(count, body).Wait(progress);
+                      const std::function<void(std::size_t)>& progress, std::size_t jobs) {
+  Crew(count, body, jobs).Wait(progress);
 }
 
 std::function<void(std::size_t)> ProgressBar(const char* what, std::size_t count) {
   if (::isatty(STDERR_FILENO) == 0 || count == 0) return {};
-  return [what, count](std::size_t done) {
+  return [what, count, started = std::chrono::steady_clock::now()](std::size_t done) {
     constexpr std::size_t kWidth = 40;
     const std::size_t filled = kWidth * done / count;
     const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
-    std::fprintf(stderr, "\r%s [%s] %zu of %zu%s", what, bar.c_str(), done, count,
-                 done == count ? "\n" : "");
+    std::fprintf(stderr, "\r%s [%s] %zu of %zu%s\033[K%s", what, bar.c_str(), done, count,
+                 TimeLeft(started, done, count).c_str(), done == count ? "\n" : "");
     std::fflush(stderr);
   };
 }

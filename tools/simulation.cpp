@@ -116,6 +116,8 @@ class Simulation {
   double Loop(const std::function<void(double)>& progress);
   SimulationResult Result(double wall_s) const;
 
+  const Config& Plant() const { return request_.plant ? *request_.plant : request_.config; }
+
   const SimulationRequest& request_;
   LoopGrid grid_;
   Design design_;
@@ -136,10 +138,10 @@ Simulation::Simulation(const SimulationRequest& request)
     : request_(request),
       grid_(request.config.loop),
       design_(DesignFor(request.config)),
-      payload_kg_(request.payload_kg.value_or(request.config.arm.payload_mass_kg)),
+      payload_kg_(request.payload_kg.value_or(Plant().arm.payload_mass_kg)),
       planned_(request.experiment, design_, grid_.period_s(), {0.0, 0.0},
                SoftAngleRad(request.config.safety)),
-      stack_(request.config, design_, payload_kg_),
+      stack_(request.config, Plant(), design_, payload_kg_),
       recording_(InfoOf(request, design_), SinkFor(request, &contents_),
                  [this](bool is_error, const std::string& text) {
                    if (is_error && log_error_.empty()) log_error_ = text;

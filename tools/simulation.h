@@ -16,7 +16,10 @@ namespace flexarm {
 struct SimulationRequest {
   Config config;
   Experiment experiment;
-  std::optional<double> payload_kg;          ///< of the plant; the config's if empty
+  /// Of the simulated rig where that is not what the controller was designed for; differs from
+  /// `config` in what describes the plant only. A log does not tell of it.
+  std::optional<Config> plant = std::nullopt;
+  std::optional<double> payload_kg;          ///< of the plant; its config's if empty
   std::optional<std::filesystem::path> log;  ///< must not exist; empty: no log
 };
 

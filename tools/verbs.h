@@ -39,5 +39,6 @@ void RegisterPlot(CLI::App& app, Exit& exit);
 void RegisterReplay(CLI::App& app, Exit& exit);
 void RegisterRig(CLI::App& app, Exit& exit);
 void RegisterSimulate(CLI::App& app, Exit& exit);
+void RegisterSweep(CLI::App& app, Exit& exit);  ///< with merge and show
 
 }  // namespace flexarm

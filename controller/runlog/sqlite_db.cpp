@@ -154,6 +154,10 @@ SqliteDb SqliteDb::CreateNew(const std::filesystem::path& file) {
   return Open(file.string(), SQLITE_OPEN_READWRITE);
 }
 
+SqliteDb SqliteDb::OpenOrCreate(const std::filesystem::path& file) {
+  return Open(file.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+}
+
 SqliteDb SqliteDb::OpenReadOnly(const std::filesystem::path& file, bool immutable) {
   return Open(Uri(file) + (immutable ? "?immutable=1" : ""),
               SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);

@@ -68,6 +68,8 @@ class SqliteDb {
   SqliteDb() = default;
   /// Creates a new file. @throws SqliteError, also if the file exists
   static SqliteDb CreateNew(const std::filesystem::path& file);
+  /// Opens a file for reading and writing; makes an empty one if there is none.
+  static SqliteDb OpenOrCreate(const std::filesystem::path& file);
   /// @param immutable  the file cannot change: no lock and no -shm file is needed
   static SqliteDb OpenReadOnly(const std::filesystem::path& file, bool immutable);
   ~SqliteDb();

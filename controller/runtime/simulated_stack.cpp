@@ -4,14 +4,15 @@
 
 namespace flexarm {
 
-SimulatedStack::SimulatedStack(const StackConfig& config, const Design& design, double payload_kg)
+SimulatedStack::SimulatedStack(const StackConfig& config, const StackConfig& plant,
+                               const Design& design, double payload_kg)
     : LoopStack(config, design,
                 {.lines = &lines,
                  .frames = {&frames},
                  .commands = {&commands},
                  .permits = {&permits},
                  .drives = {&drive_reports}}),
-      plant_(config, payload_kg,
+      plant_(plant, payload_kg,
              {.commands = &commands,
               .permits = &permits,
               .outputs = &outputs,

@@ -27,7 +27,11 @@ struct SimulatedWires {
 class SimulatedStack final : private SimulatedWires, public LoopStack {
  public:
   /// @param payload_kg  that the plant carries; the design keeps the config's
-  SimulatedStack(const StackConfig& config, const Design& design, double payload_kg);
+  SimulatedStack(const StackConfig& config, const Design& design, double payload_kg)
+      : SimulatedStack(config, config, design, payload_kg) {}
+  /// @param plant  what the simulated rig is, where that is not what the loop was designed for
+  SimulatedStack(const StackConfig& config, const StackConfig& plant, const Design& design,
+                 double payload_kg);
 
   PlantTask& plant() { return plant_; }
   std::vector<Task*> drive_tasks() override { return {&plant_}; }

@@ -1,0 +1,77 @@
+#include "tools/sweep/plant_variant.h"
+
+#include <array>
+#include <cstdio>
+
+#include "controller/runlog/errors.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::array<const char*, 7> kPlantSections = {"arm.",    "link1.",   "link2.", "joint1.",
+                                                       "joint2.", "sensors.", "sim."};
+
+std::string Times(const Config& config, const std::string& key, double factor) {
+  std::array<char, 32> value{};
+  std::snprintf(value.data(), value.size(), "%.17g", *NumberAt(config, key) * factor);
+  return key + "=" + value.data();
+}
+
+std::vector<std::string> BothJoints(const Config& config, const std::string& key, double factor) {
+  return {Times(config, "joint1." + key, factor), Times(config, "joint2." + key, factor)};
+}
+
+std::vector<std::string> EverySection(const Config& config, const std::string& key, double factor) {
+  std::vector<std::string> overrides;
+  for (std::size_t link = 0; link < 2; ++link) {
+    const std::string name = "link" + std::to_string(link + 1) + ".section[";
+    for (std::size_t i = 0; i < config.arm.link[link].section.size(); ++i) {
+      overrides.push_back(Times(config, name + std::to_string(i) + "]." + key, factor));
+    }
+  }
+  return overrides;
+}
+
+}  // namespace
+
+const std::vector<PlantVariant>& PlantVariants() {
+  static const std::vector<PlantVariant> variants = {
+      {"nominal", "as the config says"},
+      {"backlash", "1 degree of play in the elbow's gears"},
+      {"friction-x3", "three times the Coulomb friction in both joints"},
+      {"soft-joints", "stiffness of both joints 30 % less"},
+      {"soft-links", "Young's modulus of both links 10 % less"},
+      {"modal-damping", "3 % damping in every bending mode"}};
+  return variants;
+}
+
+std::vector<std::string> VariantOverrides(const Config& config, const std::string& name) {
+  if (name == "nominal") return {};
+  if (name == "backlash") {
+    return {"joint2.backlash_rad=0.017453292519943295", "joint2.backlash_model=dead_zone"};
+  }
+  if (name == "friction-x3") return BothJoints(config, "coulomb_friction_nm", 3.0);
+  if (name == "soft-joints") return BothJoints(config, "stiffness_nm_per_rad", 0.7);
+  if (name == "soft-links") return EverySection(config, "youngs_modulus_pa", 0.9);
+  if (name == "modal-damping") {
+    return {"arm.damping=modal", "link1.damping_ratio=0.03", "link2.damping_ratio=0.03"};
+  }
+  std::string known;
+  for (const PlantVariant& variant : PlantVariants()) {
+    known += std::string(known.empty() ? "" : ", ") + variant.name;
+  }
+  throw InputError("plant variant \"" + name + "\": expected one of " + known);
+}
+
+Config PlantWith(const Config& config, const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides) {
+    bool of_plant = false;
+    for (const char* section : kPlantSections) of_plant |= text.starts_with(section);
+    if (of_plant) continue;
+    throw InputError(text + ": is no key of the plant; expected one of the sections arm, link1, " +
+                     "link2, joint1, joint2, sensors, sim");
+  }
+  return WithOverrides(config, overrides);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace flexarm {
+
+/// What the values of an axis change.
+enum class AxisTarget : std::uint8_t {
+  kConfig,   ///< a config key, for the simulated rig and the controller alike
+  kPlant,    ///< a config key, for the simulated rig alone
+  kVariant,  ///< a named plant, for the simulated rig alone
+  kPayload,  ///< payload that the simulated rig carries, kg
+  kSeed      ///< of the measurement noise
+};
+
+const char* Name(AxisTarget target) noexcept;
+
+/// One direction of the grid. Values are kept as they were written.
+struct SweepAxis {
+  AxisTarget target;
+  std::string key;  ///< of kConfig and kPlant: section.key; otherwise empty
+  std::vector<std::string> values;
+
+  /// The column of results: "controller.alpha", "plant:joint1.stiffness_nm_per_rad", "variant",
+  /// "payload_kg", "seed".
+  std::string Column() const;
+  bool operator==(const SweepAxis&) const = default;
+};
+
+/// "v1,v2,.." (commas inside brackets and quotes are part of a value), FROM:STEP:TO with both ends
+/// (TO only if a step falls on it), or whole numbers FIRST..LAST.
+/// @throws InputError  an empty list or value, a value twice, a range that goes nowhere
+std::vector<std::string> ParseValues(const std::string& text);
+
+/// "KEY=VALUES". @throws InputError
+SweepAxis ParseAxis(AxisTarget target, const std::string& text);
+
+/// Every combination of the axes' values, numbered from 0; the last axis runs fastest.
+class SweepGrid {
+ public:
+  SweepGrid() = default;
+  /// @throws InputError  two axes for one column; more than a million points
+  explicit SweepGrid(std::vector<SweepAxis> axes);
+
+  const std::vector<SweepAxis>& axes() const { return axes_; }
+  std::size_t size() const { return size_; }
+  /// Which value of each axis; point < size().
+  std::vector<std::size_t> Indices(std::size_t point) const;
+  /// One value an axis; point < size().
+  std::vector<std::string> Values(std::size_t point) const;
+
+ private:
+  std::vector<SweepAxis> axes_;
+  std::size_t size_ = 1;
+};
+
+/// One of `count` parts of a grid, from 1: the points whose number leaves the remainder number - 1.
+struct Shard {
+  std::size_t number = 1;
+  std::size_t count = 1;
+
+  bool Has(std::size_t point) const { return point % count == number - 1; }
+};
+
+/// "I/N", 1 <= I <= N. @throws InputError
+Shard ParseShard(const std::string& text);
+
+}  // namespace flexarm

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "tools/simulation.h"
+
+namespace flexarm {
+
+/// A figure of a run that a sweep keeps, in the order of SweepRow::measure.
+struct SweepMeasure {
+  const char* column;  ///< of results, with its unit
+  const char* title;   ///< of a table
+};
+
+inline constexpr std::array<SweepMeasure, 8> kSweepMeasures = {
+    {{"joint1_rms_error_deg", "rms1 deg"},
+     {"joint2_rms_error_deg", "rms2 deg"},
+     {"joint1_final_error_deg", "final1 deg"},
+     {"joint2_final_error_deg", "final2 deg"},
+     {"tip_settling_time_s", "settling s"},
+     {"tip_residual_rms_mm", "residual mm"},
+     {"peak_torque1_nm", "peak1 Nm"},
+     {"peak_torque2_nm", "peak2 Nm"}}};
+inline constexpr std::size_t kSettling = 4;  ///< its NaN in a completed run: never
+
+/// One run of a sweep.
+struct SweepRow {
+  std::size_t point = 0;  ///< of the grid, from 0
+  bool completed = false;
+  std::string trip;     ///< name of the cause; empty: none
+  std::string refused;  ///< why the run was not made: no such design, an experiment beyond limits
+  std::int64_t ticks = 0;
+  std::array<double, kSweepMeasures.size()> measure{};  ///< NaN: none
+  double wall_s = 0.0;                                  ///< what the run took, design included
+};
+
+/// What is kept of a run; its wall time is the caller's.
+SweepRow RowOf(std::size_t point, const SimulationResult& result);
+SweepRow RefusedRow(std::size_t point, const std::string& why);
+
+/// The same run in all but the time that it took.
+bool SameOutcome(const SweepRow& a, const SweepRow& b);
+
+}  // namespace flexarm
