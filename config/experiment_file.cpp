@@ -17,6 +17,12 @@ void ReadDoublet(TableReader row, Doublet* out) {
   row.Read("move_deg", &out->move_deg);
 }
 
+void ReadMove(TableReader row, Move* out) {
+  row.Read("start_s", &out->start_s);
+  row.Read("duration_s", &out->duration_s);
+  row.Read("to_deg", &out->to_deg);
+}
+
 void ReadSimEvent(TableReader row, SimEvent* out) {
   row.Read("at_s", &out->at_s);
   const bool has_line = row.Has("line");
@@ -42,6 +48,9 @@ void ReadExperiment(TableReader root, Experiment* out) {
   root.Read("duration_s", &out->duration_s);
   for (const TableReader& row : root.OptionalRows("doublet")) {
     ReadDoublet(row, &out->doublet.emplace_back());
+  }
+  for (const TableReader& row : root.OptionalRows("move")) {
+    ReadMove(row, &out->move.emplace_back());
   }
   for (const TableReader& row : root.OptionalRows("sim_event")) {
     ReadSimEvent(row, &out->sim_event.emplace_back());

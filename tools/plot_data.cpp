@@ -126,7 +126,7 @@ std::vector<PlotRun::Pose> PosesOf(const LoadedRun& run, std::int64_t zero_ns) {
 std::vector<PlotRun::Act> ActsOf(const LoadedRun& run, double running_end_s) {
   std::vector<PlotRun::Act> acts;
   if (run.experiment) {
-    for (const Doublet& move : run.experiment->doublet) {
+    for (const Motion& move : run.experiment->Motions()) {
       if (move.start_s >= running_end_s) break;
       if (!acts.empty()) acts.back().until_s = move.start_s;
       acts.push_back({.from_s = move.start_s, .until_s = running_end_s});

@@ -21,6 +21,13 @@ struct Doublet {
   std::array<double, 2> move_deg;  ///< of th1, th2 in the reference model
 };
 
+/// A smooth move of both joints to a set-point, [[move]]: from rest to rest, all the way.
+struct Move {
+  double start_s;
+  double duration_s;
+  std::array<double, 2> to_deg;  ///< th1 and th2 at the end, whatever they were before
+};
+
 enum class FreezeTarget : std::uint8_t { kNone, kPlant, kControl };
 
 /// A thing that happens to the simulated rig, [[sim_event]]. Real backends refuse it.
@@ -32,6 +39,12 @@ struct SimEvent {
   bool kill;                 ///< the process kills itself with SIGKILL
 };
 
+/// When a doublet or a move acts.
+struct Motion {
+  double start_s;
+  double duration_s;
+};
+
 /// What one run does, config/experiments/*.toml.
 struct Experiment {
   std::string name;
@@ -39,8 +52,10 @@ struct Experiment {
   double duration_s;
   std::vector<Doublet> doublet;  ///< in order of time, not overlapping
   std::vector<SimEvent> sim_event;
+  std::vector<Move> move{};  ///< in order of time, not overlapping each other or a doublet
 
   std::vector<Problem> Problems() const;
+  std::vector<Motion> Motions() const;  ///< doublets and moves, in order of time
 };
 
 }  // namespace flexarm

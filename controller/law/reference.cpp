@@ -5,11 +5,13 @@
 #include <numbers>
 #include <string>
 
+#include "controller/law/motion_profile.h"
 #include "controller/law/refused.h"
 
 namespace flexarm {
 namespace {
 
+constexpr int kShortestMove = 10;        // periods: fewer are no smooth profile any more
 constexpr double kGridTolerance = 1e-6;  // of a period: decimal times added in binary
 
 int OnGrid(double time_s, double period_s, const std::string& what) {
@@ -42,6 +44,21 @@ double Displacement(const std::vector<double>& shape, double period_s) {
   return displacement;
 }
 
+// Holds amplitude(i) * shape[k] from sample `first` on.
+void Write(const Eigen::Vector2d& amplitude, const std::vector<double>& shape, int first,
+           std::vector<ReferenceSample>* samples) {
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    ReferenceSample& sample = (*samples)[static_cast<std::size_t>(first) + k];
+    for (std::size_t i = 0; i < 2; ++i) {
+      sample.u_m_nm[i] = amplitude(static_cast<Eigen::Index>(i)) * shape[k];
+    }
+  }
+}
+
+Eigen::Vector2d Radians(const std::array<double, 2>& deg) {
+  return Eigen::Vector2d(deg[0], deg[1]) * std::numbers::pi / 180.0;
+}
+
 void AddDoublet(const Doublet& doublet, std::size_t row, const Design& design, double period_s,
                 std::vector<ReferenceSample>* samples) {
   const std::string name = "doublet[" + std::to_string(row) + "]";
@@ -53,17 +70,37 @@ void AddDoublet(const Doublet& doublet, std::size_t row, const Design& design, d
                   " s, so that its two halves cancel");
   }
   const std::vector<double> shape = Shape(doublet.shape, count);
-  const Eigen::Vector2d move =
-      Eigen::Vector2d(doublet.move_deg[0], doublet.move_deg[1]) * std::numbers::pi / 180.0;
   const Eigen::Vector2d amplitude =
-      design.rigid_inertia_kgm2 * move / Displacement(shape, period_s);
-  for (int k = 0; k < count; ++k) {
-    ReferenceSample& sample =
-        (*samples)[static_cast<std::size_t>(first) + static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < 2; ++i) {
-      sample.u_m_nm[i] =
-          amplitude(static_cast<Eigen::Index>(i)) * shape[static_cast<std::size_t>(k)];
+      design.rigid_inertia_kgm2 * Radians(doublet.move_deg) / Displacement(shape, period_s);
+  Write(amplitude, shape, first, samples);
+}
+
+// A move by `by_rad`, with its row's number for messages.
+void AddMove(const Move& move, std::size_t row, const Eigen::Vector2d& by_rad, const Design& design,
+             double period_s, std::vector<ReferenceSample>* samples) {
+  const std::string name = "move[" + std::to_string(row) + "]";
+  const int first = OnGrid(move.start_s, period_s, name + ".start_s");
+  const int count = OnGrid(move.duration_s, period_s, name + ".duration_s");
+  if (count < kShortestMove) {
+    throw Refused(name + ".duration_s = " + std::to_string(move.duration_s) +
+                  " s must be at least " + std::to_string(kShortestMove) + " periods of " +
+                  std::to_string(period_s) + " s");
+  }
+  Write(design.rigid_inertia_kgm2 * by_rad, QuinticAccelerations(count, period_s), first, samples);
+}
+
+void AddMoves(const Experiment& experiment, const Design& design, double period_s,
+              const std::array<double, 2>& start_rad, std::vector<ReferenceSample>* samples) {
+  Eigen::Vector2d place(start_rad[0], start_rad[1]);
+  std::size_t doublets = 0;  // so many came before the move
+  for (std::size_t row = 0; row < experiment.move.size(); ++row) {
+    const Move& move = experiment.move[row];
+    for (; doublets < experiment.doublet.size(); ++doublets) {
+      if (experiment.doublet[doublets].start_s > move.start_s) break;
+      place += Radians(experiment.doublet[doublets].move_deg);
     }
+    AddMove(move, row, Radians(move.to_deg) - place, design, period_s, samples);
+    place = Radians(move.to_deg);
   }
 }
 
@@ -77,6 +114,7 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
   for (std::size_t row = 0; row < experiment.doublet.size(); ++row) {
     AddDoublet(experiment.doublet[row], row, design, period_s, &samples_);
   }
+  AddMoves(experiment, design, period_s, start_rad, &samples_);
   rest_.x_m[0] = start_rad[0];
   rest_.x_m[1] = start_rad[1];
   Eigen::VectorXd x_m = Eigen::VectorXd::Zero(design.Am.rows());

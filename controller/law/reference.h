@@ -15,13 +15,15 @@ namespace flexarm {
 /// periods, with u_m = 0: what comes after the end.
 class ReferenceTable {
  public:
-  /// Runs the reference model over the experiment's doublets, from rest at `start_rad`.
+  /// Runs the reference model over the experiment's doublets and moves, from rest at `start_rad`.
   ///
   /// A doublet of amplitude a = M_r dtheta / d moves by dtheta, d the displacement of a unit
   /// inertia under the doublet's sampled shape (T^2/4 for a square, thesis 7.5). Its area is zero,
   /// so the reference model, a double integrator, ends at rest. A design with a shaper convolves
   /// all that with its weights: every move then ends as much later as the shaper is long.
-  /// @throws Refused naming the doublet whose times do not lie on the grid of `period_s`,
+  /// A move is u_m = M_r (to - from) times QuinticAccelerations: its rigid coordinates follow the
+  /// profile and end exactly at the set-point.
+  /// @throws Refused naming the doublet or move whose times do not lie on the grid of `period_s`,
   ///         or the instant at which the reference would leave +-`limit_rad`, or that the
   ///         shaped moves would end after the experiment
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,

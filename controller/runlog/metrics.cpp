@@ -149,11 +149,11 @@ void JudgeAllTicks(std::span<const TickRecord> ticks, std::span<const Sample> sa
 std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s) {
   std::vector<Rest> rests;
   const double end_s = std::min(run_end_s, experiment.duration_s);
-  for (std::size_t i = 0; i < experiment.doublet.size(); ++i) {
-    const Doublet& move = experiment.doublet[i];
-    const bool last = i + 1 == experiment.doublet.size();
-    const Rest rest{.start_s = move.start_s + move.duration_s,
-                    .end_s = last ? end_s : std::min(end_s, experiment.doublet[i + 1].start_s)};
+  const std::vector<Motion> motions = experiment.Motions();
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const bool last = i + 1 == motions.size();
+    const Rest rest{.start_s = motions[i].start_s + motions[i].duration_s,
+                    .end_s = last ? end_s : std::min(end_s, motions[i + 1].start_s)};
     if (rest.end_s > rest.start_s) rests.push_back(rest);
   }
   return rests;

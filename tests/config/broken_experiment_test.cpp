@@ -41,6 +41,45 @@ at_s = 2.5
 kill = true
 )";
 
+constexpr const char* kMoves = R"(name = "moves"
+duration_s = 6.0
+
+[[doublet]]
+start_s = 0.0
+duration_s = 1.0
+shape = "square"
+move_deg = [30.0, 30.0]
+
+[[move]]
+start_s = 1.2
+duration_s = 0.8
+to_deg = [10.0, -5.0]
+
+[[move]]
+start_s = 2.6
+duration_s = 1.4
+to_deg = [0.0, 0.0]
+)";
+
+TEST(ExperimentFile, MovesAreReadWhole) {
+  const Experiment e = ParseExperiment(kMoves, "e.toml");
+  ASSERT_EQ(e.move.size(), 2U);
+  EXPECT_EQ(e.move[0].start_s, 1.2);
+  EXPECT_EQ(e.move[0].duration_s, 0.8);
+  EXPECT_EQ(e.move[0].to_deg, (std::array{10.0, -5.0}));
+}
+
+TEST(ExperimentFile, MotionsAreDoubletsAndMovesInOrderOfTime) {
+  Experiment e = ParseExperiment(kMoves, "e.toml");
+  e.doublet[0].start_s = 4.5;
+  const std::vector<Motion> motions = e.Motions();
+  ASSERT_EQ(motions.size(), 3U);
+  EXPECT_EQ(motions[0].start_s, 1.2);
+  EXPECT_EQ(motions[1].start_s, 2.6);
+  EXPECT_EQ(motions[1].duration_s, 1.4);
+  EXPECT_EQ(motions[2].start_s, 4.5);
+}
+
 TEST(ExperimentFile, IsReadWhole) {
   const Experiment e = ParseExperiment(kExperiment, "e.toml");
   EXPECT_EQ(e.name, "switch");
@@ -70,6 +109,7 @@ struct BrokenCase {
   std::string key;
   std::string rule;
   std::string line_of = {};
+  std::string text = kExperiment;
 };
 
 void PrintTo(const BrokenCase& c, std::ostream* out) { *out << c.name; }
@@ -78,7 +118,7 @@ class BrokenExperiment : public ::testing::TestWithParam<BrokenCase> {};
 
 TEST_P(BrokenExperiment, IsReportedOnceWithLineKeyAndRule) {
   const BrokenCase& c = GetParam();
-  const std::string text = Replaced(kExperiment, c.from, c.to);
+  const std::string text = Replaced(c.text, c.from, c.to);
   try {
     ParseExperiment(text, "e.toml");
     FAIL() << "was accepted";
@@ -110,6 +150,16 @@ const BrokenCase kBroken[] = {
     {"NoMoveDuration", "duration_s = 1.5", "duration_s = 0", "doublet[1].duration_s", "above 0"},
     {"WildMove", "move_deg = [-30.0, 0.0]", "move_deg = [-30.0, 400.0]", "doublet[1].move_deg[1]",
      "-360 .. 360"},
+    {"MoveBeyondTheEnd", "duration_s = 1.4", "duration_s = 3.6", "move[1].duration_s",
+     "the move ends at 6.2 s", "", kMoves},
+    {"MovesOverlap", "start_s = 2.6", "start_s = 1.9", "move[1].start_s", "do not overlap", "",
+     kMoves},
+    {"MoveDuringADoublet", "start_s = 1.2", "start_s = 0.9", "move[0].start_s",
+     "must not overlap a doublet", "", kMoves},
+    {"MoveWithoutAGoal", "to_deg = [10.0, -5.0]", "", "move[0].to_deg", "missing", "[[move]]",
+     kMoves},
+    {"WildSetPoint", "to_deg = [10.0, -5.0]", "to_deg = [10.0, -500.0]", "move[0].to_deg[1]",
+     "-360 .. 360", "", kMoves},
     {"EventAfterTheEnd", "at_s = 2.5", "at_s = 6.5", "sim_event[2].at_s", "inside the experiment"},
     {"UnknownLine", "line = \"limit-1-high\"", "line = \"limit-3-high\"", "sim_event[0].line",
      "\"emergency-stop\""},
