@@ -116,7 +116,8 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
   verb->add_option(
       "--controller", options->controller,
       "controller.name: sobel, sobel-original, lqr-cgt, lqr-um, lqg, pd, pd-zv, pd-zvd");
-  verb->add_option("--estimator", options->estimator, "estimator.name: kalman, difference, polynomial");
+  verb->add_option("--estimator", options->estimator,
+                   "estimator.name: kalman, difference, polynomial");
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payload that the plant carries; the design keeps the config's")
       ->check(CLI::Range(0.0, 100.0));
