@@ -19,7 +19,7 @@ void ReadModbusIdentity(TableReader row, ModbusIdentity* out) {
   row.Read("expected", &out->expected);
 }
 
-void ReadModbusLine(TableReader row, ModbusRegister* out) {
+void ReadModbusLine(const TableReader& row, ModbusRegister* out) {
   out->role = ModbusRole::kInput;
   out->type = ModbusType::kBit;
   Line line{};

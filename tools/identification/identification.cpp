@@ -216,6 +216,7 @@ Identification Identify(const Config& config, const RunComparison& run,
                         const std::vector<FreeParameter>& free,
                         const std::function<void(std::size_t)>& progress) {
   std::vector<double> x;
+  x.reserve(free.size());
   for (const FreeParameter& p : free) x.push_back(ToUnit(p, p.start));
   Identification out{};
   out.start_misfit = Misfit(run, run.Predict(config));

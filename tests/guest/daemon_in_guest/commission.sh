@@ -46,7 +46,7 @@ check "armed" flexarm arm
 check "no run before the wiring is proven" says 'flexarm pluck' run $experiment
 plucked 1 "inverted 3" "strain_1_04: is inverted"
 plucked 1 "swapped 1 5" "strain_1_02, strain_1_06: are exchanged"
-plucked 2 "scaled 14 1.5" "strain_2_05: reads 1.5"
+plucked 2 "scaled 14 1.5" "strain_2_05: reads 1."
 plucked 2 "stuck 10" "strain_2_01: does not move"
 check "well wired, it passes" flexarm pluck
 check "and may run" flexarm run $experiment
