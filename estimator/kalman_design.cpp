@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "estimator/gauge_model.h"
 #include "model/discretize.h"
 #include "model/riccati.h"
 
@@ -15,38 +16,6 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Regularises W: keeps the Riccati equation definite, far below every physical noise (SI units).
 constexpr double kNoiseFloor = 1e-13;
-
-// The corner used when the rig has no gauge filter: fast enough to be a delay of 0.1 ms.
-constexpr double kNoFilterHz = 1600.0;
-
-struct Augmented {
-  Eigen::MatrixXd A, B, G;  // G: generalised forces on all degrees of freedom
-};
-
-Augmented Augment(const NominalModel& nominal, const StrainInputConfig& input) {
-  const bool second_order = input.filter_hz > 0.0 && input.filter_damping > 0.0;
-  const Eigen::Index n = nominal.A.rows(), dof = n / 2, flex = dof - 2;
-  const Eigen::Index states = n + (second_order ? 2 : 1) * flex;
-  const double w_f = kTwoPi * (input.filter_hz > 0.0 ? input.filter_hz : kNoFilterHz);
-  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(flex, flex);
-  Augmented out{.A = Eigen::MatrixXd::Zero(states, states),
-                .B = Eigen::MatrixXd::Zero(states, 2),
-                .G = Eigen::MatrixXd::Zero(states, dof)};
-  out.A.topLeftCorner(n, n) = nominal.A;
-  if (second_order) {  // phi_f'' = w_f^2 (phi - phi_f) - 2 zeta w_f phi_f'
-    const Eigen::Index rate = n + flex;
-    out.A.block(n, rate, flex, flex) = I;
-    out.A.block(rate, 2, flex, flex) = w_f * w_f * I;
-    out.A.block(rate, n, flex, flex) = -w_f * w_f * I;
-    out.A.block(rate, rate, flex, flex) = -2.0 * input.filter_damping * w_f * I;
-  } else {
-    out.A.block(n, 2, flex, flex) = w_f * I;
-    out.A.bottomRightCorner(flex, flex) = -w_f * I;
-  }
-  out.B.topRows(n) = nominal.B;
-  out.G.middleRows(dof, dof) = nominal.M.llt().solve(Eigen::MatrixXd::Identity(dof, dof));
-  return out;
-}
 
 Eigen::MatrixXd OutputMatrix(Eigen::Index n, Eigen::Index flex, Eigen::Index states) {
   Eigen::MatrixXd C = Eigen::MatrixXd::Zero(4 + flex, states);
@@ -75,9 +44,17 @@ Eigen::VectorXd OutputVariance(const SensorConfig& sensors, const EstimatorConfi
   return R;
 }
 
-Eigen::MatrixXd ProcessNoise(const Augmented& system, const EstimatorConfig& estimator,
-                             double period_s) {
-  const Eigen::MatrixXd G_d = ZeroOrderHold(system.A, system.G, period_s).B;
+// G: generalised forces on all degrees of freedom.
+Eigen::MatrixXd ForceMatrix(const NominalModel& nominal, Eigen::Index states) {
+  const Eigen::Index dof = nominal.M.rows();
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(states, dof);
+  G.middleRows(dof, dof) = nominal.M.llt().solve(Eigen::MatrixXd::Identity(dof, dof));
+  return G;
+}
+
+Eigen::MatrixXd ProcessNoise(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G,
+                             const EstimatorConfig& estimator, double period_s) {
+  const Eigen::MatrixXd G_d = ZeroOrderHold(A, G, period_s).B;
   Eigen::VectorXd sigma(G_d.cols());
   const Eigen::Index modes = (G_d.cols() - 2) / 2;
   for (Eigen::Index i = 0; i < 2; ++i) {
@@ -87,17 +64,16 @@ Eigen::MatrixXd ProcessNoise(const Augmented& system, const EstimatorConfig& est
     }
   }
   const Eigen::MatrixXd scaled = G_d * sigma.asDiagonal();
-  return scaled * scaled.transpose() +
-         kNoiseFloor * Eigen::MatrixXd::Identity(system.A.rows(), system.A.rows());
+  return scaled * scaled.transpose() + kNoiseFloor * Eigen::MatrixXd::Identity(A.rows(), A.rows());
 }
 
 }  // namespace
 
 KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig& sensors,
                                 const EstimatorConfig& estimator, double period_s) {
-  const Augmented system = Augment(nominal, sensors.strain_input);
-  const DiscreteModel discrete = ZeroOrderHold(system.A, system.B, period_s);
   const Eigen::Index n = nominal.A.rows(), flex = n / 2 - 2;
+  const LinearModel system = WithGaugeFilter(nominal.A, nominal.B, 2, flex, sensors.strain_input);
+  const DiscreteModel discrete = ZeroOrderHold(system.A, system.B, period_s);
   const Eigen::MatrixXd C_all = OutputMatrix(n, flex, system.A.rows());
   const Eigen::VectorXd R_all = OutputVariance(sensors, estimator, flex);
 
@@ -107,7 +83,8 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
   }
   const Eigen::MatrixXd C = C_all(present, Eigen::all);
   const Eigen::MatrixXd R = Eigen::VectorXd(R_all(present)).asDiagonal();
-  const Eigen::MatrixXd W = ProcessNoise(system, estimator, period_s);
+  const Eigen::MatrixXd W =
+      ProcessNoise(system.A, ForceMatrix(nominal, system.A.rows()), estimator, period_s);
 
   // The filter's Riccati equation is the controller's of the transposed system.
   const Eigen::MatrixXd A_t = discrete.A.transpose(), C_t = C.transpose();

@@ -10,6 +10,7 @@
 
 #include "controller/law/tracking_law.h"
 #include "controller/runtime/stack_config.h"
+#include "estimator/gauge_model.h"
 #include "model/arm_model.h"
 #include "model/discretize.h"
 #include "model/linearization.h"
@@ -71,27 +72,14 @@ Plant PlantAt(const StackConfig& config, double payload_kg, double theta2_deg) {
   q(1) = q(3) = theta2_deg * std::numbers::pi / 180.0;
   const LinearModel linear = Linearize(model, q, VectorXd::Zero(dof), Eigen::Vector2d::Zero());
 
-  const StrainInputConfig& input = config.sensors.strain_input;
-  const MatrixXd I = MatrixXd::Identity(flex, flex);
-  const bool filtered = input.filter_hz > 0.0, second = filtered && input.filter_damping > 0.0;
-  const double w = 2.0 * std::numbers::pi * input.filter_hz;
-  const Index n = 2 * dof, states = n + (filtered ? flex : 0) + (second ? flex : 0);
-  Plant plant{.A = MatrixXd::Zero(states, states),
-              .B = MatrixXd::Zero(states, 2),
-              .C = MatrixXd::Zero(4 + 2 * config.estimator.modes_per_link, states)};
-  plant.A.topLeftCorner(n, n) = linear.A;
-  plant.B.topRows(n) = linear.B;
-  if (second) {
-    plant.A.block(n, n + flex, flex, flex) = I;
-    plant.A.block(n + flex, 4, flex, flex) = w * w * I;
-    plant.A.block(n + flex, n, flex, flex) = -w * w * I;
-    plant.A.block(n + flex, n + flex, flex, flex) = -2.0 * input.filter_damping * w * I;
-  } else if (filtered) {
-    plant.A.block(n, 4, flex, flex) = w * I;
-    plant.A.block(n, n, flex, flex) = -w * I;
-  }
+  const Index n = 2 * dof;
+  const LinearModel measured =
+      WithGaugeFilter(linear.A, linear.B, 4, flex, config.sensors.strain_input);
+  Plant plant{.A = measured.A,
+              .B = measured.B,
+              .C = MatrixXd::Zero(4 + 2 * config.estimator.modes_per_link, measured.A.rows())};
   plant.C.topLeftCorner(4, 4).setIdentity();
-  plant.C.block(4, filtered ? n : 4, plant.C.rows() - 4, flex) = FitOf(model, config);
+  plant.C.block(4, n, plant.C.rows() - 4, flex) = FitOf(model, config);
   return plant;
 }
 
