@@ -190,17 +190,18 @@ TEST(Screen, AtTheGainMarginTheLoopIsOnTheEdge) {
   EXPECT_NEAR(ScreenDesign(config, scaled, {}).cases[0].spectral_radius, 1.0, 1e-3);
 }
 
-// Delay that the loop does not know of, 3 ms to either side of the margin.
+// Delay that the loop does not know of, 0.3 ms to either side of the margin: with 0.2 ms a step
+// of the loop in time, the next delays that are surely beyond and surely within.
 TEST(Screen, TheDelayMarginIsThatOfTheLoopInTime) {
   const Config config = ShippedRig();
   const double margin_s = ScreenDesign(config, ShippedDesign(), {}).margins.delay_s;
   const auto growth = [&config](double delay_s) {
     LoopInTime loop(config, ShippedDesign(), config.arm.payload_mass_kg, 0.0, 1.0, delay_s);
-    const double early = loop.Run(150);
-    return std::pow(loop.Run(250) / early, 1.0 / 250.0);
+    const double early = loop.Run(1500);
+    return std::pow(loop.Run(1500) / early, 1.0 / 1500.0);
   };
-  EXPECT_LT(growth(margin_s - 0.003), 1.0);
-  EXPECT_GT(growth(margin_s + 0.003), 1.0);
+  EXPECT_LT(growth(margin_s - 0.0003), 1.0);
+  EXPECT_GT(growth(margin_s + 0.0003), 1.0);
 }
 
 }  // namespace
