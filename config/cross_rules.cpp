@@ -45,6 +45,35 @@ void CheckChannelsForFit(const Config& c, ProblemLog* log, std::vector<Problem>*
   }
 }
 
+// A model knows no mode that nothing measures; differences of what is not measured are none.
+void CheckNominalModel(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  constexpr const char* kKey = "controller.nominal";
+  if (!log->Clear({kKey, "estimator.modes_per_link", "estimator.name", "sensors.encoder"})) return;
+  const StateLayout& nominal = c.controller.nominal;
+  if (nominal.modes_per_link > c.estimator.modes_per_link) {
+    out->push_back({kKey, std::string(NameOf(nominal)),
+                    "has " + NumberText(nominal.modes_per_link) +
+                        " modes a link: estimator.modes_per_link = " +
+                        NumberText(c.estimator.modes_per_link) + " must be at least as many"});
+  }
+  constexpr unsigned kRotors = 0b1100;
+  if (nominal.torsion && c.estimator.kind != EstimatorKind::kKalman &&
+      (c.sensors.counters_present() & kRotors) != kRotors) {
+    out->push_back({kKey, std::string(NameOf(nominal)),
+                    "has rotor angles: without an encoder on each rotor only estimator.name = "
+                    "\"kalman\" can tell them"});
+  }
+}
+
+void CheckStateWeight(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  constexpr const char* kKey = "controller.state_weight";
+  if (!log->Clear({kKey, "controller.nominal"}) || c.controller.state_weight.empty()) return;
+  const auto states = static_cast<std::size_t>(c.controller.nominal.states());
+  if (c.controller.state_weight.size() == states) return;
+  out->push_back({kKey, NumberText(c.controller.state_weight.size()) + " numbers",
+                  "must have one for each state of controller.nominal: " + NumberText(states)});
+}
+
 // Between two samples a counter moves by less than half its range, or its direction is lost.
 void CheckCounters(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr std::string_view kKey = "estimator.max_joint_rate_rad_s";
@@ -155,17 +184,55 @@ void CheckGrid(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
   require("loop.acquire_before_ms", c.loop.acquire_before_ms);
 }
 
+// A frame is there when its last strain channel has been sampled; the plant's milliseconds are
+// integrated when they are over.
+void CheckSkew(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  if (!log->Clear({"sim.channel_skew_us", "loop.acquire_before_ms", "sensors.strain"})) return;
+  if (c.sim.channel_skew_us <= 0.0) return;
+  const double last_ms =
+      1e-3 * c.sim.channel_skew_us * static_cast<double>(c.sensors.strain.size() - 1);
+  if (last_ms + 2.0 <= c.loop.acquire_before_ms) return;
+  out->push_back({"sim.channel_skew_us", NumberText(c.sim.channel_skew_us),
+                  "must let the last strain channel be sampled 2 ms before the step is due: " +
+                      NumberText(last_ms) + " + 2 <= loop.acquire_before_ms = " +
+                      NumberText(c.loop.acquire_before_ms) + " does not hold"});
+}
+
+// The simulated drive takes a command every millisecond. Buses put a torque out with their
+// exchange.
+void CheckOutput(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  const auto require = [&](const char* key, double value) {
+    if (!log->Clear({key}) || IsMultiple(value, 1.0)) return;
+    out->push_back({key, NumberText(value),
+                    "must be whole milliseconds: the simulated drive takes a torque every one"});
+  };
+  require("sim.transport_delay_ms", c.sim.transport_delay_ms);
+  if (c.backend != "wired") {
+    if (c.loop.output == OutputTiming::kAtOnce)
+      require("loop.output_after_ms", c.loop.output_after_ms);
+    return;
+  }
+  if (!log->Clear({"loop.output"}) || c.loop.output == OutputTiming::kNextTick) return;
+  out->push_back({"loop.output", "\"at_once\"",
+                  "must be \"next_tick\" with hal.backend = \"wired\": a bus writes and reads in "
+                  "one exchange, at the sampling instant"});
+}
+
 }  // namespace
 
 void CheckCrossRules(const Config& config, ProblemLog* log) {
   std::vector<Problem> problems;
   CheckChannelsForFit(config, log, &problems);
+  CheckNominalModel(config, log, &problems);
+  CheckStateWeight(config, log, &problems);
   CheckCounters(config, log, &problems);
   CheckRates(config, log, &problems);
   CheckAnglesAndTorques(config, log, &problems);
   CheckStrainLimits(config, log, &problems);
   CheckStrainJudgement(config, log, &problems);
   CheckGrid(config, log, &problems);
+  CheckSkew(config, log, &problems);
+  CheckOutput(config, log, &problems);
   log->AddRules(problems);
 }
 

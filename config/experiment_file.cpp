@@ -1,10 +1,14 @@
+#include <map>
 #include <optional>
+#include <vector>
 
+#include "config/attachment.h"
 #include "config/config.h"
 #include "config/document.h"
 #include "config/line_key.h"
 #include "config/problem_log.h"
 #include "config/table_reader.h"
+#include "controller/runlog/errors.h"
 
 namespace flexarm {
 namespace {
@@ -19,8 +23,38 @@ void ReadDoublet(TableReader row, Doublet* out) {
 
 void ReadMove(TableReader row, Move* out) {
   row.Read("start_s", &out->start_s);
+  if (row.Has("duration_s")) row.Read("duration_s", &out->duration_s.emplace());
+  if (row.Has("profile")) {
+    row.Read("profile", &out->profile,
+             {{"quintic", MoveProfile::kQuintic}, {"septic", MoveProfile::kSeptic}});
+  }
+  if (!row.Has("to_tip_m")) {
+    row.Read("to_deg", &out->to_deg);
+    if (row.Has("elbow")) row.Refuse("elbow", "must stand beside to_tip_m: angles leave no choice");
+    return;
+  }
+  row.Read("to_tip_m", &out->to_tip_m.emplace());
+  if (row.Has("to_deg")) row.Refuse("to_deg", "must not stand beside to_tip_m: one goal a move");
+  if (row.Has("elbow")) {
+    row.Read("elbow", &out->elbow.emplace(),
+             {{"left", ElbowSide::kLeft}, {"right", ElbowSide::kRight}});
+  }
+}
+
+void ReadChirp(TableReader row, Chirp* out) {
+  row.Read("start_s", &out->start_s);
   row.Read("duration_s", &out->duration_s);
-  row.Read("to_deg", &out->to_deg);
+  row.Read("from_hz", &out->from_hz);
+  row.Read("to_hz", &out->to_hz);
+  row.Read("amplitude_deg", &out->amplitude_deg);
+}
+
+void ReadPrbs(TableReader row, Prbs* out) {
+  row.Read("start_s", &out->start_s);
+  row.Read("hold_s", &out->hold_s);
+  row.Read("bits", &out->bits);
+  row.Read("seed", &out->seed);
+  row.Read("torque_nm", &out->torque_nm);
 }
 
 void ReadSimEvent(TableReader row, SimEvent* out) {
@@ -43,6 +77,56 @@ void ReadSimEvent(TableReader row, SimEvent* out) {
   if (row.Has("kill")) row.Read("kill", &out->kill);
 }
 
+// What was appended to a text that was planned or sent before.
+using Attachments = std::map<std::string, std::string>;  // file name, text
+
+Attachments ReadAttachments(TableReader root) {
+  Attachments attached;
+  for (TableReader row : root.OptionalRows("attached")) {
+    std::string file, text;
+    row.Read("file", &file);
+    row.Read("text", &text);
+    attached[file] = text;
+  }
+  return attached;
+}
+
+void ReadPlannedMoves(TableReader root, Experiment* out) {
+  for (TableReader row : root.OptionalRows("planned_move")) {
+    int number = 0;
+    double duration_s = 0.0;
+    row.Read("row", &number);
+    row.Read("duration_s", &duration_s);
+    const auto i = static_cast<std::size_t>(number);
+    if (number < 0 || i >= out->move.size() || out->move[i].duration_s) {
+      row.Refuse("row", "must name a [[move]] without duration_s, counted from 0");
+      continue;
+    }
+    out->move[i].duration_s = duration_s;
+  }
+}
+
+void ReadCsv(TableReader csv, const Attachments& attached, Experiment* out) {
+  CsvTrajectory& trajectory = out->csv.emplace();
+  csv.Read("start_s", &trajectory.start_s);
+  csv.Read("file", &trajectory.file);
+  if (trajectory.file.empty()) return;
+  const auto found = attached.find(trajectory.file);
+  if (found == attached.end()) {
+    csv.Refuse("file",
+               "must be attached: read the experiment from its own file, or run it by "
+               "`flexarm run` or `flexarm simulate`, which attach what it names");
+    out->csv.reset();
+    return;
+  }
+  try {
+    trajectory.point = ReadTrajectory(trajectory.file, found->second);
+  } catch (const InputError& error) {
+    csv.Refuse("file", error.what());
+    out->csv.reset();
+  }
+}
+
 void ReadExperiment(TableReader root, Experiment* out) {
   root.Read("name", &out->name);
   root.Read("duration_s", &out->duration_s);
@@ -52,6 +136,15 @@ void ReadExperiment(TableReader root, Experiment* out) {
   for (const TableReader& row : root.OptionalRows("move")) {
     ReadMove(row, &out->move.emplace_back());
   }
+  for (const TableReader& row : root.OptionalRows("chirp")) {
+    ReadChirp(row, &out->chirp.emplace_back());
+  }
+  for (const TableReader& row : root.OptionalRows("prbs")) {
+    ReadPrbs(row, &out->prbs.emplace_back());
+  }
+  const Attachments attached = ReadAttachments(root);
+  if (root.Has("csv")) ReadCsv(root.Table("csv"), attached, out);
+  ReadPlannedMoves(root, out);
   for (const TableReader& row : root.OptionalRows("sim_event")) {
     ReadSimEvent(row, &out->sim_event.emplace_back());
   }
@@ -72,7 +165,8 @@ Experiment ParseExperiment(const std::string& text, const std::string& name) {
 }
 
 Experiment LoadExperiment(const std::filesystem::path& file) {
-  return ParseExperiment(ReadConfigFile(file), file.string());
+  const std::string text = ReadConfigFile(file);
+  return ParseExperiment(WithAttachments(text, file), file.string());
 }
 
 }  // namespace flexarm

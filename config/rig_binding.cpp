@@ -102,6 +102,8 @@ void ReadSim(TableReader sim, SimConfig* out) {
   sim.Read("seed", &out->seed);
   sim.Read("motor_lag_ms", &out->motor_lag_ms);
   sim.Read("transport_delay_ms", &out->transport_delay_ms);
+  sim.Read("lost_frame_fraction", &out->lost_frame_fraction);
+  sim.Read("channel_skew_us", &out->channel_skew_us);
   sim.Read("switch_angle_deg", &out->switch_angle_deg);
 }
 
@@ -132,6 +134,8 @@ void ReadController(TableReader controller, ControllerConfig* out) {
                    {"pd", ControllerKind::kPd},
                    {"pd-zv", ControllerKind::kPdZv},
                    {"pd-zvd", ControllerKind::kPdZvd}});
+  controller.Read("nominal", &out->nominal,
+                  {{"R12", kR12}, {"R8", kR8}, {"T12", kT12}, {"T16", kT16}});
   controller.Read("alpha", &out->alpha);
   controller.Read("vartheta", &out->vartheta);
   controller.Read("sigma", &out->sigma);
@@ -140,9 +144,12 @@ void ReadController(TableReader controller, ControllerConfig* out) {
       {{"printed", FeedforwardSign::kPrinted}, {"corrected", FeedforwardSign::kCorrected}});
   controller.Read("hub_angle_weight", &out->hub_angle_weight);
   controller.Read("hub_rate_weight", &out->hub_rate_weight);
+  if (controller.Has("state_weight")) controller.Read("state_weight", &out->state_weight);
   controller.Read("torque_weight", &out->torque_weight);
   controller.Read("passivity_margin", &out->passivity_margin);
   controller.Read("adaptation_gain", &out->adaptation_gain);
+  controller.Read("adaptation_dead_zone_nm", &out->adaptation_dead_zone_nm);
+  controller.Read("adaptation_bound", &out->adaptation_bound);
   controller.Read("pd_stiffness_nm_per_rad", &out->pd_stiffness_nm_per_rad);
   controller.Read("pd_damping_nms_per_rad", &out->pd_damping_nms_per_rad);
   controller.Read("prediction", &out->prediction);
@@ -157,6 +164,7 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   limits.Read("soft_angle_deg", &out->soft_angle_deg);
   limits.Read("hub_rate_rad_s", &out->hub_rate_rad_s);
   limits.Read("strain_limit", &out->strain_limit);
+  limits.Read("plan_fraction", &out->plan_fraction);
   TableReader safety = root.Table("safety");
   safety.Read("rest_hub_rate_rad_s", &out->rest_hub_rate_rad_s);
   safety.Read("rest_strain_rate_per_s", &out->rest_strain_rate_per_s);
@@ -217,6 +225,10 @@ void ReadTiming(TableReader root, Config* config) {
   loop.Read("period_ms", &config->loop.period_ms);
   loop.Read("acquire_before_ms", &config->loop.acquire_before_ms);
   loop.Read("step_deadline_ms", &config->loop.step_deadline_ms);
+  loop.Read("output", &config->loop.output,
+            {{"next_tick", OutputTiming::kNextTick}, {"at_once", OutputTiming::kAtOnce}});
+  loop.Read("output_after_ms", &config->loop.output_after_ms);
+  loop.Read("actuation_delay_ms", &config->loop.actuation_delay_ms);
   root.Table("daemon").Read("socket", &config->daemon.socket);
   root.Table("log").Read("directory", &config->daemon.log_directory);
 }

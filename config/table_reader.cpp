@@ -148,6 +148,20 @@ void TableReader::ReadNumbers(std::string_view key, double* out, std::size_t cou
   }
 }
 
+void TableReader::Read(std::string_view key, std::vector<double>* out) {
+  constexpr std::string_view kWanted = "an array of finite numbers";
+  const toml::node* node = Find(key, kWanted);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->empty()) return Mistyped(key, *node, kWanted);
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const toml::node& element = *array->get(i);
+    const std::optional<double> number = FiniteNumber(element);
+    if (!number) Mistyped(ProblemList::Element(key, i), element, "a finite number");
+    out->push_back(number.value_or(kUnread));
+  }
+}
+
 void TableReader::Mistyped(std::string_view key, const toml::node& node, std::string_view wanted) {
   log_->Add(Key(key), node, "must be " + std::string(wanted));
 }

@@ -40,6 +40,7 @@ class TableReader {
   void Read(std::string_view key, std::array<double, n>* out) {
     ReadNumbers(key, out->data(), n);
   }
+  void Read(std::string_view key, std::vector<double>* out);  // however many
   template <typename E>
   void Read(std::string_view key, E* out, std::initializer_list<NamedValue<E>> values);
 

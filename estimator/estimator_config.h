@@ -17,9 +17,10 @@ enum class EstimatorKind : std::uint8_t {
 /// Section [estimator].
 struct EstimatorConfig {
   EstimatorKind kind;  ///< key `name`
-  int modes_per_link;  ///< modal coordinates fitted a link, 1 or 2
-  /// Standard deviations of the Kalman filter's generalised process forces on th1 th2 f11 f12 f21
-  /// f22 (N m, N m, N x 4, tip-normalised).
+  int modes_per_link;  ///< modal coordinates fitted a link, 1 or 2; the model may use fewer
+  /// Standard deviations of the Kalman filter's generalised process forces on joint 1, joint 2 (hub
+  /// and rotor alike, where the model tells them apart), f11 f12 f21 f22 (N m, N m, N x 4,
+  /// tip-normalised).
   std::array<double, 6> process_force;
   std::array<double, 2> rotor_extra_sigma_rad;  ///< added to the quantisation of rotor encoders
   std::array<double, 4> modal_sigma_m;          ///< of the fitted f11 f12 f21 f22

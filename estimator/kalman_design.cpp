@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "estimator/gauge_model.h"
@@ -17,17 +19,21 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 // Regularises W: keeps the Riccati equation definite, far below every physical noise (SI units).
 constexpr double kNoiseFloor = 1e-13;
 
-Eigen::MatrixXd OutputMatrix(Eigen::Index n, Eigen::Index flex, Eigen::Index states) {
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(4 + flex, states);
-  C(0, 0) = C(1, 1) = C(2, 0) = C(3, 1) = 1.0;
-  C.block(4, n, flex, flex).setIdentity();
+Eigen::MatrixXd OutputMatrix(const StateLayout& layout, Eigen::Index states) {
+  const Eigen::Index flex = Eigen::Index{2} * layout.modes_per_link;
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(layout.outputs(), states);
+  for (int joint = 0; joint < 2; ++joint) {
+    C(joint, layout.hub(joint)) = 1.0;
+    C(2 + joint, layout.rotor(joint)) = 1.0;
+  }
+  C.block(4, layout.states(), flex, flex).setIdentity();
   return C;
 }
 
 // Variances of the outputs: quantisation q^2/12 of the counters, stated noise of the rest.
 Eigen::VectorXd OutputVariance(const SensorConfig& sensors, const EstimatorConfig& estimator,
-                               Eigen::Index flex) {
-  Eigen::VectorXd R = Eigen::VectorXd::Ones(4 + flex);
+                               const StateLayout& layout) {
+  Eigen::VectorXd R = Eigen::VectorXd::Ones(layout.outputs());
   for (const EncoderConfig& encoder : sensors.encoder) {
     const double q = kTwoPi / encoder.counts_per_turn;
     const bool rotor = encoder.counter >= 2;
@@ -36,10 +42,12 @@ Eigen::VectorXd OutputVariance(const SensorConfig& sensors, const EstimatorConfi
               : 0.0;
     R(encoder.counter) = q * q / 12.0 + extra * extra;
   }
-  for (Eigen::Index i = 0; i < flex; ++i) {
-    const Eigen::Index link = i / (flex / 2), mode = i % (flex / 2);
-    const double sigma = estimator.modal_sigma_m[static_cast<std::size_t>(2 * link + mode)];
-    R(4 + i) = sigma * sigma;
+  for (int link = 0; link < 2; ++link) {
+    for (int mode = 0; mode < layout.modes_per_link; ++mode) {
+      const auto row = static_cast<std::size_t>(link), column = static_cast<std::size_t>(mode);
+      const double sigma = estimator.modal_sigma_m[2 * row + column];
+      R(layout.output(layout.mode(link, mode))) = sigma * sigma;
+    }
   }
   return R;
 }
@@ -52,30 +60,50 @@ Eigen::MatrixXd ForceMatrix(const NominalModel& nominal, Eigen::Index states) {
   return G;
 }
 
-Eigen::MatrixXd ProcessNoise(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G,
-                             const EstimatorConfig& estimator, double period_s) {
-  const Eigen::MatrixXd G_d = ZeroOrderHold(A, G, period_s).B;
-  Eigen::VectorXd sigma(G_d.cols());
-  const Eigen::Index modes = (G_d.cols() - 2) / 2;
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    sigma(i) = estimator.process_force[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < modes; ++j) {
-      sigma(2 + i * modes + j) = estimator.process_force[static_cast<std::size_t>(2 + 2 * i + j)];
+Eigen::VectorXd ForceSigma(const StateLayout& layout, const EstimatorConfig& estimator) {
+  Eigen::VectorXd sigma(layout.dof());
+  for (int i = 0; i < 2; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    sigma(layout.hub(i)) = sigma(layout.rotor(i)) = estimator.process_force[joint];
+    for (int j = 0; j < layout.modes_per_link; ++j) {
+      sigma(layout.mode(i, j)) =
+          estimator.process_force[2 + 2 * joint + static_cast<std::size_t>(j)];
     }
   }
+  return sigma;
+}
+
+Eigen::MatrixXd ProcessNoise(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G,
+                             const Eigen::VectorXd& sigma, double period_s) {
+  const Eigen::MatrixXd G_d = ZeroOrderHold(A, G, period_s).B;
   const Eigen::MatrixXd scaled = G_d * sigma.asDiagonal();
   return scaled * scaled.transpose() + kNoiseFloor * Eigen::MatrixXd::Identity(A.rows(), A.rows());
+}
+
+// The filter's Riccati equation is the controller's of the transposed system.
+Eigen::MatrixXd FilterCovariance(const NominalModel& nominal, const Eigen::MatrixXd& A_t,
+                                 const Eigen::MatrixXd& C_t, const Eigen::MatrixXd& W,
+                                 const Eigen::MatrixXd& R) {
+  try {
+    return SolveDare(A_t, C_t, W, R);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(
+        "the sensors of the rig do not determine the state of the nominal model " +
+        std::string(NameOf(nominal.layout)) + " (" + error.what() + ")");
+  }
 }
 
 }  // namespace
 
 KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig& sensors,
                                 const EstimatorConfig& estimator, double period_s) {
-  const Eigen::Index n = nominal.A.rows(), flex = n / 2 - 2;
-  const LinearModel system = WithGaugeFilter(nominal.A, nominal.B, 2, flex, sensors.strain_input);
+  const StateLayout& layout = nominal.layout;
+  const LinearModel system =
+      WithGaugeFilter(nominal.A, nominal.B, layout.mode(0, 0),
+                      Eigen::Index{2} * layout.modes_per_link, sensors.strain_input);
   const DiscreteModel discrete = ZeroOrderHold(system.A, system.B, period_s);
-  const Eigen::MatrixXd C_all = OutputMatrix(n, flex, system.A.rows());
-  const Eigen::VectorXd R_all = OutputVariance(sensors, estimator, flex);
+  const Eigen::MatrixXd C_all = OutputMatrix(layout, system.A.rows());
+  const Eigen::VectorXd R_all = OutputVariance(sensors, estimator, layout);
 
   std::vector<Eigen::Index> present;  // rows of C that the rig measures
   for (Eigen::Index row = 0; row < C_all.rows(); ++row) {
@@ -83,12 +111,11 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
   }
   const Eigen::MatrixXd C = C_all(present, Eigen::all);
   const Eigen::MatrixXd R = Eigen::VectorXd(R_all(present)).asDiagonal();
-  const Eigen::MatrixXd W =
-      ProcessNoise(system.A, ForceMatrix(nominal, system.A.rows()), estimator, period_s);
+  const Eigen::MatrixXd W = ProcessNoise(system.A, ForceMatrix(nominal, system.A.rows()),
+                                         ForceSigma(layout, estimator), period_s);
 
-  // The filter's Riccati equation is the controller's of the transposed system.
   const Eigen::MatrixXd A_t = discrete.A.transpose(), C_t = C.transpose();
-  const Eigen::MatrixXd P = SolveDare(A_t, C_t, W, R);
+  const Eigen::MatrixXd P = FilterCovariance(nominal, A_t, C_t, W, R);
   const Eigen::MatrixXd S = C * P * C_t + R;
   const Eigen::MatrixXd gain = S.llt().solve(C * P).transpose();
 
@@ -96,6 +123,8 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
                       .B = discrete.B,
                       .C = C_all,
                       .L = Eigen::MatrixXd::Zero(system.A.rows(), C_all.rows()),
+                      .A_rate = system.A,
+                      .B_rate = system.B,
                       .residual = DareResidual(A_t, C_t, W, R, P)};
   for (std::size_t i = 0; i < present.size(); ++i) {
     design.L.col(present[i]) = gain.col(static_cast<Eigen::Index>(i));

@@ -12,17 +12,19 @@ namespace flexarm {
 ///
 /// States: the nominal model's n, then the filtered modal coordinates phi_f' = w_f (phi - phi_f),
 /// or phi_f and phi_f' of phi_f'' = w_f^2 (phi - phi_f) - 2 zeta w_f phi_f' behind a second-order
-/// filter. Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f..]: 4 + 2 m rows, u the torque
-/// applied during the last interval. The gain column of an encoder that the rig does not have is
-/// zero.
+/// filter. Outputs y = [th1, th2, th3, th4, phi_f..]: 4 + 2 m rows; to a model with rigid joints
+/// the rotors show their hubs, as th3 - u1/K1 and th4 - u2/K2, u the torque applied during the last
+/// interval. The gain column of an encoder that the rig does not have is zero.
 ///   x(k|k) = x(k|k-1) + L (y - C x(k|k-1)),  x(k+1|k) = A x(k|k) + B u(k)
 /// Source: control.md section 4, "Kalman filter".
 struct KalmanDesign {
   Eigen::MatrixXd A, B, C, L;
-  double residual;  ///< of the filter's Riccati equation, relative
+  Eigen::MatrixXd A_rate, B_rate;  ///< the same system continuous: x' = A_rate x + B_rate u, 1/s
+  double residual;                 ///< of the filter's Riccati equation, relative
 };
 
-/// @throws std::runtime_error when the Riccati equation has no stabilising solution
+/// @throws std::runtime_error when the Riccati equation has no stabilising solution: the sensors
+///         do not see a motion that does not die out by itself
 KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig& sensors,
                                 const EstimatorConfig& estimator, double period_s);
 

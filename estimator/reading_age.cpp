@@ -26,4 +26,9 @@ SensorFrame WithoutStaleReadings(SensorFrame frame, std::int64_t instant_ns,
   return frame;
 }
 
+bool StrainsAreOf(const SensorFrame& frame, std::int64_t instant_ns) noexcept {
+  const std::uint32_t now = Fresh(frame.strain_offset_ns, instant_ns - frame.sampled_at_ns, 0);
+  return (frame.strain_valid & ~now) == 0;
+}
+
 }  // namespace flexarm

@@ -13,4 +13,7 @@ namespace flexarm {
 SensorFrame WithoutStaleReadings(SensorFrame frame, std::int64_t instant_ns,
                                  std::int64_t max_age_ns) noexcept;
 
+/// True if every good strain reading was taken at `instant_ns`. Real-time: safe.
+bool StrainsAreOf(const SensorFrame& frame, std::int64_t instant_ns) noexcept;
+
 }  // namespace flexarm

@@ -6,70 +6,99 @@ StateEstimator::StateEstimator(const EstimatorConfig& config, const FilterGains&
                                double period_s,
                                const std::array<double, 2>& joint_stiffness_nm_per_rad)
     : kind_(config.kind),
+      layout_(gains.layout),
       period_s_(period_s),
       joint_stiffness_(joint_stiffness_nm_per_rad),
-      modes_(config.modes_per_link),
-      states_(2 * (2 + 2 * config.modes_per_link)),
-      A_(gains.A),
-      B_(gains.B),
+      hold_({.A = gains.A, .B = gains.B}, gains.A_rate, gains.B_rate, period_s),
       C_(gains.C),
-      L_(gains.L) {
+      L_(gains.L),
+      modal_rate_x_(gains.C.bottomRows(2 * gains.layout.modes_per_link) * gains.A_rate),
+      modal_rate_u_(gains.C.bottomRows(2 * gains.layout.modes_per_link) * gains.B_rate) {
   Reset();
 }
 
 void StateEstimator::Reset() noexcept {
-  x_ = FilterVector::Zero(A_.rows());
+  x_ = FilterVector::Zero(L_.rows());
   y_before_ = OutputVector::Zero(C_.rows());
   started_ = false;
 }
 
-// y = [th1, th2, th3 - u1/K1, th4 - u2/K2, f..]: a rotor leads its hub by the torsion u/K.
+// y = [th1, th2, th3, th4, f..]. A rotor leads its hub by the torsion u/K, which a model with rigid
+// joints does not know: it gets th3 - u1/K1, th4 - u2/K2, u the torque that acts at the sample: the
+// springs follow within a few ms.
 StateEstimator::OutputVector StateEstimator::Measure(const DecodedCounters& counters,
                                                      const FittedModes& modes,
                                                      const std::array<double, 2>& torque_nm,
                                                      std::uint32_t* good) const noexcept {
   OutputVector y = OutputVector::Zero(C_.rows());
   *good = counters.good;
-  y(0) = counters.angle_rad[0];
-  y(1) = counters.angle_rad[1];
-  y(2) = counters.angle_rad[2] - torque_nm[0] / joint_stiffness_[0];
-  y(3) = counters.angle_rad[3] - torque_nm[1] / joint_stiffness_[1];
-  for (int i = 0; i < 2 * modes_; ++i) {
-    const std::size_t link = i < modes_ ? 0 : 1;
-    const std::size_t mode = static_cast<std::size_t>(i % modes_);
-    y(4 + i) = modes.modal_m[2 * link + mode];
-    if (modes.valid[link]) *good |= std::uint32_t{1} << (4 + i);
+  for (Eigen::Index i = 0; i < 4; ++i) y(i) = counters.angle_rad[static_cast<std::size_t>(i)];
+  for (int i = 0; i < 2; ++i) {
+    const auto link = static_cast<std::size_t>(i);
+    if (!layout_.torsion) y(2 + i) -= torque_nm[link] / joint_stiffness_[link];
+    for (int j = 0; j < layout_.modes_per_link; ++j) {
+      const int row = layout_.output(layout_.mode(i, j));
+      y(row) = modes.modal_m[2 * link + static_cast<std::size_t>(j)];
+      if (modes.valid[link]) *good |= std::uint32_t{1} << row;
+    }
   }
   return y;
 }
 
-StateEstimator::Estimate StateEstimator::Update(
-    const DecodedCounters& counters, const FittedModes& modes,
-    const std::array<double, 2>& applied_torque_nm) noexcept {
+std::array<double, 4> StateEstimator::ModalRates(const TorquePieces& applied) const noexcept {
+  const auto modes = static_cast<std::size_t>(layout_.modes_per_link);
+  const Eigen::Index flex = Eigen::Index{2} * layout_.modes_per_link;
+  OutputVector rate = OutputVector::Zero(flex);
+  if (started_ && kind_ == EstimatorKind::kKalman) {
+    FilterVector x = x_;
+    hold_.Advance(applied, &x);
+    const std::array<double, 2> torque_nm = applied.last_nm();
+    rate = modal_rate_x_.lazyProduct(x);
+    rate += modal_rate_u_.col(0) * torque_nm[0];
+    rate += modal_rate_u_.col(1) * torque_nm[1];
+  } else if (started_) {
+    rate = x_.segment(layout_.dof() + layout_.mode(0, 0), flex);
+  }
+  std::array<double, 4> out{};
+  for (std::size_t link = 0; link < 2; ++link) {
+    for (std::size_t mode = 0; mode < modes; ++mode) {
+      out[2 * link + mode] = rate(static_cast<Eigen::Index>(link * modes + mode));
+    }
+  }
+  return out;
+}
+
+StateEstimator::Estimate StateEstimator::Update(const DecodedCounters& counters,
+                                                const FittedModes& modes,
+                                                const TorquePieces& applied) noexcept {
   std::uint32_t good = 0;
-  const OutputVector y = Measure(counters, modes, applied_torque_nm, &good);
+  const OutputVector y = Measure(counters, modes, applied.last_nm(), &good);
   if (!started_) {
     started_ = true;
-    x_.setZero();
-    x_(0) = y(0);
-    x_(1) = y(1);
-    for (int i = 0; i < 2 * modes_; ++i) {
-      x_(2 + i) = y(4 + i);
-      if (x_.size() > states_) x_(states_ + i) = y(4 + i);
-    }
-    y_before_ = y;
-    return {.x = x_.head(states_), .innovation = {}};
+    StartAtRest(y);
+    return {.x = x_.head(layout_.states()), .innovation = {}};
   }
-  return kind_ == EstimatorKind::kKalman ? UpdateKalman(y, good, applied_torque_nm)
+  return kind_ == EstimatorKind::kKalman ? UpdateKalman(y, good, applied)
                                          : UpdateDifference(y, good);
 }
 
-StateEstimator::Estimate StateEstimator::UpdateKalman(
-    const OutputVector& y, std::uint32_t good, const std::array<double, 2>& torque_nm) noexcept {
-  // x(k|k-1) = A x(k-1|k-1) + B u(k-1)
-  FilterVector x = A_.lazyProduct(x_);
-  x += B_.col(0) * torque_nm[0];
-  x += B_.col(1) * torque_nm[1];
+void StateEstimator::StartAtRest(const OutputVector& y) noexcept {
+  const int n = layout_.states(), flex = 2 * layout_.modes_per_link;
+  x_.setZero();
+  for (int joint = 0; joint < 2; ++joint)
+    x_(layout_.hub(joint)) = x_(layout_.rotor(joint)) = y(joint);
+  for (int i = 0; i < flex; ++i) {
+    x_(layout_.mode(0, 0) + i) = y(4 + i);
+    if (x_.size() > n) x_(n + i) = y(4 + i);
+  }
+  y_before_ = y;
+}
+
+StateEstimator::Estimate StateEstimator::UpdateKalman(const OutputVector& y, std::uint32_t good,
+                                                      const TorquePieces& applied) noexcept {
+  // x(k|k-1) = A x(k-1|k-1) + B u(k-1), in as many pieces as u has
+  FilterVector x = x_;
+  hold_.Advance(applied, &x);
   const OutputVector predicted = C_.lazyProduct(x);
   Estimate out{};
   for (Eigen::Index i = 0; i < y.size(); ++i) {
@@ -79,23 +108,21 @@ StateEstimator::Estimate StateEstimator::UpdateKalman(
     x += L_.col(i) * innovation;
   }
   x_ = x;
-  out.x = x_.head(states_);
+  out.x = x_.head(layout_.states());
   return out;
 }
 
 StateEstimator::Estimate StateEstimator::UpdateDifference(const OutputVector& y,
                                                           std::uint32_t good) noexcept {
-  const Eigen::Index dof = states_ / 2;
-  for (Eigen::Index i = 0; i < dof; ++i) {
-    const Eigen::Index row = i < 2 ? i : i + 2;  // hub angles, then modal coordinates
-    const double change =
-        (good >> row & 1u) != 0 ? y(row) - y_before_(row) : x_(dof + i) * period_s_;
-    x_(dof + i) = change / period_s_;
+  for (int i = 0; i < layout_.dof(); ++i) {
+    const int row = layout_.output(i), rate = layout_.rate(i);
+    const double change = (good >> row & 1u) != 0 ? y(row) - y_before_(row) : x_(rate) * period_s_;
+    x_(rate) = change / period_s_;
     y_before_(row) += change;
     x_(i) = y_before_(row);
   }
   Estimate out{};
-  out.x = x_.head(states_);
+  out.x = x_.head(layout_.states());
   return out;
 }
 

@@ -6,7 +6,10 @@
 
 #include "estimator/counter_decoder.h"
 #include "estimator/estimator_config.h"
+#include "estimator/fractional_hold.h"
+#include "estimator/state_layout.h"
 #include "estimator/strain_fit.h"
+#include "estimator/torque_pieces.h"
 
 namespace flexarm {
 
@@ -15,7 +18,9 @@ using StateVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
 
 /// What the estimator needs of the off-line design (estimator/kalman_design.h).
 struct FilterGains {
+  StateLayout layout;
   Eigen::MatrixXd A, B, C, L;
+  Eigen::MatrixXd A_rate, B_rate;  ///< continuous, for the fractions of a period
 };
 
 /// The state of the nominal model at k Ts, from decoded counters and fitted modal coordinates.
@@ -27,20 +32,29 @@ struct FilterGains {
 class StateEstimator {
  public:
   struct Estimate {
-    StateVector x;                     ///< [th1 th2 f.. | rates], SI
+    StateVector x;                     ///< in the order of the layout, SI
     std::array<double, 8> innovation;  ///< measured minus predicted outputs; 0 where not used
   };
 
-  /// @param joint_stiffness_nm_per_rad  K1, K2: rotor angles are corrected by u/K
+  /// @param joint_stiffness_nm_per_rad  K1, K2: to rigid joints, rotor angles are corrected by u/K
   StateEstimator(const EstimatorConfig& config, const FilterGains& gains, double period_s,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 
   /// The next Update starts from its measurement, at rest.
   void Reset() noexcept;
 
-  /// @param applied_torque_nm  mean over the last period
+  /// How fast the gauges' modal coordinates are expected to change at the next Update's sample,
+  /// m/s: f11 f12 f21 f22 behind their filters. Of `difference` the rates of the last Update.
+  std::array<double, 4> ModalRates(const TorquePieces& applied) const noexcept;
+
+  /// @param applied  the torque over the last period, in constant pieces
   Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
-                  const std::array<double, 2>& applied_torque_nm) noexcept;
+                  const TorquePieces& applied) noexcept;
+  /// The same torque over the whole period.
+  Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
+                  const std::array<double, 2>& applied_torque_nm) noexcept {
+    return Update(counters, modes, TorquePieces::WholePeriod(applied_torque_nm));
+  }
 
  private:
   using FilterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 24, 1>;
@@ -49,18 +63,20 @@ class StateEstimator {
 
   OutputVector Measure(const DecodedCounters& counters, const FittedModes& modes,
                        const std::array<double, 2>& torque_nm, std::uint32_t* good) const noexcept;
+  void StartAtRest(const OutputVector& y) noexcept;
   Estimate UpdateKalman(const OutputVector& y, std::uint32_t good,
-                        const std::array<double, 2>& torque_nm) noexcept;
+                        const TorquePieces& applied) noexcept;
   Estimate UpdateDifference(const OutputVector& y, std::uint32_t good) noexcept;
 
   EstimatorKind kind_;
+  StateLayout layout_;
   double period_s_;
   std::array<double, 2> joint_stiffness_;
-  int modes_;   // a link
-  int states_;  // n
-  FilterMatrix A_, B_, C_, L_;
-  FilterVector x_;         // kalman: x(k|k) with the gauge filter's states
-  OutputVector y_before_;  // difference
+  FractionalHold hold_;
+  FilterMatrix C_, L_;
+  FilterMatrix modal_rate_x_, modal_rate_u_;  // rates of the last outputs, from state and torque
+  FilterVector x_;                            // kalman: x(k|k) with the gauge filter's states
+  OutputVector y_before_;                     // difference
   bool started_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "estimator/polynomial_fit.h"
+#include "estimator/root_strain.h"
 #include "model/link_modes.h"
 
 namespace flexarm {
@@ -21,22 +22,6 @@ double HalfThicknessAt(const LinkParameters& link, double x_m) {
     if (x_m <= end) return section.half_thickness_m;
   }
   return link.section.back().half_thickness_m;
-}
-
-// (h/2) psi_j'' at the root of the section where the first mode strains the surface most: at the
-// root of the link, unless it is stiffer there.
-std::array<double, 2> ShapeWhereItBendsMost(const LinkParameters& link, const LinkModes& modes) {
-  std::array<double, 2> most{};
-  double start = 0.0;
-  for (const BeamSection& section : link.section) {
-    std::array<double, 2> here{};
-    for (std::size_t j = 0; j < modes.mode.size(); ++j) {
-      here[j] = section.half_thickness_m * modes.mode[j].Curvature(start);
-    }
-    if (std::fabs(here[0]) > std::fabs(most[0])) most = here;
-    start += section.length_m;
-  }
-  return most;
 }
 
 }  // namespace
@@ -68,7 +53,7 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     }
   }
   for (std::size_t link = 0; link < 2; ++link) {
-    root_shape_[link] = ShapeWhereItBendsMost(arm.link[link], modes[link]);
+    root_shape_[link] = RootStrainShape(arm.link[link], modes[link]);
   }
   // Columns of the pseudo-inverse: the fit to a unit strain on one channel, with all channels used.
   for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
@@ -160,7 +145,9 @@ bool StrainFit::Solve(int link, std::uint32_t used,
   return true;
 }
 
-FittedModes StrainFit::Fit(const SensorFrame& frame) noexcept {
+FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
+                           const std::array<double, 4>& modal_rate_m_s) noexcept {
+  const std::int64_t age_ns = instant_ns - frame.sampled_at_ns;
   FittedModes out{};
   std::array<double, kMaxStrainChannels> strain{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
@@ -172,6 +159,10 @@ FittedModes StrainFit::Fit(const SensorFrame& frame) noexcept {
       continue;
     }
     strain[i] = (static_cast<double>(raw) - channel_[i].offset_counts) * channel_[i].unit_per_count;
+    const std::int64_t late_ns = frame.strain_offset_ns[i] - age_ns;
+    if (late_ns != 0) {
+      strain[i] -= 1e-9 * static_cast<double>(late_ns) * Predicted(channel_[i], modal_rate_m_s);
+    }
     out.used |= bit;
   }
   out.modal_m = last_modal_;

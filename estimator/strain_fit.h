@@ -44,7 +44,15 @@ class StrainFit {
   StrainFit(const ArmParameters& arm, const SensorConfig& sensors, const EstimatorConfig& config);
 
   void Reset(const Calibration& calibration) noexcept;
-  FittedModes Fit(const SensorFrame& frame) noexcept;
+  /// A reading taken d after the instant is moved back along its channel's slope at the instant,
+  /// -d times what `modal_rate_m_s` makes of it. What is left is the curvature, (w d)^2 / 2 of a
+  /// signal of w rad/s where it was w d, and d times the error of the rates.
+  /// @param instant_ns      that the modes are of; the frame's own if all was sampled together
+  /// @param modal_rate_m_s  at that instant, of the coordinates as the gauges show them
+  FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
+                  const std::array<double, 4>& modal_rate_m_s) noexcept;
+  /// Every reading taken as one of the frame's instant.
+  FittedModes Fit(const SensorFrame& frame) noexcept { return Fit(frame, frame.sampled_at_ns, {}); }
 
  private:
   struct Channel {

@@ -20,6 +20,8 @@ void RegisterVerbs(CLI::App& app, Exit& exit) {
   RegisterDesign(app, exit);
   RegisterSimulate(app, exit);
   RegisterSweep(app, exit);
+  RegisterBenchmark(app, exit);
+  RegisterReport(app, exit);
   RegisterReplay(app, exit);
   RegisterIdentify(app, exit);
   RegisterInfo(app, exit);

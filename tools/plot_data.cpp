@@ -18,12 +18,13 @@ bool IsRunning(const TickRecord& record) {
   return record.input.safety_state == SafetyState::kRunning;
 }
 
-// Sample 0 of the experiment is the sampling instant after the first Running tick.
+// Sample 0 of the experiment is when the torque of the first Running tick acts.
 std::int64_t TimeZero_ns(const LoadedRun& run) {
   const auto& ticks = run.contents.tick;
   const auto first = std::find_if(ticks.begin(), ticks.end(), IsRunning);
   if (first == ticks.end()) return run.contents.info.start_ns;
-  return first->input.sampling_instant_ns + std::llround(run.period_s() * 1e9);
+  return first->input.sampling_instant_ns + std::llround(run.period_s() * 1e9) +
+         first->input.acts_late_ns;
 }
 
 std::array<double, 2> Scaled(double factor, double a, double b) { return {factor * a, factor * b}; }
@@ -33,6 +34,7 @@ PlotRun::Sample SampleOf(const TickRecord& record, double time_s, bool truth,
   const auto& x = record.output.x_hat;
   const auto& reference = record.input.reference_now.x_m;
   const PlantTruth& plant = record.truth;
+  const auto deflection_m = EstimatedDeflection_m(geometry.layout, x);
   return {.time_s = time_s,
           .reference_deg = Scaled(kDegPerRad, reference[0], reference[1]),
           .angle_deg = truth ? Scaled(kDegPerRad, plant.hub_angle_rad[0], plant.hub_angle_rad[1])
@@ -40,7 +42,7 @@ PlotRun::Sample SampleOf(const TickRecord& record, double time_s, bool truth,
           .asked_nm = record.output.torque_nm,
           .applied_nm = record.input.applied_torque_nm,
           .deflection_mm = truth ? Scaled(1e3, plant.tip_deflection_m[0], plant.tip_deflection_m[1])
-                                 : Scaled(1e3, x[2] + x[3], x[4] + x[5]),
+                                 : Scaled(1e3, deflection_m[0], deflection_m[1]),
           .from_rest_mm = std::numeric_limits<double>::quiet_NaN(),
           .tip_m = truth ? plant.tip_m : EstimatedTip(geometry, x)};
 }
@@ -82,37 +84,49 @@ std::vector<PlotRun::Stretch> StretchesOf(const LoadedRun& run, std::int64_t zer
   return stretches;
 }
 
-// Draws the arm from the estimated th1 th2 and modal coordinates.
+// Draws the arm from the estimated hub angles and modal coordinates.
 class Skeleton {
  public:
-  explicit Skeleton(const ArmParameters& arm)
-      : link1_(Link1Modes(arm, 2)), link2_(Link2Modes(arm, 2)) {}
+  Skeleton(const ArmParameters& arm, const StateLayout& layout)
+      : layout_(layout), link1_(Link1Modes(arm, 2)), link2_(Link2Modes(arm, 2)) {}
 
   std::vector<std::array<double, 2>> Points(const std::array<double, kMaxNominalStates>& x) const {
     std::vector<std::array<double, 2>> points;
-    Append(link1_, {0, 0}, x[0], x[2], x[3], &points);
-    const double slope = link1_.slope_tip(0) * x[2] + link1_.slope_tip(1) * x[3];
-    Append(link2_, points.back(), x[0] + std::atan(slope) + x[1], x[4], x[5], &points);
+    const std::array<double, 2> f1 = Modes(x, 0), f2 = Modes(x, 1);
+    const double hub1 = x[static_cast<std::size_t>(layout_.hub(0))];
+    const double hub2 = x[static_cast<std::size_t>(layout_.hub(1))];
+    Append(link1_, {0, 0}, hub1, f1, &points);
+    const double slope = link1_.slope_tip(0) * f1[0] + link1_.slope_tip(1) * f1[1];
+    Append(link2_, points.back(), hub1 + std::atan(slope) + hub2, f2, &points);
     return points;
   }
 
  private:
-  static void Append(const LinkModes& link, std::array<double, 2> root, double angle, double f1,
-                     double f2, std::vector<std::array<double, 2>>* points) {
+  std::array<double, 2> Modes(const std::array<double, kMaxNominalStates>& x, int link) const {
+    std::array<double, 2> f{};  // a mode that the model does not have rests
+    for (int mode = 0; mode < layout_.modes_per_link; ++mode) {
+      f[static_cast<std::size_t>(mode)] = x[static_cast<std::size_t>(layout_.mode(link, mode))];
+    }
+    return f;
+  }
+
+  static void Append(const LinkModes& link, std::array<double, 2> root, double angle,
+                     const std::array<double, 2>& f, std::vector<std::array<double, 2>>* points) {
     for (int i = 0; i <= kPointsPerLink; ++i) {
       const double u = link.length_m * i / kPointsPerLink;
-      const double w = f1 * link.mode[0].Value(u) + f2 * link.mode[1].Value(u);
+      const double w = f[0] * link.mode[0].Value(u) + f[1] * link.mode[1].Value(u);
       points->push_back({root[0] + std::cos(angle) * u - std::sin(angle) * w,
                          root[1] + std::sin(angle) * u + std::cos(angle) * w});
     }
   }
 
+  StateLayout layout_;
   LinkModes link1_, link2_;
 };
 
 std::vector<PlotRun::Pose> PosesOf(const LoadedRun& run, std::int64_t zero_ns) {
   std::vector<PlotRun::Pose> poses;
-  const Skeleton skeleton(run.config.arm);
+  const Skeleton skeleton(run.config.arm, run.config.controller.nominal);
   double next_s = -std::numeric_limits<double>::infinity();
   for (const TickRecord& record : run.contents.tick) {
     const double time_s = static_cast<double>(record.input.sampling_instant_ns - zero_ns) * 1e-9;
@@ -144,7 +158,7 @@ PlotRun PlotDataOf(const LoadedRun& run) {
       !ticks.empty() &&
       std::all_of(ticks.begin(), ticks.end(), [](const auto& tick) { return tick.truth.known; });
   const std::int64_t zero_ns = TimeZero_ns(run);
-  const TipGeometry geometry = TipGeometryOf(run.config.arm);
+  const TipGeometry geometry = TipGeometryOf(run.config.arm, run.config.controller.nominal);
   const std::optional<SafetyRecord> trip = TripOf(run.contents.safety);
   PlotRun plot{.name = run.file.stem().string(),
                .period_s = run.period_s(),

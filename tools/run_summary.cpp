@@ -42,7 +42,7 @@ LoadedRun LoadRun(const std::filesystem::path& file) {
 std::optional<RunMetrics> MetricsOf(const LoadedRun& run) {
   if (!run.experiment) return std::nullopt;
   return ComputeMetrics(run.contents.tick, *run.experiment, run.period_s(),
-                        TipGeometryOf(run.config.arm));
+                        TipGeometryOf(run.config.arm, run.config.controller.nominal));
 }
 
 nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
@@ -54,6 +54,8 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
       metrics.tip_settling_time_s ? NumberOrNull(*metrics.tip_settling_time_s) : nullptr;
   json["tip_residual_rms_mm"] = NumberOrNull(metrics.tip_residual_rms_mm);
   json["peak_torque_nm"] = Pair(metrics.peak_torque_nm);
+  json["torque_rms_nm"] = Pair(metrics.torque_rms_nm);
+  json["peak_bending_mm"] = Pair(metrics.peak_bending_mm);
   json["truth"] = metrics.truth;
   return json;
 }

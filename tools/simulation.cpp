@@ -140,7 +140,7 @@ Simulation::Simulation(const SimulationRequest& request)
       design_(DesignFor(request.config)),
       payload_kg_(request.payload_kg.value_or(Plant().arm.payload_mass_kg)),
       planned_(request.experiment, design_, grid_.period_s(), {0.0, 0.0},
-               SoftAngleRad(request.config.safety)),
+               MotionLimitsOf(request.config)),
       stack_(request.config, Plant(), design_, payload_kg_),
       recording_(InfoOf(request, design_), SinkFor(request, &contents_),
                  [this](bool is_error, const std::string& text) {
@@ -160,8 +160,8 @@ Simulation::Simulation(const SimulationRequest& request)
 void Simulation::Announce() {
   events_.Push({.time_ns = 0,
                 .kind = "experiment",
-                .name = request_.experiment.name,
-                .text = request_.experiment.text,
+                .name = planned_.accepted.name,
+                .text = planned_.accepted.text,
                 .value_json = {}});
   events_.Push({.time_ns = 0,
                 .kind = "simulation",
@@ -192,12 +192,16 @@ double Simulation::Loop(const std::function<void(double)>& progress) {
 
 SimulationResult Simulation::Result(double wall_s) const {
   SimulationResult result;
-  result.metrics = ComputeMetrics(contents_.tick, request_.experiment, grid_.period_s(),
-                                  TipGeometryOf(request_.config.arm));
+  result.metrics =
+      ComputeMetrics(contents_.tick, planned_.accepted, grid_.period_s(),
+                     TipGeometryOf(request_.config.arm, request_.config.controller.nominal));
   result.ticks = result.metrics.ticks;
   result.trip = operator_.trip();
   result.completed =
       result.trip == TripCause::kNone && result.ticks == planned_.reference.periods();
+  for (const Move& move : planned_.accepted.move) {
+    result.move_duration_s.push_back(move.duration_s.value());
+  }
   result.realtime_factor = static_cast<double>(simulated_ns_) * 1e-9 / wall_s;
   return result;
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "config/config.h"
 #include "controller/runlog/metrics.h"
@@ -28,6 +29,7 @@ struct SimulationResult {
   TripCause trip = TripCause::kNone;
   std::int64_t ticks = 0;  ///< in state Running
   RunMetrics metrics;
+  std::vector<double> move_duration_s;  ///< of the rows [[move]], as given or as chosen
   double realtime_factor = 0.0;  ///< simulated time over wall time of the loop, recorder included
 };
 

@@ -21,7 +21,7 @@ struct Options {
 
 void Analyze(const Options& options) {
   const Config config = options.config.Load();
-  const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 4));
+  const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 5));
   const std::string page = ThesisCheckPage(config, statements);
   if (!options.output.empty()) {
     std::ofstream out(options.output);

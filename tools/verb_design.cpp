@@ -26,6 +26,19 @@ struct Options {
   bool json = false;
 };
 
+/// Condition of the command generator's equation, as the model stands (psi(L) = 1) and in the
+/// coordinates in which it is solved.
+struct Conditioning {
+  double unscaled, scaled;
+};
+
+Conditioning ConditioningOf(const Config& config, const Design& design) {
+  TrackingProblem problem = TrackingProblemOf(config, design);
+  const double scaled = SteinCondition(problem);
+  problem.scale.setOnes();
+  return {.unscaled = SteinCondition(problem), .scaled = scaled};
+}
+
 nlohmann::ordered_json ToJson(const Screen& screen) {
   nlohmann::ordered_json json;
   for (const ScreenCase& c : screen.cases) {
@@ -41,10 +54,14 @@ nlohmann::ordered_json ToJson(const Screen& screen) {
   return json;
 }
 
-nlohmann::ordered_json ToJson(const Design& design, const Screen& screen, const Options& options,
+nlohmann::ordered_json ToJson(const Design& design, const Screen& screen,
+                              const Conditioning& conditioning, const Options& options,
                               const std::string& hash) {
   nlohmann::ordered_json json;
+  json["nominal"] = NameOf(design.layout);
   json["states"] = design.A.rows();
+  json["cgt_stein_condition_unscaled"] = conditioning.unscaled;
+  json["cgt_stein_condition"] = conditioning.scaled;
   json["config_hash"] = hash;
   json["sound"] = design.sound();
   for (const DesignCheck& check : design.checks) {
@@ -84,7 +101,14 @@ void PrintScreen(const Screen& screen) {
   }
 }
 
-void PrintText(const Design& design, const Screen& screen, const std::filesystem::path& file) {
+void PrintText(const Design& design, const Screen& screen, const Conditioning& conditioning,
+               const std::filesystem::path& file) {
+  const std::string nominal(NameOf(design.layout));
+  const auto states = static_cast<int>(design.A.rows());
+  std::printf(
+      "nominal model %s: %d states; equation of the command generator (%d unknowns): condition\n"
+      "%.1e as the model stands, %.1e as it is scaled and solved\n\n",
+      nominal.c_str(), states, states * states, conditioning.unscaled, conditioning.scaled);
   std::printf("%-34s %12s  %s\n", "check", "value", "must be");
   for (const DesignCheck& check : design.checks) {
     const char* verdict = check.passed() ? "" : check.waived ? "   FAILED, waived" : "   FAILED";
@@ -130,11 +154,12 @@ int Run(const Options& options) {
     check.waived = options.force;
   }
   const std::string hash = DesignHash(config);
+  const Conditioning conditioning = ConditioningOf(config, design);
   if (design.sound()) Write(options.output, DesignToJson(design, hash));
   if (options.json) {
-    std::cout << ToJson(design, screen, options, hash).dump(2) << '\n';
+    std::cout << ToJson(design, screen, conditioning, options, hash).dump(2) << '\n';
   } else {
-    PrintText(design, screen, options.output);
+    PrintText(design, screen, conditioning, options.output);
   }
   if (!design.sound()) {
     std::cerr << "flexarm: no gains were written: failed: " << failed << Where(screen)
@@ -160,6 +185,7 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
                  "Write gains that fail a check too; the file and every run's log say so");
   AddJson(verb, &options->json);
   verb->footer(
+      "The nominal model is controller.nominal: R8, R12, T12 or T16.\n"
       "Every check is printed with its figure; gains that fail one are not written. Beside the\n"
       "equations, the loop is closed around the arm with four modes a link, at three elbow "
       "angles,\n"

@@ -52,6 +52,15 @@ std::int64_t MissingTicks(const std::vector<TickRecord>& ticks) {
          static_cast<std::int64_t>(ticks.size());
 }
 
+// From sampling instant to torque, as the drive side measured it; the longest of the run.
+Json DelayJson(const LoadedRun& run) {
+  if (run.contents.tick.empty()) return nullptr;
+  const auto latest = std::max_element(
+      run.contents.tick.begin(), run.contents.tick.end(),
+      [](const auto& a, const auto& b) { return a.input.acted_late_ns < b.input.acted_late_ns; });
+  return 1e3 * run.period_s() + 1e-6 * static_cast<double>(latest->input.acted_late_ns);
+}
+
 Json Info(const LoadedRun& run) {
   const RunInfo& info = run.contents.info;
   const auto& ticks = run.contents.tick;
@@ -72,6 +81,7 @@ Json Info(const LoadedRun& run) {
       ticks.empty()
           ? 0.0
           : static_cast<double>(ticks.back().input.now_ns - ticks.front().input.now_ns) * 1e-9;
+  json["delay_max_ms"] = DelayJson(run);
   json["final_state"] = run.contents.safety.empty()
                             ? Json(nullptr)
                             : Json(Name(run.contents.safety.back().after.state));
@@ -113,6 +123,8 @@ void PrintMetrics(const Json& metrics) {
   Line("tip settling time", metrics["tip_settling_time_s"], "s");
   Line("tip residual, rms", metrics["tip_residual_rms_mm"], "mm");
   Line("peak torque", metrics["peak_torque_nm"], "N m");
+  Line("torque, rms", metrics["torque_rms_nm"], "N m");
+  Line("peak bending", metrics["peak_bending_mm"], "mm");
 }
 
 void PrintSafety(const RunContents& run) {
@@ -138,6 +150,7 @@ void PrintText(const Json& json, const RunContents& run) {
     Line(key, json[key]);
   }
   Line("duration", json["duration_s"], "s");
+  Line("delay, longest", json["delay_max_ms"], "ms");
   Line("final state", json["final_state"]);
   if (!json["trip"].is_null()) {
     Line("TRIPPED", json["trip"]["name"]);

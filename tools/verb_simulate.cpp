@@ -55,6 +55,7 @@ nlohmann::ordered_json ToJson(const SimulationResult& result, const std::filesys
                                                  : nlohmann::ordered_json(Name(result.trip));
   json["ticks"] = result.ticks;
   json.update(ToJson(result.metrics));
+  json["move_duration_s"] = result.move_duration_s;
   json["realtime_factor"] = NumberOrNull(result.realtime_factor);
   json["run"] =
       run.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(run.string());
@@ -80,6 +81,12 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
   std::printf("tip residual rms          %.1f mm\n", m.tip_residual_rms_mm);
   std::printf("peak torque               %.2f, %.2f N m\n", m.peak_torque_nm[0],
               m.peak_torque_nm[1]);
+  std::printf("peak bending              %.0f, %.0f mm\n", m.peak_bending_mm[0],
+              m.peak_bending_mm[1]);
+  std::printf("torque rms                %.2f, %.2f N m\n", m.torque_rms_nm[0], m.torque_rms_nm[1]);
+  for (std::size_t i = 0; i < result.move_duration_s.size(); ++i) {
+    std::printf("move[%zu] takes             %.2f s\n", i, result.move_duration_s[i]);
+  }
   std::printf("real-time factor          %.0f\n", result.realtime_factor);
   if (!run.empty()) std::printf("run                       %s\n", run.c_str());
 }

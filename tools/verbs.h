@@ -25,6 +25,7 @@ void RegisterAnalyzeExcite(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeLinearize(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeParametric(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
+void RegisterBenchmark(CLI::App& app, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);
 void RegisterCommission(CLI::App& app, Exit& exit);  ///< tare, zero, calibrate, pluck, home
 void RegisterConfig(CLI::App& app, Exit& exit);
@@ -37,6 +38,7 @@ void RegisterModes(CLI::App& app, Exit& exit);
 void RegisterOperate(CLI::App& app, Exit& exit);  ///< status, arm, run, stop, disarm, reset, sim
 void RegisterPlot(CLI::App& app, Exit& exit);
 void RegisterReplay(CLI::App& app, Exit& exit);
+void RegisterReport(CLI::App& app, Exit& exit);
 void RegisterRig(CLI::App& app, Exit& exit);
 void RegisterSimulate(CLI::App& app, Exit& exit);
 void RegisterSweep(CLI::App& app, Exit& exit);  ///< with merge and show

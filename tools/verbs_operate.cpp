@@ -1,11 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "controller/runlog/errors.h"
@@ -41,6 +39,9 @@ void PrintStatus(const Json& s) {
               pair("joint_angle_deg")[1]);
   std::printf("torque asked   %.3f, %.3f N m\n", pair("torque_nm")[0], pair("torque_nm")[1]);
   std::printf("at rest        %s\n", s.value("at_rest", false) ? "yes" : "no");
+  std::printf("delay          %.2f ms, longest %.2f ms; %.1f ms of margin left\n",
+              s.value("delay_ms", 0.0), s.value("delay_max_ms", 0.0),
+              s.value("delay_margin_ms", 0.0));
   for (const Json& bus : s.value("buses", Json::array())) {
     std::printf("%-14s %s, %u failed, %u times taken back%s%s\n", bus.value("name", "").c_str(),
                 bus.value("ok", false) ? "ok" : "lost", bus.value("failed", 0U),
@@ -74,16 +75,11 @@ int Status(const Options& options) {
 }
 
 int RunExperiment(const Options& options) {
-  std::ifstream file(options.experiment);
-  if (!file)
-    throw InputError(options.experiment.string() + ": cannot be read; expected an experiment");
-  std::stringstream text;
-  text << file.rdbuf();
-  ParseExperiment(text.str(), options.experiment.string());  // complains here, with file and line
+  const Experiment experiment = LoadExperiment(options.experiment);  // complains with file and line
   return options.daemon.Conclude(
       options.daemon.Ask({{"command", "run"},
                           {"name", options.experiment.filename().string()},
-                          {"experiment", text.str()}}));
+                          {"experiment", experiment.text}}));
 }
 
 void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
@@ -112,7 +108,10 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
   verb->add_option("experiment", run->experiment, "Experiment, a TOML file")
       ->required()
       ->type_name("EXPERIMENT");
-  verb->footer("Only from Armed. Example: flexarm run config/experiments/square-30deg.toml");
+  verb->footer(
+      "Only from Armed. Its reference is first compared with the limits of the rig: a refusal\n"
+      "names the row, the joint, the value and the limit (docs/experiments.md).\n"
+      "Example: flexarm run config/experiments/square-30deg.toml");
   verb->callback([run, &exit] { exit.code = RunExperiment(*run); });
 
   AddCommand(app, exit, "stop", "Bring the running arm to rest, under control",

@@ -21,6 +21,16 @@ TrackingProblem Scaled(const TrackingProblem& p) {
           .scale = Eigen::VectorXd::Ones(p.scale.size())};
 }
 
+// [A - I, B; C_p, 0], whose inverse is Omega.
+Eigen::MatrixXd SteadyState(const TrackingProblem& z) {
+  const Eigen::Index n = z.A.rows(), m = z.B.cols();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + m, n + m);
+  system.topLeftCorner(n, n) = z.A - Eigen::MatrixXd::Identity(n, n);
+  system.topRightCorner(n, m) = z.B;
+  system.bottomLeftCorner(m, n) = z.Cp;
+  return system;
+}
+
 }  // namespace
 
 CommandGenerator SolveCommandGenerator(const TrackingProblem& problem) {
@@ -28,10 +38,7 @@ CommandGenerator SolveCommandGenerator(const TrackingProblem& problem) {
   const Eigen::Index n = z.A.rows(), m = z.B.cols();
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(n, n);
 
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + m, n + m);
-  system.topLeftCorner(n, n) = z.A - I;
-  system.topRightCorner(n, m) = z.B;
-  system.bottomLeftCorner(m, n) = z.Cp;
+  const Eigen::MatrixXd system = SteadyState(z);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(system);
   const double condition = svd.singularValues()(0) / svd.singularValues()(n + m - 1);
   if (!(condition < 1e12)) {
@@ -58,6 +65,21 @@ CommandGenerator SolveCommandGenerator(const TrackingProblem& problem) {
           .S21 = S21 * inverse.asDiagonal(),
           .S22 = S22,
           .condition = condition};
+}
+
+double SteinCondition(const TrackingProblem& problem) {
+  const TrackingProblem z = Scaled(problem);
+  const Eigen::Index n = z.A.rows();
+  const Eigen::MatrixXd Omega = SteadyState(z).inverse();
+  const Eigen::MatrixXd right = (z.Am - Eigen::MatrixXd::Identity(n, n)).transpose();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n * n, n * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      system.block(i * n, j * n, n, n) -= right(i, j) * Omega.topLeftCorner(n, n);
+    }
+  }
+  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(system).singularValues();
+  return singular(0) / singular(n * n - 1);
 }
 
 double TrackingResidual(const TrackingProblem& problem, const CommandGenerator& generator) {

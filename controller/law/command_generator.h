@@ -22,6 +22,12 @@ struct CommandGenerator {
 /// @throws std::runtime_error if the plant has an invariant zero at 1, or one on a pole of A_m
 CommandGenerator SolveCommandGenerator(const TrackingProblem& problem);
 
+/// Condition number of the equation for S11 written as one linear system of n^2 unknowns, in the
+/// coordinates of `scale`: how much larger than round-off its solution's error may be. Infinity
+/// when round-off takes it for singular.
+///   (I - (A_m - I)' (x) Omega_11) vec S11 = vec(Omega_12 C_m)
+double SteinCondition(const TrackingProblem& problem);
+
 /// Largest violation of A S11 + B S21 = S11 Am, A S12 + B S22 = S11 Bm + S12, Cp S11 = Cm and
 /// Cp S12 = 0 in scaled coordinates.
 double TrackingResidual(const TrackingProblem& problem, const CommandGenerator& generator);

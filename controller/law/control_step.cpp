@@ -1,12 +1,15 @@
 #include "controller/law/control_step.h"
 
 #include <cmath>
+#include <limits>
 
 #include "controller/law/design.h"
 #include "controller/law/loop_supervisor.h"
+#include "controller/law/torque_timeline.h"
 #include "controller/law/tracking_law.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/counter_decoder.h"
+#include "estimator/fractional_hold.h"
 #include "estimator/reading_age.h"
 #include "estimator/state_estimator.h"
 #include "estimator/strain_fit.h"
@@ -17,6 +20,14 @@ namespace {
 // While Stopping the goal follows the hubs with this time constant: slower than the arm's vibration
 // (below 0.2 s with free joints), faster than the stop's time-out of 3 s.
 constexpr double kStopGoalFollow_s = 0.5;
+
+// The torque of Stopping starts where that of Running was, and forgets it with this time constant:
+// a step would ring the links, whose vibrations with free joints take 0.15 s.
+constexpr double kHandOver_s = 0.1;
+
+// An arm that is not at rest by then has been let go, over the last 0.4 s of it: with play in its
+// gears it rattles under any feedback, and friction brings it to rest.
+constexpr double kLetGoBy_s = 2.2, kLetGoIn_s = 0.4;
 
 std::array<double, 2> JointStiffness(const ArmParameters& arm) {
   return {arm.joint[0].stiffness_nm_per_rad, arm.joint[1].stiffness_nm_per_rad};
@@ -29,23 +40,29 @@ void Store(const StateVector& x, std::array<double, kMaxNominalStates>* out) noe
 }  // namespace
 
 struct ControlStep::Stages {
+  enum class Phase : std::uint8_t { kNoTorque, kRunning, kStopping };
+
   Stages(const StackConfig& config, const Design& design)
       : period_s(config.loop.period_ms * 1e-3),
+        period_ns(std::llround(config.loop.period_ms * 1e6)),
         max_reading_age_ns(std::llround(config.loop.period_ms * 0.5e6)),
         prediction(config.controller.prediction),
         decoder(config.sensors, period_s, config.estimator.max_joint_rate_rad_s),
         fit(config.arm, config.sensors, config.estimator),
         estimator(config.estimator,
-                  {.A = design.filter_A,
+                  {.layout = design.layout,
+                   .A = design.filter_A,
                    .B = design.filter_B,
                    .C = design.filter_C,
-                   .L = design.filter_L},
+                   .L = design.filter_L,
+                   .A_rate = design.filter_A_rate,
+                   .B_rate = design.filter_B_rate},
                   period_s, JointStiffness(config.arm)),
+        layout(design.layout),
         supervisor(config.safety, config.estimator, period_s, config.sensors.counters_present(),
                    JointStiffness(config.arm)),
         law(design, config.controller, config.safety.torque_limit_nm),
-        A(design.A),
-        B(design.B) {}
+        nominal({.A = design.A, .B = design.B}, design.A_rate, design.B_rate, period_s) {}
 
   void Reset(const StepInput& input) noexcept {
     decoder.Reset(input.counts_before, input.calibration.counter_zero);
@@ -53,43 +70,77 @@ struct ControlStep::Stages {
     estimator.Reset();
     supervisor.Reset();
     law.Reset();
+    asked.Clear();
     pending_nm = {};
-    stopping = false;
+    saturated_s = {};
+    phase = Phase::kNoTorque;
   }
 
-  // x(k+1) = A x(k) + B u(k), u(k) the torque that acts now: asked one sample ago.
-  StateVector Predict(const StateVector& x) const noexcept {
-    StateVector next = A.lazyProduct(x);
-    next += B.col(0) * pending_nm[0];
-    next += B.col(1) * pending_nm[1];
+  // Over [k-1, k] Ts: changes when the commands did, and has the mean that the drive side knows.
+  TorquePieces Applied(const StepInput& input) noexcept {
+    const std::int64_t now_ns = input.sampling_instant_ns;
+    asked.CorrectNewest(now_ns + input.acted_late_ns);
+    return asked.Between(now_ns - period_ns, now_ns, period_ns).WithMean(input.applied_torque_nm);
+  }
+
+  FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
+                  const TorquePieces& applied) noexcept {
+    if (StrainsAreOf(frame, instant_ns)) return fit.Fit(frame, instant_ns, {});
+    return fit.Fit(frame, instant_ns, estimator.ModalRates(applied));
+  }
+
+  std::int64_t ActsFrom(const StepInput& input) const noexcept {
+    return input.sampling_instant_ns + period_ns + input.acts_late_ns;
+  }
+
+  // From k Ts to the instant at which the torque computed now will act, under those on their way.
+  StateVector Predict(const StateVector& x, const StepInput& input) const noexcept {
+    StateVector next = x;
+    nominal.Advance(asked.Between(input.sampling_instant_ns, ActsFrom(input), period_ns), &next);
     return next;
   }
 
   TrackingLaw::Result Decide(const StepInput& input, const StateVector& x,
                              bool sensors_good) noexcept {
     if (input.mode == LoopMode::kOpenLoop) return OpenLoop(input);
-    if (input.safety_state == SafetyState::kRunning) {
-      stopping = false;
-      if (input.mode == LoopMode::kFollow) {
-        return law.Compute(x, input.reference_next, sensors_good);
+    if (input.safety_state != SafetyState::kRunning) return Stop(input, x);
+    // Gains learnt in an earlier run belong to the load of that run: S21 x_m of an arm that rests
+    // away from zero would begin with a step.
+    if (phase != Phase::kRunning) law.Reset();
+    phase = Phase::kRunning;
+    if (input.mode == LoopMode::kFollow) return law.Compute(x, input.reference_next, sensors_good);
+    const Eigen::Vector2d goal_rad(input.reference_next.x_m[0], input.reference_next.x_m[1]);
+    return law.Hold(law.Regulate(x, AtRest(goal_rad)));
+  }
+
+  // Damps the arm towards a goal that gives way: it starts where the reference ended, or where the
+  // stop found the hubs, and follows them, so that a heavy payload is not dragged back for long.
+  TrackingLaw::Result Stop(const StepInput& input, const StateVector& x) noexcept {
+    const bool first = phase != Phase::kStopping;
+    if (first) {
+      for (int i = 0; i < 2; ++i) {
+        stop_hub_rad(i) = input.reference_ended != 0
+                              ? input.reference_next.x_m[static_cast<std::size_t>(layout.hub(i))]
+                              : x(layout.hub(i));
       }
-      StateVector goal = StateVector::Zero(x.size());
-      goal.head<2>() << input.reference_next.x_m[0], input.reference_next.x_m[1];
-      return law.Regulate(x, goal);
     }
-    // Damp the arm towards a goal that gives way: it starts where the reference ended, or where the
-    // stop found the hubs, and follows them, so that a heavy payload is not dragged back for long.
-    if (!stopping) {
-      stopping = true;
-      stop_goal = StateVector::Zero(x.size());
-      for (Eigen::Index i = 0; i < 2; ++i) {
-        stop_goal(i) = input.reference_ended != 0
-                           ? input.reference_next.x_m[static_cast<std::size_t>(i)]
-                           : x(i);
-      }
-    }
-    stop_goal.head<2>() += (period_s / kStopGoalFollow_s) * (x.head<2>() - stop_goal.head<2>());
-    return law.Regulate(x, stop_goal);
+    const Eigen::Vector2d hubs(x(layout.hub(0)), x(layout.hub(1)));
+    stop_hub_rad += (period_s / kStopGoalFollow_s) * (hubs - stop_hub_rad);
+    const Eigen::Vector2d u = law.Regulate(x, AtRest(stop_hub_rad));
+    if (first) hand_over = Eigen::Vector2d(pending_nm[0], pending_nm[1]) - u;
+    stopping_s = first ? 0.0 : stopping_s + period_s;
+    const double hold = std::fmin(1.0, std::fmax(0.0, (kLetGoBy_s - stopping_s) / kLetGoIn_s));
+    const TrackingLaw::Result result = law.Hold(hold * (u + hand_over));
+    hand_over *= 1.0 - period_s / kHandOver_s;
+    phase = Phase::kStopping;
+    return result;
+  }
+
+  // The arm unbent, its joints untwisted, with its hubs there.
+  StateVector AtRest(const Eigen::Vector2d& hub_rad) const noexcept {
+    StateVector x = StateVector::Zero(layout.states());
+    for (int i = 0; i < 2; ++i) x(layout.hub(i)) = x(layout.rotor(i)) = hub_rad(i);
+    return x;
   }
 
   TrackingLaw::Result OpenLoop(const StepInput& input) const noexcept {
@@ -97,24 +148,33 @@ struct ControlStep::Stages {
     if (input.safety_state == SafetyState::kRunning) {
       u << input.reference_next.u_m_nm[0], input.reference_next.u_m_nm[1];
     }
-    TrackingLaw::Result result = law.Clip(u);
-    result.limits |= kAdaptationHeld;
-    return result;
+    return law.Hold(u);
+  }
+
+  void CountSaturation(std::uint32_t limits) noexcept {
+    if ((limits & kLimitTorque1) != 0) saturated_s[0] += period_s;
+    if ((limits & kLimitTorque2) != 0) saturated_s[1] += period_s;
   }
 
   const double period_s;
+  const std::int64_t period_ns;
   const std::int64_t max_reading_age_ns;  // half a period: nearer to this sample than to another
   const bool prediction;
   CounterDecoder decoder;
   StrainFit fit;
   StateEstimator estimator;
+  const StateLayout layout;
   LoopSupervisor supervisor;
   TrackingLaw law;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 16, 16> A;
-  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 16, 2> B;
-  std::array<double, 2> pending_nm{};  // asked in the last step, acts from this sample on
-  bool stopping = false;
-  StateVector stop_goal;
+  FractionalHold nominal;
+  TorqueTimeline asked;
+  std::array<double, 2> pending_nm{};  // the newest of them
+  std::array<double, 2> saturated_s{};
+  Phase phase = Phase::kNoTorque;
+  Eigen::Vector2d stop_hub_rad = Eigen::Vector2d::Zero();
+  double stopping_s = 0.0;
+  // Of Stopping: what is left of the torque before it.
+  Eigen::Vector2d hand_over = Eigen::Vector2d::Zero();
 };
 
 ControlStep::ControlStep(const StackConfig& config, const Design& design)
@@ -132,9 +192,9 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
       WithoutStaleReadings(input.frame, input.sampling_instant_ns, s.max_reading_age_ns);
 
   const DecodedCounters counters = s.decoder.Decode(frame);
-  const FittedModes modes = s.fit.Fit(frame);
-  const StateEstimator::Estimate estimate =
-      s.estimator.Update(counters, modes, input.applied_torque_nm);
+  const TorquePieces applied = s.Applied(input);
+  const FittedModes modes = s.Fit(frame, input.sampling_instant_ns, applied);
+  const StateEstimator::Estimate estimate = s.estimator.Update(counters, modes, applied);
   const LoopSupervisor::Verdict verdict =
       s.supervisor.Judge({.counters = &counters,
                           .modes = &modes,
@@ -142,7 +202,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
                           .applied_torque_nm = input.applied_torque_nm,
                           .frame_age_s = frame_age_s,
                           .mode = input.mode});
-  const StateVector x_next = s.prediction ? s.Predict(estimate.x) : estimate.x;
+  const StateVector x_next = s.prediction ? s.Predict(estimate.x, input) : estimate.x;
   // Start again from the next measurement. A trip needs its cause gone before the arm can be armed,
   // and so reset: a state that stayed bad would be tripped for ever.
   if ((verdict.faults & CauseBit(TripCause::kStateNotFinite)) != 0) s.estimator.Reset();
@@ -150,17 +210,22 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   StepOutput out{};
   out.tick = input.tick;
   out.faults = verdict.faults;
+  out.lyapunov_nm2 = std::numeric_limits<double>::quiet_NaN();
   if (TorqueAllowed(input.safety_state) && verdict.faults == 0) {
     const bool sensors_good = modes.valid[0] && modes.valid[1] && (counters.good & 3u) == 3u;
     const TrackingLaw::Result decision = s.Decide(input, x_next, sensors_good);
     out.torque_nm = decision.torque_nm;
     out.limits = decision.limits;
+    out.lyapunov_nm2 = decision.lyapunov_nm2;
+    s.CountSaturation(decision.limits);
     if (!decision.finite) out.faults |= CauseBit(TripCause::kStateNotFinite);
   } else {
     out.limits = kAdaptationHeld;
+    s.phase = Stages::Phase::kNoTorque;
   }
   if (!s.prediction) out.limits |= kPredictionOff;
   s.pending_nm = out.torque_nm;
+  s.asked.Push(s.ActsFrom(input), s.pending_nm);
 
   out.angle_rad = counters.angle_rad;
   out.modal_m = modes.modal_m;
@@ -170,6 +235,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   out.root_strain = modes.root_strain;
   out.fit_residual = modes.residual;
   out.adaptive_gain_change = s.law.adaptive_gain_change();
+  out.saturated_s = s.saturated_s;
   out.fault_value = verdict.value;
   out.fault_limit = verdict.limit;
   out.fault_channel = verdict.channel;

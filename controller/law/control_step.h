@@ -12,7 +12,8 @@ struct Design;
 
 /// The loop: counts in, torque out (docs/architecture.md).
 ///
-///   counts -decode-> angles, strains -fit-> modal coordinates -filter-> x(k) -predict-> x(k+1)
+///   counts -decode-> angles, strains -fit-> modal coordinates -filter-> x(k) -predict-> x when the
+///   torque acts
 ///          -reference, CGT, Sobel-> asked torque
 ///
 /// A function of its inputs since the last reset: no I/O, lock, allocation, clock or exception, and

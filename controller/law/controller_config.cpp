@@ -4,15 +4,29 @@
 
 namespace flexarm {
 
+namespace {
+
+constexpr const char* kDriftsAway =
+    "without weight the joint's double integrator is not controlled";
+
+}  // namespace
+
 std::vector<Problem> ControllerConfig::Problems() const {
   ProblemList list("controller.");
   list.Within("alpha", alpha, 0.0, 10.0,
               "1/s; beyond this the prescribed stability asks more than the samples can give");
   list.Within("vartheta", vartheta, 0.0, 1.0, "a weight between two feedforwards");
   list.Within("sigma", sigma, 0.0, 1.0, "the share of the adapted gain that leaks a sample");
-  list.EachPositive("hub_angle_weight", hub_angle_weight, 1e6,
-                    "without weight the joint's double integrator is not controlled");
+  list.EachPositive("hub_angle_weight", hub_angle_weight, 1e6, kDriftsAway);
   list.EachWithin("hub_rate_weight", hub_rate_weight, 0.0, 1e6, "a weight, never negative");
+  for (std::size_t i = 0; i < state_weight.size(); ++i) {
+    const std::string element = ProblemList::Element("state_weight", i);
+    if (i < 2) {
+      list.Positive(element, state_weight[i], 1e6, kDriftsAway);
+    } else {
+      list.Within(element, state_weight[i], 0.0, 1e6, "a weight, never negative");
+    }
+  }
   list.Positive("torque_weight", torque_weight, 1e6, "the Riccati equation divides by it");
   list.Positive("passivity_margin", passivity_margin, 1e4,
                 "G = J + margin I must exceed J, or the adaptive loop is not passive");
@@ -21,6 +35,10 @@ std::vector<Problem> ControllerConfig::Problems() const {
   list.EachWithin("pd_damping_nms_per_rad", pd_damping_nms_per_rad, 0.0, 1e3,
                   "a negative one feeds the vibration");
   list.Within("adaptation_gain", adaptation_gain, 0.0, 100.0, "0 adapts nothing");
+  list.Within("adaptation_dead_zone_nm", adaptation_dead_zone_nm, 0.0, 100.0,
+              "a smaller y_e = C_p (x_m - x) does not adapt; 0: every one does");
+  list.Positive("adaptation_bound", adaptation_bound, 1e6,
+                "the gains stay within this distance of those they start with");
   return list.Take();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/state_layout.h"
 #include "model/problem.h"
 
 namespace flexarm {
@@ -15,7 +16,7 @@ enum class ControllerKind : std::uint8_t {
   kSobelOriginal,  ///< "sobel-original": as Sobel published it, alpha = 0 and vartheta = 0
   kLqrCgt,         ///< "lqr-cgt": LQR around the command generator's trajectory, T = Tbar = 0
   kLqrUm,          ///< "lqr-um": LQR towards the reference model, its command fed forward
-  kLqg,            ///< "lqg": LQR with alpha = 0 towards the reference's hubs, links at rest
+  kLqg,            ///< "lqg": LQR with alpha = 0 towards the reference's joints, links at rest
   kPd,             ///< "pd": proportional and derivative of each hub alone
   kPdZv,           ///< "pd-zv": the same, the reference shaped to leave no vibration
   kPdZvd,          ///< "pd-zvd": with a second derivative zero, robust to the frequency
@@ -40,15 +41,21 @@ enum class FeedforwardSign : std::uint8_t {
 /// Section [controller]. Symbols as in the thesis, chapter 7.
 struct ControllerConfig {
   ControllerKind kind;  ///< key `name`
+  StateLayout nominal;  ///< the model that law and filter are designed on, by its name: "R12"
   double alpha;         ///< prescribed degree of stability, 1/s, 0..10; see design_alpha
   double vartheta;      ///< weight of (7.24) against the CGT feedforward, 0..1
   double sigma;         ///< leak of the adaptive gains a sample, 0..1
   FeedforwardSign feedforward_sign;
-  std::array<double, 2> hub_angle_weight;         ///< Q on th1 th2
-  std::array<double, 2> hub_rate_weight;          ///< Q on their rates
+  std::array<double, 2> hub_angle_weight;  ///< Q on th1 th2
+  std::array<double, 2> hub_rate_weight;   ///< Q on their rates
+  /// Key `state_weight`, optional: the diagonal of Q, one number a state, in place of the two
+  /// above.
+  std::vector<double> state_weight;
   double torque_weight;                           ///< R = rho I
   double passivity_margin;                        ///< G = J + margin I, > 0
   double adaptation_gain;                         ///< T = Tbar = gain I_16, >= 0
+  double adaptation_dead_zone_nm;                 ///< |y_e| below this teaches nothing, >= 0
+  double adaptation_bound;                        ///< largest |K_I - K_I(0)|, Frobenius, > 0
   std::array<double, 2> pd_stiffness_nm_per_rad;  ///< of the PD laws, on th1 th2
   std::array<double, 2> pd_damping_nms_per_rad;   ///< on their rates
   bool prediction;                                ///< one-sample open-loop prediction

@@ -11,13 +11,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "controller/law/command_generator.h"
 #include "controller/law/input_shaper.h"
 #include "controller/law/refused.h"
 #include "controller/law/tracking_law.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/kalman_design.h"
 #include "estimator/nominal_model.h"
+#include "model/discretize.h"
 #include "model/riccati.h"
 
 namespace flexarm {
@@ -25,13 +25,18 @@ namespace {
 
 double SpectralRadius(const Eigen::MatrixXd& A) { return A.eigenvalues().cwiseAbs().maxCoeff(); }
 
-// Q weighs hub angles and rates only: weights on elastic energy make the regulator fight modes that
-// the nominal model does not have.
-Eigen::MatrixXd StateWeight(const ControllerConfig& controller, Eigen::Index n) {
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    q(i) = controller.hub_angle_weight[static_cast<std::size_t>(i)];
-    q(n / 2 + i) = controller.hub_rate_weight[static_cast<std::size_t>(i)];
+// Q weighs hub angles and rates only, if the config does not say otherwise: weights on elastic
+// energy make the regulator fight modes that the nominal model does not have.
+Eigen::MatrixXd StateWeight(const ControllerConfig& controller) {
+  const StateLayout& layout = controller.nominal;
+  if (!controller.state_weight.empty()) {
+    return Eigen::VectorXd::Map(controller.state_weight.data(), layout.states()).asDiagonal();
+  }
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(layout.states());
+  for (int joint = 0; joint < 2; ++joint) {
+    const int hub = layout.hub(joint);
+    q(hub) = controller.hub_angle_weight[static_cast<std::size_t>(joint)];
+    q(layout.rate(hub)) = controller.hub_rate_weight[static_cast<std::size_t>(joint)];
   }
   return q.asDiagonal();
 }
@@ -52,7 +57,7 @@ void DesignRegulator(const StackConfig& config, Design* design) {
   const double a = std::exp(controller.design_alpha() * config.loop.period_ms * 1e-3);
   const Eigen::MatrixXd& A = design->A;
   const Eigen::MatrixXd& B = design->B;
-  const Eigen::MatrixXd Q = StateWeight(controller, A.rows()) / controller.torque_weight;
+  const Eigen::MatrixXd Q = StateWeight(controller) / controller.torque_weight;
   const Eigen::Matrix2d I2 = Eigen::Matrix2d::Identity();
   const Eigen::MatrixXd P = SolveDare(a * A, a * B, Q, I2);
   design->P = a * a * P;
@@ -77,14 +82,18 @@ Eigen::VectorXd TrackingScale(const NominalModel& nominal) {
   return scale;
 }
 
+TrackingProblem ProblemOf(const NominalModel& nominal, const Design& design) {
+  return {.A = design.A,
+          .B = design.B,
+          .Cp = design.K,
+          .Am = design.Am,
+          .Bm = design.Bm,
+          .Cm = design.K,
+          .scale = TrackingScale(nominal)};
+}
+
 void DesignCommandGenerator(const NominalModel& nominal, Design* design) {
-  const TrackingProblem problem{.A = design->A,
-                                .B = design->B,
-                                .Cp = design->K,
-                                .Am = design->Am,
-                                .Bm = design->Bm,
-                                .Cm = design->K,
-                                .scale = TrackingScale(nominal)};
+  const TrackingProblem problem = ProblemOf(nominal, *design);
   const CommandGenerator generator = SolveCommandGenerator(problem);
   design->S11 = generator.S11;
   design->S12 = generator.S12;
@@ -160,17 +169,20 @@ bool Design::sound() const {
 
 Design DesignController(const StackConfig& config) {
   const double period_s = config.loop.period_ms * 1e-3;
-  const NominalModel nominal = MakeNominalModel(config.arm, config.estimator.modes_per_link);
+  const NominalModel nominal = MakeNominalModel(config.arm, config.controller.nominal);
   const NominalModel reference = MakeReferenceModel(nominal);
   const DiscreteModel plant = ZeroOrderHold(nominal.A, nominal.B, period_s);
   const DiscreteModel followed = ZeroOrderHold(reference.A, reference.B, period_s);
 
   Design design;
+  design.layout = nominal.layout;
   design.A = plant.A;
   design.B = plant.B;
+  design.A_rate = nominal.A;
+  design.B_rate = nominal.B;
   design.Am = followed.A;
   design.Bm = followed.B;
-  design.rigid_inertia_kgm2 = nominal.M.topLeftCorner<2, 2>();
+  design.rigid_inertia_kgm2 = nominal.RigidInertia_kgm2();
   DesignRegulator(config, &design);
   CheckLemma(config.controller.design_alpha(), period_s, &design);
   DesignCommandGenerator(nominal, &design);
@@ -182,11 +194,17 @@ Design DesignController(const StackConfig& config) {
   design.filter_B = filter.B;
   design.filter_C = filter.C;
   design.filter_L = filter.L;
+  design.filter_A_rate = filter.A_rate;
+  design.filter_B_rate = filter.B_rate;
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(filter.A.rows(), filter.A.rows());
   design.checks.push_back({"filter-riccati-residual", filter.residual, 1e-9, true});
   design.checks.push_back(
       {"filter-spectral-radius", SpectralRadius(filter.A * (I - filter.L * filter.C)), 1.0, true});
   return design;
+}
+
+TrackingProblem TrackingProblemOf(const StackConfig& config, const Design& design) {
+  return ProblemOf(MakeNominalModel(config.arm, design.layout), design);
 }
 
 namespace {

@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "controller/law/command_generator.h"
+#include "estimator/state_layout.h"
+
 namespace flexarm {
 
 struct StackConfig;
@@ -24,8 +27,10 @@ struct DesignCheck {
 ///
 /// Names as in control.md section 4 and thesis chapter 7. n states, 2 inputs.
 struct Design {
-  Eigen::MatrixXd A, B;    ///< nominal model, discrete
-  Eigen::MatrixXd Am, Bm;  ///< reference model, discrete
+  StateLayout layout{};            ///< of the nominal model, and so of x, x_m and all gains
+  Eigen::MatrixXd A, B;            ///< nominal model, discrete
+  Eigen::MatrixXd A_rate, B_rate;  ///< the same continuous, x' = A_rate x + B_rate u, 1/s
+  Eigen::MatrixXd Am, Bm;          ///< reference model, discrete
   Eigen::MatrixXd K;  ///< 2 x n: LQR with degree of stability alpha; also the output matrix C_p
   Eigen::MatrixXd
       K_stop;  ///< 2 x n: LQR with alpha = 0 of the same weights, damps the arm while Stopping
@@ -34,6 +39,7 @@ struct Design {
   Eigen::MatrixXd S11, S12, S21, S22;  ///< command generator: x* = S11 x_m + S12 u_m, u_c likewise
   Eigen::MatrixXd Ufx, Ufu;            ///< (7.25): u_f = -+Ufx x_m + Ufu u_m
   Eigen::MatrixXd filter_A, filter_B, filter_C, filter_L;  ///< estimator/kalman_design.h
+  Eigen::MatrixXd filter_A_rate, filter_B_rate;            ///< the same, continuous
   Eigen::RowVectorXd
       shaper;  ///< weights of the samples of an input shaper (input_shaper.h); [1]: none
   Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: a doublet moves by M_r^-1 a T^2/4
@@ -45,6 +51,9 @@ struct Design {
 /// Designs nominal model, reference model, gains and filter for a rig. Takes tens of milliseconds.
 /// @throws std::runtime_error naming the equation that has no solution
 Design DesignController(const StackConfig& config);
+
+/// The command generator's problem of a design, in the coordinates in which it is solved.
+TrackingProblem TrackingProblemOf(const StackConfig& config, const Design& design);
 
 /// Digest of what a design depends on: arm, sensors, estimator, controller, period. 16 hex digits.
 std::string DesignHash(const StackConfig& config);

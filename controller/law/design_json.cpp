@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "controller/law/design.h"
@@ -61,6 +62,8 @@ template <typename D, typename F>
 void ForEachMatrix(D& design, F&& visit) {
   visit("A", design.A);
   visit("B", design.B);
+  visit("A_rate", design.A_rate);
+  visit("B_rate", design.B_rate);
   visit("Am", design.Am);
   visit("Bm", design.Bm);
   visit("K", design.K);
@@ -78,6 +81,8 @@ void ForEachMatrix(D& design, F&& visit) {
   visit("filter_B", design.filter_B);
   visit("filter_C", design.filter_C);
   visit("filter_L", design.filter_L);
+  visit("filter_A_rate", design.filter_A_rate);
+  visit("filter_B_rate", design.filter_B_rate);
   visit("shaper", design.shaper);
   visit("rigid_inertia_kgm2", design.rigid_inertia_kgm2);
 }
@@ -151,9 +156,17 @@ DesignCheck CheckFromJson(const nlohmann::json& in) {
   }
 }
 
+StateLayout LayoutFromJson(const nlohmann::json& in) {
+  const std::string name = TextAt(in, "nominal", "missing");
+  const std::optional<StateLayout> layout = LayoutNamed(name);
+  if (!layout) throw Refused("gains file: 'nominal' names no model: " + name);
+  return *layout;
+}
+
 // Every product that the loop forms must have matching shapes.
 void RequireShapes(const Design& d) {
-  const Eigen::Index n = d.A.rows(), flex = n / 2 - 2, nf = n + flex, outputs = 4 + flex;
+  const Eigen::Index n = d.layout.states(), outputs = d.layout.outputs();
+  const Eigen::Index nf = d.filter_A.rows();  // with the states of a gauge filter of either order
   const auto require = [](const char* name, const Eigen::MatrixXd& m, Eigen::Index rows,
                           Eigen::Index cols) {
     if (m.rows() == rows && m.cols() == cols) return;
@@ -163,6 +176,8 @@ void RequireShapes(const Design& d) {
   };
   require("A", d.A, n, n);
   require("B", d.B, n, 2);
+  require("A_rate", d.A_rate, n, n);
+  require("B_rate", d.B_rate, n, 2);
   require("Am", d.Am, n, n);
   require("Bm", d.Bm, n, 2);
   require("K", d.K, 2, n);
@@ -180,6 +195,8 @@ void RequireShapes(const Design& d) {
   require("filter_B", d.filter_B, nf, 2);
   require("filter_C", d.filter_C, outputs, nf);
   require("filter_L", d.filter_L, nf, outputs);
+  require("filter_A_rate", d.filter_A_rate, nf, nf);
+  require("filter_B_rate", d.filter_B_rate, nf, 2);
 }
 
 }  // namespace
@@ -192,9 +209,12 @@ std::string DesignHash(const StackConfig& config) {
   const EstimatorConfig& estimator = config.estimator;
   digest << estimator.modes_per_link << estimator.process_force << estimator.rotor_extra_sigma_rad
          << estimator.modal_sigma_m;
+  digest << static_cast<double>(config.controller.nominal.torsion)
+         << config.controller.nominal.modes_per_link;
   const ControllerConfig& c = config.controller;
   digest << c.design_alpha() << c.hub_angle_weight << c.hub_rate_weight << c.torque_weight
          << c.passivity_margin << config.loop.period_ms;
+  for (const double weight : c.state_weight) digest << weight;
   if (IsPd(c.kind)) {
     digest << static_cast<double>(c.kind) << c.pd_stiffness_nm_per_rad << c.pd_damping_nms_per_rad;
   }
@@ -205,6 +225,7 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
   nlohmann::ordered_json out;
   out["format"] = kFormat;
   out["config_hash"] = config_hash;
+  out["nominal"] = NameOf(design.layout);
   ForEachMatrix(design, [&out](const char* name, const auto& m) { out[name] = MatrixToJson(m); });
   for (const DesignCheck& check : design.checks) {
     out["checks"].push_back({{"name", check.name},
@@ -229,6 +250,7 @@ Design DesignFromJson(const std::string& text, const std::string& expected_hash)
                   "); run `flexarm design` again");
   }
   Design design;
+  design.layout = LayoutFromJson(in);
   ForEachMatrix(design, [&in](const char* name, auto& m) {
     if (!in.contains(name)) throw Refused(std::string("gains file: '") + name + "' is missing");
     MatrixFromJson(in.at(name), name, &m);

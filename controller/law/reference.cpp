@@ -5,24 +5,19 @@
 #include <numbers>
 #include <string>
 
+#include "controller/law/identification_torques.h"
+#include "controller/law/motion_check.h"
 #include "controller/law/motion_profile.h"
+#include "controller/law/reference_model.h"
 #include "controller/law/refused.h"
+#include "controller/law/sampling_grid.h"
+#include "controller/law/trajectory.h"
+#include "model/problem_list.h"
 
 namespace flexarm {
 namespace {
 
-constexpr int kShortestMove = 10;        // periods: fewer are no smooth profile any more
-constexpr double kGridTolerance = 1e-6;  // of a period: decimal times added in binary
-
-int OnGrid(double time_s, double period_s, const std::string& what) {
-  const double periods = time_s / period_s;
-  if (std::fabs(periods - std::round(periods)) > kGridTolerance) {
-    throw Refused(what + " = " + std::to_string(time_s) +
-                  " s does not lie on the sampling grid: it must be a multiple of " +
-                  std::to_string(period_s) + " s");
-  }
-  return static_cast<int>(std::lround(periods));
-}
+constexpr double kHighestShareOfSampling = 0.25;  // of a chirp: four samples a cycle
 
 // Unit doublet over n samples: each value is held for one period, the sum is zero.
 std::vector<double> Shape(DoubletShape shape, int n) {
@@ -44,94 +39,135 @@ double Displacement(const std::vector<double>& shape, double period_s) {
   return displacement;
 }
 
-// Holds amplitude(i) * shape[k] from sample `first` on.
-void Write(const Eigen::Vector2d& amplitude, const std::vector<double>& shape, int first,
-           std::vector<ReferenceSample>* samples) {
-  for (std::size_t k = 0; k < shape.size(); ++k) {
-    ReferenceSample& sample = (*samples)[static_cast<std::size_t>(first) + k];
-    for (std::size_t i = 0; i < 2; ++i) {
-      sample.u_m_nm[i] = amplitude(static_cast<Eigen::Index>(i)) * shape[k];
-    }
-  }
-}
-
 Eigen::Vector2d Radians(const std::array<double, 2>& deg) {
   return Eigen::Vector2d(deg[0], deg[1]) * std::numbers::pi / 180.0;
 }
 
-void AddDoublet(const Doublet& doublet, std::size_t row, const Design& design, double period_s,
-                std::vector<ReferenceSample>* samples) {
-  const std::string name = "doublet[" + std::to_string(row) + "]";
-  const int first = OnGrid(doublet.start_s, period_s, name + ".start_s");
-  const int count = OnGrid(doublet.duration_s, period_s, name + ".duration_s");
-  if (count < 2 || count % 2 != 0) {
-    throw Refused(name + ".duration_s = " + std::to_string(doublet.duration_s) +
-                  " s must be an even number of periods of " + std::to_string(period_s) +
-                  " s, so that its two halves cancel");
-  }
-  const std::vector<double> shape = Shape(doublet.shape, count);
-  const Eigen::Vector2d amplitude =
-      design.rigid_inertia_kgm2 * Radians(doublet.move_deg) / Displacement(shape, period_s);
-  Write(amplitude, shape, first, samples);
-}
+/// Adds the torques of one row after another to the samples of an experiment.
+class RowWriter {
+ public:
+  RowWriter(const Design& design, double period_s, std::vector<ReferenceSample>* samples)
+      : design_(design), period_s_(period_s), samples_(samples) {}
 
-// A move by `by_rad`, with its row's number for messages.
-void AddMove(const Move& move, std::size_t row, const Eigen::Vector2d& by_rad, const Design& design,
-             double period_s, std::vector<ReferenceSample>* samples) {
-  const std::string name = "move[" + std::to_string(row) + "]";
-  const int first = OnGrid(move.start_s, period_s, name + ".start_s");
-  const int count = OnGrid(move.duration_s, period_s, name + ".duration_s");
-  if (count < kShortestMove) {
-    throw Refused(name + ".duration_s = " + std::to_string(move.duration_s) +
-                  " s must be at least " + std::to_string(kShortestMove) + " periods of " +
-                  std::to_string(period_s) + " s");
-  }
-  Write(design.rigid_inertia_kgm2 * by_rad, QuinticAccelerations(count, period_s), first, samples);
-}
-
-void AddMoves(const Experiment& experiment, const Design& design, double period_s,
-              const std::array<double, 2>& start_rad, std::vector<ReferenceSample>* samples) {
-  Eigen::Vector2d place(start_rad[0], start_rad[1]);
-  std::size_t doublets = 0;  // so many came before the move
-  for (std::size_t row = 0; row < experiment.move.size(); ++row) {
-    const Move& move = experiment.move[row];
-    for (; doublets < experiment.doublet.size(); ++doublets) {
-      if (experiment.doublet[doublets].start_s > move.start_s) break;
-      place += Radians(experiment.doublet[doublets].move_deg);
+  void Add(const Doublet& doublet, const std::string& row) {
+    const int first = OnGrid(doublet.start_s, period_s_, row + ".start_s");
+    const int count = OnGrid(doublet.duration_s, period_s_, row + ".duration_s");
+    if (count < 2 || count % 2 != 0) {
+      throw Refused(row + ".duration_s = " + NumberText(doublet.duration_s) +
+                    " s must be an even number of periods of " + NumberText(period_s_) +
+                    " s, so that its two halves cancel");
     }
-    AddMove(move, row, Radians(move.to_deg) - place, design, period_s, samples);
-    place = Radians(move.to_deg);
+    const std::vector<double> shape = Shape(doublet.shape, count);
+    const Eigen::Vector2d amplitude =
+        design_.rigid_inertia_kgm2 * Radians(doublet.move_deg) / Displacement(shape, period_s_);
+    AddTorques(amplitude, shape, first, samples_);
   }
+
+  void Add(const PlannedMove& move) {
+    AddTorques(TorqueOf(move, design_), ProfileAccelerations(move.profile, move.periods, period_s_),
+               move.first, samples_);
+  }
+
+  void Add(const Chirp& chirp, const std::string& row) {
+    const int first = OnGrid(chirp.start_s, period_s_, row + ".start_s");
+    const int count = OnGrid(chirp.duration_s, period_s_, row + ".duration_s");
+    const double highest_hz = kHighestShareOfSampling / period_s_;
+    for (const double hz : {chirp.from_hz, chirp.to_hz}) {
+      if (hz <= highest_hz) continue;
+      throw Refused(row + " sweeps to " + NumberText(hz) + " Hz: at most " +
+                    NumberText(highest_hz) + " Hz, a quarter of the sampling rate");
+    }
+    if (count < 2) throw Refused(row + ".duration_s must be at least two periods");
+    AddTorques(design_.rigid_inertia_kgm2 * Radians(chirp.amplitude_deg),
+               HeldAccelerations(ChirpAngles(chirp, count, period_s_), period_s_), first, samples_);
+  }
+
+  void Add(const Prbs& prbs, const std::string& row) {
+    const int first = OnGrid(prbs.start_s, period_s_, row + ".start_s");
+    const int hold = OnGrid(prbs.hold_s, period_s_, row + ".hold_s");
+    for (int joint = 0; joint < 2; ++joint) {
+      const double torque_nm = prbs.torque_nm[static_cast<std::size_t>(joint)];
+      AddTorques(torque_nm * Eigen::Vector2d::Unit(joint), PrbsSigns(prbs, hold, joint), first,
+                 samples_);
+    }
+  }
+
+  void Add(const CsvTrajectory& csv, const std::array<double, 2>& from_rad) {
+    const int first = OnGrid(csv.start_s, period_s_, "csv.start_s");
+    const auto angle_rad = TrajectoryOnGrid(csv, from_rad, period_s_);
+    const std::size_t end = static_cast<std::size_t>(first) + angle_rad[0].size();
+    if (end >= samples_->size()) {
+      throw Refused(csv.file + ": ends one period after its last row, at " +
+                    NumberText(static_cast<double>(end) * period_s_) +
+                    " s: the experiment must last that long");
+    }
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      AddTorques(design_.rigid_inertia_kgm2.col(i),
+                 HeldAccelerations(angle_rad[static_cast<std::size_t>(i)], period_s_), first,
+                 samples_);
+    }
+  }
+
+ private:
+  const Design& design_;
+  double period_s_;
+  std::vector<ReferenceSample>* samples_;
+};
+
+template <typename Row>
+void AddRows(const std::vector<Row>& rows, const std::string& kind, RowWriter* writer) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    writer->Add(rows[i], ProblemList::Element(kind, i));
+  }
+}
+
+// The row that acted last before `time_s`.
+std::string RowAt(const Experiment& experiment, double time_s) {
+  std::string row = "duration_s";
+  for (const Motion& motion : experiment.Motions()) {
+    if (motion.start_s > time_s) break;
+    row = motion.row;
+  }
+  return row;
 }
 
 }  // namespace
 
 ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
-                               const std::array<double, 2>& start_rad,
-                               const std::array<double, 2>& limit_rad) {
+                               const std::array<double, 2>& start_rad, const MotionLimits& limits)
+    : moves_(PlanMoves(experiment, design, period_s, start_rad, limits)) {
+  const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
   samples_.resize(static_cast<std::size_t>(periods) + 1);
-  for (std::size_t row = 0; row < experiment.doublet.size(); ++row) {
-    AddDoublet(experiment.doublet[row], row, design, period_s, &samples_);
+  RowWriter writer(design, period_s, &samples_);
+  AddRows(planned.doublet, "doublet", &writer);
+  for (const PlannedMove& move : moves_) writer.Add(move);
+  AddRows(planned.chirp, "chirp", &writer);
+  AddRows(planned.prbs, "prbs", &writer);
+  if (planned.csv) {
+    writer.Add(*planned.csv, PlaceBefore(planned, moves_, start_rad, planned.csv->start_s));
   }
-  AddMoves(experiment, design, period_s, start_rad, &samples_);
-  rest_.x_m[0] = start_rad[0];
-  rest_.x_m[1] = start_rad[1];
-  Eigen::VectorXd x_m = Eigen::VectorXd::Zero(design.Am.rows());
-  x_m.head<2>() << start_rad[0], start_rad[1];
-  for (std::size_t k = 0; k < samples_.size(); ++k) {
-    ReferenceSample& sample = samples_[k];
-    for (Eigen::Index i = 0; i < x_m.size(); ++i) sample.x_m[static_cast<std::size_t>(i)] = x_m(i);
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (std::fabs(sample.x_m[i]) <= limit_rad[i]) continue;
-      throw Refused("the reference of joint " + std::to_string(i + 1) + " reaches " +
-                    std::to_string(sample.x_m[i] * 180.0 / std::numbers::pi) + " deg after " +
-                    std::to_string(static_cast<double>(k) * period_s) + " s: the soft limit is " +
-                    std::to_string(limit_rad[i] * 180.0 / std::numbers::pi) + " deg");
-    }
-    x_m = design.Am * x_m + design.Bm * Eigen::Vector2d(sample.u_m_nm[0], sample.u_m_nm[1]);
-  }
+  RunReferenceModel(design, start_rad, &samples_);
+  rest_.x_m = samples_.front().x_m;
   if (design.shaper.size() > 1) Shape(design.shaper, period_s);
+  CheckLimits(planned, design, period_s, limits);
+}
+
+void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design, double period_s,
+                                 const MotionLimits& limits) const {
+  const int states = static_cast<int>(design.Am.rows());
+  const auto broken = FirstBrokenLimit(samples_, states, limits, 1.0, period_s);
+  if (!broken) return;
+  const std::string row = RowAt(planned, broken->sample * period_s);
+  std::string remedy;
+  for (const PlannedMove& move : moves_) {
+    if (row != ProblemList::Element("move", move.row)) continue;
+    const auto shortest = ShortestPeriods(move, design, period_s, limits, 1.0);
+    if (!shortest || *shortest <= move.periods) continue;
+    remedy = "; the shortest duration_s within the limits is " +
+             NumberText(std::round(*shortest * period_s * 1e9) * 1e-9);
+  }
+  throw Refused(row + ": " + broken->text + remedy);
 }
 
 // Weights that sum to one and are not negative: the shaped reference stays between the extremes of

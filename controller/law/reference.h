@@ -5,6 +5,8 @@
 
 #include "controller/law/design.h"
 #include "controller/law/experiment.h"
+#include "controller/law/motion_limits.h"
+#include "controller/law/motion_plan.h"
 #include "controller/law/step_types.h"
 
 namespace flexarm {
@@ -15,19 +17,21 @@ namespace flexarm {
 /// periods, with u_m = 0: what comes after the end.
 class ReferenceTable {
  public:
-  /// Runs the reference model over the experiment's doublets and moves, from rest at `start_rad`.
+  /// Runs the reference model over the experiment's rows, from rest at `start_rad`.
   ///
-  /// A doublet of amplitude a = M_r dtheta / d moves by dtheta, d the displacement of a unit
-  /// inertia under the doublet's sampled shape (T^2/4 for a square, thesis 7.5). Its area is zero,
+  /// Each row is a command u_m; all but a PRBS are M_r times angular accelerations of the rigid
+  /// arm:
+  ///  - a doublet's amplitude is a = M_r dtheta / d, d the displacement of a unit inertia under its
+  ///    sampled shape (T^2/4 for a square, thesis 7.5); its area is zero
+  ///  - a move's are M_r (to - from) times ProfileAccelerations, a chirp's and a CSV trajectory's
+  ///    HeldAccelerations of their angles
   /// so the reference model, a double integrator, ends at rest. A design with a shaper convolves
-  /// all that with its weights: every move then ends as much later as the shaper is long.
-  /// A move is u_m = M_r (to - from) times QuinticAccelerations: its rigid coordinates follow the
-  /// profile and end exactly at the set-point.
-  /// @throws Refused naming the doublet or move whose times do not lie on the grid of `period_s`,
-  ///         or the instant at which the reference would leave +-`limit_rad`, or that the
-  ///         shaped moves would end after the experiment
+  /// all that with its weights: every row then ends as much later as the shaper is long.
+  /// @throws Refused naming the row and key whose times do not lie on the grid of `period_s`, the
+  ///         row, joint, instant and limit that the reference would break (FirstBrokenLimit), or
+  ///         that the shaped rows would end after the experiment
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
-                 const std::array<double, 2>& start_rad, const std::array<double, 2>& limit_rad);
+                 const std::array<double, 2>& start_rad, const MotionLimits& limits);
 
   /// Torques without a reference model, for LoopMode::kOpenLoop.
   /// @param torque_nm  sample by sample, not empty; zero follows
@@ -35,13 +39,20 @@ class ReferenceTable {
 
   int periods() const noexcept { return static_cast<int>(samples_.size()) - 1; }
 
+  /// The moves as data, in order of time.
+  const std::vector<PlannedMove>& moves() const noexcept { return moves_; }
+
   /// Sample k; before 0 the rest at the start, after the end the last one. Real-time: safe.
   const ReferenceSample& At(int k) const noexcept;
 
  private:
   void Shape(const Eigen::RowVectorXd& shaper, double period_s);
 
+  void CheckLimits(const Experiment& planned, const Design& design, double period_s,
+                   const MotionLimits& limits) const;
+
   ReferenceSample rest_{};
+  std::vector<PlannedMove> moves_;
   std::vector<ReferenceSample> samples_;
 };
 

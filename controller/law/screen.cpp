@@ -9,6 +9,7 @@
 #include <set>
 
 #include "controller/law/tracking_law.h"
+#include "controller/runtime/loop_grid.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/gauge_model.h"
 #include "model/arm_model.h"
@@ -53,14 +54,19 @@ MatrixXd StrainShape(const ArmModel& model, const SensorConfig& sensors) {
   return shape;
 }
 
-// What the fit of few modes makes of the plant's many.
+// What the fit of few modes makes of the plant's many, in the rows of those that the law knows.
 MatrixXd FitOf(const ArmModel& plant, const StackConfig& config) {
-  const int modes = config.estimator.modes_per_link;
-  const ArmModel known(config.arm, ModeCount{.link1 = modes, .link2 = modes});
-  const MatrixXd fitted = StrainShape(known, config.sensors);
-  return (fitted.transpose() * fitted)
-      .llt()
-      .solve(fitted.transpose() * StrainShape(plant, config.sensors));
+  const Index modes = config.estimator.modes_per_link;
+  const Index known = config.controller.nominal.modes_per_link;
+  const ArmModel few(config.arm,
+                     ModeCount{.link1 = static_cast<int>(modes), .link2 = static_cast<int>(modes)});
+  const MatrixXd fitted = StrainShape(few, config.sensors);
+  const MatrixXd fit = (fitted.transpose() * fitted)
+                           .llt()
+                           .solve(fitted.transpose() * StrainShape(plant, config.sensors));
+  MatrixXd used(2 * known, fit.cols());
+  used << fit.topRows(known), fit.middleRows(modes, known);
+  return used;
 }
 
 Plant PlantAt(const StackConfig& config, double payload_kg, double theta2_deg) {
@@ -77,50 +83,73 @@ Plant PlantAt(const StackConfig& config, double payload_kg, double theta2_deg) {
       WithGaugeFilter(linear.A, linear.B, 4, flex, config.sensors.strain_input);
   Plant plant{.A = measured.A,
               .B = measured.B,
-              .C = MatrixXd::Zero(4 + 2 * config.estimator.modes_per_link, measured.A.rows())};
+              .C = MatrixXd::Zero(config.controller.nominal.outputs(), measured.A.rows())};
   plant.C.topLeftCorner(4, 4).setIdentity();
   plant.C.block(4, n, plant.C.rows() - 4, flex) = FitOf(model, config);
   return plant;
 }
 
-/// The estimator as a linear system: z(k) = A z(k-1) + B [y(k); u(k-1)],
-/// x_hat(k) = C z(k-1) + D [y(k); u(k-1)].
+/// The delay that the loop knows of itself, beyond one period: whole periods, -1 for a torque that
+/// is put out at once, and the rest of it.
+struct OwnDelay {
+  Index whole;
+  double rest_s;
+};
+
+OwnDelay OwnDelayOf(const LoopConfig& loop) {
+  const LoopGrid grid(loop);
+  const std::int64_t late_ns = grid.late_ns();
+  const std::int64_t whole = late_ns < 0 ? -1 : late_ns / grid.period_ns;
+  return {.whole = static_cast<Index>(whole),
+          .rest_s = 1e-9 * static_cast<double>(late_ns - whole * grid.period_ns)};
+}
+
+/// The estimator as a linear system: z(k) = A z(k-1) + B [y(k); u; u'],
+/// x_hat(k) = C z(k-1) + D [y(k); u; u'], u and then u' the torques of the last period.
 struct LinearEstimator {
   MatrixXd A, B, C, D;
 };
 
-LinearEstimator KalmanOf(const Design& design) {
+LinearEstimator KalmanOf(const Design& design, double first_s, double period_s) {
   const Index nf = design.filter_A.rows(), outputs = design.filter_C.rows(), n = design.A.rows();
   const MatrixXd correct = MatrixXd::Identity(nf, nf) - design.filter_L * design.filter_C;
+  MatrixXd drive = MatrixXd::Zero(nf, 4);
+  if (first_s > 0.0) {
+    const DiscreteModel then =
+        ZeroOrderHold(design.filter_A_rate, design.filter_B_rate, period_s - first_s);
+    drive << then.A * ZeroOrderHold(design.filter_A_rate, design.filter_B_rate, first_s).B, then.B;
+  } else {
+    drive.rightCols(2) = design.filter_B;
+  }
   LinearEstimator out;
   out.A = correct * design.filter_A;
-  out.B.resize(nf, outputs + 2);
-  out.B << design.filter_L, correct * design.filter_B;
+  out.B.resize(nf, outputs + 4);
+  out.B << design.filter_L, correct * drive;
   out.C = out.A.topRows(n);
   out.D = out.B.topRows(n);
   return out;
 }
 
-// Backward differences: z is the last measurement of hubs and modes.
+// Backward differences: z is the last measurement of angles and modes.
 LinearEstimator DifferenceOf(const Design& design, double period_s) {
-  const Index dof = design.A.rows() / 2, outputs = design.filter_C.rows();
-  MatrixXd pick = MatrixXd::Zero(dof, outputs + 2);
-  pick.topLeftCorner(2, 2).setIdentity();
-  pick.block(2, 4, dof - 2, dof - 2).setIdentity();
+  const Index dof = design.layout.dof(), outputs = design.layout.outputs();
+  MatrixXd pick = MatrixXd::Zero(dof, outputs + 4);
+  for (int i = 0; i < design.layout.dof(); ++i) pick(i, design.layout.output(i)) = 1.0;
   LinearEstimator out;
   out.A = MatrixXd::Zero(dof, dof);
   out.B = pick;
   out.C = MatrixXd::Zero(2 * dof, dof);
   out.C.bottomRows(dof) = -MatrixXd::Identity(dof, dof) / period_s;
-  out.D.resize(2 * dof, outputs + 2);
+  out.D.resize(2 * dof, outputs + 4);
   out.D << pick, pick / period_s;
   return out;
 }
 
 LinearEstimator EstimatorOf(const StackConfig& config, const Design& design) {
+  const double period_s = config.loop.period_ms * 1e-3;
   return config.estimator.kind == EstimatorKind::kKalman
-             ? KalmanOf(design)
-             : DifferenceOf(design, config.loop.period_ms * 1e-3);
+             ? KalmanOf(design, OwnDelayOf(config.loop).rest_s, period_s)
+             : DifferenceOf(design, period_s);
 }
 
 /// The loop around one plant.
@@ -131,54 +160,76 @@ class Loop {
         design_(design),
         plant_(plant),
         estimator_(EstimatorOf(config, design)),
-        K_(FeedbackGain(design, config.controller)) {}
+        K_(FeedbackGain(design, config.controller)),
+        own_(OwnDelayOf(config.loop)),
+        first_u_(plant.A.rows() + estimator_.A.rows()),
+        inputs_(2 * (kMaxDelayPeriods + 2 + std::max(own_.whole, Index{0}))) {}
 
-  // State [x; z; u(k); u(k-1); ..]. Within the period u(k - d) takes over from u(k - d - 1) when
-  // the delay's fraction of it is over.
+  // State [x; z; u_0; u_1; ..], u_i the torque computed at step k-1-i. It acts, seen from k Ts, at
+  // (whole - i) Ts + rest with the delay that the loop knows of, and delay_s later in truth.
   double SpectralRadius(double gain, double delay_s) const {
-    const Index nx = plant_.A.rows(), nz = estimator_.A.rows(), outputs = plant_.C.rows();
-    const Index inputs = 2 * (kMaxDelayPeriods + 2), first_u = nx + nz;
-    MatrixXd loop = MatrixXd::Zero(first_u + inputs, first_u + inputs);
-    const MatrixXd u_now = Row(loop.rows(), first_u), u_before = Row(loop.rows(), first_u + 2);
-
-    const double period_s = config_.loop.period_ms * 1e-3;
-    const Index whole = std::min(static_cast<Index>(delay_s / period_s), kMaxDelayPeriods);
-    AddPlant(first_u + 2 * whole, delay_s - static_cast<double>(whole) * period_s, &loop);
-
-    // y = C x - [0; u(k-1)/K; 0]: the torsion that the rotors' readings are freed of.
-    MatrixXd seen = MatrixXd::Zero(outputs + 2, loop.rows());
-    seen.topLeftCorner(outputs, nx) = plant_.C;
-    seen.row(2) -= u_before.row(0) / config_.arm.joint[0].stiffness_nm_per_rad;
-    seen.row(3) -= u_before.row(1) / config_.arm.joint[1].stiffness_nm_per_rad;
-    seen.bottomRows(2) = u_before;
-
+    const Index nx = plant_.A.rows(), nz = estimator_.A.rows();
+    MatrixXd loop = MatrixXd::Zero(first_u_ + inputs_, first_u_ + inputs_);
+    const MatrixXd seen = Seen();
     loop.middleRows(nx, nz) = estimator_.B * seen;
     loop.block(nx, nx, nz, nz) += estimator_.A;
     MatrixXd x_hat = estimator_.D * seen;
     x_hat.middleCols(nx, nz) += estimator_.C;
-    if (config_.controller.prediction) x_hat = design_.A * x_hat + design_.B * u_now;
-    loop.middleRows(first_u, 2) = -gain * K_ * x_hat;
-    loop.block(first_u + 2, first_u, inputs - 2, inputs - 2).setIdentity();
+    if (config_.controller.prediction) x_hat = Predicted(x_hat);
+    const MatrixXd asked = -gain * K_ * x_hat;
+    loop.middleRows(first_u_, 2) = asked;
+    loop.block(first_u_ + 2, first_u_, inputs_ - 2, inputs_ - 2).setIdentity();
+    AddPlant(own_.rest_s + delay_s, asked, &loop);
     return loop.eigenvalues().cwiseAbs().maxCoeff();
   }
 
  private:
-  static MatrixXd Row(Index size, Index first) {
-    MatrixXd row = MatrixXd::Zero(2, size);
-    row.middleCols(first, 2).setIdentity();
+  // u_i as a function of the state.
+  MatrixXd Torque(Index i) const {
+    MatrixXd row = MatrixXd::Zero(2, first_u_ + inputs_);
+    row.middleCols(first_u_ + 2 * i, 2).setIdentity();
     return row;
   }
 
-  void AddPlant(Index newest_u, double late_s, MatrixXd* loop) const {
+  // [y; u; u'], y = C x, to rigid joints without [0; u'/K; 0]: the torsion in the rotors' readings.
+  MatrixXd Seen() const {
+    const Index outputs = plant_.C.rows();
+    MatrixXd seen = MatrixXd::Zero(outputs + 4, first_u_ + inputs_);
+    seen.topLeftCorner(outputs, plant_.A.rows()) = plant_.C;
+    const MatrixXd then = Torque(own_.whole + 1);
+    if (!design_.layout.torsion) {
+      seen.row(2) -= then.row(0) / config_.arm.joint[0].stiffness_nm_per_rad;
+      seen.row(3) -= then.row(1) / config_.arm.joint[1].stiffness_nm_per_rad;
+    }
+    seen.bottomRows(4) << Torque(own_.whole + 2), then;
+    return seen;
+  }
+
+  MatrixXd Predicted(MatrixXd x_hat) const {
+    if (own_.rest_s > 0.0) {
+      const DiscreteModel part = ZeroOrderHold(design_.A_rate, design_.B_rate, own_.rest_s);
+      x_hat = part.A * x_hat + part.B * Torque(own_.whole + 1);
+    }
+    for (Index i = own_.whole; i >= 0; --i) x_hat = design_.A * x_hat + design_.B * Torque(i);
+    return x_hat;
+  }
+
+  // The torque of one step takes over from that of the one before within the period.
+  void AddPlant(double late_s, const MatrixXd& asked, MatrixXd* loop) const {
     const Index nx = plant_.A.rows();
     const double period_s = config_.loop.period_ms * 1e-3;
+    const Index periods = std::min(static_cast<Index>(late_s / period_s), kMaxDelayPeriods);
+    const Index newest = own_.whole + periods;  // -1: the one that is asked now
+    late_s -= static_cast<double>(periods) * period_s;
     const DiscreteModel rest = ZeroOrderHold(plant_.A, plant_.B, period_s - late_s);
-    loop->block(0, newest_u, nx, 2) = rest.B;
-    loop->topLeftCorner(nx, nx) = rest.A;
-    if (late_s <= 0.0) return;
+    loop->topRows(nx) = rest.B * (newest < 0 ? asked : Torque(newest));
+    if (late_s <= 0.0) {
+      loop->topLeftCorner(nx, nx) += rest.A;
+      return;
+    }
     const DiscreteModel before = ZeroOrderHold(plant_.A, plant_.B, late_s);
-    loop->topLeftCorner(nx, nx) = rest.A * before.A;
-    loop->block(0, newest_u + 2, nx, 2) = rest.A * before.B;
+    loop->topLeftCorner(nx, nx) += rest.A * before.A;
+    loop->topRows(nx) += rest.A * before.B * Torque(newest + 1);
   }
 
   const StackConfig& config_;
@@ -186,6 +237,9 @@ class Loop {
   const Plant& plant_;
   LinearEstimator estimator_;
   MatrixXd K_;
+  OwnDelay own_;
+  Index first_u_;  // of u_0 in the state
+  Index inputs_;
 };
 
 // Where a loop that is stable at `stable` stops being so on the way to `end`, to 1 %: walks, then
@@ -207,13 +261,16 @@ double Edge(double stable, double end, const Radius& radius) {
   return outside;
 }
 
+double DelayOf(const Loop& loop) {
+  return Edge(0.0, 0.1, [&loop](double delay_s) { return loop.SpectralRadius(1.0, delay_s); });
+}
+
 LoopMargins MarginsOf(const Loop& loop) {
   if (loop.SpectralRadius(1.0, 0.0) >= 1.0) return {.gain_up = 1.0, .gain_down = 1.0, .delay_s = 0};
   const auto with_gain = [&loop](double gain) { return loop.SpectralRadius(gain, 0.0); };
-  const auto with_delay = [&loop](double delay_s) { return loop.SpectralRadius(1.0, delay_s); };
   return {.gain_up = Edge(1.0, 100.0, with_gain),
           .gain_down = Edge(1.0, 0.0, with_gain),
-          .delay_s = Edge(0.0, 0.1, with_delay)};
+          .delay_s = DelayOf(loop)};
 }
 
 }  // namespace
@@ -252,6 +309,12 @@ Screen ScreenDesign(const StackConfig& config, const Design& design,
   const Plant nominal = PlantAt(config, own_kg, 0.0);
   screen.margins = MarginsOf(Loop(config, design, nominal));
   return screen;
+}
+
+double DelayMargin_s(const StackConfig& config, const Design& design) {
+  const Plant plant = PlantAt(config, config.arm.payload_mass_kg, 0.0);
+  const Loop loop(config, design, plant);
+  return loop.SpectralRadius(1.0, 0.0) < 1.0 ? DelayOf(loop) : 0.0;
 }
 
 std::vector<DesignCheck> ChecksOf(const Screen& screen) {

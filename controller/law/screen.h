@@ -51,6 +51,10 @@ struct Screen {
 Screen ScreenDesign(const StackConfig& config, const Design& design,
                     const std::vector<double>& payload_kg);
 
+/// LoopMargins::delay_s alone, 0 if the loop is unstable without any.
+/// @throws std::runtime_error if the arm has no linear model
+double DelayMargin_s(const StackConfig& config, const Design& design);
+
 /// The screen as checks of the design: "screen-spectral-radius", "gain-margin-up",
 /// "gain-margin-down", "delay-margin-ms".
 std::vector<DesignCheck> ChecksOf(const Screen& screen);

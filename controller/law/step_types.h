@@ -10,7 +10,7 @@
 
 namespace flexarm {
 
-inline constexpr int kMaxNominalStates = 16;  ///< R12 uses 12 of them
+inline constexpr int kMaxNominalStates = 16;  ///< R12 uses 12 of them: estimator/state_layout.h
 inline constexpr int kMaxFilterOutputs = 8;
 
 /// The reference model at one sample.
@@ -35,8 +35,10 @@ struct StepInput {
   std::int64_t sampling_instant_ns;  ///< k Ts, in the same clock: when the frame should be from
   SensorFrame frame;
   std::array<double, 2> applied_torque_nm;  ///< after the gate: mean over [k-1, k] Ts
-  ReferenceSample reference_now;            ///< at k Ts
-  ReferenceSample reference_next;           ///< at (k+1) Ts, when the torque computed now acts
+  std::int64_t acted_late_ns;  ///< torque k-1 began to act this long after k Ts, as far as is known
+  std::int64_t acts_late_ns;   ///< torque k will act this long after (k+1) Ts; negative: before it
+  ReferenceSample reference_now;                      ///< at k Ts
+  ReferenceSample reference_next;                     ///< when the torque computed now acts
   std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts known before a reset
   Calibration calibration;                            ///< taken over at a reset
   SafetyState safety_state;
@@ -46,7 +48,7 @@ struct StepInput {
   std::array<std::uint8_t, 4> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
-static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 16 + 2 * sizeof(ReferenceSample) +
+static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 32 + 2 * sizeof(ReferenceSample) +
                                        sizeof(std::int64_t) * kCounters + sizeof(Calibration) + 8,
               "no padding: the bytes are logged and compared");
 
@@ -61,8 +63,9 @@ enum LimitBit : std::uint32_t {
 /// What one Step decided, and what it knew. No padding.
 struct StepOutput {
   std::int64_t tick;
-  std::uint64_t faults;             ///< TripCauses that only the loop can see
-  std::array<double, 2> torque_nm;  ///< asked torque, to act at (k+1) Ts; 0 unless TorqueAllowed
+  std::uint64_t faults;  ///< TripCauses that only the loop can see
+  std::array<double, 2>
+      torque_nm;  ///< asked torque, to act acts_late after (k+1) Ts; 0 unless TorqueAllowed
   std::array<double, kCounters> angle_rad;       ///< th1 th2 th3 th4 from the counters
   std::array<double, 4> modal_m;                 ///< fitted f11 f12 f21 f22
   std::array<double, kMaxNominalStates> x_hat;   ///< state at k Ts
@@ -72,6 +75,8 @@ struct StepOutput {
   std::array<double, 2> root_strain;   ///< fitted surface strain at the root of each link
   std::array<double, 2> fit_residual;  ///< rms of the strain fit, unit strain
   double adaptive_gain_change;         ///< Frobenius norm of K_I - K_I(0)
+  double lyapunov_nm2;                 ///< V of the law (tracking_law.h); NaN: it has none
+  std::array<double, 2> saturated_s;   ///< time at the torque limit since the reset, a joint
   double fault_value;                  ///< of the lowest fault: the value that broke the limit,
   double fault_limit;                  ///< the limit,
   std::array<std::int64_t, kCounters> counts;  ///< unwrapped
@@ -85,7 +90,7 @@ struct StepOutput {
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);
 static_assert(sizeof(StepOutput) ==
-                  16 + 8 * (2 + 4 + 4 + 2 * kMaxNominalStates + 8 + 2 + 2 + 3 + 4) + 16,
+                  16 + 8 * (2 + 4 + 4 + 2 * kMaxNominalStates + 8 + 2 + 2 + 6 + 4) + 16,
               "no padding: the bytes are logged and compared");
 
 }  // namespace flexarm

@@ -1,34 +1,45 @@
 #include "controller/law/tracking_law.h"
 
 #include <cmath>
+#include <limits>
 
 namespace flexarm {
-
 namespace {
 
 // The proportional and derivative feedback of each hub alone, 2 x n.
-Eigen::MatrixXd PdGain(const ControllerConfig& config, Eigen::Index n) {
-  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(2, n);
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    K(i, i) = config.pd_stiffness_nm_per_rad[static_cast<std::size_t>(i)];
-    K(i, n / 2 + i) = config.pd_damping_nms_per_rad[static_cast<std::size_t>(i)];
+Eigen::MatrixXd PdGain(const ControllerConfig& config, const StateLayout& layout) {
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(2, layout.states());
+  for (int joint = 0; joint < 2; ++joint) {
+    const int hub = layout.hub(joint);
+    K(joint, hub) = config.pd_stiffness_nm_per_rad[static_cast<std::size_t>(joint)];
+    K(joint, layout.rate(hub)) = config.pd_damping_nms_per_rad[static_cast<std::size_t>(joint)];
   }
   return K;
 }
 
-// -K on what is not a hub's angle or rate: the reference's links are at rest then.
-Eigen::MatrixXd LinksAtRest(const Eigen::MatrixXd& K) {
-  const Eigen::Index dof = K.cols() / 2;
+// -K on what is not a joint's angle or rate: the reference's links are at rest then.
+Eigen::MatrixXd LinksAtRest(const Eigen::MatrixXd& K, const StateLayout& layout) {
   Eigen::MatrixXd without = -K;
-  without.leftCols<2>().setZero();
-  without.middleCols<2>(dof).setZero();
+  without.leftCols(layout.angles()).setZero();
+  without.middleCols(layout.dof(), layout.angles()).setZero();
   return without;
+}
+
+// K_I(0) = [I, S21, S22], 2 x (n + 4).
+Eigen::MatrixXd InitialGain(const Design& design) {
+  Eigen::MatrixXd K_I0(2, design.A.rows() + 4);
+  K_I0 << Eigen::Matrix2d::Identity(), design.S21, design.S22;
+  return K_I0;
+}
+
+bool FollowsCommandGenerator(ControllerKind kind) {
+  return IsAdaptive(kind) || kind == ControllerKind::kLqrCgt;
 }
 
 }  // namespace
 
 Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& config) {
-  return IsPd(config.kind) ? PdGain(config, design.A.rows()) : design.K;
+  return IsPd(config.kind) ? PdGain(config, design.layout) : design.K;
 }
 
 TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
@@ -40,14 +51,13 @@ TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
       K_stop_(design.K_stop),
       G_(design.G),
       feedforward_x_(Matrix2n::Zero(2, states_)),
-      feedforward_u_(Eigen::Matrix2d::Zero()) {
+      feedforward_u_(Eigen::Matrix2d::Zero()),
+      P_(design.P),
+      S11_(design.S11),
+      S12_(design.S12),
+      K_I_(InitialGain(design), config) {
   config_.adaptation = config.adaptation && IsAdaptive(config.kind);
   SetFeedforward(design);
-  K_I0_.resize(2, 2 + states_ + 2);
-  K_I0_.leftCols<2>().setIdentity();
-  K_I0_.middleCols(2, states_) = design.S21;
-  K_I0_.rightCols<2>() = design.S22;
-  Reset();
 }
 
 void TrackingLaw::SetFeedforward(const Design& design) {
@@ -72,18 +82,26 @@ void TrackingLaw::SetFeedforward(const Design& design) {
       feedforward_u_.setIdentity();
       break;
     case ControllerKind::kLqg:
-      feedforward_x_ = LinksAtRest(Cp_);
+      feedforward_x_ = LinksAtRest(Cp_, design.layout);
       break;
   }
 }
-
-void TrackingLaw::Reset() noexcept { K_I_ = K_I0_; }
 
 Eigen::Vector2d TrackingLaw::Feedforward(const StateVector& x_m,
                                          const Eigen::Vector2d& u_m) const noexcept {
   const Eigen::Vector2d from_state = feedforward_x_.lazyProduct(x_m);
   const Eigen::Vector2d from_command = feedforward_u_.lazyProduct(u_m);
   return from_state + from_command;
+}
+
+double TrackingLaw::Lyapunov(const StateVector& x, const StateVector& x_m,
+                             const Eigen::Vector2d& u_m) const noexcept {
+  if (!FollowsCommandGenerator(config_.kind)) return std::numeric_limits<double>::quiet_NaN();
+  StateVector e = S11_.lazyProduct(x_m);  // e = x* - x
+  e += S12_.col(0) * u_m(0) + S12_.col(1) * u_m(1);
+  e -= x;
+  const StateVector Pe = P_.lazyProduct(e);
+  return e.dot(Pe) + K_I_.energy();
 }
 
 TrackingLaw::Result TrackingLaw::Compute(const StateVector& x, const ReferenceSample& reference,
@@ -93,14 +111,19 @@ TrackingLaw::Result TrackingLaw::Compute(const StateVector& x, const ReferenceSa
   const Eigen::Vector2d u_m(reference.u_m_nm[0], reference.u_m_nm[1]);
   const Eigen::Vector2d y_e = Cp_.lazyProduct(x_m - x);
   const Eigen::Vector2d u_star = Feedforward(x_m, u_m);
-  if (!config_.adaptation) return Clip(u_star + y_e);
+  const double lyapunov = Lyapunov(x, x_m, u_m);
+  if (!config_.adaptation) {
+    Result result = Clip(u_star + y_e);
+    result.lyapunov_nm2 = lyapunov;
+    return result;
+  }
 
-  Regressor r(2 + states_ + 2);
+  AdaptiveGain::Regressor r(2 + states_ + 2);
   r.head<2>() = y_e;
   r.segment(2, states_) = x_m;
   r.tail<2>() = u_m;
   const double rho = config_.adaptation_gain * r.squaredNorm();
-  const Eigen::Vector2d from_gain = K_I_.lazyProduct(r);
+  const Eigen::Vector2d from_gain = K_I_.Torque(r);
 
   // F e = K_e C_p e = y_e, because C_p S11 = C_m and C_p S12 = 0 make C_p x* = C_m x_m.
   const Eigen::Vector2d drive = y_e + G_.lazyProduct(u_star + y_e - from_gain);
@@ -110,25 +133,26 @@ TrackingLaw::Result TrackingLaw::Compute(const StateVector& x, const ReferenceSa
                           (loop(0, 0) * drive(1) - loop(1, 0) * drive(0)) / determinant);
 
   Result result = Clip(from_gain + rho * v);
+  result.lyapunov_nm2 = lyapunov;
   if (!may_adapt || result.limits != 0 || !result.finite) {
     result.limits |= kAdaptationHeld;
     return result;
   }
-  K_I_ -= config_.sigma * (K_I_ - K_I0_);
-  K_I_ += (config_.adaptation_gain * v).lazyProduct(r.transpose());
+  K_I_.Update(v, r);
   return result;
 }
 
-TrackingLaw::Result TrackingLaw::Regulate(const StateVector& x,
-                                          const StateVector& x_goal) const noexcept {
-  const Eigen::Vector2d u = K_stop_.lazyProduct(x_goal - x);
+TrackingLaw::Result TrackingLaw::Hold(const Eigen::Vector2d& u) const noexcept {
   Result result = Clip(u);
   result.limits |= kAdaptationHeld;
   return result;
 }
 
 TrackingLaw::Result TrackingLaw::Clip(const Eigen::Vector2d& u) const noexcept {
-  Result result{.torque_nm = {0.0, 0.0}, .limits = 0, .finite = u.allFinite()};
+  Result result{.torque_nm = {0.0, 0.0},
+                .limits = 0,
+                .finite = u.allFinite(),
+                .lyapunov_nm2 = std::numeric_limits<double>::quiet_NaN()};
   if (!result.finite) return result;
   for (std::size_t i = 0; i < 2; ++i) {
     const double limit = torque_limit_nm_[i];
@@ -138,7 +162,5 @@ TrackingLaw::Result TrackingLaw::Clip(const Eigen::Vector2d& u) const noexcept {
   }
   return result;
 }
-
-double TrackingLaw::adaptive_gain_change() const noexcept { return (K_I_ - K_I0_).norm(); }
 
 }  // namespace flexarm

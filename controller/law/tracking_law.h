@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "controller/law/adaptive_gain.h"
 #include "controller/law/controller_config.h"
 #include "controller/law/design.h"
 #include "controller/law/step_types.h"
@@ -19,14 +20,14 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 ///
 ///   u = u* + C_p (x_m - x), clipped to the torque limits
 ///
-/// | name           | u*                                              | C_p                       |
-/// |----------------|-------------------------------------------------|---------------------------|
-/// | sobel          | vartheta u_f + (1 - vartheta) u_c (7.24)         | LQR with alpha | |
-/// sobel-original | u_c                                             | LQR with alpha = 0        |
-/// | lqr-cgt        | u_c = S21 x_m + S22 u_m                         | LQR with alpha            |
-/// | lqr-um         | u_m                                             | LQR with alpha            |
-/// | lqg            | 0, of x_m only the hubs' angles and rates       | LQR with alpha = 0        |
-/// | pd, pd-zv(d)   | u_m                                             | stiffness, damping a hub  |
+/// | name           | u*                                              | C_p                     |
+/// |----------------|-------------------------------------------------|-------------------------|
+/// | sobel          | vartheta u_f + (1 - vartheta) u_c (7.24)         | LQR with alpha          |
+/// | sobel-original | u_c                                             | LQR with alpha = 0      |
+/// | lqr-cgt        | u_c = S21 x_m + S22 u_m                         | LQR with alpha          |
+/// | lqr-um         | u_m                                             | LQR with alpha          |
+/// | lqg            | 0, of x_m only the joints' angles and rates     | LQR with alpha = 0      |
+/// | pd, pd-zv(d)   | u_m                                             | stiffness, damping a hub |
 ///
 /// u_f is (7.25). The adaptive laws (thesis 7.2 to 7.4, control.md section 4) give instead
 ///
@@ -44,35 +45,46 @@ class TrackingLaw {
     std::array<double, 2> torque_nm;
     std::uint32_t limits;  ///< LimitBit
     bool finite;           ///< false: the law computed no number; the torque is zero
+    double lyapunov_nm2;   ///< V of (7.11) before this sample's adaptation; see Compute
   };
 
   TrackingLaw(const Design& design, const ControllerConfig& config,
               const std::array<double, 2>& torque_limit_nm);
 
-  /// K_I back to [I, S21, S22].
-  void Reset() noexcept;
+  /// K_I back to [I, S21, S22]: the law starts as lqr-cgt, without a step in its torque.
+  void Reset() noexcept { K_I_.Reset(); }
 
   /// @param x          plant state at the instant the torque acts
   /// @param reference  of the same instant
   /// @param may_adapt  false holds K_I (invalid sensor, not Running)
+  ///
+  /// With the torque comes V = e'Pe + tr((K_I - K_I0) T^-1 (K_I - K_I0)'), N m squared: on the
+  /// nominal plant it falls from sample to sample (vartheta = 0, u_m constant). NaN for the laws
+  /// whose trajectory is not the command generator's: lqr-um, lqg, pd.
   Result Compute(const StateVector& x, const ReferenceSample& reference, bool may_adapt) noexcept;
 
-  /// Calm regulator towards `x_goal`: u = K_stop (x_goal - x), clipped. Damps the arm while
+  /// Calm regulator towards `x_goal`, not clipped: u = K_stop (x_goal - x). Damps the arm while
   /// Stopping.
-  Result Regulate(const StateVector& x, const StateVector& x_goal) const noexcept;
+  Eigen::Vector2d Regulate(const StateVector& x, const StateVector& x_goal) const noexcept {
+    return K_stop_.lazyProduct(x_goal - x);
+  }
 
-  /// A torque that no law computed, clipped.
-  Result Clip(const Eigen::Vector2d& u) const noexcept;
+  /// A torque that the adaptive law has no part in, clipped; K_I stays as it is.
+  Result Hold(const Eigen::Vector2d& u) const noexcept;
 
-  double adaptive_gain_change() const noexcept;  ///< Frobenius norm of K_I - K_I(0)
+  /// Frobenius norm of K_I - K_I(0).
+  double adaptive_gain_change() const noexcept { return K_I_.change(); }
 
  private:
   using Matrix2n = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 16>;
-  using Regressor = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 20, 1>;
-  using AdaptiveGain = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 20>;
+  using MatrixNn = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 16, 16>;
+  using MatrixN2 = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 16, 2>;
 
   void SetFeedforward(const Design& design);
   Eigen::Vector2d Feedforward(const StateVector& x_m, const Eigen::Vector2d& u_m) const noexcept;
+  Result Clip(const Eigen::Vector2d& u) const noexcept;
+  double Lyapunov(const StateVector& x, const StateVector& x_m,
+                  const Eigen::Vector2d& u_m) const noexcept;
 
   ControllerConfig config_;
   std::array<double, 2> torque_limit_nm_;
@@ -82,7 +94,9 @@ class TrackingLaw {
   Eigen::Matrix2d G_;
   Matrix2n feedforward_x_;  // u* = feedforward_x x_m + feedforward_u u_m
   Eigen::Matrix2d feedforward_u_;
-  AdaptiveGain K_I0_, K_I_;
+  MatrixNn P_, S11_;
+  MatrixN2 S12_;
+  AdaptiveGain K_I_;
 };
 
 }  // namespace flexarm

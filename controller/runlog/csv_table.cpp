@@ -1,6 +1,9 @@
 #include "controller/runlog/csv_table.h"
 
 #include <cmath>
+#include <fstream>
+#include <sstream>
+#include <utility>
 
 #include "controller/runlog/errors.h"
 
@@ -26,8 +29,14 @@ std::vector<std::string_view> Cells(std::string_view line) {
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file)
-    : file_(file.string()), stream_(file, std::ios::binary) {
-  if (!stream_) throw InputError(file_ + ": cannot be opened; expected a CSV file");
+    : CsvTable(file.string(), std::make_unique<std::ifstream>(file, std::ios::binary)) {}
+
+CsvTable::CsvTable(std::string file, const std::string& text)
+    : CsvTable(std::move(file), std::make_unique<std::istringstream>(text)) {}
+
+CsvTable::CsvTable(std::string file, std::unique_ptr<std::istream> stream)
+    : file_(std::move(file)), stream_(std::move(stream)) {
+  if (!*stream_) throw InputError(file_ + ": cannot be opened; expected a CSV file");
   if (!Next()) Fail("found an empty file, expected a header with the names of the columns");
   columns_ = cells_.size();
   for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -43,7 +52,7 @@ void CsvTable::Need(std::string_view column) const {
 }
 
 bool CsvTable::Next() {
-  while (std::getline(stream_, line_)) {
+  while (std::getline(*stream_, line_)) {
     ++line_number_;
     const std::string_view text = Trimmed(line_);
     if (text.empty() || text.front() == '#') continue;

@@ -3,8 +3,9 @@
 #include <charconv>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
+#include <istream>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -19,6 +20,8 @@ class CsvTable {
  public:
   /// Opens the file and reads its header.
   explicit CsvTable(const std::filesystem::path& file);
+  /// The same of a text that is in memory; `file` stands for it in messages.
+  CsvTable(std::string file, const std::string& text);
 
   bool Has(std::string_view column) const { return column_.find(column) != column_.end(); }
   /// The header must have `column`.
@@ -39,8 +42,10 @@ class CsvTable {
   [[noreturn]] void FailCell(std::string_view column, const std::string& expected) const;
 
  private:
+  CsvTable(std::string file, std::unique_ptr<std::istream> stream);
+
   std::string file_;
-  std::ifstream stream_;
+  std::unique_ptr<std::istream> stream_;
   int line_number_ = 0;
   std::string line_;
   std::vector<std::string_view> cells_;

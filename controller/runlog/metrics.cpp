@@ -36,10 +36,12 @@ std::vector<Sample> Samples(std::span<const TickRecord> ticks, double period_s, 
                             const TipGeometry& geometry) {
   std::vector<Sample> samples;
   samples.reserve(ticks.size());
+  const double late_s =
+      ticks.empty() ? 0.0 : 1e-9 * static_cast<double>(ticks.front().input.acts_late_ns);
   for (const TickRecord& record : ticks) {
     const std::int64_t number = record.input.tick - ticks.front().input.tick - 1;
     Sample sample{
-        .time_s = static_cast<double>(number) * period_s,
+        .time_s = static_cast<double>(number) * period_s - late_s,
         .error_deg = {},
         .tip_m = truth ? record.truth.tip_m : EstimatedTip(geometry, record.output.x_hat)};
     for (std::size_t joint = 0; joint < 2; ++joint) {
@@ -131,16 +133,30 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
   }
 }
 
+// The deflections of the links' tips: psi(L) = 1, so the sum of a link's modal coordinates.
+std::array<double, 2> Bending_m(const TickRecord& record, bool truth) {
+  if (truth) return record.truth.tip_deflection_m;
+  const auto& modal_m = record.output.modal_m;
+  return {modal_m[0] + modal_m[1], modal_m[2] + modal_m[3]};
+}
+
 void JudgeAllTicks(std::span<const TickRecord> ticks, std::span<const Sample> samples,
                    RunMetrics* metrics) {
   for (std::size_t joint = 0; joint < 2; ++joint) {
     double sum = 0;
     for (const Sample& sample : samples) sum += sample.error_deg[joint] * sample.error_deg[joint];
     metrics->joint_rms_error_deg[joint] = std::sqrt(sum / static_cast<double>(samples.size()));
+    double torque_squared = 0;
     for (const TickRecord& record : ticks) {
+      const double torque_nm = record.input.applied_torque_nm[joint];
       metrics->peak_torque_nm[joint] =
-          std::max(metrics->peak_torque_nm[joint], std::abs(record.input.applied_torque_nm[joint]));
+          std::max(metrics->peak_torque_nm[joint], std::abs(torque_nm));
+      torque_squared += torque_nm * torque_nm;
+      metrics->peak_bending_mm[joint] =
+          std::max(metrics->peak_bending_mm[joint],
+                   1e3 * std::abs(Bending_m(record, metrics->truth)[joint]));
     }
+    metrics->torque_rms_nm[joint] = std::sqrt(torque_squared / static_cast<double>(ticks.size()));
   }
 }
 
@@ -159,18 +175,38 @@ std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s) {
   return rests;
 }
 
-TipGeometry TipGeometryOf(const ArmParameters& arm) {
+TipGeometry TipGeometryOf(const ArmParameters& arm, const StateLayout& layout) {
   const LinkModes modes = Link1Modes(arm, 2);
-  return {.length_m = {arm.link[0].length_m(), arm.link[1].length_m()},
+  return {.layout = layout,
+          .length_m = {arm.link[0].length_m(), arm.link[1].length_m()},
           .tip_slope_per_m = {modes.slope_tip(0), modes.slope_tip(1)}};
+}
+
+std::array<double, 2> EstimatedDeflection_m(const StateLayout& layout,
+                                            const std::array<double, kMaxNominalStates>& x) {
+  std::array<double, 2> deflection{};
+  for (int link = 0; link < 2; ++link) {
+    for (int mode = 0; mode < layout.modes_per_link; ++mode) {
+      deflection[static_cast<std::size_t>(link)] +=
+          x[static_cast<std::size_t>(layout.mode(link, mode))];
+    }
+  }
+  return deflection;
 }
 
 std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
                                    const std::array<double, kMaxNominalStates>& x) {
+  const StateLayout& layout = geometry.layout;
   const auto& [length1, length2] = geometry.length_m;
-  const double th1 = x[0], th2 = x[1], w1 = x[2] + x[3], w2 = x[4] + x[5];
-  const double alpha1 =
-      std::atan(geometry.tip_slope_per_m[0] * x[2] + geometry.tip_slope_per_m[1] * x[3]);
+  const double th1 = x[static_cast<std::size_t>(layout.hub(0))];
+  const double th2 = x[static_cast<std::size_t>(layout.hub(1))];
+  const auto [w1, w2] = EstimatedDeflection_m(layout, x);
+  double slope = 0.0;
+  for (int mode = 0; mode < layout.modes_per_link; ++mode) {
+    slope += geometry.tip_slope_per_m[static_cast<std::size_t>(mode)] *
+             x[static_cast<std::size_t>(layout.mode(0, mode))];
+  }
+  const double alpha1 = std::atan(slope);
   const double gamma = th1 + alpha1 + th2;
   return {std::cos(th1) * length1 - std::sin(th1) * w1 + std::cos(gamma) * length2 -
               std::sin(gamma) * w2,
@@ -191,6 +227,7 @@ RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& e
   JudgeRests(samples, RestsOf(experiment, run_end_s), period_s / 2, &metrics);
   if (samples.empty()) {
     metrics.joint_rms_error_deg.fill(std::numeric_limits<double>::quiet_NaN());
+    metrics.torque_rms_nm.fill(std::numeric_limits<double>::quiet_NaN());
   } else {
     JudgeAllTicks(running, samples, &metrics);
   }

@@ -7,6 +7,7 @@
 
 #include "controller/law/experiment.h"
 #include "controller/runlog/records.h"
+#include "estimator/state_layout.h"
 #include "model/arm_parameters.h"
 
 namespace flexarm {
@@ -19,8 +20,10 @@ struct RunMetrics {
   /// Largest over the rests: from the move's end until the tip stays within 15 mm of its mean over
   /// the last 0.3 s. Nothing: never.
   std::optional<double> tip_settling_time_s;
-  double tip_residual_rms_mm = 0;          ///< largest over the rests: rms about that mean
-  std::array<double, 2> peak_torque_nm{};  ///< after the gate
+  double tip_residual_rms_mm = 0;           ///< largest over the rests: rms about that mean
+  std::array<double, 2> peak_torque_nm{};   ///< after the gate
+  std::array<double, 2> torque_rms_nm{};    ///< after the gate, all ticks
+  std::array<double, 2> peak_bending_mm{};  ///< largest deflection of each link's tip
   bool truth = false;  ///< angles and tip are the plant's own; otherwise estimated
 };
 
@@ -34,15 +37,22 @@ struct Rest {
 /// not reach are left out.
 std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s);
 
-/// What an estimated tip position needs: rigid geometry and the tip slopes of link 1's modes.
+/// What an estimated tip position needs: where the state has what, rigid geometry, and the tip
+/// slopes of link 1's modes.
 struct TipGeometry {
+  StateLayout layout;
   std::array<double, 2> length_m;
   std::array<double, 2> tip_slope_per_m;  ///< psi_1j'(L1), j = 1, 2
 };
 
-TipGeometry TipGeometryOf(const ArmParameters& arm);
+/// @param layout  of the state that it is for
+TipGeometry TipGeometryOf(const ArmParameters& arm, const StateLayout& layout);
 
-/// Tip in the base frame from th1 th2 f11 f12 f21 f22; slopes as arctangents, as in the model.
+/// Elastic tip deflection of each link, m: the sum of its modal coordinates, as psi(L) = 1.
+std::array<double, 2> EstimatedDeflection_m(const StateLayout& layout,
+                                            const std::array<double, kMaxNominalStates>& x);
+
+/// Tip in the base frame; slopes as arctangents, as in the model.
 std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
                                    const std::array<double, kMaxNominalStates>& x);
 

@@ -16,7 +16,8 @@ namespace {
 constexpr double kDegPerRad = 57.295779513082320877;
 
 constexpr const char* kInsertTick =
-    "INSERT INTO tick VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    "INSERT INTO tick VALUES "
+    "(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 
 std::string Utc(const char* format) {
   const std::time_t now = std::time(nullptr);
@@ -57,7 +58,8 @@ void BindReadable(Row& row, const TickRecord& record) {
   for (const double torque : output.torque_nm) row << torque;
   for (const double torque : input.applied_torque_nm) row << torque;
   for (const double modal : output.modal_m) row << modal;
-  row << output.adaptive_gain_change;
+  row << output.adaptive_gain_change << output.lyapunov_nm2;
+  for (const double seconds : output.saturated_s) row << seconds;
   for (const std::uint32_t count : input.frame.counter) row << std::int64_t{count};
   row << static_cast<std::int64_t>(output.faults) << std::int64_t{output.limits};
 }

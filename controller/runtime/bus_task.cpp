@@ -25,7 +25,6 @@ Task::Traits BusTask::traits() const noexcept {
 }
 
 void BusTask::Run(const Activation& activation) noexcept {
-  applied_before_nm_ = applied_nm_;
   const BusCommand command = Command(activation.due_ns);
   SensorFrame part{};
   const bool may_reconnect = failures_ > 0 && !command.enabled;
@@ -45,6 +44,7 @@ void BusTask::Run(const Activation& activation) noexcept {
 BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
   const CommandHistory::Entry& command = channels_.commands->Read().At(due_ns);
   const Permit& permit = channels_.permits->Read().Newest().value;
+  applied_tick_ = command.value.tick;
   const GateResult gated =
       Gate({.asked_nm = command.value.torque_nm,
             .asked_age_ns = AgeNs(due_ns, command.from_ns),
@@ -68,7 +68,14 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
     packet.frame.sampled_at_ns -= epoch_ns_;
     levels_ = (part.levels & device_->lines()) | (kHealthyLevels & ~device_->lines());
   }
-  packet.applied_torque_nm = applied_before_nm_;
+  packet.applied_torque_nm =
+      applied_.Between(due_ns - grid_.period_ns, due_ns, grid_.period_ns).mean_nm();
+  // Of a bus with drives the frame's instant is also when they took the torque: the SYNC of
+  // CANopen, the end of the analogue outputs of a board.
+  const bool stamped = status_ == BusStatus::kOk && device_->drives() != 0;
+  packet.acted_ns = (stamped ? packet.frame.sampled_at_ns : due_ns) + grid_.actuation_ns;
+  if (stamped) packet.output_tick = applied_tick_;
+  applied_.Push(packet.acted_ns, applied_nm_);
   frames_.Push(due_ns, packet);
   channels_.frames->Publish(frames_);
   reports_.Push(due_ns,

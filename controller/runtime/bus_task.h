@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "controller/law/torque_timeline.h"
 #include "controller/runtime/frame_packet.h"
 #include "controller/runtime/loop_grid.h"
 #include "controller/runtime/messages.h"
@@ -53,8 +54,9 @@ class BusTask final : public Task {
   GateLimits limits_;
   BusChannels channels_;
   std::int64_t epoch_ns_ = 0;
-  std::array<double, 2> applied_nm_{};         // set at the last exchange
-  std::array<double, 2> applied_before_nm_{};  // set at the one before: acted until now
+  std::array<double, 2> applied_nm_{};  // set at the last exchange
+  std::int64_t applied_tick_ = -1;      // of the command that was
+  TorqueTimeline applied_;              // when each acted
   BusStatus status_ = BusStatus::kOk;
   int failures_ = 0;  // in a row
   std::uint32_t failed_ = 0;

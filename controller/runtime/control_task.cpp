@@ -1,5 +1,6 @@
 #include "controller/runtime/control_task.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -93,6 +94,12 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
   input.sampling_instant_ns = grid_.SamplingInstant(input.tick);
   input.frame = packet.frame;
   input.applied_torque_nm = packet.applied_torque_nm;
+  const bool measured = packet.output_tick >= 0 && packet.output_tick == input.tick - 1;
+  const std::int64_t late_ns = grid_.late_ns();
+  input.acted_late_ns = measured ? std::clamp(packet.acted_ns - input.sampling_instant_ns, late_ns,
+                                              late_ns + grid_.period_ns)
+                                 : late_ns;
+  input.acts_late_ns = input.acted_late_ns;
   input.frame.levels = levels_;
   input.counts_before = counts_;
   input.calibration = calibration_;
@@ -119,16 +126,34 @@ void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept 
   const ReferenceTable& reference = plan_.experiment->reference;
   const int last = reference.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
-  input->reference_now = reference.At(sample_ - 1);
+  input->reference_now = ReferenceAtSample(reference);
   input->reference_next = reference.At(sample_);
   input->reference_ended = sample_ >= last ? 1 : 0;
+}
+
+// At k Ts, which lies between samples of the reference unless the torques act at sampling instants:
+// on the line between the two.
+ReferenceSample ControlTask::ReferenceAtSample(const ReferenceTable& reference) const noexcept {
+  const std::int64_t late_ns = grid_.late_ns();
+  std::int64_t back = 1 + late_ns / grid_.period_ns;  // whole periods, rounded up
+  if (late_ns % grid_.period_ns > 0) ++back;
+  const std::int64_t beyond_ns = (back - 1) * grid_.period_ns - late_ns;
+  const int k = sample_ - static_cast<int>(back);
+  ReferenceSample now = reference.At(k);
+  if (beyond_ns == 0) return now;
+  const double share = static_cast<double>(beyond_ns) / static_cast<double>(grid_.period_ns);
+  const ReferenceSample& after = reference.At(k + 1);
+  for (std::size_t i = 0; i < now.x_m.size(); ++i)
+    now.x_m[i] += share * (after.x_m[i] - now.x_m[i]);
+  return now;
 }
 
 void ControlTask::Publish(const Activation& activation, const StepInput& input,
                           const StepOutput& output) noexcept {
   const std::int64_t published_ns = activation.due_ns + grid_.deadline_ns;
-  const std::int64_t next_sample_ns = input.sampling_instant_ns + grid_.period_ns;
-  commands_.Push(output.faults != 0 ? published_ns : next_sample_ns,
+  const std::int64_t put_out_ns =
+      input.sampling_instant_ns + grid_.period_ns + grid_.output_late_ns;
+  commands_.Push(output.faults != 0 ? published_ns : put_out_ns,
                  {.torque_nm = output.torque_nm, .tick = output.tick});
   for (CommandChannel* channel : channels_.commands) channel->Publish(commands_);
   reports_.Push(published_ns, {.tick = output.tick,

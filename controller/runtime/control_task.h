@@ -33,7 +33,8 @@ struct ControlChannels {
 /// Step k is due `acquire_before` after the sampling instant k Ts, and takes the frame and the
 /// permit that held before it was due. It is reset when it finds the arm newly armed, or newly
 /// calibrated; a calibration is taken over while no torque is allowed. Its torque
-/// acts at (k+1) Ts; a fault that it sees takes the torque away at its deadline. Real-time: safe
+/// is put out when the grid says; it is expected to act as late as the last one did, as far as the
+/// drive side knows. A fault that it sees takes the torque away at its deadline. Real-time: safe
 /// after construction.
 class ControlTask final : public Task {
  public:
@@ -53,6 +54,7 @@ class ControlTask final : public Task {
   void StartRun(std::int64_t running_since_ns) noexcept;
   void TakeCalibration() noexcept;
   void FollowReference(SafetyState state, StepInput* input) noexcept;
+  ReferenceSample ReferenceAtSample(const ReferenceTable& reference) const noexcept;
   StepInput Gather(const Activation& activation, const FramePacket& packet,
                    SafetyState state) noexcept;
   void Publish(const Activation& activation, const StepInput& input,

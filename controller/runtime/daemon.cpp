@@ -10,6 +10,7 @@
 
 #include "controller/law/design.h"
 #include "controller/law/refused.h"
+#include "controller/law/screen.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/recorder_task.h"
 #include "controller/runtime/clock.h"
@@ -146,7 +147,8 @@ OperatorContext Daemon::Context() {
       .design = &design_,
       .config = &options_.config,
       .grid = LoopGrid(options_.config.loop),
-      .soft_limit_rad = SoftAngleRad(options_.config.safety),
+      .delay_margin_s = DelayMargin_s(options_.config, design_),
+      .limits = MotionLimitsOf(options_.config),
       .socket = options_.config.daemon.socket,
       .unattended = options_.experiment,
       .parse_experiment = options_.parse_experiment,

@@ -23,6 +23,11 @@ void JoinReadings(const std::array<Raw, N>& value, const std::array<std::int32_t
 void Join(const FramePacket& part, FramePacket* packet) noexcept {
   SensorFrame& frame = packet->frame;
   for (std::size_t i = 0; i < 2; ++i) packet->applied_torque_nm[i] += part.applied_torque_nm[i];
+  if (part.output_tick > packet->output_tick ||
+      (part.output_tick == packet->output_tick && part.acted_ns > packet->acted_ns)) {
+    packet->output_tick = part.output_tick;
+    packet->acted_ns = part.acted_ns;
+  }
   const std::int64_t apart_ns = part.frame.sampled_at_ns - frame.sampled_at_ns;
   if (apart_ns > kJoinableNs) frame = part.frame;  // the other bus has long been silent
   if (apart_ns > kJoinableNs || apart_ns < -kJoinableNs) return;

@@ -47,7 +47,9 @@ std::optional<RequestKind> RequestByName(const std::string& name) {
 }  // namespace
 
 OperatorTask::OperatorTask(OperatorContext context)
-    : context_(std::move(context)), commissioner_(*context_.config) {
+    : context_(std::move(context)),
+      delay_(context_.grid.period_ns, context_.delay_margin_s),
+      commissioner_(*context_.config) {
   context_.stack->Calibrate(commissioner_.calibration());
   if (!context_.socket.empty()) socket_ = std::make_unique<OperatorSocket>(context_.socket);
   if (context_.unattended) PlanExperiment(*context_.unattended, {0.0, 0.0});
@@ -113,10 +115,27 @@ void OperatorTask::FollowState() {
 }
 
 void OperatorTask::TakeTicks() {
-  while (context_.stack->operator_ticks().Pop(&telemetry_)) commissioner_.Take(telemetry_);
+  while (context_.stack->operator_ticks().Pop(&telemetry_)) {
+    commissioner_.Take(telemetry_);
+    if (delay_.Take(telemetry_.input)) WarnOfDelay();
+  }
   if (std::optional<Json> answer = commissioner_.TakeAnswer()) {
     FinishCommissioning(std::move(*answer));
   }
+}
+
+void OperatorTask::WarnOfDelay() {
+  const Json figures{{"delay_ms", delay_.delay_ms()}, {"delay_margin_ms", delay_.margin_ms()}};
+  const std::string text =
+      "a torque acted later than predicted, and less than half of the loop's delay margin is "
+      "left: " +
+      figures.dump() + "; declare what the drives need (loop.actuation_delay_ms)";
+  context_.events->Push({.time_ns = now_ns_,
+                         .kind = "warning",
+                         .name = "delay-margin",
+                         .text = text,
+                         .value_json = figures.dump()});
+  context_.report(true, text);
 }
 
 void OperatorTask::Serve() {
@@ -216,9 +235,10 @@ void OperatorTask::FinishCommissioning(Json answer) {
 
 void OperatorTask::PlanExperiment(const Experiment& experiment,
                                   const std::array<double, 2>& start_rad) {
-  Plan(std::make_unique<PlannedExperiment>(experiment, *context_.design, context_.grid.period_s(),
-                                           start_rad, context_.soft_limit_rad),
-       experiment.name, experiment.text);
+  auto planned = std::make_unique<PlannedExperiment>(
+      experiment, *context_.design, context_.grid.period_s(), start_rad, context_.limits);
+  const Experiment chosen = planned->accepted;
+  Plan(std::move(planned), chosen.name, chosen.text);
 }
 
 void OperatorTask::Plan(std::unique_ptr<PlannedExperiment> planned, const std::string& name,
@@ -272,6 +292,9 @@ Json OperatorTask::Status() {
               {"modal_m", out.modal_m},
               {"root_strain", out.root_strain},
               {"at_rest", out.at_rest != 0},
+              {"delay_ms", delay_.delay_ms()},
+              {"delay_max_ms", delay_.longest_ms()},
+              {"delay_margin_ms", delay_.margin_ms()},
               {"levels", telemetry_.input.frame.levels},
               {"trip", nullptr},
               {"buses", BusStatusOf(context_.stack->buses())},

@@ -13,6 +13,7 @@
 #include "controller/commissioning/commissioner.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/runtime/bus_health.h"
+#include "controller/runtime/delay_watch.h"
 #include "controller/runtime/loop_stack.h"
 #include "controller/runtime/operator_socket.h"
 #include "controller/runtime/task.h"
@@ -27,7 +28,8 @@ struct OperatorContext {
   const Design* design;
   const StackConfig* config;
   LoopGrid grid;
-  std::array<double, 2> soft_limit_rad;
+  double delay_margin_s;  ///< of the design (controller/law/screen.h)
+  MotionLimits limits;
   std::string socket;                    ///< path; empty: no socket
   std::optional<Experiment> unattended;  ///< run once without a person
   /// Reads an experiment that a client sent. Throws std::exception with the reasons.
@@ -81,6 +83,7 @@ class OperatorTask final : public Task {
   void Ask(RequestKind kind, int client, LineLevels may_open = 0);
   void TakeAnswers();
   void TakeTicks();
+  void WarnOfDelay();
   void FinishCommissioning(nlohmann::json answer);
   /// Plans `experiment` from where the hubs are. @throws Refused
   void PlanExperiment(const Experiment& experiment, const std::array<double, 2>& start_rad);
@@ -94,6 +97,7 @@ class OperatorTask final : public Task {
   std::unique_ptr<OperatorSocket> socket_;
   UnattendedRun unattended_;
   BusJournal bus_journal_;
+  DelayWatch delay_;
   Commissioner commissioner_;
   int commissioning_client_ = -1;            // -1: nobody waits
   std::uint32_t commissioning_request_ = 0;  // of its run; 0: none

@@ -6,8 +6,9 @@ namespace flexarm {
 
 PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design& design,
                                      double period_s, const std::array<double, 2>& start_rad,
-                                     const std::array<double, 2>& limit_rad)
-    : reference(experiment, design, period_s, start_rad, limit_rad),
+                                     const MotionLimits& limits)
+    : reference(experiment, design, period_s, start_rad, limits),
+      accepted(WithChosenDurations(experiment, reference.moves(), period_s)),
       sim_events(experiment.sim_event) {
   std::stable_sort(sim_events.begin(), sim_events.end(),
                    [](const SimEvent& a, const SimEvent& b) { return a.at_s < b.at_s; });

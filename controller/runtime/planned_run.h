@@ -15,7 +15,7 @@ namespace flexarm {
 struct PlannedExperiment {
   /// Parameters as ReferenceTable's. @throws Refused as ReferenceTable
   PlannedExperiment(const Experiment& experiment, const Design& design, double period_s,
-                    const std::array<double, 2>& start_rad, const std::array<double, 2>& limit_rad);
+                    const std::array<double, 2>& start_rad, const MotionLimits& limits);
 
   /// Torques in open loop: the pluck test.
   explicit PlannedExperiment(const std::vector<std::array<double, 2>>& torque_nm);
@@ -23,6 +23,7 @@ struct PlannedExperiment {
   explicit PlannedExperiment(const HomingPlan& plan);
 
   ReferenceTable reference;          ///< of a homing run: nothing
+  Experiment accepted{};             ///< the experiment with the durations that were chosen, if any
   std::vector<SimEvent> sim_events;  ///< in order of time; simulated backend only
   LoopMode mode = LoopMode::kFollow;
   HomingPlan homing{};  ///< if mode is kRegulate

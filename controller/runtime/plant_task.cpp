@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <optional>
 
 #include "controller/runtime/stack_config.h"
 
@@ -17,6 +18,7 @@ ArmParameters WithPayload(ArmParameters arm, double payload_kg) {
 
 PlantTask::PlantTask(const StackConfig& config, double payload_kg, PlantChannels channels)
     : rig_(WithPayload(config.arm, payload_kg), config.sensors, config.sim),
+      loss_(config.sim.lost_frame_fraction, config.sim.seed),
       grid_(config.loop),
       limits_{.torque_nm = config.safety.torque_limit_nm,
               .slew_nm_per_s = config.safety.slew_limit_nm_per_s,
@@ -24,7 +26,8 @@ PlantTask::PlantTask(const StackConfig& config, double payload_kg, PlantChannels
               .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
       transport_delay_ns_(std::llround(config.sim.transport_delay_ms * 1e6)),
       channels_(channels) {
-  TakeFrame(0);
+  StartFrame(0);
+  PublishFrame();
 }
 
 Task::Traits PlantTask::traits() const noexcept {
@@ -42,7 +45,8 @@ void PlantTask::Run(const Activation& activation) noexcept {
     HandleEvents(now_ns_);
     levels_.Push(now_ns_, rig_.levels());
     channels_.levels->Publish(levels_);
-    if (now_ns_ % grid_.period_ns == 0) TakeFrame(now_ns_);
+    if (now_ns_ % grid_.period_ns == 0) StartFrame(now_ns_);
+    PublishFrame();
   }
   if (frozen_) return;
   reports_.Push(activation.due_ns + kPeriodNs,
@@ -109,20 +113,35 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
   }
 }
 
-void PlantTask::TakeFrame(std::int64_t now_ns) noexcept {
-  FramePacket packet{};
-  packet.frame = rig_.Sample(now_ns);
+void PlantTask::StartFrame(std::int64_t now_ns) noexcept {
+  rig_.StartFrame(now_ns);
+  packet_ns_ = now_ns;
+  packet_lost_ = loss_.Next();
   for (std::size_t i = 0; i < 2; ++i) {
-    packet.applied_torque_nm[i] = applied_slices_ > 0 ? applied_sum_nm_[i] / applied_slices_ : 0.0;
+    packet_.applied_torque_nm[i] = applied_slices_ > 0 ? applied_sum_nm_[i] / applied_slices_ : 0.0;
   }
   applied_sum_nm_ = {};
   applied_slices_ = 0;
+  const CommandHistory::Entry& put_out = channels_.commands->Read().At(now_ns);
+  packet_.output_tick = put_out.value.tick;
+  packet_.acted_ns = put_out.from_ns + grid_.actuation_ns;
   const SimulatedRig::Truth truth = rig_.truth();
-  packet.truth = {.hub_angle_rad = truth.hub_angle_rad,
-                  .tip_m = truth.tip_m,
-                  .tip_deflection_m = truth.tip_deflection_m,
-                  .known = true};
-  frames_.Push(now_ns, packet);
+  packet_.truth = {.hub_angle_rad = truth.hub_angle_rad,
+                   .tip_m = truth.tip_m,
+                   .tip_deflection_m = truth.tip_deflection_m,
+                   .known = true};
+}
+
+// When the last channel of a multiplexed input has been sampled.
+void PlantTask::PublishFrame() noexcept {
+  const std::optional<SensorFrame> frame = rig_.TakeFrame();
+  if (!frame) return;
+  packet_.frame = *frame;
+  if (packet_lost_) {
+    packet_.frame = {};
+    packet_.frame.sampled_at_ns = packet_ns_;
+  }
+  frames_.Push(packet_ns_, packet_);
   channels_.frames->Publish(frames_);
 }
 

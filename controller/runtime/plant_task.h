@@ -13,6 +13,7 @@
 #include "controller/runtime/spsc_queue.h"
 #include "controller/runtime/task.h"
 #include "controller/safety/gate.h"
+#include "hal/sim/frame_loss.h"
 #include "hal/sim/simulated_rig.h"
 
 namespace flexarm {
@@ -36,8 +37,9 @@ struct PlantChannels {
 /// Each millisecond of the plant, s to s + 1 ms, is driven by what holds at s: the command that
 /// acts, through the gate on the permit of s, and nothing if the relay is open or the charge pump
 /// has not toggled for 5 ms. The slice is integrated when it is over, so everybody had a
-/// millisecond to publish what holds at its start. Frames are taken at exactly k Ts. A late thread
-/// catches up: the simulated world does not lose time. Real-time: safe after construction.
+/// millisecond to publish what holds at its start. Frames are taken at exactly k Ts; a lost one
+/// holds no reading, as after an exchange of a bus that failed, and the drive goes on. A late
+/// thread catches up: the simulated world does not lose time. Real-time: safe after construction.
 class PlantTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -58,9 +60,11 @@ class PlantTask final : public Task {
   std::array<double, 2> Drive(std::int64_t start_ns) noexcept;
   bool Enabled(std::int64_t start_ns) noexcept;
   void HandleEvents(std::int64_t now_ns) noexcept;
-  void TakeFrame(std::int64_t now_ns) noexcept;
+  void StartFrame(std::int64_t now_ns) noexcept;
+  void PublishFrame() noexcept;
 
   SimulatedRig rig_;
+  FrameLoss loss_;
   LoopGrid grid_;
   GateLimits limits_;
   std::int64_t transport_delay_ns_;
@@ -76,6 +80,9 @@ class PlantTask final : public Task {
   std::int64_t command_acts_ns_ = INT64_MIN;  // of the command that the gate saw last
   std::array<double, 2> applied_sum_nm_{};
   int applied_slices_ = 0;
+  FramePacket packet_{};  // of the last sampling instant, until its readings are there
+  std::int64_t packet_ns_ = 0;
+  bool packet_lost_ = false;
   bool pump_level_ = false;
   std::int64_t pump_toggled_ns_ = INT64_MIN;
   FrameHistory frames_{kNoFrame};

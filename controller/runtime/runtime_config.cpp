@@ -14,12 +14,26 @@ std::vector<Problem> LoopConfig::Problems() const {
               "the time that the buses need to bring a frame");
   list.Positive("step_deadline_ms", step_deadline_ms, 100.0,
                 "a command later than this after its release missed its deadline");
+  list.Within("output_after_ms", output_after_ms, 0.0, 100.0,
+              "when a torque that is put out at once leaves for the drives");
+  list.Within("actuation_delay_ms", actuation_delay_ms, 0.0, 200.0,
+              "what bus and drive need from the output to the torque");
   if (!list.empty()) return list.Take();  // rules between values need sound values
   list.Require(acquire_before_ms + step_deadline_ms < period_ms, "step_deadline_ms",
                NumberText(step_deadline_ms),
                "must leave acquire_before_ms + step_deadline_ms below period_ms: " +
                    NumberText(acquire_before_ms) + " + " + NumberText(step_deadline_ms) + " < " +
                    NumberText(period_ms) + " does not hold");
+  list.Require(
+      output == OutputTiming::kNextTick ||
+          (acquire_before_ms + step_deadline_ms <= output_after_ms && output_after_ms <= period_ms),
+      "output_after_ms", NumberText(output_after_ms),
+      "must lie in acquire_before_ms + step_deadline_ms .. period_ms = " +
+          NumberText(acquire_before_ms + step_deadline_ms) + " .. " + NumberText(period_ms) +
+          ": a step has its deadline, then its torque is put out");
+  list.Require(actuation_delay_ms <= 2.0 * period_ms, "actuation_delay_ms",
+               NumberText(actuation_delay_ms),
+               "must be at most two periods of the loop: the prediction remembers no further");
   return list.Take();
 }
 

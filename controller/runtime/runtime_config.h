@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -7,12 +8,21 @@
 
 namespace flexarm {
 
+/// When a torque leaves for the drives.
+enum class OutputTiming : std::uint8_t {
+  kNextTick,  ///< "next_tick": at the next sampling instant, with the exchange of the buses
+  kAtOnce,    ///< "at_once": output_after_ms after the sampling instant that it was computed from
+};
+
 /// Section [loop]: timing of the control grid.
 struct LoopConfig {
   double period_ms;          ///< Ts; sampling instants are at k Ts
   double acquire_before_ms;  ///< the control task runs this long after the sampling instant's grid
   double
       step_deadline_ms;  ///< a Step published later than this after its release missed its deadline
+  OutputTiming output;
+  double output_after_ms;     ///< of kAtOnce; not before a Step is due and its deadline over
+  double actuation_delay_ms;  ///< known latency of drive and bus, from output to torque
 
   std::vector<Problem> Problems() const;
 };

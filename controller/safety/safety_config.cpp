@@ -19,6 +19,8 @@ void CheckLimits(const SafetyConfig& c, ProblemList* list) {
                      "an estimated hub rate beyond this trips");
   list->EachPositive("limits.strain_limit", c.strain_limit, 0.01,
                      "unit strain; no metal link survives 1 %");
+  list->Positive("limits.plan_fraction", c.plan_fraction, 1.0,
+                 "a move without duration_s is planned within this share of every limit");
 }
 
 void CheckSafety(const SafetyConfig& c, ProblemList* list) {

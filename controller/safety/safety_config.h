@@ -15,6 +15,7 @@ struct SafetyConfig {
   std::array<double, 2> soft_angle_deg;  ///< |hub angle| beyond this trips
   std::array<double, 2> hub_rate_rad_s;  ///< |estimated hub rate| beyond this on two ticks trips
   std::array<double, 2> strain_limit;    ///< |fitted surface strain at the root| beyond this trips
+  double plan_fraction;  ///< share of each limit that a move of chosen duration may use, 0 to 1
   // [safety]
   double rest_hub_rate_rad_s;     ///< at rest: both hub rates below this
   double rest_strain_rate_per_s;  ///< at rest: both root strain rates below this

@@ -16,8 +16,12 @@ std::vector<Problem> SimConfig::Problems() const {
                "step_ms", NumberText(step_ms),
                "must lie in 0.001 .. 1 and divide 1 ms, or the steps miss the 1 kHz safety grid");
   list.EachWithin("motor_lag_ms", motor_lag_ms, 0.0, 100.0, "electrical time constant, 0 for none");
-  list.Within("transport_delay_ms", transport_delay_ms, 0.0, 20.0,
+  list.Within("transport_delay_ms", transport_delay_ms, 0.0, 40.0,
               "from command to drive, on top of the loop's own delay");
+  list.Within("lost_frame_fraction", lost_frame_fraction, 0.0, 0.5,
+              "every frame after a lost one arrives, two lost in a row are a trip");
+  list.Within("channel_skew_us", channel_skew_us, 0.0, 5000.0,
+              "a multiplexer goes from channel to channel");
   list.EachPositive("switch_angle_deg", switch_angle_deg, 360.0,
                     "the limit switches open beyond this hub angle");
   return list.Take();

@@ -14,7 +14,9 @@ struct SimConfig {
   double step_ms;                      ///< integration step, divides 1 ms
   std::uint64_t seed;                  ///< of the measurement noise
   std::array<double, 2> motor_lag_ms;  ///< electrical time constant of (3.24); 0: none
-  double transport_delay_ms;           ///< from command to drive, on top of the loop's own; 0..20
+  double transport_delay_ms;           ///< from command to drive, on top of the loop's own; 0..40
+  double lost_frame_fraction;  ///< share of the frames without a reading, each alone; 0..0.5
+  double channel_skew_us;  ///< strain channel i is sampled i times this after k Ts; 0: all at k Ts
   std::array<double, 2> switch_angle_deg;  ///< limit switches open beyond +-this hub angle
 
   std::vector<Problem> Problems() const;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace flexarm {
 
@@ -12,7 +13,8 @@ SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors
       sensors_(arm_, sensors, sim.seed),
       state_(arm_.dof()),
       filter_(sensors.strain_input, sim.step_ms * 1e-3, arm_.dof() - kRigidCoordinates),
-      step_ns_(std::llround(sim.step_ms * 1e6)) {
+      step_ns_(std::llround(sim.step_ms * 1e6)),
+      skew_ns_(std::llround(sim.channel_skew_us * 1e3)) {
   for (std::size_t i = 0; i < 2; ++i) {
     motor_[i] = DcMotor(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
     switch_angle_rad_[i] = sim.switch_angle_deg[i] * std::numbers::pi / 180.0;
@@ -25,8 +27,36 @@ void SimulatedRig::Step() noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     torque(static_cast<Eigen::Index>(i)) = motor_[i].Step(set_point_nm_[i]);
   }
+  const ArmVector before(filter_.output());
   simulator_.Step(state_, torque, static_cast<double>(step_ns_) * 1e-9);
   filter_.Step(state_.q.tail(filter_.output().size()));
+  if (!frame_) return;
+  Scan(frame_age_ns_ + step_ns_, before);
+  frame_age_ns_ += step_ns_;
+}
+
+void SimulatedRig::StartFrame(std::int64_t now_ns) noexcept {
+  frame_ = sensors_.SampleCounters(now_ns, state_.q, levels());
+  next_channel_ = 0;
+  frame_age_ns_ = 0;
+  Scan(0, ArmVector(filter_.output()));
+}
+
+std::optional<SensorFrame> SimulatedRig::TakeFrame() noexcept {
+  if (next_channel_ < sensors_.strain_channels()) return std::nullopt;
+  return std::exchange(frame_, std::nullopt);
+}
+
+void SimulatedRig::Scan(std::int64_t until_ns, const ArmVector& before) noexcept {
+  const ArmVector after(filter_.output());
+  for (; next_channel_ < sensors_.strain_channels(); ++next_channel_) {
+    const std::int64_t offset_ns = static_cast<std::int64_t>(next_channel_) * skew_ns_;
+    if (offset_ns > until_ns) return;
+    const double share =
+        1.0 - static_cast<double>(until_ns - offset_ns) / static_cast<double>(step_ns_);
+    const ArmVector filtered = share == 1.0 ? after : ArmVector(before + share * (after - before));
+    sensors_.SampleStrain(next_channel_, static_cast<std::int32_t>(offset_ns), filtered, &*frame_);
+  }
 }
 
 SensorFrame SimulatedRig::Sample(std::int64_t now_ns) noexcept {

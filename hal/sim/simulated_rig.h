@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "hal/gauge_filter.h"
 #include "hal/sensor_config.h"
@@ -41,8 +42,15 @@ class SimulatedRig {
   /// One integration step.
   void Step() noexcept;
 
-  /// What the converters show now.
+  /// What the converters show now, every strain channel at once.
   SensorFrame Sample(std::int64_t now_ns) noexcept;
+
+  /// Begins a frame: counters and lines now, the strain channels `channel_skew_us` apart, the first
+  /// of them now. The others follow in Step, between its ends by a straight line: next to a signal
+  /// of w rad/s that errs by (w h)^2 / 8, 4e-4 of the second modes.
+  void StartFrame(std::int64_t now_ns) noexcept;
+  /// The frame that was begun, once its last channel has been sampled; then never again.
+  std::optional<SensorFrame> TakeFrame() noexcept;
 
   LineLevels levels() const noexcept;
 
@@ -54,6 +62,9 @@ class SimulatedRig {
   const ArmState& state() const noexcept { return state_; }
 
  private:
+  // Samples the channels whose turn comes until `until_ns` after the frame's begin.
+  void Scan(std::int64_t until_ns, const ArmVector& before) noexcept;
+
   ArmModel arm_;
   ArmSimulator simulator_;
   SimulatedSensors sensors_;
@@ -64,6 +75,11 @@ class SimulatedRig {
   std::array<double, 2> switch_angle_rad_;
   std::array<double, 2> set_point_nm_{};
   LineLevels forced_ = kHealthyLevels;
+
+  std::int64_t skew_ns_;
+  std::optional<SensorFrame> frame_;  // begun
+  std::size_t next_channel_ = 0;      // of it
+  std::int64_t frame_age_ns_ = 0;
 };
 
 }  // namespace flexarm

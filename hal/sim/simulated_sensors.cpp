@@ -32,6 +32,13 @@ SimulatedSensors::SimulatedSensors(const ArmModel& arm, const SensorConfig& sens
 
 SensorFrame SimulatedSensors::Sample(std::int64_t now_ns, const ArmVector& q,
                                      const ArmVector& filtered, LineLevels levels) noexcept {
+  SensorFrame frame = SampleCounters(now_ns, q, levels);
+  for (std::size_t i = 0; i < gauge_.size(); ++i) SampleStrain(i, 0, filtered, &frame);
+  return frame;
+}
+
+SensorFrame SimulatedSensors::SampleCounters(std::int64_t now_ns, const ArmVector& q,
+                                             LineLevels levels) const noexcept {
   SensorFrame frame{};
   frame.sampled_at_ns = now_ns;
   frame.levels = levels;
@@ -42,20 +49,23 @@ SensorFrame SimulatedSensors::Sample(std::int64_t now_ns, const ArmVector& q,
     frame.counter[encoder.counter] = static_cast<std::uint32_t>(counts);
     frame.counter_valid |= std::uint32_t{1} << encoder.counter;
   }
-  for (std::size_t i = 0; i < gauge_.size(); ++i) {
-    const Gauge& gauge = gauge_[i];
-    double counts = gauge.offset_counts;
-    for (std::size_t mode = 0; mode < gauge.counts_per_metre.size(); ++mode) {
-      counts +=
-          gauge.counts_per_metre[mode] * filtered(gauge.first + static_cast<Eigen::Index>(mode));
-    }
-    counts += input_.noise_counts * noise_(random_);
-    const double railed = std::clamp(counts, static_cast<double>(input_.lowest_count()),
-                                     static_cast<double>(input_.highest_count()));
-    frame.strain[i] = static_cast<std::int32_t>(std::lround(railed));
-    frame.strain_valid |= std::uint32_t{1} << i;
-  }
   return frame;
+}
+
+void SimulatedSensors::SampleStrain(std::size_t i, std::int32_t offset_ns,
+                                    const ArmVector& filtered, SensorFrame* frame) noexcept {
+  const Gauge& gauge = gauge_[i];
+  double counts = gauge.offset_counts;
+  for (std::size_t mode = 0; mode < gauge.counts_per_metre.size(); ++mode) {
+    counts +=
+        gauge.counts_per_metre[mode] * filtered(gauge.first + static_cast<Eigen::Index>(mode));
+  }
+  counts += input_.noise_counts * noise_(random_);
+  const double railed = std::clamp(counts, static_cast<double>(input_.lowest_count()),
+                                   static_cast<double>(input_.highest_count()));
+  frame->strain[i] = static_cast<std::int32_t>(std::lround(railed));
+  frame->strain_offset_ns[i] = offset_ns;
+  frame->strain_valid |= std::uint32_t{1} << i;
 }
 
 }  // namespace flexarm

@@ -27,6 +27,16 @@ class SimulatedSensors {
   SensorFrame Sample(std::int64_t now_ns, const ArmVector& q, const ArmVector& filtered,
                      LineLevels levels) noexcept;
 
+  /// The same without its strain channels: they follow one by one.
+  SensorFrame SampleCounters(std::int64_t now_ns, const ArmVector& q,
+                             LineLevels levels) const noexcept;
+
+  /// Strain channel `i`, sampled `offset_ns` after the frame. In order of `i`.
+  void SampleStrain(std::size_t i, std::int32_t offset_ns, const ArmVector& filtered,
+                    SensorFrame* frame) noexcept;
+
+  std::size_t strain_channels() const noexcept { return gauge_.size(); }
+
  private:
   struct Encoder {
     std::size_t counter;

@@ -24,7 +24,8 @@ def run(program):
         unit = b["time_unit"]
         extra = "  ".join(f"{key} {value:.4g}" for key, value in b.items()
                           if key.endswith("_us") or key == "realtime_factor")
-        print(f"  {b['name']:<42} {b['real_time']:10.3f} {unit}  {extra}")
+        name = f"{b['name']} {b.get('label', '')}"
+        print(f"  {name:<42} {b['real_time']:10.3f} {unit}  {extra}")
     return {b["name"]: b for b in benchmarks}
 
 
@@ -38,11 +39,12 @@ def main():
     folder = arguments.build / "tests/bench"
     control = run(folder / "control_benchmark")
     run(folder / "model_benchmark")
-    step = next(b for name, b in control.items() if name.startswith("Step"))
+    steps = [b for name, b in control.items() if name.startswith("Step/")]
+    slowest = max(steps, key=lambda b: b["p99.9_us"])
     factor = next(b for name, b in control.items()
                   if name.startswith("SimulatedRun/modes:4"))["realtime_factor"]
-    text = (f"Step {step['p50_us']:.1f} us median, {step['p99.9_us']:.1f} us p99.9;"
-            f" default experiment {factor:.0f} times real time")
+    text = (f"Step of {len(steps)} laws and estimators: p99.9 {slowest['p99.9_us']:.1f} us at most"
+            f" ({slowest['label']}); default experiment {factor:.0f} times real time")
     print("\n" + text)
     if arguments.note:
         arguments.note.write_text(text + "\n", encoding="utf-8")

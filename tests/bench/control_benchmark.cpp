@@ -10,6 +10,7 @@
 #include "controller/law/control_step.h"
 #include "controller/law/design.h"
 #include "tests/support/recorded_inputs.h"
+#include "tests/support/step_variants.h"
 
 namespace flexarm {
 namespace {
@@ -25,10 +26,11 @@ double MicrosecondsSince(Clock::time_point start) {
 // Each call is timed by itself: what counts is the slowest, not the mean. The counters hold the
 // reading of the clock too, some 20 ns.
 void Step(benchmark::State& state) {
-  const Config config = Rig();
-  const Design design = DesignFor(config);
-  const std::vector<StepInput> inputs = RecordedInputs(config);
-  ControlStep step(config, design);
+  const StepVariant variant = StepVariants()[static_cast<std::size_t>(state.range(0))];
+  state.SetLabel(variant.name);
+  const std::vector<StepInput> inputs = RecordedInputs(Rig());
+  const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
+  ControlStep step(config, DesignFor(config));
   std::vector<double> taken_us;
   taken_us.reserve(10'000'000);
   std::size_t next = 0;
@@ -46,7 +48,10 @@ void Step(benchmark::State& state) {
   state.counters["p99.9_us"] = quantile(0.999);
   state.counters["max_us"] = taken_us.back();
 }
-BENCHMARK(Step)->Unit(benchmark::kMicrosecond)->MinTime(1.0);
+BENCHMARK(Step)
+    ->DenseRange(0, static_cast<int>(StepVariants().size()) - 1)
+    ->Unit(benchmark::kMicrosecond)
+    ->MinTime(0.5);
 
 void Design(benchmark::State& state) {
   const Config config = Rig();

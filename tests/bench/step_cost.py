@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Counts the instructions of every call of ControlStep::Step with callgrind. Exit 1 above the limit.
+"""Counts the instructions of every call of ControlStep::Step with callgrind, for every law and
+estimator. Exit 1 above the limit.
 
 Counts do not depend on how busy the machine is, so they can be a gate where times cannot.
 """
@@ -15,7 +16,7 @@ FUNCTION = "flexarm::CountedStep(flexarm::ControlStep&, flexarm::StepInput const
 
 
 def count(program):
-    """Instructions of each call, in order."""
+    """Instructions of each call, in order, by variant."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "out"
         # One profile a call: each holds what was collected since the one before.
@@ -26,15 +27,16 @@ def count(program):
         if result.returncode != 0:
             raise SystemExit(f"step_cost: valgrind failed:\n{result.stderr}")
         steps = int(re.search(r"^steps (\d+)", result.stdout, re.M).group(1))
+        variants = re.findall(r"^variant (\S+)", result.stdout, re.M)
         counts = []
         for part in sorted(Path(folder).glob("out.*"), key=lambda p: int(p.name.split(".")[1])):
             totals = re.search(r"^totals: (\d+)", part.read_text(encoding="utf-8"), re.M)
             if totals and int(totals.group(1)) > 0:
                 counts.append(int(totals.group(1)))
-    if len(counts) != steps or steps == 0:
-        raise SystemExit(f"step_cost: {steps} steps ran, {len(counts)} were seen; has the name"
-                         f" {FUNCTION} changed?")
-    return counts
+    if len(counts) != steps * len(variants) or not counts:
+        raise SystemExit(f"step_cost: {steps} steps of {len(variants)} variants ran, {len(counts)}"
+                         f" were seen; has the name {FUNCTION} changed?")
+    return {name: counts[i * steps:(i + 1) * steps] for i, name in enumerate(variants)}
 
 
 def main():
@@ -44,9 +46,13 @@ def main():
     parser.add_argument("--note", type=Path, help="write the result here too, on one line")
     arguments = parser.parse_args()
     counts = count(arguments.program)
-    worst = max(counts)
-    text = (f"{len(counts)} steps, {sum(counts) // len(counts)} instructions on average,"
-            f" {worst} at most (limit {arguments.limit})")
+    for name, of_variant in counts.items():
+        print(f"  {name:<16} {sum(of_variant) // len(of_variant):6} on average,"
+              f" {max(of_variant):6} at most")
+    dearest = max(counts, key=lambda name: max(counts[name]))
+    worst = max(counts[dearest])
+    text = (f"{len(counts)} laws and estimators, {worst} instructions at most, with {dearest}"
+            f" (limit {arguments.limit})")
     print(text)
     if arguments.note:
         arguments.note.write_text(text + "\n", encoding="utf-8")

@@ -1,6 +1,6 @@
-// Runs Step on the inputs of a whole run, for callgrind to count (tests/bench/step_cost.py).
-// Prints how many steps it ran. The simulation that makes the inputs runs Step too: what counts
-// goes through CountedStep.
+// Runs Step with every law and estimator on the inputs of a whole run, for callgrind to count
+// (tests/bench/step_cost.py). Prints how many steps it ran. The simulation that makes the inputs
+// runs Step too: what counts goes through CountedStep.
 
 #include <cstdint>
 #include <cstdio>
@@ -10,6 +10,7 @@
 #include "controller/law/control_step.h"
 #include "controller/law/design.h"
 #include "tests/support/recorded_inputs.h"
+#include "tests/support/step_variants.h"
 
 namespace flexarm {
 
@@ -20,13 +21,16 @@ namespace flexarm {
 namespace {
 
 void Run() {
-  const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml");
-  const Design design = DesignFor(config);
-  const std::vector<StepInput> inputs = RecordedInputs(config);
-  ControlStep step(config, design);
+  const std::vector<StepInput> inputs =
+      RecordedInputs(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"));
   std::int64_t last = 0;
-  for (const StepInput& input : inputs) last = CountedStep(step, input).tick;
-  std::printf("steps %zu, last tick %lld\n", inputs.size(), static_cast<long long>(last));
+  for (const StepVariant& variant : StepVariants()) {
+    const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
+    ControlStep step(config, DesignFor(config));
+    for (const StepInput& input : inputs) last = CountedStep(step, input).tick;
+    std::printf("variant %s\n", variant.name);
+  }
+  std::printf("steps %zu a variant, last tick %lld\n", inputs.size(), static_cast<long long>(last));
 }
 
 }  // namespace

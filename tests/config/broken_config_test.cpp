@@ -132,8 +132,10 @@ const BrokenCase kRange[] = {
      "sensors.strain[0].offset_counts", "rails"},
     {"StepThatDoesNotDivide", "step_ms = 0.5", "step_ms = 0.3", "sim.step_ms", "divide 1 ms"},
     {"NoPlantModes", "plant_modes = 4", "plant_modes = 0", "sim.plant_modes", "1 .. 6"},
-    {"LongTransport", "transport_delay_ms = 0.0", "transport_delay_ms = 21.0",
-     "sim.transport_delay_ms", "0 .. 20"},
+    {"LongTransport", "transport_delay_ms = 0.0", "transport_delay_ms = 41.0",
+     "sim.transport_delay_ms", "0 .. 40"},
+    {"TooManyLostFrames", "lost_frame_fraction = 0.0", "lost_frame_fraction = 0.6",
+     "sim.lost_frame_fraction", "0 .. 0.5"},
     {"NegativeLag", "motor_lag_ms = [2.0, 2.0]", "motor_lag_ms = [2.0, -2.0]",
      "sim.motor_lag_ms[1]", "0 .. 100"},
     {"ThreeModes", "modes_per_link = 2", "modes_per_link = 3", "estimator.modes_per_link",
@@ -146,6 +148,16 @@ const BrokenCase kRange[] = {
     {"NegativeLeak", "sigma = 0.02", "sigma = -0.02", "controller.sigma", "0 .. 1"},
     {"NoAngleWeight", "hub_angle_weight = [100.0, 20.0]", "hub_angle_weight = [100.0, 0.0]",
      "controller.hub_angle_weight[1]", "double integrator"},
+    {"UnknownNominalModel", "nominal = \"R12\"", "nominal = \"R16\"", "controller.nominal",
+     "one of \"R12\" \"R8\" \"T12\" \"T16\""},
+    {"NoWeightOnAHub", "torque_weight = 2.0",
+     "torque_weight = 2.0\nstate_weight = [100, 0, 0, 0, 0, 0, 5, 1, 0, 0, 0, 0]",
+     "controller.state_weight[1]", "double integrator", "state_weight = [100"},
+    {"NegativeStateWeight", "torque_weight = 2.0",
+     "torque_weight = 2.0\nstate_weight = [100, 20, 0, 0, -1, 0, 5, 1, 0, 0, 0, 0]",
+     "controller.state_weight[4]", "never negative", "state_weight = [100"},
+    {"EmptyStateWeight", "torque_weight = 2.0", "torque_weight = 2.0\nstate_weight = []",
+     "controller.state_weight", "array of finite numbers", "state_weight = []"},
     {"NoPassivityMargin", "passivity_margin = 5.0", "passivity_margin = 0.0",
      "controller.passivity_margin", "must exceed J"},
     {"NoPdStiffness", "pd_stiffness_nm_per_rad = [30.0, 1.0]",
@@ -156,6 +168,8 @@ const BrokenCase kRange[] = {
      "limits.torque_limit_nm[1]", "above 0"},
     {"StrainOfTenPercent", "strain_limit = [1.9e-3, 1.9e-3]", "strain_limit = [0.1, 1.9e-3]",
      "limits.strain_limit[0]", "0.01"},
+    {"PlansBeyondTheLimits", "plan_fraction = 0.6", "plan_fraction = 1.1", "limits.plan_fraction",
+     "at most 1"},
     {"LongPermit", "permit_timeout_ms = 5.0", "permit_timeout_ms = 50.0",
      "safety.permit_timeout_ms", "2 .. 20"},
     {"NeverMissed", "missed_deadlines_to_trip = 3", "missed_deadlines_to_trip = 0",
@@ -169,6 +183,18 @@ const BrokenCase kRange[] = {
 INSTANTIATE_TEST_SUITE_P(Range, BrokenConfig, ::testing::ValuesIn(kRange), CaseName);
 
 const BrokenCase kContradiction[] = {
+    {"OutputBeforeTheDeadline",
+     "output = \"next_tick\"            # torque acts at the next sampling instant; \"at_once\": "
+     "docs/timing.md\noutput_after_ms = 15.0",
+     "output = \"at_once\"\noutput_after_ms = 12.0", "loop.output_after_ms", "15 .. 20"},
+    {"UnknownOutput", "output = \"next_tick\"", "output = \"later\"", "loop.output",
+     "must be one of \"next_tick\" \"at_once\""},
+    {"ActuationBeyondTwoPeriods", "actuation_delay_ms = 0.0", "actuation_delay_ms = 41.0",
+     "loop.actuation_delay_ms", "at most two periods"},
+    {"TransportBetweenMilliseconds", "transport_delay_ms = 0.0", "transport_delay_ms = 0.5",
+     "sim.transport_delay_ms", "whole milliseconds"},
+    {"SkewBeyondTheStep", "channel_skew_us = 0.0", "channel_skew_us = 500.0", "sim.channel_skew_us",
+     "sampled 2 ms before the step is due"},
     {"DeadlineBeyondThePeriod", "acquire_before_ms = 10.0", "acquire_before_ms = 15.0",
      "loop.step_deadline_ms", "15 + 5 < 20", "step_deadline_ms"},
     {"SoftAngleAtTheSwitch", "soft_angle_deg = [90.0, 90.0]", "soft_angle_deg = [90.0, 95.0]",
@@ -177,6 +203,11 @@ const BrokenCase kContradiction[] = {
      "estimator.max_joint_rate_rad_s", "sensors.encoder[0] (8 bits)"},
     {"CounterOfAnotherBitWidth", "counter_bits = 16", "counter_bits = 11",
      "estimator.max_joint_rate_rad_s", "sensors.encoder[3] (11 bits)", "max_joint_rate_rad_s = 14"},
+    {"MoreModesInTheModelThanInTheFit", "modes_per_link = 2", "modes_per_link = 1",
+     "controller.nominal", "has 2 modes a link: estimator.modes_per_link = 1", "nominal = \"R12\""},
+    {"StateWeightOfAnotherModel", "torque_weight = 2.0",
+     "torque_weight = 2.0\nstate_weight = [100, 20, 0, 0, 5, 1, 0, 0]", "controller.state_weight",
+     "one for each state of controller.nominal: 12", "state_weight = [100"},
     {"RateAboveTheJump", "hub_rate_rad_s = [8.0, 10.0]", "hub_rate_rad_s = [8.0, 14.0]",
      "limits.hub_rate_rad_s[1]", "impossible jump"},
     {"RestAboveTheRateLimit", "hub_rate_rad_s = [8.0, 10.0]", "hub_rate_rad_s = [0.05, 10.0]",
@@ -205,7 +236,21 @@ TEST(BrokenConfigs, TooFewGaugesForTheModes) {
   ASSERT_EQ(ProblemsOf(text).size(), 1U);
   EXPECT_EQ(ProblemsOf(text)[0].key, "estimator.modes_per_link");
   // One gauge at the clamp is enough for one mode.
-  EXPECT_TRUE(ProblemsOf(Replaced(text, "modes_per_link = 2", "modes_per_link = 1")).empty());
+  const std::string one = Replaced(text, "modes_per_link = 2", "modes_per_link = 1");
+  EXPECT_TRUE(ProblemsOf(Replaced(one, "nominal = \"R12\"", "nominal = \"R8\"")).empty());
+}
+
+// Differences of angles that nobody measures are none; the Kalman filter infers them.
+TEST(BrokenConfigs, ATorsionalModelWithoutRotorEncodersNeedsTheKalmanFilter) {
+  std::string text = FileText(Shipped("thesis-rig.toml"));
+  const std::size_t begin = text.rfind("[[sensors.encoder]]");
+  text.erase(begin, text.find("sign = 1", begin) + 8 - begin);  // rotor 2
+  text = Replaced(text, "nominal = \"R12\"", "nominal = \"T12\"");
+  EXPECT_TRUE(ProblemsOf(text).empty());
+  const auto problems = ProblemsOf(Replaced(text, "name = \"kalman\"", "name = \"difference\""));
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].key, "controller.nominal");
+  EXPECT_THAT(problems[0].rule, HasSubstr("an encoder on each rotor"));
 }
 
 TEST(BrokenConfigs, TooManyStrainChannels) {

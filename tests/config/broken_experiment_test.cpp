@@ -80,6 +80,108 @@ TEST(ExperimentFile, MotionsAreDoubletsAndMovesInOrderOfTime) {
   EXPECT_EQ(motions[2].start_s, 4.5);
 }
 
+constexpr const char* kKinds = R"(name = "kinds"
+duration_s = 60.0
+
+[[move]]
+start_s = 0.0
+to_tip_m = [1.2, -0.4]
+elbow = "left"
+profile = "septic"
+
+[[chirp]]
+start_s = 10.0
+duration_s = 8.0
+from_hz = 0.5
+to_hz = 4.0
+amplitude_deg = [1.0, 2.0]
+
+[[prbs]]
+start_s = 20.0
+hold_s = 0.1
+bits = 5
+seed = 3
+torque_nm = [2.0, 0.3]
+
+[csv]
+start_s = 40.0
+file = "swing.csv"
+
+[[attached]]
+file = "swing.csv"
+text = '''
+# seconds, degrees
+time_s,th1_deg,th2_deg
+0,0,0
+0.5, 9, -18
+1.5,18,-36
+'''
+)";
+
+TEST(ExperimentFile, EveryKindOfRowIsRead) {
+  const Experiment e = ParseExperiment(kKinds, "e.toml");
+  ASSERT_EQ(e.move.size(), 1U);
+  EXPECT_FALSE(e.move[0].duration_s.has_value());
+  EXPECT_EQ(e.move[0].to_tip_m, (std::array{1.2, -0.4}));
+  EXPECT_EQ(e.move[0].elbow, ElbowSide::kLeft);
+  EXPECT_EQ(e.move[0].profile, MoveProfile::kSeptic);
+  ASSERT_EQ(e.chirp.size(), 1U);
+  EXPECT_EQ(e.chirp[0].start_s, 10.0);
+  EXPECT_EQ(e.chirp[0].duration_s, 8.0);
+  EXPECT_EQ(e.chirp[0].from_hz, 0.5);
+  EXPECT_EQ(e.chirp[0].to_hz, 4.0);
+  EXPECT_EQ(e.chirp[0].amplitude_deg, (std::array{1.0, 2.0}));
+  ASSERT_EQ(e.prbs.size(), 1U);
+  EXPECT_EQ(e.prbs[0].start_s, 20.0);
+  EXPECT_EQ(e.prbs[0].hold_s, 0.1);
+  EXPECT_EQ(e.prbs[0].bits, 5);
+  EXPECT_EQ(e.prbs[0].seed, 3);
+  EXPECT_EQ(e.prbs[0].torque_nm, (std::array{2.0, 0.3}));
+  ASSERT_TRUE(e.csv.has_value());
+  EXPECT_EQ(e.csv->start_s, 40.0);
+  ASSERT_EQ(e.csv->point.size(), 3U);
+  EXPECT_EQ(e.csv->point[1].time_s, 0.5);
+  EXPECT_NEAR(e.csv->point[2].angle_rad[0], 0.314159265, 1e-9) << "18 deg";
+  EXPECT_NEAR(e.csv->point[1].angle_rad[1], -0.314159265, 1e-9);
+}
+
+TEST(ExperimentFile, ADurationThatWasChosenIsReadBack) {
+  const std::string planned =
+      std::string(kKinds) + "\n[[planned_move]]\nrow = 0\nduration_s = 1.3\n";
+  EXPECT_EQ(ParseExperiment(planned, "e.toml").move[0].duration_s, 1.3);
+}
+
+// The file beside the experiment travels in its text: parsed again without the file, all is there.
+TEST(ExperimentFile, TheCsvFileIsAttachedToTheText) {
+  const std::filesystem::path file = FLEXARM_SOURCE_DIR "/config/experiments/trajectory.toml";
+  const Experiment loaded = LoadExperiment(file);
+  const Experiment again = ParseExperiment(loaded.text, "elsewhere.toml");
+  ASSERT_TRUE(again.csv.has_value());
+  EXPECT_EQ(again.csv->point.size(), loaded.csv->point.size());
+  EXPECT_EQ(again.csv->point.back().angle_rad, loaded.csv->point.back().angle_rad);
+  EXPECT_EQ(again.text, loaded.text);
+}
+
+std::string RefusedCsv(const std::string& from, const std::string& to) {
+  try {
+    ParseExperiment(Replaced(kKinds, from, to), "e.toml");
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ExperimentFile, AFaultyTrajectoryIsNamedByFileAndLine) {
+  EXPECT_THAT(RefusedCsv("0.5, 9, -18", "0.5, 9, x"),
+              AllOf(HasSubstr("e.toml:26: csv.file"),
+                    HasSubstr("swing.csv:4: th2_deg: found \"x\", expected a number")));
+  EXPECT_THAT(RefusedCsv("1.5,18,-36", "0.4,18,-36"),
+              AllOf(HasSubstr("swing.csv:5: time_s"), HasSubstr("later")));
+  EXPECT_THAT(RefusedCsv("0,0,0", "0.1,0,0"), HasSubstr("swing.csv:3: time_s: found \"0.1\""));
+  EXPECT_THAT(RefusedCsv("time_s,th1_deg", "time_s,th1_grad"), HasSubstr("swing.csv:2"));
+  EXPECT_THAT(RefusedCsv("0.5, 9, -18\n1.5,18,-36\n", ""), HasSubstr("at least two rows"));
+}
+
 TEST(ExperimentFile, IsReadWhole) {
   const Experiment e = ParseExperiment(kExperiment, "e.toml");
   EXPECT_EQ(e.name, "switch");
@@ -160,6 +262,25 @@ const BrokenCase kBroken[] = {
      kMoves},
     {"WildSetPoint", "to_deg = [10.0, -5.0]", "to_deg = [10.0, -500.0]", "move[0].to_deg[1]",
      "-360 .. 360", "", kMoves},
+    {"TipAndAngles", "elbow = \"left\"", "to_deg = [1.0, 2.0]", "move[0].to_deg", "one goal", "",
+     kKinds},
+    {"ElbowOfAngles", "to_tip_m = [1.2, -0.4]", "to_deg = [1.0, 2.0]", "move[0].elbow",
+     "beside to_tip_m", "elbow", kKinds},
+    {"UnknownProfile", "profile = \"septic\"", "profile = \"linear\"", "move[0].profile",
+     "one of \"quintic\" \"septic\"", "", kKinds},
+    {"ChirpOfNoFrequency", "to_hz = 4.0", "to_hz = 0.0", "chirp[0].to_hz", "above 0", "", kKinds},
+    {"ChirpDuringThePrbs", "start_s = 10.0", "start_s = 13.0", "prbs[0].start_s",
+     "must not overlap a chirp", "start_s = 20.0", kKinds},
+    {"PrbsOfOneBit", "bits = 5", "bits = 1", "prbs[0].bits", "2 .. 12", "", kKinds},
+    {"PrbsWithoutASeed", "seed = 3", "seed = 32", "prbs[0].seed", "1 .. 31", "", kKinds},
+    {"PrbsBeyondTheEnd", "start_s = 20.0", "start_s = 50.0", "prbs[0].bits", "must end inside",
+     "bits = 5", kKinds},
+    {"CsvNotAttached", "file = \"swing.csv\"\n\n", "file = \"other.csv\"\n\n", "csv.file",
+     "must be attached", "file = \"other.csv\"", kKinds},
+    {"CsvBeyondTheEnd", "start_s = 40.0", "start_s = 59.0", "csv.file", "must end inside",
+     "file = \"swing.csv\"", kKinds},
+    {"PlannedMoveOfNoMove", "[csv]", "[[planned_move]]\nrow = 1\nduration_s = 1\n[csv]",
+     "planned_move[0].row", "without duration_s", "row = 1", kKinds},
     {"EventAfterTheEnd", "at_s = 2.5", "at_s = 6.5", "sim_event[2].at_s", "inside the experiment"},
     {"UnknownLine", "line = \"limit-1-high\"", "line = \"limit-3-high\"", "sim_event[0].line",
      "\"emergency-stop\""},

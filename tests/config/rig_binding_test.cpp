@@ -102,20 +102,24 @@ TEST(RigBinding, ANumberIsFoundAndReplacedByItsKey) {
 TEST(RigBinding, PutsEveryKeyOfTheSimulationInItsField) {
   const SimConfig sim =
       With({"sim.plant_modes=3", "sim.step_ms=0.25", "sim.seed=12", "sim.motor_lag_ms=[4, 5]",
-            "sim.transport_delay_ms=6", "sim.switch_angle_deg=[97, 98]"})
+            "sim.transport_delay_ms=6", "sim.lost_frame_fraction=0.07", "sim.channel_skew_us=8",
+            "sim.switch_angle_deg=[97, 98]"})
           .sim;
   EXPECT_EQ(sim.plant_modes, 3);
   EXPECT_EQ(sim.step_ms, 0.25);
   EXPECT_EQ(sim.seed, 12U);
   EXPECT_EQ(sim.motor_lag_ms, (std::array{4.0, 5.0}));
   EXPECT_EQ(sim.transport_delay_ms, 6.0);
+  EXPECT_EQ(sim.lost_frame_fraction, 0.07);
+  EXPECT_EQ(sim.channel_skew_us, 8.0);
   EXPECT_EQ(sim.switch_angle_deg, (std::array{97.0, 98.0}));
 }
 
 TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
-  const EstimatorConfig e = LoadConfig(Shipped("thesis-rig.toml"),
-                                       {"estimator.modes_per_link=1", "estimator.fault_ticks=2"})
-                                .estimator;
+  const EstimatorConfig e =
+      LoadConfig(Shipped("thesis-rig.toml"),
+                 {"estimator.modes_per_link=1", "controller.nominal=R8", "estimator.fault_ticks=2"})
+          .estimator;
   EXPECT_EQ(e.modes_per_link, 1);
   EXPECT_EQ(e.fault_ticks, 2);
   const EstimatorConfig set =
@@ -141,9 +145,13 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
             "controller.hub_angle_weight=[4, 5]", "controller.hub_rate_weight=[6, 7]",
             "controller.torque_weight=8", "controller.passivity_margin=9",
             "controller.adaptation_gain=10", "controller.prediction=false",
+            "controller.adaptation_dead_zone_nm=0.5", "controller.adaptation_bound=0.7",
             "controller.pd_stiffness_nm_per_rad=[11, 12]",
-            "controller.pd_damping_nms_per_rad=[13, 14]"})
+            "controller.pd_damping_nms_per_rad=[13, 14]", "controller.nominal=T12",
+            "controller.state_weight=[1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3]"})
           .controller;
+  EXPECT_EQ(c.nominal, kT12);
+  EXPECT_EQ(c.state_weight, (std::vector<double>{1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3}));
   EXPECT_EQ(c.alpha, 0.1);
   EXPECT_EQ(c.vartheta, 0.2);
   EXPECT_EQ(c.sigma, 0.3);
@@ -152,26 +160,35 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
   EXPECT_EQ(c.torque_weight, 8.0);
   EXPECT_EQ(c.passivity_margin, 9.0);
   EXPECT_EQ(c.adaptation_gain, 10.0);
+  EXPECT_EQ(c.adaptation_dead_zone_nm, 0.5);
+  EXPECT_EQ(c.adaptation_bound, 0.7);
   EXPECT_EQ(c.pd_stiffness_nm_per_rad, (std::array{11.0, 12.0}));
   EXPECT_EQ(c.pd_damping_nms_per_rad, (std::array{13.0, 14.0}));
+  EXPECT_TRUE(With({}).controller.state_weight.empty());
+  for (const NamedLayout& model : kNominalModels) {
+    EXPECT_EQ(With({"controller.nominal=" + std::string(model.name)}).controller.nominal,
+              model.layout);
+  }
   EXPECT_FALSE(c.prediction);
   EXPECT_TRUE(c.adaptation);
   EXPECT_EQ(c.gains_file, "");
 }
 
 TEST(RigBinding, PutsEveryLimitInItsField) {
-  const SafetyConfig s = With({"limits.torque_limit_nm=[1, 2]", "limits.slew_limit_nm_per_s=[3, 4]",
-                               "limits.soft_angle_deg=[5, 6]", "limits.hub_rate_rad_s=[7, 8]",
-                               "limits.strain_limit=[1e-4, 2e-4]", "safety.rest_hub_rate_rad_s=0.1",
-                               "safety.rest_strain_rate_per_s=0.2", "safety.rest_time_s=0.3",
-                               "safety.stop_timeout_s=0.4", "safety.permit_timeout_ms=6",
-                               "safety.missed_deadlines_to_trip=4"})
-                             .safety;
+  const SafetyConfig s =
+      With({"limits.torque_limit_nm=[1, 2]", "limits.slew_limit_nm_per_s=[3, 4]",
+            "limits.soft_angle_deg=[5, 6]", "limits.hub_rate_rad_s=[7, 8]",
+            "limits.strain_limit=[1e-4, 2e-4]", "limits.plan_fraction=0.7",
+            "safety.rest_hub_rate_rad_s=0.1", "safety.rest_strain_rate_per_s=0.2",
+            "safety.rest_time_s=0.3", "safety.stop_timeout_s=0.4", "safety.permit_timeout_ms=6",
+            "safety.missed_deadlines_to_trip=4"})
+          .safety;
   EXPECT_EQ(s.torque_limit_nm, (std::array{1.0, 2.0}));
   EXPECT_EQ(s.slew_limit_nm_per_s, (std::array{3.0, 4.0}));
   EXPECT_EQ(s.soft_angle_deg, (std::array{5.0, 6.0}));
   EXPECT_EQ(s.hub_rate_rad_s, (std::array{7.0, 8.0}));
   EXPECT_EQ(s.strain_limit, (std::array{1e-4, 2e-4}));
+  EXPECT_EQ(s.plan_fraction, 0.7);
   EXPECT_EQ(s.rest_hub_rate_rad_s, 0.1);
   EXPECT_EQ(s.rest_strain_rate_per_s, 0.2);
   EXPECT_EQ(s.rest_time_s, 0.3);
@@ -181,11 +198,17 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
 }
 
 TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
-  const Config c = With({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
-                         "daemon.socket=/tmp/s", "log.directory=/tmp/d"});
+  const Config c =
+      With({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
+            "loop.output=at_once", "loop.output_after_ms=14", "loop.actuation_delay_ms=3",
+            "daemon.socket=/tmp/s", "log.directory=/tmp/d"});
   EXPECT_EQ(c.loop.period_ms, 18.0);
   EXPECT_EQ(c.loop.acquire_before_ms, 9.0);
   EXPECT_EQ(c.loop.step_deadline_ms, 4.0);
+  EXPECT_EQ(c.loop.output, OutputTiming::kAtOnce);
+  EXPECT_EQ(c.loop.output_after_ms, 14.0);
+  EXPECT_EQ(c.loop.actuation_delay_ms, 3.0);
+  EXPECT_EQ(With({}).loop.output, OutputTiming::kNextTick);
   EXPECT_EQ(c.daemon.socket, "/tmp/s");
   EXPECT_EQ(c.daemon.log_directory, "/tmp/d");
 }

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,14 +25,15 @@ TEST(ShippedFiles, EveryRigLoads) {
 TEST(ShippedFiles, EveryExperimentLoads) {
   int experiments = 0;
   for (const auto& entry : std::filesystem::directory_iterator(Shipped("experiments"))) {
+    if (entry.path().extension() != ".toml") continue;
     ++experiments;
     EXPECT_NO_THROW({
       const Experiment experiment = LoadExperiment(entry.path());
       EXPECT_EQ(experiment.name, entry.path().stem().string());
-      EXPECT_EQ(experiment.text, FileText(entry.path()));
+      EXPECT_THAT(experiment.text, testing::StartsWith(FileText(entry.path())));
     }) << entry.path();
   }
-  EXPECT_GE(experiments, 3);
+  EXPECT_GE(experiments, 8);
 }
 
 void ExpectSame(const BeamSection& a, const BeamSection& b) {

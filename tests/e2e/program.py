@@ -57,7 +57,7 @@ class StallWitness:
         return [stall for stall in stalls if stall >= STALL_MS]
 
 
-def in_real_time(test, tries=5):
+def in_real_time(test, tries=12):
     """A test that holds on a machine that gives processor time when it is due. A shared one may
     take it away from everybody: a failure counts unless the witness saw that, or the last try."""
     @functools.wraps(test)

@@ -106,7 +106,7 @@ class Sweep(ProgramTest):
 
     def test_a_run_that_trips_or_is_refused_is_a_result(self):
         file, told = self.sweep("bad.sqlite", grid=(
-            "-c", HIL, "--over", "limits.strain_limit=[1e-4, 1e-4],[1.9e-3, 1.9e-3]",
+            "-c", HIL, "--over", "limits.strain_limit=[8.5e-4, 1.9e-3],[1.9e-3, 1.9e-3]",
             "--over", "limits.soft_angle_deg=[20.0, 90.0],[90.0, 90.0]"))
         self.assertEqual(told["run_now"], 4)
         found = rows(file, "SELECT completed, trip IS NOT NULL, refused IS NOT NULL FROM run"

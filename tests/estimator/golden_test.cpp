@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 class EstimatorGolden : public testing::Test {
  protected:
   const nlohmann::json golden_ = GoldenFile("golden.json");
-  const NominalModel nominal_ = MakeNominalModel(ThesisRig(), 2);
+  const NominalModel nominal_ = MakeNominalModel(ThesisRig(), kR12);
 };
 
 TEST_F(EstimatorGolden, ContinuousNominalModelAgrees) {

@@ -28,7 +28,7 @@ struct Truth {
   MatrixXd A, G_d, C, R;
 
   Truth() {
-    const NominalModel nominal = MakeNominalModel(ThesisRig(), 2);
+    const NominalModel nominal = MakeNominalModel(ThesisRig(), kR12);
     const double w_f = 2.0 * std::numbers::pi * 20.0;
     MatrixXd A_c = MatrixXd::Zero(kStates, kStates), G_c = MatrixXd::Zero(kStates, 6);
     A_c.topLeftCorner(12, 12) = nominal.A;
@@ -68,8 +68,14 @@ struct Truth {
 std::vector<VectorXd> Innovations(const Truth& truth) {
   const KalmanDesign design = ThesisFilter();
   StateEstimator estimator(ThesisEstimator(),
-                           {.A = design.A, .B = design.B, .C = design.C, .L = design.L}, kPeriod_s,
-                           kStiffness);
+                           {.layout = kR12,
+                            .A = design.A,
+                            .B = design.B,
+                            .C = design.C,
+                            .L = design.L,
+                            .A_rate = design.A_rate,
+                            .B_rate = design.B_rate},
+                           kPeriod_s, kStiffness);
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   VectorXd x = VectorXd::Zero(kStates);

@@ -48,5 +48,17 @@ TEST(ReadingAge, AnInvalidReadingStaysInvalid) {
   EXPECT_EQ(WithoutStaleReadings(frame, kInstant, 10 * kMs).counter_valid, 0b0101u);
 }
 
+TEST(ReadingAge, TellsWhetherTheGoodStrainsAreOfTheInstant) {
+  SensorFrame frame{};
+  frame.sampled_at_ns = 100;
+  frame.strain_valid = 0b111;
+  EXPECT_TRUE(StrainsAreOf(frame, 100));
+  EXPECT_FALSE(StrainsAreOf(frame, 101));
+  frame.strain_offset_ns[2] = 5;
+  EXPECT_FALSE(StrainsAreOf(frame, 100));
+  frame.strain_valid = 0b011;  // a reading that is not good has no say
+  EXPECT_TRUE(StrainsAreOf(frame, 100));
+}
+
 }  // namespace
 }  // namespace flexarm

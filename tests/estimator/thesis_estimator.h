@@ -26,9 +26,9 @@ inline EstimatorConfig ThesisEstimator(EstimatorKind kind = EstimatorKind::kKalm
 }
 
 inline KalmanDesign ThesisFilter(const SensorConfig& sensors = ThesisSensors(),
-                                 const EstimatorConfig& estimator = ThesisEstimator()) {
-  return DesignKalmanFilter(MakeNominalModel(ThesisRig(), estimator.modes_per_link), sensors,
-                            estimator, kPeriod_s);
+                                 const StateLayout& layout = kR12) {
+  return DesignKalmanFilter(MakeNominalModel(ThesisRig(), layout), sensors, ThesisEstimator(),
+                            kPeriod_s);
 }
 
 }  // namespace flexarm

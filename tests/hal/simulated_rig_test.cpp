@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
@@ -16,6 +20,8 @@ constexpr SimConfig kSim{.plant_modes = 2,
                          .seed = 1,
                          .motor_lag_ms = {2.0, 2.0},
                          .transport_delay_ms = 0.0,
+                         .lost_frame_fraction = 0.0,
+                         .channel_skew_us = 0.0,
                          .switch_angle_deg = {95.0, 95.0}};
 
 // Link 1 behind a gauge filter of `filter_hz`, in counts fine enough (24 bits) to see its shape.
@@ -160,6 +166,58 @@ TEST(SimulatedRig, ASwitchForcedClosedStillOpensByTheArmsOwnAngle) {
     rig.Step();
   }
   EXPECT_EQ(rig.levels() & LineBit(Line::kLimit1High), 0u);
+}
+
+// A multiplexed rig against one that samples all channels after each of its steps of 0.5 ms:
+// channel i of the first is the second's reading at 0.25 ms times i, for odd i the middle of two of
+// them. Each of them is rounded to half a count, and so is the result: one count.
+TEST(SimulatedRig, AMultiplexedFrameIsSampledWhileTheArmMoves) {
+  SimConfig skewed = kSim;
+  skewed.channel_skew_us = 250.0;
+  SimulatedRig rig(ThesisRig(), FineGauge(20.0), skewed), all(ThesisRig(), FineGauge(20.0), kSim);
+  for (SimulatedRig* each : {&rig, &all}) {
+    each->SetTorque({3.0, -0.4});
+    for (int k = 0; k < 60; ++k) each->Step();
+  }
+  std::vector<SensorFrame> after = {all.Sample(0)};
+  rig.StartFrame(7'000'000);
+  EXPECT_FALSE(rig.TakeFrame().has_value());
+  std::optional<SensorFrame> frame;
+  int steps = 0;
+  for (; !frame; ++steps) {
+    rig.Step();
+    all.Step();
+    after.push_back(all.Sample(0));
+    frame = rig.TakeFrame();
+  }
+  EXPECT_EQ(steps, 10) << "the last of twenty channels comes 4.75 ms after the first";
+  EXPECT_FALSE(rig.TakeFrame().has_value()) << "a frame is taken once";
+  EXPECT_EQ(frame->sampled_at_ns, 7'000'000);
+  EXPECT_EQ(frame->counter, after[0].counter);
+  double largest = 0.0, moved = 0.0;
+  for (std::size_t i = 0; i < 20; ++i) {
+    const double expected = 0.5 * (static_cast<double>(after[i / 2].strain[i]) +
+                                   static_cast<double>(after[(i + 1) / 2].strain[i]));
+    largest = std::max(largest, std::abs(expected));
+    moved = std::max(moved, std::abs(expected - after[0].strain[i]));
+    EXPECT_NEAR(frame->strain[i], expected, 1.0) << i;
+    EXPECT_EQ(frame->strain_offset_ns[i], static_cast<std::int32_t>(250'000 * i));
+  }
+  EXPECT_GT(moved, 1e-2 * largest) << "the arm stands still: the test says nothing";
+  EXPECT_EQ(frame->strain_valid, 0xfffffu);
+}
+
+TEST(SimulatedRig, WithoutSkewAFrameIsThereAtOnceAndTheSame) {
+  SimulatedRig rig(ThesisRig(), ThesisSensors(), kSim), same(ThesisRig(), ThesisSensors(), kSim);
+  for (SimulatedRig* each : {&rig, &same}) {
+    each->SetTorque({3.0, -0.4});
+    for (int k = 0; k < 60; ++k) each->Step();
+  }
+  rig.StartFrame(5);
+  const std::optional<SensorFrame> frame = rig.TakeFrame();
+  ASSERT_TRUE(frame.has_value());
+  const SensorFrame sampled = same.Sample(5);
+  EXPECT_EQ(std::memcmp(&*frame, &sampled, sizeof sampled), 0);
 }
 
 }  // namespace

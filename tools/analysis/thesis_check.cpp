@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tools/analysis/chapter7_statements.h"
 #include "tools/analysis/parametric_statements.h"
 
 namespace flexarm {
@@ -12,6 +13,10 @@ std::vector<Statement> Chapter5Statements(const Config& config) {
   Excitation strong;
   for (double& torque : strong.torque_nm) torque *= kStrongExcitation;
   return ParametricStatements(RunParametricStudy(config, weak), RunParametricStudy(config, strong));
+}
+
+std::vector<Statement> ControlStatements(const Config& config) {
+  return Chapter7Statements(ControlStudy(config));
 }
 
 std::string Counted(const std::vector<Statement>& statements) {
@@ -32,8 +37,8 @@ std::vector<Statement> ThesisStatements(const Config& config,
                                         const std::function<void(std::size_t)>& progress) {
   std::vector<Statement> all;
   std::size_t done = 0;
-  for (auto* chapter :
-       {Chapter3Statements, Chapter4Statements, Chapter5Statements, Chapter6Statements}) {
+  for (auto* chapter : {Chapter3Statements, Chapter4Statements, Chapter5Statements,
+                        Chapter6Statements, ControlStatements}) {
     for (Statement& statement : chapter(config)) all.push_back(std::move(statement));
     if (progress) progress(++done);
   }
@@ -45,7 +50,7 @@ std::vector<Statement> ThesisStatements(const Config& config,
 std::string ThesisCheckPage(const Config& config, const std::vector<Statement>& statements) {
   const Excitation weak;
   return "# What the thesis says, and what the model says\n\n"
-         "Statements of chapters 3 to 6, in our words, against the model of this project with the "
+         "Statements of chapters 3 to 7, in our words, against the model of this project with the "
          "config `" +
          config.rig_name +
          "`. Written by `flexarm analyze check -c FILE -o docs/thesis-check.md`: every number in "
@@ -59,8 +64,11 @@ std::string ThesisCheckPage(const Config& config, const std::vector<Statement>& 
          Figure(kStrongExcitation, 1) +
          " times as much. Bending is the deflection of a link's tip, twist the deflection of a "
          "joint's spring; \"largest\" is over the whole run, \"after the excitation\" the free "
-         "vibration.\n\n" +
-         StatementTable(statements) + "\n" + Counted(statements) + ".\n";
+         "vibration.\n\nChapter 7 is the loop of `config/hil.toml`, sensors, noise and delay "
+         "included: " +
+         "30 degrees out by a square doublet of 1 s, and 2 s later back; medians over " +
+         std::to_string(ControlStudy::kSeeds) + " seeds.\n\n" + StatementTable(statements) + "\n" +
+         Counted(statements) + ".\n";
 }
 
 }  // namespace flexarm

@@ -38,6 +38,7 @@ ROOMS = {
     "controller/law/": ["model/", "hal/", "estimator/",
                         "controller/safety/safety_config.h", "controller/safety/safety_state.h",
                         "controller/safety/trip_cause.h",
+                        "controller/runtime/loop_grid.h",
                         "controller/runtime/stack_config.h",
                         "controller/runtime/runtime_config.h"],
     "controller/commissioning/": ["model/", "hal/", "estimator/", "controller/law/",
@@ -83,7 +84,8 @@ REALTIME_WORDS = re.compile(
 
 # What ControlStep::Step runs.
 STEP = re.compile(
-    r"(estimator/(counter_decoder|state_estimator|strain_fit)"
+    r"(estimator/(counter_decoder|payload_filter|state_estimator|strain_fit)"
+    r"|model/(portable_math|rigid_joint_(arm|arm_impl|transition))"
     r"|controller/law/(control_step|tracking_law|loop_supervisor)|controller/safety/gate)\.")
 LIBM = re.compile(
     r"\bstd::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|expm1|log(?:2|10|1p)?|pow|hypot"

@@ -29,12 +29,20 @@ double PayloadKg(const std::string& text) {
 
 // What the values of one point, or of one axis, mean.
 struct Changes {
+  const Scenario* scenario = nullptr;
   std::vector<std::string> config, plant;
   std::string variant = "nominal";
   std::optional<double> payload_kg;
 };
 
-void Add(const SweepAxis& axis, const std::string& value, Changes* changes) {
+const Scenario& ScenarioNamed(const SweepPlan& plan, const std::string& name) {
+  for (const Scenario& scenario : plan.scenarios) {
+    if (scenario.name == name) return scenario;
+  }
+  throw InputError("scenario \"" + name + "\": there is none of that name");
+}
+
+void Add(const SweepPlan& plan, const SweepAxis& axis, const std::string& value, Changes* changes) {
   switch (axis.target) {
     case AxisTarget::kConfig:
       changes->config.push_back(axis.key + "=" + value);
@@ -48,6 +56,15 @@ void Add(const SweepAxis& axis, const std::string& value, Changes* changes) {
     case AxisTarget::kPayload:
       changes->payload_kg = PayloadKg(value);
       break;
+    case AxisTarget::kScenario: {
+      const Scenario& scenario = ScenarioNamed(plan, value);
+      changes->scenario = &scenario;
+      changes->payload_kg = scenario.payload_kg;
+      changes->variant = scenario.variant;
+      changes->config.insert(changes->config.end(), scenario.config.begin(), scenario.config.end());
+      changes->plant.insert(changes->plant.end(), scenario.plant.begin(), scenario.plant.end());
+      break;
+    }
     case AxisTarget::kSeed:
       changes->config.push_back("sim.seed=" + value);
       break;
@@ -57,7 +74,7 @@ void Add(const SweepAxis& axis, const std::string& value, Changes* changes) {
 SimulationRequest RequestFor(const SweepPlan& plan, const Changes& changes) {
   SimulationRequest request{
       .config = changes.config.empty() ? plan.config : WithOverrides(plan.config, changes.config),
-      .experiment = plan.experiment,
+      .experiment = changes.scenario != nullptr ? changes.scenario->experiment : plan.experiment,
       .plant = {},
       .payload_kg = changes.payload_kg,
       .log = {}};
@@ -77,24 +94,27 @@ void CheckPlan(const SweepPlan& plan) {
   for (const SweepAxis& axis : plan.grid.axes()) {
     for (const std::string& value : axis.values) {
       Changes changes;
-      Add(axis, value, &changes);
+      Add(plan, axis, value, &changes);
       RequestFor(plan, changes);
     }
   }
 }
 
 SweepIdentity IdentityOf(const SweepPlan& plan) {
+  std::string experiments = plan.experiment.text;
+  for (const Scenario& scenario : plan.scenarios) experiments += scenario.experiment.text;
   return {.build = BuildId(),
           .config_text = plan.config.text,
           .experiment_name = plan.experiment.name,
-          .experiment_text = plan.experiment.text,
+          .experiment_text = experiments,
           .axes = plan.grid.axes()};
 }
 
 SimulationRequest RequestAt(const SweepPlan& plan, std::size_t point) {
   const std::vector<std::string> values = plan.grid.Values(point);
   Changes changes;
-  for (std::size_t i = 0; i < values.size(); ++i) Add(plan.grid.axes()[i], values[i], &changes);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    Add(plan, plan.grid.axes()[i], values[i], &changes);
   return RequestFor(plan, changes);
 }
 

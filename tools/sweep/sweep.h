@@ -8,6 +8,7 @@
 
 #include "config/config.h"
 #include "tools/simulation.h"
+#include "tools/sweep/scenario.h"
 #include "tools/sweep/sweep_file.h"
 #include "tools/sweep/sweep_grid.h"
 
@@ -18,6 +19,7 @@ struct SweepPlan {
   Config config;  ///< of every point, before its axes
   Experiment experiment;
   SweepGrid grid;
+  std::vector<Scenario> scenarios{};  ///< that an axis of kScenario names; each has its experiment
 };
 
 /// @throws InputError, ConfigError  a value of an axis that by itself is no config, payload or
@@ -26,7 +28,8 @@ void CheckPlan(const SweepPlan& plan);
 
 SweepIdentity IdentityOf(const SweepPlan& plan);
 
-/// What runs at a point. Config axes come first, then the plant's variant, then plant axes.
+/// What runs at a point. A scenario comes first, then config axes, then the plant's variant, then
+/// plant axes.
 SimulationRequest RequestAt(const SweepPlan& plan, std::size_t point);
 
 /// One run. A design or an experiment that is refused there is a result, not an error.

@@ -103,6 +103,8 @@ const char* Name(AxisTarget target) noexcept {
       return "variant";
     case AxisTarget::kPayload:
       return "payload_kg";
+    case AxisTarget::kScenario:
+      return "scenario";
     case AxisTarget::kSeed:
       return "seed";
   }

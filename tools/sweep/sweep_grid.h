@@ -9,11 +9,12 @@ namespace flexarm {
 
 /// What the values of an axis change.
 enum class AxisTarget : std::uint8_t {
-  kConfig,   ///< a config key, for the simulated rig and the controller alike
-  kPlant,    ///< a config key, for the simulated rig alone
-  kVariant,  ///< a named plant, for the simulated rig alone
-  kPayload,  ///< payload that the simulated rig carries, kg
-  kSeed      ///< of the measurement noise
+  kConfig,    ///< a config key, for the simulated rig and the controller alike
+  kPlant,     ///< a config key, for the simulated rig alone
+  kVariant,   ///< a named plant, for the simulated rig alone
+  kPayload,   ///< payload that the simulated rig carries, kg
+  kScenario,  ///< a situation of the benchmark, by its name
+  kSeed       ///< of the measurement noise
 };
 
 const char* Name(AxisTarget target) noexcept;
@@ -25,7 +26,7 @@ struct SweepAxis {
   std::vector<std::string> values;
 
   /// The column of results: "controller.alpha", "plant:joint1.stiffness_nm_per_rad", "variant",
-  /// "payload_kg", "seed".
+  /// "payload_kg", "scenario", "seed".
   std::string Column() const;
   bool operator==(const SweepAxis&) const = default;
 };

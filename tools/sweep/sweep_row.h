@@ -15,7 +15,7 @@ struct SweepMeasure {
   const char* title;   ///< of a table
 };
 
-inline constexpr std::array<SweepMeasure, 8> kSweepMeasures = {
+inline constexpr std::array<SweepMeasure, 10> kSweepMeasures = {
     {{"joint1_rms_error_deg", "rms1 deg"},
      {"joint2_rms_error_deg", "rms2 deg"},
      {"joint1_final_error_deg", "final1 deg"},
@@ -23,7 +23,9 @@ inline constexpr std::array<SweepMeasure, 8> kSweepMeasures = {
      {"tip_settling_time_s", "settling s"},
      {"tip_residual_rms_mm", "residual mm"},
      {"peak_torque1_nm", "peak1 Nm"},
-     {"peak_torque2_nm", "peak2 Nm"}}};
+     {"peak_torque2_nm", "peak2 Nm"},
+     {"torque1_rms_nm", "effort1 Nm"},
+     {"torque2_rms_nm", "effort2 Nm"}}};
 inline constexpr std::size_t kSettling = 4;  ///< its NaN in a completed run: never
 
 /// One run of a sweep.

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 
 // Unit modal mass, rates against 42 rad/s: control.md section 4, point 5, asks for such a scaling.
 Eigen::VectorXd Scale() {
-  const NominalModel nominal = MakeNominalModel(ThesisRig(), 2);
+  const NominalModel nominal = MakeNominalModel(ThesisRig(), kR12);
   Eigen::VectorXd scale(12);
   scale.head(6) = nominal.M.diagonal().cwiseSqrt().cwiseInverse();
   scale.tail(6) = 42.0 * scale.head(6);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "controller/safety/trip_cause.h"
+#include "model/discretize.h"
 #include "tests/controller/law/shipped_rig.h"
 
 namespace flexarm {
@@ -136,12 +137,83 @@ TEST_F(ControlStepTest, PredictsToTheInstantAtWhichTheTorqueActs) {
   EXPECT_EQ(out.limits & kPredictionOff, 0u);
 }
 
+// Moves [x; rates] over `ms` under a torque: the hold of just that duration, made in one piece.
+Eigen::VectorXd Held(const Eigen::VectorXd& x, double ms, const std::array<double, 2>& torque_nm) {
+  const Design& d = ShippedDesign();
+  const DiscreteModel hold = ZeroOrderHold(d.A_rate, d.B_rate, 1e-3 * ms);
+  return hold.A * x + hold.B * Eigen::Vector2d(torque_nm[0], torque_nm[1]);
+}
+
+// Torque k acts 15, 26 or 54 ms after k Ts; until then those before it act, each in its turn.
+// Borders are rounded to 0.3 us: at rates of 1 rad/s and 100 rad/s^2 that is 3e-7 rad and 3e-5
+// rad/s; a prediction of one whole period instead is off by a thousand times that.
+TEST_F(ControlStepTest, PredictsThroughTheTorquesOnTheirWay) {
+  for (const std::int64_t late_ms : {-5, 6, 34}) {
+    ControlStep step(config_, ShippedDesign());
+    std::vector<StepOutput> out;
+    for (StepInput input : ARun()) {
+      input.acted_late_ns = input.acts_late_ns = late_ms * 1'000'000;
+      out.push_back(step.Step(input));
+    }
+    const std::size_t k = 30;
+    const auto asked = [&out](std::size_t i) { return out[i].torque_nm; };
+    Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out[k].x_hat.data(), 12);
+    if (late_ms == -5) {
+      x = Held(x, 15, asked(k - 1));
+    } else if (late_ms == 6) {
+      x = Held(Held(x, 6, asked(k - 2)), 20, asked(k - 1));
+    } else {
+      x = Held(Held(Held(x, 14, asked(k - 3)), 20, asked(k - 2)), 20, asked(k - 1));
+    }
+    const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out[k].x_next.data(), 12);
+    EXPECT_LT((predicted - x).head(6).cwiseAbs().maxCoeff(), 3e-7) << late_ms;
+    EXPECT_LT((predicted - x).tail(6).cwiseAbs().maxCoeff(), 3e-5) << late_ms;
+    EXPECT_NE(asked(k - 1), asked(k - 2)) << "the same torque: the order says nothing";
+  }
+}
+
+// What the drive side measured counts for the torque that it is about, the plan for the new one.
+TEST_F(ControlStepTest, ACommandThatActedLateIsPredictedLate) {
+  step_.Step(Moving(0));
+  const StepOutput before = step_.Step(Moving(1));
+  StepInput input = Moving(2);
+  input.acted_late_ns = 3'000'000;
+  input.acts_late_ns = 1'000'000;
+  const StepOutput out = step_.Step(input);
+  ControlStep other(config_, ShippedDesign());
+  const StepOutput first = other.Step(Moving(0));
+  Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out.x_hat.data(), 12);
+  x = Held(Held(x, 3, first.torque_nm), 18, before.torque_nm);
+  const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out.x_next.data(), 12);
+  EXPECT_LT((predicted - x).cwiseAbs().maxCoeff(), 3e-5);
+}
+
 TEST_F(ControlStepTest, WithoutPredictionTheStateIsTakenAsItIsAndFlagged) {
   ControlStep step(ShippedRig({"controller.prediction=false"}), ShippedDesign());
   step.Step(Moving(0));
   const StepOutput out = step.Step(Moving(1));
   EXPECT_EQ(out.x_next, out.x_hat);
   EXPECT_NE(out.limits & kPredictionOff, 0u);
+}
+
+// The goal of a stop is the arm where it is, joints untwisted: standing there costs no torque. With
+// a goal that forgot the rotors of a torsional model it would cost K_stop times their angle.
+TEST(ControlStepOfATorsionalModel, StoppingAtRestAsksNoTorque) {
+  const Config config = ShippedRig({"controller.nominal=T16"});
+  ControlStep step(config, DesignController(config));
+  StepOutput out{};
+  for (int k = 0; k < 3; ++k) {
+    StepInput input = AtRest(k, SafetyState::kStopping);
+    input.reset = k == 0 ? 1 : 0;
+    input.counts_before = {127, 127, 127, 1224};  // 18 degrees on all four, exactly
+    input.frame.counter = {127, 127, 127, 1224};
+    out = step.Step(input);
+  }
+  EXPECT_EQ(out.faults, 0u);
+  EXPECT_NEAR(out.x_hat[0], 0.314159, 1e-6);
+  EXPECT_NEAR(out.x_hat[2], out.x_hat[0], 1e-9);
+  EXPECT_NEAR(out.torque_nm[0], 0.0, 1e-6);
+  EXPECT_NEAR(out.torque_nm[1], 0.0, 1e-6);
 }
 
 // One late frame is coasted over, on prediction; beyond two periods it is a fault.
@@ -208,6 +280,68 @@ TEST_F(ControlStepTest, AStateThatWasNotFiniteMendsWhenTheInputsDo) {
   for (int k = 2; k < 40; ++k) out = step_.Step(AtRest(k, SafetyState::kTripped));
   EXPECT_EQ(out.faults, 0u);
   EXPECT_TRUE(out.at_rest);
+}
+
+// Gains that a first run has taught must not greet the second with a step: an arm that rests on its
+// reference, away from zero, is asked for no torque. Only round-off is left, of K_I (x_m - x).
+TEST_F(ControlStepTest, ASecondRunBeginsWithoutAStep) {
+  const auto at_rest_on_reference = [](int k, SafetyState state) {
+    StepInput input = AtRest(k, state);
+    for (std::size_t i = 0; i < 3; ++i) input.frame.counter[i] = 127;
+    input.frame.counter[3] = 1224;  // 18 degrees, exact on both kinds of encoder
+    const double angle_rad = 127.0 * 2.0 * M_PI / 2540.0;
+    for (ReferenceSample* sample : {&input.reference_now, &input.reference_next}) {
+      sample->x_m[0] = sample->x_m[1] = angle_rad;
+    }
+    return input;
+  };
+  StepInput first = at_rest_on_reference(0, SafetyState::kArmed);
+  first.reset = 1;
+  first.counts_before = {127, 127, 127, 1224};
+  step_.Step(first);
+  for (int k = 1; k < 30; ++k) {
+    StepInput input = at_rest_on_reference(k, SafetyState::kRunning);
+    input.reference_next.x_m[0] += 0.05;  // an error that teaches
+    step_.Step(input);
+  }
+  const StepOutput taught = step_.Step(at_rest_on_reference(30, SafetyState::kArmed));
+  ASSERT_GT(taught.adaptive_gain_change, 1e-3) << "nothing learnt: the test says nothing";
+  StepOutput out{};
+  for (int k = 31; k < 200; ++k) out = step_.Step(at_rest_on_reference(k, SafetyState::kArmed));
+  EXPECT_EQ(out.adaptive_gain_change, taught.adaptive_gain_change) << "not held while Armed";
+  out = step_.Step(at_rest_on_reference(200, SafetyState::kRunning));
+  EXPECT_NEAR(out.torque_nm[0], 0.0, 1e-6);
+  EXPECT_NEAR(out.torque_nm[1], 0.0, 1e-6);
+}
+
+// From Running to Stopping the torque goes on where it was, and what is left of it fades by a fifth
+// a sample (0.1 s at 50 Hz) towards what the regulator asks.
+TEST_F(ControlStepTest, StoppingTakesOverWithoutAStep) {
+  StepOutput running{};
+  for (int k = 0; k < 3; ++k) running = step_.Step(Moving(k));
+  ASSERT_GT(running.torque_nm[0], 0.3);
+  const StepOutput first = step_.Step(Moving(3, SafetyState::kStopping));
+  EXPECT_NEAR(first.torque_nm[0], running.torque_nm[0], 1e-12);
+  EXPECT_NEAR(first.torque_nm[1], running.torque_nm[1], 1e-12);
+  StepOutput out{};
+  for (int k = 4; k < 100; ++k) out = step_.Step(Moving(k, SafetyState::kStopping));
+  EXPECT_LT(std::abs(out.torque_nm[0]), 0.1 * running.torque_nm[0]);
+}
+
+// The limits of the shipped rig are 30 and 6 N m: references 2 and 8 rad away saturate both joints.
+TEST_F(ControlStepTest, CountsTheTimeAtTheTorqueLimits) {
+  StepOutput out{};
+  for (int k = 0; k < 5; ++k) {
+    StepInput input = Moving(k);
+    input.reference_next.x_m[0] = 2.0;
+    input.reference_next.x_m[1] = 8.0;
+    out = step_.Step(input);
+  }
+  EXPECT_NEAR(out.saturated_s[0], 0.1, 1e-12);
+  EXPECT_NEAR(out.saturated_s[1], 0.1, 1e-12);
+  StepInput again = Moving(5);
+  again.reset = 1;
+  EXPECT_EQ(step_.Step(again).saturated_s, (std::array<double, 2>{0.0, 0.0}));
 }
 
 TEST_F(ControlStepTest, EchoesItsTickAndTheEndOfTheReference) {

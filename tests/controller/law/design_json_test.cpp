@@ -81,6 +81,25 @@ TEST(DesignJson, AWrongShapeIsNamedWithWhatWasExpected) {
   EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("rigid_inertia"), HasSubstr("2 x 2")));
 }
 
+TEST(DesignJson, TheNominalModelIsReadAndItsShapesAreAskedFor) {
+  nlohmann::json json = ShippedJson();
+  json["nominal"] = "T16";
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("12 x 12"), HasSubstr("expected 16 x 16")));
+  json["nominal"] = "R13";
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'nominal'"), HasSubstr("R13")));
+  json.erase("nominal");
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'nominal'"), HasSubstr("missing")));
+}
+
+// A gauge filter of second order has two states a mode: its gains come back as they went.
+TEST(DesignJson, GainsBehindASecondOrderFilterAreReadBack) {
+  const Config config = ShippedRig({"sensors.strain_input.filter_damping=0.9"});
+  const Design design = DesignController(config);
+  const Design read = DesignFromJson(DesignToJson(design, "same"), "same");
+  EXPECT_EQ(read.filter_A, design.filter_A);
+  EXPECT_EQ(read.layout, design.layout);
+}
+
 TEST(DesignJson, ABrokenMatrixIsNamed) {
   nlohmann::json json = ShippedJson();
   json["K"][1].erase(json["K"][1].end() - 1);
@@ -195,7 +214,9 @@ TEST(DesignHash, ChangesWithWhatADesignDependsOn) {
                               "joint1.viscous_friction_nm_s_per_rad=0.1",
                               "sensors.encoder[0].counts_per_turn=2000.0",
                               "estimator.process_force=[0.3, 0.05, 5.0, 5.0, 1.5, 1.6]",
-                              "estimator.modes_per_link=1",
+                              "controller.nominal=R8",
+                              "controller.nominal=T12",
+                              "controller.state_weight=[100, 20, 0, 0, 0, 0, 5, 1, 0, 0, 0, 0]",
                               "estimator.modal_sigma_m=[2e-4, 1e-4, 2e-4, 2e-4]",
                               "arm.damping=modal",
                               "arm.link1_tip_inertia=motor",

@@ -164,7 +164,7 @@ TEST_F(DesignTest, ThePrintedRigHasASoundDesign) {
 }
 
 TEST_F(DesignTest, OneModeALinkHasASoundDesignOfEightStates) {
-  const Design design = DesignController(ShippedRig({"estimator.modes_per_link=1"}));
+  const Design design = DesignController(ShippedRig({"controller.nominal=R8"}));
   EXPECT_EQ(design.A.rows(), 8);
   EXPECT_TRUE(design.sound());
 }

@@ -17,7 +17,6 @@ using testing::HasSubstr;
 
 constexpr double kPeriod_s = 0.02;
 constexpr double kDeg = std::numbers::pi / 180.0;
-constexpr std::array<double, 2> kSoft = {90.0 * kDeg, 90.0 * kDeg};
 
 Experiment Doublets(std::vector<Doublet> doublets, double duration_s = 6.0) {
   return {.name = "test",
@@ -33,8 +32,18 @@ Doublet Move(double th1_deg, double th2_deg, double start_s = 0.0, double durati
       .start_s = start_s, .duration_s = duration_s, .shape = shape, .move_deg = {th1_deg, th2_deg}};
 }
 
+// The soft angles of the rig and no other limit: these doublets are there for their arithmetic.
+MotionLimits SoftAngles() {
+  MotionLimits limits = ShippedLimits();
+  for (auto* limit :
+       {&limits.torque_nm, &limits.slew_nm_per_s, &limits.hub_rate_rad_s, &limits.strain}) {
+    *limit = {1e6, 1e6};
+  }
+  return limits;
+}
+
 ReferenceTable Table(const Experiment& experiment, std::array<double, 2> start = {0.0, 0.0}) {
-  return {experiment, ShippedDesign(), kPeriod_s, start, kSoft};
+  return {experiment, ShippedDesign(), kPeriod_s, start, SoftAngles()};
 }
 
 const Experiment kBase = Doublets({Move(30, 30), Move(-30, -30, 3.0)});
@@ -133,6 +142,26 @@ TEST(ReferenceTable, FollowsTheReferenceModelFromItsStart) {
   }
 }
 
+// On torsional models the torque turns rotors, and hubs follow: both start untwisted at the start,
+// twist on the way, and end untwisted where the move goes.
+TEST(ReferenceTable, OnATorsionalModelItMovesRotorsAndHubs) {
+  const Design design = DesignController(ShippedRig({"controller.nominal=T16"}));
+  const ReferenceTable table(kBase, design, kPeriod_s, {0.1, -0.2}, SoftAngles());
+  const double by = 30 * kDeg;
+  double twist = 0.0;
+  for (int k = 0; k <= 50; ++k) {
+    twist = std::max(twist, std::fabs(table.At(k).x_m[2] - table.At(k).x_m[0]));
+  }
+  EXPECT_GT(twist, 1e-3);
+  for (const auto& [k, moved] : {std::pair{-1, 0.0}, {0, 0.0}, {140, by}, {300, 0.0}}) {
+    const auto& x_m = table.At(k).x_m;
+    for (const std::size_t i : {0u, 2u}) {
+      EXPECT_NEAR(x_m[i], 0.1 + moved, 1e-4) << k << ", coordinate " << i;
+      EXPECT_NEAR(x_m[i + 1], -0.2 + moved, 1e-4) << k << ", coordinate " << i + 1;
+    }
+  }
+}
+
 TEST(ReferenceTable, BeforeTheStartItRestsThereAndAfterTheEndItStays) {
   const ReferenceTable table = Table(kBase, {0.1, -0.2});
   EXPECT_EQ(table.At(-1).x_m[0], 0.1);
@@ -174,6 +203,26 @@ TEST(ReferenceTable, LeavingTheSoftLimitIsRefusedWithJointAndInstant) {
   EXPECT_EQ(RefusalOf(Doublets({Move(80, 0, 0.0, 2.0)})), "accepted");
 }
 
+// The gate's slew limit is no trip; the thesis's square jumps beyond one period of it, and runs.
+TEST(ReferenceTable, TheThesissExperimentsKeepTheLimitsOfTheRig) {
+  for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
+    const Experiment experiment =
+        Doublets({Move(30, 30, 0.0, 1.0, shape), Move(-30, -30, 3.0, 1.0, shape)});
+    EXPECT_NO_THROW(
+        ReferenceTable(experiment, ShippedDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits()));
+  }
+}
+
+TEST(ReferenceTable, ABrokenLimitIsRefusedWithItsRow) {
+  try {
+    const ReferenceTable table(Doublets({Move(10, 10), Move(60, 60, 2.0, 0.6)}), ShippedDesign(),
+                               kPeriod_s, {0.0, 0.0}, ShippedLimits());
+    FAIL() << "accepted";
+  } catch (const Refused& refused) {
+    EXPECT_THAT(refused.what(), AllOf(HasSubstr("doublet[1]: "), HasSubstr("beyond limits.")));
+  }
+}
+
 // Half the command now and half of it ten samples later: the mean of two unshaped references.
 TEST(ReferenceTable, AShaperSharesTheCommandOutOverItsSamples) {
   Design shaped = ShippedDesign();
@@ -181,7 +230,7 @@ TEST(ReferenceTable, AShaperSharesTheCommandOutOverItsSamples) {
   shaped.shaper(0) = shaped.shaper(10) = 0.5;
   const std::array<double, 2> start = {0.2, -0.1};
   const ReferenceTable plain = Table(kBase, start);
-  const ReferenceTable table(kBase, shaped, kPeriod_s, start, kSoft);
+  const ReferenceTable table(kBase, shaped, kPeriod_s, start, SoftAngles());
   ASSERT_EQ(table.periods(), plain.periods());
   for (int k = 0; k <= 300; ++k) {
     for (std::size_t i = 0; i < 12; ++i) {
@@ -198,10 +247,10 @@ TEST(ReferenceTable, AShaperSharesTheCommandOutOverItsSamples) {
 TEST(ReferenceTable, AShapedMoveThatDoesNotEndWithTheExperimentIsRefused) {
   Design shaped = ShippedDesign();
   shaped.shaper = Eigen::RowVectorXd::Constant(101, 1.0 / 101);
-  EXPECT_NO_THROW(ReferenceTable(kBase, shaped, kPeriod_s, {0.0, 0.0}, kSoft));
+  EXPECT_NO_THROW(ReferenceTable(kBase, shaped, kPeriod_s, {0.0, 0.0}, SoftAngles()));
   shaped.shaper = Eigen::RowVectorXd::Constant(102, 1.0 / 102);
   try {
-    const ReferenceTable table(kBase, shaped, kPeriod_s, {0.0, 0.0}, kSoft);
+    const ReferenceTable table(kBase, shaped, kPeriod_s, {0.0, 0.0}, SoftAngles());
     FAIL() << "accepted";
   } catch (const Refused& refused) {
     EXPECT_THAT(refused.what(), HasSubstr("ends after 6.02"));

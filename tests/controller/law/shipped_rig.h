@@ -5,6 +5,7 @@
 
 #include "config/config.h"
 #include "controller/law/design.h"
+#include "controller/law/motion_limits.h"
 
 namespace flexarm {
 
@@ -17,6 +18,12 @@ inline Config ShippedRig(const std::vector<std::string>& overrides = {}) {
 inline const Design& ShippedDesign() {
   static const Design design = DesignController(ShippedRig());
   return design;
+}
+
+/// What its references must keep.
+inline const MotionLimits& ShippedLimits() {
+  static const MotionLimits limits = MotionLimitsOf(ShippedRig());
+  return limits;
 }
 
 }  // namespace flexarm

@@ -213,6 +213,82 @@ TEST(TrackingLaw, TheLeakReturnsTheGainToItsStart) {
   }
 }
 
+// An error just below the dead zone teaches nothing, the leak goes on; just above it does.
+TEST(TrackingLaw, AnErrorInsideTheDeadZoneDoesNotAdapt) {
+  const Sample s;
+  const double y_e = s.r().head(2).norm();
+  ControllerConfig config = Controller();
+  for (const bool inside : {true, false}) {
+    config.adaptation_dead_zone_nm = y_e * (inside ? 1.001 : 0.999);
+    TrackingLaw law = Law(config);
+    EXPECT_EQ(law.Compute(s.x, s.reference, true).limits, 0u);
+    EXPECT_EQ(law.adaptive_gain_change() == 0.0, inside);
+  }
+}
+
+// Driven by the same error for ever the gain stays on the ball around its start, and its direction
+// is that of the update without a bound.
+TEST(TrackingLaw, TheGainNeverLeavesItsBound) {
+  const Sample s;
+  ControllerConfig config = Controller();
+  config.sigma = 0.0;
+  TrackingLaw free = Law(config);
+  for (int k = 0; k < 200; ++k) free.Compute(s.x, s.reference, true);
+  config.adaptation_bound = 0.3 * free.adaptive_gain_change();
+  TrackingLaw bounded = Law(config);
+  double largest = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    bounded.Compute(s.x, s.reference, true);
+    largest = std::max(largest, bounded.adaptive_gain_change());
+  }
+  EXPECT_NEAR(largest, config.adaptation_bound, 1e-12) << "the bound was never met, or left";
+}
+
+// Sobel's theorem on the nominal plant, where u_c is the ideal torque: V of (7.11) falls in every
+// sample. T = 1, a hundred times the shipped one, so that the gains take part of it.
+TEST(TrackingLaw, TheLyapunovFunctionFallsOnTheNominalPlant) {
+  const Design& d = ShippedDesign();
+  ControllerConfig config = Controller();
+  config.vartheta = config.sigma = 0.0;
+  config.adaptation_gain = 1.0;
+  TrackingLaw law = Law(config);
+  const Vector2d u_m(0.6, -0.1);
+  VectorXd x_m = Sample().x_m(), x = Sample().x;
+  double before = 0.0, first = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    ReferenceSample reference{};
+    for (Eigen::Index i = 0; i < 12; ++i) reference.x_m[static_cast<std::size_t>(i)] = x_m(i);
+    reference.u_m_nm = {u_m(0), u_m(1)};
+    const VectorXd e = d.S11 * x_m + d.S12 * u_m - x;
+    const double share = law.adaptive_gain_change() * law.adaptive_gain_change();
+    const TrackingLaw::Result result = law.Compute(x, reference, true);
+    EXPECT_NEAR(result.lyapunov_nm2, e.dot(d.P * e) + share / config.adaptation_gain,
+                1e-9 * (1.0 + result.lyapunov_nm2));
+    if (k == 0) first = result.lyapunov_nm2;
+    if (k > 0) {
+      EXPECT_LT(result.lyapunov_nm2, before) << k;
+    }
+    before = result.lyapunov_nm2;
+    x = d.A * x + d.B * Torque(result);
+    x_m = d.Am * x_m + d.Bm * u_m;
+  }
+  EXPECT_GT(law.adaptive_gain_change(), 1e-3) << "nothing adapted: the test says little";
+  EXPECT_LT(before, 0.2 * first);
+}
+
+TEST(TrackingLaw, ALawWithoutTheCommandGeneratorsTrajectoryHasNoLyapunovValue) {
+  const Sample s;
+  ControllerConfig config = Controller();
+  for (const ControllerKind kind :
+       {ControllerKind::kLqrCgt, ControllerKind::kSobelOriginal, ControllerKind::kLqrUm,
+        ControllerKind::kLqg, ControllerKind::kPd}) {
+    config.kind = kind;
+    TrackingLaw law = Law(config);
+    const bool defined = kind == ControllerKind::kLqrCgt || kind == ControllerKind::kSobelOriginal;
+    EXPECT_EQ(std::isfinite(law.Compute(s.x, s.reference, true).lyapunov_nm2), defined);
+  }
+}
+
 TEST(TrackingLaw, AdaptationIsHeldWhileSaturatedOrForbidden) {
   const Sample s;
   TrackingLaw saturated = Law(Controller(), {0.5, 1e9});
@@ -267,8 +343,8 @@ TEST(TrackingLaw, RegulateDrivesTheNominalArmToItsGoal) {
   ASSERT_LT(slowest, 1.0);
   const double at_start = (x - goal).norm();
   for (int k = 0; k < 500; ++k) {
-    const TrackingLaw::Result result = law.Regulate(x, goal);
-    EXPECT_EQ(result.limits & kAdaptationHeld, kAdaptationHeld);
+    const TrackingLaw::Result result = law.Hold(law.Regulate(x, goal));
+    EXPECT_EQ(result.limits, kAdaptationHeld);
     x = d.A * VectorXd(x) + d.B * Torque(result);
   }
   EXPECT_LT((x - goal).norm(), 1e3 * at_start * std::pow(slowest, 500));

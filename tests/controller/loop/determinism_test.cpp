@@ -73,6 +73,16 @@ TEST(Determinism, RecordedInputsReplayWithDifferencesToo) {
       {"estimator.name=difference", "sensors.strain_input.filter_hz=0.0", "controller.alpha=2.0"});
 }
 
+TEST(Determinism, RecordedInputsReplayWithSixteenStatesToo) {
+  ExpectReplays({"controller.nominal=T16"});
+}
+
+TEST(Determinism, RecordedInputsReplayWithOtherOutputsAndSkewToo) {
+  ExpectReplays({"loop.output=at_once"});
+  ExpectReplays({"sim.transport_delay_ms=14", "loop.actuation_delay_ms=14",
+                 "sim.channel_skew_us=250", "sim.lost_frame_fraction=0.1"});
+}
+
 // The design in the log is what replay runs with: it must be the same after a trip through JSON.
 TEST(Determinism, RecordedInputsReplayWithTheDesignFromItsJson) {
   const auto run = Recorded();

@@ -177,5 +177,41 @@ TEST(TripReset, NeedsTheButtonAndTheOperatorAndLeadsToIdle) {
   EXPECT_EQ(run.permit().state, SafetyState::kArmed);
 }
 
+// Put out at once or a period and a half later, a torque is taken away as fast.
+class OutputTimingReaction : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(OutputTimingReaction, ASwitchTakesTheTorqueWithinTwoMilliseconds) {
+  constexpr double kAt = 0.317;
+  StackRun run(ShippedRig(GetParam()), WithEvent(LineEvent(kAt, Line::kEmergencyStop)));
+  RunBeyond(&run, kAt);
+  ExpectLatched(&run, TripCause::kEmergencyStop);
+  const std::int64_t event_ns = run.ExperimentStart() + 317 * kMs;
+  EXPECT_EQ(Trip(run).due_ns, event_ns + kMs);
+  // The mean of the period in which it fell is that of its milliseconds until two after the event;
+  // then there is none.
+  const std::int64_t period_ns = run.grid().period_ns;
+  for (const TickRecord& record : run.tick) {
+    if (record.input.sampling_instant_ns < event_ns + 2 * kMs + period_ns) continue;
+    EXPECT_EQ(record.input.applied_torque_nm, (std::array{0.0, 0.0}));
+  }
+}
+
+TEST_P(OutputTimingReaction, AFrozenLoopStopsTheArmWithinTwoPeriodsAndTwoMilliseconds) {
+  constexpr double kAt = 0.3;
+  StackRun run(ShippedRig(GetParam()), WithEvent(FreezeEvent(kAt, FreezeTarget::kControl)));
+  RunBeyond(&run, kAt);
+  ExpectLatched(&run, TripCause::kControlHeartbeatLost);
+  const std::int64_t event_ns = run.ExperimentStart() + 300 * kMs;
+  EXPECT_LE(Trip(run).due_ns, event_ns + 2 * run.grid().period_ns + 2 * kMs);
+}
+
+INSTANTIATE_TEST_SUITE_P(Outputs, OutputTimingReaction,
+                         testing::Values(std::vector<std::string>{"loop.output=at_once"},
+                                         std::vector<std::string>{
+                                             "loop.output=at_once", "loop.acquire_before_ms=3",
+                                             "loop.step_deadline_ms=2", "loop.output_after_ms=5"},
+                                         std::vector<std::string>{"sim.transport_delay_ms=30",
+                                                                  "loop.actuation_delay_ms=30"}));
+
 }  // namespace
 }  // namespace flexarm

@@ -23,6 +23,17 @@ struct World {
 
 class PlantTaskTest : public testing::Test {
  protected:
+  explicit PlantTaskTest(const std::vector<std::string>& overrides = {})
+      : task_(ShippedRig(overrides), 0.1,
+              {.commands = &commands_,
+               .permits = &permits_,
+               .outputs = &outputs_,
+               .plans = &plans_,
+               .presses = &presses_,
+               .frames = &frames_,
+               .levels = &levels_,
+               .reports = &reports_}) {}
+
   // Runs to `until_ns`, the world as it says from now on; returns the mean torque of joint 1 over
   // the 20 ms that end there.
   double RunTo(std::int64_t until_ns, const World& world) {
@@ -60,16 +71,7 @@ class PlantTaskTest : public testing::Test {
   FrameChannel frames_{FrameHistory(kNoFrame)};
   LevelChannel levels_{LevelHistory(kHealthyLevels)};
   DriveReportChannel reports_{DriveReportHistory(kNoDriveReport)};
-  PlantTask task_{ShippedRig(),
-                  0.1,
-                  {.commands = &commands_,
-                   .permits = &permits_,
-                   .outputs = &outputs_,
-                   .plans = &plans_,
-                   .presses = &presses_,
-                   .frames = &frames_,
-                   .levels = &levels_,
-                   .reports = &reports_}};
+  PlantTask task_;
 };
 
 TEST_F(PlantTaskTest, AppliesTheCommandWhileEverythingAllowsIt) {
@@ -106,6 +108,45 @@ TEST_F(PlantTaskTest, ACommandOlderThanTwoPeriodsStopsItAlone) {
   EXPECT_EQ(RunTo(60 * kMs, {.commands_go_on = false}), 2.0);
   EXPECT_DOUBLE_EQ(RunTo(80 * kMs, {.commands_go_on = false}), 2.0 * 1.0 / 20.0);
   EXPECT_EQ(RunTo(100 * kMs, {.commands_go_on = false}), 0.0);
+}
+
+class LossyPlantTaskTest : public PlantTaskTest {
+ protected:
+  LossyPlantTaskTest() : PlantTaskTest({"sim.lost_frame_fraction=0.5"}) {}
+};
+
+// With every second frame lost: it holds no reading, the one after it holds all, and the drive does
+// not care.
+TEST_F(LossyPlantTaskTest, ALostFrameHoldsNoReadingAndTheDriveGoesOn) {
+  ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
+  const bool at_40 = frames_.Read().At(40 * kMs).value.frame.counter_valid != 0;
+  for (int k = 3; k < 10; ++k) {
+    const std::int64_t instant_ns = 20 * kMs * k;
+    EXPECT_EQ(RunTo(instant_ns, {}), 2.0);
+    const FramePacket& packet = frames_.Read().At(instant_ns).value;
+    const bool whole = at_40 == (k % 2 == 0);
+    EXPECT_EQ(packet.frame.sampled_at_ns, instant_ns);
+    EXPECT_EQ(packet.frame.counter_valid, whole ? 0xfu : 0u) << k;
+    EXPECT_EQ(packet.frame.strain_valid, whole ? 0xfffffu : 0u) << k;
+    EXPECT_TRUE(packet.truth.known);
+  }
+}
+
+class MultiplexedPlantTaskTest : public PlantTaskTest {
+ protected:
+  MultiplexedPlantTaskTest() : PlantTaskTest({"sim.channel_skew_us=250"}) {}
+};
+
+// The last of twenty channels is sampled 4.75 ms after the instant that the frame belongs to.
+TEST_F(MultiplexedPlantTaskTest, AFrameIsThereWhenItsLastChannelIs) {
+  RunTo(44 * kMs, {});
+  EXPECT_EQ(frames_.Read().Newest().value.frame.sampled_at_ns, 20 * kMs);
+  RunTo(45 * kMs, {});
+  const FramePacket& packet = frames_.Read().At(40 * kMs).value;
+  EXPECT_EQ(packet.frame.sampled_at_ns, 40 * kMs);
+  EXPECT_EQ(packet.frame.strain_valid, 0xfffffu);
+  EXPECT_EQ(packet.frame.strain_offset_ns[19], 4'750'000);
+  EXPECT_EQ(packet.applied_torque_nm[0], 2.0);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class StackRun {
       : config_(config),
         design_(DesignFor(config)),
         grid_(config.loop),
-        planned_(experiment, design_, grid_.period_s(), {0.0, 0.0}, SoftAngleRad(config.safety)),
+        planned_(experiment, design_, grid_.period_s(), {0.0, 0.0}, MotionLimitsOf(config)),
         stack_(config, design_, payload_kg) {
     stack_.Plan({.experiment = &planned_, .number = 1});
     executor_.Add(stack_.safety());

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "tests/controller/loop/simulated_runs.h"
+#include "tools/sweep/plant_variant.h"
 
 namespace flexarm {
 namespace {
@@ -76,6 +77,23 @@ TEST(LoopVariants, ShapingTheReferenceKeepsAPdFromShakingTheLinks) {
   std::printf("  rms th2: pd %.2f, pd-zv %.2f, pd-zvd %.2f deg\n", pd, zv, zvd);
   EXPECT_LT(zv, 0.6 * pd);
   EXPECT_LT(zvd, zv);
+}
+
+// The study's bar: stable, rms 25 % up at most. Every tenth frame holds no reading; the estimator
+// goes on with its model. Measured, rms th1 and th2 with all frames and without a tenth: 1.08 0.71
+// and 1.21 0.83 at 0.01 kg, 0.75 1.09 and 0.76 1.10 at 0.1 kg, 0.94 2.66 and 0.96 2.78 at 0.2 kg.
+TEST(LoopVariants, OneFrameInTenMayBeLost) {
+  for (const double payload_kg : {0.01, 0.1, 0.2}) {
+    const Runs all = RunSeeds(payload_kg),
+               lossy = RunSeeds(payload_kg, {"sim.lost_frame_fraction=0.1"});
+    std::printf("payload %.2f kg\n", payload_kg);
+    Print("all frames", all);
+    Print("10 % lost", lossy);
+    EXPECT_EQ(lossy.tripped, 0) << payload_kg;
+    EXPECT_LE(Median(lossy.rms1_deg), 1.25 * Median(all.rms1_deg)) << payload_kg;
+    EXPECT_LE(Median(lossy.rms2_deg), 1.25 * Median(all.rms2_deg)) << payload_kg;
+    EXPECT_NE(lossy.rms1_deg, all.rms1_deg) << "no frame was lost: the test says nothing";
+  }
 }
 
 // No bar: the study found no benefit of the adaptation at 0 to 0.2 kg. Both must run, and must not
@@ -149,6 +167,28 @@ TEST(LoopVariants, QuarterTorqueLimitsLoseNothing) {
   EXPECT_LE(Largest(runs.peak1_nm), 7.5);
   EXPECT_LE(Largest(runs.peak2_nm), 1.5);
   EXPECT_GT(Largest(runs.peak1_nm), 7.4) << "the limit was never reached: the test says nothing";
+}
+
+// Section 5 of the study: one degree of play, friction x 3, joint springs -30 %, Young's modulus
+// -10 %, 3 % modal damping, which the controller does not know. Stable, and at rest after it. With
+// play the arm rattles under any feedback: it comes to rest because a stop lets it go in the end.
+TEST(LoopVariants, PlantsThatDifferFromTheDesignAreStable) {
+  for (const PlantVariant& variant : PlantVariants()) {
+    const Config config = ShippedRig();
+    for (const double payload_kg : {0.0, 0.01, 0.1, 0.2}) {
+      for (const char* seed : {"1", "2", "3"}) {
+        std::vector<std::string> overrides = VariantOverrides(config, variant.name);
+        overrides.push_back(std::string("sim.seed=") + seed);
+        const SimulationResult result = Simulate({.config = config,
+                                                  .experiment = ShippedExperiment(),
+                                                  .plant = PlantWith(config, overrides),
+                                                  .payload_kg = payload_kg,
+                                                  .log = {}});
+        EXPECT_TRUE(result.completed) << variant.name << " " << payload_kg << " kg, seed " << seed
+                                      << ": " << Name(result.trip);
+      }
+    }
+  }
 }
 
 // The prescribed degree of stability is what removes the final error. Measured: 0.45 against 0.04

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPeriod_s = 0.02;
 constexpr double kDeg = 3.14159265358979323846 / 180;
-const TipGeometry kGeometry{.length_m = {1.0, 0.7}, .tip_slope_per_m = {1.5, 4.0}};
+const TipGeometry kGeometry{.layout = kR12, .length_m = {1.0, 0.7}, .tip_slope_per_m = {1.5, 4.0}};
 
 // Two moves: rests are 1..3 s and 4..6 s.
 Experiment TwoMoves() {
@@ -110,6 +110,29 @@ TEST(RunMetrics, PeakTorqueIsTheLargestAppliedOfEitherSign) {
   EXPECT_EQ(Judge(ticks).peak_torque_nm[1], 3);
 }
 
+// Alternating 2 and 0 is sqrt(2) rms; a constant is itself. The trace has an even number of ticks.
+TEST(RunMetrics, TorqueRmsIsThatOfTheAppliedTorqueOverAllTicks) {
+  const auto ticks = Trace(6, [](double, TickRecord* record) {
+    record->input.applied_torque_nm = {record->input.tick % 2 != 0 ? 2.0 : 0.0, -3.0};
+    record->output.torque_nm = {100, 100};  // asked only
+  });
+  EXPECT_NEAR(Judge(ticks).torque_rms_nm[0], std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(Judge(ticks).torque_rms_nm[1], 3.0, 1e-12);
+}
+
+TEST(RunMetrics, PeakBendingIsTheTipsTrueDeflectionOrTheSumOfTheModes) {
+  for (const bool known : {true, false}) {
+    const auto ticks = Trace(6, [known](double t, TickRecord* record) {
+      record->truth.known = known;
+      record->truth.tip_deflection_m = {t > 1.0 && t < 1.1 ? -0.2 : 0.1, 0.05};
+      record->output.modal_m = {0.3, -0.1, 0.02, 0.01};
+    });
+    const RunMetrics metrics = Judge(ticks);
+    EXPECT_NEAR(metrics.peak_bending_mm[0], 200.0, 1e-9) << known;  // |-0.2|, or 0.3 - 0.1
+    EXPECT_NEAR(metrics.peak_bending_mm[1], known ? 50.0 : 30.0, 1e-9) << known;
+  }
+}
+
 TEST(RunMetrics, ARunThatEndedInItsFirstRestIsJudgedOnThatRestAlone) {
   const auto ticks = Trace(2, [](double t, TickRecord* record) {
     record->truth.hub_angle_rad[0] = t > 1.71 ? kDeg : 0;
@@ -154,6 +177,22 @@ TEST(EstimatedTip, TurnsLinkTwoByTheTipSlopeOfLinkOne) {
   const double gamma = std::atan(0.15);
   EXPECT_NEAR(tip[0], 1 + 0.7 * std::cos(gamma) - 0.2 * std::sin(gamma), 1e-12);
   EXPECT_NEAR(tip[1], 0.1 + 0.7 * std::sin(gamma) + 0.2 * std::cos(gamma), 1e-12);
+}
+
+// The same arm and the same place, in the order of each model's states: two modes a link where
+// there are two, rotors (which are no part of it) elsewhere, and a rate that must not be taken for
+// a mode.
+TEST(EstimatedTip, IsFoundInTheStatesOfEveryNominalModel) {
+  const double th1 = 0.3, th2 = -0.2, f1 = 0.1, f2 = 0.2, rotor = 9.0, rate = 7.0;
+  const TipGeometry one = kGeometry;
+  const auto expected = EstimatedTip(one, {th1, th2, f1, 0.0, f2, 0.0});
+  TipGeometry r8 = one, t12 = one, t16 = one;
+  r8.layout = kR8;
+  t12.layout = kT12;
+  t16.layout = kT16;
+  EXPECT_EQ(EstimatedTip(r8, {th1, th2, f1, f2, rate, rate}), expected);
+  EXPECT_EQ(EstimatedTip(t12, {th1, th2, rotor, rotor, f1, f2, rate, rate}), expected);
+  EXPECT_EQ(EstimatedTip(t16, {th1, th2, rotor, rotor, f1, 0.0, f2, 0.0, rate, rate}), expected);
 }
 
 }  // namespace

@@ -257,8 +257,12 @@ TEST(Supervisor, TakesItsLimitsFromTheConfiguration) {
   SafetyConfig safety{};
   safety.stop_timeout_s = 3.0;
   safety.missed_deadlines_to_trip = 5;
-  const SupervisorLimits limits = MakeSupervisorLimits(
-      safety, {.period_ms = 20.0, .acquire_before_ms = 5.0, .step_deadline_ms = 5.0});
+  const SupervisorLimits limits = MakeSupervisorLimits(safety, {.period_ms = 20.0,
+                                                                .acquire_before_ms = 5.0,
+                                                                .step_deadline_ms = 5.0,
+                                                                .output = OutputTiming::kNextTick,
+                                                                .output_after_ms = 15.0,
+                                                                .actuation_delay_ms = 0.0});
   EXPECT_EQ(limits.heartbeat_timeout_ns, 40 * kMs);
   EXPECT_EQ(limits.stop_timeout_ns, 3000 * kMs);
   EXPECT_EQ(limits.missed_deadlines_to_trip, 5);

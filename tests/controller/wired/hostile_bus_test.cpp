@@ -71,7 +71,7 @@ class Rig {
     stack = std::make_unique<WiredStack>(config_, design_, wires);
     stack->SetEpoch(world->epoch_ns);
     planned_ = std::make_unique<PlannedExperiment>(
-        experiment_, design_, 0.02, std::array<double, 2>{0.0, 0.0}, SoftAngleRad(config_.safety));
+        experiment_, design_, 0.02, std::array<double, 2>{0.0, 0.0}, MotionLimitsOf(config_));
     stack->Plan({.experiment = planned_.get(), .number = 1});
     executor.Add(stack->safety());
     executor.Add(stack->control());

@@ -125,8 +125,7 @@ class WiredStackTest : public testing::Test {
   const Config config_ = ShippedRig();
   const Experiment experiment_ = ShippedExperiment();
   const Design design_ = DesignFor(config_);
-  const PlannedExperiment planned_{
-      experiment_, design_, 0.02, {0.0, 0.0}, SoftAngleRad(config_.safety)};
+  const PlannedExperiment planned_{experiment_, design_, 0.02, {0.0, 0.0}, MotionLimitsOf(config_)};
   World world_{config_};
   DriveBus drives_{&world_};
   GaugeBus gauges_{&world_};
@@ -143,7 +142,8 @@ TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend
   RunUntil(9'000 * kMs);
   EXPECT_EQ(permit().state, SafetyState::kIdle) << Name(permit().cause);
   EXPECT_TRUE(operator_.ran());
-  const RunMetrics metrics = ComputeMetrics(ticks_, experiment_, 0.02, TipGeometryOf(config_.arm));
+  const RunMetrics metrics = ComputeMetrics(ticks_, experiment_, 0.02,
+                                            TipGeometryOf(config_.arm, config_.controller.nominal));
   EXPECT_EQ(metrics.ticks, 300);
   EXPECT_LE(metrics.joint_rms_error_deg[0], 0.90);  // control.md section 8, payload 0.1 kg
   EXPECT_LE(metrics.joint_rms_error_deg[1], 1.35);

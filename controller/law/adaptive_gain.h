@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/law/controller_config.h"
+
+namespace flexarm {
+
+/// Sobel's integral gain K_I, 2 x (n + 4) on r = [y_e; x_m; u_m], kept within reason.
+///
+///   K_I <- K_I0 + (1 - sigma) (K_I - K_I0) + v (T r)',   T = adaptation_gain I
+///
+/// The leak sigma forgets. The dead zone leaves v (T r)' out while |y_e| is below it: an error of
+/// the size of an encoder's count has nothing to teach. The projection scales K_I - K_I0 back to
+/// the radius `adaptation_bound` (Frobenius). Leak and projection never raise the gains' share of
+/// the Lyapunov function (7.11). Real-time: all but the constructor is safe.
+class AdaptiveGain {
+ public:
+  using Gain = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 20>;
+  using Regressor = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 20, 1>;
+
+  AdaptiveGain(const Eigen::MatrixXd& initial, const ControllerConfig& config);
+
+  void Reset() noexcept { K_I_ = K_I0_; }
+
+  /// K_I r
+  Eigen::Vector2d Torque(const Regressor& r) const noexcept { return K_I_.lazyProduct(r); }
+
+  /// One sample of adaptation.
+  /// @param v  of (7.14e)
+  void Update(const Eigen::Vector2d& v, const Regressor& r) noexcept;
+
+  double change() const noexcept { return (K_I_ - K_I0_).norm(); }  ///< |K_I - K_I0|, Frobenius
+
+  /// tr((K_I - K_I0) T^-1 (K_I - K_I0)'): the gains' share of (7.11), with S = I and the gains that
+  /// are ideal for the nominal plant, K_I0, for Kbar.
+  double energy() const noexcept;
+
+ private:
+  double rate_, leak_, dead_zone_nm_, bound_;
+  Gain K_I0_, K_I_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <string>
+
+namespace flexarm {
+
+/// A number for a message, rounded: "1.37", "1.9e+03". Allocates: start-up only.
+/// @param digits  that count, or with `fixed` those behind the point
+inline std::string RoundedText(double value, int digits, bool fixed = false) {
+  std::array<char, 64> text{};
+  const auto format = fixed ? std::chars_format::fixed : std::chars_format::general;
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, format, digits);
+  return {text.data(), end};
+}
+
+}  // namespace flexarm

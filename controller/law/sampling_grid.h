@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace flexarm {
+
+/// `time_s` in periods, a whole number of them.
+/// @param what  its name for the message: "move[0].start_s"
+/// @throws Refused if it is not a multiple of `period_s`
+int OnGrid(double time_s, double period_s, const std::string& what);
+
+}  // namespace flexarm

@@ -1,0 +1,201 @@
+#include "estimator/payload_filter.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace flexarm {
+namespace {
+
+constexpr int kMotion = Transition::kStates;  // q, q', phi_f
+constexpr int kPayload = kMotion;
+constexpr int kFriction = kMotion + 1;
+
+constexpr double kPayloadProbe_kg = 1e-3;
+constexpr double kNoiseFloor = 1e-13;  // keeps P definite, far below every physical noise
+
+// Fading: the process noise grows by s = mean NIS / expected NIS, within bounds.
+constexpr double kNisMemory = 0.8;
+constexpr double kNisBound = 200.0;
+constexpr double kMostFading = 30.0;
+
+constexpr int kMostGlitches = 2;
+
+using MotionVector = Eigen::Matrix<double, kMotion, 1>;
+
+MotionVector Stacked(const GaugedState& x) noexcept {
+  MotionVector out;
+  out << x.q, x.v, x.phi_f;
+  return out;
+}
+
+// What y sees of the motion: th1 th2 th1 th2 phi_f.
+constexpr std::array<int, PayloadFilter::kOutputs> kSeen = {0, 1, 0, 1, 12, 13, 14, 15};
+
+double Square(double x) noexcept { return x * x; }
+
+}  // namespace
+
+PayloadFilter::PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config)
+    : stepper_(std::move(stepper)), config_(config) {
+  Reset(RigidJointArm::Vector::Zero());
+}
+
+void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
+  estimate_ = {.state = {.q = q, .v = RigidJointArm::Vector::Zero(), .phi_f = q.tail<4>()},
+               .payload_kg = config_.payload_start_kg,
+               .payload_sigma_kg = config_.payload_start_sigma_kg,
+               .friction_nm = config_.friction_start_nm,
+               .nis = 0.0,
+               .innovation = Outputs::Zero()};
+  P_.setZero();
+  for (int i = 0; i < kMotion; ++i) {
+    P_(i, i) = Square(config_.start_sigma[static_cast<std::size_t>(i)]);
+  }
+  P_(kPayload, kPayload) = Square(config_.payload_start_sigma_kg);
+  for (int i = 0; i < 2; ++i) {
+    P_(kFriction + i, kFriction + i) =
+        Square(config_.friction_start_sigma_nm[static_cast<std::size_t>(i)]);
+  }
+  mean_nis_ = kOutputs;
+  play_rad_ = 0.0;
+}
+
+void PayloadFilter::BeginMove() noexcept {
+  P_(kPayload, kPayload) = std::max(P_(kPayload, kPayload), Square(config_.payload_move_sigma_kg));
+  estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
+}
+
+const PayloadFilter::Estimate& PayloadFilter::Update(const Eigen::Vector2d& torque_nm,
+                                                     const Reading& reading) noexcept {
+  Predict(torque_nm);
+  estimate_.nis = 0.0;
+  estimate_.innovation.setZero();
+  if (reading.fresh) {
+    Outputs y = reading.z;
+    for (int i = 0; i < 2; ++i) {
+      y[2 + i] -= torque_nm[i] / config_.joint_stiffness_nm_per_rad[static_cast<std::size_t>(i)];
+    }
+    const MotionVector x = Stacked(estimate_.state);
+    Outputs e;
+    Gain PHt;
+    for (int i = 0; i < kOutputs; ++i) {
+      e[i] = y[i] - x[kSeen[static_cast<std::size_t>(i)]];
+      PHt.col(i) = P_.col(kSeen[static_cast<std::size_t>(i)]);
+    }
+    const Outputs R = OutputVariance(y, e);
+    Eigen::Matrix<double, kOutputs, kOutputs> S;
+    for (int i = 0; i < kOutputs; ++i) S.row(i) = PHt.row(kSeen[static_cast<std::size_t>(i)]);
+    S.diagonal() += R;
+    const Eigen::LLT<Eigen::Matrix<double, kOutputs, kOutputs>> S_llt(S);
+    const Gain K = S_llt.solve(PHt.transpose()).transpose();
+    estimate_.nis = e.dot(S_llt.solve(e));
+    estimate_.innovation = e;
+    mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
+    Correct(K, e, R);
+  }
+  estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
+  return estimate_;
+}
+
+void PayloadFilter::Predict(const Eigen::Vector2d& torque_nm) noexcept {
+  SampleInputs inputs{.torque_nm = torque_nm,
+                      .payload_kg = estimate_.payload_kg,
+                      .friction_nm = estimate_.friction_nm};
+  const GaugedState start = estimate_.state;
+  const GaugedState end = stepper_.Advance(start, inputs);
+  const MotionVector x = Stacked(end);
+  const Transition transition =
+      TransitionOver(stepper_, inputs.payload_kg, 0.5 * (start.q + end.q), 0.5 * (start.v + end.v),
+                     (end.v - start.v) / stepper_.period_s());
+
+  Matrix F = Matrix::Identity();
+  F.topLeftCorner<kMotion, kMotion>() = transition.Phi;
+  inputs.payload_kg += kPayloadProbe_kg;
+  F.col(kPayload).head<kMotion>() =
+      (Stacked(stepper_.Advance(start, inputs)) - x) / kPayloadProbe_kg;
+  inputs.payload_kg = estimate_.payload_kg;
+  for (int i = 0; i < 2; ++i) {
+    const auto j = static_cast<std::size_t>(i);
+    inputs.friction_nm[j] += config_.friction_probe_nm[j];
+    F.col(kFriction + i).head<kMotion>() =
+        (Stacked(stepper_.Advance(start, inputs)) - x) / config_.friction_probe_nm[j];
+    inputs.friction_nm[j] = estimate_.friction_nm[j];
+  }
+  estimate_.state = end;
+  const Matrix FP = F.lazyProduct(P_);
+  P_ = FP.lazyProduct(F.transpose());
+  AddProcessNoise(transition);
+}
+
+void PayloadFilter::AddProcessNoise(const Transition& transition) noexcept {
+  const double s = std::clamp(mean_nis_ / kOutputs, 1.0, kMostFading);
+  Eigen::Matrix<double, kMotion, RigidJointArm::kDof> G = transition.G;
+  for (int i = 0; i < RigidJointArm::kDof; ++i) {
+    G.col(i) *= config_.process_force[static_cast<std::size_t>(i)];
+  }
+  P_.topLeftCorner<kMotion, kMotion>() += s * G.lazyProduct(G.transpose());
+  P_.diagonal().head<kMotion>().array() += kNoiseFloor;
+  P_(kPayload, kPayload) += Square(config_.payload_walk_kg * s);
+  for (int i = 0; i < 2; ++i) {
+    if (std::fabs(estimate_.state.v[i]) <= config_.friction_min_rate_rad_s) continue;
+    P_(kFriction + i, kFriction + i) +=
+        Square(config_.friction_walk_nm[static_cast<std::size_t>(i)]);
+  }
+}
+
+PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y,
+                                                     const Outputs& innovation) noexcept {
+  Outputs R;
+  for (int i = 0; i < kOutputs; ++i) {
+    R[i] = Square(config_.output_sigma[static_cast<std::size_t>(i)]);
+  }
+  play_rad_ = std::max(std::fabs(y[3] - y[1]), config_.play_memory * play_rad_);
+  if (play_rad_ > config_.play_threshold_rad) R[3] = std::max(R[3], Square(play_rad_));
+
+  Outputs sigmas;
+  int beyond = 0;
+  for (int i = 0; i < kOutputs; ++i) {
+    const int state = kSeen[static_cast<std::size_t>(i)];
+    sigmas[i] = std::fabs(innovation[i]) / std::sqrt(P_(state, state) + R[i]);
+    if (sigmas[i] > config_.gate_sigmas) ++beyond;
+  }
+  if (beyond > kMostGlitches) return R;
+  for (int i = 0; i < kOutputs; ++i) {
+    if (sigmas[i] > config_.gate_sigmas) R[i] *= 4.0 * Square(sigmas[i] / config_.gate_sigmas);
+  }
+  return R;
+}
+
+void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation,
+                            const Outputs& variance) noexcept {
+  Gain K = optimal;
+  const RigidJointArm::Vector& v = estimate_.state.v;
+  if (std::fabs(v[0]) < config_.payload_min_rate_rad_s &&
+      std::fabs(v[1]) < config_.payload_min_rate_rad_s) {
+    K.row(kPayload).setZero();
+  }
+  const Vector dx = K.lazyProduct(innovation);
+  estimate_.state.q += dx.head<6>();
+  estimate_.state.v += dx.segment<6>(6);
+  estimate_.state.phi_f += dx.segment<4>(12);
+  estimate_.payload_kg =
+      std::clamp(estimate_.payload_kg + dx[kPayload], 0.0, config_.payload_max_kg);
+  for (std::size_t i = 0; i < 2; ++i) {
+    estimate_.friction_nm[i] =
+        std::clamp(estimate_.friction_nm[i] + dx[kFriction + static_cast<int>(i)], 0.0,
+                   config_.friction_max_nm[i]);
+  }
+  // P <- (I - K H) P (I - K H)' + K R K', right for any K.
+  Matrix J = Matrix::Identity();
+  for (int i = 0; i < kOutputs; ++i) J.col(kSeen[static_cast<std::size_t>(i)]) -= K.col(i);
+  const Matrix JP = J.lazyProduct(P_);
+  Gain KR = K;
+  for (int i = 0; i < kOutputs; ++i) KR.col(i) *= variance[i];
+  P_ = JP.lazyProduct(J.transpose()) + KR.lazyProduct(K.transpose());
+  P_(kPayload, kPayload) = std::min(P_(kPayload, kPayload), Square(config_.payload_max_sigma_kg));
+}
+
+}  // namespace flexarm

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "model/rigid_joint_step.h"
+#include "model/rigid_joint_transition.h"
+
+namespace flexarm {
+
+/// What PayloadFilter has to be told. No defaults: the values of the study are in beyond.md 2.3.
+struct PayloadFilterConfig {
+  std::array<double, 2> joint_stiffness_nm_per_rad;  ///< K1, K2: rotor angles are freed of u/K
+  /// Standard deviations of the generalised process forces on th1 th2 (N m) and the modal
+  /// coordinates (N), held over a sample.
+  std::array<double, 6> process_force;
+  /// Of the outputs: hubs 1 and 2, rotors 1 and 2 (rad), modal coordinates (m).
+  std::array<double, 8> output_sigma;
+  /// Of the state at a start: q, q' and phi_f, rad and m, and per second.
+  std::array<double, 16> start_sigma;
+
+  double payload_start_kg, payload_start_sigma_kg;
+  double payload_max_kg;          ///< the estimate stays in 0 .. this
+  double payload_max_sigma_kg;    ///< bound on its standard deviation
+  double payload_move_sigma_kg;   ///< at the start of a move it is opened to at least this
+  double payload_walk_kg;         ///< standard deviation of its change in a sample
+  double payload_min_rate_rad_s;  ///< with both hubs slower it is not learnt: play would drag it
+
+  std::array<double, 2> friction_start_nm, friction_start_sigma_nm;
+  std::array<double, 2> friction_max_nm;    ///< the estimates stay in 0 .. this
+  std::array<double, 2> friction_walk_nm;   ///< standard deviation of the change in a sample
+  std::array<double, 2> friction_probe_nm;  ///< difference for the derivative, > 0
+  double friction_min_rate_rad_s;           ///< a slower hub's friction does not walk
+
+  double play_threshold_rad;  ///< rotor 2 further than this from hub 2: joint 2 has play
+  double play_memory;         ///< share of the largest such distance kept after a sample, 0..1
+  double gate_sigmas;         ///< a single output beyond this is a glitch
+};
+
+/// Extended Kalman filter that finds the payload and the joints' friction while the arm moves.
+///
+/// 19 states: q and q' of RigidJointArm, the gauges' filters phi_f, the payload m_p, the Coulomb
+/// levels F_1, F_2. Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f]. A sample:
+///   1. state by RigidJointStepper, its derivatives by TransitionOver and by differences;
+///   2. P <- F P F' + s G Q G' + walk, s in 1..30: grows with the normalised innovation squared
+///      (NIS), so that the filter forgets faster when the model is wrong;
+///   3. variance of rotor 2 raised while joint 2 has play; one or two outputs beyond the gate get
+///      less weight, with three or more the model is wrong and all count;
+///   4. update with the payload's gain row zero at rest. That gain is not the optimal one, so the
+///      covariance follows by Joseph's form.
+/// Source: beyond.md 2.3. Real-time: all but the constructor is safe; no loop without a
+/// bound.
+class PayloadFilter {
+ public:
+  static constexpr int kStates = 19;
+  static constexpr int kOutputs = 8;
+  using Outputs = Eigen::Matrix<double, kOutputs, 1>;
+
+  /// What was read at the end of a sample.
+  struct Reading {
+    Outputs z;   ///< th1 th2 th3 th4 as counted, rad; fitted modal coordinates, m
+    bool fresh;  ///< false: the frame was lost, and nothing of z counts
+  };
+
+  /// The estimate after a sample.
+  struct Estimate {
+    GaugedState state;
+    double payload_kg, payload_sigma_kg;
+    std::array<double, 2> friction_nm;
+    double nis;  ///< of this sample, 8 expected; 0 without a fresh frame
+    Outputs innovation;
+  };
+
+  PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config);
+
+  /// At rest at q, payload and friction unknown again.
+  void Reset(const RigidJointArm::Vector& q) noexcept;
+
+  /// A move starts: the payload may be another than before.
+  void BeginMove() noexcept;
+
+  /// @param torque_nm  really applied during the sample that ends with the reading
+  const Estimate& Update(const Eigen::Vector2d& torque_nm, const Reading& reading) noexcept;
+
+  const Estimate& estimate() const noexcept { return estimate_; }
+  /// NIS, smoothed: 8 for a right model.
+  double mean_nis() const noexcept { return mean_nis_; }
+
+ private:
+  using Vector = Eigen::Matrix<double, kStates, 1>;
+  using Matrix = Eigen::Matrix<double, kStates, kStates>;
+  using Gain = Eigen::Matrix<double, kStates, kOutputs>;
+
+  void Predict(const Eigen::Vector2d& torque_nm) noexcept;
+  void AddProcessNoise(const Transition& transition) noexcept;
+  Outputs OutputVariance(const Outputs& y, const Outputs& innovation) noexcept;
+  void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance) noexcept;
+
+  RigidJointStepper stepper_;
+  PayloadFilterConfig config_;
+  Estimate estimate_;
+  Matrix P_;
+  double mean_nis_;
+  double play_rad_;  // largest distance of rotor 2 from hub 2, forgotten slowly
+};
+
+}  // namespace flexarm

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace flexarm {
+
+/// Fractions of a period are counted in ticks of 2^-16 Ts: 0.3 us at 50 Hz.
+inline constexpr int kPeriodDigits = 16;
+inline constexpr std::int64_t kPeriodTicks = std::int64_t{1} << kPeriodDigits;
+
+/// A torque that holds for a while.
+struct TorquePiece {
+  std::array<double, 2> torque_nm;
+  std::int64_t ticks;  ///< how long, in 2^-16 Ts
+};
+
+/// The torque over an interval: constant pieces, in order of time. No heap. Real-time: safe.
+class TorquePieces {
+ public:
+  static constexpr std::size_t kMost = 8;
+
+  TorquePieces() = default;
+
+  /// The same torque over one whole period.
+  static TorquePieces WholePeriod(const std::array<double, 2>& torque_nm) noexcept {
+    TorquePieces pieces;
+    pieces.Add({.torque_nm = torque_nm, .ticks = kPeriodTicks});
+    return pieces;
+  }
+
+  /// Behind the last one; nothing if it has no length, or if there are kMost already.
+  void Add(const TorquePiece& piece) noexcept {
+    if (piece.ticks > 0 && size_ < kMost) piece_[size_++] = piece;
+  }
+
+  std::span<const TorquePiece> all() const noexcept { return {piece_.data(), size_}; }
+
+  /// What holds at the end of the interval; 0 for an empty one.
+  std::array<double, 2> last_nm() const noexcept {
+    return size_ == 0 ? std::array<double, 2>{} : piece_[size_ - 1].torque_nm;
+  }
+
+  /// Over the whole interval; of a single piece its torque as it is, 0 for an empty one.
+  std::array<double, 2> mean_nm() const noexcept;
+
+  /// These pieces with the mean that somebody measured: all are moved by the same amount, and a
+  /// single one becomes the mean itself.
+  TorquePieces WithMean(const std::array<double, 2>& mean_nm) const noexcept;
+
+ private:
+  std::array<TorquePiece, kMost> piece_{};
+  std::size_t size_ = 0;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,61 @@
+#include "model/rigid_joint_step.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+#include "model/box_friction.h"
+
+namespace flexarm {
+
+RigidJointStepper::RigidJointStepper(const RigidJointArm& arm, double period_s,
+                                     double gauge_filter_hz)
+    : arm_(arm),
+      h_(period_s / kSteps),
+      gauge_share_(1.0 - std::exp(-2.0 * std::numbers::pi * gauge_filter_hz * h_)),
+      implicit_(0.5 * h_ * arm.damping() + 0.25 * h_ * h_ * arm.stiffness()) {}
+
+GaugedState RigidJointStepper::Advance(const GaugedState& start,
+                                       const SampleInputs& inputs) const noexcept {
+  const OutboardBody body = arm_.Outboard(inputs.payload_kg);
+  GaugedState x = start;
+  for (int i = 0; i < kSteps; ++i) {
+    Vector applied = -arm_.damping().lazyProduct(x.v);
+    applied -= arm_.stiffness().lazyProduct(x.q + 0.5 * h_ * x.v);
+    applied.head<2>() += inputs.torque_nm;
+    const Vector a = Acceleration(body, x, applied, inputs.friction_nm);
+    const Vector v_m = x.v + 0.5 * h_ * a;
+    const Vector q_m = x.q + 0.5 * h_ * v_m;
+    x.phi_f += gauge_share_ * (q_m.tail<4>() - x.phi_f);
+    x.q += h_ * v_m;
+    x.v += h_ * a;
+  }
+  return x;
+}
+
+// (M + h/2 D + h^2/4 K) a = applied - bias + friction at the middle of the step. The modal
+// coordinates are eliminated; friction acts on what is left.
+RigidJointArm::Vector RigidJointStepper::Acceleration(
+    const OutboardBody& body, const GaugedState& start, const Vector& applied,
+    const std::array<double, 2>& friction_nm) const noexcept {
+  Vector a = Vector::Zero();
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const Vector v_m = start.v + 0.5 * h_ * a;
+    const RigidJointArm::Inertia at = arm_.At(body, start.q + 0.5 * h_ * v_m, v_m);
+    const RigidJointArm::Matrix A = at.M + implicit_;
+    const Vector r = applied - at.bias;
+
+    const Eigen::LLT<Eigen::Matrix4d> flexible(A.bottomRightCorner<4, 4>());
+    const Eigen::Matrix<double, 4, 2> X = flexible.solve(A.bottomLeftCorner<4, 2>());
+    const Eigen::Vector4d y = flexible.solve(r.tail<4>());
+    const Eigen::Matrix2d Z = A.topLeftCorner<2, 2>() - A.topRightCorner<2, 4>().lazyProduct(X);
+    const Eigen::Vector2d r_hub = r.head<2>() - A.topRightCorner<2, 4>().lazyProduct(y);
+    const FrictionSolution hubs = BoxFriction(Z(0, 0), Z(1, 0), Z(1, 1), r_hub[0], r_hub[1])
+                                      .Solve({start.v[0], start.v[1]}, friction_nm, h_);
+    a.head<2>() << hubs.acceleration[0], hubs.acceleration[1];
+    a.tail<4>() = y - X.lazyProduct(a.head<2>());
+  }
+  return a;
+}
+
+}  // namespace flexarm

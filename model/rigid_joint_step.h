@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "model/rigid_joint_arm.h"
+
+namespace flexarm {
+
+/// Motion of the arm with rigid joints and of the analogue filters of its strain gauges.
+struct GaugedState {
+  RigidJointArm::Vector q, v;  ///< as RigidJointArm's, rad and m, and their rates
+  Eigen::Vector4d phi_f;       ///< filtered modal coordinates, phi_f' = w_f (phi - phi_f), m
+};
+
+/// What is constant during a sample.
+struct SampleInputs {
+  Eigen::Vector2d torque_nm;
+  double payload_kg;
+  std::array<double, 2> friction_nm;  ///< Coulomb levels of the hubs, >= 0
+};
+
+/// One sample of the arm with exact Coulomb stiction: kSteps implicit midpoint steps of kPasses
+/// fixed-point passes each.
+///
+/// As ArmSimulator (hubs by BoxFriction at the midpoint velocity), in long steps, and for a payload
+/// that may differ from sample to sample. A step's passes start from zero acceleration. The
+/// gauges' filters see the modal coordinates of the middle of each step.
+/// Source: beyond.md 2.3 (1).
+/// Real-time: Advance is safe.
+class RigidJointStepper {
+ public:
+  static constexpr int kSteps = 8;
+  static constexpr int kPasses = 2;
+
+  /// @param period_s         one sample, > 0
+  /// @param gauge_filter_hz  corner of the gauges' first-order filter, > 0
+  RigidJointStepper(const RigidJointArm& arm, double period_s, double gauge_filter_hz);
+
+  GaugedState Advance(const GaugedState& start, const SampleInputs& inputs) const noexcept;
+
+  const RigidJointArm& arm() const noexcept { return arm_; }
+  double period_s() const noexcept { return kSteps * h_; }
+  double step_s() const noexcept { return h_; }
+  /// Share of its error that a gauge's filter takes away in one step.
+  double gauge_share() const noexcept { return gauge_share_; }
+
+ private:
+  using Vector = RigidJointArm::Vector;
+
+  Vector Acceleration(const OutboardBody& body, const GaugedState& start, const Vector& applied,
+                      const std::array<double, 2>& friction_nm) const noexcept;
+
+  RigidJointArm arm_;
+  double h_;
+  double gauge_share_;
+  RigidJointArm::Matrix implicit_;  // h/2 D + h^2/4 K
+};
+
+}  // namespace flexarm

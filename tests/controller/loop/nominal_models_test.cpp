@@ -1,0 +1,82 @@
+// The nominal models in the whole stack, over the base experiment: the figures of
+// docs/nominal-models.md.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "tests/controller/loop/simulated_runs.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kFewSeeds = 3;  // what is told apart here differs by far more than seeds do
+
+Runs RunsWith(const std::string& nominal, double payload_kg,
+              std::vector<std::string> overrides = {}) {
+  overrides.push_back("controller.nominal=" + nominal);
+  Runs runs = RunSeeds(payload_kg, overrides, kFewSeeds);
+  std::printf("%s %.2f kg: %d tripped, rms %.2f %.2f deg, residual %.1f mm\n", nominal.c_str(),
+              payload_kg, runs.tripped, Median(runs.rms1_deg), Median(runs.rms2_deg),
+              Median(runs.residual_mm));
+  return runs;
+}
+
+// control.md finding 2: R12 and T16 perform alike, there rms 1.00/1.34 against 1.37/1.44 deg. Here
+// 0.75/1.10 against 0.79/0.78 at the design's payload: a third apart at most, as there.
+TEST(T16, PerformsLikeR12) {
+  for (const double payload_kg : {0.1, 0.2}) {
+    const Runs r12 = RunsWith("R12", payload_kg), t16 = RunsWith("T16", payload_kg);
+    EXPECT_EQ(r12.tripped + t16.tripped, 0);
+    for (const auto& [a, b] : {std::pair{Median(r12.rms1_deg), Median(t16.rms1_deg)},
+                               {Median(r12.rms2_deg), Median(t16.rms2_deg)}}) {
+      EXPECT_NEAR(b, a, 0.35 * a) << payload_kg;
+    }
+  }
+}
+
+// Finding 2: T12 is fragile at alpha = 3, most with little payload, where it bends link 1 to its
+// limit (2 of 3 runs; T16 1.24 deg). With 0.1 kg it gets through, at nearly three times R12's
+// error.
+TEST(T12, AtAlphaThreeTripsWithLittlePayloadAndIsPoorWithItsOwn) {
+  const Runs light = RunsWith("T12", 0.01);
+  EXPECT_GE(light.tripped, 1);
+  EXPECT_NE(std::count(light.trip.begin(), light.trip.end(), TripCause::kBendingStrain1), 0);
+  EXPECT_EQ(RunsWith("T16", 0.01).tripped, 0);
+  EXPECT_GT(Median(RunsWith("T12", 0.1).rms2_deg), 2.0 * Median(RunsWith("R12", 0.1).rms2_deg));
+}
+
+// Finding 4: T12 is best at alpha 1.5 .. 2.5. There it carries what it does not at 3.
+TEST(T12, AtAlphaTwoCarriesEveryPayloadOfTheThesis) {
+  for (const double payload_kg : {0.01, 0.1, 0.2}) {
+    EXPECT_EQ(RunsWith("T12", payload_kg, {"controller.alpha=2.0"}).tripped, 0) << payload_kg;
+  }
+}
+
+// Finding 2, T12*: with sensors and delay it survives alpha = 3 only behind a slow Kalman filter
+// that trusts its model: here every force on the links a hundredth of the shipped filter's.
+TEST(T12WithSearchedWeights, NeedsAFilterThatTrustsItsModel) {
+  const std::vector<std::string> searched = {
+      "controller.torque_weight=4.5",
+      "controller.state_weight=[28.5, 22, 0, 0, 0, 0.12, 0.28, 0.16, 0, 0, 14.8, 0]"};
+  EXPECT_EQ(RunsWith("T12", 0.01, searched).tripped, kFewSeeds);
+  std::vector<std::string> trusting = searched;
+  trusting.push_back("estimator.process_force=[0.1, 0.015, 0.05, 0.05, 0.015, 0.015]");
+  const Runs runs = RunsWith("T12", 0.01, trusting);
+  EXPECT_EQ(runs.tripped, 0);
+  EXPECT_LT(Median(runs.rms1_deg), 1.1) << "the study's figure";
+  EXPECT_LT(Median(runs.rms2_deg), 3.0) << "the study's figure";
+}
+
+// One mode a link without springs: fewer states, and worse where the payload is not the design's.
+TEST(R8, CarriesEveryPayloadWithoutATrip) {
+  for (const double payload_kg : {0.0, 0.1, 1.0}) {
+    EXPECT_EQ(RunsWith("R8", payload_kg).tripped, 0) << payload_kg;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

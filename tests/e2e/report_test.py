@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""The report: one page that needs nothing else, with every figure; and what it refuses."""
+
+import html.parser
+import unittest
+
+from program import HIL, ProgramTest
+
+FIGURES = ("4.4", "4.5", "5.1", "5.2", "5.3", "5.4", "5.5", "6.1", "6.2", "6.3", "6.4", "6.5", "6.6",
+           "6.7", "6.8", "6.9", "7.1", "7.3", "7.4", "7.12", "7.14", "7.25", "7.26", "7.34")
+VOID = {"meta", "img"}
+
+
+class Page(html.parser.HTMLParser):
+    """Every tag closed in order; what the page would load; the text of its captions and cells."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.loads, self.captions, self.pictures = [], [], [], 0
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        if tag == "img":
+            self.pictures += attributes["src"].startswith("data:image/png;base64,iVBOR")
+        self.loads += [v for k, v in attributes.items()
+                       if k in ("src", "href") and not v.startswith(("data:", "#"))]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag, tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] == "figcaption":
+            self.captions.append(data)
+
+
+class Report(ProgramTest):
+    def test_is_one_whole_page_with_every_figure(self):
+        folder = self.folder / "report"
+        page_file = self.flexarm_json("report", "-c", HIL, "-o", folder)["page"]
+        text = (folder / "report.html").read_text()
+        self.assertEqual(page_file, str(folder / "report.html"))
+        page = Page(text)
+        self.assertEqual((page.open, page.loads), ([], []))
+        self.assertGreaterEqual(page.pictures, 15)
+        captions = " ".join(page.captions)
+        for figure in FIGURES:
+            self.assertIn(figure, captions)
+        for chapter in (3, 4, 5, 6, 7):
+            self.assertIn(f"Chapter {chapter}", text)
+        for verdict in ("holds", "does not hold", "holds in part"):
+            self.assertIn(f">{verdict}</td>", text)
+        self.assertNotIn("no finite number", text)
+        for run in (folder / "runs").iterdir():
+            self.flexarm_json("replay", run)
+        self.assert_refused(self.run_program("flexarm", "report", "-c", HIL, "-o", folder),
+                            "is not empty")
+
+
+if __name__ == "__main__":
+    unittest.main()

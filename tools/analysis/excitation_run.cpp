@@ -1,0 +1,71 @@
+#include "tools/analysis/excitation_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "model/arm_simulator.h"
+#include "tools/gnuplot.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kDegPerRad = 57.295779513082320877;
+
+ExcitationRun::Sample SampleOf(const ArmModel& model, const ArmState& x, double time_s) {
+  return {time_s,
+          {1e3 * x.q.segment(kPhi1, model.mode_count().link1).sum(),
+           1e3 * x.q.tail(model.mode_count().link2).sum()},
+          {kDegPerRad * x.q[kTheta1], kDegPerRad * x.q[kTheta2]}};
+}
+
+}  // namespace
+
+ExcitationRun RunExcitation(const ArmModel& model, double theta2_deg, const Excitation& excitation,
+                            double duration_s) {
+  ArmSimulator simulator(model);
+  ArmState x(model.dof());
+  x.q[kTheta2] = x.q[kTheta4] = theta2_deg / kDegPerRad;
+  const Eigen::Vector2d torque(excitation.torque_nm[0], excitation.torque_nm[1]);
+  const double h = ArmSimulator::kDefaultStep_s;
+  const auto steps = std::lround(duration_s / h);
+  ExcitationRun run;
+  run.sample.push_back(SampleOf(model, x, 0.0));
+  for (long k = 0; k < steps; ++k) {
+    const double t = (static_cast<double>(k) + 0.5) * h / Excitation::kPeriod_s;
+    const double sign = t < 0.5 ? 1.0 : t < 1.0 ? -1.0 : 0.0;
+    simulator.Step(x, sign * torque, h);
+    run.sample.push_back(SampleOf(model, x, static_cast<double>(k + 1) * h));
+    for (std::size_t i = 0; i < 2; ++i) {
+      run.peak_bending_mm[i] =
+          std::max(run.peak_bending_mm[i], std::fabs(run.sample.back().bending_mm[i]));
+    }
+  }
+  run.tip_m = model.TipPosition(x.q);
+  return run;
+}
+
+void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output) {
+  std::ostringstream script;
+  script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
+  const std::size_t stride = std::max<std::size_t>(1, run.sample.size() / 2000);
+  for (std::size_t i = 0; i < run.sample.size(); i += stride) {
+    const ExcitationRun::Sample& s = run.sample[i];
+    script << s.time_s << ' ' << s.bending_mm[0] << ' ' << s.bending_mm[1] << ' ' << s.joint_deg[0]
+           << ' ' << s.joint_deg[1] << '\n';
+  }
+  script << "EOD\nset multiplot layout 2,2 title 'One period of a square wave of torque, from "
+            "rest'\nset grid lc rgb '#D9D9D9'\nunset key\nset xlabel 's'\n";
+  int column = 2;
+  for (const char* label :
+       {"bending of link 1, mm", "bending of link 2, mm", "joint 1, deg", "joint 2, deg"}) {
+    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column
+           << " with lines lw 2 lc rgb '" << Colour(0) << "'\n";
+    ++column;
+  }
+  script << "unset multiplot\n";
+  RunGnuplot(script.str());
+}
+
+}  // namespace flexarm

@@ -1,0 +1,145 @@
+#include "tools/benchmark/benchmark.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "controller/runlog/errors.h"
+#include "controller/runlog/metrics.h"
+#include "tools/run_summary.h"
+#include "tools/sweep/sweep_summary.h"
+
+namespace flexarm {
+namespace {
+
+double ShortestRest_s(const Experiment& experiment) {
+  double shortest_s = std::numeric_limits<double>::infinity();
+  for (const Rest& rest : RestsOf(experiment, experiment.duration_s)) {
+    shortest_s = std::min(shortest_s, rest.end_s - rest.start_s);
+  }
+  return shortest_s;
+}
+
+double ScoreOf(const SweepRow& row, double rest_s) {
+  const double settling_s = row.measure[kSettling];
+  if (!row.completed || std::isnan(settling_s)) return 0.0;
+  return 100.0 * std::max(0.0, 1.0 - settling_s / rest_s);
+}
+
+BenchmarkCell CellOf(const std::vector<SweepRow>& rows, double rest_s) {
+  BenchmarkCell cell;
+  cell.runs = rows.size();
+  std::array<std::vector<double>, kSweepMeasures.size()> values;
+  for (const SweepRow& row : rows) {
+    cell.score += ScoreOf(row, rest_s) / static_cast<double>(rows.size());
+    const std::string& why = row.refused.empty() ? row.trip : row.refused;
+    if (!row.completed) {
+      if (std::find(cell.trips.begin(), cell.trips.end(), why) == cell.trips.end()) {
+        cell.trips.push_back(why);
+      }
+      continue;
+    }
+    ++cell.completed;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(row.measure[i]);
+  }
+  for (double& time : values[kSettling]) {
+    if (std::isnan(time)) time = std::numeric_limits<double>::infinity();
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) cell.median[i] = MedianOf(values[i]);
+  return cell;
+}
+
+nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
+  nlohmann::ordered_json json{{"runs", cell.runs},
+                              {"completed", cell.completed},
+                              {"trips", cell.trips},
+                              {"score", cell.score}};
+  for (std::size_t i = 0; i < kSweepMeasures.size(); ++i) {
+    json[kSweepMeasures[i].column] = NumberOrNull(cell.median[i]);
+  }
+  return json;
+}
+
+}  // namespace
+
+SweepPlan BenchmarkPlan(const Config& config, const std::filesystem::path& experiments,
+                        const std::string& laws, const std::string& seeds) {
+  SweepPlan plan{
+      .config = config, .experiment = {}, .grid = {}, .scenarios = BenchmarkScenarios(experiments)};
+  plan.experiment = plan.scenarios.front().experiment;
+  std::vector<std::string> names;
+  for (const Scenario& scenario : plan.scenarios) names.push_back(scenario.name);
+  plan.grid = SweepGrid({{.target = AxisTarget::kConfig,
+                          .key = "controller.name",
+                          .values = laws.empty() ? BenchmarkLaws() : ParseValues(laws)},
+                         {.target = AxisTarget::kScenario, .key = {}, .values = names},
+                         {.target = AxisTarget::kSeed, .key = {}, .values = ParseValues(seeds)}});
+  CheckPlan(plan);
+  return plan;
+}
+
+double BenchmarkTable::Score(std::size_t law) const {
+  double sum = 0.0;
+  for (const BenchmarkCell& c : cell[law]) sum += c.score;
+  return sum / static_cast<double>(cell[law].size());
+}
+
+std::size_t BenchmarkTable::WorstScenario(std::size_t law) const {
+  const auto lowest =
+      std::min_element(cell[law].begin(), cell[law].end(),
+                       [](const auto& a, const auto& b) { return a.score < b.score; });
+  return static_cast<std::size_t>(lowest - cell[law].begin());
+}
+
+std::size_t BenchmarkTable::Completed(std::size_t law) const {
+  std::size_t sum = 0;
+  for (const BenchmarkCell& c : cell[law]) sum += c.completed;
+  return sum;
+}
+
+std::size_t BenchmarkTable::Runs(std::size_t law) const {
+  std::size_t sum = 0;
+  for (const BenchmarkCell& c : cell[law]) sum += c.runs;
+  return sum;
+}
+
+BenchmarkTable TableOf(const SweepPlan& plan, const std::vector<SweepRow>& rows) {
+  const std::vector<SweepAxis>& axes = plan.grid.axes();
+  BenchmarkTable table{.laws = axes[0].values, .scenarios = plan.scenarios, .cell = {}};
+  std::vector<std::vector<std::vector<SweepRow>>> of_cell(
+      table.laws.size(), std::vector<std::vector<SweepRow>>(table.scenarios.size()));
+  for (const SweepRow& row : rows) {
+    const std::vector<std::size_t> index = plan.grid.Indices(row.point);
+    of_cell[index[0]][index[1]].push_back(row);
+  }
+  for (std::size_t law = 0; law < table.laws.size(); ++law) {
+    table.cell.emplace_back();
+    for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
+      table.cell[law].push_back(
+          CellOf(of_cell[law][i], ShortestRest_s(table.scenarios[i].experiment)));
+    }
+  }
+  return table;
+}
+
+nlohmann::ordered_json BenchmarkJson(const BenchmarkTable& table) {
+  nlohmann::ordered_json json{{"laws", nlohmann::ordered_json::array()}};
+  for (std::size_t law = 0; law < table.laws.size(); ++law) {
+    const std::size_t worst = table.WorstScenario(law);
+    nlohmann::ordered_json of_law{{"name", table.laws[law]},
+                                  {"score", table.Score(law)},
+                                  {"worst_scenario", table.scenarios[worst].name},
+                                  {"worst_score", table.cell[law][worst].score},
+                                  {"runs", table.Runs(law)},
+                                  {"completed", table.Completed(law)},
+                                  {"scenarios", nlohmann::ordered_json::object()}};
+    for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
+      of_law["scenarios"][table.scenarios[i].name] = CellJson(table.cell[law][i]);
+    }
+    json["laws"].push_back(of_law);
+  }
+  return json;
+}
+
+}  // namespace flexarm

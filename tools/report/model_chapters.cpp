@@ -1,0 +1,122 @@
+#include "model/arm_simulator.h"
+#include "model/perturbation.h"
+#include "tools/analysis/excitation_run.h"
+#include "tools/analysis/parametric_report.h"
+#include "tools/analysis/parametric_statements.h"
+#include "tools/analysis/perturbation_figures.h"
+#include "tools/analysis/reduction_figures.h"
+#include "tools/analysis/thesis_check.h"
+#include "tools/parallel.h"
+#include "tools/report/chapters.h"
+
+namespace flexarm {
+namespace {
+
+void Say(const std::vector<Statement>& statements, ReportContext* context, HtmlPage* page) {
+  page->Statements(statements);
+  context->statements.insert(context->statements.end(), statements.begin(), statements.end());
+}
+
+// Table 2 of the thesis beside what the rig has.
+void ParameterTable(const ArmParameters& arm, HtmlPage* page) {
+  const BeamSection &first = arm.link[0].section.front(), &second = arm.link[1].section.front();
+  const auto row = [](const char* name, const char* printed, double used) {
+    return std::vector<std::string>{name, printed, Figure(used, 4)};
+  };
+  page->Table({"Table 2", "printed", "used"},
+              {row("L1, m", "0.8", arm.link[0].length_m()),
+               row("A1, m2", "1.575e-4", first.area_m2),
+               row("D1, kg/m3", "2.707e4", first.density_kg_m3),
+               row("E1, N/m2", "6.890e11", first.youngs_modulus_pa),
+               row("I1, m4", "2.657e-10", first.second_moment_m4),
+               row("L2, m", "0.9", arm.link[1].length_m()),
+               row("A2, m2", "9.525e-5", second.area_m2),
+               row("D2, kg/m3", "2.707e4", second.density_kg_m3),
+               row("E2, N/m2", "6.890e11", second.youngs_modulus_pa),
+               row("I2, m4", "8.001e-11", second.second_moment_m4),
+               row("K1, N m/rad", "761.59", arm.joint[0].stiffness_nm_per_rad),
+               row("K2, N m/rad", "497.96", arm.joint[1].stiffness_nm_per_rad),
+               row("J1, kg m2", "1.07e-2", arm.joint[0].rotor_inertia_kgm2),
+               row("J2, kg m2", "9.25e-3", arm.joint[1].rotor_inertia_kgm2),
+               row("KF1, N m", "0.16", arm.joint[0].coulomb_friction_nm),
+               row("KF2, N m", "0.01", arm.joint[1].coulomb_friction_nm),
+               row("Mh2, kg", "0.24", arm.hub2_mass_kg),
+               row("Mr2, kg", "3.03", arm.motor2_mass_kg),
+               row("Ir2, kg m2", "1.15e-2", arm.motor2_inertia_kgm2),
+               row("Mp, kg", "0.1", arm.payload_mass_kg)});
+}
+
+// Figures 6.1 and 6.2: a small square wave on the arm at rest.
+void LinearisationFigure(ReportContext* context, HtmlPage* page) {
+  constexpr double kDuration_s = 2.0;
+  const Eigen::Vector2d delta_nm(0.05, 0.0125);
+  const ArmModel model(context->config.arm, {4, 4});
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.dof());
+  const PerturbationRun run = Perturb(
+      model, rest, rest, [](double) { return Eigen::Vector2d(0.0, 0.0); },
+      [delta_nm](double t) {
+        return Eigen::Vector2d((t < 0.5 ? 1.0 : t < 1.0 ? -1.0 : 0.0) * delta_nm);
+      },
+      kDuration_s, ArmSimulator::kDefaultStep_s);
+  const auto figure = context->Figure("figure-6.1-6.2");
+  DrawPerturbation(model, run, figure);
+  page->Picture(figure,
+                "Figures 6.1 and 6.2: deviations after a small square wave of torque, linear model "
+                "over nonlinear one.");
+}
+
+// Of figure-5.1-payload.png: "Figure 5.1 payload", and the rest.
+std::string CaptionOf(const std::filesystem::path& file, const char* rest) {
+  std::string caption("Figure");
+  for (const char c : file.stem().string().substr(caption.size())) caption += c == '-' ? ' ' : c;
+  return caption + rest;
+}
+
+}  // namespace
+
+void Chapter3(ReportContext* context, HtmlPage* page) {
+  page->Section("Chapter 3: the model");
+  Say(Chapter3Statements(context->config), context, page);
+}
+
+void Chapter4(ReportContext* context, HtmlPage* page) {
+  page->Section("Chapter 4: the rig");
+  page->Paragraph(
+      "Table 2 prints Young's modulus and density ten times too large; the rig is aluminium.");
+  ParameterTable(context->config.arm, page);
+  const ArmModel model(context->config.arm, {4, 4});
+  const auto figure = context->Figure("figure-4.4-4.5");
+  DrawExcitation(RunExcitation(model, 0.0, {}, 3.0), figure);
+  page->Picture(figure,
+                "Figures 4.4 and 4.5: bending of the links and angles of the joints after a square "
+                "wave of torque of 1 s. The thesis does not state its amplitude: 0.4 and 0.1 N m.");
+  Say(Chapter4Statements(context->config), context, page);
+}
+
+void Chapter5(ReportContext* context, HtmlPage* page) {
+  page->Section("Chapter 5: what the parameters do");
+  const Excitation weak;
+  Excitation strong;
+  for (double& torque : strong.torque_nm) torque *= kStrongExcitation;
+  const ParametricStudy study = RunParametricStudy(context->config, weak);
+  const std::vector<Statement> statements =
+      ParametricStatements(study, RunParametricStudy(context->config, strong));
+  const std::filesystem::path folder = context->folder / "tables" / "chapter-5";
+  for (const auto& file : WriteParametricFolder(study, statements, folder)) {
+    if (file.extension() != ".png") continue;
+    page->Picture(file, CaptionOf(file, ": spectra, largest bending and largest twist over it."));
+  }
+  Say(statements, context, page);
+}
+
+void Chapter6(ReportContext* context, HtmlPage* page) {
+  page->Section("Chapter 6: linearisation and order reduction");
+  LinearisationFigure(context, page);
+  const ArmModel model(context->config.arm, {10, 10});
+  for (const auto& file : DrawReductionFigures(model, {}, context->folder / "figures")) {
+    page->Picture(file, CaptionOf(file, ": power contributions by mass-normalised modes."));
+  }
+  Say(Chapter6Statements(context->config), context, page);
+}
+
+}  // namespace flexarm

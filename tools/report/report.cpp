@@ -1,0 +1,73 @@
+#include "tools/report/report.h"
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/errors.h"
+#include "tools/parallel.h"
+#include "tools/report/chapters.h"
+
+namespace flexarm {
+namespace {
+
+void CheckFolder(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
+    throw InputError(folder.string() + ": is a file; expected a new or an empty folder");
+  }
+  if (std::filesystem::exists(folder) && !std::filesystem::is_empty(folder)) {
+    throw InputError(folder.string() +
+                     ": is not empty; a report is written into a new or an empty folder");
+  }
+}
+
+std::string Summary(const std::vector<Statement>& statements) {
+  std::string text = std::to_string(statements.size()) + " statements of the thesis:";
+  for (const Verdict verdict : {Verdict::kHolds, Verdict::kInPart, Verdict::kDepends,
+                                Verdict::kDoesNot, Verdict::kNotTested}) {
+    const auto count =
+        std::count_if(statements.begin(), statements.end(),
+                      [verdict](const Statement& s) { return s.verdict == verdict; });
+    text += (verdict == Verdict::kHolds ? " " : ", ") + std::string(Name(verdict)) + " " +
+            std::to_string(count);
+  }
+  return text + ".";
+}
+
+void Write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+}  // namespace
+
+std::filesystem::path WriteReport(const ReportRequest& request) {
+  CheckFolder(request.folder);
+  for (const char* part : {"figures", "tables", "runs"}) {
+    std::filesystem::create_directories(request.folder / part);
+  }
+  ReportContext context{.config = request.config,
+                        .experiments = request.experiments,
+                        .folder = request.folder,
+                        .statements = {}};
+  HtmlPage page("The flexible arm of the thesis, recomputed: " + request.config.rig_name);
+  const auto chapters = {Chapter3, Chapter4, Chapter5, Chapter6, Chapter7, Baselines};
+  std::size_t done = 0;
+  const auto progress = ProgressBar("chapters", chapters.size());
+  for (auto* chapter : chapters) {
+    chapter(&context, &page);
+    ++done;
+    if (progress) progress(done);
+  }
+  page.Lead(Summary(context.statements) +
+            " Every number on this page is computed by the program that wrote it (flexarm " +
+            ThisBuild().version + ", " + BuildId() +
+            "); the verdicts follow from numbers by rules. The arm is the simulated one.");
+  std::filesystem::path file = request.folder / "report.html";
+  Write(file, page.Text());
+  return file;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,80 @@
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tools/benchmark/benchmark.h"
+#include "tools/options.h"
+#include "tools/parallel.h"
+#include "tools/verbs.h"
+
+namespace flexarm {
+namespace {
+
+struct Options {
+  ConfigOptions config;
+  std::string laws, seeds = "1..3", shard = "1/1";
+  std::size_t jobs = 0;
+  std::filesystem::path output, page;
+  bool json = false;
+};
+
+void WritePage(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+  std::cerr << "wrote " << file.string() << '\n';
+}
+
+void Run(const Options& options) {
+  const SweepPlan plan =
+      BenchmarkPlan(options.config.Load(), ExperimentFile({}, options.config.file).parent_path(),
+                    options.laws, options.seeds);
+  SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
+  const std::vector<std::size_t> points = PointsToRun(&file, ParseShard(options.shard));
+  RunSweep(plan, points, &file, options.jobs, ProgressBar("runs", points.size()));
+  const std::size_t missing = PointsToRun(&file, {}).size();
+  const BenchmarkTable table = TableOf(plan, file.Rows());
+  if (!options.page.empty()) WritePage(options.page, BenchmarkMarkdown(table));
+  if (options.json) {
+    nlohmann::ordered_json json = BenchmarkJson(table);
+    json["missing"] = missing;
+    json["results"] = options.output.string();
+    std::cout << json.dump(2) << '\n';
+  } else {
+    std::cout << BenchmarkMarkdown(table);
+    if (missing > 0) std::cout << "\n" << missing << " runs are of other shards\n";
+  }
+}
+
+}  // namespace
+
+void RegisterBenchmark(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "benchmark", "Every control law in the same situations: settling, errors, effort, one score");
+  options->config.AddTo(verb, true);
+  verb->add_option("--laws", options->laws, "Only these, by name, with commas between")
+      ->type_name("NAMES");
+  verb->add_option("--seeds", options->seeds, "Seeds of the measurement noise (default: 1..3)")
+      ->type_name("VALUES");
+  verb->add_option("--shard", options->shard,
+                   "Only the I-th of N parts, 1 <= I <= N; `flexarm sweep merge` joins them")
+      ->type_name("I/N");
+  verb->add_option("--jobs", options->jobs, "Runs at a time (default: one a core)")
+      ->type_name("J")
+      ->check(NumberWithin(1, 1024));
+  verb->add_option("--page", options->page, "Write the tables here too, in Markdown")
+      ->type_name("FILE");
+  AddOutput(verb, &options->output, "Results, a SQLite file; what is in it is not run again");
+  AddJson(verb, &options->json);
+  verb->footer(
+      "A law's score is the share of the rests, in percent, in which the tip is really at rest,\n"
+      "mean over all situations; a run that trips scores 0. docs/benchmark.md has the rules.\n"
+      "Example: flexarm benchmark -c config/hil.toml -o benchmark.sqlite");
+  verb->callback([options] { Run(*options); });
+}
+
+}  // namespace flexarm

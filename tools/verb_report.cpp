@@ -1,0 +1,49 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/options.h"
+#include "tools/report/report.h"
+#include "tools/verbs.h"
+
+namespace flexarm {
+namespace {
+
+struct Options {
+  ConfigOptions config;
+  std::filesystem::path output;
+  bool json = false;
+};
+
+void Run(const Options& options) {
+  const std::filesystem::path page =
+      WriteReport({.config = options.config.Load(),
+                   .experiments = ExperimentFile({}, options.config.file).parent_path(),
+                   .folder = options.output});
+  if (options.json) {
+    std::cout << nlohmann::ordered_json{{"page", page.string()}}.dump(2) << '\n';
+  } else {
+    std::cout << "wrote " << page.string() << ": open it in a browser, it needs no network\n";
+  }
+}
+
+}  // namespace
+
+void RegisterReport(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "report", "Every figure and table of chapters 4 to 7 recomputed, in one HTML page");
+  options->config.AddTo(verb, true);
+  verb->add_option("-o,--output", options->output, "Folder to write, new or empty")
+      ->required()
+      ->type_name("DIR");
+  AddJson(verb, &options->json);
+  verb->footer(
+      "DIR/report.html needs no other file; figures/, tables/ and runs/ have the material.\n"
+      "Takes some minutes.\n"
+      "Example: flexarm report -c config/hil.toml -o report");
+  verb->callback([options] { Run(*options); });
+}
+
+}  // namespace flexarm
