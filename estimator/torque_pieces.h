@@ -36,7 +36,8 @@ class TorquePieces {
     if (piece.ticks > 0 && size_ < kMost) piece_[size_++] = piece;
   }
 
-  std::span<const TorquePiece> all() const noexcept { return {piece_.data(), size_}; }
+  std::span<const TorquePiece> all() const& noexcept { return {piece_.data(), size_}; }
+  std::span<const TorquePiece> all() && = delete;  // it would outlive what it looks at
 
   /// What holds at the end of the interval; 0 for an empty one.
   std::array<double, 2> last_nm() const noexcept {

@@ -50,15 +50,16 @@ TEST(TorqueTimeline, BordersAtTheEndsAddNothing) {
   ASSERT_EQ(pieces.all().size(), 1u);
   EXPECT_EQ(pieces.all()[0].ticks, kPeriodTicks);
   EXPECT_EQ(pieces.last_nm()[0], 1.0);
-  EXPECT_TRUE(line.Between(kPeriodNs, kPeriodNs, kPeriodNs).all().empty());
-  EXPECT_TRUE(line.Between(kPeriodNs, 0, kPeriodNs).all().empty());
+  ExpectPieces(line.Between(kPeriodNs, kPeriodNs, kPeriodNs), {});
+  ExpectPieces(line.Between(kPeriodNs, 0, kPeriodNs), {});
 }
 
 TEST(TorqueTimeline, RoundedBordersStillAddUpToTheWhole) {
   TorqueTimeline line;
   for (int i = 0; i < 5; ++i) line.Push(3'333'333 * (i + 1), {1.0 * i, 0.0});
+  const TorquePieces pieces = line.Between(0, kPeriodNs, kPeriodNs);
   std::int64_t sum = 0;
-  for (const TorquePiece& piece : line.Between(0, kPeriodNs, kPeriodNs).all()) sum += piece.ticks;
+  for (const TorquePiece& piece : pieces.all()) sum += piece.ticks;
   EXPECT_EQ(sum, kPeriodTicks);
 }
 
