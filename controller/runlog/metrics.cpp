@@ -133,15 +133,8 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
   }
 }
 
-// The deflections of the links' tips: psi(L) = 1, so the sum of a link's modal coordinates.
-std::array<double, 2> Bending_m(const TickRecord& record, bool truth) {
-  if (truth) return record.truth.tip_deflection_m;
-  const auto& modal_m = record.output.modal_m;
-  return {modal_m[0] + modal_m[1], modal_m[2] + modal_m[3]};
-}
-
 void JudgeAllTicks(std::span<const TickRecord> ticks, std::span<const Sample> samples,
-                   RunMetrics* metrics) {
+                   const StateLayout& layout, RunMetrics* metrics) {
   for (std::size_t joint = 0; joint < 2; ++joint) {
     double sum = 0;
     for (const Sample& sample : samples) sum += sample.error_deg[joint] * sample.error_deg[joint];
@@ -152,9 +145,11 @@ void JudgeAllTicks(std::span<const TickRecord> ticks, std::span<const Sample> sa
       metrics->peak_torque_nm[joint] =
           std::max(metrics->peak_torque_nm[joint], std::abs(torque_nm));
       torque_squared += torque_nm * torque_nm;
+      const double bending_m = metrics->truth
+                                   ? record.truth.tip_deflection_m[joint]
+                                   : EstimatedDeflection_m(layout, record.output.x_hat)[joint];
       metrics->peak_bending_mm[joint] =
-          std::max(metrics->peak_bending_mm[joint],
-                   1e3 * std::abs(Bending_m(record, metrics->truth)[joint]));
+          std::max(metrics->peak_bending_mm[joint], 1e3 * std::abs(bending_m));
     }
     metrics->torque_rms_nm[joint] = std::sqrt(torque_squared / static_cast<double>(ticks.size()));
   }
@@ -229,7 +224,7 @@ RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& e
     metrics.joint_rms_error_deg.fill(std::numeric_limits<double>::quiet_NaN());
     metrics.torque_rms_nm.fill(std::numeric_limits<double>::quiet_NaN());
   } else {
-    JudgeAllTicks(running, samples, &metrics);
+    JudgeAllTicks(running, samples, geometry.layout, &metrics);
   }
   return metrics;
 }

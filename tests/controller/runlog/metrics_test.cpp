@@ -120,12 +120,13 @@ TEST(RunMetrics, TorqueRmsIsThatOfTheAppliedTorqueOverAllTicks) {
   EXPECT_NEAR(Judge(ticks).torque_rms_nm[1], 3.0, 1e-12);
 }
 
-TEST(RunMetrics, PeakBendingIsTheTipsTrueDeflectionOrTheSumOfTheModes) {
+TEST(RunMetrics, PeakBendingIsTheTipsTrueDeflectionOrTheSumOfTheEstimatedModes) {
   for (const bool known : {true, false}) {
     const auto ticks = Trace(6, [known](double t, TickRecord* record) {
       record->truth.known = known;
       record->truth.tip_deflection_m = {t > 1.0 && t < 1.1 ? -0.2 : 0.1, 0.05};
-      record->output.modal_m = {0.3, -0.1, 0.02, 0.01};
+      record->output.x_hat = {0, 0, 0.3, -0.1, 0.02, 0.01};
+      record->output.modal_m = {1, 1, 1, 1};  // fitted, before the estimator
     });
     const RunMetrics metrics = Judge(ticks);
     EXPECT_NEAR(metrics.peak_bending_mm[0], 200.0, 1e-9) << known;  // |-0.2|, or 0.3 - 0.1
