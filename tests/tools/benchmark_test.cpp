@@ -65,15 +65,26 @@ TEST(BenchmarkTable, TheScoreIsTheShareOfTheRestInWhichTheTipRests) {
   const BenchmarkTable table = TableOf(plan, rows);
   const BenchmarkCell& cell = table.cell[0][0];
   EXPECT_NEAR(cell.score, (80.0 + 100.0) / 4.0, 1e-12);
-  EXPECT_EQ(cell.runs, 4U);
-  EXPECT_EQ(cell.completed, 3U);
-  EXPECT_EQ(cell.trips, (std::vector<std::string>{"strain-limit"}));
-  EXPECT_EQ(cell.median[kSettling], 1.4);  // of 0, 1.4 and never
+  EXPECT_EQ(cell.group.runs, 4U);
+  EXPECT_EQ(cell.group.completed, 3U);
+  EXPECT_EQ(cell.group.trips, (std::vector<std::string>{"strain-limit"}));
+  EXPECT_EQ(cell.group.median[kSettling], 1.4);  // of 0, 1.4 and never
   EXPECT_EQ(table.Completed(0), 3U);
   EXPECT_EQ(table.Runs(0), 4U);
   // Every other scenario has no run: 0.
   EXPECT_NEAR(table.Score(0), cell.score / static_cast<double>(plan.scenarios.size()), 1e-12);
   EXPECT_NE(table.WorstScenario(0), 0U);
+}
+
+TEST(BenchmarkJson, TellsATripFromARefusal) {
+  std::vector<SweepRow> rows = {Made(0, 1.4), Made(1, 1.4)};
+  rows[0].completed = rows[1].completed = false;
+  rows[0].trip = "strain-limit";
+  rows[1].refused = "no such design";
+  const auto json = BenchmarkJson(TableOf(Plan("sobel", "1..2"), rows));
+  const auto& nominal = json["laws"][0]["scenarios"]["nominal"];
+  EXPECT_EQ(nominal["trips"], nlohmann::ordered_json({"strain-limit"}));
+  EXPECT_EQ(nominal["refused"], nlohmann::ordered_json({"no such design"}));
 }
 
 TEST(BenchmarkPage, SaysNeverAndHowManyCompleted) {

@@ -7,8 +7,6 @@
 
 #include "controller/runlog/errors.h"
 #include "controller/runlog/metrics.h"
-#include "tools/run_summary.h"
-#include "tools/sweep/sweep_summary.h"
 
 namespace flexarm {
 namespace {
@@ -27,37 +25,18 @@ double ScoreOf(const SweepRow& row, double rest_s) {
   return 100.0 * std::max(0.0, 1.0 - settling_s / rest_s);
 }
 
-BenchmarkCell CellOf(const std::vector<SweepRow>& rows, double rest_s) {
-  BenchmarkCell cell;
-  cell.runs = rows.size();
-  std::array<std::vector<double>, kSweepMeasures.size()> values;
+BenchmarkCell CellOf(const std::vector<std::size_t>& index, const std::vector<SweepRow>& rows,
+                     double rest_s) {
+  BenchmarkCell cell{.group = GroupOf(index, rows), .score = 0.0};
   for (const SweepRow& row : rows) {
     cell.score += ScoreOf(row, rest_s) / static_cast<double>(rows.size());
-    const std::string& why = row.refused.empty() ? row.trip : row.refused;
-    if (!row.completed) {
-      if (std::find(cell.trips.begin(), cell.trips.end(), why) == cell.trips.end()) {
-        cell.trips.push_back(why);
-      }
-      continue;
-    }
-    ++cell.completed;
-    for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(row.measure[i]);
   }
-  for (double& time : values[kSettling]) {
-    if (std::isnan(time)) time = std::numeric_limits<double>::infinity();
-  }
-  for (std::size_t i = 0; i < values.size(); ++i) cell.median[i] = MedianOf(values[i]);
   return cell;
 }
 
 nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
-  nlohmann::ordered_json json{{"runs", cell.runs},
-                              {"completed", cell.completed},
-                              {"trips", cell.trips},
-                              {"score", cell.score}};
-  for (std::size_t i = 0; i < kSweepMeasures.size(); ++i) {
-    json[kSweepMeasures[i].column] = NumberOrNull(cell.median[i]);
-  }
+  nlohmann::ordered_json json = GroupJson(cell.group);
+  json["score"] = cell.score;
   return json;
 }
 
@@ -94,13 +73,13 @@ std::size_t BenchmarkTable::WorstScenario(std::size_t law) const {
 
 std::size_t BenchmarkTable::Completed(std::size_t law) const {
   std::size_t sum = 0;
-  for (const BenchmarkCell& c : cell[law]) sum += c.completed;
+  for (const BenchmarkCell& c : cell[law]) sum += c.group.completed;
   return sum;
 }
 
 std::size_t BenchmarkTable::Runs(std::size_t law) const {
   std::size_t sum = 0;
-  for (const BenchmarkCell& c : cell[law]) sum += c.runs;
+  for (const BenchmarkCell& c : cell[law]) sum += c.group.runs;
   return sum;
 }
 
@@ -117,7 +96,7 @@ BenchmarkTable TableOf(const SweepPlan& plan, const std::vector<SweepRow>& rows)
     table.cell.emplace_back();
     for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
       table.cell[law].push_back(
-          CellOf(of_cell[law][i], ShortestRest_s(table.scenarios[i].experiment)));
+          CellOf({law, i}, of_cell[law][i], ShortestRest_s(table.scenarios[i].experiment)));
     }
   }
   return table;

@@ -3,13 +3,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "config/config.h"
 #include "tools/sweep/sweep.h"
-#include "tools/sweep/sweep_file.h"
+#include "tools/sweep/sweep_summary.h"
 
 namespace flexarm {
 
@@ -28,14 +27,9 @@ std::vector<std::string> BenchmarkLaws();
 SweepPlan BenchmarkPlan(const Config& config, const std::filesystem::path& experiments,
                         const std::string& laws, const std::string& seeds);
 
-/// What a law did in a scenario, over the seeds.
+/// What a law did in a scenario.
 struct BenchmarkCell {
-  std::size_t runs = 0;       ///< that there are
-  std::size_t completed = 0;  ///< without a trip
-  std::vector<std::string> trips;
-  /// Medians over the completed runs, in the order of kSweepMeasures; NaN: none completed. An
-  /// infinite settling time is "never".
-  std::array<double, kSweepMeasures.size()> median{};
+  SweepGroup group;  ///< over the seeds
   /// 100 times the share of the shortest rest in which the tip really rests, mean over the seeds: 0
   /// for a run that did not complete or never settled.
   double score = 0.0;

@@ -33,9 +33,10 @@ std::string Markdown(const TextTable& table) {
 
 // What a cell says in one word: how long the tip took, or why there is no such time.
 std::string Settling(const BenchmarkCell& cell) {
-  std::string text = Number(cell.median[kSettling], "%.2f");
-  if (cell.completed < cell.runs) {
-    text += " (" + std::to_string(cell.completed) + "/" + std::to_string(cell.runs) + ")";
+  const SweepGroup& group = cell.group;
+  std::string text = Number(group.median[kSettling], "%.2f");
+  if (group.completed < group.runs) {
+    text += " (" + std::to_string(group.completed) + "/" + std::to_string(group.runs) + ")";
   }
   return text;
 }
@@ -48,7 +49,7 @@ TextTable LawTable(const BenchmarkTable& table) {
                  .rows = {}};
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
     const std::size_t worst = table.WorstScenario(law);
-    const auto& m = table.cell[law][kNominal].median;
+    const auto& m = table.cell[law][kNominal].group.median;
     text.rows.push_back(
         {table.laws[law], Number(table.Score(law), "%.1f"),
          Number(table.cell[law][worst].score, "%.1f"), table.scenarios[worst].name,

@@ -40,23 +40,6 @@ std::vector<std::size_t> AxisOrder(const std::vector<SweepAxis>& axes, const std
   throw InputError("--by " + by + ": is no axis of this sweep; expected one of " + known);
 }
 
-SweepGroup GroupOf(const std::vector<std::size_t>& index, const std::vector<SweepRow>& rows) {
-  SweepGroup group{.index = index, .runs = rows.size(), .trips = {}, .refused = {}};
-  std::array<std::vector<double>, kSweepMeasures.size()> values;
-  for (const SweepRow& row : rows) {
-    AddOnce(row.trip, &group.trips);
-    AddOnce(row.refused, &group.refused);
-    if (!row.completed) continue;
-    ++group.completed;
-    for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(row.measure[i]);
-  }
-  for (double& time : values[kSettling]) {
-    if (std::isnan(time)) time = std::numeric_limits<double>::infinity();
-  }
-  for (std::size_t i = 0; i < values.size(); ++i) group.median[i] = MedianOf(values[i]);
-  return group;
-}
-
 std::string NumberText(double value) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return "never";
@@ -90,6 +73,23 @@ std::string CsvCell(const std::string& text) {
 
 }  // namespace
 
+SweepGroup GroupOf(const std::vector<std::size_t>& index, const std::vector<SweepRow>& rows) {
+  SweepGroup group{.index = index, .runs = rows.size(), .trips = {}, .refused = {}};
+  std::array<std::vector<double>, kSweepMeasures.size()> values;
+  for (const SweepRow& row : rows) {
+    AddOnce(row.trip, &group.trips);
+    AddOnce(row.refused, &group.refused);
+    if (!row.completed) continue;
+    ++group.completed;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(row.measure[i]);
+  }
+  for (double& time : values[kSettling]) {
+    if (std::isnan(time)) time = std::numeric_limits<double>::infinity();
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) group.median[i] = MedianOf(values[i]);
+  return group;
+}
+
 double MedianOf(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::sort(values.begin(), values.end());
@@ -119,6 +119,17 @@ SweepSummary Summarise(SweepFile* file, const std::string& by) {
   return summary;
 }
 
+nlohmann::ordered_json GroupJson(const SweepGroup& group) {
+  nlohmann::ordered_json json{{"runs", group.runs},
+                              {"completed", group.completed},
+                              {"trips", group.trips},
+                              {"refused", group.refused}};
+  for (std::size_t i = 0; i < kSweepMeasures.size(); ++i) {
+    json[kSweepMeasures[i].column] = NumberOrNull(group.median[i]);
+  }
+  return json;
+}
+
 nlohmann::ordered_json SummaryJson(const SweepSummary& summary) {
   nlohmann::ordered_json json;
   json["points"] = summary.points;
@@ -129,13 +140,7 @@ nlohmann::ordered_json SummaryJson(const SweepSummary& summary) {
     for (std::size_t i = 0; i < summary.axes.size(); ++i) {
       of_group[summary.axes[i].Column()] = summary.axes[i].values[group.index[i]];
     }
-    of_group["runs"] = group.runs;
-    of_group["completed"] = group.completed;
-    of_group["trips"] = group.trips;
-    of_group["refused"] = group.refused;
-    for (std::size_t i = 0; i < kSweepMeasures.size(); ++i) {
-      of_group[kSweepMeasures[i].column] = NumberOrNull(group.median[i]);
-    }
+    of_group.update(GroupJson(group));
     json["groups"].push_back(of_group);
   }
   return json;

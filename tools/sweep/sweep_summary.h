@@ -35,9 +35,15 @@ struct SweepSummary {
 /// @throws InputError  there is no such axis
 SweepSummary Summarise(SweepFile* file, const std::string& by);
 
+/// @param index  which value of each axis these rows have
+/// @param rows   of one group
+SweepGroup GroupOf(const std::vector<std::size_t>& index, const std::vector<SweepRow>& rows);
+
 /// Middle value, or mean of the two; NaN of nothing.
 double MedianOf(std::vector<double> values);
 
+/// How many runs completed, why the others did not, and the medians.
+nlohmann::ordered_json GroupJson(const SweepGroup& group);
 nlohmann::ordered_json SummaryJson(const SweepSummary& summary);
 void PrintSummary(const SweepSummary& summary);
 /// @throws InputError if the file cannot be written
