@@ -1,13 +1,12 @@
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "tools/analysis/thesis_check.h"
 #include "tools/options.h"
 #include "tools/parallel.h"
+#include "tools/text_file.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -24,9 +23,7 @@ void Analyze(const Options& options) {
   const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 5));
   const std::string page = ThesisCheckPage(config, statements);
   if (!options.output.empty()) {
-    std::ofstream out(options.output);
-    out << page;
-    if (!out.flush()) throw std::runtime_error(options.output.string() + ": cannot be written");
+    WriteText(options.output, page);
     std::cerr << "wrote " << options.output.string() << '\n';
   }
   if (options.json) {

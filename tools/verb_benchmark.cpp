@@ -1,13 +1,12 @@
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "tools/benchmark/benchmark.h"
 #include "tools/options.h"
 #include "tools/parallel.h"
+#include "tools/text_file.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -21,13 +20,6 @@ struct Options {
   bool json = false;
 };
 
-void WritePage(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-  std::cerr << "wrote " << file.string() << '\n';
-}
-
 void Run(const Options& options) {
   const SweepPlan plan =
       BenchmarkPlan(options.config.Load(), ExperimentFile({}, options.config.file).parent_path(),
@@ -37,7 +29,10 @@ void Run(const Options& options) {
   RunSweep(plan, points, &file, options.jobs, ProgressBar("runs", points.size()));
   const std::size_t missing = PointsToRun(&file, {}).size();
   const BenchmarkTable table = TableOf(plan, file.Rows());
-  if (!options.page.empty()) WritePage(options.page, BenchmarkMarkdown(table));
+  if (!options.page.empty()) {
+    WriteText(options.page, BenchmarkMarkdown(table));
+    std::cerr << "wrote " << options.page.string() << '\n';
+  }
   if (options.json) {
     nlohmann::ordered_json json = BenchmarkJson(table);
     json["missing"] = missing;

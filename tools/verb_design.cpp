@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,8 +10,8 @@
 #include "controller/law/design.h"
 #include "controller/law/refused.h"
 #include "controller/law/screen.h"
-#include "controller/runlog/errors.h"
 #include "tools/options.h"
+#include "tools/text_file.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -124,13 +123,6 @@ void PrintText(const Design& design, const Screen& screen, const Conditioning& c
   if (design.sound()) std::printf("\ngains written to %s\n", file.c_str());
 }
 
-void Write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text << '\n';
-  out.close();
-  if (!out) throw InputError(file.string() + ": cannot be written");
-}
-
 // Where the loop is unstable, if it is.
 std::string Where(const Screen& screen) {
   const ScreenCase& worst = screen.worst_required();
@@ -155,7 +147,7 @@ int Run(const Options& options) {
   }
   const std::string hash = DesignHash(config);
   const Conditioning conditioning = ConditioningOf(config, design);
-  if (design.sound()) Write(options.output, DesignToJson(design, hash));
+  if (design.sound()) WriteText(options.output, DesignToJson(design, hash) + '\n');
   if (options.json) {
     std::cout << ToJson(design, screen, conditioning, options, hash).dump(2) << '\n';
   } else {

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "tools/options.h"
 #include "tools/parallel.h"
 #include "tools/run_summary.h"
+#include "tools/text_file.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -115,10 +115,7 @@ void Write(const Options& options, const Identification& result, const std::vect
   std::filesystem::create_directories(options.output);
   const auto write = [&](const char* name, const std::string& text) {
     const std::filesystem::path file = options.output / name;
-    std::ofstream out(file);
-    out << text;
-    out.close();
-    if (!out) throw InputError(file.string() + ": cannot be written");
+    WriteText(file, text);
     std::cerr << "wrote " << file.string() << '\n';
   };
   write("identified.toml", result.config.text);

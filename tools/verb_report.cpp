@@ -24,7 +24,7 @@ void Run(const Options& options) {
   if (options.json) {
     std::cout << nlohmann::ordered_json{{"page", page.string()}}.dump(2) << '\n';
   } else {
-    std::cout << "wrote " << page.string() << ": open it in a browser, it needs no network\n";
+    std::cout << "Open " << page.string() << " in a browser; it needs no network\n";
   }
 }
 

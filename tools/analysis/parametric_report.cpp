@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
-#include <stdexcept>
 
 #include "tools/gnuplot.h"
 #include "tools/run_summary.h"
+#include "tools/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -131,7 +130,8 @@ void DrawSweep(const ParametricStudy& study, const ParametricSweep& sweep,
   RunGnuplot(script.str() + "unset multiplot\n");
 }
 
-void WriteCsv(const ParametricStudy& study, std::ostream& out) {
+std::string Csv(const ParametricStudy& study) {
+  std::ostringstream out;
   out << "parameter,value";
   for (const char* measure : {"peak_", "spectral_peak_", "free_rms_"}) {
     for (const SignalName& name : kSignalNames) out << ',' << measure << name.column;
@@ -146,6 +146,7 @@ void WriteCsv(const ParametricStudy& study, std::ostream& out) {
       out << ',' << point.free_hz[0] << ',' << point.free_hz[1] << ',' << point.held_hz << '\n';
     }
   }
+  return out.str();
 }
 
 }  // namespace
@@ -182,14 +183,9 @@ std::vector<std::filesystem::path> WriteParametricFolder(const ParametricStudy& 
     DrawSweep(study, study.sweep[i], files.back());
   }
   files.push_back(folder / "parametric.csv");
-  std::ofstream csv(files.back());
-  WriteCsv(study, csv);
+  WriteText(files.back(), Csv(study));
   files.push_back(folder / "statements.md");
-  std::ofstream table(files.back());
-  table << StatementTable(statements);
-  if (!csv.flush() || !table.flush()) {
-    throw std::runtime_error(folder.string() + ": cannot be written to");
-  }
+  WriteText(files.back(), StatementTable(statements));
   return files;
 }
 

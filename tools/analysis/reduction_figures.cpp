@@ -1,13 +1,12 @@
 #include "tools/analysis/reduction_figures.h"
 
 #include <array>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
-#include <stdexcept>
 
 #include "tools/analysis/reduction_report.h"
 #include "tools/gnuplot.h"
+#include "tools/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -136,7 +135,7 @@ std::vector<std::filesystem::path> DrawReductionFigures(const ArmModel& model,
 }
 
 void WriteCells(const std::vector<ReductionCell>& cells, const std::filesystem::path& file) {
-  std::ofstream out(file);
+  std::ostringstream out;
   out << "theta2_deg,theta1_rate_rad_s,theta2_rate_rad_s,link1_epsilon_1_percent,"
          "link1_epsilon_2_percent,link2_epsilon_1_percent,link2_epsilon_2_percent,"
          "rigid_share_percent,negative_roots\n"
@@ -149,7 +148,7 @@ void WriteCells(const std::vector<ReductionCell>& cells, const std::filesystem::
     }
     out << ',' << cell.rigid_share_percent << ',' << cell.negative_roots << '\n';
   }
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+  WriteText(file, out.str());
 }
 
 }  // namespace flexarm

@@ -1,13 +1,12 @@
 #include "tools/report/report.h"
 
 #include <algorithm>
-#include <fstream>
-#include <stdexcept>
 
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
 #include "tools/parallel.h"
 #include "tools/report/chapters.h"
+#include "tools/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -35,12 +34,6 @@ std::string Summary(const std::vector<Statement>& statements) {
   return text + ".";
 }
 
-void Write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 }  // namespace
 
 std::filesystem::path WriteReport(const ReportRequest& request) {
@@ -66,7 +59,7 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
             ThisBuild().version + ", " + BuildId() +
             "); the verdicts follow from numbers by rules. The arm is the simulated one.");
   std::filesystem::path file = request.folder / "report.html";
-  Write(file, page.Text());
+  WriteText(file, page.Text());
   return file;
 }
 

@@ -4,12 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <map>
+#include <sstream>
 
 #include "controller/runlog/errors.h"
 #include "tools/run_summary.h"
+#include "tools/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -172,7 +173,7 @@ void PrintSummary(const SweepSummary& summary) {
 }
 
 void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& output) {
-  std::ofstream csv(output);
+  std::ostringstream csv;
   for (const SweepAxis& axis : summary.axes) csv << CsvCell(axis.Column()) << ',';
   csv << "runs,completed,trips,refused";
   for (const SweepMeasure& measure : kSweepMeasures) csv << ',' << measure.column;
@@ -190,8 +191,7 @@ void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& o
     }
     csv << '\n';
   }
-  csv.close();
-  if (!csv) throw InputError(output.string() + ": cannot be written");
+  WriteText(output, csv.str());
 }
 
 }  // namespace flexarm

@@ -1,0 +1,30 @@
+#include "tools/text_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "controller/runlog/errors.h"
+#include "tests/config/config_testing.h"
+
+namespace flexarm {
+namespace {
+
+TEST(WriteText, ReplacesWhatWasThere) {
+  const TempFolder folder;
+  const std::filesystem::path file = folder.Write("page.md", "a longer text\n");
+  WriteText(file, "short\n");
+  EXPECT_EQ(FileText(file), "short\n");
+}
+
+TEST(WriteText, SaysWhichFileCannotBeWritten) {
+  try {
+    WriteText("/no/such/folder/page.md", "text");
+    FAIL() << "written";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "/no/such/folder/page.md: cannot be written");
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
