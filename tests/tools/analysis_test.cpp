@@ -54,6 +54,14 @@ TEST(Figure, HasTheAskedDigits) {
   EXPECT_EQ(Figure(std::nan("")), "no finite number");
 }
 
+TEST(Counted, NamesEveryVerdict) {
+  const Statement holds{"3.4", "a", "1", Verdict::kHolds};
+  const Statement not_tested{"3.4", "b", "2", Verdict::kNotTested};
+  EXPECT_EQ(Counted({holds, not_tested, holds}),
+            "holds: 2, holds in part: 0, depends on the excitation: 0, does not hold: 0, "
+            "not testable: 1");
+}
+
 TEST(StatementTable, EscapesWhatWouldEndACell) {
   const std::string table = StatementTable({{"3.4", "a|b", "1", Verdict::kDoesNot}});
   EXPECT_NE(table.find("| 3.4 | a\\|b | 1 | does not hold |"), std::string::npos);

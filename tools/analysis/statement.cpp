@@ -1,5 +1,6 @@
 #include "tools/analysis/statement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -47,6 +48,18 @@ std::string Figure(double value, int digits) {
 }
 
 std::string Count(std::ptrdiff_t number) { return std::to_string(number); }
+
+std::string Counted(const std::vector<Statement>& statements) {
+  std::string text;
+  for (const Verdict verdict : {Verdict::kHolds, Verdict::kInPart, Verdict::kDepends,
+                                Verdict::kDoesNot, Verdict::kNotTested}) {
+    const auto count =
+        std::count_if(statements.begin(), statements.end(),
+                      [verdict](const Statement& s) { return s.verdict == verdict; });
+    text += (text.empty() ? "" : ", ") + std::string(Name(verdict)) + ": " + std::to_string(count);
+  }
+  return text;
+}
 
 nlohmann::ordered_json StatementsJson(const std::vector<Statement>& statements) {
   nlohmann::ordered_json json{{"statements", nlohmann::ordered_json::array()}};

@@ -34,6 +34,9 @@ std::string Figure(double value, int digits = 3);
 /// A whole number as text.
 std::string Count(std::ptrdiff_t number);
 
+/// How many statements have each verdict: "holds: 40, holds in part: 3, ..", all verdicts.
+std::string Counted(const std::vector<Statement>& statements);
+
 /// An object a statement: section, thesis, model, verdict.
 nlohmann::ordered_json StatementsJson(const std::vector<Statement>& statements);
 

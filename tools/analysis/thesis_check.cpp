@@ -19,18 +19,6 @@ std::vector<Statement> ControlStatements(const Config& config) {
   return Chapter7Statements(ControlStudy(config));
 }
 
-std::string Counted(const std::vector<Statement>& statements) {
-  std::string text;
-  for (const Verdict verdict : {Verdict::kHolds, Verdict::kInPart, Verdict::kDepends,
-                                Verdict::kDoesNot, Verdict::kNotTested}) {
-    const auto count =
-        std::count_if(statements.begin(), statements.end(),
-                      [verdict](const Statement& s) { return s.verdict == verdict; });
-    text += (text.empty() ? "" : ", ") + std::string(Name(verdict)) + ": " + std::to_string(count);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::vector<Statement> ThesisStatements(const Config& config,

@@ -1,6 +1,6 @@
 #include "tools/report/report.h"
 
-#include <algorithm>
+#include <iterator>
 
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
@@ -19,19 +19,6 @@ void CheckFolder(const std::filesystem::path& folder) {
     throw InputError(folder.string() +
                      ": is not empty; a report is written into a new or an empty folder");
   }
-}
-
-std::string Summary(const std::vector<Statement>& statements) {
-  std::string text = std::to_string(statements.size()) + " statements of the thesis:";
-  for (const Verdict verdict : {Verdict::kHolds, Verdict::kInPart, Verdict::kDepends,
-                                Verdict::kDoesNot, Verdict::kNotTested}) {
-    const auto count =
-        std::count_if(statements.begin(), statements.end(),
-                      [verdict](const Statement& s) { return s.verdict == verdict; });
-    text += (verdict == Verdict::kHolds ? " " : ", ") + std::string(Name(verdict)) + " " +
-            std::to_string(count);
-  }
-  return text + ".";
 }
 
 }  // namespace
@@ -54,8 +41,9 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
     ++done;
     if (progress) progress(done);
   }
-  page.Lead(Summary(context.statements) +
-            " Every number on this page is computed by the program that wrote it (flexarm " +
+  page.Lead(Count(std::ssize(context.statements)) + " statements of the thesis (" +
+            Counted(context.statements) +
+            "). Every number on this page is computed by the program that wrote it (flexarm " +
             ThisBuild().version + ", " + BuildId() +
             "); the verdicts follow from numbers by rules. The arm is the simulated one.");
   std::filesystem::path file = request.folder / "report.html";
