@@ -20,13 +20,12 @@ struct Options {
 
 void Analyze(const Options& options) {
   const Config config = options.config.Load();
-  Excitation strong = options.excitation;
-  for (double& torque : strong.torque_nm) torque *= kStrongExcitation;
   const std::size_t runs = ParametricRuns(config);
   const ParametricStudy study =
       RunParametricStudy(config, options.excitation, ProgressBar("runs", runs));
-  const std::vector<Statement> statements = ParametricStatements(
-      study, RunParametricStudy(config, strong, ProgressBar("runs, more torque", runs)));
+  const std::vector<Statement> statements =
+      ParametricStatements(study, RunParametricStudy(config, Strong(options.excitation),
+                                                     ProgressBar("runs, more torque", runs)));
   if (!options.output.empty()) {
     for (const auto& file : WriteParametricFolder(study, statements, options.output)) {
       std::cerr << "wrote " << file.string() << '\n';

@@ -163,6 +163,12 @@ std::size_t ParametricRuns(const Config& config) {
   return runs;
 }
 
+Excitation Strong(const Excitation& weak) {
+  Excitation strong = weak;
+  for (double& torque : strong.torque_nm) torque *= kStrongExcitation;
+  return strong;
+}
+
 ParametricStudy RunParametricStudy(const Config& config, const Excitation& excitation,
                                    const std::function<void(std::size_t)>& progress) {
   const std::vector<SweepPlan> plans = Plans(config.arm);

@@ -70,6 +70,9 @@ struct ParametricStudy {
 constexpr double kStrongExcitation = 5.0;  ///< times the torque, to see what depends on it
 constexpr double kShown_hz = 25.0;         ///< spectra are kept up to here
 
+/// The same excitation with kStrongExcitation times the torque.
+Excitation Strong(const Excitation& weak);
+
 /// Runs every point of every sweep on all cores.
 /// @param progress  as ForAllOnAllCores, with the number of runs done of `ParametricRuns`
 ParametricStudy RunParametricStudy(const Config& config, const Excitation& excitation,

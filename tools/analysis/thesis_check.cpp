@@ -10,9 +10,8 @@ namespace {
 
 std::vector<Statement> Chapter5Statements(const Config& config) {
   const Excitation weak;
-  Excitation strong;
-  for (double& torque : strong.torque_nm) torque *= kStrongExcitation;
-  return ParametricStatements(RunParametricStudy(config, weak), RunParametricStudy(config, strong));
+  return ParametricStatements(RunParametricStudy(config, weak),
+                              RunParametricStudy(config, Strong(weak)));
 }
 
 std::vector<Statement> ControlStatements(const Config& config) {

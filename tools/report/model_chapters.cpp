@@ -96,11 +96,9 @@ void Chapter4(ReportContext* context, HtmlPage* page) {
 void Chapter5(ReportContext* context, HtmlPage* page) {
   page->Section("Chapter 5: what the parameters do");
   const Excitation weak;
-  Excitation strong;
-  for (double& torque : strong.torque_nm) torque *= kStrongExcitation;
   const ParametricStudy study = RunParametricStudy(context->config, weak);
   const std::vector<Statement> statements =
-      ParametricStatements(study, RunParametricStudy(context->config, strong));
+      ParametricStatements(study, RunParametricStudy(context->config, Strong(weak)));
   const std::filesystem::path folder = context->folder / "tables" / "chapter-5";
   for (const auto& file : WriteParametricFolder(study, statements, folder)) {
     if (file.extension() != ".png") continue;
