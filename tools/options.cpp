@@ -22,6 +22,15 @@ Config ConfigOptions::Load() const {
   return LoadConfig(file, overrides);
 }
 
+void GridOptions::AddTo(CLI::App* verb) {
+  verb->add_option("--shard", shard,
+                   "Only the I-th of N parts, 1 <= I <= N; `flexarm sweep merge` joins them")
+      ->type_name("I/N");
+  verb->add_option("--jobs", jobs, "Runs at a time (default: one a core)")
+      ->type_name("J")
+      ->check(NumberWithin(1, 1024));
+}
+
 std::filesystem::path ExperimentFile(const std::filesystem::path& given,
                                      const std::filesystem::path& config) {
   if (!given.empty()) return given;

@@ -24,6 +24,14 @@ struct ConfigOptions {
   Config Load() const;
 };
 
+/// --shard I/N and --jobs J, of every verb that runs the points of a grid.
+struct GridOptions {
+  std::string shard = "1/1";  ///< ParseShard reads it
+  std::size_t jobs = 0;       ///< runs at a time; 0: one a core
+
+  void AddTo(CLI::App* verb);
+};
+
 /// `given`, or if that is empty the default experiment: experiments/square-30deg.toml beside the
 /// config, or in config/ of the present folder.
 std::filesystem::path ExperimentFile(const std::filesystem::path& given,

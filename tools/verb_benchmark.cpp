@@ -14,8 +14,8 @@ namespace {
 
 struct Options {
   ConfigOptions config;
-  std::string laws, seeds = "1..3", shard = "1/1";
-  std::size_t jobs = 0;
+  GridOptions grid;
+  std::string laws, seeds = "1..3";
   std::filesystem::path output, page;
   bool json = false;
 };
@@ -25,8 +25,8 @@ void Run(const Options& options) {
       BenchmarkPlan(options.config.Load(), ExperimentFile({}, options.config.file).parent_path(),
                     options.laws, options.seeds);
   SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
-  const std::vector<std::size_t> points = PointsToRun(&file, ParseShard(options.shard));
-  RunSweep(plan, points, &file, options.jobs, ProgressBar("runs", points.size()));
+  const std::vector<std::size_t> points = PointsToRun(&file, ParseShard(options.grid.shard));
+  RunSweep(plan, points, &file, options.grid.jobs, ProgressBar("runs", points.size()));
   const std::size_t missing = PointsToRun(&file, {}).size();
   const BenchmarkTable table = TableOf(plan, file.Rows());
   if (!options.page.empty()) {
@@ -55,12 +55,7 @@ void RegisterBenchmark(CLI::App& app, Exit&) {
       ->type_name("NAMES");
   verb->add_option("--seeds", options->seeds, "Seeds of the measurement noise (default: 1..3)")
       ->type_name("VALUES");
-  verb->add_option("--shard", options->shard,
-                   "Only the I-th of N parts, 1 <= I <= N; `flexarm sweep merge` joins them")
-      ->type_name("I/N");
-  verb->add_option("--jobs", options->jobs, "Runs at a time (default: one a core)")
-      ->type_name("J")
-      ->check(NumberWithin(1, 1024));
+  options->grid.AddTo(verb);
   verb->add_option("--page", options->page, "Write the tables here too, in Markdown")
       ->type_name("FILE");
   AddOutput(verb, &options->output, "Results, a SQLite file; what is in it is not run again");

@@ -21,8 +21,8 @@ struct RunOptions {
   ConfigOptions config;
   std::filesystem::path experiment;
   std::vector<std::string> over, plant;
-  std::string variants, payloads, seeds, shard = "1/1";
-  std::size_t jobs = 0;
+  GridOptions grid;
+  std::string variants, payloads, seeds;
   std::filesystem::path output;
   bool json = false;
 };
@@ -77,7 +77,7 @@ void Run(const RunOptions& options) {
       .config = options.config.Load(),
       .experiment = LoadExperiment(ExperimentFile(options.experiment, options.config.file)),
       .grid = SweepGrid(AxesOf(options))};
-  const Shard shard = ParseShard(options.shard);
+  const Shard shard = ParseShard(options.grid.shard);
   CheckPlan(plan);
   SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
   const std::vector<std::size_t> points = PointsToRun(&file, shard);
@@ -85,7 +85,7 @@ void Run(const RunOptions& options) {
   for (std::size_t point = 0; point < plan.grid.size(); ++point) {
     if (shard.Has(point)) ++of_shard;
   }
-  RunSweep(plan, points, &file, options.jobs, ProgressBar("runs", points.size()));
+  RunSweep(plan, points, &file, options.grid.jobs, ProgressBar("runs", points.size()));
   const std::size_t failed = FailedOf(&file, shard);
   if (options.json) {
     nlohmann::ordered_json json;
@@ -216,12 +216,7 @@ void RegisterSweep(CLI::App& app, Exit& exit) {
           "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config)")
       ->type_name("FILE");
   AddAxisOptions(verb, options.get());
-  verb->add_option("--shard", options->shard,
-                   "Only the I-th of N parts of the grid, 1 <= I <= N; merge them later")
-      ->type_name("I/N");
-  verb->add_option("--jobs", options->jobs, "Runs at a time (default: one a core)")
-      ->type_name("J")
-      ->check(NumberWithin(1, 1024));
+  options->grid.AddTo(verb);
   verb->add_option("-o,--output", options->output,
                    "Results, a SQLite file; what is in it is not run again")
       ->type_name("FILE");
