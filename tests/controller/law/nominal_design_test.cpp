@@ -14,8 +14,8 @@
 #include "model/arm_model.h"
 #include "model/discretize.h"
 #include "model/linearization.h"
+#include "tests/controller/law/golden_design.h"
 #include "tests/controller/law/shipped_rig.h"
-#include "tests/model/golden_data.h"
 
 namespace flexarm {
 namespace {
@@ -57,21 +57,14 @@ TEST(T16, AnswersARigidTurnAsR12Does) {
 // control.md finding 2, T12*: the weights that a search found. Its reference model has rounded
 // torque modes, so that what follows from it agrees to 1e-6 only.
 TEST(T12WithSearchedWeights, AgreesWithTheGoldenDesign) {
-  const nlohmann::json golden = GoldenFile("golden.json");
-  const auto g = [&golden](const char* name) { return AsMatrix(golden[name]); };
   const Design design = DesignController(
       ShippedRig({"controller.nominal=T12", "controller.torque_weight=4.5",
                   "controller.state_weight=[28.5, 22, 0, 0, 0, 0.12, 0.28, 0.16, 0, 0, 14.8, 0]"}));
-  EXPECT_LT(RelativeError(design.A, g("T12_A")), 1e-8);
-  EXPECT_LT(RelativeError(design.B, g("T12_B")), 1e-8);
-  EXPECT_LT(RelativeError(design.K, g("T12_K")), 1e-6);
-  EXPECT_LT(RelativeError(design.J, g("T12_J")), 1e-8);
-  EXPECT_LT(RelativeError(design.Am, g("T12_Am")), 1e-6);
-  EXPECT_LT(RelativeError(design.Bm, g("T12_Bm")), 1e-6);
-  EXPECT_LT(RelativeError(design.S11, g("T12_S11")), 1e-5);
-  EXPECT_LT(RelativeError(design.S12, g("T12_S12")), 1e-5);
-  EXPECT_LT(RelativeError(design.S21, g("T12_S21")), 1e-5);
-  EXPECT_LT(RelativeError(design.S22, g("T12_S22")), 1e-5);
+  ExpectGolden("T12", {{"A", design.A}, {"B", design.B}, {"J", design.J}}, 1e-8);
+  ExpectGolden("T12", {{"K", design.K}, {"Am", design.Am}, {"Bm", design.Bm}}, 1e-6);
+  ExpectGolden("T12",
+               {{"S11", design.S11}, {"S12", design.S12}, {"S21", design.S21}, {"S22", design.S22}},
+               1e-5);
 }
 
 // z of x = scale .* z with the study's scaling: second modes by 1/50, rates by 1/40.

@@ -16,12 +16,6 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-Experiment WithEvent(const SimEvent& event) {
-  Experiment experiment = ShippedExperiment();
-  experiment.sim_event = {event};
-  return experiment;
-}
-
 SimEvent LineEvent(double at_s, Line line) {
   return {.at_s = at_s, .line = line, .level = 0, .freeze = FreezeTarget::kNone, .kill = false};
 }
@@ -30,11 +24,26 @@ SimEvent FreezeEvent(double at_s, FreezeTarget target) {
   return {.at_s = at_s, .line = {}, .level = 0, .freeze = target, .kill = false};
 }
 
-// Runs until 5 s after the event at `at_s` of the experiment.
-void RunBeyond(StackRun* run, double at_s) {
-  while (run->permit().running_since_ns == INT64_MIN) run->Run(run->now_ns() + 20 * kMs);
-  run->Run(run->ExperimentStart() + std::llround(at_s * 1e9) + 5'000 * kMs);
+Experiment WithEvent(const SimEvent& event) {
+  Experiment experiment = ShippedExperiment();
+  experiment.sim_event = {event};
+  return experiment;
 }
+
+// The shipped experiment with one event, until 5 s after it.
+class EventRun : public StackRun {
+ public:
+  EventRun(const Config& config, const SimEvent& event) : StackRun(config, WithEvent(event)) {
+    while (permit().running_since_ns == INT64_MIN) Run(now_ns() + 20 * kMs);
+    event_ns_ = ExperimentStart() + std::llround(event.at_s * 1e9);
+    Run(event_ns_ + 5'000 * kMs);
+  }
+
+  std::int64_t event_ns() const { return event_ns_; }
+
+ private:
+  std::int64_t event_ns_ = 0;
+};
 
 const SafetyRecord& Trip(const StackRun& run) {
   const auto found = std::find_if(run.safety.begin(), run.safety.end(), [](const SafetyRecord& r) {
@@ -82,12 +91,9 @@ class SwitchReaction : public testing::TestWithParam<SwitchCase> {};
 // The level changes at 0.317 s, between two frames. Relay and permit are written in the safety
 // task's same tick, so the record of the trip is the relay's instant.
 TEST_P(SwitchReaction, OpensTheRelayAtTheNextTickAndTakesTheTorqueWithinTwoMilliseconds) {
-  constexpr double kAt = 0.317;
-  StackRun run(ShippedRig(), WithEvent(LineEvent(kAt, GetParam().line)));
-  RunBeyond(&run, kAt);
+  EventRun run(ShippedRig(), LineEvent(0.317, GetParam().line));
   ExpectLatched(&run, GetParam().cause);
-  const std::int64_t event_ns = run.ExperimentStart() + 317 * kMs;
-  EXPECT_EQ(Trip(run).due_ns, event_ns + kMs);
+  EXPECT_EQ(Trip(run).due_ns, run.event_ns() + kMs);
   EXPECT_EQ(Trip(run).evidence.value, 0.0);
   EXPECT_EQ(Trip(run).evidence.limit, 1.0);
   EXPECT_EQ(Trip(run).evidence.channel, GetParam().channel);
@@ -118,12 +124,10 @@ class FreezePhase : public testing::TestWithParam<int> {};  // ms into the contr
 // and 2 ms.
 TEST_P(FreezePhase, OfThePlantTripsWithinTwoPeriodsAndTwoMilliseconds) {
   const double at_s = 0.3 + 1e-3 * GetParam();
-  StackRun run(ShippedRig(), WithEvent(FreezeEvent(at_s, FreezeTarget::kPlant)));
-  RunBeyond(&run, at_s);
+  EventRun run(ShippedRig(), FreezeEvent(at_s, FreezeTarget::kPlant));
   const SafetyRecord& trip = Trip(run);
-  const std::int64_t event_ns = run.ExperimentStart() + std::llround(at_s * 1e9);
-  EXPECT_LE(trip.due_ns - event_ns, 42 * kMs);
-  EXPECT_GT(trip.due_ns - event_ns, 20 * kMs) << "one late frame is no fault";
+  EXPECT_LE(trip.due_ns - run.event_ns(), 42 * kMs);
+  EXPECT_GT(trip.due_ns - run.event_ns(), 20 * kMs) << "one late frame is no fault";
   EXPECT_TRUE(trip.after.cause == TripCause::kStaleFrame ||
               trip.after.cause == TripCause::kNoCounterReading)
       << Name(trip.after.cause);
@@ -135,17 +139,15 @@ TEST_P(FreezePhase, OfThePlantTripsWithinTwoPeriodsAndTwoMilliseconds) {
 // A frozen control thread is noticed by its heartbeat, and its last command dies of age.
 TEST_P(FreezePhase, OfTheControlTaskTripsWithinTwoPeriodsAndTwoMilliseconds) {
   const double at_s = 0.3 + 1e-3 * GetParam();
-  StackRun run(ShippedRig(), WithEvent(FreezeEvent(at_s, FreezeTarget::kControl)));
-  RunBeyond(&run, at_s);
+  EventRun run(ShippedRig(), FreezeEvent(at_s, FreezeTarget::kControl));
   ExpectLatched(&run, TripCause::kControlHeartbeatLost);
   const SafetyRecord& trip = Trip(run);
-  const std::int64_t event_ns = run.ExperimentStart() + std::llround(at_s * 1e9);
-  EXPECT_LE(trip.due_ns - event_ns, 42 * kMs);
-  EXPECT_GT(trip.due_ns - event_ns, 20 * kMs);
+  EXPECT_LE(trip.due_ns - run.event_ns(), 42 * kMs);
+  EXPECT_GT(trip.due_ns - run.event_ns(), 20 * kMs);
   // Evidence: the age of the heartbeat, just over its limit of two periods.
   EXPECT_DOUBLE_EQ(trip.evidence.limit, 0.040);
   EXPECT_NEAR(trip.evidence.value, 0.041, 1e-9);
-  EXPECT_LT(run.tick.back().input.now_ns, event_ns);
+  EXPECT_LT(run.tick.back().input.now_ns, run.event_ns());
 }
 
 INSTANTIATE_TEST_SUITE_P(Milliseconds, FreezePhase, testing::Values(0, 1, 7, 9, 10, 11, 19));
@@ -153,9 +155,8 @@ INSTANTIATE_TEST_SUITE_P(Milliseconds, FreezePhase, testing::Values(0, 1, 7, 9, 
 // The cause has gone, the arm is at rest, the button is pressed: still only the operator's reset
 // leaves Tripped, and it leads to Idle. Each of the two keys alone is refused with its reason.
 TEST(TripReset, NeedsTheButtonAndTheOperatorAndLeadsToIdle) {
-  constexpr double kAt = 2.6;  // in the rest between the moves: the arm stops soon without torque
-  StackRun run(ShippedRig(), WithEvent(LineEvent(kAt, Line::kEmergencyStop)));
-  RunBeyond(&run, kAt);
+  // At 2.6 s, in the rest between the moves: the arm stops soon without torque.
+  EventRun run(ShippedRig(), LineEvent(2.6, Line::kEmergencyStop));
   ExpectLatched(&run, TripCause::kEmergencyStop);
 
   EXPECT_EQ(run.Ask(RequestKind::kArm), Refusal::kWrongState);
@@ -181,28 +182,22 @@ TEST(TripReset, NeedsTheButtonAndTheOperatorAndLeadsToIdle) {
 class OutputTimingReaction : public testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(OutputTimingReaction, ASwitchTakesTheTorqueWithinTwoMilliseconds) {
-  constexpr double kAt = 0.317;
-  StackRun run(ShippedRig(GetParam()), WithEvent(LineEvent(kAt, Line::kEmergencyStop)));
-  RunBeyond(&run, kAt);
+  EventRun run(ShippedRig(GetParam()), LineEvent(0.317, Line::kEmergencyStop));
   ExpectLatched(&run, TripCause::kEmergencyStop);
-  const std::int64_t event_ns = run.ExperimentStart() + 317 * kMs;
-  EXPECT_EQ(Trip(run).due_ns, event_ns + kMs);
+  EXPECT_EQ(Trip(run).due_ns, run.event_ns() + kMs);
   // The mean of the period in which it fell is that of its milliseconds until two after the event;
   // then there is none.
   const std::int64_t period_ns = run.grid().period_ns;
   for (const TickRecord& record : run.tick) {
-    if (record.input.sampling_instant_ns < event_ns + 2 * kMs + period_ns) continue;
+    if (record.input.sampling_instant_ns < run.event_ns() + 2 * kMs + period_ns) continue;
     EXPECT_EQ(record.input.applied_torque_nm, (std::array{0.0, 0.0}));
   }
 }
 
 TEST_P(OutputTimingReaction, AFrozenLoopStopsTheArmWithinTwoPeriodsAndTwoMilliseconds) {
-  constexpr double kAt = 0.3;
-  StackRun run(ShippedRig(GetParam()), WithEvent(FreezeEvent(kAt, FreezeTarget::kControl)));
-  RunBeyond(&run, kAt);
+  EventRun run(ShippedRig(GetParam()), FreezeEvent(0.3, FreezeTarget::kControl));
   ExpectLatched(&run, TripCause::kControlHeartbeatLost);
-  const std::int64_t event_ns = run.ExperimentStart() + 300 * kMs;
-  EXPECT_LE(Trip(run).due_ns, event_ns + 2 * run.grid().period_ns + 2 * kMs);
+  EXPECT_LE(Trip(run).due_ns, run.event_ns() + 2 * run.grid().period_ns + 2 * kMs);
 }
 
 INSTANTIATE_TEST_SUITE_P(Outputs, OutputTimingReaction,
