@@ -6,6 +6,7 @@
 
 #include "config/config.h"
 #include "tests/config/config_testing.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -163,12 +164,7 @@ TEST(ExperimentFile, TheCsvFileIsAttachedToTheText) {
 }
 
 std::string RefusedCsv(const std::string& from, const std::string& to) {
-  try {
-    ParseExperiment(Replaced(kKinds, from, to), "e.toml");
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "accepted";
+  return MessageOf<std::exception>([&] { ParseExperiment(Replaced(kKinds, from, to), "e.toml"); });
 }
 
 TEST(ExperimentFile, AFaultyTrajectoryIsNamedByFileAndLine) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/config/config_testing.h"
+#include "tests/support/message_of.h"
 
 // A rig with DAQ boards: read from config/daq-rig.toml, and refused where it cannot work.
 
@@ -16,12 +17,7 @@ using testing::HasSubstr;
 
 // What is wrong with the shipped rig once `overrides` are made; "" if nothing is.
 std::string Complaint(const std::vector<std::string>& overrides) {
-  try {
-    LoadConfig(Shipped("daq-rig.toml"), overrides);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return MessageOf<ConfigError>([&] { LoadConfig(Shipped("daq-rig.toml"), overrides); });
 }
 
 TEST(DaqConfig, TheShippedBoardsAreRead) {

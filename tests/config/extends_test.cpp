@@ -6,6 +6,7 @@
 
 #include "config/config.h"
 #include "tests/config/config_testing.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -13,12 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::string ErrorOf(const std::filesystem::path& file) {
-  try {
-    LoadConfig(file);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return MessageOf<ConfigError>([&] { LoadConfig(file); });
 }
 
 TEST(Extends, ChainsAcrossFoldersRelativeToEachFile) {

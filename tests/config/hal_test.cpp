@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config/config.h"
+#include "tests/support/message_of.h"
 
 // The wiring of a real rig: read from config/hil-wire.toml, and refused where it cannot work.
 
@@ -33,12 +34,7 @@ std::string Complaint(const std::string& from, const std::string& to) {
   const std::string name =
       testing::TempDir() + "/" + test->name() + ".toml";  // tests run in parallel
   std::ofstream(name) << Replaced(from, to);
-  try {
-    LoadConfig(name);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return MessageOf<ConfigError>([&] { LoadConfig(name); });
 }
 
 TEST(HalConfig, TheShippedWiringIsRead) {

@@ -8,6 +8,7 @@
 
 #include "model/link_modes.h"
 #include "model/root_search_error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
@@ -117,26 +118,16 @@ TEST(LumpedBeam, LongBeamsKeepTheirDigits) {
   }
 }
 
-template <typename Action>
-std::string MessageOf(const Action& action) {
-  try {
-    action();
-  } catch (const RootSearchError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(LumpedBeam, SearchThatFailsSaysForWhichBeamModeAndInterval) {
   const LumpedBeam beam(Link2(), kBare, BeamRoot::Clamped(), 3, "link 2");
-  EXPECT_THAT(MessageOf([&] { beam.Modes(4); }),
+  EXPECT_THAT(MessageOf<RootSearchError>([&] { beam.Modes(4); }),
               AllOf(HasSubstr("link 2, mode 4"), HasSubstr("between 0 and"), HasSubstr("rad/s")));
 }
 
 TEST(NaturalModes, SearchThatFailsSaysForWhichBeamModeAndInterval) {
   auto section = Link2();
   section[0].youngs_modulus_pa = 1e60;
-  EXPECT_THAT(MessageOf([&] { ClampedModes(section, kBare, 2, "link 2"); }),
+  EXPECT_THAT(MessageOf<RootSearchError>([&] { ClampedModes(section, kBare, 2, "link 2"); }),
               AllOf(HasSubstr("link 2, mode 1"), HasSubstr("between 1e-09 and 1e+12 rad/s")));
 }
 

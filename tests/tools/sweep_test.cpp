@@ -7,6 +7,7 @@
 #include <string>
 
 #include "controller/runlog/errors.h"
+#include "tests/support/message_of.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/sweep_summary.h"
 
@@ -160,13 +161,8 @@ TEST_F(SweepFiles, OfAnotherSweepAreRefusedAndSayWhatDiffers) {
   const SweepIdentity held = IdentityOf(Plan({Axis("controller.alpha=2.0,3.0")}));
   SweepFile::Resume(File("a"), held);
   EXPECT_NO_THROW(SweepFile::Resume(File("a"), held));
-  const auto refusal = [this](const SweepIdentity& other) -> std::string {
-    try {
-      SweepFile::Resume(File("a"), other);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "not refused";
+  const auto refusal = [this](const SweepIdentity& other) {
+    return MessageOf<InputError>([&] { SweepFile::Resume(File("a"), other); });
   };
   SweepIdentity other = held;
   other.axes[0].values = {"2.0"};

@@ -6,6 +6,7 @@
 
 #include "controller/runlog/errors.h"
 #include "tests/config/config_testing.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -18,12 +19,8 @@ TEST(WriteText, ReplacesWhatWasThere) {
 }
 
 TEST(WriteText, SaysWhichFileCannotBeWritten) {
-  try {
-    WriteText("/no/such/folder/page.md", "text");
-    FAIL() << "written";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "/no/such/folder/page.md: cannot be written");
-  }
+  EXPECT_EQ(MessageOf<InputError>([] { WriteText("/no/such/folder/page.md", "text"); }),
+            "/no/such/folder/page.md: cannot be written");
 }
 
 }  // namespace

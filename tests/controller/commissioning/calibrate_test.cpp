@@ -10,6 +10,7 @@
 #include "model/arm_model.h"
 #include "tests/controller/commissioning/rest_ticks.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -57,7 +58,7 @@ TEST_F(CalibrateTest, TareNamesEveryChannelThatCannotBeRightAndNoOther) {
   readings.strain_missing[2] = 3;
   readings.strain_sigma[7] = 40.0;    // a loose contact
   readings.strain_mean[15] = 1900.0;  // bytes in the wrong order, or a broken bridge
-  const std::string told = Refusal<Refused>([&] { Tare(config_.sensors, readings, {}); });
+  const std::string told = MessageOf<Refused>([&] { Tare(config_.sensors, readings, {}); });
   EXPECT_THAT(told, HasSubstr("strain_1_03: 3 of 50 readings are missing"));
   EXPECT_THAT(told, HasSubstr("strain_1_08: varies by 40.0"));
   EXPECT_THAT(told, HasSubstr("strain_2_06: stands 1900"));
@@ -75,7 +76,7 @@ TEST_F(CalibrateTest, ZeroRefusesAnEncoderThatMovesOrIsNotRead) {
   RestReadings readings = StillArm(config_.sensors, Flat(0.0));
   readings.travel_counts[1] = 4;
   readings.counters_good = 0b0111;
-  const std::string told = Refusal<Refused>([&] { Zero(config_.sensors, readings, {}, {}); });
+  const std::string told = MessageOf<Refused>([&] { Zero(config_.sensors, readings, {}, {}); });
   EXPECT_THAT(told, HasSubstr("hub2: moved by 4 counts"));
   EXPECT_THAT(told, HasSubstr("rotor2: was not read"));
   EXPECT_THAT(told, Not(HasSubstr("hub1")));
@@ -130,7 +131,7 @@ TEST_F(CalibrateTest, AGainThatCannotBeRightIsRefusedWithTheChannel) {
   counts[11] *= -1.0;
   GainCalibration gains(config_.arm, config_.sensors);
   const std::string told =
-      Refusal<Refused>([&] { gains.Add(load, StillArm(config_.sensors, counts), {}); });
+      MessageOf<Refused>([&] { gains.Add(load, StillArm(config_.sensors, counts), {}); });
   EXPECT_THAT(told, HasSubstr("strain_2_02: reads -"));
   EXPECT_THAT(told, Not(HasSubstr("strain_2_01")));
 }
@@ -139,7 +140,7 @@ TEST_F(CalibrateTest, ALoadThatStrainsNothingIsRefused) {
   GainCalibration gains(config_.arm, config_.sensors);
   const StaticLoad load{.link = 1, .force_n = 0.01, .at_m = 0.8};
   EXPECT_THAT(
-      Refusal<Refused>([&] { gains.Add(load, StillArm(config_.sensors, Loaded(load)), {}); }),
+      MessageOf<Refused>([&] { gains.Add(load, StillArm(config_.sensors, Loaded(load)), {}); }),
       HasSubstr("use a larger one"));
 }
 

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "controller/runlog/errors.h"
-#include "tests/controller/commissioning/rest_ticks.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -24,7 +24,7 @@ class CalibrationFileTest : public testing::Test {
     std::ofstream(file_) << text;
   }
   std::string Told() const {
-    return Refusal<InputError>([this] { ReadCalibration(file_, config_.sensors); });
+    return MessageOf<InputError>([this] { ReadCalibration(file_, config_.sensors); });
   }
 
   const Config config_ = ShippedRig();
@@ -61,7 +61,7 @@ TEST_F(CalibrationFileTest, OtherSensorsAreRefused) {
   WriteCalibration(file_, config_.sensors, {});
   SensorConfig other = config_.sensors;
   other.strain[3].face = -1;
-  EXPECT_THAT(Refusal<InputError>([&] { ReadCalibration(file_, other); }),
+  EXPECT_THAT(MessageOf<InputError>([&] { ReadCalibration(file_, other); }),
               HasSubstr("made for other sensors"));
 }
 
@@ -83,7 +83,7 @@ TEST_F(CalibrationFileTest, AValueThatIsNoNumberIsNamed) {
 
 TEST_F(CalibrationFileTest, AFolderThatCannotBeMadeIsNamed) {
   Put("a file");
-  EXPECT_THAT(Refusal<InputError>(
+  EXPECT_THAT(MessageOf<InputError>(
                   [&] { WriteCalibration(file_ / "below" / "x.json", config_.sensors, {}); }),
               HasSubstr("cannot be written"));
 }

@@ -12,6 +12,7 @@
 #include "controller/runtime/simulated_stack.h"
 #include "tests/controller/commissioning/rest_ticks.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -199,7 +200,7 @@ TEST(Commissioner, RefusesWhatTheStateDoesNotAllow) {
   Bench bench;
   Commissioner& commissioner = bench.commissioner();
   const auto told = [&](const Json& command) {
-    return Refusal<Refused>([&] { commissioner.Start(command, bench.state()); });
+    return MessageOf<Refused>([&] { commissioner.Start(command, bench.state()); });
   };
   EXPECT_THAT(told({{"command", "pluck"}}), HasSubstr("flexarm arm"));
   EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "low"}}), HasSubstr("flexarm arm"));
@@ -212,7 +213,7 @@ TEST(Commissioner, RefusesWhatTheStateDoesNotAllow) {
 TEST(Commissioner, RefusesWhatMakesNoSense) {
   Bench bench;
   const auto told = [&](const Json& command) {
-    return Refusal<Refused>([&] { bench.commissioner().Start(command, SafetyState::kArmed); });
+    return MessageOf<Refused>([&] { bench.commissioner().Start(command, SafetyState::kArmed); });
   };
   EXPECT_THAT(told({{"command", "home"}, {"joint", 3}, {"side", "low"}}), HasSubstr("1 or 2"));
   EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "up"}}), HasSubstr("low or high"));
@@ -225,7 +226,7 @@ TEST(Commissioner, RefusesWhatMakesNoSense) {
 TEST(Commissioner, DoesOneThingAtATime) {
   Bench bench;
   bench.commissioner().Start({{"command", "tare"}}, bench.state());
-  EXPECT_THAT(Refusal<Refused>([&] {
+  EXPECT_THAT(MessageOf<Refused>([&] {
                 bench.commissioner().Start({{"command", "zero"}}, bench.state());
               }),
               HasSubstr("busy with tare"));
@@ -234,7 +235,7 @@ TEST(Commissioner, DoesOneThingAtATime) {
 TEST(Commissioner, HomingNeedsProvenWires) {
   Bench bench({"commissioning.prove_before_run=true"});
   bench.Ask(RequestKind::kArm);
-  EXPECT_THAT(Refusal<Refused>([&] {
+  EXPECT_THAT(MessageOf<Refused>([&] {
                 bench.commissioner().Start({{"command", "home"}, {"joint", 1}, {"side", "low"}},
                                            bench.state());
               }),

@@ -31,15 +31,4 @@ inline RestReadings StillArm(const SensorConfig& sensors, const std::vector<doub
   return meter.Result();
 }
 
-/// The message with which `action` is refused; "" if it is not.
-template <typename Error, typename Action>
-std::string Refusal(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
-
 }  // namespace flexarm

@@ -6,6 +6,7 @@
 
 #include "controller/runlog/csv.h"
 #include "tests/controller/runlog/runlog_fixture.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -52,12 +53,7 @@ class CsvImportTest : public RunLogTest {
     return ReadAnyCsv(File("data.csv"), &import, OneGaugeALink(), 0.02);
   }
   void ExpectError(const std::string& text, const std::string& expected) {
-    try {
-      Read(text);
-      ADD_FAILURE() << "no error";
-    } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()), File("data.csv").string() + expected);
-    }
+    EXPECT_EQ(MessageOf<InputError>([&] { Read(text); }), File("data.csv").string() + expected);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include "controller/runlog/blob.h"
 #include "tests/controller/runlog/runlog_fixture.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -32,12 +33,7 @@ class CsvTest : public RunLogTest {
     return ReadCsv(File("data.csv"), TwoAndOneChannels(), 0.02);
   }
   void ExpectError(const std::string& text, const std::string& expected) {
-    try {
-      Read(text);
-      ADD_FAILURE() << "no error";
-    } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()), File("data.csv").string() + expected);
-    }
+    EXPECT_EQ(MessageOf<InputError>([&] { Read(text); }), File("data.csv").string() + expected);
   }
 };
 

@@ -13,6 +13,7 @@
 
 #include "controller/runlog/run_reader.h"
 #include "controller/runlog/run_writer.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 
@@ -40,12 +41,7 @@ class RunLogTest : public ::testing::Test {
   }
   /// The text of the InputError that opening and reading the file whole gives; "" if none.
   static std::string ReadingError(const std::filesystem::path& file) {
-    try {
-      RunReader(file).ReadAll();
-      return "";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return MessageOf<InputError>([&] { RunReader(file).ReadAll(); });
   }
 
   std::filesystem::path folder_;

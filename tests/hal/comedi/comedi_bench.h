@@ -6,6 +6,7 @@
 
 #include "hal/comedi/comedi_device.h"
 #include "tests/hal/comedi/simulated_daq_board.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 
@@ -90,12 +91,7 @@ class ComediBench {
 
   /// What Open says; "" if it opens.
   std::string OpenError() {
-    try {
-      device->Open();
-    } catch (const HalError& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf<HalError>([this] { device->Open(); });
   }
 
   SimulatedDaqBoard* board;
