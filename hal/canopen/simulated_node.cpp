@@ -1,6 +1,7 @@
 #include "hal/canopen/simulated_node.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flexarm {
 namespace {
@@ -13,6 +14,17 @@ constexpr bool IsMapping(std::uint16_t index) {
 }
 
 }  // namespace
+
+SimulatedNodeConfig SimulatedNodeOf(const CanopenNodeConfig& config) {
+  const bool drive = IsDrive(config.role);
+  return {.drive = drive,
+          .node_id = config.node_id,
+          .vendor = config.vendor,
+          .product = config.product,
+          .serial = config.serial,
+          .rated_torque_mnm =
+              drive ? static_cast<std::uint32_t>(std::lround(config.rated_motor_torque_mnm())) : 0};
+}
 
 SimulatedNode::SimulatedNode(CanBus* bus, const SimulatedNodeConfig& config)
     : bus_(bus), config_(config) {

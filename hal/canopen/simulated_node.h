@@ -7,6 +7,7 @@
 
 #include "hal/canopen/can_bus.h"
 #include "hal/canopen/canopen_codec.h"
+#include "hal/canopen/canopen_config.h"
 #include "hal/canopen/drive_state.h"
 #include "hal/canopen/object_dictionary.h"
 #include "hal/canopen/sdo.h"
@@ -22,6 +23,9 @@ struct SimulatedNodeConfig {
   std::uint32_t serial;
   std::uint32_t rated_torque_mnm;  ///< of a drive's motor
 };
+
+/// The node that a rig's config expects to find.
+SimulatedNodeConfig SimulatedNodeOf(const CanopenNodeConfig& config);
 
 /// What a simulated node does wrong.
 struct Misbehaviour {

@@ -1,7 +1,5 @@
 #include "hal/rig/wire_rig.h"
 
-#include <cmath>
-
 #include "hal/bus_device.h"
 
 namespace flexarm {
@@ -31,16 +29,7 @@ void WireRig::AddNodes(const CanopenConfig& bus, const CanClocks& clocks) {
     Node node{.config = config,
               .bus = std::make_unique<SocketCanBus>(bus.interface, clocks),
               .node = nullptr};
-    const SimulatedNodeConfig simulated{
-        .drive = IsDrive(config.role),
-        .node_id = config.node_id,
-        .vendor = config.vendor,
-        .product = config.product,
-        .serial = config.serial,
-        .rated_torque_mnm = IsDrive(config.role) ? static_cast<std::uint32_t>(
-                                                       std::lround(config.rated_motor_torque_mnm()))
-                                                 : 0};
-    node.node = std::make_unique<SimulatedNode>(node.bus.get(), simulated);
+    node.node = std::make_unique<SimulatedNode>(node.bus.get(), SimulatedNodeOf(config));
     node.node->Start();
     nodes_.push_back(std::move(node));
   }

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -130,16 +129,7 @@ class WiredWorld final : public Task {
 
   void AddNode(const CanopenNodeConfig& config) {
     auto bus = std::make_unique<MemoryBus>(&wire, "vcan0");
-    const SimulatedNodeConfig simulated{
-        .drive = IsDrive(config.role),
-        .node_id = config.node_id,
-        .vendor = config.vendor,
-        .product = config.product,
-        .serial = config.serial,
-        .rated_torque_mnm = IsDrive(config.role) ? static_cast<std::uint32_t>(
-                                                       std::lround(config.rated_motor_torque_mnm()))
-                                                 : 0};
-    auto node = std::make_unique<SimulatedNode>(bus.get(), simulated);
+    auto node = std::make_unique<SimulatedNode>(bus.get(), SimulatedNodeOf(config));
     node->Start();
     wire.AddRunner([node = node.get()] { node->Run(); });
     nodes_.push_back({.config = config, .bus = std::move(bus), .node = std::move(node)});

@@ -85,14 +85,8 @@ class CanopenBench {
   static std::vector<SimulatedNodeConfig> Wired(const CanopenConfig& config) {
     std::vector<SimulatedNodeConfig> wired;
     for (const CanopenNodeConfig& node : config.node) {
-      const bool drive = IsDrive(node.role);
-      wired.push_back({.drive = drive,
-                       .node_id = node.node_id,
-                       .vendor = node.vendor,
-                       .product = node.product,
-                       .serial = 7,
-                       .rated_torque_mnm =
-                           drive ? static_cast<std::uint32_t>(node.rated_motor_torque_mnm()) : 0});
+      wired.push_back(SimulatedNodeOf(node));
+      wired.back().serial = 7;
     }
     return wired;
   }
