@@ -1,0 +1,48 @@
+#include "model/quasi_static_map.h"
+
+#include <Eigen/Cholesky>
+
+namespace flexarm {
+namespace {
+
+using Vector = RigidJointArm::Vector;
+
+Vector OfHubs(const Eigen::Vector2d& hubs) noexcept {
+  Vector out = Vector::Zero();
+  out.head<2>() = hubs;
+  return out;
+}
+
+}  // namespace
+
+QuasiStaticPose QuasiStaticAt(const RigidJointArm& arm, const OutboardBody& body,
+                              const RigidPathPoint& point) noexcept {
+  const Vector v = OfHubs(point.Y_dot), a = OfHubs(point.Y_ddot);
+  const RigidJointArm::Inertia at = arm.At(body, OfHubs(point.Y), v);
+  const Vector g = at.M.lazyProduct(a) + at.bias + arm.damping().lazyProduct(v);
+
+  const Eigen::LLT<Eigen::Matrix4d> K_ff(arm.stiffness().bottomRightCorner<4, 4>());
+  const Eigen::LLT<Eigen::Matrix2d> M_tt(at.M.topLeftCorner<2, 2>());
+  const Eigen::Vector4d f = -K_ff.solve(g.tail<4>());
+  const Eigen::Vector2d M_tf_f = at.M.topRightCorner<2, 4>().lazyProduct(f);
+
+  QuasiStaticPose out;
+  out.q << point.Y - M_tt.solve(M_tf_f), f;
+  out.torque_nm = g.head<2>();
+  return out;
+}
+
+QuasiStaticSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,
+                                  const std::array<RigidPathPoint, 3>& previous_now_next,
+                                  double period_s) noexcept {
+  const OutboardBody body = arm.Outboard(payload_kg);
+  const QuasiStaticPose previous = QuasiStaticAt(arm, body, previous_now_next[0]);
+  const QuasiStaticPose now = QuasiStaticAt(arm, body, previous_now_next[1]);
+  const QuasiStaticPose next = QuasiStaticAt(arm, body, previous_now_next[2]);
+  QuasiStaticSample out;
+  out.x << now.q, (next.q - previous.q) / (2.0 * period_s);
+  out.torque_nm = 0.5 * (now.torque_nm + next.torque_nm);
+  return out;
+}
+
+}  // namespace flexarm
