@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "model/rigid_joint_arm.h"
+
+namespace flexarm {
+
+/// What the gains of a table weigh. The study's values: beyond.md 2.4.
+struct GainWeights {
+  std::array<double, 12> state;  ///< diagonal of Q on [q; q'] of RigidJointArm, 1 by their squares
+  double torque;                 ///< R = rho I, 1/(N m)^2
+  double alpha_per_s;            ///< prescribed degree of stability, >= 0
+};
+
+/// Where a table has its knots: ascending, at least two of each.
+struct GainGrid {
+  std::vector<double> payload_kg;
+  std::vector<double> theta2_rad;  ///< from 0 on: the arm is its own mirror image
+};
+
+/// State feedback u = K x of the arm with rigid joints, by payload and elbow angle.
+///
+/// Bilinear between knots, constant beyond the outermost ones. Real-time: At is safe.
+class GainTable {
+ public:
+  /// 2 x 12: N m for a deviation of [q; q'] from where the arm should be, minus where it is.
+  using Gain = Eigen::Matrix<double, 2, 12>;
+
+  /// @param knots  row by row: all elbow angles of the first payload, then of the second
+  /// @throws std::invalid_argument if an axis is not ascending or has one knot, or gains are
+  /// missing
+  GainTable(GainGrid grid, std::vector<Gain> knots);
+
+  /// @param theta2_rad  of either sign
+  Gain At(double payload_kg, double theta2_rad) const noexcept;
+
+ private:
+  const Gain& Knot(std::size_t payload, std::size_t theta2) const noexcept {
+    return knots_[payload * grid_.theta2_rad.size() + theta2];
+  }
+
+  GainGrid grid_;
+  std::vector<Gain> knots_;
+};
+
+/// LQR with degree of stability alpha at every knot, of the arm at rest and unbent, sampled.
+///
+/// Takes about a millisecond a knot. Source: beyond.md 2.4; control.md section 4.
+/// @param period_s  > 0
+/// @throws std::invalid_argument as GainTable; std::runtime_error if a knot has no regulator
+GainTable DesignGainTable(const RigidJointArm& arm, const GainGrid& grid,
+                          const GainWeights& weights, double period_s);
+
+}  // namespace flexarm
