@@ -9,9 +9,10 @@
 namespace flexarm {
 
 RigidJointStepper::RigidJointStepper(const RigidJointArm& arm, double period_s,
-                                     double gauge_filter_hz)
+                                     double gauge_filter_hz, int steps)
     : arm_(arm),
-      h_(period_s / kSteps),
+      steps_(steps),
+      h_(period_s / steps),
       gauge_share_(1.0 - std::exp(-2.0 * std::numbers::pi * gauge_filter_hz * h_)),
       implicit_(0.5 * h_ * arm.damping() + 0.25 * h_ * h_ * arm.stiffness()) {}
 
@@ -19,7 +20,7 @@ GaugedState RigidJointStepper::Advance(const GaugedState& start,
                                        const SampleInputs& inputs) const noexcept {
   const OutboardBody body = arm_.Outboard(inputs.payload_kg);
   GaugedState x = start;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < steps_; ++i) {
     Vector applied = -arm_.damping().lazyProduct(x.v);
     applied -= arm_.stiffness().lazyProduct(x.q + 0.5 * h_ * x.v);
     applied.head<2>() += inputs.torque_nm;

@@ -20,7 +20,7 @@ struct SampleInputs {
   std::array<double, 2> friction_nm;  ///< Coulomb levels of the hubs, >= 0
 };
 
-/// One sample of the arm with exact Coulomb stiction: kSteps implicit midpoint steps of kPasses
+/// One sample of the arm with exact Coulomb stiction: a few implicit midpoint steps of kPasses
 /// fixed-point passes each.
 ///
 /// As ArmSimulator (hubs by BoxFriction at the midpoint velocity), in long steps, and for a payload
@@ -30,17 +30,20 @@ struct SampleInputs {
 /// Real-time: Advance is safe.
 class RigidJointStepper {
  public:
-  static constexpr int kSteps = 8;
+  static constexpr int kSteps = 8;  ///< the filter's
   static constexpr int kPasses = 2;
 
   /// @param period_s         one sample, > 0
   /// @param gauge_filter_hz  corner of the gauges' first-order filter, > 0
-  RigidJointStepper(const RigidJointArm& arm, double period_s, double gauge_filter_hz);
+  /// @param steps            a power of two, for TransitionOver's doublings
+  RigidJointStepper(const RigidJointArm& arm, double period_s, double gauge_filter_hz,
+                    int steps = kSteps);
 
   GaugedState Advance(const GaugedState& start, const SampleInputs& inputs) const noexcept;
 
   const RigidJointArm& arm() const noexcept { return arm_; }
-  double period_s() const noexcept { return kSteps * h_; }
+  int steps() const noexcept { return steps_; }
+  double period_s() const noexcept { return steps_ * h_; }
   double step_s() const noexcept { return h_; }
   /// Share of its error that a gauge's filter takes away in one step.
   double gauge_share() const noexcept { return gauge_share_; }
@@ -52,6 +55,7 @@ class RigidJointStepper {
                       const std::array<double, 2>& friction_nm) const noexcept;
 
   RigidJointArm arm_;
+  int steps_;
   double h_;
   double gauge_share_;
   RigidJointArm::Matrix implicit_;  // h/2 D + h^2/4 K

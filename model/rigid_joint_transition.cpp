@@ -10,8 +10,6 @@ using Vector = RigidJointArm::Vector;
 using Matrix = RigidJointArm::Matrix;
 
 constexpr double kDifference = 1e-6;  // rad, m, rad/s, m/s
-constexpr int kDoublings = std::countr_zero(unsigned{RigidJointStepper::kSteps});
-static_assert(1 << kDoublings == RigidJointStepper::kSteps, "doubling reaches powers of two only");
 
 struct Slopes {
   Matrix M;
@@ -71,7 +69,8 @@ Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg, c
   step.Phi.bottomRightCorner<4, 4>().diagonal().setConstant(1.0 - share);
   step.G.bottomRows<4>() = 0.5 * share * half * by_F.bottomRows<4>();
 
-  for (int i = 0; i < kDoublings; ++i) {
+  const int doublings = std::countr_zero(static_cast<unsigned>(stepper.steps()));
+  for (int i = 0; i < doublings; ++i) {
     Transition twice;
     twice.G = step.G + step.Phi.lazyProduct(step.G);
     twice.Phi = step.Phi.lazyProduct(step.Phi);

@@ -39,6 +39,7 @@ def main():
     folder = arguments.build / "tests/bench"
     control = run(folder / "control_benchmark")
     run(folder / "model_benchmark")
+    run(folder / "planner_benchmark")
     steps = [b for name, b in control.items() if name.startswith("Step/")]
     slowest = max(steps, key=lambda b: b["p99.9_us"])
     factor = next(b for name, b in control.items()

@@ -20,7 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Vector = RigidJointArm::Vector;
 
-constexpr double kPeriod_s = StudyMove::kPeriod_s;
+constexpr double kPeriod_s = SepticMove::kPeriod_s;
 
 static_assert(noexcept(QuasiStaticOver(std::declval<const RigidJointArm&>(), 0.1, {}, kPeriod_s)));
 
@@ -44,7 +44,7 @@ TEST_F(QuasiStaticMap, AgreesWithTheGoldenMove) {
   const OutboardBody body = arm_.Outboard(golden["m"]);
   MatrixXd x(golden_x.rows(), 12), u(golden_u.rows(), 2);
   for (int i = 0; i < x.rows(); ++i) {
-    const auto path = StudyMove::Around(10 * i);
+    const auto path = StudyMove().Around(10 * i);
     x.row(i) = QuasiStaticOver(arm_, golden["m"], path, kPeriod_s).x;
     u.row(i) = QuasiStaticAt(arm_, body, path[1]).torque_nm;
   }
@@ -58,7 +58,7 @@ TEST_F(QuasiStaticMap, AgreesWithTheGoldenMove) {
 
 TEST_F(QuasiStaticMap, TheTorqueOfASampleIsTheMeanOfItsEnds) {
   const OutboardBody body = arm_.Outboard(0.37);
-  const auto path = StudyMove::Around(20);
+  const auto path = StudyMove().Around(20);
   const Vector2d now = QuasiStaticAt(arm_, body, path[1]).torque_nm,
                  next = QuasiStaticAt(arm_, body, path[2]).torque_nm;
   EXPECT_EQ(QuasiStaticOver(arm_, 0.37, path, kPeriod_s).torque_nm, 0.5 * (now + next));
@@ -71,7 +71,7 @@ TEST_F(QuasiStaticMap, HubsOf150GramsAreTheGoldenReference) {
   const OutboardBody body = arm_.Outboard(0.15);
   MatrixXd r(golden_r.rows(), 2);
   for (int i = 0; i < r.rows(); ++i) {
-    r.row(i) = QuasiStaticAt(arm_, body, StudyMove::At(5 * i)).q.head<2>();
+    r.row(i) = QuasiStaticAt(arm_, body, StudyMove().At(5 * i)).q.head<2>();
   }
   EXPECT_LT(RelativeError(r, golden_r), 1e-8);
 }
@@ -113,12 +113,12 @@ TEST_F(QuasiStaticMap, ItsTorqueMovesTheArmAlongThePath) {
   const RigidJointStepper stepper(arm_, kPeriod_s, 20.0);
   for (const double payload_kg : {0.0, 0.15, 0.37}) {
     GaugedState x{.q = Vector::Zero(), .v = Vector::Zero(), .phi_f = Eigen::Vector4d::Zero()};
-    for (int k = 0; k < StudyMove::kPeriods; ++k) {
-      const auto sample = QuasiStaticOver(arm_, payload_kg, StudyMove::Around(k), kPeriod_s);
+    for (int k = 0; k < StudyMove().periods; ++k) {
+      const auto sample = QuasiStaticOver(arm_, payload_kg, StudyMove().Around(k), kPeriod_s);
       x = stepper.Advance(
           x, {.torque_nm = sample.torque_nm, .payload_kg = payload_kg, .friction_nm = {0.0, 0.0}});
     }
-    const Vector2d goal = StudyMove::At(StudyMove::kPeriods).Y;
+    const Vector2d goal = StudyMove().At(StudyMove().periods).Y;
     EXPECT_LT((x.q.head<2>() - goal).cwiseAbs().maxCoeff(), 0.002) << payload_kg;
     EXPECT_LT(x.q.tail<4>().cwiseAbs().maxCoeff(), 0.002) << payload_kg;
   }
@@ -126,7 +126,7 @@ TEST_F(QuasiStaticMap, ItsTorqueMovesTheArmAlongThePath) {
 
 TEST_F(QuasiStaticMap, DoesNotAllocate) {
   const NoAlloc armed;
-  const auto sample = QuasiStaticOver(arm_, 0.37, StudyMove::Around(20), kPeriod_s);
+  const auto sample = QuasiStaticOver(arm_, 0.37, StudyMove().Around(20), kPeriod_s);
   EXPECT_GT(sample.torque_nm[0], 0.0);
 }
 

@@ -149,6 +149,26 @@ TEST_F(RigidJointSample, TransitionIsTheDerivativeOfAdvance) {
   EXPECT_LT(RelativeError(t.Phi, differences), 2e-3);
 }
 
+// Midpoint steps: half as long, a quarter of the error, in the state and in its derivatives.
+TEST_F(RigidJointSample, MoreStepsComeCloserAsTheirSquare) {
+  const auto end = [&](int steps) {
+    const RigidJointStepper stepper(stepper_.arm(), kPeriod_s, kGauge_hz, steps);
+    const GaugedState x = stepper.Advance(
+        {.q = q_, .v = v_, .phi_f = q_.tail<4>()},
+        {.torque_nm = {3.0, 0.5}, .payload_kg = payload_kg_, .friction_nm = {0.0, 0.0}});
+    return VectorXd(Stacked(x).head<12>());
+  };
+  const auto transition = [&](int steps) {
+    const RigidJointStepper stepper(stepper_.arm(), kPeriod_s, kGauge_hz, steps);
+    return MatrixXd(TransitionOver(stepper, payload_kg_, q_, v_, a_).Phi.topLeftCorner<12, 12>());
+  };
+  const VectorXd exact = end(256);
+  const MatrixXd exact_Phi = transition(256);
+  EXPECT_NEAR(RelativeError(end(4), exact) / RelativeError(end(8), exact), 4.0, 0.5);
+  EXPECT_NEAR(RelativeError(transition(4), exact_Phi) / RelativeError(transition(8), exact_Phi),
+              4.0, 0.5);
+}
+
 TEST_F(RigidJointSample, DoesNotAllocate) {
   const NoAlloc armed;
   const GaugedState start{.q = q_, .v = v_, .phi_f = q_.tail<4>()};

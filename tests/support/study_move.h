@@ -1,30 +1,49 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <numbers>
+#include <vector>
 
 #include "controller/law/motion_profile.h"
 #include "model/quasi_static_map.h"
 
 namespace flexarm {
 
-/// The move of beyond-golden.json: 30/30 deg from rest at 0, septic, the shortest that the study's
-/// rule allows with 1 kg.
-struct StudyMove {
+/// A septic move from rest to rest, with the rest before and after it.
+struct SepticMove {
   static constexpr double kPeriod_s = 0.02;
-  static constexpr int kPeriods = 89;  ///< the file says 1.78 s
 
-  /// Y, `sample` periods after its start; rest before and after.
-  static RigidPathPoint At(int sample) {
-    constexpr double kT = kPeriods * kPeriod_s;
-    const Eigen::Vector2d way = Eigen::Vector2d::Constant(std::numbers::pi / 6.0);
-    const ProfilePoint p = ProfileAt(MoveProfile::kSeptic, static_cast<double>(sample) / kPeriods);
-    return {.Y = way * p.s, .Y_dot = way * p.ds / kT, .Y_ddot = way * p.dds / (kT * kT)};
+  Eigen::Vector2d from_rad, to_rad;
+  int periods;
+
+  /// Y, `sample` periods after its start.
+  RigidPathPoint At(int sample) const {
+    const double T = periods * kPeriod_s;
+    const Eigen::Vector2d way = to_rad - from_rad;
+    const ProfilePoint p = ProfileAt(MoveProfile::kSeptic, static_cast<double>(sample) / periods);
+    return {.Y = from_rad + way * p.s, .Y_dot = way * p.ds / T, .Y_ddot = way * p.dds / (T * T)};
   }
 
-  static std::array<RigidPathPoint, 3> Around(int sample) {
+  /// Around a sample: the one before, it, and the next.
+  std::array<RigidPathPoint, 3> Around(int sample) const {
     return {At(sample - 1), At(sample), At(sample + 1)};
   }
+
+  /// What a plan needs that starts at a sample: from the one before to 20 samples and one after.
+  std::vector<RigidPathPoint> Ahead(int sample) const {
+    std::vector<RigidPathPoint> path;
+    for (int i = sample - 1; i <= periods + 21; ++i) path.push_back(At(i));
+    return path;
+  }
 };
+
+/// The move of beyond-golden.json: 30/30 deg from rest at 0, 1.78 s, the shortest that the study's
+/// rule allows with 1 kg.
+inline SepticMove StudyMove() {
+  return {.from_rad = Eigen::Vector2d::Zero(),
+          .to_rad = Eigen::Vector2d::Constant(std::numbers::pi / 6.0),
+          .periods = 89};
+}
 
 }  // namespace flexarm

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+
+namespace flexarm {
+
+/// What a plan asks for at one sample: u = torque + K (x - x_plan).
+struct PlanEntry {
+  Eigen::Matrix<double, 12, 1> x;  ///< [q; q'] of RigidJointArm, rad and m, and per second
+  Eigen::Vector2d torque_nm;       ///< held from this sample to the next, without friction
+  Eigen::Matrix<double, 2, 12> K;  ///< N m for a deviation from x
+};
+
+/// A motion of the arm with the torque that makes it, sample by sample.
+///
+/// Plain bytes, so that one thread can hand it to another; 150 kB, so keep it off the stacks.
+/// Real-time: safe.
+class HorizonPlan {
+ public:
+  static constexpr std::size_t kMaxStages = 500;  ///< 10 s at 50 Hz
+
+  /// An empty plan, to be filled by Append.
+  void Begin(std::int64_t first_tick, double payload_kg) noexcept {
+    first_tick_ = first_tick;
+    payload_kg_ = payload_kg;
+    size_ = 0;
+  }
+
+  /// The entry of the next sample; a full plan takes none.
+  void Append(const PlanEntry& entry) noexcept {
+    if (size_ == kMaxStages) return;
+    Row& row = rows_[size_++];
+    Eigen::Matrix<double, 12, 1>::Map(row.x.data()) = entry.x;
+    Eigen::Vector2d::Map(row.torque_nm.data()) = entry.torque_nm;
+    Eigen::Matrix<double, 2, 12>::Map(row.K.data()) = entry.K;
+  }
+
+  std::int64_t first_tick() const noexcept { return first_tick_; }
+  std::size_t size() const noexcept { return size_; }
+  double payload_kg() const noexcept { return payload_kg_; }  ///< that it was made for
+
+  /// The entry of a sample; nothing before and after the plan.
+  std::optional<PlanEntry> At(std::int64_t tick) const noexcept {
+    if (tick < first_tick_ || tick - first_tick_ >= static_cast<std::int64_t>(size_)) return {};
+    const Row& row = rows_[static_cast<std::size_t>(tick - first_tick_)];
+    return PlanEntry{.x = Eigen::Matrix<double, 12, 1>::Map(row.x.data()),
+                     .torque_nm = Eigen::Vector2d::Map(row.torque_nm.data()),
+                     .K = Eigen::Matrix<double, 2, 12>::Map(row.K.data())};
+  }
+
+ private:
+  struct Row {
+    std::array<double, 12> x;
+    std::array<double, 2> torque_nm;
+    std::array<double, 24> K;
+  };
+
+  std::int64_t first_tick_ = 0;
+  std::size_t size_ = 0;
+  double payload_kg_ = 0.0;
+  std::array<Row, kMaxStages> rows_{};
+};
+
+static_assert(std::is_trivially_copyable_v<HorizonPlan>, "handed from thread to thread");
+
+}  // namespace flexarm

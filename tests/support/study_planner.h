@@ -1,0 +1,30 @@
+#pragma once
+
+#include "controller/law/horizon_planner.h"
+#include "tests/support/study_gains.h"
+#include "tests/support/study_move.h"
+#include "tests/support/thesis_rig.h"
+
+namespace flexarm {
+
+/// The numbers of beyond.md 2.5 (B).
+inline HorizonPlannerConfig StudyPlannerConfig() {
+  return {.weights = {.moving = {100, 30, 0, 0, 0, 0, 1, 0.3, 0, 0, 0, 0},
+                      .resting = {2e5, 6e4, 2e5, 2e5, 2e5, 2e5, 2e3, 600, 3e3, 3e3, 3e3, 3e3},
+                      .torque = {0.02, 0.2},
+                      .light_kg = 0.15,
+                      .reference_payload_kg = 0.15},
+          .torque_limit_nm = {28.0, 5.6},
+          .roughness = 0.5,
+          .payload_change_kg = 0.03,
+          .payload_change_share = 0.2};
+}
+
+inline HorizonPlanner StudyPlanner() {
+  const RigidJointArm arm(ThesisRig());
+  constexpr double kPeriod_s = SepticMove::kPeriod_s;
+  return {arm, kPeriod_s, DesignGainTable(arm, StudyGrid(), StudyWeights(1.5), kPeriod_s),
+          StudyPlannerConfig()};
+}
+
+}  // namespace flexarm
