@@ -21,12 +21,12 @@ struct GainGrid {
   std::vector<double> theta2_rad;  ///< from 0 on: the arm is its own mirror image
 };
 
-/// State feedback u = K x of the arm with rigid joints, by payload and elbow angle.
+/// State feedback u = K (x_d - x) of the arm with rigid joints, by payload and elbow angle.
 ///
 /// Bilinear between knots, constant beyond the outermost ones. Real-time: At is safe.
 class GainTable {
  public:
-  /// 2 x 12: N m for a deviation of [q; q'] from where the arm should be, minus where it is.
+  /// 2 x 12: N m for what is missing in x = [q; q'] of RigidJointArm.
   using Gain = Eigen::Matrix<double, 2, 12>;
 
   /// @param knots  row by row: all elbow angles of the first payload, then of the second

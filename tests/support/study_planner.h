@@ -20,11 +20,10 @@ inline HorizonPlannerConfig StudyPlannerConfig() {
           .payload_change_share = 0.2};
 }
 
-inline HorizonPlanner StudyPlanner() {
+inline HorizonPlanner StudyPlanner(const HorizonPlannerConfig& config = StudyPlannerConfig()) {
   const RigidJointArm arm(ThesisRig());
   constexpr double kPeriod_s = SepticMove::kPeriod_s;
-  return {arm, kPeriod_s, DesignGainTable(arm, StudyGrid(), StudyWeights(1.5), kPeriod_s),
-          StudyPlannerConfig()};
+  return {arm, kPeriod_s, DesignGainTable(arm, StudyGrid(), StudyWeights(1.5), kPeriod_s), config};
 }
 
 }  // namespace flexarm
