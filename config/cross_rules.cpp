@@ -74,6 +74,39 @@ void CheckStateWeight(const Config& c, ProblemLog* log, std::vector<Problem>* ou
                   "must have one for each state of controller.nominal: " + NumberText(states)});
 }
 
+void CheckPayloadStart(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  constexpr const char* kKey = "estimator.payload.start_kg";
+  if (!c.estimator.payload || !log->Clear({kKey, "estimator.payload.max_kg"})) return;
+  const PayloadEstimatorConfig& payload = *c.estimator.payload;
+  if (payload.start_kg <= payload.max_kg) return;
+  out->push_back({kKey, NumberText(payload.start_kg),
+                  "must be at most estimator.payload.max_kg = " + NumberText(payload.max_kg) +
+                      ": the estimate stays within it"});
+}
+
+// The filter's model: two modes a link, rigid joints, gauges behind filters of first order.
+void CheckPayloadEstimator(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  if (!log->Clear({"controller.name", "estimator.name", "controller.nominal",
+                   "estimator.modes_per_link", "sensors.strain_input"})) {
+    return;
+  }
+  const bool by_law = IsScheduled(c.controller.kind);
+  if (!c.uses_payload_estimator()) return;
+  const char* key = by_law ? "controller.name" : "estimator.name";
+  const char* value = by_law ? "gain-scheduled" : "ekf-payload";
+  const auto require = [&](bool ok, const char* rule) {
+    if (!ok) out->push_back({key, value, rule});
+  };
+  require(c.estimator.payload.has_value(), "needs the table [estimator.payload]");
+  require(!by_law || c.controller.payload.has_value(), "needs the table [controller.payload]");
+  require(
+      c.controller.nominal == kR12 && c.estimator.modes_per_link == 2,
+      "needs controller.nominal = \"R12\" and estimator.modes_per_link = 2: the filter's state");
+  require(c.sensors.strain_input.filter_hz > 0.0 && !(c.sensors.strain_input.filter_damping > 0.0),
+          "knows gauge filters of first order only: sensors.strain_input.filter_hz above 0, no "
+          "filter_damping");
+}
+
 // Between two samples a counter moves by less than half its range, or its direction is lost.
 void CheckCounters(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr std::string_view kKey = "estimator.max_joint_rate_rad_s";
@@ -225,6 +258,8 @@ void CheckCrossRules(const Config& config, ProblemLog* log) {
   CheckChannelsForFit(config, log, &problems);
   CheckNominalModel(config, log, &problems);
   CheckStateWeight(config, log, &problems);
+  CheckPayloadStart(config, log, &problems);
+  CheckPayloadEstimator(config, log, &problems);
   CheckCounters(config, log, &problems);
   CheckRates(config, log, &problems);
   CheckAnglesAndTorques(config, log, &problems);

@@ -107,11 +107,30 @@ void ReadSim(TableReader sim, SimConfig* out) {
   sim.Read("switch_angle_deg", &out->switch_angle_deg);
 }
 
+void ReadPayloadEstimator(TableReader payload, PayloadEstimatorConfig* out) {
+  payload.Read("process_force", &out->process_force);
+  payload.Read("rotor_extra_sigma_rad", &out->rotor_extra_sigma_rad);
+  payload.Read("start_kg", &out->start_kg);
+  payload.Read("start_sigma_kg", &out->start_sigma_kg);
+  payload.Read("max_kg", &out->max_kg);
+  payload.Read("move_sigma_kg", &out->move_sigma_kg);
+  payload.Read("walk_kg", &out->walk_kg);
+  payload.Read("min_rate_rad_s", &out->min_rate_rad_s);
+  payload.Read("friction_start_sigma_nm", &out->friction_start_sigma_nm);
+  payload.Read("friction_max_nm", &out->friction_max_nm);
+  payload.Read("friction_walk_nm", &out->friction_walk_nm);
+  payload.Read("friction_min_rate_rad_s", &out->friction_min_rate_rad_s);
+  payload.Read("play_threshold_counts", &out->play_threshold_counts);
+  payload.Read("play_memory", &out->play_memory);
+  payload.Read("gate_sigmas", &out->gate_sigmas);
+}
+
 void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
   estimator.Read("name", &out->kind,
                  {{"kalman", EstimatorKind::kKalman},
                   {"difference", EstimatorKind::kDifference},
-                  {"polynomial", EstimatorKind::kPolynomial}});
+                  {"polynomial", EstimatorKind::kPolynomial},
+                  {"ekf-payload", EstimatorKind::kPayload}});
   estimator.Read("modes_per_link", &out->modes_per_link);
   estimator.Read("process_force", &out->process_force);
   estimator.Read("rotor_extra_sigma_rad", &out->rotor_extra_sigma_rad);
@@ -122,6 +141,16 @@ void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
   estimator.Read("strain_stuck_limit", &out->strain_stuck_limit);
   estimator.Read("innovation_limit_rad", &out->innovation_limit_rad);
   estimator.Read("fault_ticks", &out->fault_ticks);
+  if (estimator.Has("payload")) {
+    ReadPayloadEstimator(estimator.Table("payload"), &out->payload.emplace());
+  }
+}
+
+void ReadPayloadLaw(TableReader payload, PayloadLawConfig* out) {
+  payload.Read("max_kg", &out->max_kg);
+  payload.Read("reference_kg", &out->reference_kg);
+  payload.Read("gain_payload_kg", &out->gain_payload_kg);
+  payload.Read("gain_elbow_deg", &out->gain_elbow_deg);
 }
 
 void ReadController(TableReader controller, ControllerConfig* out) {
@@ -133,7 +162,8 @@ void ReadController(TableReader controller, ControllerConfig* out) {
                    {"lqg", ControllerKind::kLqg},
                    {"pd", ControllerKind::kPd},
                    {"pd-zv", ControllerKind::kPdZv},
-                   {"pd-zvd", ControllerKind::kPdZvd}});
+                   {"pd-zvd", ControllerKind::kPdZvd},
+                   {"gain-scheduled", ControllerKind::kGainScheduled}});
   controller.Read("nominal", &out->nominal,
                   {{"R12", kR12}, {"R8", kR8}, {"T12", kT12}, {"T16", kT16}});
   controller.Read("alpha", &out->alpha);
@@ -154,6 +184,9 @@ void ReadController(TableReader controller, ControllerConfig* out) {
   controller.Read("pd_damping_nms_per_rad", &out->pd_damping_nms_per_rad);
   controller.Read("prediction", &out->prediction);
   controller.Read("adaptation", &out->adaptation);
+  if (controller.Has("payload")) {
+    ReadPayloadLaw(controller.Table("payload"), &out->payload.emplace());
+  }
   if (controller.Has("gains")) controller.Read("gains", &out->gains_file);
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "model/problem.h"
@@ -12,6 +13,28 @@ enum class EstimatorKind : std::uint8_t {
   kKalman,      ///< "kalman": steady-state filter, gauge filter in its model (control.md section 4)
   kDifference,  ///< "difference": rates are backward differences, as in the thesis
   kPolynomial,  ///< "polynomial": the same, on the thesis's polynomial fit (polynomial_fit.h)
+  kPayload,     ///< "ekf-payload": finds payload and friction as well (payload_filter.h)
+};
+
+/// Table [estimator.payload]: the settings of `ekf-payload`. "Walk": standard deviation of the
+/// change that is thought possible in a sample.
+struct PayloadEstimatorConfig {
+  /// Standard deviations of the generalised process forces on th1 th2 (N m) and f11 f12 f21 f22 (N,
+  /// tip-normalised), held over a sample.
+  std::array<double, 6> process_force;
+  std::array<double, 2> rotor_extra_sigma_rad;  ///< added to the quantisation of rotor encoders
+  double start_kg, start_sigma_kg;              ///< what is thought before the arm has moved
+  double max_kg;                                ///< the estimate stays in 0 .. this
+  double move_sigma_kg;                         ///< least doubt when a move begins
+  double walk_kg;
+  double min_rate_rad_s;  ///< with both hubs slower the payload is not learnt
+  std::array<double, 2> friction_start_sigma_nm;
+  std::array<double, 2> friction_max_nm;
+  std::array<double, 2> friction_walk_nm;
+  double friction_min_rate_rad_s;  ///< a slower hub's friction does not walk
+  double play_threshold_counts;    ///< of hub 2: rotor 2 further away than this is play in the gear
+  double play_memory;              ///< share of the largest such distance kept after a sample
+  double gate_sigmas;              ///< a single output beyond this is a glitch
 };
 
 /// Section [estimator].
@@ -31,6 +54,7 @@ struct EstimatorConfig {
   double strain_stuck_limit;    ///< fit moves by this (unit strain), a channel by nothing
   double innovation_limit_rad;  ///< hub angle innovation beyond this is a residual fault
   int fault_ticks;              ///< a judgement must persist this long to be a fault, 1..3
+  std::optional<PayloadEstimatorConfig> payload{};  ///< needed by `ekf-payload` only
 
   std::vector<Problem> Problems() const;
 };

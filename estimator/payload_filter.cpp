@@ -23,6 +23,11 @@ constexpr double kMostFading = 30.0;
 
 constexpr int kMostGlitches = 2;
 
+// Of an output that was not read, with no innovation: far more than any, so that it says nothing.
+constexpr double kUnreadVariance = 1e12;
+
+constexpr std::uint32_t kElbowOutputs = 0b1010;  // hub 2 and rotor 2
+
 using MotionVector = Eigen::Matrix<double, kMotion, 1>;
 
 MotionVector Stacked(const GaugedState& x) noexcept {
@@ -68,24 +73,28 @@ void PayloadFilter::BeginMove() noexcept {
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
 }
 
-const PayloadFilter::Estimate& PayloadFilter::Update(const Eigen::Vector2d& torque_nm,
+const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
                                                      const Reading& reading) noexcept {
-  Predict(torque_nm);
+  Predict(torque);
   estimate_.nis = 0.0;
   estimate_.innovation.setZero();
-  if (reading.fresh) {
+  if (reading.good != 0) {
+    const std::array<double, 2> torque_nm = torque.last_nm();
     Outputs y = reading.z;
-    for (int i = 0; i < 2; ++i) {
-      y[2 + i] -= torque_nm[i] / config_.joint_stiffness_nm_per_rad[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < 2; ++i) {
+      y[2 + static_cast<int>(i)] -= torque_nm[i] / config_.joint_stiffness_nm_per_rad[i];
     }
     const MotionVector x = Stacked(estimate_.state);
     Outputs e;
     Gain PHt;
     for (int i = 0; i < kOutputs; ++i) {
-      e[i] = y[i] - x[kSeen[static_cast<std::size_t>(i)]];
+      e[i] = (reading.good >> i & 1u) == 0 ? 0.0 : y[i] - x[kSeen[static_cast<std::size_t>(i)]];
       PHt.col(i) = P_.col(kSeen[static_cast<std::size_t>(i)]);
     }
-    const Outputs R = OutputVariance(y, e);
+    Outputs R = OutputVariance(y, e, reading.good);
+    for (int i = 0; i < kOutputs; ++i) {
+      if ((reading.good >> i & 1u) == 0) R[i] = kUnreadVariance;
+    }
     Eigen::Matrix<double, kOutputs, kOutputs> S;
     for (int i = 0; i < kOutputs; ++i) S.row(i) = PHt.row(kSeen[static_cast<std::size_t>(i)]);
     S.diagonal() += R;
@@ -100,29 +109,48 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const Eigen::Vector2d& torq
   return estimate_;
 }
 
-void PayloadFilter::Predict(const Eigen::Vector2d& torque_nm) noexcept {
-  SampleInputs inputs{.torque_nm = torque_nm,
-                      .payload_kg = estimate_.payload_kg,
-                      .friction_nm = estimate_.friction_nm};
+GaugedState PayloadFilter::After(const TorquePieces& torque) const noexcept {
+  return Through(torque, estimate_.payload_kg, estimate_.friction_nm);
+}
+
+GaugedState PayloadFilter::Through(const TorquePieces& torque, double payload_kg,
+                                   const std::array<double, 2>& friction_nm) const noexcept {
+  const std::int64_t step_ticks = kPeriodTicks / stepper_.steps();
+  GaugedState x = estimate_.state;
+  std::int64_t ticks = 0, steps_done = 0;
+  for (const TorquePiece& piece : torque.all()) {
+    ticks += piece.ticks;
+    const std::int64_t steps = (ticks + step_ticks / 2) / step_ticks;
+    x = stepper_.Advance(x,
+                         {.torque_nm = {piece.torque_nm[0], piece.torque_nm[1]},
+                          .payload_kg = payload_kg,
+                          .friction_nm = friction_nm},
+                         static_cast<int>(steps - steps_done));
+    steps_done = steps;
+  }
+  return x;
+}
+
+void PayloadFilter::Predict(const TorquePieces& torque) noexcept {
+  const double payload_kg = estimate_.payload_kg;
+  std::array<double, 2> friction_nm = estimate_.friction_nm;
   const GaugedState start = estimate_.state;
-  const GaugedState end = stepper_.Advance(start, inputs);
+  const GaugedState end = After(torque);
   const MotionVector x = Stacked(end);
   const Transition transition =
-      TransitionOver(stepper_, inputs.payload_kg, 0.5 * (start.q + end.q), 0.5 * (start.v + end.v),
+      TransitionOver(stepper_, payload_kg, 0.5 * (start.q + end.q), 0.5 * (start.v + end.v),
                      (end.v - start.v) / stepper_.period_s());
 
   Matrix F = Matrix::Identity();
   F.topLeftCorner<kMotion, kMotion>() = transition.Phi;
-  inputs.payload_kg += kPayloadProbe_kg;
   F.col(kPayload).head<kMotion>() =
-      (Stacked(stepper_.Advance(start, inputs)) - x) / kPayloadProbe_kg;
-  inputs.payload_kg = estimate_.payload_kg;
+      (Stacked(Through(torque, payload_kg + kPayloadProbe_kg, friction_nm)) - x) / kPayloadProbe_kg;
   for (int i = 0; i < 2; ++i) {
     const auto j = static_cast<std::size_t>(i);
-    inputs.friction_nm[j] += config_.friction_probe_nm[j];
+    friction_nm[j] += config_.friction_probe_nm[j];
     F.col(kFriction + i).head<kMotion>() =
-        (Stacked(stepper_.Advance(start, inputs)) - x) / config_.friction_probe_nm[j];
-    inputs.friction_nm[j] = estimate_.friction_nm[j];
+        (Stacked(Through(torque, payload_kg, friction_nm)) - x) / config_.friction_probe_nm[j];
+    friction_nm[j] = estimate_.friction_nm[j];
   }
   estimate_.state = end;
   const Matrix FP = F.lazyProduct(P_);
@@ -146,13 +174,14 @@ void PayloadFilter::AddProcessNoise(const Transition& transition) noexcept {
   }
 }
 
-PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y,
-                                                     const Outputs& innovation) noexcept {
+PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Outputs& innovation,
+                                                     std::uint32_t good) noexcept {
   Outputs R;
   for (int i = 0; i < kOutputs; ++i) {
     R[i] = Square(config_.output_sigma[static_cast<std::size_t>(i)]);
   }
-  play_rad_ = std::max(std::fabs(y[3] - y[1]), config_.play_memory * play_rad_);
+  const double apart_rad = (good & kElbowOutputs) == kElbowOutputs ? std::fabs(y[3] - y[1]) : 0.0;
+  play_rad_ = std::max(apart_rad, config_.play_memory * play_rad_);
   if (play_rad_ > config_.play_threshold_rad) R[3] = std::max(R[3], Square(play_rad_));
 
   Outputs sigmas;

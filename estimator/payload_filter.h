@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 
+#include "estimator/torque_pieces.h"
 #include "model/rigid_joint_step.h"
 #include "model/rigid_joint_transition.h"
 
@@ -58,16 +60,17 @@ class PayloadFilter {
 
   /// What was read at the end of a sample.
   struct Reading {
-    Outputs z;   ///< th1 th2 th3 th4 as counted, rad; fitted modal coordinates, m
-    bool fresh;  ///< false: the frame was lost, and nothing of z counts
+    Outputs z;           ///< th1 th2 th3 th4 as counted, rad; fitted modal coordinates, m
+    std::uint32_t good;  ///< bit i: z[i] was read; none: the frame was lost
   };
+  static constexpr std::uint32_t kAllGood = (1u << kOutputs) - 1;
 
   /// The estimate after a sample.
   struct Estimate {
     GaugedState state;
     double payload_kg, payload_sigma_kg;
     std::array<double, 2> friction_nm;
-    double nis;  ///< of this sample, 8 expected; 0 without a fresh frame
+    double nis;  ///< of this sample, 8 expected; 0 without a frame
     Outputs innovation;
   };
 
@@ -79,10 +82,16 @@ class PayloadFilter {
   /// A move starts: the payload may be another than before.
   void BeginMove() noexcept;
 
-  /// @param torque_nm  really applied during the sample that ends with the reading
-  const Estimate& Update(const Eigen::Vector2d& torque_nm, const Reading& reading) noexcept;
+  /// @param torque  really applied during the sample that ends with the reading
+  const Estimate& Update(const TorquePieces& torque, const Reading& reading) noexcept;
 
   const Estimate& estimate() const noexcept { return estimate_; }
+
+  /// The state after `torque`, with the payload and the friction found so far. Borders between
+  /// pieces, and the end, count to the nearest step_s().
+  GaugedState After(const TorquePieces& torque) const noexcept;
+
+  const RigidJointStepper& stepper() const noexcept { return stepper_; }
   /// NIS, smoothed: 8 for a right model.
   double mean_nis() const noexcept { return mean_nis_; }
 
@@ -91,9 +100,11 @@ class PayloadFilter {
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
   using Gain = Eigen::Matrix<double, kStates, kOutputs>;
 
-  void Predict(const Eigen::Vector2d& torque_nm) noexcept;
+  void Predict(const TorquePieces& torque) noexcept;
   void AddProcessNoise(const Transition& transition) noexcept;
-  Outputs OutputVariance(const Outputs& y, const Outputs& innovation) noexcept;
+  GaugedState Through(const TorquePieces& torque, double payload_kg,
+                      const std::array<double, 2>& friction_nm) const noexcept;
+  Outputs OutputVariance(const Outputs& y, const Outputs& innovation, std::uint32_t good) noexcept;
   void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance) noexcept;
 
   RigidJointStepper stepper_;

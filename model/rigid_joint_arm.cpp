@@ -1,5 +1,8 @@
 #include "model/rigid_joint_arm.h"
 
+#include <stdexcept>
+#include <string>
+
 #include "model/arm_model.h"
 
 namespace flexarm {
@@ -39,6 +42,39 @@ RigidJointArm::RigidJointArm(const ArmParameters& parameters)
   T_r.bottomRightCorner<4, 4>().setIdentity();
   stiffness_ = T_r.transpose() * model.stiffness() * T_r;
   damping_ = T_r.transpose() * model.damping() * T_r;
+}
+
+// One order for writing and reading.
+template <typename Arm, typename Visit>
+void RigidJointArm::ForEachConstant(Arm& arm, Visit visit) {
+  const auto visit_all = [&visit](auto& matrix) {
+    for (Eigen::Index i = 0; i < matrix.size(); ++i) visit(matrix.data()[i]);
+  };
+  visit(arm.L1_), visit(arm.I1_), visit(arm.Ir2_), visit(arm.Ip_);
+  visit_all(arm.a1_), visit_all(arm.p1_), visit_all(arm.s1_), visit_all(arm.N1_);
+  visit_all(arm.s2_);
+  for (auto* body : {&arm.empty_, &arm.per_kg_}) {
+    visit(body->m), visit(body->Sx), visit(body->I2);
+    visit_all(body->k2), visit_all(body->a2), visit_all(body->N2);
+  }
+  visit_all(arm.stiffness_), visit_all(arm.damping_);
+}
+
+std::vector<double> RigidJointArm::Constants() const {
+  std::vector<double> constants;
+  ForEachConstant(*this, [&constants](double value) { constants.push_back(value); });
+  return constants;
+}
+
+RigidJointArm::RigidJointArm(std::span<const double> constants) {
+  std::size_t used = 0;
+  ForEachConstant(*this, [&](double& value) {
+    if (used < constants.size()) value = constants[used];
+    ++used;
+  });
+  if (used == constants.size()) return;
+  throw std::invalid_argument("an arm with rigid joints has " + std::to_string(used) +
+                              " constants, not " + std::to_string(constants.size()));
 }
 
 OutboardBody RigidJointArm::Outboard(double payload_kg) const noexcept {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 
 #include "model/arm_parameters.h"
 #include "model/portable_math.h"
@@ -42,6 +44,12 @@ class RigidJointArm {
   /// @throws std::invalid_argument if the parameters have Problems().
   explicit RigidJointArm(const ArmParameters& parameters);
 
+  /// All that the constructor computed, as numbers: another processor's libm may compute others in
+  /// the last digit, and a run must replay to the bit.
+  std::vector<double> Constants() const;
+  /// @throws std::invalid_argument if they are not as many as Constants() gives
+  explicit RigidJointArm(std::span<const double> constants);
+
   OutboardBody Outboard(double payload_kg) const noexcept;
 
   /// Mass matrix and bias at (q, v). Math: PortableMath in the loop, LibraryMath off line.
@@ -52,6 +60,9 @@ class RigidJointArm {
   const Matrix& damping() const noexcept { return damping_; }      ///< D
 
  private:
+  template <typename Arm, typename Visit>
+  static void ForEachConstant(Arm& arm, Visit visit);
+
   // Inboard of the elbow: hub 1 with rotor 1, link 1, and motor 2's stator at its end.
   double L1_, I1_, Ir2_, Ip_;
   Eigen::Vector2d a1_, p1_, s1_;  // int lam u psi1, psi1(L1), psi1'(L1)

@@ -1,6 +1,7 @@
 #include "model/rigid_joint_step.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,13 +15,27 @@ RigidJointStepper::RigidJointStepper(const RigidJointArm& arm, double period_s,
       steps_(steps),
       h_(period_s / steps),
       gauge_share_(1.0 - std::exp(-2.0 * std::numbers::pi * gauge_filter_hz * h_)),
-      implicit_(0.5 * h_ * arm.damping() + 0.25 * h_ * h_ * arm.stiffness()) {}
+      implicit_(Implicit(arm_, h_)) {}
 
-GaugedState RigidJointStepper::Advance(const GaugedState& start,
-                                       const SampleInputs& inputs) const noexcept {
+std::vector<double> RigidJointStepper::Constants() const {
+  std::vector<double> constants = {static_cast<double>(steps_), h_, gauge_share_};
+  const std::vector<double> of_arm = arm_.Constants();
+  constants.insert(constants.end(), of_arm.begin(), of_arm.end());
+  return constants;
+}
+
+RigidJointStepper::RigidJointStepper(std::span<const double> constants)
+    : arm_(constants.subspan(std::min<std::size_t>(constants.size(), 3))),
+      steps_(static_cast<int>(constants[0])),
+      h_(constants[1]),
+      gauge_share_(constants[2]),
+      implicit_(Implicit(arm_, h_)) {}
+
+GaugedState RigidJointStepper::Advance(const GaugedState& start, const SampleInputs& inputs,
+                                       int steps) const noexcept {
   const OutboardBody body = arm_.Outboard(inputs.payload_kg);
   GaugedState x = start;
-  for (int i = 0; i < steps_; ++i) {
+  for (int i = 0; i < steps; ++i) {
     Vector applied = -arm_.damping().lazyProduct(x.v);
     applied -= arm_.stiffness().lazyProduct(x.q + 0.5 * h_ * x.v);
     applied.head<2>() += inputs.torque_nm;

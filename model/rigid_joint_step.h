@@ -39,7 +39,18 @@ class RigidJointStepper {
   RigidJointStepper(const RigidJointArm& arm, double period_s, double gauge_filter_hz,
                     int steps = kSteps);
 
-  GaugedState Advance(const GaugedState& start, const SampleInputs& inputs) const noexcept;
+  /// As RigidJointArm's, with those of the sample.
+  std::vector<double> Constants() const;
+  /// @throws std::invalid_argument if they are not as many as Constants() gives
+  explicit RigidJointStepper(std::span<const double> constants);
+
+  /// One sample.
+  GaugedState Advance(const GaugedState& start, const SampleInputs& inputs) const noexcept {
+    return Advance(start, inputs, steps_);
+  }
+  /// @param steps  of step_s() each
+  GaugedState Advance(const GaugedState& start, const SampleInputs& inputs,
+                      int steps) const noexcept;
 
   const RigidJointArm& arm() const noexcept { return arm_; }
   int steps() const noexcept { return steps_; }
@@ -53,6 +64,10 @@ class RigidJointStepper {
 
   Vector Acceleration(const OutboardBody& body, const GaugedState& start, const Vector& applied,
                       const std::array<double, 2>& friction_nm) const noexcept;
+
+  static RigidJointArm::Matrix Implicit(const RigidJointArm& arm, double h) {
+    return 0.5 * h * arm.damping() + 0.25 * h * h * arm.stiffness();
+  }
 
   RigidJointArm arm_;
   int steps_;

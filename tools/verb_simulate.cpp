@@ -120,11 +120,11 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
           "--experiment", options->experiment,
           "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config)")
       ->type_name("FILE");
-  verb->add_option(
-      "--controller", options->controller,
-      "controller.name: sobel, sobel-original, lqr-cgt, lqr-um, lqg, pd, pd-zv, pd-zvd");
+  verb->add_option("--controller", options->controller,
+                   "controller.name: sobel, sobel-original, lqr-cgt, lqr-um, lqg, pd, pd-zv, "
+                   "pd-zvd, gain-scheduled");
   verb->add_option("--estimator", options->estimator,
-                   "estimator.name: kalman, difference, polynomial");
+                   "estimator.name: kalman, difference, polynomial, ekf-payload");
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payload that the plant carries; the design keeps the config's")
       ->check(CLI::Range(0.0, 100.0));

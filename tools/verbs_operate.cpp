@@ -42,6 +42,15 @@ void PrintStatus(const Json& s) {
   std::printf("delay          %.2f ms, longest %.2f ms; %.1f ms of margin left\n",
               s.value("delay_ms", 0.0), s.value("delay_max_ms", 0.0),
               s.value("delay_margin_ms", 0.0));
+  if (s.contains("payload") && s["payload"].is_object()) {
+    const Json& payload = s["payload"];
+    std::printf("payload        %.3f kg, standard deviation %.3f kg", payload.value("kg", 0.0),
+                payload.value("sigma_kg", 0.0));
+    for (const Json& doubt : payload.value("doubts", Json::array())) {
+      std::printf("; %s", doubt.get<std::string>().c_str());
+    }
+    std::printf("\n");
+  }
   for (const Json& bus : s.value("buses", Json::array())) {
     std::printf("%-14s %s, %u failed, %u times taken back%s%s\n", bus.value("name", "").c_str(),
                 bus.value("ok", false) ? "ok" : "lost", bus.value("failed", 0U),

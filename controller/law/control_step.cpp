@@ -1,15 +1,20 @@
 #include "controller/law/control_step.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "controller/law/design.h"
 #include "controller/law/loop_supervisor.h"
+#include "controller/law/move_watch.h"
+#include "controller/law/scheduled_law.h"
 #include "controller/law/torque_timeline.h"
 #include "controller/law/tracking_law.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/counter_decoder.h"
 #include "estimator/fractional_hold.h"
+#include "estimator/payload_estimator.h"
 #include "estimator/reading_age.h"
 #include "estimator/state_estimator.h"
 #include "estimator/strain_fit.h"
@@ -28,6 +33,9 @@ constexpr double kHandOver_s = 0.1;
 // An arm that is not at rest by then has been let go, over the last 0.4 s of it: with play in its
 // gears it rattles under any feedback, and friction brings it to rest.
 constexpr double kLetGoBy_s = 2.2, kLetGoIn_s = 0.4;
+
+// Of a right model 8. From here on GainPayload gives the robust gains and nothing else.
+constexpr double kMismatchNis = 60.0;
 
 std::array<double, 2> JointStiffness(const ArmParameters& arm) {
   return {arm.joint[0].stiffness_nm_per_rad, arm.joint[1].stiffness_nm_per_rad};
@@ -62,18 +70,32 @@ struct ControlStep::Stages {
         supervisor(config.safety, config.estimator, period_s, config.sensors.counters_present(),
                    JointStiffness(config.arm)),
         law(design, config.controller, config.safety.torque_limit_nm),
-        nominal({.A = design.A, .B = design.B}, design.A_rate, design.B_rate, period_s) {}
+        nominal({.A = design.A, .B = design.B}, design.A_rate, design.B_rate, period_s) {
+    if (design.payload_model.empty()) return;
+    payload.emplace(design.payload_model,
+                    PayloadFilterFor(config.arm, config.sensors, config.estimator));
+    payload_bound_kg = config.estimator.payload->max_kg;
+    payload_move_sigma_kg = config.estimator.payload->move_sigma_kg;
+    if (!design.scheduled) return;
+    scheduled.emplace(payload->stepper().arm(), design.scheduled->gains, period_s);
+  }
 
   void Reset(const StepInput& input) noexcept {
     decoder.Reset(input.counts_before, input.calibration.counter_zero);
     fit.Reset(input.calibration);
-    estimator.Reset();
+    ResetEstimator();
     supervisor.Reset();
     law.Reset();
+    move.Reset();
     asked.Clear();
     pending_nm = {};
     saturated_s = {};
     phase = Phase::kNoTorque;
+  }
+
+  void ResetEstimator() noexcept {
+    estimator.Reset();
+    if (payload) payload->Reset();
   }
 
   // Over [k-1, k] Ts: changes when the commands did, and has the mean that the drive side knows.
@@ -86,7 +108,45 @@ struct ControlStep::Stages {
   FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
                   const TorquePieces& applied) noexcept {
     if (StrainsAreOf(frame, instant_ns)) return fit.Fit(frame, instant_ns, {});
-    return fit.Fit(frame, instant_ns, estimator.ModalRates(applied));
+    return fit.Fit(frame, instant_ns,
+                   payload ? payload->ModalRates() : estimator.ModalRates(applied));
+  }
+
+  StateEstimator::Estimate Estimate(const DecodedCounters& counters, const FittedModes& modes,
+                                    const TorquePieces& applied) noexcept {
+    if (!payload) return estimator.Update(counters, modes, applied);
+    const PayloadFilter::Estimate& found = payload->Update(counters, modes, applied);
+    StateEstimator::Estimate out{.x = payload->Now(), .innovation = {}};
+    std::copy_n(found.innovation.data(), found.innovation.size(), out.innovation.begin());
+    return out;
+  }
+
+  // What the path asks of the estimator: a move may begin with another payload than before.
+  void WatchMoves(const StepInput& input) noexcept {
+    if (!payload || input.mode != LoopMode::kFollow) return;
+    if (move.Take(input.path[1], period_s)) payload->BeginMove();
+  }
+
+  bool AtBound(const PayloadFilter::Estimate& found) const noexcept {
+    return found.payload_kg >= payload_bound_kg;
+  }
+
+  void StorePayload(StepOutput* out) const noexcept {
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    out->payload_kg = out->payload_sigma_kg = out->mean_nis = nothing;
+    out->friction_nm = {nothing, nothing};
+    if (!payload) return;
+    const PayloadFilter::Estimate& found = payload->estimate();
+    out->payload_kg = found.payload_kg;
+    out->payload_sigma_kg = found.payload_sigma_kg;
+    out->friction_nm = found.friction_nm;
+    out->mean_nis = payload->mean_nis();
+    if (AtBound(found)) out->payload_doubts |= kPayloadAtBound;
+    if (out->mean_nis > kMismatchNis) out->payload_doubts |= kPayloadModelMismatch;
+    const bool moved = !move.moving() && std::isfinite(move.rested_s());
+    if (moved && found.payload_sigma_kg >= payload_move_sigma_kg) {
+      out->payload_doubts |= kPayloadNotFound;
+    }
   }
 
   std::int64_t ActsFrom(const StepInput& input) const noexcept {
@@ -95,8 +155,11 @@ struct ControlStep::Stages {
 
   // From k Ts to the instant at which the torque computed now will act, under those on their way.
   StateVector Predict(const StateVector& x, const StepInput& input) const noexcept {
+    const TorquePieces pending =
+        asked.Between(input.sampling_instant_ns, ActsFrom(input), period_ns);
+    if (payload) return payload->After(pending);
     StateVector next = x;
-    nominal.Advance(asked.Between(input.sampling_instant_ns, ActsFrom(input), period_ns), &next);
+    nominal.Advance(pending, &next);
     return next;
   }
 
@@ -108,9 +171,24 @@ struct ControlStep::Stages {
     // away from zero would begin with a step.
     if (phase != Phase::kRunning) law.Reset();
     phase = Phase::kRunning;
-    if (input.mode == LoopMode::kFollow) return law.Compute(x, input.reference_next, sensors_good);
+    if (input.mode == LoopMode::kFollow) {
+      return scheduled ? law.Hold(Scheduled(input, x))
+                       : law.Compute(x, input.reference_next, sensors_good);
+    }
     const Eigen::Vector2d goal_rad(input.reference_next.x_m[0], input.reference_next.x_m[1]);
     return law.Hold(law.Regulate(x, AtRest(goal_rad)));
+  }
+
+  Eigen::Vector2d Scheduled(const StepInput& input, const StateVector& x) const noexcept {
+    const PayloadFilter::Estimate& found = payload->estimate();
+    return scheduled->Torque(
+        x,
+        {.payload_kg = found.payload_kg,
+         .payload_sigma_kg =
+             AtBound(found) ? std::numeric_limits<double>::infinity() : found.payload_sigma_kg,
+         .friction_nm = found.friction_nm,
+         .mean_nis = payload->mean_nis()},
+        input.path, move.rested_s());
   }
 
   // Damps the arm towards a goal that gives way: it starts where the reference ended, or where the
@@ -167,6 +245,10 @@ struct ControlStep::Stages {
   LoopSupervisor supervisor;
   TrackingLaw law;
   FractionalHold nominal;
+  std::optional<PayloadEstimator> payload;
+  std::optional<ScheduledLaw> scheduled;
+  double payload_bound_kg = 0.0, payload_move_sigma_kg = 0.0;
+  MoveWatch move;
   TorqueTimeline asked;
   std::array<double, 2> pending_nm{};  // the newest of them
   std::array<double, 2> saturated_s{};
@@ -194,7 +276,8 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const DecodedCounters counters = s.decoder.Decode(frame);
   const TorquePieces applied = s.Applied(input);
   const FittedModes modes = s.Fit(frame, input.sampling_instant_ns, applied);
-  const StateEstimator::Estimate estimate = s.estimator.Update(counters, modes, applied);
+  s.WatchMoves(input);
+  const StateEstimator::Estimate estimate = s.Estimate(counters, modes, applied);
   const LoopSupervisor::Verdict verdict =
       s.supervisor.Judge({.counters = &counters,
                           .modes = &modes,
@@ -205,7 +288,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const StateVector x_next = s.prediction ? s.Predict(estimate.x, input) : estimate.x;
   // Start again from the next measurement. A trip needs its cause gone before the arm can be armed,
   // and so reset: a state that stayed bad would be tripped for ever.
-  if ((verdict.faults & CauseBit(TripCause::kStateNotFinite)) != 0) s.estimator.Reset();
+  if ((verdict.faults & CauseBit(TripCause::kStateNotFinite)) != 0) s.ResetEstimator();
 
   StepOutput out{};
   out.tick = input.tick;
@@ -236,6 +319,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   out.fit_residual = modes.residual;
   out.adaptive_gain_change = s.law.adaptive_gain_change();
   out.saturated_s = s.saturated_s;
+  s.StorePayload(&out);
   out.fault_value = verdict.value;
   out.fault_limit = verdict.limit;
   out.fault_channel = verdict.channel;

@@ -1,5 +1,8 @@
 #include "controller/law/controller_config.h"
 
+#include <algorithm>
+#include <functional>
+
 #include "model/problem_list.h"
 
 namespace flexarm {
@@ -8,6 +11,29 @@ namespace {
 
 constexpr const char* kDriftsAway =
     "without weight the joint's double integrator is not controlled";
+
+constexpr std::size_t kMostKnots = 32;  // each takes a millisecond of the start
+
+void CheckGrid(const std::string& key, const std::vector<double>& grid, double last,
+               ProblemList* list) {
+  const bool ascending = std::adjacent_find(grid.begin(), grid.end(), std::greater_equal<>()) ==
+                         grid.end();  // a NaN is caught by the range
+  list->Require(grid.size() >= 2 && grid.size() <= kMostKnots && ascending, key,
+                NumberText(grid.size()) + " numbers",
+                "must be 2 to " + NumberText(kMostKnots) + " numbers, ascending");
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    list->Within(ProblemList::Element(key, i), grid[i], 0.0, i == 0 ? 0.0 : last,
+                 "a knot of the gain table; the first is 0");
+  }
+}
+
+void CheckPayload(const PayloadLawConfig& p, ProblemList* list) {
+  list->Positive("payload.max_kg", p.max_kg, 100.0, "moves are planned for this payload");
+  list->Within("payload.reference_kg", p.reference_kg, 0.0, 100.0,
+               "the reference is the way of an arm with this payload");
+  CheckGrid("payload.gain_payload_kg", p.gain_payload_kg, 100.0, list);
+  CheckGrid("payload.gain_elbow_deg", p.gain_elbow_deg, 180.0, list);
+}
 
 }  // namespace
 
@@ -39,6 +65,7 @@ std::vector<Problem> ControllerConfig::Problems() const {
               "a smaller y_e = C_p (x_m - x) does not adapt; 0: every one does");
   list.Positive("adaptation_bound", adaptation_bound, 1e6,
                 "the gains stay within this distance of those they start with");
+  if (payload) CheckPayload(*payload, &list);
   return list.Take();
 }
 

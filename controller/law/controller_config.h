@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,12 @@ enum class ControllerKind : std::uint8_t {
   kPd,             ///< "pd": proportional and derivative of each hub alone
   kPdZv,           ///< "pd-zv": the same, the reference shaped to leave no vibration
   kPdZvd,          ///< "pd-zvd": with a second derivative zero, robust to the frequency
+  kGainScheduled,  ///< "gain-scheduled": for the payload that is found while it runs
 };
+
+/// Whether the law follows planned moves with the payload that `ekf-payload` finds, the estimator
+/// that it brings along: controller/law/scheduled_law.h.
+constexpr bool IsScheduled(ControllerKind kind) { return kind == ControllerKind::kGainScheduled; }
 
 /// Whether the law corrects its gains while it runs.
 constexpr bool IsAdaptive(ControllerKind kind) {
@@ -36,6 +42,14 @@ constexpr bool IsPd(ControllerKind kind) {
 enum class FeedforwardSign : std::uint8_t {
   kPrinted,    ///< (7.25) as printed: u_f = (B'B)^-1 B' (-(A_m - A) x_m + B_m u_m)
   kCorrected,  ///< the sign that follows from the derivation
+};
+
+/// Table [controller.payload]: of the laws that know the payload.
+struct PayloadLawConfig {
+  double max_kg;                        ///< heaviest payload that moves are planned for
+  double reference_kg;                  ///< the reference is the way of an arm with this payload
+  std::vector<double> gain_payload_kg;  ///< grid of the gain table, ascending from 0
+  std::vector<double> gain_elbow_deg;   ///< |theta2|, ascending from 0
 };
 
 /// Section [controller]. Symbols as in the thesis, chapter 7.
@@ -65,6 +79,8 @@ struct ControllerConfig {
   double design_alpha() const {
     return kind == ControllerKind::kSobelOriginal || kind == ControllerKind::kLqg ? 0.0 : alpha;
   }
+
+  std::optional<PayloadLawConfig> payload{};  ///< needed by the laws that know it only
 
   std::string
       gains_file;  ///< key `gains`, optional: written by `flexarm design`; empty: design at start

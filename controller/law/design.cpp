@@ -12,11 +12,13 @@
 #include <stdexcept>
 
 #include "controller/law/input_shaper.h"
+#include "controller/law/path_reference.h"
 #include "controller/law/refused.h"
 #include "controller/law/tracking_law.h"
 #include "controller/runtime/stack_config.h"
 #include "estimator/kalman_design.h"
 #include "estimator/nominal_model.h"
+#include "estimator/payload_estimator.h"
 #include "model/discretize.h"
 #include "model/riccati.h"
 
@@ -160,6 +162,25 @@ void DesignShaper(const StackConfig& config, Design* design) {
   design->checks.push_back({"pd-spectral-radius", SpectralRadius(closed), 1.0, true});
 }
 
+void DesignForPayload(const StackConfig& config, Design* design) {
+  if (!config.uses_payload_estimator()) return;
+  const double period_s = config.loop.period_ms * 1e-3;
+  design->payload_model = PayloadModelConstants(config.arm, config.sensors, period_s);
+  if (!IsScheduled(config.controller.kind)) return;
+  const ControllerConfig& controller = config.controller;
+  const PayloadLawConfig& law = *controller.payload;
+  GainGrid grid{.payload_kg = law.gain_payload_kg, .theta2_rad = law.gain_elbow_deg};
+  for (double& theta2 : grid.theta2_rad) theta2 *= std::numbers::pi / 180.0;
+  GainWeights weights{
+      .state = {}, .torque = controller.torque_weight, .alpha_per_s = controller.alpha};
+  const Eigen::VectorXd q = StateWeight(controller).diagonal();
+  std::copy_n(q.data(), weights.state.size(), weights.state.begin());
+  design->scheduled =
+      ScheduledDesign{.gains = DesignGainTable(ArmOf(*design), grid, weights, period_s),
+                      .max_kg = law.max_kg,
+                      .reference_kg = law.reference_kg};
+}
+
 }  // namespace
 
 bool Design::sound() const {
@@ -187,6 +208,7 @@ Design DesignController(const StackConfig& config) {
   CheckLemma(config.controller.design_alpha(), period_s, &design);
   DesignCommandGenerator(nominal, &design);
   DesignShaper(config, &design);
+  DesignForPayload(config, &design);
 
   const KalmanDesign filter =
       DesignKalmanFilter(nominal, config.sensors, config.estimator, period_s);

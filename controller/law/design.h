@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "controller/law/command_generator.h"
+#include "controller/law/gain_table.h"
 #include "estimator/state_layout.h"
 
 namespace flexarm {
@@ -21,6 +23,13 @@ struct DesignCheck {
       false;  ///< it failed, and somebody took that upon himself: `flexarm design --force`
 
   bool passed() const { return below ? value < limit : value > limit; }
+};
+
+/// What the laws that know the payload need (scheduled_law.h).
+struct ScheduledDesign {
+  GainTable gains;
+  double max_kg;        ///< moves are planned for it
+  double reference_kg;  ///< the reference is the way of an arm with this payload
 };
 
 /// Everything that the loop needs and that is computed before it runs. SI, psi(L) = 1.
@@ -42,6 +51,8 @@ struct Design {
   Eigen::MatrixXd filter_A_rate, filter_B_rate;            ///< the same, continuous
   Eigen::RowVectorXd
       shaper;  ///< weights of the samples of an input shaper (input_shaper.h); [1]: none
+  std::vector<double> payload_model;         ///< of `ekf-payload`: PayloadModelConstants; or empty
+  std::optional<ScheduledDesign> scheduled;  ///< of the laws that know the payload
   Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: a doublet moves by M_r^-1 a T^2/4
   std::vector<DesignCheck> checks;
 

@@ -3,11 +3,14 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "controller/law/design.h"
 #include "controller/law/refused.h"
 #include "controller/runtime/stack_config.h"
+#include "model/rigid_joint_step.h"
 
 namespace flexarm {
 namespace {
@@ -140,6 +143,46 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name, Eigen::
   *matrix = read;
 }
 
+// What the laws that know the payload need; a knot is 2 x 12, row by row.
+nlohmann::ordered_json PayloadToJson(const Design& design) {
+  nlohmann::ordered_json out{{"model", design.payload_model}};
+  if (!design.scheduled) return out;
+  const GainTable& table = design.scheduled->gains;
+  out["max_kg"] = design.scheduled->max_kg;
+  out["reference_kg"] = design.scheduled->reference_kg;
+  out["gain_payload_kg"] = table.grid().payload_kg;
+  out["gain_theta2_rad"] = table.grid().theta2_rad;
+  out["gain"] = nlohmann::ordered_json::array();
+  for (const GainTable::Gain& gain : table.knots()) out["gain"].emplace_back(MatrixToJson(gain));
+  return out;
+}
+
+void PayloadFromJson(const nlohmann::json& in, Design* design) {
+  try {
+    design->payload_model = in.at("model").get<std::vector<double>>();
+    static_cast<void>(RigidJointStepper(design->payload_model));
+    if (!in.contains("gain")) return;
+    std::vector<GainTable::Gain> knots;
+    for (const nlohmann::json& knot : in.at("gain")) {
+      Eigen::MatrixXd gain;
+      MatrixFromJson(knot, "payload.gain", &gain);
+      if (gain.rows() != 2 || gain.cols() != 12) {
+        throw Refused("gains file: 'payload.gain' holds a matrix that is not 2 x 12");
+      }
+      knots.emplace_back(gain);
+    }
+    const GainGrid grid{.payload_kg = in.at("gain_payload_kg").get<std::vector<double>>(),
+                        .theta2_rad = in.at("gain_theta2_rad").get<std::vector<double>>()};
+    design->scheduled = ScheduledDesign{.gains = {grid, std::move(knots)},
+                                        .max_kg = in.at("max_kg").get<double>(),
+                                        .reference_kg = in.at("reference_kg").get<double>()};
+  } catch (const nlohmann::json::exception&) {
+    throw Refused("gains file: 'payload' lacks one of its members, or it is not numbers");
+  } catch (const std::invalid_argument& error) {
+    throw Refused(std::string("gains file: 'payload': ") + error.what());
+  }
+}
+
 // The text at `key`, or what stands for a missing one; of another type it is not ours.
 std::string TextAt(const nlohmann::json& in, const char* key, const char* missing) {
   const auto found = in.find(key);
@@ -218,6 +261,12 @@ std::string DesignHash(const StackConfig& config) {
   if (IsPd(c.kind)) {
     digest << static_cast<double>(c.kind) << c.pd_stiffness_nm_per_rad << c.pd_damping_nms_per_rad;
   }
+  if (config.uses_payload_estimator()) digest << static_cast<double>(c.kind);
+  if (IsScheduled(c.kind)) {
+    digest << c.payload->max_kg << c.payload->reference_kg;
+    for (const double knot : c.payload->gain_payload_kg) digest << knot;
+    for (const double knot : c.payload->gain_elbow_deg) digest << knot;
+  }
   return digest.Hex();
 }
 
@@ -227,6 +276,7 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
   out["config_hash"] = config_hash;
   out["nominal"] = NameOf(design.layout);
   ForEachMatrix(design, [&out](const char* name, const auto& m) { out[name] = MatrixToJson(m); });
+  if (!design.payload_model.empty()) out["payload"] = PayloadToJson(design);
   for (const DesignCheck& check : design.checks) {
     out["checks"].push_back({{"name", check.name},
                              {"value", check.value},
@@ -256,6 +306,7 @@ Design DesignFromJson(const std::string& text, const std::string& expected_hash)
     MatrixFromJson(in.at(name), name, &m);
   });
   RequireShapes(design);
+  if (in.contains("payload")) PayloadFromJson(in.at("payload"), &design);
   if (!in.contains("checks") || !in.at("checks").is_array()) {
     throw Refused("gains file: 'checks' is missing or not an array");
   }

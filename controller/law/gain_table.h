@@ -37,6 +37,9 @@ class GainTable {
   /// @param theta2_rad  of either sign
   Gain At(double payload_kg, double theta2_rad) const noexcept;
 
+  const GainGrid& grid() const noexcept { return grid_; }
+  const std::vector<Gain>& knots() const noexcept { return knots_; }
+
  private:
   const Gain& Knot(std::size_t payload, std::size_t theta2) const noexcept {
     return knots_[payload * grid_.theta2_rad.size() + theta2];

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "controller/law/motion_check.h"
+#include "controller/law/path_reference.h"
 #include "controller/law/reference_model.h"
 #include "controller/law/refused.h"
 #include "controller/law/rounded_text.h"
@@ -85,6 +86,21 @@ int PeriodsOf(const Move& move, const PlannedMove& planned, const Design& design
                 DegText(planned.from_rad) + " to " + DegText(planned.to_rad));
 }
 
+// The reference of a move alone, from sample 0 on: as far as limits are concerned.
+std::vector<ReferenceSample> ReferenceOf(const PlannedMove& move, const Design& design,
+                                         double period_s) {
+  const int periods = move.periods + kDecayPeriods;
+  if (design.scheduled) {
+    return QuasiStaticReference(RigidPath({move}, move.from_rad, periods, period_s), ArmOf(design),
+                                design.scheduled->max_kg, period_s);
+  }
+  std::vector<ReferenceSample> samples(static_cast<std::size_t>(periods));
+  AddTorques(TorqueOf(move, design), ProfileAccelerations(move.profile, move.periods, period_s), 0,
+             &samples);
+  RunReferenceModel(design, move.from_rad, &samples);
+  return samples;
+}
+
 }  // namespace
 
 Eigen::Vector2d TorqueOf(const PlannedMove& move, const Design& design) {
@@ -132,13 +148,11 @@ std::optional<int> ShortestPeriods(const PlannedMove& move, const Design& design
                                    const MotionLimits& limits, double share) {
   const auto fits = [&](int periods) {
     PlannedMove tried = move;
+    tried.first = 0;
     tried.periods = periods;
-    std::vector<ReferenceSample> samples(static_cast<std::size_t>(periods + kDecayPeriods));
-    AddTorques(TorqueOf(tried, design), ProfileAccelerations(tried.profile, periods, period_s), 0,
-               &samples);
-    RunReferenceModel(design, tried.from_rad, &samples);
     const int states = static_cast<int>(design.Am.rows());
-    return !FirstBrokenLimit(samples, states, limits, share, period_s).has_value();
+    return !FirstBrokenLimit(ReferenceOf(tried, design, period_s), states, limits, share, period_s)
+                .has_value();
   };
   const int most = static_cast<int>(kLongest_s / period_s);
   int enough = kShortestMove;

@@ -9,16 +9,9 @@
 #include "controller/law/design.h"
 #include "controller/law/experiment.h"
 #include "controller/law/motion_limits.h"
+#include "controller/law/rigid_point.h"
 
 namespace flexarm {
-
-/// The rigid coordinate Y of both joints at one instant.
-struct RigidPoint {
-  std::array<double, 2> angle_rad;            ///< Y
-  std::array<double, 2> rate_rad_s;           ///< Y'
-  std::array<double, 2> acceleration_rad_s2;  ///< Y''
-  std::array<double, 2> jerk_rad_s3;          ///< Y'''
-};
 
 /// A move with everything decided: on the grid, between joint angles.
 struct PlannedMove {

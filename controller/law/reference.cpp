@@ -131,6 +131,12 @@ std::string RowAt(const Experiment& experiment, double time_s) {
   return row;
 }
 
+// What limits were judged for, where it is not the arm as it is configured.
+std::string WithPayload(const Design& design) {
+  if (!design.scheduled) return {};
+  return " (with " + NumberText(design.scheduled->max_kg) + " kg, controller.payload.max_kg)";
+}
+
 }  // namespace
 
 ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
@@ -139,6 +145,18 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
   samples_.resize(static_cast<std::size_t>(periods) + 1);
+  if (design.scheduled) {
+    FollowPath(planned, design, period_s, start_rad);
+  } else {
+    FollowModel(planned, design, period_s, start_rad);
+  }
+  rest_.x_m = samples_.front().x_m;
+  if (design.shaper.size() > 1) Shape(design.shaper, period_s);
+  CheckLimits(planned, design, period_s, limits);
+}
+
+void ReferenceTable::FollowModel(const Experiment& planned, const Design& design, double period_s,
+                                 const std::array<double, 2>& start_rad) {
   RowWriter writer(design, period_s, &samples_);
   AddRows(planned.doublet, "doublet", &writer);
   for (const PlannedMove& move : moves_) writer.Add(move);
@@ -148,24 +166,36 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
     writer.Add(*planned.csv, PlaceBefore(planned, moves_, start_rad, planned.csv->start_s));
   }
   RunReferenceModel(design, start_rad, &samples_);
-  rest_.x_m = samples_.front().x_m;
-  if (design.shaper.size() > 1) Shape(design.shaper, period_s);
-  CheckLimits(planned, design, period_s, limits);
+}
+
+void ReferenceTable::FollowPath(const Experiment& planned, const Design& design, double period_s,
+                                const std::array<double, 2>& start_rad) {
+  for (const Motion& motion : planned.Motions()) {
+    if (motion.row.starts_with("move[")) continue;
+    throw Refused(motion.row +
+                  ": a law that finds the payload follows [[move]] rows only, whose acceleration "
+                  "is continuous; use another controller.name, or moves");
+  }
+  path_.emplace(moves_, start_rad, periods(), period_s);
+  samples_ = QuasiStaticReference(*path_, ArmOf(design), design.scheduled->reference_kg, period_s);
 }
 
 void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design, double period_s,
                                  const MotionLimits& limits) const {
   const int states = static_cast<int>(design.Am.rows());
-  const auto broken = FirstBrokenLimit(samples_, states, limits, 1.0, period_s);
+  const auto judged =
+      path_ ? QuasiStaticReference(*path_, ArmOf(design), design.scheduled->max_kg, period_s)
+            : samples_;
+  const auto broken = FirstBrokenLimit(judged, states, limits, 1.0, period_s);
   if (!broken) return;
   const std::string row = RowAt(planned, broken->sample * period_s);
-  std::string remedy;
+  std::string remedy = WithPayload(design);
   for (const PlannedMove& move : moves_) {
     if (row != ProblemList::Element("move", move.row)) continue;
     const auto shortest = ShortestPeriods(move, design, period_s, limits, 1.0);
     if (!shortest || *shortest <= move.periods) continue;
-    remedy = "; the shortest duration_s within the limits is " +
-             NumberText(std::round(*shortest * period_s * 1e9) * 1e-9);
+    remedy += "; the shortest duration_s within the limits is " +
+              NumberText(std::round(*shortest * period_s * 1e9) * 1e-9);
   }
   throw Refused(row + ": " + broken->text + remedy);
 }

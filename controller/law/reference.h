@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "controller/law/design.h"
 #include "controller/law/experiment.h"
 #include "controller/law/motion_limits.h"
 #include "controller/law/motion_plan.h"
+#include "controller/law/path_reference.h"
 #include "controller/law/step_types.h"
 
 namespace flexarm {
@@ -27,6 +29,8 @@ class ReferenceTable {
   ///    HeldAccelerations of their angles
   /// so the reference model, a double integrator, ends at rest. A design with a shaper convolves
   /// all that with its weights: every row then ends as much later as the shaper is long.
+  /// A design for a law that knows the payload has QuasiStaticReference instead, for the payload of
+  /// its reference; limits are judged for the heaviest payload, and all rows must be moves.
   /// @throws Refused naming the row and key whose times do not lie on the grid of `period_s`, the
   ///         row, joint, instant and limit that the reference would break (FirstBrokenLimit), or
   ///         that the shaped rows would end after the experiment
@@ -45,13 +49,25 @@ class ReferenceTable {
   /// Sample k; before 0 the rest at the start, after the end the last one. Real-time: safe.
   const ReferenceSample& At(int k) const noexcept;
 
+  /// The rigid coordinate at k - 1, k and k + 1; zero for experiments without a path, that is for
+  /// laws that follow none. Real-time: safe.
+  std::array<RigidPoint, 3> PathAround(int k) const noexcept {
+    return path_ ? path_->Around(k) : std::array<RigidPoint, 3>{};
+  }
+
  private:
   void Shape(const Eigen::RowVectorXd& shaper, double period_s);
 
   void CheckLimits(const Experiment& planned, const Design& design, double period_s,
                    const MotionLimits& limits) const;
 
+  void FollowModel(const Experiment& planned, const Design& design, double period_s,
+                   const std::array<double, 2>& start_rad);
+  void FollowPath(const Experiment& planned, const Design& design, double period_s,
+                  const std::array<double, 2>& start_rad);
+
   ReferenceSample rest_{};
+  std::optional<RigidPath> path_;
   std::vector<PlannedMove> moves_;
   std::vector<ReferenceSample> samples_;
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "controller/law/rigid_point.h"
 #include "controller/safety/safety_state.h"
 #include "estimator/calibration.h"
 #include "hal/sensor_frame.h"
@@ -37,8 +38,9 @@ struct StepInput {
   std::array<double, 2> applied_torque_nm;  ///< after the gate: mean over [k-1, k] Ts
   std::int64_t acted_late_ns;  ///< torque k-1 began to act this long after k Ts, as far as is known
   std::int64_t acts_late_ns;   ///< torque k will act this long after (k+1) Ts; negative: before it
-  ReferenceSample reference_now;                      ///< at k Ts
-  ReferenceSample reference_next;                     ///< when the torque computed now acts
+  ReferenceSample reference_now;   ///< at k Ts
+  ReferenceSample reference_next;  ///< when the torque computed now acts
+  std::array<RigidPoint, 3> path;  ///< one period before that, then, and one after; of a path
   std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts known before a reset
   Calibration calibration;                            ///< taken over at a reset
   SafetyState safety_state;
@@ -49,7 +51,8 @@ struct StepInput {
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
 static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 32 + 2 * sizeof(ReferenceSample) +
-                                       sizeof(std::int64_t) * kCounters + sizeof(Calibration) + 8,
+                                       3 * sizeof(RigidPoint) + sizeof(std::int64_t) * kCounters +
+                                       sizeof(Calibration) + 8,
               "no padding: the bytes are logged and compared");
 
 /// Why Step asked for less than the law computed. Bits of StepOutput::limits.
@@ -58,6 +61,13 @@ enum LimitBit : std::uint32_t {
   kLimitTorque2 = 2,
   kAdaptationHeld = 4,  ///< saturated, invalid sensor, or not Running
   kPredictionOff = 8,
+};
+
+/// What is wrong with the payload that the estimator finds. Bits of StepOutput::payload_doubts.
+enum PayloadDoubt : std::uint32_t {
+  kPayloadAtBound = 1,        ///< as heavy as it may be, or heavier
+  kPayloadModelMismatch = 2,  ///< the innovations are far larger than model and noise explain
+  kPayloadNotFound = 4,       ///< a move has ended, and as little is known as when it began
 };
 
 /// What one Step decided, and what it knew. No padding.
@@ -77,8 +87,12 @@ struct StepOutput {
   double adaptive_gain_change;         ///< Frobenius norm of K_I - K_I(0)
   double lyapunov_nm2;                 ///< V of the law (tracking_law.h); NaN: it has none
   std::array<double, 2> saturated_s;   ///< time at the torque limit since the reset, a joint
-  double fault_value;                  ///< of the lowest fault: the value that broke the limit,
-  double fault_limit;                  ///< the limit,
+  double payload_kg;                   ///< as found; this and the next four of `ekf-payload` only
+  double payload_sigma_kg;
+  std::array<double, 2> friction_nm;  ///< Coulomb levels as found
+  double mean_nis;                    ///< normalised innovation squared, smoothed; 8 expected
+  double fault_value;                 ///< of the lowest fault: the value that broke the limit,
+  double fault_limit;                 ///< the limit,
   std::array<std::int64_t, kCounters> counts;  ///< unwrapped
   std::uint32_t limits;                        ///< LimitBit
   std::uint32_t strain_used;                   ///< bit i: strain channel i took part in the fit
@@ -87,10 +101,12 @@ struct StepOutput {
       fault_channel;     ///< and its channel (joint, counter or strain row; 1-based; 0: none)
   std::uint8_t at_rest;  ///< hub and strain rates within their bounds for rest_time
   std::uint8_t experiment_done;  ///< the reference has ended
+  std::uint32_t payload_doubts;  ///< PayloadDoubt
+  std::array<std::uint8_t, 4> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);
 static_assert(sizeof(StepOutput) ==
-                  16 + 8 * (2 + 4 + 4 + 2 * kMaxNominalStates + 8 + 2 + 2 + 6 + 4) + 16,
+                  16 + 8 * (2 + 4 + 4 + 2 * kMaxNominalStates + 8 + 2 + 2 + 6 + 5 + 4) + 24,
               "no padding: the bytes are logged and compared");
 
 }  // namespace flexarm

@@ -84,6 +84,8 @@ void TrackingLaw::SetFeedforward(const Design& design) {
     case ControllerKind::kLqg:
       feedforward_x_ = LinksAtRest(Cp_, design.layout);
       break;
+    case ControllerKind::kGainScheduled:
+      break;  // has its own, scheduled_law.h
   }
 }
 

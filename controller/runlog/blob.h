@@ -17,10 +17,10 @@ namespace flexarm {
 static_assert(std::endian::native == std::endian::little, "run logs are little-endian");
 
 /// Versions of the BLOBs. Raise when the struct changes its layout or the meaning of a field.
-inline constexpr std::uint32_t kStepInputVersion = 3;
-inline constexpr std::uint32_t kStepOutputVersion = 2;
-static_assert(sizeof(StepInput) == 984, "the layout changed: raise kStepInputVersion");
-static_assert(sizeof(StepOutput) == 544, "the layout changed: raise kStepOutputVersion");
+inline constexpr std::uint32_t kStepInputVersion = 4;
+inline constexpr std::uint32_t kStepOutputVersion = 3;
+static_assert(sizeof(StepInput) == 1176, "the layout changed: raise kStepInputVersion");
+static_assert(sizeof(StepOutput) == 592, "the layout changed: raise kStepOutputVersion");
 
 /// A logged struct with the version before it.
 template <typename T>

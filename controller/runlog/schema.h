@@ -30,6 +30,8 @@ CREATE TABLE tick (
   modal_11_m REAL, modal_12_m REAL, modal_21_m REAL, modal_22_m REAL,
   adaptive_gain_change REAL, lyapunov_nm2 REAL,
   saturated_1_s REAL, saturated_2_s REAL,
+  payload_kg REAL, payload_sigma_kg REAL,
+  friction_1_nm REAL, friction_2_nm REAL, mean_nis REAL,
   counter_1 INTEGER, counter_2 INTEGER, counter_3 INTEGER, counter_4 INTEGER,
   faults INTEGER, limits INTEGER,
   truth_known INTEGER,

@@ -128,6 +128,7 @@ void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept 
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
   input->reference_now = ReferenceAtSample(reference);
   input->reference_next = reference.At(sample_);
+  input->path = reference.PathAround(sample_);
   input->reference_ended = sample_ >= last ? 1 : 0;
 }
 

@@ -1,5 +1,6 @@
 #include "controller/runtime/operator_task.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
@@ -34,6 +35,20 @@ Json BusStatusOf(const std::vector<BusHealth>& buses) {
                    {"taken_back", bus.taken_back}});
   }
   return all;
+}
+
+// Null where no estimator finds it.
+Json PayloadJson(const StepOutput& out) {
+  if (std::isnan(out.payload_kg)) return nullptr;
+  Json doubts = Json::array();
+  for (const PayloadWarning& warning : kPayloadWarnings) {
+    if ((out.payload_doubts & warning.doubt) != 0) doubts.push_back(warning.name);
+  }
+  return {{"kg", out.payload_kg},
+          {"sigma_kg", out.payload_sigma_kg},
+          {"friction_nm", out.friction_nm},
+          {"mean_nis", out.mean_nis},
+          {"doubts", doubts}};
 }
 
 std::optional<RequestKind> RequestByName(const std::string& name) {
@@ -118,9 +133,19 @@ void OperatorTask::TakeTicks() {
   while (context_.stack->operator_ticks().Pop(&telemetry_)) {
     commissioner_.Take(telemetry_);
     if (delay_.Take(telemetry_.input)) WarnOfDelay();
+    WarnOfPayload(payload_.Take(telemetry_.input, telemetry_.output));
   }
   if (std::optional<Json> answer = commissioner_.TakeAnswer()) {
     FinishCommissioning(std::move(*answer));
+  }
+}
+
+void OperatorTask::WarnOfPayload(std::uint32_t doubts) {
+  const StepOutput& out = telemetry_.output;
+  for (const PayloadWarning& warning : kPayloadWarnings) {
+    if ((doubts & warning.doubt) == 0) continue;
+    const Json figures = PayloadJson(out);
+    Warn(warning.name, warning.text + (": " + figures.dump()), figures);
   }
 }
 
@@ -130,9 +155,13 @@ void OperatorTask::WarnOfDelay() {
       "a torque acted later than predicted, and less than half of the loop's delay margin is "
       "left: " +
       figures.dump() + "; declare what the drives need (loop.actuation_delay_ms)";
+  Warn("delay-margin", text, figures);
+}
+
+void OperatorTask::Warn(const std::string& name, const std::string& text, const Json& figures) {
   context_.events->Push({.time_ns = now_ns_,
                          .kind = "warning",
-                         .name = "delay-margin",
+                         .name = name,
                          .text = text,
                          .value_json = figures.dump()});
   context_.report(true, text);
@@ -292,6 +321,7 @@ Json OperatorTask::Status() {
               {"modal_m", out.modal_m},
               {"root_strain", out.root_strain},
               {"at_rest", out.at_rest != 0},
+              {"payload", PayloadJson(out)},
               {"delay_ms", delay_.delay_ms()},
               {"delay_max_ms", delay_.longest_ms()},
               {"delay_margin_ms", delay_.margin_ms()},

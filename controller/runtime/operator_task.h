@@ -16,6 +16,7 @@
 #include "controller/runtime/delay_watch.h"
 #include "controller/runtime/loop_stack.h"
 #include "controller/runtime/operator_socket.h"
+#include "controller/runtime/payload_watch.h"
 #include "controller/runtime/task.h"
 #include "controller/runtime/unattended_run.h"
 
@@ -84,6 +85,9 @@ class OperatorTask final : public Task {
   void TakeAnswers();
   void TakeTicks();
   void WarnOfDelay();
+  /// An event of the log and a line for the operator.
+  void Warn(const std::string& name, const std::string& text, const nlohmann::json& figures);
+  void WarnOfPayload(std::uint32_t doubts);
   void FinishCommissioning(nlohmann::json answer);
   /// Plans `experiment` from where the hubs are. @throws Refused
   void PlanExperiment(const Experiment& experiment, const std::array<double, 2>& start_rad);
@@ -98,6 +102,7 @@ class OperatorTask final : public Task {
   UnattendedRun unattended_;
   BusJournal bus_journal_;
   DelayWatch delay_;
+  PayloadWatch payload_;
   Commissioner commissioner_;
   int commissioning_client_ = -1;            // -1: nobody waits
   std::uint32_t commissioning_request_ = 0;  // of its run; 0: none

@@ -24,6 +24,11 @@ struct StackConfig {
   CommissioningConfig commissioning;
   LoopConfig loop;
   DaemonConfig daemon;
+
+  /// Whether the state comes from `ekf-payload`.
+  bool uses_payload_estimator() const {
+    return estimator.kind == EstimatorKind::kPayload || IsScheduled(controller.kind);
+  }
 };
 
 }  // namespace flexarm

@@ -28,7 +28,7 @@ void Run() {
     const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
     ControlStep step(config, DesignFor(config));
     for (const StepInput& input : inputs) last = CountedStep(step, input).tick;
-    std::printf("variant %s\n", variant.name);
+    std::printf("variant %s at most %d\n", variant.name, variant.most_instructions);
   }
   std::printf("steps %zu a variant, last tick %lld\n", inputs.size(), static_cast<long long>(last));
 }

@@ -164,6 +164,16 @@ const BrokenCase kRange[] = {
      "pd_stiffness_nm_per_rad = [30.0, 0.0]", "controller.pd_stiffness_nm_per_rad[1]", "above 0"},
     {"NegativePdDamping", "pd_damping_nms_per_rad = [0.5, 0.3]",
      "pd_damping_nms_per_rad = [-0.5, 0.3]", "controller.pd_damping_nms_per_rad[0]", "negative"},
+    {"StartsBeyondItsHeaviestPayload", "start_kg = 0.2 ", "start_kg = 1.2 ",
+     "estimator.payload.start_kg", "at most estimator.payload.max_kg = 1.1"},
+    {"NoDoubtOfThePayload", "start_sigma_kg = 0.4", "start_sigma_kg = 0.0",
+     "estimator.payload.start_sigma_kg", "never found"},
+    {"PlayIsNeverForgotten", "play_memory = 0.999", "play_memory = 1.999",
+     "estimator.payload.play_memory", "0 .. 1"},
+    {"GainsNotAscending", "gain_payload_kg = [0.0, 0.05, 0.1,",
+     "gain_payload_kg = [0.0, 0.1, 0.05,", "controller.payload.gain_payload_kg", "ascending"},
+    {"GainsNotFromZero", "gain_elbow_deg = [0.0, 20.0,", "gain_elbow_deg = [10.0, 20.0,",
+     "controller.payload.gain_elbow_deg[0]", "the first is 0"},
     {"NoTorque", "torque_limit_nm = [30.0, 6.0]", "torque_limit_nm = [30.0, 0.0]",
      "limits.torque_limit_nm[1]", "above 0"},
     {"StrainOfTenPercent", "strain_limit = [1.9e-3, 1.9e-3]", "strain_limit = [0.1, 1.9e-3]",
@@ -183,6 +193,9 @@ const BrokenCase kRange[] = {
 INSTANTIATE_TEST_SUITE_P(Range, BrokenConfig, ::testing::ValuesIn(kRange), CaseName);
 
 const BrokenCase kContradiction[] = {
+    {"PayloadLawOnAnotherModel", "name = \"sobel\"\nnominal = \"R12\"",
+     "name = \"gain-scheduled\"\nnominal = \"T16\"", "controller.name",
+     "needs controller.nominal = \"R12\"", "name = \"gain-scheduled\""},
     {"OutputBeforeTheDeadline",
      "output = \"next_tick\"            # torque acts at the next sampling instant; \"at_once\": "
      "docs/timing.md\noutput_after_ms = 15.0",
@@ -251,6 +264,18 @@ TEST(BrokenConfigs, ATorsionalModelWithoutRotorEncodersNeedsTheKalmanFilter) {
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].key, "controller.nominal");
   EXPECT_THAT(problems[0].rule, HasSubstr("an encoder on each rotor"));
+}
+
+TEST(BrokenConfigs, ALawThatFindsThePayloadNeedsItsTables) {
+  const std::string text = Replaced(Replaced(FileText(Shipped("thesis-rig.toml")),
+                                             "name = \"sobel\"", "name = \"gain-scheduled\""),
+                                    "[controller.payload]  ", "[rig2]  ");
+  bool told = false;
+  for (const ConfigProblem& problem : ProblemsOf(text)) {
+    told |= problem.key == "controller.name" &&
+            problem.rule.find("needs the table [controller.payload]") != std::string::npos;
+  }
+  EXPECT_TRUE(told);
 }
 
 TEST(BrokenConfigs, TooManyStrainChannels) {

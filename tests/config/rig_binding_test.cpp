@@ -139,6 +139,53 @@ TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
   EXPECT_EQ(set.innovation_limit_rad, 0.36);
 }
 
+TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
+  const Config set = With({"estimator.payload.process_force=[1, 2, 3, 4, 5, 6]",
+                           "estimator.payload.rotor_extra_sigma_rad=[0.01, 0.02]",
+                           "estimator.payload.start_kg=0.3",
+                           "estimator.payload.start_sigma_kg=0.5",
+                           "estimator.payload.max_kg=1.2",
+                           "estimator.payload.move_sigma_kg=0.6",
+                           "estimator.payload.walk_kg=0.004",
+                           "estimator.payload.min_rate_rad_s=0.05",
+                           "estimator.payload.friction_start_sigma_nm=[0.2, 0.3]",
+                           "estimator.payload.friction_max_nm=[2, 3]",
+                           "estimator.payload.friction_walk_nm=[0.4, 0.5]",
+                           "estimator.payload.friction_min_rate_rad_s=0.06",
+                           "estimator.payload.play_threshold_counts=2.5",
+                           "estimator.payload.play_memory=0.9",
+                           "estimator.payload.gate_sigmas=5",
+                           "controller.payload.max_kg=0.9",
+                           "controller.payload.reference_kg=0.25",
+                           "controller.payload.gain_payload_kg=[0, 0.5]",
+                           "controller.payload.gain_elbow_deg=[0, 45, 90]",
+                           "estimator.name=ekf-payload",
+                           "controller.name=gain-scheduled"});
+  EXPECT_EQ(set.estimator.kind, EstimatorKind::kPayload);
+  EXPECT_EQ(set.controller.kind, ControllerKind::kGainScheduled);
+  const PayloadEstimatorConfig& e = set.estimator.payload.value();
+  EXPECT_EQ(e.process_force, (std::array{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+  EXPECT_EQ(e.rotor_extra_sigma_rad, (std::array{0.01, 0.02}));
+  EXPECT_EQ(e.start_kg, 0.3);
+  EXPECT_EQ(e.start_sigma_kg, 0.5);
+  EXPECT_EQ(e.max_kg, 1.2);
+  EXPECT_EQ(e.move_sigma_kg, 0.6);
+  EXPECT_EQ(e.walk_kg, 0.004);
+  EXPECT_EQ(e.min_rate_rad_s, 0.05);
+  EXPECT_EQ(e.friction_start_sigma_nm, (std::array{0.2, 0.3}));
+  EXPECT_EQ(e.friction_max_nm, (std::array{2.0, 3.0}));
+  EXPECT_EQ(e.friction_walk_nm, (std::array{0.4, 0.5}));
+  EXPECT_EQ(e.friction_min_rate_rad_s, 0.06);
+  EXPECT_EQ(e.play_threshold_counts, 2.5);
+  EXPECT_EQ(e.play_memory, 0.9);
+  EXPECT_EQ(e.gate_sigmas, 5.0);
+  const PayloadLawConfig& c = set.controller.payload.value();
+  EXPECT_EQ(c.max_kg, 0.9);
+  EXPECT_EQ(c.reference_kg, 0.25);
+  EXPECT_EQ(c.gain_payload_kg, (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(c.gain_elbow_deg, (std::vector<double>{0, 45, 90}));
+}
+
 TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
   const ControllerConfig c =
       With({"controller.alpha=0.1", "controller.vartheta=0.2", "controller.sigma=0.3",

@@ -62,6 +62,10 @@ PayloadFilterConfig StudyConfig() {
   return c;
 }
 
+TorquePieces Held(const Vector2d& torque_nm) {
+  return TorquePieces::WholePeriod({torque_nm[0], torque_nm[1]});
+}
+
 PayloadFilter StudyFilter() {
   return {RigidJointStepper(RigidJointArm(ThesisRig()), kPeriod_s, kGauge_hz), StudyConfig()};
 }
@@ -112,7 +116,8 @@ TEST(PayloadFilter, AgreesWithTheGoldenRun) {
   PayloadFilter filter = StudyFilter();
   std::size_t k = 0;
   for (const auto& input : golden["ekf_inputs_all"]) {
-    const auto& e = filter.Update(AsVector(input["u"]), {.z = AsVector(input["z"]), .fresh = true});
+    const auto& e = filter.Update(Held(AsVector(input["u"])),
+                                  {.z = AsVector(input["z"]), .good = PayloadFilter::kAllGood});
     if (k % 6 == 0) {
       const auto& expected = golden["ekf"][k / 6];
       VectorXd x(12);
@@ -135,7 +140,8 @@ TEST(PayloadFilter, FindsThePayloadOfTheSimulatedArm) {
     Plant plant(RigWith(payload_kg));
     PayloadFilter filter = StudyFilter();
     for (int k = 0; k < 140; ++k) {
-      filter.Update(MoveTorque(k), {.z = plant.Run(MoveTorque(k)), .fresh = true});
+      filter.Update(Held(MoveTorque(k)),
+                    {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
     }
     EXPECT_NEAR(filter.estimate().payload_kg, payload_kg, 0.03);
   }
@@ -146,7 +152,7 @@ TEST(PayloadFilter, LearnsNoPayloadAtRest) {
   Outputs z = Outputs::Zero();
   for (int k = 0; k < 200; ++k) {
     z[3] = k % 20 < 10 ? 0.004 : -0.004;  // play
-    filter.Update(Vector2d::Zero(), {.z = z, .fresh = true});
+    filter.Update(Held(Vector2d::Zero()), {.z = z, .good = PayloadFilter::kAllGood});
     ASSERT_EQ(filter.estimate().payload_kg, StudyConfig().payload_start_kg) << k;
   }
 }
@@ -159,7 +165,7 @@ TEST(PayloadFilter, PredictsThroughLostFrames) {
       stepper.Advance(filter.estimate().state,
                       {.torque_nm = torque, .payload_kg = 0.2, .friction_nm = {0.16, 0.01}});
   const Outputs garbage = Outputs::Constant(1e3);
-  const auto& e = filter.Update(torque, {.z = garbage, .fresh = false});
+  const auto& e = filter.Update(Held(torque), {.z = garbage, .good = 0});
   EXPECT_EQ(e.state.q, expected.q);
   EXPECT_EQ(e.state.v, expected.v);
   EXPECT_EQ(e.payload_kg, 0.2);
@@ -171,14 +177,18 @@ TEST(PayloadFilter, OneGlitchHardlyMovesTheEstimate) {
   Plant plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 60; ++k) {
-    filter.Update(MoveTorque(k), {.z = plant.Run(MoveTorque(k)), .fresh = true});
+    filter.Update(Held(MoveTorque(k)),
+                  {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
   }
   const Outputs z = plant.Run(MoveTorque(60));
   PayloadFilter struck = filter;
   Outputs glitch = z;
   glitch[1] += 0.5;
-  const double clean = filter.Update(MoveTorque(60), {.z = z, .fresh = true}).state.q[1];
-  const double hit = struck.Update(MoveTorque(60), {.z = glitch, .fresh = true}).state.q[1];
+  const double clean =
+      filter.Update(Held(MoveTorque(60)), {.z = z, .good = PayloadFilter::kAllGood}).state.q[1];
+  const double hit =
+      struck.Update(Held(MoveTorque(60)), {.z = glitch, .good = PayloadFilter::kAllGood})
+          .state.q[1];
   EXPECT_NEAR(hit, clean, 0.005);
 }
 
@@ -186,7 +196,8 @@ TEST(PayloadFilter, AMoveOpensThePayloadAgain) {
   Plant plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 140; ++k) {
-    filter.Update(MoveTorque(k), {.z = plant.Run(MoveTorque(k)), .fresh = true});
+    filter.Update(Held(MoveTorque(k)),
+                  {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
   }
   ASSERT_LT(filter.estimate().payload_sigma_kg, 0.1);
   filter.BeginMove();
@@ -196,8 +207,8 @@ TEST(PayloadFilter, AMoveOpensThePayloadAgain) {
 TEST(PayloadFilter, DoesNotAllocate) {
   PayloadFilter filter = StudyFilter();
   const NoAlloc armed;
-  filter.Update(Vector2d(2.0, 0.4), {.z = Outputs::Zero(), .fresh = true});
-  filter.Update(Vector2d(2.0, 0.4), {.z = Outputs::Zero(), .fresh = false});
+  filter.Update(Held({2.0, 0.4}), {.z = Outputs::Zero(), .good = PayloadFilter::kAllGood});
+  filter.Update(Held({2.0, 0.4}), {.z = Outputs::Zero(), .good = 0});
   filter.BeginMove();
   filter.Reset(RigidJointArm::Vector::Zero());
 }

@@ -68,6 +68,20 @@ void ExpectReplays(const std::vector<std::string>& overrides) {
 
 TEST(Determinism, RecordedInputsThroughAFreshStepGiveTheSameBytes) { ExpectReplays({}); }
 
+// Its design goes through the log's text: the filter's model is not computed again.
+TEST(Determinism, SoDoesTheLawThatFindsThePayload) {
+  StackRun run(ShippedRig({"controller.name=gain-scheduled"}),
+               ShippedExperiment("benchmark-waypoints"));
+  run.Run(kEndNs);
+  ControlStep fresh(run.config(), DesignFromJson(DesignToJson(run.design(), "h"), "h"));
+  const FlushDenormals as_in_the_tasks;
+  for (const TickRecord& record : run.tick) {
+    const StepOutput output = fresh.Step(record.input);
+    ASSERT_TRUE(SameBytes(output, record.output)) << "tick " << record.input.tick;
+  }
+  EXPECT_NEAR(run.tick.back().output.payload_kg, 0.1, 0.03);
+}
+
 TEST(Determinism, RecordedInputsReplayWithDifferencesToo) {
   ExpectReplays(
       {"estimator.name=difference", "sensors.strain_input.filter_hz=0.0", "controller.alpha=2.0"});

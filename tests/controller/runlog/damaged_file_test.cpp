@@ -101,7 +101,7 @@ TEST_F(DamagedFileTest, AShortBlobIsNamedWithItsTick) {
 TEST_F(DamagedFileTest, ABlobOfAnotherVersionIsNamed) {
   WriteRun(3);
   Alter("UPDATE tick SET output = x'09000000' || substr(output, 5) WHERE tick = 3");
-  ExpectError("tick 3: output has version 9, expected 2");
+  ExpectError("tick 3: output has version 9, expected 3");
 }
 
 TEST_F(DamagedFileTest, AShortSafetyRecordIsNamed) {

@@ -1,0 +1,50 @@
+#include "controller/law/path_reference.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "model/rigid_joint_step.h"
+
+namespace flexarm {
+
+RigidPath::RigidPath(const std::vector<PlannedMove>& moves, const std::array<double, 2>& start_rad,
+                     int periods, double period_s) {
+  point_.resize(
+      static_cast<std::size_t>(periods) + 1,
+      {.angle_rad = start_rad, .rate_rad_s = {}, .acceleration_rad_s2 = {}, .jerk_rad_s3 = {}});
+  for (const PlannedMove& move : moves) {
+    for (int k = move.first; k <= periods; ++k) {
+      point_[static_cast<std::size_t>(k)] = move.At(k, period_s);
+    }
+  }
+}
+
+const RigidPoint& RigidPath::At(int k) const noexcept {
+  return point_[static_cast<std::size_t>(std::clamp(k, 0, periods()))];
+}
+
+RigidJointArm ArmOf(const Design& design) { return RigidJointStepper(design.payload_model).arm(); }
+
+std::array<RigidPathPoint, 3> PathPoints(const std::array<RigidPoint, 3>& path) noexcept {
+  const auto point = [](const RigidPoint& p) {
+    return RigidPathPoint{.Y = {p.angle_rad[0], p.angle_rad[1]},
+                          .Y_dot = {p.rate_rad_s[0], p.rate_rad_s[1]},
+                          .Y_ddot = {p.acceleration_rad_s2[0], p.acceleration_rad_s2[1]}};
+  };
+  return {point(path[0]), point(path[1]), point(path[2])};
+}
+
+std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,
+                                                  double payload_kg, double period_s) {
+  std::vector<ReferenceSample> samples(static_cast<std::size_t>(path.periods()) + 1);
+  for (int k = 0; k <= path.periods(); ++k) {
+    ReferenceSample& sample = samples[static_cast<std::size_t>(k)];
+    const QuasiStaticSample bent =
+        QuasiStaticOver(arm, payload_kg, PathPoints(path.Around(k)), period_s);
+    std::copy_n(bent.x.data(), bent.x.size(), sample.x_m.begin());
+    sample.u_m_nm = {bent.torque_nm[0], bent.torque_nm[1]};
+  }
+  return samples;
+}
+
+}  // namespace flexarm

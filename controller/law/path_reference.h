@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "controller/law/motion_plan.h"
+#include "controller/law/rigid_point.h"
+#include "controller/law/step_types.h"
+#include "model/quasi_static_map.h"
+#include "model/rigid_joint_arm.h"
+
+namespace flexarm {
+
+/// The way of planned moves, sample by sample.
+class RigidPath {
+ public:
+  /// @param moves      in order of time; what is before them rests at `start_rad`
+  /// @param periods    of the experiment
+  RigidPath(const std::vector<PlannedMove>& moves, const std::array<double, 2>& start_rad,
+            int periods, double period_s);
+
+  /// Y, k periods after the start; before it the rest at the start, after the end the rest there.
+  /// Real-time: safe.
+  const RigidPoint& At(int k) const noexcept;
+
+  /// At k - 1, k and k + 1. Real-time: safe.
+  std::array<RigidPoint, 3> Around(int k) const noexcept { return {At(k - 1), At(k), At(k + 1)}; }
+
+  int periods() const noexcept { return static_cast<int>(point_.size()) - 1; }
+
+ private:
+  std::vector<RigidPoint> point_;
+};
+
+/// The arm that a design for a law that knows the payload was made for.
+RigidJointArm ArmOf(const Design& design);
+
+/// In the terms of the quasi-static map. Real-time: safe.
+std::array<RigidPathPoint, 3> PathPoints(const std::array<RigidPoint, 3>& path) noexcept;
+
+/// The reference of the laws that know the payload: an arm that is bent along the path without
+/// vibrating, x_m and u_m by QuasiStaticOver, one sample a period from 0 on.
+std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,
+                                                  double payload_kg, double period_s);
+
+}  // namespace flexarm

@@ -1,0 +1,34 @@
+#include "controller/law/scheduled_law.h"
+
+#include "controller/law/gain_payload.h"
+#include "controller/law/path_reference.h"
+#include "model/portable_math.h"
+#include "model/quasi_static_map.h"
+
+namespace flexarm {
+namespace {
+
+// Below this rate the friction that is fed forward fades away: at the ends of a move its sign is
+// a guess.
+constexpr double kFrictionRate_rad_s = 0.05;
+
+}  // namespace
+
+Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& knowledge,
+                                     const std::array<RigidPoint, 3>& path,
+                                     double rested_s) const noexcept {
+  const QuasiStaticSample desired =
+      QuasiStaticOver(arm_, knowledge.payload_kg, PathPoints(path), period_s_);
+  Eigen::Vector2d u = desired.torque_nm;
+  for (int i = 0; i < 2; ++i) {
+    const double rate_rad_s = desired.x[RigidJointArm::kDof + i];
+    u[i] += knowledge.friction_nm[static_cast<std::size_t>(i)] *
+            PortableMath::Tanh(rate_rad_s / kFrictionRate_rad_s);
+  }
+  const double gain_payload_kg =
+      GainPayload(knowledge.payload_kg, knowledge.payload_sigma_kg, knowledge.mean_nis, rested_s);
+  u += gains_.At(gain_payload_kg, x[1]).lazyProduct(desired.x - x);
+  return u;
+}
+
+}  // namespace flexarm

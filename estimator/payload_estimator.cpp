@@ -1,0 +1,105 @@
+#include "estimator/payload_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace flexarm {
+namespace {
+
+// Of the state at a start: at rest, where the encoders say.
+constexpr double kStartMotion = 1e-3;  // hubs and all rates, rad and m, and per second
+constexpr double kStartBent_m = 1e-4;  // modal coordinates, and what the gauges' filters show
+
+// The difference for a derivative by friction: a hundredth of the level.
+constexpr double kFrictionProbe = 0.01;
+constexpr double kLeastFrictionProbe_nm = 1e-4;
+
+double OfQuantum(double quantum, double extra) {
+  return std::sqrt(quantum * quantum / 12.0 + extra * extra);
+}
+
+// Rad a count of the counter; 0 without such an encoder.
+double Quantum(const SensorConfig& sensors, int counter) {
+  for (const EncoderConfig& encoder : sensors.encoder) {
+    if (encoder.counter == counter) return 2.0 * std::numbers::pi / encoder.counts_per_turn;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+std::vector<double> PayloadModelConstants(const ArmParameters& arm, const SensorConfig& sensors,
+                                          double period_s) {
+  return RigidJointStepper(RigidJointArm(arm), period_s, sensors.strain_input.filter_hz)
+      .Constants();
+}
+
+PayloadFilterConfig PayloadFilterFor(const ArmParameters& arm, const SensorConfig& sensors,
+                                     const EstimatorConfig& config) {
+  const PayloadEstimatorConfig& p = *config.payload;
+  PayloadFilterConfig c{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    c.joint_stiffness_nm_per_rad[i] = arm.joint[i].stiffness_nm_per_rad;
+    c.friction_start_nm[i] = arm.joint[i].coulomb_friction_nm;
+    c.friction_probe_nm[i] =
+        std::max(kLeastFrictionProbe_nm, kFrictionProbe * arm.joint[i].coulomb_friction_nm);
+    c.output_sigma[i] = OfQuantum(Quantum(sensors, static_cast<int>(i)), 0.0);
+    c.output_sigma[2 + i] =
+        OfQuantum(Quantum(sensors, 2 + static_cast<int>(i)), p.rotor_extra_sigma_rad[i]);
+  }
+  std::copy(config.modal_sigma_m.begin(), config.modal_sigma_m.end(), c.output_sigma.begin() + 4);
+  c.process_force = p.process_force;
+  c.start_sigma.fill(kStartBent_m);
+  std::fill_n(c.start_sigma.begin(), 2, kStartMotion);
+  std::fill_n(c.start_sigma.begin() + RigidJointArm::kDof, RigidJointArm::kDof, kStartMotion);
+  c.payload_start_kg = p.start_kg;
+  c.payload_start_sigma_kg = c.payload_max_sigma_kg = p.start_sigma_kg;
+  c.payload_max_kg = p.max_kg;
+  c.payload_move_sigma_kg = p.move_sigma_kg;
+  c.payload_walk_kg = p.walk_kg;
+  c.payload_min_rate_rad_s = p.min_rate_rad_s;
+  c.friction_start_sigma_nm = p.friction_start_sigma_nm;
+  c.friction_max_nm = p.friction_max_nm;
+  c.friction_walk_nm = p.friction_walk_nm;
+  c.friction_min_rate_rad_s = p.friction_min_rate_rad_s;
+  c.play_threshold_rad = p.play_threshold_counts * Quantum(sensors, 1);
+  c.play_memory = p.play_memory;
+  c.gate_sigmas = p.gate_sigmas;
+  return c;
+}
+
+PayloadEstimator::PayloadEstimator(std::span<const double> model, const PayloadFilterConfig& config)
+    : filter_(RigidJointStepper(model), config) {}
+
+const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& counters,
+                                                        const FittedModes& modes,
+                                                        const TorquePieces& applied) noexcept {
+  if (!started_) {
+    RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
+    q.head<2>() << counters.angle_rad[0], counters.angle_rad[1];
+    filter_.Reset(q);
+    started_ = true;
+  }
+  PayloadFilter::Reading reading{.z = {}, .good = counters.good & 0b1111u};
+  for (std::size_t i = 0; i < 4; ++i) {
+    reading.z[static_cast<int>(i)] = counters.angle_rad[i];
+    reading.z[static_cast<int>(4 + i)] = modes.modal_m[i];
+    if (modes.valid[i / 2]) reading.good |= 1u << (4 + i);
+  }
+  return filter_.Update(applied, reading);
+}
+
+std::array<double, 4> PayloadEstimator::ModalRates() const noexcept {
+  const GaugedState& x = filter_.estimate().state;
+  const double corner_rad_s =
+      filter_.stepper().gauge_share() / filter_.stepper().step_s();  // w_f, to first order
+  std::array<double, 4> rates;
+  for (int i = 0; i < 4; ++i) {
+    rates[static_cast<std::size_t>(i)] = corner_rad_s * (x.q[2 + i] - x.phi_f[i]);
+  }
+  return rates;
+}
+
+}  // namespace flexarm

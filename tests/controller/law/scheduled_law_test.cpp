@@ -1,0 +1,177 @@
+// The law that knows the payload, and the reference that it follows.
+
+#include "controller/law/scheduled_law.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "controller/law/gain_payload.h"
+#include "controller/law/move_watch.h"
+#include "controller/law/path_reference.h"
+#include "controller/law/reference.h"
+#include "controller/law/refused.h"
+#include "tests/controller/law/shipped_rig.h"
+#include "tests/support/message_of.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::Vector2d;
+using testing::HasSubstr;
+
+constexpr double kPeriod_s = 0.02;
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+const Design& ScheduledDesignOfRig() {
+  static const Design design = DesignController(ShippedRig({"controller.name=gain-scheduled"}));
+  return design;
+}
+
+Experiment OneMove(std::array<double, 2> to_deg, std::optional<double> duration_s,
+                   double total_s = 8.0) {
+  return {.name = "test",
+          .text = "",
+          .duration_s = total_s,
+          .doublet = {},
+          .sim_event = {},
+          .move = {{.start_s = 0.2,
+                    .duration_s = duration_s,
+                    .to_deg = to_deg,
+                    .profile = MoveProfile::kSeptic}}};
+}
+
+ReferenceTable Table(const Experiment& experiment, std::array<double, 2> start_rad = {0.0, 0.0}) {
+  return {experiment, ScheduledDesignOfRig(), kPeriod_s, start_rad, ShippedLimits()};
+}
+
+ScheduledLaw Law() {
+  return {ArmOf(ScheduledDesignOfRig()), ScheduledDesignOfRig().scheduled->gains, kPeriod_s};
+}
+
+constexpr PayloadKnowledge kKnown = {
+    .payload_kg = 0.3, .payload_sigma_kg = 0.0, .friction_nm = {0.16, 0.01}, .mean_nis = 8.0};
+
+TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
+  const ReferenceTable table = Table(OneMove({30, -20}, 2.0), {0.1, -0.2});
+  const std::array<double, 2> to_rad = {30 * kDeg, -20 * kDeg};
+  const RigidJointArm arm = ArmOf(ScheduledDesignOfRig());
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(table.At(0).x_m[i], i == 0 ? 0.1 : -0.2);
+    EXPECT_NEAR(table.At(400).x_m[i], to_rad[i], 1e-15);
+    EXPECT_EQ(table.At(400).u_m_nm[i], 0.0);
+  }
+  double bent_m = 0.0;
+  for (int k = 0; k <= table.periods(); ++k) {
+    const QuasiStaticSample expected =
+        QuasiStaticOver(arm, 0.15, PathPoints(table.PathAround(k)), kPeriod_s);
+    for (int i = 0; i < 12; ++i) {
+      ASSERT_EQ(table.At(k).x_m[static_cast<std::size_t>(i)], expected.x[i]) << k;
+    }
+    bent_m = std::fmax(bent_m, std::fabs(table.At(k).x_m[2]));
+  }
+  EXPECT_GT(bent_m, 0.01) << "an arm that does not bend: the test says nothing";
+}
+
+TEST(PathReference, ThePathIsTheMovesWithWhatIsAroundTheSample) {
+  const ReferenceTable table = Table(OneMove({30, -20}, 2.0));
+  for (const int k : {-3, 0, 10, 11, 60, 109, 110, 111, 400, 500}) {
+    const auto path = table.PathAround(k);
+    for (int j = 0; j < 3; ++j) {
+      const RigidPoint point = table.moves()[0].At(k - 1 + j, kPeriod_s);
+      EXPECT_EQ(path[static_cast<std::size_t>(j)].angle_rad, point.angle_rad) << k;
+      EXPECT_EQ(path[static_cast<std::size_t>(j)].rate_rad_s, point.rate_rad_s) << k;
+    }
+  }
+}
+
+TEST(PathReference, AMoveTooFastForTheHeaviestPayloadIsRefusedWithTheDurationThatWouldDo) {
+  const std::string message = MessageOf<Refused>([] { Table(OneMove({60, 80}, 1.0)); });
+  EXPECT_THAT(message, AllOf(HasSubstr("move[0]"), HasSubstr("controller.payload.max_kg"),
+                             HasSubstr("the shortest duration_s within the limits is ")));
+  const double shortest_s = std::stod(message.substr(message.rfind(' ')));
+  EXPECT_NO_THROW(Table(OneMove({60, 80}, shortest_s)));
+  EXPECT_THROW(Table(OneMove({60, 80}, shortest_s - kPeriod_s)), Refused);
+}
+
+TEST(PathReference, AMoveWithoutDurationKeepsTheShareOfTheLimitsWithTheHeaviestPayload) {
+  const ReferenceTable table = Table(OneMove({60, 80}, std::nullopt, 20.0));
+  const Experiment limit = OneMove({60, 80}, table.moves()[0].periods * kPeriod_s, 20.0);
+  MotionLimits share = ShippedLimits();
+  for (auto* values :
+       {&share.torque_nm, &share.slew_nm_per_s, &share.hub_rate_rad_s, &share.strain}) {
+    for (double& value : *values) value *= share.plan_fraction * (1.0 + 1e-9);
+  }
+  EXPECT_NO_THROW(ReferenceTable(limit, ScheduledDesignOfRig(), kPeriod_s, {0.0, 0.0}, share));
+}
+
+TEST(PathReference, WhatIsNoMoveIsRefused) {
+  Experiment doublet = OneMove({10, 10}, 1.0);
+  doublet.doublet = {
+      {.start_s = 4.0, .duration_s = 1.0, .shape = DoubletShape::kSquare, .move_deg = {5, 5}}};
+  EXPECT_THAT(MessageOf<Refused>([&] { Table(doublet); }),
+              AllOf(HasSubstr("doublet[0]"), HasSubstr("[[move]] rows only")));
+}
+
+TEST(ScheduledLaw, AtRestOnItsPathItAsksForNothing) {
+  const auto path = Table(OneMove({30, -20}, 2.0)).PathAround(0);
+  const ScheduledLaw::State x = ScheduledLaw::State::Zero();
+  EXPECT_EQ(Law().Torque(x, kKnown, path, 1.0), Vector2d(0.0, 0.0));
+}
+
+TEST(ScheduledLaw, AsksForTheForceOfTheBentArmItsFrictionAndTheGainsOfItsPayload) {
+  const ReferenceTable table = Table(OneMove({30, -20}, 2.0));
+  const RigidJointArm arm = ArmOf(ScheduledDesignOfRig());
+  const GainTable& gains = ScheduledDesignOfRig().scheduled->gains;
+  for (const int k : {30, 60, 90}) {
+    const auto path = table.PathAround(k);
+    const QuasiStaticSample desired = QuasiStaticOver(arm, 0.3, PathPoints(path), kPeriod_s);
+    ScheduledLaw::State x = desired.x;
+    const Vector2d expected(desired.torque_nm[0] + 0.16 * std::tanh(desired.x[6] / 0.05),
+                            desired.torque_nm[1] + 0.01 * std::tanh(desired.x[7] / 0.05));
+    EXPECT_LT((Law().Torque(x, kKnown, path, 0.0) - expected).norm(), 1e-12) << k;
+    x[0] -= 0.01;
+    x[4] += 0.002;
+    const Vector2d corrected = expected + gains.At(0.3, x[1]) * (desired.x - x);
+    EXPECT_LT((Law().Torque(x, kKnown, path, 0.0) - corrected).norm(), 1e-12) << k;
+  }
+}
+
+// A payload in doubt gets the gains that hold every payload, and so does an arm that rests.
+TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
+  const auto path = Table(OneMove({30, -20}, 2.0)).PathAround(0);
+  const ScheduledLaw::State x = -0.01 * ScheduledLaw::State::Unit(0);
+  PayloadKnowledge heavy = kKnown;
+  heavy.payload_kg = 1.0;
+  const Vector2d sure = Law().Torque(x, heavy, path, 0.0);
+  const GainTable& gains = ScheduledDesignOfRig().scheduled->gains;
+  const Vector2d robust = gains.At(0.15, 0.0) * -x;
+  EXPECT_GT((sure - robust).norm(), 0.01) << "the same gains: the test says nothing";
+  EXPECT_LT((Law().Torque(x, heavy, path, 0.6) - robust).norm(), 1e-12);
+  heavy.payload_sigma_kg = 0.2;
+  EXPECT_LT((Law().Torque(x, heavy, path, 0.0) - robust).norm(), 1e-12);
+  heavy.payload_sigma_kg = 0.0;
+  heavy.mean_nis = 100.0;
+  EXPECT_LT((Law().Torque(x, heavy, path, 0.0) - robust).norm(), 1e-12);
+}
+
+TEST(MoveWatch, TellsTheBeginOfEachMoveAndSinceWhenThePathRests) {
+  MoveWatch watch;
+  RigidPoint rest{}, moving{};
+  moving.rate_rad_s[1] = 0.1;
+  EXPECT_FALSE(watch.Take(rest, kPeriod_s));
+  EXPECT_TRUE(std::isinf(watch.rested_s())) << "nothing has moved yet";
+  EXPECT_TRUE(watch.Take(moving, kPeriod_s));
+  EXPECT_FALSE(watch.Take(moving, kPeriod_s)) << "said already";
+  EXPECT_EQ(watch.rested_s(), 0.0);
+  for (int k = 0; k < 5; ++k) EXPECT_FALSE(watch.Take(rest, kPeriod_s));
+  EXPECT_NEAR(watch.rested_s(), 0.1, 1e-12);
+  EXPECT_TRUE(watch.Take(moving, kPeriod_s)) << "the next one";
+  watch.Reset();
+  EXPECT_TRUE(std::isinf(watch.rested_s()));
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+
+#include "controller/law/experiment.h"
+#include "model/rigid_joint_arm.h"
+
+// Moves that nothing was tuned on, by the recipe of beyond.md section 4.
+
+namespace flexarm {
+
+/// The study's shortest duration of a septic move (beyond.md 2.1), s: for 9 and 3.8 N m and 4 and
+/// 6 rad/s, with `heaviest_kg` at the tip.
+inline double RuleDuration_s(const RigidJointArm& arm, double heaviest_kg,
+                             const Eigen::Vector2d& from_rad, const Eigen::Vector2d& to_rad) {
+  constexpr double kPeakAcceleration = 7.51, kPeakRate = 2.19, kShortest_s = 0.4;
+  const Eigen::Vector2d torque_nm(9.0, 3.8), rate_rad_s(4.0, 6.0), by = to_rad - from_rad;
+  double duration_s = kShortest_s;
+  for (int i = 0; i < 2; ++i) {
+    duration_s = std::max(duration_s, kPeakRate * std::fabs(by[i]) / rate_rad_s[i]);
+  }
+  for (int point = 0; point < 5; ++point) {
+    RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
+    q[1] = from_rad[1] + by[1] * point / 4.0;
+    const Eigen::Vector2d effort =
+        arm.At(arm.Outboard(heaviest_kg), q, RigidJointArm::Vector::Zero())
+            .M.topLeftCorner<2, 2>() *
+        by;
+    for (int i = 0; i < 2; ++i) {
+      duration_s =
+          std::max(duration_s, std::sqrt(kPeakAcceleration * std::fabs(effort[i]) / torque_nm[i]));
+    }
+  }
+  return duration_s;
+}
+
+/// A run of the recipe: four moves to anywhere in +-60, +-90 deg, each 1 to 1.5 times the rule for
+/// 1 kg, with 1.5 s of rest after each; and the payload, anything from 0 to `heaviest_kg`.
+struct RandomMoves {
+  Experiment experiment;
+  double payload_kg;
+};
+
+inline RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed,
+                                   double heaviest_kg) {
+  constexpr double kPeriod_s = 0.02, kRest_s = 1.5;
+  const auto on_grid = [](double time_s) { return kPeriod_s * std::ceil(time_s / kPeriod_s); };
+  std::mt19937_64 random(seed);
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * std::ldexp(static_cast<double>(random() >> 11), -53);
+  };
+  RandomMoves out{};
+  out.payload_kg = uniform(0.0, heaviest_kg);
+  out.experiment.name = "random-moves";
+  Eigen::Vector2d from_deg = Eigen::Vector2d::Zero();
+  double now_s = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d to_deg(uniform(-60.0, 60.0), uniform(-90.0, 90.0));
+    const double rad = std::numbers::pi / 180.0;
+    const double rule_s = RuleDuration_s(arm, 1.0, from_deg * rad, to_deg * rad);
+    Move move{.start_s = now_s, .to_deg = {to_deg[0], to_deg[1]}, .profile = MoveProfile::kSeptic};
+    move.duration_s = on_grid(rule_s * uniform(1.0, 1.5));
+    out.experiment.move.push_back(move);
+    now_s = on_grid(now_s + *move.duration_s + kRest_s);
+    from_deg = to_deg;
+  }
+  out.experiment.duration_s = now_s;
+  return out;
+}
+
+}  // namespace flexarm
