@@ -39,12 +39,12 @@ result() {  # result NAME STATUS
 }
 
 # in_guest SCRIPT [OPTION..]: leaves its output in $work/NAME. The longest took about a minute where
-# it was written; a machine may be ten times slower.
+# it was written; a busy machine may be thirty times slower.
 in_guest() {
   local name status=0 since=$SECONDS
   name=$(basename "$1" .sh)
   mkdir "$work/$name"
-  "$here/guest.sh" run --det --share "$work/share" --out "$work/$name" --timeout 600 \
+  "$here/guest.sh" run --det --share "$work/share" --out "$work/$name" --timeout 1800 \
     "${@:2}" -- "/mnt/share/guest/$1" 2>"$work/$name/console.txt" || status=$?
   echo $status $((SECONDS - since)) >"$work/$name/ended"
 }
