@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "model/box_friction.h"
 
 namespace flexarm {
 
-RigidJointStepper::RigidJointStepper(const RigidJointArm& arm, double period_s,
-                                     double gauge_filter_hz, int steps)
-    : arm_(arm),
+RigidJointStepper::RigidJointStepper(RigidJointArm arm, double period_s, double gauge_filter_hz,
+                                     int steps)
+    : arm_(std::move(arm)),
       steps_(steps),
       h_(period_s / steps),
       gauge_share_(1.0 - std::exp(-2.0 * std::numbers::pi * gauge_filter_hz * h_)),

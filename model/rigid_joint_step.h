@@ -36,8 +36,7 @@ class RigidJointStepper {
   /// @param period_s         one sample, > 0
   /// @param gauge_filter_hz  corner of the gauges' first-order filter, > 0
   /// @param steps            a power of two, for TransitionOver's doublings
-  RigidJointStepper(const RigidJointArm& arm, double period_s, double gauge_filter_hz,
-                    int steps = kSteps);
+  RigidJointStepper(RigidJointArm arm, double period_s, double gauge_filter_hz, int steps = kSteps);
 
   /// As RigidJointArm's, with those of the sample.
   std::vector<double> Constants() const;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <utility>
 
 #include "controller/law/gain_table.h"
 #include "controller/law/rigid_point.h"
@@ -27,8 +28,8 @@ class ScheduledLaw {
  public:
   using State = Eigen::Matrix<double, 12, 1>;
 
-  ScheduledLaw(const RigidJointArm& arm, const GainTable& gains, double period_s)
-      : arm_(arm), gains_(gains), period_s_(period_s) {}
+  ScheduledLaw(RigidJointArm arm, GainTable gains, double period_s)
+      : arm_(std::move(arm)), gains_(std::move(gains)), period_s_(period_s) {}
 
   /// @param x         of the arm at the instant the torque acts, as RigidJointArm's q, q'
   /// @param path      one period before that instant, then, and one after
