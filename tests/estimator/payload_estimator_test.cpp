@@ -8,39 +8,16 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "tests/estimator/thesis_estimator.h"
-#include "tests/support/thesis_rig.h"
+#include "tests/support/study_payload.h"
 
 namespace flexarm {
 namespace {
-
-EstimatorConfig ConfigWithPayload() {
-  EstimatorConfig config = ThesisEstimator();
-  config.payload = {.process_force = {0.1, 0.02, 0.7, 0.7, 0.2, 0.2},
-                    .rotor_extra_sigma_rad = {3e-4, 1e-3},
-                    .start_kg = 0.2,
-                    .start_sigma_kg = 0.4,
-                    .max_kg = 1.1,
-                    .move_sigma_kg = 0.1,
-                    .walk_kg = 0.003,
-                    .min_rate_rad_s = 0.03,
-                    .friction_start_sigma_nm = {0.1, 0.01},
-                    .friction_max_nm = {1.0, 0.2},
-                    .friction_walk_nm = {0.004, 0.0004},
-                    .friction_min_rate_rad_s = 0.05,
-                    .play_threshold_counts = 1.5,
-                    .play_memory = 0.999,
-                    .gate_sigmas = 4.0};
-  return config;
-}
 
 std::vector<double> Model() {
   return PayloadModelConstants(ThesisRig(), ThesisSensors(), kPeriod_s);
 }
 
-PayloadEstimator Estimator() {
-  return {Model(), PayloadFilterFor(ThesisRig(), ThesisSensors(), ConfigWithPayload())};
-}
+PayloadEstimator Estimator() { return {Model(), StudyPayload()}; }
 
 DecodedCounters Angles(double th1, double th2, std::uint32_t good = 0b1111) {
   DecodedCounters counters{};
