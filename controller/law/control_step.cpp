@@ -8,6 +8,7 @@
 #include "controller/law/design.h"
 #include "controller/law/loop_supervisor.h"
 #include "controller/law/move_watch.h"
+#include "controller/law/payload_supervisor.h"
 #include "controller/law/scheduled_law.h"
 #include "controller/law/torque_timeline.h"
 #include "controller/law/tracking_law.h"
@@ -34,8 +35,13 @@ constexpr double kHandOver_s = 0.1;
 // gears it rattles under any feedback, and friction brings it to rest.
 constexpr double kLetGoBy_s = 2.2, kLetGoIn_s = 0.4;
 
-// Of a right model 8. From here on GainPayload gives the robust gains and nothing else.
-constexpr double kMismatchNis = 60.0;
+// Of an estimator that looks for no payload.
+constexpr double kNotSought = std::numeric_limits<double>::quiet_NaN();
+constexpr PayloadKnowledge kNoPayloadSought = {.payload_kg = kNotSought,
+                                               .payload_sigma_kg = kNotSought,
+                                               .friction_nm = {kNotSought, kNotSought},
+                                               .mean_nis = kNotSought,
+                                               .doubts = 0};
 
 std::array<double, 2> JointStiffness(const ArmParameters& arm) {
   return {arm.joint[0].stiffness_nm_per_rad, arm.joint[1].stiffness_nm_per_rad};
@@ -43,6 +49,14 @@ std::array<double, 2> JointStiffness(const ArmParameters& arm) {
 
 void Store(const StateVector& x, std::array<double, kMaxNominalStates>* out) noexcept {
   for (Eigen::Index i = 0; i < x.size(); ++i) (*out)[static_cast<std::size_t>(i)] = x(i);
+}
+
+void Store(const PayloadKnowledge& known, StepOutput* out) noexcept {
+  out->payload_kg = known.payload_kg;
+  out->payload_sigma_kg = known.payload_sigma_kg;
+  out->friction_nm = known.friction_nm;
+  out->mean_nis = known.mean_nis;
+  out->payload_doubts = known.doubts;
 }
 
 }  // namespace
@@ -74,8 +88,7 @@ struct ControlStep::Stages {
     if (design.payload_model.empty()) return;
     payload.emplace(design.payload_model,
                     PayloadFilterFor(config.arm, config.sensors, config.estimator));
-    payload_bound_kg = config.estimator.payload->max_kg;
-    payload_move_sigma_kg = config.estimator.payload->move_sigma_kg;
+    payload_supervisor.emplace(*config.estimator.payload);
     if (!design.scheduled) return;
     scheduled.emplace(payload->stepper().arm(), design.scheduled->gains, period_s);
   }
@@ -87,6 +100,7 @@ struct ControlStep::Stages {
     supervisor.Reset();
     law.Reset();
     move.Reset();
+    if (payload_supervisor) payload_supervisor->Reset();
     asked.Clear();
     pending_nm = {};
     saturated_s = {};
@@ -116,6 +130,7 @@ struct ControlStep::Stages {
                                     const TorquePieces& applied) noexcept {
     if (!payload) return estimator.Update(counters, modes, applied);
     const PayloadFilter::Estimate& found = payload->Update(counters, modes, applied);
+    known = payload_supervisor->Judge(found, payload->mean_nis(), move.moving());
     StateEstimator::Estimate out{.x = payload->Now(), .innovation = {}};
     std::copy_n(found.innovation.data(), found.innovation.size(), out.innovation.begin());
     return out;
@@ -125,28 +140,6 @@ struct ControlStep::Stages {
   void WatchMoves(const StepInput& input) noexcept {
     if (!payload || input.mode != LoopMode::kFollow) return;
     if (move.Take(input.path[1], period_s)) payload->BeginMove();
-  }
-
-  bool AtBound(const PayloadFilter::Estimate& found) const noexcept {
-    return found.payload_kg >= payload_bound_kg;
-  }
-
-  void StorePayload(StepOutput* out) const noexcept {
-    const double nothing = std::numeric_limits<double>::quiet_NaN();
-    out->payload_kg = out->payload_sigma_kg = out->mean_nis = nothing;
-    out->friction_nm = {nothing, nothing};
-    if (!payload) return;
-    const PayloadFilter::Estimate& found = payload->estimate();
-    out->payload_kg = found.payload_kg;
-    out->payload_sigma_kg = found.payload_sigma_kg;
-    out->friction_nm = found.friction_nm;
-    out->mean_nis = payload->mean_nis();
-    if (AtBound(found)) out->payload_doubts |= kPayloadAtBound;
-    if (out->mean_nis > kMismatchNis) out->payload_doubts |= kPayloadModelMismatch;
-    const bool moved = !move.moving() && std::isfinite(move.rested_s());
-    if (moved && found.payload_sigma_kg >= payload_move_sigma_kg) {
-      out->payload_doubts |= kPayloadNotFound;
-    }
   }
 
   std::int64_t ActsFrom(const StepInput& input) const noexcept {
@@ -172,23 +165,11 @@ struct ControlStep::Stages {
     if (phase != Phase::kRunning) law.Reset();
     phase = Phase::kRunning;
     if (input.mode == LoopMode::kFollow) {
-      return scheduled ? law.Hold(Scheduled(input, x))
+      return scheduled ? law.Hold(scheduled->Torque(x, known, input.path, move.rested_s()))
                        : law.Compute(x, input.reference_next, sensors_good);
     }
     const Eigen::Vector2d goal_rad(input.reference_next.x_m[0], input.reference_next.x_m[1]);
     return law.Hold(law.Regulate(x, AtRest(goal_rad)));
-  }
-
-  Eigen::Vector2d Scheduled(const StepInput& input, const StateVector& x) const noexcept {
-    const PayloadFilter::Estimate& found = payload->estimate();
-    return scheduled->Torque(
-        x,
-        {.payload_kg = found.payload_kg,
-         .payload_sigma_kg =
-             AtBound(found) ? std::numeric_limits<double>::infinity() : found.payload_sigma_kg,
-         .friction_nm = found.friction_nm,
-         .mean_nis = payload->mean_nis()},
-        input.path, move.rested_s());
   }
 
   // Damps the arm towards a goal that gives way: it starts where the reference ended, or where the
@@ -247,7 +228,8 @@ struct ControlStep::Stages {
   FractionalHold nominal;
   std::optional<PayloadEstimator> payload;
   std::optional<ScheduledLaw> scheduled;
-  double payload_bound_kg = 0.0, payload_move_sigma_kg = 0.0;
+  std::optional<PayloadSupervisor> payload_supervisor;
+  PayloadKnowledge known = kNoPayloadSought;
   MoveWatch move;
   TorqueTimeline asked;
   std::array<double, 2> pending_nm{};  // the newest of them
@@ -319,7 +301,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   out.fit_residual = modes.residual;
   out.adaptive_gain_change = s.law.adaptive_gain_change();
   out.saturated_s = s.saturated_s;
-  s.StorePayload(&out);
+  Store(s.known, &out);
   out.fault_value = verdict.value;
   out.fault_limit = verdict.limit;
   out.fault_channel = verdict.channel;

@@ -1,5 +1,7 @@
 #include "controller/law/scheduled_law.h"
 
+#include <limits>
+
 #include "controller/law/gain_payload.h"
 #include "controller/law/path_reference.h"
 #include "model/portable_math.h"
@@ -25,8 +27,11 @@ Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& kno
     u[i] += knowledge.friction_nm[static_cast<std::size_t>(i)] *
             PortableMath::Tanh(rate_rad_s / kFrictionRate_rad_s);
   }
+  const bool at_bound = (knowledge.doubts & kPayloadAtBound) != 0;
+  const double sigma_kg =
+      at_bound ? std::numeric_limits<double>::infinity() : knowledge.payload_sigma_kg;
   const double gain_payload_kg =
-      GainPayload(knowledge.payload_kg, knowledge.payload_sigma_kg, knowledge.mean_nis, rested_s);
+      GainPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s);
   u += gains_.At(gain_payload_kg, x[1]).lazyProduct(desired.x - x);
   return u;
 }

@@ -5,24 +5,19 @@
 #include <utility>
 
 #include "controller/law/gain_table.h"
+#include "controller/law/payload_supervisor.h"
 #include "controller/law/rigid_point.h"
 #include "model/rigid_joint_arm.h"
 
 namespace flexarm {
-
-/// What the estimator has found of the arm.
-struct PayloadKnowledge {
-  double payload_kg, payload_sigma_kg;
-  std::array<double, 2> friction_nm;
-  double mean_nis;  ///< 8 for a right model
-};
 
 /// The law `gain-scheduled`: the arm is led along the way on which it bends without vibrating, for
 /// the payload that is known by now.
 ///
 ///   u = u_d + F tanh(theta_d' / 0.05 rad/s) + K(m_K, |theta2|) (x_d - x)
 ///
-/// x_d and u_d by QuasiStaticOver for the payload found; K from the gain table at GainPayload.
+/// x_d and u_d by QuasiStaticOver for the payload found; K from the gain table at GainPayload, for
+/// which a payload at its bound is wholly uncertain: it may be heavier.
 /// Source: beyond.md 2.4 and 2.5 (A). Real-time: Torque is safe.
 class ScheduledLaw {
  public:

@@ -399,5 +399,52 @@ TEST_F(ControlStepTest, ACalibrationCountsFromTheResetOn) {
   EXPECT_NEAR(step_.Step(input).angle_rad[0], 0.2 * M_PI, 1e-12) << "a tenth of 2540 counts";
 }
 
+// A path that rests 0.01 rad away from an arm that stands, after a move of a sample: the torque is
+// K times that. The filter is sure of 0.5 kg, so K is that of 0.5 kg until the path has rested for
+// half a second, and of 0.15 kg from then on. A sigma of 0.001 kg counts 1e-4 of the difference.
+TEST(ControlStepWithPayload, RestingItTakesTheRobustGains) {
+  const Config config =
+      ShippedRig({"controller.name=gain-scheduled", "controller.prediction=false",
+                  "estimator.payload.start_kg=0.5", "estimator.payload.start_sigma_kg=0.001",
+                  "estimator.payload.move_sigma_kg=0.001", "estimator.payload.walk_kg=1e-6"});
+  const Design design = DesignController(config);
+  ControlStep step(config, design);
+  std::vector<StepOutput> out;
+  for (int k = 0; k <= 50; ++k) {
+    StepInput input = AtRest(k, SafetyState::kRunning);
+    input.reset = k == 0 ? 1 : 0;
+    for (RigidPoint& point : input.path) point.angle_rad[0] = 0.01;
+    if (k == 0) input.path[1].rate_rad_s[0] = 1e-9;
+    out.push_back(step.Step(input));
+    ASSERT_EQ(out.back().faults, 0u) << k;
+  }
+  const auto torque = [&design](double payload_kg) -> Eigen::Vector2d {
+    return design.scheduled->gains.At(payload_kg, 0.0).col(0) * 0.01;
+  };
+  const Eigen::Vector2d difference = torque(0.5) - torque(0.15);
+  ASSERT_GT(difference.norm(), 1e-3) << "the same gains: the test says nothing";
+  for (int i = 0; i < 2; ++i) {
+    const auto j = static_cast<std::size_t>(i);
+    const double tolerance_nm = 2e-4 * difference.norm();
+    EXPECT_NEAR(out[10].torque_nm[j], torque(0.5)(i), tolerance_nm);
+    EXPECT_NEAR(out[50].torque_nm[j], torque(0.15)(i), tolerance_nm);
+  }
+  EXPECT_EQ(out[0].payload_doubts, 0u);
+  EXPECT_EQ(out[50].payload_doubts, static_cast<std::uint32_t>(kPayloadNotFound))
+      << "a move that showed nothing has ended";
+  StepInput again = AtRest(51, SafetyState::kArmed);
+  again.reset = 1;
+  EXPECT_EQ(step.Step(again).payload_doubts, 0u) << "of the run before";
+}
+
+TEST_F(ControlStepTest, WithoutAnEstimatorOfThePayloadNothingIsSaidOfIt) {
+  const StepOutput out = step_.Step(Moving(0));
+  for (const double value : {out.payload_kg, out.payload_sigma_kg, out.mean_nis, out.friction_nm[0],
+                             out.friction_nm[1]}) {
+    EXPECT_TRUE(std::isnan(value));
+  }
+  EXPECT_EQ(out.payload_doubts, 0u);
+}
+
 }  // namespace
 }  // namespace flexarm

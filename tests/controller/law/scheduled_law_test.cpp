@@ -51,8 +51,11 @@ ScheduledLaw Law() {
   return {ArmOf(ScheduledDesignOfRig()), ScheduledDesignOfRig().scheduled->gains, kPeriod_s};
 }
 
-constexpr PayloadKnowledge kKnown = {
-    .payload_kg = 0.3, .payload_sigma_kg = 0.0, .friction_nm = {0.16, 0.01}, .mean_nis = 8.0};
+constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
+                                     .payload_sigma_kg = 0.0,
+                                     .friction_nm = {0.16, 0.01},
+                                     .mean_nis = 8.0,
+                                     .doubts = 0};
 
 TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
   const ReferenceTable table = Table(OneMove({30, -20}, 2.0), {0.1, -0.2});
@@ -155,6 +158,12 @@ TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
   heavy.payload_sigma_kg = 0.0;
   heavy.mean_nis = 100.0;
   EXPECT_LT((Law().Torque(x, heavy, path, 0.0) - robust).norm(), 1e-12);
+  heavy.mean_nis = 8.0;
+  heavy.doubts = kPayloadModelMismatch | kPayloadNotFound;
+  EXPECT_EQ(Law().Torque(x, heavy, path, 0.0), sure) << "these are in its NIS and sigma";
+  heavy.doubts = kPayloadAtBound;
+  EXPECT_LT((Law().Torque(x, heavy, path, 0.0) - robust).norm(), 1e-12)
+      << "it may be heavier, however sure the filter is";
 }
 
 TEST(MoveWatch, TellsTheBeginOfEachMoveAndSinceWhenThePathRests) {

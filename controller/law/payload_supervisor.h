@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "controller/law/gain_payload.h"
+#include "controller/law/step_types.h"
+#include "estimator/estimator_config.h"
+#include "estimator/payload_filter.h"
+
+namespace flexarm {
+
+/// What the estimator has found of the arm, and what is wrong with it.
+struct PayloadKnowledge {
+  double payload_kg, payload_sigma_kg;
+  std::array<double, 2> friction_nm;
+  double mean_nis;       ///< 8 for a right model
+  std::uint32_t doubts;  ///< PayloadDoubt
+};
+
+/// Judges the payload that is found.
+///
+/// Bound and model are judged anew at every sample. Whether a move has shown the payload is judged
+/// once, when it ends, and holds until the next one begins: the standard deviation that a move
+/// leaves is then compared with that which it was opened to. At rest it only grows, by the
+/// payload's walk, and says nothing about the move. Real-time: safe.
+class PayloadSupervisor {
+ public:
+  explicit PayloadSupervisor(const PayloadEstimatorConfig& config) noexcept
+      : max_kg_(config.max_kg), move_sigma_kg_(config.move_sigma_kg) {}
+
+  void Reset() noexcept { moving_ = not_found_ = false; }
+
+  /// Every sample, in order.
+  /// @param mean_nis  as PayloadFilter's
+  /// @param moving    whether the path does: MoveWatch
+  PayloadKnowledge Judge(const PayloadFilter::Estimate& found, double mean_nis,
+                         bool moving) noexcept {
+    if (moving) {
+      not_found_ = false;
+    } else if (moving_) {
+      not_found_ = found.payload_sigma_kg >= move_sigma_kg_;
+    }
+    moving_ = moving;
+    std::uint32_t doubts = 0;
+    if (found.payload_kg >= max_kg_) doubts |= kPayloadAtBound;
+    if (mean_nis > kModelWrongNis) doubts |= kPayloadModelMismatch;
+    if (not_found_) doubts |= kPayloadNotFound;
+    return {.payload_kg = found.payload_kg,
+            .payload_sigma_kg = found.payload_sigma_kg,
+            .friction_nm = found.friction_nm,
+            .mean_nis = mean_nis,
+            .doubts = doubts};
+  }
+
+ private:
+  double max_kg_, move_sigma_kg_;
+  bool moving_ = false, not_found_ = false;
+};
+
+}  // namespace flexarm
