@@ -145,8 +145,10 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
   samples_.resize(static_cast<std::size_t>(periods) + 1);
+  // A law that follows the path needs one that rests, too.
+  if (design.scheduled || !moves_.empty()) path_.emplace(moves_, start_rad, periods, period_s);
   if (design.scheduled) {
-    FollowPath(planned, design, period_s, start_rad);
+    FollowPath(planned, design, period_s);
   } else {
     FollowModel(planned, design, period_s, start_rad);
   }
@@ -168,24 +170,22 @@ void ReferenceTable::FollowModel(const Experiment& planned, const Design& design
   RunReferenceModel(design, start_rad, &samples_);
 }
 
-void ReferenceTable::FollowPath(const Experiment& planned, const Design& design, double period_s,
-                                const std::array<double, 2>& start_rad) {
+void ReferenceTable::FollowPath(const Experiment& planned, const Design& design, double period_s) {
   for (const Motion& motion : planned.Motions()) {
     if (motion.row.starts_with("move[")) continue;
     throw Refused(motion.row +
                   ": a law that finds the payload follows [[move]] rows only, whose acceleration "
                   "is continuous; use another controller.name, or moves");
   }
-  path_.emplace(moves_, start_rad, periods(), period_s);
   samples_ = QuasiStaticReference(*path_, ArmOf(design), design.scheduled->reference_kg, period_s);
 }
 
 void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design, double period_s,
                                  const MotionLimits& limits) const {
   const int states = static_cast<int>(design.Am.rows());
-  const auto judged =
-      path_ ? QuasiStaticReference(*path_, ArmOf(design), design.scheduled->max_kg, period_s)
-            : samples_;
+  const auto judged = design.scheduled ? QuasiStaticReference(*path_, ArmOf(design),
+                                                              design.scheduled->max_kg, period_s)
+                                       : samples_;
   const auto broken = FirstBrokenLimit(judged, states, limits, 1.0, period_s);
   if (!broken) return;
   const std::string row = RowAt(planned, broken->sample * period_s);

@@ -49,8 +49,8 @@ class ReferenceTable {
   /// Sample k; before 0 the rest at the start, after the end the last one. Real-time: safe.
   const ReferenceSample& At(int k) const noexcept;
 
-  /// The rigid coordinate at k - 1, k and k + 1; zero for experiments without a path, that is for
-  /// laws that follow none. Real-time: safe.
+  /// The rigid coordinate at k - 1, k and k + 1, as the moves lead it whatever the law; other rows
+  /// are not in it. Zero if there is no move and no law that follows a path. Real-time: safe.
   std::array<RigidPoint, 3> PathAround(int k) const noexcept {
     return path_ ? path_->Around(k) : std::array<RigidPoint, 3>{};
   }
@@ -63,8 +63,7 @@ class ReferenceTable {
 
   void FollowModel(const Experiment& planned, const Design& design, double period_s,
                    const std::array<double, 2>& start_rad);
-  void FollowPath(const Experiment& planned, const Design& design, double period_s,
-                  const std::array<double, 2>& start_rad);
+  void FollowPath(const Experiment& planned, const Design& design, double period_s);
 
   ReferenceSample rest_{};
   std::optional<RigidPath> path_;

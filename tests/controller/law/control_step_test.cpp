@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "controller/law/reference.h"
 #include "controller/safety/trip_cause.h"
 #include "model/discretize.h"
 #include "tests/controller/law/shipped_rig.h"
@@ -397,6 +399,76 @@ TEST_F(ControlStepTest, ACalibrationCountsFromTheResetOn) {
   input.tick = 1;
   input.reset = 1;
   EXPECT_NEAR(step_.Step(input).angle_rad[0], 0.2 * M_PI, 1e-12) << "a tenth of 2540 counts";
+}
+
+// What the drives and the encoders tell of an arm that follows its reference sample by sample, as
+// if nothing swung: hubs as the reference bends them, torque with friction, rotors twisted by it.
+// The gauges are silent.
+StepInput Followed(const ReferenceTable& table, int k, const ArmParameters& arm) {
+  StepInput input = AtRest(k, SafetyState::kRunning);
+  input.reset = k == 0 ? 1 : 0;
+  input.frame.strain_valid = 0;
+  const ReferenceSample& now = table.At(k - 1);  // sample k is one period ahead: see `path`
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double rate_rad_s = now.x_m[6 + i];
+    const double friction_nm = arm.joint[i].coulomb_friction_nm * std::tanh(rate_rad_s / 1e-3);
+    input.applied_torque_nm[i] = table.At(k - 2).u_m_nm[i] + friction_nm;
+    const double rotor_rad =
+        now.x_m[i] + input.applied_torque_nm[i] / arm.joint[i].stiffness_nm_per_rad;
+    const double counts_per_turn = i == 0 ? 2540.0 : 24480.0;
+    const auto hub = std::lround(now.x_m[i] * 2540.0 / (2.0 * M_PI));
+    const auto rotor = std::lround(rotor_rad * counts_per_turn / (2.0 * M_PI));
+    input.frame.counter[i] = static_cast<std::uint32_t>(hub) & 0xFFu;
+    input.frame.counter[2 + i] = static_cast<std::uint32_t>(rotor) & (i == 0 ? 0xFFu : 0xFFFFu);
+  }
+  return input;
+}
+
+bool Moves(const RigidPoint& point) {
+  return point.rate_rad_s[0] != 0.0 || point.rate_rad_s[1] != 0.0;
+}
+
+// Two moves of an arm with 0.15 kg, the payload of the scheduled reference. The first shows it; the
+// second begins with the doubt of [estimator.payload], 0.1 kg, and the walk of that sample.
+TEST(ControlStepWithPayload, AMoveOpensTheDoubtOfThePayload) {
+  const Experiment there_and_back = {
+      .name = "test",
+      .text = "",
+      .duration_s = 6.0,
+      .doublet = {},
+      .sim_event = {},
+      .move = {{.start_s = 0.2, .duration_s = 2.0, .to_deg = {30, -20}},
+               {.start_s = 3.0, .duration_s = 2.0, .to_deg = {0, 0}}}};
+  const std::array<double, 2> home = {0.0, 0.0};
+  const ReferenceTable arm_moves(there_and_back,
+                                 DesignController(ShippedRig({"controller.name=gain-scheduled"})),
+                                 0.02, home, ShippedLimits());
+  for (const char* law : {"gain-scheduled", "sobel"}) {
+    SCOPED_TRACE(law);
+    const Config config =
+        ShippedRig({std::string("controller.name=") + law, "estimator.name=ekf-payload"});
+    const Design design = DesignController(config);
+    const ReferenceTable table(there_and_back, design, 0.02, home, ShippedLimits());
+    ControlStep step(config, design);
+    int moves = 0;
+    bool moved = false;
+    double sigma_before_kg = 0.0;
+    for (int k = 0; k <= table.periods(); ++k) {
+      StepInput input = Followed(arm_moves, k, config.arm);
+      input.path = table.PathAround(k);
+      const StepOutput out = step.Step(input);
+      if (Moves(input.path[1]) && !moved && ++moves == 2) {
+        EXPECT_LT(sigma_before_kg, 0.05) << "nothing learnt: the test says nothing";
+        EXPECT_GE(out.payload_sigma_kg, 0.1);
+        EXPECT_LT(out.payload_sigma_kg, 0.101);
+      }
+      moved = Moves(input.path[1]);
+      sigma_before_kg = out.payload_sigma_kg;
+      EXPECT_EQ(out.payload_doubts, 0u) << k;
+    }
+    EXPECT_EQ(moves, 2);
+    EXPECT_LT(sigma_before_kg, 0.05) << "found again";
+  }
 }
 
 // A path that rests 0.01 rad away from an arm that stands, after a move of a sample: the torque is

@@ -90,6 +90,29 @@ TEST(PathReference, ThePathIsTheMovesWithWhatIsAroundTheSample) {
   }
 }
 
+// A law that follows the path must not be led to zero because nothing moves.
+TEST(PathReference, AnExperimentWithoutMovesRestsWhereItStarts) {
+  Experiment nothing = OneMove({0, 0}, 1.0);
+  nothing.move.clear();
+  const ReferenceTable table = Table(nothing, {0.1, -0.2});
+  for (const RigidPoint& point : table.PathAround(30)) {
+    EXPECT_EQ(point.angle_rad, (std::array<double, 2>{0.1, -0.2}));
+    EXPECT_EQ(point.rate_rad_s, (std::array<double, 2>{0.0, 0.0}));
+  }
+}
+
+TEST(PathReference, LawsThatDoNotFollowThePathKnowIt) {
+  const Experiment experiment = OneMove({30, -20}, 2.0);
+  const ReferenceTable table(experiment, ShippedDesign(), kPeriod_s, {0.1, -0.2}, ShippedLimits());
+  const ReferenceTable scheduled = Table(experiment, {0.1, -0.2});
+  for (const int k : {0, 10, 11, 60, 111, 400}) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_EQ(table.PathAround(k)[j].angle_rad, scheduled.PathAround(k)[j].angle_rad) << k;
+      EXPECT_EQ(table.PathAround(k)[j].rate_rad_s, scheduled.PathAround(k)[j].rate_rad_s) << k;
+    }
+  }
+}
+
 TEST(PathReference, AMoveTooFastForTheHeaviestPayloadIsRefusedWithTheDurationThatWouldDo) {
   const std::string message = MessageOf<Refused>([] { Table(OneMove({60, 80}, 1.0)); });
   EXPECT_THAT(message, AllOf(HasSubstr("move[0]"), HasSubstr("controller.payload.max_kg"),
