@@ -72,6 +72,8 @@ BROKEN = {
     "printing in the simulated rig": ("hal/sim/a.cpp", '\nvoid F() { printf("x"); }\n', "realtime", 2),
     "a sine in the step":
         ("estimator/state_estimator.cpp", "double S(double x) { return std::sin(x); }\n", "libm", 1),
+    "a hyperbolic tangent in the law that finds the payload":
+        ("controller/law/scheduled_law.cpp", "double T(double x) { return std::tanh(x); }\n", "libm", 1),
     "an endless file": ("model/a.cpp", "// line\n" * 401, "file-size", 401),
     "an endless test": ("tests/a.cpp", "// line\n" * 601, "file-size", 601),
     "a to-do note": ("model/a.cpp", f"// {NOTE}: later\n", "leftover", 1),

@@ -84,9 +84,10 @@ REALTIME_WORDS = re.compile(
 
 # What ControlStep::Step runs.
 STEP = re.compile(
-    r"(estimator/(counter_decoder|payload_filter|state_estimator|strain_fit)"
-    r"|model/(portable_math|rigid_joint_(arm|arm_impl|transition))"
-    r"|controller/law/(control_step|tracking_law|loop_supervisor)|controller/safety/gate)\.")
+    r"(estimator/(counter_decoder|payload_estimator|payload_filter|state_estimator|strain_fit)"
+    r"|model/(portable_math|quasi_static_map|rigid_joint_(arm|arm_impl|transition))"
+    r"|controller/law/(control_step|gain_payload|loop_supervisor|move_watch|path_reference"
+    r"|payload_supervisor|rigid_point|scheduled_law|tracking_law)|controller/safety/gate)\.")
 LIBM = re.compile(
     r"\bstd::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|expm1|log(?:2|10|1p)?|pow|hypot"
     r"|cbrt|fmod|remainder|erf|tgamma)\s*\(")
