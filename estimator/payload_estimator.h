@@ -41,6 +41,8 @@ class PayloadEstimator {
 
   /// A move starts: the payload may be another than before.
   void BeginMove() noexcept { filter_.BeginMove(); }
+  /// The arm has come to rest after a move.
+  void EndMove() noexcept { filter_.EndMove(); }
 
   /// How fast the gauges' modal coordinates change, m/s: f11 f12 f21 f22 behind their filters.
   std::array<double, 4> ModalRates() const noexcept;

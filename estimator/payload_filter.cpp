@@ -65,10 +65,12 @@ void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
         Square(config_.friction_start_sigma_nm[static_cast<std::size_t>(i)]);
   }
   mean_nis_ = kOutputs;
+  learns_ = true;
   play_rad_ = 0.0;
 }
 
 void PayloadFilter::BeginMove() noexcept {
+  learns_ = true;
   P_(kPayload, kPayload) = std::max(P_(kPayload, kPayload), Square(config_.payload_move_sigma_kg));
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
 }
@@ -202,6 +204,7 @@ void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation,
                             const Outputs& variance) noexcept {
   Gain K = optimal;
   const RigidJointArm::Vector& v = estimate_.state.v;
+  if (!learns_) K.bottomRows<3>().setZero();
   if (std::fabs(v[0]) < config_.payload_min_rate_rad_s &&
       std::fabs(v[1]) < config_.payload_min_rate_rad_s) {
     K.row(kPayload).setZero();

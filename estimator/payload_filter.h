@@ -48,7 +48,8 @@ struct PayloadFilterConfig {
 ///      (NIS), so that the filter forgets faster when the model is wrong;
 ///   3. variance of rotor 2 raised while joint 2 has play; one or two outputs beyond the gate get
 ///      less weight, with three or more the model is wrong and all count;
-///   4. update with the payload's gain row zero at rest. That gain is not the optimal one, so the
+///   4. update with the payload's gain row zero at rest, and the friction's too after EndMove.
+///      That gain is not the optimal one, so the
 ///      covariance follows by Joseph's form.
 /// Source: beyond.md 2.3. Real-time: all but the constructor is safe; no loop without a
 /// bound.
@@ -79,8 +80,12 @@ class PayloadFilter {
   /// At rest at q, payload and friction unknown again.
   void Reset(const RigidJointArm::Vector& q) noexcept;
 
-  /// A move starts: the payload may be another than before.
+  /// A move starts: the payload may be another than before, and is learnt.
   void BeginMove() noexcept;
+
+  /// The arm has come to rest: payload and friction are learnt no more until the next move. Counts
+  /// that flicker look like motion to a filter that has grown unsure, and would drag both.
+  void EndMove() noexcept { learns_ = false; }
 
   /// @param torque  really applied during the sample that ends with the reading
   const Estimate& Update(const TorquePieces& torque, const Reading& reading) noexcept;
@@ -112,6 +117,7 @@ class PayloadFilter {
   Estimate estimate_;
   Matrix P_;
   double mean_nis_;
+  bool learns_;
   double play_rad_;  // largest distance of rotor 2 from hub 2, forgotten slowly
 };
 

@@ -168,6 +168,24 @@ TEST(PayloadFilter, AMoveOpensThePayloadAgain) {
   EXPECT_DOUBLE_EQ(filter.estimate().payload_sigma_kg, 0.1);
 }
 
+TEST(PayloadFilter, LearnsNothingOfTheArmBetweenTwoMoves) {
+  Plant plant(RigWith(0.6));
+  PayloadFilter filter = StudyFilter();
+  filter.EndMove();
+  const auto sample = [&](int k) {
+    filter.Update(Held(MoveTorque(k)),
+                  {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
+  };
+  for (int k = 0; k < 30; ++k) sample(k);
+  EXPECT_EQ(filter.estimate().payload_kg, StudyPayload().payload_start_kg);
+  EXPECT_EQ(filter.estimate().friction_nm, StudyPayload().friction_start_nm);
+  EXPECT_GT(std::fabs(filter.estimate().state.q[0]), 0.01) << "the motion is still followed";
+  filter.BeginMove();
+  for (int k = 30; k < 60; ++k) sample(k);
+  EXPECT_NE(filter.estimate().payload_kg, StudyPayload().payload_start_kg);
+  EXPECT_NE(filter.estimate().friction_nm, StudyPayload().friction_start_nm);
+}
+
 TEST(PayloadFilter, DoesNotAllocate) {
   PayloadFilter filter = StudyFilter();
   const NoAlloc armed;
