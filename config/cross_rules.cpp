@@ -93,12 +93,14 @@ void CheckPayloadEstimator(const Config& c, ProblemLog* log, std::vector<Problem
   const bool by_law = IsScheduled(c.controller.kind);
   if (!c.uses_payload_estimator()) return;
   const char* key = by_law ? "controller.name" : "estimator.name";
-  const char* value = by_law ? "gain-scheduled" : "ekf-payload";
+  const bool plans = PlansAhead(c.controller.kind);
+  const char* value = plans ? "receding-horizon" : by_law ? "gain-scheduled" : "ekf-payload";
   const auto require = [&](bool ok, const char* rule) {
     if (!ok) out->push_back({key, value, rule});
   };
   require(c.estimator.payload.has_value(), "needs the table [estimator.payload]");
   require(!by_law || c.controller.payload.has_value(), "needs the table [controller.payload]");
+  require(!plans || c.controller.plan.has_value(), "needs the table [controller.plan]");
   require(
       c.controller.nominal == kR12 && c.estimator.modes_per_link == 2,
       "needs controller.nominal = \"R12\" and estimator.modes_per_link = 2: the filter's state");

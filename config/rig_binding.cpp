@@ -153,6 +153,21 @@ void ReadPayloadLaw(TableReader payload, PayloadLawConfig* out) {
   payload.Read("gain_elbow_deg", &out->gain_elbow_deg);
 }
 
+void ReadPlan(TableReader plan, PlanAheadConfig* out) {
+  plan.Read("moving_weight", &out->moving_weight);
+  plan.Read("resting_weight", &out->resting_weight);
+  plan.Read("torque_weight", &out->torque_weight);
+  plan.Read("light_kg", &out->light_kg);
+  plan.Read("torque_share", &out->torque_share);
+  plan.Read("start_alpha", &out->start_alpha);
+  plan.Read("every_periods", &out->every_periods);
+  plan.Read("ready_periods", &out->ready_periods);
+  plan.Read("rest_periods", &out->rest_periods);
+  plan.Read("roughness", &out->roughness);
+  plan.Read("payload_change_kg", &out->payload_change_kg);
+  plan.Read("payload_change_share", &out->payload_change_share);
+}
+
 void ReadController(TableReader controller, ControllerConfig* out) {
   controller.Read("name", &out->kind,
                   {{"sobel", ControllerKind::kSobel},
@@ -163,7 +178,8 @@ void ReadController(TableReader controller, ControllerConfig* out) {
                    {"pd", ControllerKind::kPd},
                    {"pd-zv", ControllerKind::kPdZv},
                    {"pd-zvd", ControllerKind::kPdZvd},
-                   {"gain-scheduled", ControllerKind::kGainScheduled}});
+                   {"gain-scheduled", ControllerKind::kGainScheduled},
+                   {"receding-horizon", ControllerKind::kRecedingHorizon}});
   controller.Read("nominal", &out->nominal,
                   {{"R12", kR12}, {"R8", kR8}, {"T12", kT12}, {"T16", kT16}});
   controller.Read("alpha", &out->alpha);
@@ -187,6 +203,7 @@ void ReadController(TableReader controller, ControllerConfig* out) {
   if (controller.Has("payload")) {
     ReadPayloadLaw(controller.Table("payload"), &out->payload.emplace());
   }
+  if (controller.Has("plan")) ReadPlan(controller.Table("plan"), &out->plan.emplace());
   if (controller.Has("gains")) controller.Read("gains", &out->gains_file);
 }
 

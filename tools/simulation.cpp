@@ -176,6 +176,7 @@ double Simulation::Loop(const std::function<void(double)>& progress) {
   executor.Add(stack_.safety());
   executor.Add(stack_.control());
   for (Task* task : stack_.drive_tasks()) executor.Add(*task);
+  for (Task* task : stack_.law_tasks()) executor.Add(*task);
   executor.Add(operator_);
   executor.Add(recorder_);
   const auto started = std::chrono::steady_clock::now();

@@ -122,7 +122,7 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
       ->type_name("FILE");
   verb->add_option("--controller", options->controller,
                    "controller.name: sobel, sobel-original, lqr-cgt, lqr-um, lqg, pd, pd-zv, "
-                   "pd-zvd, gain-scheduled");
+                   "pd-zvd, gain-scheduled, receding-horizon");
   verb->add_option("--estimator", options->estimator,
                    "estimator.name: kalman, difference, polynomial, ekf-payload");
   verb->add_option("--payload-kg", options->payload_kg,

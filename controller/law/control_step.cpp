@@ -8,6 +8,7 @@
 #include "controller/law/design.h"
 #include "controller/law/loop_supervisor.h"
 #include "controller/law/move_watch.h"
+#include "controller/law/path_reference.h"
 #include "controller/law/payload_supervisor.h"
 #include "controller/law/scheduled_law.h"
 #include "controller/law/torque_timeline.h"
@@ -34,6 +35,9 @@ constexpr double kHandOver_s = 0.1;
 // An arm that is not at rest by then has been let go, over the last 0.4 s of it: with play in its
 // gears it rattles under any feedback, and friction brings it to rest.
 constexpr double kLetGoBy_s = 2.2, kLetGoIn_s = 0.4;
+
+// After a move's end the arm shows its payload for as long as it still vibrates.
+constexpr double kComesToRest_s = 2.0;
 
 // Of an estimator that looks for no payload.
 constexpr double kNotSought = std::numeric_limits<double>::quiet_NaN();
@@ -136,10 +140,12 @@ struct ControlStep::Stages {
     return out;
   }
 
-  // What the path asks of the estimator: a move may begin with another payload than before.
+  // What the path asks of the estimator: a move may begin with another payload than before, and the
+  // rest after one says nothing of it.
   void WatchMoves(const StepInput& input) noexcept {
     if (!payload || input.mode != LoopMode::kFollow) return;
     if (move.Take(input.path[1], period_s)) payload->BeginMove();
+    if (std::isfinite(move.rested_s()) && move.rested_s() > kComesToRest_s) payload->EndMove();
   }
 
   std::int64_t ActsFrom(const StepInput& input) const noexcept {
@@ -165,11 +171,17 @@ struct ControlStep::Stages {
     if (phase != Phase::kRunning) law.Reset();
     phase = Phase::kRunning;
     if (input.mode == LoopMode::kFollow) {
-      return scheduled ? law.Hold(scheduled->Torque(x, known, input.path, move.rested_s()))
+      return scheduled ? law.Hold(scheduled->Torque(x, known, Desired(input), move.rested_s()))
                        : law.Compute(x, input.reference_next, sensors_good);
     }
     const Eigen::Vector2d goal_rad(input.reference_next.x_m[0], input.reference_next.x_m[1]);
     return law.Hold(law.Regulate(x, AtRest(goal_rad)));
+  }
+
+  QuasiStaticSample Desired(const StepInput& input) const noexcept {
+    if (input.planned == 0) return scheduled->ClosedForm(known.payload_kg, PathPoints(input.path));
+    return {.x = ScheduledLaw::State::Map(input.plan.x.data()),
+            .torque_nm = Eigen::Vector2d::Map(input.plan.torque_nm.data())};
   }
 
   // Damps the arm towards a goal that gives way: it starts where the reference ended, or where the

@@ -35,6 +35,26 @@ void CheckPayload(const PayloadLawConfig& p, ProblemList* list) {
   CheckGrid("payload.gain_elbow_deg", p.gain_elbow_deg, 180.0, list);
 }
 
+void CheckPlan(const PlanAheadConfig& p, ProblemList* list) {
+  list->EachWithin("plan.moving_weight", p.moving_weight, 0.0, 1e9, "a weight, never negative");
+  list->EachWithin("plan.resting_weight", p.resting_weight, 0.0, 1e9, "a weight, never negative");
+  list->EachPositive("plan.torque_weight", p.torque_weight, 1e6,
+                     "without it a plan asks for any torque");
+  list->Positive("plan.light_kg", p.light_kg, 100.0, "the weights of a move fall beyond it");
+  list->Positive("plan.torque_share", p.torque_share, 1.0,
+                 "of the torque limits; the rest is left to the feedback");
+  list->Within("plan.start_alpha", p.start_alpha, 0.0, 10.0, "1/s; as controller.alpha");
+  list->Within("plan.every_periods", p.every_periods, 1, 100, "how often a plan is made");
+  list->Within("plan.ready_periods", p.ready_periods, 2, kMostReadyPeriods,
+               "a plan is made between two steps and holds from a later one on");
+  list->Within("plan.rest_periods", p.rest_periods, 1, 100, "planned after the move's end");
+  list->Positive("plan.roughness", p.roughness, 10.0, "change of torque from sample to sample");
+  list->Positive("plan.payload_change_kg", p.payload_change_kg, 100.0,
+                 "a plan for another payload is no start for the next");
+  list->Within("plan.payload_change_share", p.payload_change_share, 0.0, 1.0,
+               "or this share of the plan's payload");
+}
+
 }  // namespace
 
 std::vector<Problem> ControllerConfig::Problems() const {
@@ -66,6 +86,7 @@ std::vector<Problem> ControllerConfig::Problems() const {
   list.Positive("adaptation_bound", adaptation_bound, 1e6,
                 "the gains stay within this distance of those they start with");
   if (payload) CheckPayload(*payload, &list);
+  if (plan) CheckPlan(*plan, &list);
   return list.Take();
 }
 

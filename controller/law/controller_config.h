@@ -13,20 +13,26 @@ namespace flexarm {
 
 /// The law by its name in the config; controller/law/tracking_law.h has the equations.
 enum class ControllerKind : std::uint8_t {
-  kSobel,          ///< "sobel": modified Sobel model-reference adaptive control
-  kSobelOriginal,  ///< "sobel-original": as Sobel published it, alpha = 0 and vartheta = 0
-  kLqrCgt,         ///< "lqr-cgt": LQR around the command generator's trajectory, T = Tbar = 0
-  kLqrUm,          ///< "lqr-um": LQR towards the reference model, its command fed forward
-  kLqg,            ///< "lqg": LQR with alpha = 0 towards the reference's joints, links at rest
-  kPd,             ///< "pd": proportional and derivative of each hub alone
-  kPdZv,           ///< "pd-zv": the same, the reference shaped to leave no vibration
-  kPdZvd,          ///< "pd-zvd": with a second derivative zero, robust to the frequency
-  kGainScheduled,  ///< "gain-scheduled": for the payload that is found while it runs
+  kSobel,            ///< "sobel": modified Sobel model-reference adaptive control
+  kSobelOriginal,    ///< "sobel-original": as Sobel published it, alpha = 0 and vartheta = 0
+  kLqrCgt,           ///< "lqr-cgt": LQR around the command generator's trajectory, T = Tbar = 0
+  kLqrUm,            ///< "lqr-um": LQR towards the reference model, its command fed forward
+  kLqg,              ///< "lqg": LQR with alpha = 0 towards the reference's joints, links at rest
+  kPd,               ///< "pd": proportional and derivative of each hub alone
+  kPdZv,             ///< "pd-zv": the same, the reference shaped to leave no vibration
+  kPdZvd,            ///< "pd-zvd": with a second derivative zero, robust to the frequency
+  kGainScheduled,    ///< "gain-scheduled": for the payload that is found while it runs
+  kRecedingHorizon,  ///< "receding-horizon": the same along a plan that is made while it runs
 };
 
 /// Whether the law follows planned moves with the payload that `ekf-payload` finds, the estimator
 /// that it brings along: controller/law/scheduled_law.h.
-constexpr bool IsScheduled(ControllerKind kind) { return kind == ControllerKind::kGainScheduled; }
+constexpr bool IsScheduled(ControllerKind kind) {
+  return kind == ControllerKind::kGainScheduled || kind == ControllerKind::kRecedingHorizon;
+}
+
+/// Whether the law plans ahead: controller/law/horizon_planner.h.
+constexpr bool PlansAhead(ControllerKind kind) { return kind == ControllerKind::kRecedingHorizon; }
 
 /// Whether the law corrects its gains while it runs.
 constexpr bool IsAdaptive(ControllerKind kind) {
@@ -50,6 +56,25 @@ struct PayloadLawConfig {
   double reference_kg;                  ///< the reference is the way of an arm with this payload
   std::vector<double> gain_payload_kg;  ///< grid of the gain table, ascending from 0
   std::vector<double> gain_elbow_deg;   ///< |theta2|, ascending from 0
+};
+
+inline constexpr int kMostReadyPeriods = 20;
+
+/// Table [controller.plan]: how the rest of a move is planned while it lasts; plan_targets.h has
+/// the cost.
+struct PlanAheadConfig {
+  std::array<double, 12> moving_weight;   ///< diagonal of Q while the path moves, of an empty hand
+  std::array<double, 12> resting_weight;  ///< from the move's end on
+  std::array<double, 2> torque_weight;    ///< diagonal of R
+  double light_kg;                        ///< Q while moving falls as 1 / (1 + (payload / this)^2)
+  double torque_share;                    ///< a plan keeps within this share of the limits
+  double start_alpha;  ///< degree of stability of the gains of a first guess, 1/s
+  int every_periods;   ///< a plan is made this often
+  int ready_periods;   ///< and holds this much later
+  int rest_periods;    ///< it goes on for so long after the move's end
+  double roughness;    ///< see HorizonPlannerConfig, as the next two
+  double payload_change_kg;
+  double payload_change_share;
 };
 
 /// Section [controller]. Symbols as in the thesis, chapter 7.
@@ -81,6 +106,7 @@ struct ControllerConfig {
   }
 
   std::optional<PayloadLawConfig> payload{};  ///< needed by the laws that know it only
+  std::optional<PlanAheadConfig> plan{};      ///< needed by `receding-horizon` only
 
   std::string
       gains_file;  ///< key `gains`, optional: written by `flexarm design`; empty: design at start

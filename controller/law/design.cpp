@@ -171,14 +171,21 @@ void DesignForPayload(const StackConfig& config, Design* design) {
   const PayloadLawConfig& law = *controller.payload;
   GainGrid grid{.payload_kg = law.gain_payload_kg, .theta2_rad = law.gain_elbow_deg};
   for (double& theta2 : grid.theta2_rad) theta2 *= std::numbers::pi / 180.0;
-  GainWeights weights{
-      .state = {}, .torque = controller.torque_weight, .alpha_per_s = controller.alpha};
   const Eigen::VectorXd q = StateWeight(controller).diagonal();
-  std::copy_n(q.data(), weights.state.size(), weights.state.begin());
-  design->scheduled =
-      ScheduledDesign{.gains = DesignGainTable(ArmOf(*design), grid, weights, period_s),
-                      .max_kg = law.max_kg,
-                      .reference_kg = law.reference_kg};
+  const RigidJointArm arm = ArmOf(*design);
+  const auto table = [&](double alpha_per_s) {
+    GainWeights weights{
+        .state = {}, .torque = controller.torque_weight, .alpha_per_s = alpha_per_s};
+    std::copy_n(q.data(), weights.state.size(), weights.state.begin());
+    return DesignGainTable(arm, grid, weights, period_s);
+  };
+  design->scheduled = ScheduledDesign{.gains = table(controller.alpha),
+                                      .start_gains = {},
+                                      .max_kg = law.max_kg,
+                                      .reference_kg = law.reference_kg};
+  if (PlansAhead(controller.kind)) {
+    design->scheduled->start_gains = table(controller.plan->start_alpha);
+  }
 }
 
 }  // namespace

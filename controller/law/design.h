@@ -28,8 +28,9 @@ struct DesignCheck {
 /// What the laws that know the payload need (scheduled_law.h).
 struct ScheduledDesign {
   GainTable gains;
-  double max_kg;        ///< moves are planned for it
-  double reference_kg;  ///< the reference is the way of an arm with this payload
+  std::optional<GainTable> start_gains;  ///< of the law that plans, for a plan's first guess
+  double max_kg;                         ///< moves are planned for it
+  double reference_kg;                   ///< the reference is the way of an arm with this payload
 };
 
 /// Everything that the loop needs and that is computed before it runs. SI, psi(L) = 1.

@@ -143,7 +143,27 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name, Eigen::
   *matrix = read;
 }
 
-// What the laws that know the payload need; a knot is 2 x 12, row by row.
+// A knot is 2 x 12, row by row.
+nlohmann::ordered_json KnotsToJson(const GainTable& table) {
+  auto out = nlohmann::ordered_json::array();
+  for (const GainTable::Gain& gain : table.knots()) out.emplace_back(MatrixToJson(gain));
+  return out;
+}
+
+std::vector<GainTable::Gain> KnotsFromJson(const nlohmann::json& in, const std::string& name) {
+  std::vector<GainTable::Gain> knots;
+  for (const nlohmann::json& knot : in) {
+    Eigen::MatrixXd gain;
+    MatrixFromJson(knot, name, &gain);
+    if (gain.rows() != 2 || gain.cols() != 12) {
+      throw Refused("gains file: '" + name + "' holds a matrix that is not 2 x 12");
+    }
+    knots.emplace_back(gain);
+  }
+  return knots;
+}
+
+// What the laws that know the payload need.
 nlohmann::ordered_json PayloadToJson(const Design& design) {
   nlohmann::ordered_json out{{"model", design.payload_model}};
   if (!design.scheduled) return out;
@@ -152,8 +172,9 @@ nlohmann::ordered_json PayloadToJson(const Design& design) {
   out["reference_kg"] = design.scheduled->reference_kg;
   out["gain_payload_kg"] = table.grid().payload_kg;
   out["gain_theta2_rad"] = table.grid().theta2_rad;
-  out["gain"] = nlohmann::ordered_json::array();
-  for (const GainTable::Gain& gain : table.knots()) out["gain"].emplace_back(MatrixToJson(gain));
+  out["gain"] = KnotsToJson(table);
+  const auto& start = design.scheduled->start_gains;
+  if (start) out["start_gain"] = KnotsToJson(*start);
   return out;
 }
 
@@ -162,20 +183,16 @@ void PayloadFromJson(const nlohmann::json& in, Design* design) {
     design->payload_model = in.at("model").get<std::vector<double>>();
     static_cast<void>(RigidJointStepper(design->payload_model));
     if (!in.contains("gain")) return;
-    std::vector<GainTable::Gain> knots;
-    for (const nlohmann::json& knot : in.at("gain")) {
-      Eigen::MatrixXd gain;
-      MatrixFromJson(knot, "payload.gain", &gain);
-      if (gain.rows() != 2 || gain.cols() != 12) {
-        throw Refused("gains file: 'payload.gain' holds a matrix that is not 2 x 12");
-      }
-      knots.emplace_back(gain);
-    }
     const GainGrid grid{.payload_kg = in.at("gain_payload_kg").get<std::vector<double>>(),
                         .theta2_rad = in.at("gain_theta2_rad").get<std::vector<double>>()};
-    design->scheduled = ScheduledDesign{.gains = {grid, std::move(knots)},
-                                        .max_kg = in.at("max_kg").get<double>(),
-                                        .reference_kg = in.at("reference_kg").get<double>()};
+    design->scheduled =
+        ScheduledDesign{.gains = {grid, KnotsFromJson(in.at("gain"), "payload.gain")},
+                        .start_gains = {},
+                        .max_kg = in.at("max_kg").get<double>(),
+                        .reference_kg = in.at("reference_kg").get<double>()};
+    if (!in.contains("start_gain")) return;
+    design->scheduled->start_gains =
+        GainTable(grid, KnotsFromJson(in.at("start_gain"), "payload.start_gain"));
   } catch (const nlohmann::json::exception&) {
     throw Refused("gains file: 'payload' lacks one of its members, or it is not numbers");
   } catch (const std::invalid_argument& error) {
@@ -266,6 +283,7 @@ std::string DesignHash(const StackConfig& config) {
     digest << c.payload->max_kg << c.payload->reference_kg;
     for (const double knot : c.payload->gain_payload_kg) digest << knot;
     for (const double knot : c.payload->gain_elbow_deg) digest << knot;
+    if (PlansAhead(c.kind)) digest << c.plan->start_alpha;
   }
   return digest.Hex();
 }

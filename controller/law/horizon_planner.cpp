@@ -47,13 +47,15 @@ bool HorizonPlanner::Plan(const PlanProblem& problem, const HorizonPlan* previou
   return true;
 }
 
-// Gains of a heavy payload make a light model unstable: not across a jump of the estimate.
+bool HorizonPlanner::IsFor(const HorizonPlan& plan, double payload_kg) const noexcept {
+  const double allowed_kg =
+      std::max(config_.payload_change_kg, config_.payload_change_share * plan.payload_kg());
+  return std::fabs(payload_kg - plan.payload_kg()) <= allowed_kg;
+}
+
 bool HorizonPlanner::MayContinue(const HorizonPlan& previous,
                                  const PlanProblem& problem) const noexcept {
-  const double allowed_kg =
-      std::max(config_.payload_change_kg, config_.payload_change_share * previous.payload_kg());
-  return std::fabs(problem.payload_kg - previous.payload_kg()) <= allowed_kg &&
-         previous.At(problem.first_tick).has_value();
+  return IsFor(previous, problem.payload_kg) && previous.At(problem.first_tick).has_value();
 }
 
 // Beyond the previous plan's end, and without one: the quasi-static motion. The table is read at

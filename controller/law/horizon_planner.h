@@ -52,6 +52,10 @@ class HorizonPlanner {
 
   const Figures& figures() const noexcept { return figures_; }
 
+  /// Whether a plan is made for about this payload. Gains of a heavy payload make a light model
+  /// unstable, so a plan for another one is no start for the next.
+  bool IsFor(const HorizonPlan& plan, double payload_kg) const noexcept;
+
  private:
   bool MayContinue(const HorizonPlan& previous, const PlanProblem& problem) const noexcept;
   void RollOutStart(const PlanProblem& problem, const HorizonPlan* previous) noexcept;

@@ -185,6 +185,19 @@ std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& d
   return moves;
 }
 
+std::vector<Stretch> StretchesOf(const std::vector<PlannedMove>& moves) {
+  std::vector<Stretch> stretches;
+  for (const PlannedMove& move : moves) {
+    const int end = move.first + move.periods;
+    if (stretches.empty() || move.first >= stretches.back().end) {
+      stretches.push_back({.first = move.first, .end = end});
+    } else {
+      stretches.back().end = end;
+    }
+  }
+  return stretches;
+}
+
 Experiment WithChosenDurations(const Experiment& experiment, const std::vector<PlannedMove>& moves,
                                double period_s) {
   Experiment chosen = experiment;

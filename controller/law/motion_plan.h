@@ -27,6 +27,15 @@ struct PlannedMove {
   RigidPoint At(double sample, double period_s) const noexcept;
 };
 
+/// Samples between two rests of a path: one move, or several that took over from each other.
+struct Stretch {
+  int first;  ///< sample at which it begins
+  int end;    ///< at which it rests again
+};
+
+/// @param moves  in order of time
+std::vector<Stretch> StretchesOf(const std::vector<PlannedMove>& moves);
+
 /// Decides the moves of an experiment that starts from rest at `start_rad`.
 ///
 /// A position of the tip becomes angles of the straight arm. A move without duration gets the

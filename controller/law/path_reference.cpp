@@ -25,13 +25,14 @@ const RigidPoint& RigidPath::At(int k) const noexcept {
 
 RigidJointArm ArmOf(const Design& design) { return RigidJointStepper(design.payload_model).arm(); }
 
+RigidPathPoint InTermsOfTheMap(const RigidPoint& point) noexcept {
+  return {.Y = {point.angle_rad[0], point.angle_rad[1]},
+          .Y_dot = {point.rate_rad_s[0], point.rate_rad_s[1]},
+          .Y_ddot = {point.acceleration_rad_s2[0], point.acceleration_rad_s2[1]}};
+}
+
 std::array<RigidPathPoint, 3> PathPoints(const std::array<RigidPoint, 3>& path) noexcept {
-  const auto point = [](const RigidPoint& p) {
-    return RigidPathPoint{.Y = {p.angle_rad[0], p.angle_rad[1]},
-                          .Y_dot = {p.rate_rad_s[0], p.rate_rad_s[1]},
-                          .Y_ddot = {p.acceleration_rad_s2[0], p.acceleration_rad_s2[1]}};
-  };
-  return {point(path[0]), point(path[1]), point(path[2])};
+  return {InTermsOfTheMap(path[0]), InTermsOfTheMap(path[1]), InTermsOfTheMap(path[2])};
 }
 
 std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,

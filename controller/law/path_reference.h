@@ -36,6 +36,7 @@ class RigidPath {
 RigidJointArm ArmOf(const Design& design);
 
 /// In the terms of the quasi-static map. Real-time: safe.
+RigidPathPoint InTermsOfTheMap(const RigidPoint& point) noexcept;
 std::array<RigidPathPoint, 3> PathPoints(const std::array<RigidPoint, 3>& path) noexcept;
 
 /// The reference of the laws that know the payload: an arm that is bent along the path without

@@ -141,7 +141,8 @@ std::string WithPayload(const Design& design) {
 
 ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
                                const std::array<double, 2>& start_rad, const MotionLimits& limits)
-    : moves_(PlanMoves(experiment, design, period_s, start_rad, limits)) {
+    : moves_(PlanMoves(experiment, design, period_s, start_rad, limits)),
+      stretches_(StretchesOf(moves_)) {
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
   samples_.resize(static_cast<std::size_t>(periods) + 1);

@@ -3,9 +3,7 @@
 #include <limits>
 
 #include "controller/law/gain_payload.h"
-#include "controller/law/path_reference.h"
 #include "model/portable_math.h"
-#include "model/quasi_static_map.h"
 
 namespace flexarm {
 namespace {
@@ -17,10 +15,8 @@ constexpr double kFrictionRate_rad_s = 0.05;
 }  // namespace
 
 Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& knowledge,
-                                     const std::array<RigidPoint, 3>& path,
+                                     const QuasiStaticSample& desired,
                                      double rested_s) const noexcept {
-  const QuasiStaticSample desired =
-      QuasiStaticOver(arm_, knowledge.payload_kg, PathPoints(path), period_s_);
   Eigen::Vector2d u = desired.torque_nm;
   for (int i = 0; i < 2; ++i) {
     const double rate_rad_s = desired.x[RigidJointArm::kDof + i];

@@ -20,6 +20,12 @@ struct ReferenceSample {
   std::array<double, kMaxNominalStates> x_m;  ///< state of the reference model, SI, psi(L) = 1
 };
 
+/// What a plan asks for when the torque acts (horizon_plan.h): the motion, not the gains.
+struct PlanSample {
+  std::array<double, 12> x;         ///< [q; q'] of RigidJointArm, rad and m, and per second
+  std::array<double, 2> torque_nm;  ///< that makes it, without friction
+};
+
 /// What the torque follows while it is allowed. The value is logged: never renumber.
 enum class LoopMode : std::uint8_t {
   kFollow = 0,    ///< the law follows the reference model; Stopping damps the arm
@@ -41,18 +47,20 @@ struct StepInput {
   ReferenceSample reference_now;   ///< at k Ts
   ReferenceSample reference_next;  ///< when the torque computed now acts
   std::array<RigidPoint, 3> path;  ///< one period before that, then, and one after; of a path
+  PlanSample plan;                 ///< of the law `receding-horizon`, then; see `planned`
   std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts known before a reset
   Calibration calibration;                            ///< taken over at a reset
   SafetyState safety_state;
   std::uint8_t reset;  ///< 1: forget everything but counts_before (just armed, or calibrated)
   std::uint8_t reference_ended;  ///< 1: reference_next is the last sample of the experiment
   LoopMode mode;
-  std::array<std::uint8_t, 4> reserved;
+  std::uint8_t planned;  ///< 1: there is a plan; 0: the closed form takes its place
+  std::array<std::uint8_t, 3> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
 static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 32 + 2 * sizeof(ReferenceSample) +
-                                       3 * sizeof(RigidPoint) + sizeof(std::int64_t) * kCounters +
-                                       sizeof(Calibration) + 8,
+                                       3 * sizeof(RigidPoint) + sizeof(PlanSample) +
+                                       sizeof(std::int64_t) * kCounters + sizeof(Calibration) + 8,
               "no padding: the bytes are logged and compared");
 
 /// Why Step asked for less than the law computed. Bits of StepOutput::limits.

@@ -85,6 +85,7 @@ void TrackingLaw::SetFeedforward(const Design& design) {
       feedforward_x_ = LinksAtRest(Cp_, design.layout);
       break;
     case ControllerKind::kGainScheduled:
+    case ControllerKind::kRecedingHorizon:
       break;  // has its own, scheduled_law.h
   }
 }

@@ -38,6 +38,9 @@ void ControlTask::Run(const Activation& activation) noexcept {
   counts_ = record.output.counts;
   hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
   Publish(activation, record.input, record.output);
+  if (PlansAhead(record.input)) {
+    channels_.planner->Ask(sample_, activation.due_ns, plan_.experiment->reference, record.output);
+  }
   channels_.records->Push(record);
   channels_.operator_ticks->Push(record);
 }
@@ -75,6 +78,7 @@ void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
   if (used_up) plan_.experiment = nullptr;  // a plan is good for one run
   released_.store(plan_.number, std::memory_order_release);
   sample_ = -1;
+  if (channels_.planner != nullptr) channels_.planner->Start(plan_.number);
   if (plan_.experiment == nullptr) return;
   if (plan_.experiment->mode == LoopMode::kRegulate) {
     homing_.Start(plan_.experiment->homing, hub_angle_rad_);
@@ -130,6 +134,19 @@ void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept 
   input->reference_next = reference.At(sample_);
   input->path = reference.PathAround(sample_);
   input->reference_ended = sample_ >= last ? 1 : 0;
+  if (PlansAhead(*input)) FollowPlan(input);
+}
+
+bool ControlTask::PlansAhead(const StepInput& input) const noexcept {
+  return channels_.planner != nullptr && plan_.experiment != nullptr &&
+         input.safety_state == SafetyState::kRunning && input.mode == LoopMode::kFollow;
+}
+
+void ControlTask::FollowPlan(StepInput* input) noexcept {
+  const std::optional<PlanSample> plan = channels_.planner->At(sample_, input->now_ns);
+  if (!plan) return;
+  input->plan = *plan;
+  input->planned = 1;
 }
 
 // At k Ts, which lies between samples of the reference unless the torques act at sampling instants:

@@ -10,6 +10,7 @@
 #include "controller/runtime/homing_goal.h"
 #include "controller/runtime/loop_grid.h"
 #include "controller/runtime/messages.h"
+#include "controller/runtime/plan_follower.h"
 #include "controller/runtime/planned_run.h"
 #include "controller/runtime/spsc_queue.h"
 #include "controller/runtime/task.h"
@@ -26,6 +27,7 @@ struct ControlChannels {
   ControlReportChannel* reports;          ///< written
   SpscQueue<TickRecord>* records;         ///< written: every step, for the log
   SpscQueue<TickRecord>* operator_ticks;  ///< written: every step, for status and commissioning
+  PlanFollower* planner = nullptr;        ///< of the law `receding-horizon`
 };
 
 /// The control thread's body: newest frame -> Step -> asked torque, 50 Hz. Never waits.
@@ -54,6 +56,8 @@ class ControlTask final : public Task {
   void StartRun(std::int64_t running_since_ns) noexcept;
   void TakeCalibration() noexcept;
   void FollowReference(SafetyState state, StepInput* input) noexcept;
+  void FollowPlan(StepInput* input) noexcept;
+  bool PlansAhead(const StepInput& input) const noexcept;
   ReferenceSample ReferenceAtSample(const ReferenceTable& reference) const noexcept;
   StepInput Gather(const Activation& activation, const FramePacket& packet,
                    SafetyState state) noexcept;

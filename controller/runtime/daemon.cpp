@@ -180,6 +180,7 @@ DaemonResult Daemon::Run() {
   executor_.Add(stack().safety());
   executor_.Add(stack().control(), &timing_);
   for (Task* task : stack().drive_tasks()) executor_.Add(*task);
+  for (Task* task : stack().law_tasks()) executor_.Add(*task);
   executor_.Add(operator_);
   executor_.Add(recorder_);
   const std::int64_t epoch_ns = MonotonicNow() + kEpochLeadNs;

@@ -15,6 +15,17 @@ std::vector<PermitChannel*> Joined(std::vector<PermitChannel*> first,
   return first;
 }
 
+std::unique_ptr<PlannerTask> PlannerOf(const StackConfig& config, const Design& design) {
+  if (!PlansAhead(config.controller.kind)) return nullptr;
+  return std::make_unique<PlannerTask>(config, design);
+}
+
+std::unique_ptr<PlanFollower> FollowerOf(const StackConfig& config, PlannerTask* planner) {
+  if (planner == nullptr) return nullptr;
+  return std::make_unique<PlanFollower>(PlanScheduleOf(config), &planner->requests(),
+                                        &planner->plans());
+}
+
 }  // namespace
 
 LoopStack::LoopStack(const StackConfig& config, const Design& design, const LoopWiring& wiring)
@@ -24,6 +35,8 @@ LoopStack::LoopStack(const StackConfig& config, const Design& design, const Loop
       operator_ticks_(kOperatorTickDepth),
       safety_records_(kSafetyDepth),
       step_(config, design),
+      planner_(PlannerOf(config, design)),
+      follower_(FollowerOf(config, planner_.get())),
       safety_(MakeSupervisorLimits(config.safety, config.loop),
               {.lines = wiring.lines,
                .control = &control_reports_,
@@ -40,6 +53,12 @@ LoopStack::LoopStack(const StackConfig& config, const Design& design, const Loop
                 .commands = wiring.commands,
                 .reports = &control_reports_,
                 .records = &tick_records_,
-                .operator_ticks = &operator_ticks_}) {}
+                .operator_ticks = &operator_ticks_,
+                .planner = follower_.get()}) {}
+
+std::vector<Task*> LoopStack::law_tasks() {
+  if (planner_ == nullptr) return {};
+  return {planner_.get()};
+}
 
 }  // namespace flexarm

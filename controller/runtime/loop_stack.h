@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "controller/law/design.h"
 #include "controller/runtime/bus_health.h"
 #include "controller/runtime/control_task.h"
+#include "controller/runtime/planner_task.h"
 #include "controller/runtime/safety_task.h"
 #include "controller/runtime/stack_config.h"
 
@@ -40,6 +42,8 @@ class LoopStack {
 
   SafetyTask& safety() { return safety_; }
   ControlTask& control() { return control_; }
+  /// Of the law; none if it does not plan ahead.
+  std::vector<Task*> law_tasks();
   /// Of the backend, in order of priority.
   virtual std::vector<Task*> drive_tasks() = 0;
 
@@ -84,6 +88,8 @@ class LoopStack {
   SpscQueue<TickRecord> operator_ticks_;
   SpscQueue<SafetyRecord> safety_records_;
   ControlStep step_;
+  std::unique_ptr<PlannerTask> planner_;    // of the law that plans ahead, or nullptr
+  std::unique_ptr<PlanFollower> follower_;  // the same
   SafetyTask safety_;
   ControlTask control_;
 };

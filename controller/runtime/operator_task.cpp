@@ -38,17 +38,15 @@ Json BusStatusOf(const std::vector<BusHealth>& buses) {
 }
 
 // Null where no estimator finds it.
-Json PayloadJson(const StepOutput& out) {
+Json PayloadJson(const StepInput& in, const StepOutput& out) {
   if (std::isnan(out.payload_kg)) return nullptr;
   Json doubts = Json::array();
   for (const PayloadWarning& warning : kPayloadWarnings) {
     if ((out.payload_doubts & warning.doubt) != 0) doubts.push_back(warning.name);
   }
-  return {{"kg", out.payload_kg},
-          {"sigma_kg", out.payload_sigma_kg},
-          {"friction_nm", out.friction_nm},
-          {"mean_nis", out.mean_nis},
-          {"doubts", doubts}};
+  return {{"kg", out.payload_kg},           {"sigma_kg", out.payload_sigma_kg},
+          {"friction_nm", out.friction_nm}, {"mean_nis", out.mean_nis},
+          {"planned", in.planned != 0},     {"doubts", doubts}};
 }
 
 std::optional<RequestKind> RequestByName(const std::string& name) {
@@ -144,7 +142,7 @@ void OperatorTask::WarnOfPayload(std::uint32_t doubts) {
   const StepOutput& out = telemetry_.output;
   for (const PayloadWarning& warning : kPayloadWarnings) {
     if ((doubts & warning.doubt) == 0) continue;
-    const Json figures = PayloadJson(out);
+    const Json figures = PayloadJson(telemetry_.input, out);
     Warn(warning.name, warning.text + (": " + figures.dump()), figures);
   }
 }
@@ -321,7 +319,7 @@ Json OperatorTask::Status() {
               {"modal_m", out.modal_m},
               {"root_strain", out.root_strain},
               {"at_rest", out.at_rest != 0},
-              {"payload", PayloadJson(out)},
+              {"payload", PayloadJson(telemetry_.input, out)},
               {"delay_ms", delay_.delay_ms()},
               {"delay_max_ms", delay_.longest_ms()},
               {"delay_margin_ms", delay_.margin_ms()},

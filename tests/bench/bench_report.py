@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 MIN_REALTIME_FACTOR = 100
+PLAN_EVERY = 10  # controller.plan.every_periods
 
 
 def run(program):
@@ -39,17 +40,23 @@ def main():
     folder = arguments.build / "tests/bench"
     control = run(folder / "control_benchmark")
     run(folder / "model_benchmark")
-    run(folder / "planner_benchmark")
+    plan = run(folder / "planner_benchmark")
     steps = [b for name, b in control.items() if name.startswith("Step/")]
-    payload = [b for b in steps if b["label"] in ("ekf-payload", "gain-scheduled")]
+    payload = [b for b in steps
+               if b["label"] in ("ekf-payload", "gain-scheduled", "receding-horizon")]
     slowest = max((b for b in steps if b not in payload), key=lambda b: b["p99.9_us"])
     with_payload = max(payload, key=lambda b: b["p99.9_us"])
     sobel = next(b for b in steps if b["label"] == "sobel")
+    planned = next(b for b in steps if b["label"] == "receding-horizon")
+    per_sample = planned["p50_us"] + 1e3 * plan["Plan/warm:1"]["real_time"] / PLAN_EVERY
     factor = next(b for name, b in control.items()
                   if name.startswith("SimulatedRun/modes:4"))["realtime_factor"]
     text = (f"Step of {len(steps)} laws and estimators: p99.9 {slowest['p99.9_us']:.1f} us at most"
             f" ({slowest['label']}), of those that find the payload {with_payload['p99.9_us']:.0f} us"
             f" ({with_payload['p50_us'] / sobel['p50_us']:.0f} times sobel, medians);"
+            f" a sample of receding-horizon {per_sample:.0f} us with its share of a plan"
+            f" ({per_sample / sobel['p50_us']:.0f} times sobel), a first plan"
+            f" {plan['Plan/warm:0']['real_time']:.1f} ms;"
             f" default experiment {factor:.0f} times real time")
     print("\n" + text)
     if arguments.note:

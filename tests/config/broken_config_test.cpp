@@ -192,6 +192,18 @@ const BrokenCase kRange[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Range, BrokenConfig, ::testing::ValuesIn(kRange), CaseName);
 
+const BrokenCase kPlan[] = {
+    {"PlanNeverMade", "every_periods = 10", "every_periods = 0", "controller.plan.every_periods",
+     "1 .. 100"},
+    {"PlanReadyAtOnce", "ready_periods = 5", "ready_periods = 1", "controller.plan.ready_periods",
+     "2 .. 20"},
+    {"PlanOfFreeTorque", "torque_weight = [0.02, 0.2]", "torque_weight = [0.02, 0.0]",
+     "controller.plan.torque_weight[1]", "any torque"},
+    {"PlanBeyondTheLimits", "torque_share = 0.93", "torque_share = 1.1",
+     "controller.plan.torque_share", "left to the feedback"},
+};
+INSTANTIATE_TEST_SUITE_P(Plan, BrokenConfig, ::testing::ValuesIn(kPlan), CaseName);
+
 const BrokenCase kContradiction[] = {
     {"PayloadLawOnAnotherModel", "name = \"sobel\"\nnominal = \"R12\"",
      "name = \"gain-scheduled\"\nnominal = \"T16\"", "controller.name",
@@ -267,15 +279,21 @@ TEST(BrokenConfigs, ATorsionalModelWithoutRotorEncodersNeedsTheKalmanFilter) {
 }
 
 TEST(BrokenConfigs, ALawThatFindsThePayloadNeedsItsTables) {
-  const std::string text = Replaced(Replaced(FileText(Shipped("thesis-rig.toml")),
-                                             "name = \"sobel\"", "name = \"gain-scheduled\""),
-                                    "[controller.payload]  ", "[rig2]  ");
-  bool told = false;
-  for (const ConfigProblem& problem : ProblemsOf(text)) {
-    told |= problem.key == "controller.name" &&
-            problem.rule.find("needs the table [controller.payload]") != std::string::npos;
-  }
-  EXPECT_TRUE(told);
+  const auto without = [](const std::string& law, const std::string& table) {
+    return ProblemsOf(Replaced(Replaced(FileText(Shipped("thesis-rig.toml")), "name = \"sobel\"",
+                                        "name = \"" + law + "\""),
+                               "[" + table + "]  ", "[rig2]  "));
+  };
+  const auto told = [](const std::vector<ConfigProblem>& problems, const std::string& table) {
+    return std::any_of(problems.begin(), problems.end(), [&](const ConfigProblem& problem) {
+      return problem.key == "controller.name" && problem.rule == "needs the table [" + table + "]";
+    });
+  };
+  const std::string payload = "controller.payload", plan = "controller.plan";
+  EXPECT_TRUE(told(without("gain-scheduled", payload), payload));
+  EXPECT_TRUE(told(without("receding-horizon", payload), payload));
+  EXPECT_TRUE(told(without("receding-horizon", plan), plan));
+  EXPECT_FALSE(told(without("gain-scheduled", plan), plan)) << "it plans nothing";
 }
 
 TEST(BrokenConfigs, TooManyStrainChannels) {

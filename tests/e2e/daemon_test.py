@@ -28,6 +28,16 @@ PERIOD_MS = 20.0
 
 LONG = SHORT.replace("2.0", "30.0")
 
+ONE_MOVE = """
+name = "one-move"
+duration_s = 4.0
+
+[[move]]
+start_s = 0.2
+duration_s = 1.8
+to_deg = [30.0, -30.0]
+"""
+
 
 class Daemon(ProgramTest):
     def wait_for_state(self, *states, within_s=20):
@@ -65,9 +75,19 @@ class Daemon(ProgramTest):
 
     @in_real_time
     def test_a_run_in_real_time_equals_the_lock_step_run_tick_for_tick(self):
+        self.assert_equals_lock_step(SQUARE, 300)
+
+    @in_real_time
+    def test_so_does_a_run_whose_plans_another_thread_makes(self):
+        run = self.assert_equals_lock_step(self.experiment(ONE_MOVE), 200, "--set",
+                                           "controller.name=receding-horizon")
+        planned = rows(run, "SELECT count(*) FROM tick WHERE planned = 1")[0][0]
+        self.assertEqual(planned, 110, "1.8 s of move and 20 periods of rest")
+
+    def assert_equals_lock_step(self, experiment, ticks, *options):
         """Up to the first deadline that was missed; and none is, but for a stall of the machine."""
-        simulated, _ = self.simulate("lockstep.flexarm")
-        daemon = self.start_daemon("--experiment", SQUARE)
+        simulated, _ = self.simulate("lockstep.flexarm", *options, experiment=experiment)
+        daemon = self.start_daemon("--experiment", experiment, *options)
         daemon.wait(timeout=60)
         run = self.only_run()
         difference = json.loads(self.run_program("flexarm", "diff", run, simulated, "--json").stdout)
@@ -75,8 +95,8 @@ class Daemon(ProgramTest):
         if not missed:
             self.assertIs(difference["identical"], True, f"{difference}\n{self.daemon_log()}")
             query = "SELECT count(*) FROM tick WHERE state = 'Running'"
-            self.assertEqual(rows(run, query), [(300,)])
-            return
+            self.assertEqual(rows(run, query), [(ticks,)])
+            return run
         stalls_ms = self.witness.stalls_ms
         self.assertLessEqual(len(missed), sum(1 + stall // PERIOD_MS for stall in stalls_ms),
                              f"late ticks {missed}, stalls {stalls_ms}")
@@ -86,6 +106,7 @@ class Daemon(ProgramTest):
         self.assertGreaterEqual(missed[0], 100, "too short to show anything")
         print(f"{self.id()}: shown for {missed[0]} ticks, then the machine stood still for "
               f"{max(stalls_ms)} ms", file=sys.stderr)
+        return simulated
 
     @in_real_time
     def test_an_operator_arms_runs_stops_and_disarms(self):

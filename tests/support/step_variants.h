@@ -16,7 +16,7 @@ struct StepVariant {
 };
 
 /// Every law with the shipped estimator, every estimator with the shipped law, the nominal model
-/// with the most states, and the law that brings its estimator along.
+/// with the most states, and the laws that bring their estimator along.
 inline std::vector<StepVariant> StepVariants() {
   std::vector<StepVariant> variants;
   for (const char* law :
@@ -29,7 +29,9 @@ inline std::vector<StepVariant> StepVariants() {
   variants.push_back({"T16", {"controller.nominal=T16"}});
   constexpr int kMostWithPayload = 450'000;
   variants.push_back({"ekf-payload", {"estimator.name=ekf-payload"}, kMostWithPayload});
-  variants.push_back({"gain-scheduled", {"controller.name=gain-scheduled"}, kMostWithPayload});
+  for (const char* law : {"gain-scheduled", "receding-horizon"}) {
+    variants.push_back({law, {std::string("controller.name=") + law}, kMostWithPayload});
+  }
   return variants;
 }
 

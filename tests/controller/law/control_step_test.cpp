@@ -474,6 +474,31 @@ TEST(ControlStepWithPayload, AMoveOpensTheDoubtOfThePayload) {
 // A path that rests 0.01 rad away from an arm that stands, after a move of a sample: the torque is
 // K times that. The filter is sure of 0.5 kg, so K is that of 0.5 kg until the path has rested for
 // half a second, and of 0.15 kg from then on. A sigma of 0.001 kg counts 1e-4 of the difference.
+// Of two arms at rest, one at its plan and one beside it. Without a plan the path counts.
+TEST(ControlStepWithPayload, FollowsThePlanIfThereIsOne) {
+  const Config config =
+      ShippedRig({"controller.name=receding-horizon", "controller.prediction=false"});
+  const Design design = DesignController(config);
+  const auto asked = [&](const StepInput& at) {
+    ControlStep step(config, design);
+    StepInput first = AtRest(0, SafetyState::kArmed);
+    first.reset = 1;
+    static_cast<void>(step.Step(first));
+    const StepOutput out = step.Step(at);
+    EXPECT_EQ(out.faults, 0u);
+    return Eigen::Vector2d(out.torque_nm[0], out.torque_nm[1]);
+  };
+  StepInput input = AtRest(1, SafetyState::kRunning);
+  for (RigidPoint& point : input.path) point.angle_rad[0] = 0.5;
+  const Eigen::Matrix<double, 2, 12> K = design.scheduled->gains.At(0.15, 0.0);
+  EXPECT_NEAR((asked(input) - K.col(0) * 0.5).norm(), 0.0, 1e-9) << "the path's";
+  input.planned = 1;
+  input.plan.torque_nm = {0.3, -0.2};
+  EXPECT_NEAR((asked(input) - Eigen::Vector2d(0.3, -0.2)).norm(), 0.0, 1e-9);
+  input.plan.x[1] = 0.02;
+  EXPECT_NEAR((asked(input) - Eigen::Vector2d(0.3, -0.2) - K.col(1) * 0.02).norm(), 0.0, 1e-9);
+}
+
 TEST(ControlStepWithPayload, RestingItTakesTheRobustGains) {
   const Config config =
       ShippedRig({"controller.name=gain-scheduled", "controller.prediction=false",

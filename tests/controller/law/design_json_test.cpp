@@ -52,6 +52,22 @@ TEST(DesignJson, ComesBackBitForBit) {
   }
 }
 
+TEST(DesignJson, TheGainsOfALawThatPlansComeBackToo) {
+  const Design design = DesignController(ShippedRig({"controller.name=receding-horizon"}));
+  const nlohmann::json json = nlohmann::json::parse(DesignToJson(design, "h"));
+  const Design back = DesignFromJson(json.dump(), "h");
+  ASSERT_TRUE(back.scheduled && back.scheduled->start_gains);
+  const auto& gains = design.scheduled->gains.knots();
+  const auto& start = design.scheduled->start_gains->knots();
+  EXPECT_EQ(back.scheduled->gains.knots(), gains);
+  EXPECT_EQ(back.scheduled->start_gains->knots(), start);
+  EXPECT_GT((gains[0] - start[0]).norm(), 1.0) << "of another alpha";
+
+  nlohmann::json broken = json;
+  broken["payload"]["start_gain"].erase(0);
+  EXPECT_THAT(RefusalOf(broken.dump()), HasSubstr("'payload'"));
+}
+
 TEST(DesignJson, AnotherConfigsGainsAreRefusedWithBothHashes) {
   EXPECT_THAT(RefusalOf(DesignToJson(ShippedDesign(), "aaaa"), "bbbb"),
               AllOf(HasSubstr("another config"), HasSubstr("aaaa"), HasSubstr("bbbb"),

@@ -160,6 +160,24 @@ TEST(Move, TheDerivativesOfThePlanAreThoseOfItsAngles) {
 
 // A planned reference keeps its share of every limit, and one period less would not: both by the
 // check over the whole table, not by the search.
+TEST(Move, AStretchIsWhatLiesBetweenTwoRests) {
+  const auto move = [](int first, int periods) {
+    PlannedMove out{};
+    out.first = first;
+    out.periods = periods;
+    return out;
+  };
+  const auto stretches = StretchesOf({move(10, 50), move(60, 20), move(100, 40), move(120, 60)});
+  ASSERT_EQ(stretches.size(), 3u);
+  EXPECT_EQ(stretches[0].first, 10);
+  EXPECT_EQ(stretches[0].end, 60);
+  EXPECT_EQ(stretches[1].first, 60) << "from rest, though at once";
+  EXPECT_EQ(stretches[1].end, 80);
+  EXPECT_EQ(stretches[2].first, 100);
+  EXPECT_EQ(stretches[2].end, 180) << "the last took over";
+  EXPECT_TRUE(StretchesOf({}).empty());
+}
+
 TEST(Move, WithoutADurationTakesTheShortestThatKeepsItsShareOfTheLimits) {
   for (const MoveProfile profile : {MoveProfile::kQuintic, MoveProfile::kSeptic}) {
     Experiment experiment = Moves({{.start_s = 0.2, .to_deg = {30, 30}}});

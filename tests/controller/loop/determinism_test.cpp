@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 
@@ -68,10 +69,10 @@ void ExpectReplays(const std::vector<std::string>& overrides) {
 
 TEST(Determinism, RecordedInputsThroughAFreshStepGiveTheSameBytes) { ExpectReplays({}); }
 
-// Its design goes through the log's text: the filter's model is not computed again.
-TEST(Determinism, SoDoesTheLawThatFindsThePayload) {
-  StackRun run(ShippedRig({"controller.name=gain-scheduled"}),
-               ShippedExperiment("benchmark-waypoints"));
+// Its design goes through the log's text: the filter's model is not computed again. Plans come from
+// the recorded inputs: the planner is not asked again.
+void ExpectReplaysWithPayload(const std::string& law, bool plans) {
+  StackRun run(ShippedRig({"controller.name=" + law}), ShippedExperiment("benchmark-waypoints"));
   run.Run(kEndNs);
   ControlStep fresh(run.config(), DesignFromJson(DesignToJson(run.design(), "h"), "h"));
   const FlushDenormals as_in_the_tasks;
@@ -80,6 +81,15 @@ TEST(Determinism, SoDoesTheLawThatFindsThePayload) {
     ASSERT_TRUE(SameBytes(output, record.output)) << "tick " << record.input.tick;
   }
   EXPECT_NEAR(run.tick.back().output.payload_kg, 0.1, 0.03);
+  const auto planned =
+      std::count_if(run.tick.begin(), run.tick.end(),
+                    [](const TickRecord& record) { return record.input.planned != 0; });
+  EXPECT_EQ(planned > 100, plans) << planned;
+}
+
+TEST(Determinism, SoDoTheLawsThatFindThePayload) {
+  ExpectReplaysWithPayload("gain-scheduled", false);
+  ExpectReplaysWithPayload("receding-horizon", true);
 }
 
 TEST(Determinism, RecordedInputsReplayWithDifferencesToo) {

@@ -1,4 +1,4 @@
-// The law that finds the payload, through the real sensor chain, on moves, payloads and seeds that
+// The laws that find the payload, through the real sensor chain, on moves, payloads and seeds that
 // nothing was tuned on; and the laws of the thesis on the same moves.
 
 #include <gtest/gtest.h>
@@ -76,32 +76,50 @@ void Print(const std::string& law, const Set& set, const Runs& runs) {
       Largest(runs.residual_mm), Largest(runs.peak1_nm), Largest(runs.peak2_nm));
 }
 
-// The bars of the issue, and the thesis's laws on the same moves: they settle in time in 4 and 1 of
-// 24 runs (the study: 4 % and 8 %).
-TEST(GainScheduled, TheTipIsAtRestWhenTheMoveEnds) {
-  const Set set{.name = "0 to 1 kg", .runs = 24, .first_seed = 1001};
-  const Runs runs = RunSet("gain-scheduled", set);
-  Print("gain-scheduled", set, runs);
+class FindsThePayload : public testing::TestWithParam<std::string> {
+ protected:
+  Runs RunAndPrint(const Set& set) {
+    const Runs runs = RunSet(GetParam(), set);
+    Print(GetParam(), set, runs);
+    return runs;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Laws, FindsThePayload,
+                         testing::Values("gain-scheduled", "receding-horizon"),
+                         [](const auto& law) {
+                           return law.param == "gain-scheduled" ? "GainScheduled"
+                                                                : "RecedingHorizon";
+                         });
+
+const Set kAnyPayload{.name = "0 to 1 kg", .runs = 24, .first_seed = 1001};
+
+// The bars of the issue.
+TEST_P(FindsThePayload, TheTipIsAtRestWhenTheMoveEnds) {
+  const Runs runs = RunAndPrint(kAnyPayload);
   EXPECT_EQ(runs.tripped, 0);
   EXPECT_GE(SettledInTime(runs), 24) << "98 % of the moves";
   EXPECT_LE(Mean(runs.residual_mm), 1.5);
+}
+
+// They settle in time in 4 and 1 of 24 runs (the study: 4 % and 8 %).
+TEST(TheLawsOfTheThesis, AreNotAtRestByThenOnTheSameMoves) {
   for (const char* law : {"sobel", "lqr-cgt"}) {
-    const Runs other = RunSet(law, set);
-    Print(law, set, other);
-    EXPECT_LT(SettledInTime(other), 12) << law;
+    const Runs runs = RunSet(law, kAnyPayload);
+    Print(law, kAnyPayload, runs);
+    EXPECT_LT(SettledInTime(runs), 12) << law;
   }
 }
 
 // The elbow's bar is 0.15 deg, and the study's version without a plan meets it on its moves (0.14)
 // but not by its own table of payloads: 0.48 deg at 0 kg, 0.41 at 0.05, 0.11 at 0.15. Here 0.26.
-TEST(GainScheduled, LightPayloadsStayOnTheReference) {
-  const Set set{.name = "0 to 0.2 kg", .heaviest_kg = 0.2, .runs = 24, .first_seed = 2001};
-  const Runs runs = RunSet("gain-scheduled", set);
-  Print("gain-scheduled", set, runs);
+TEST_P(FindsThePayload, LightPayloadsStayOnTheReference) {
+  const Runs runs =
+      RunAndPrint({.name = "0 to 0.2 kg", .heaviest_kg = 0.2, .runs = 24, .first_seed = 2001});
   EXPECT_EQ(runs.tripped, 0);
   EXPECT_GE(SettledInTime(runs), 24);
   EXPECT_LE(Mean(runs.rms1_deg), 0.15);
-  EXPECT_LE(Mean(runs.rms2_deg), 0.30);
+  EXPECT_LE(Mean(runs.rms2_deg), GetParam() == "gain-scheduled" ? 0.30 : 0.15);
 }
 
 std::vector<Set> Variants() {
@@ -140,12 +158,11 @@ std::vector<Set> Variants() {
   };
 }
 
-TEST(GainScheduled, PlantsThatItDoesNotKnow) {
+TEST_P(FindsThePayload, OnPlantsThatItDoesNotKnow) {
   int settled = 0, all = 0;
   for (Set set : Variants()) {
     set.first_seed = 3001;
-    const Runs runs = RunSet("gain-scheduled", set);
-    Print("gain-scheduled", set, runs);
+    const Runs runs = RunAndPrint(set);
     EXPECT_EQ(runs.tripped, 0) << set.name;
     settled += SettledInTime(runs);
     all += set.runs;
@@ -204,6 +221,7 @@ TEST(GainScheduled, ALongRestRaisesNoDoubt) {
   const Doubted found = DoubtsOf(0.35, resting, {}, 35'000'000'000);
   EXPECT_EQ(found.doubts, 0u);
   EXPECT_GT(found.sigma_kg, kPayloadUncertain_kg) << "too short a rest: the test says nothing";
+  EXPECT_NEAR(found.payload_kg, 0.35, 0.03) << "flickering counts drag it";
 }
 
 }  // namespace

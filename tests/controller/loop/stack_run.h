@@ -26,6 +26,7 @@ class StackRun {
     executor_.Add(stack_.safety());
     executor_.Add(stack_.control());
     executor_.Add(stack_.plant());
+    for (Task* task : stack_.law_tasks()) executor_.Add(*task);
   }
 
   /// Lets the tasks run until `until_ns`; `unattended` makes the requests of UnattendedRun.
