@@ -27,16 +27,9 @@ ArmConstants::ArmConstants(const ArmParameters& p, ModeCount count)
       link2(Link2Modes(p, count.link2)),
       L1(link1.length_m),
       L2(link2.length_m),
-      I2(p.joint[1].hub_inertia_kgm2 + link2.second_moment + p.payload_mass_kg * L2 * L2),
-      backlash(p, I2 + p.payload_inertia_kgm2),
+      backlash(p, 0.0),  // its load comes with the payload
       foreshortening(p.foreshortening) {
-  const double m_p = p.payload_mass_kg;
   I1 = p.joint[0].hub_inertia_kgm2 + link1.second_moment;
-  m_outboard = p.motor2_mass_kg + p.hub2_mass_kg + link2.m + m_p;
-  Sx = link2.first_moment + m_p * L2;
-  k2 = link2.k + m_p * link2.psi_tip;
-  a2 = link2.a + m_p * L2 * link2.psi_tip;
-  N2 = link2.N + m_p * link2.psi_tip * link2.psi_tip.transpose();
   Ir2 = p.motor2_inertia_kgm2;
   J1 = p.joint[0].rotor_inertia_kgm2;
   J2 = p.joint[1].rotor_inertia_kgm2;
@@ -45,9 +38,27 @@ ArmConstants::ArmConstants(const ArmParameters& p, ModeCount count)
   K2 = p.joint[1].stiffness_nm_per_rad;
   friction_nm = {p.joint[0].coulomb_friction_nm, p.joint[1].coulomb_friction_nm};
   viscous = {p.joint[0].viscous_friction_nm_s_per_rad, p.joint[1].viscous_friction_nm_s_per_rad};
+  if (foreshortening) {
+    shortening1 = ForeshorteningOf(link1, p.link[0]);
+    bare_shortening2 = ForeshorteningOf(link2, p.link[1]);
+  }
+  CarryPayload(p);
+}
+
+// Always from the bare link: what is added and taken away again would leave its round-off. An
+// outer product that may alias takes the heap.
+void ArmConstants::CarryPayload(const ArmParameters& p) noexcept {
+  const double m_p = p.payload_mass_kg;
+  m_outboard = p.motor2_mass_kg + p.hub2_mass_kg + link2.m + m_p;
+  Sx = link2.first_moment + m_p * L2;
+  I2 = p.joint[1].hub_inertia_kgm2 + link2.second_moment + m_p * L2 * L2;
+  k2 = link2.k + m_p * link2.psi_tip;
+  a2 = link2.a + m_p * L2 * link2.psi_tip;
+  N2 = link2.N;
+  N2.noalias() += m_p * link2.psi_tip * link2.psi_tip.transpose();
+  backlash = Backlash(p, I2 + p.payload_inertia_kgm2);
   if (!foreshortening) return;
-  shortening1 = ForeshorteningOf(link1, p.link[0]);
-  shortening2 = ForeshorteningOf(link2, p.link[1]);
+  shortening2 = bare_shortening2;
   AddTipMass(link2, m_p, &shortening2);
 }
 

@@ -32,6 +32,13 @@ struct ArmConstants {
   /// bounds.
   ArmConstants(const ArmParameters& p, ModeCount count);
 
+  /// Another payload mass at the tip: equal to the bit to constants made with it.
+  ///
+  /// The shapes stay, so the coordinates and their rates mean what they meant before.
+  /// Real-time: safe.
+  /// @param p  those it was made with, but for payload_mass_kg
+  void CarryPayload(const ArmParameters& p) noexcept;
+
   int m1, m2;  ///< modes of link 1, link 2
   LinkModes link1, link2;
   double L1, L2;                ///< m
@@ -47,8 +54,9 @@ struct ArmConstants {
   Eigen::Vector2d friction_nm;  ///< K_F of joints 1 and 2
   Eigen::Vector2d viscous;      ///< their viscous friction, N m s/rad
   Backlash backlash;            ///< of joint 2
-  bool foreshortening;          ///< else the two below are empty
+  bool foreshortening;          ///< else the three below are empty
   Foreshortening<> shortening1, shortening2;  ///< of link 1; of link 2 with the payload
+  Foreshortening<> bare_shortening2;          ///< of link 2 alone
 
   int dof() const { return kRigidCoordinates + m1 + m2; }
   int phi2() const { return kPhi1 + m1; }  ///< place of link 2's first modal coordinate

@@ -74,6 +74,11 @@ const LinkModes& ArmModel::link_modes(int link) const {
   throw std::out_of_range("ArmModel: link is 1 or 2");
 }
 
+void ArmModel::CarryPayload(double payload_kg) noexcept {
+  parameters_.payload_mass_kg = payload_kg;
+  constants_.CarryPayload(parameters_);
+}
+
 // M = sum of T' m T over the bodies, T their velocities as rows over q'. Written apart from
 // InertialForces, so that each checks the other.
 MatrixXd ArmModel::MassMatrix(const VectorXd& q) const {

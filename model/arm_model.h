@@ -15,8 +15,8 @@ namespace flexarm {
 /// tip deflection. Off-line form in dynamic-size matrices; ArmSimulator steps the same equations
 /// fast. Options: foreshortening (foreshortening.h; the thesis has none) and play between the gears
 /// of joint 2 (backlash.h). Not modelled: gravity; friction is a generalised force, see
-/// ArmSimulator. Source: thesis chapter 3, (3.15)-(3.22), with the errata. Real-time: start-up only
-/// (allocates).
+/// ArmSimulator. Source: thesis chapter 3, (3.15)-(3.22), with the errata. Real-time: all but
+/// CarryPayload start-up only (allocates).
 class ArmModel {
  public:
   /// @throws std::invalid_argument if the parameters have Problems() or a count is outside its
@@ -30,6 +30,15 @@ class ArmModel {
   /// @param link  1 or 2
   /// @throws std::out_of_range otherwise
   const LinkModes& link_modes(int link) const;
+
+  /// Another payload mass at the tip, as if it had been made with it; `payload_inertia_kgm2` stays.
+  ///
+  /// What lets go of a load in flight, or closes around one: shapes, and so what q and v mean, stay
+  /// those of `shape_payload_mass_kg`, so a state goes on as it is. A mass that leaves takes along
+  /// its momentum at the velocity of the tip; one that comes has that velocity already: no impact.
+  /// Real-time: safe.
+  /// @param payload_kg  >= 0
+  void CarryPayload(double payload_kg) noexcept;
 
   /// Symmetric positive definite, dof x dof.
   Eigen::MatrixXd MassMatrix(const Eigen::VectorXd& q) const;

@@ -36,4 +36,8 @@ void ArmSimulator::Step(ArmState& state, const Eigen::Vector2d& torque_nm, doubl
   }
 }
 
+void ArmSimulator::CarryPayloadOf(const ArmModel& model) noexcept {
+  kernel_->CarryPayload(model.constants());
+}
+
 }  // namespace flexarm

@@ -64,6 +64,10 @@ class ArmSimulator {
   /// @param h_s        > 0; 1e-5 and less to 1e-3 make sense
   void Step(ArmState& state, const Eigen::Vector2d& torque_nm, double h_s) noexcept;
 
+  /// From now on steps this model: the one it was made with, but for its payload. The state of
+  /// before is the state now (ArmModel::CarryPayload). Real-time: safe, costs about a Step.
+  void CarryPayloadOf(const ArmModel& model) noexcept;
+
  private:
   int dof_;
   SimulatorOptions options_;

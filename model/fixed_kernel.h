@@ -56,6 +56,13 @@ class FixedKernel final : public StepKernel {
     Store(a, &state->a);
   }
 
+  void CarryPayload(const ArmConstants& c) noexcept override {
+    backlash_ = c.backlash;
+    c_ = typename Arm::Constants(c);
+    mass_ = StepConstants<kModes>(c_, 0.0);
+    k_ = StepConstants<kModes>(c_, k_.h);
+  }
+
  private:
   using Coordinates = ArmCoordinates<kModes>;
 

@@ -14,16 +14,17 @@ ForeshortenedConstants<M>::ForeshortenedConstants(const ArmConstants& c) : Fixed
     const int modes = static_cast<int>(link.C.cols());
     Foreshortening<M> out;
     out.tip.setZero(), out.k.setZero(), out.b.setZero(), out.C.setZero(), out.Q.setZero();
-    Eigen::VectorXi place(ProductCount(modes));  // of a product among those of M modes
-    for (int i = 0, n = 0, at = 0; i < M; ++i) {
+    Eigen::Matrix<int, ProductCount(M), 1> place;  // of a product among those of M modes
+    int products = 0;
+    for (int i = 0, at = 0; i < M; ++i) {
       for (int j = i; j < M; ++j, ++at) {
-        if (i < modes && j < modes) place[n++] = at;
+        if (i < modes && j < modes) place[products++] = at;
       }
     }
-    for (Eigen::Index i = 0; i < place.size(); ++i) {
+    for (Eigen::Index i = 0; i < products; ++i) {
       out.tip[place[i]] = link.tip[i], out.k[place[i]] = link.k[i], out.b[place[i]] = link.b[i];
       out.C.row(place[i]).head(modes) = link.C.row(i);
-      for (Eigen::Index j = 0; j < place.size(); ++j) out.Q(place[i], place[j]) = link.Q(i, j);
+      for (Eigen::Index j = 0; j < products; ++j) out.Q(place[i], place[j]) = link.Q(i, j);
     }
     return out;
   };

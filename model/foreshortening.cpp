@@ -69,8 +69,8 @@ Foreshortening<> ForeshorteningOf(const LinkModes& link, const LinkParameters& p
 void AddTipMass(const LinkModes& link, double mass_kg, Foreshortening<>* out) {
   out->k += mass_kg * out->tip;
   out->b += mass_kg * link.length_m * out->tip;
-  out->C += mass_kg * out->tip * link.psi_tip.transpose();
-  out->Q += mass_kg * out->tip * out->tip.transpose();
+  out->C.noalias() += mass_kg * out->tip * link.psi_tip.transpose();
+  out->Q.noalias() += mass_kg * out->tip * out->tip.transpose();
 }
 
 double TipShortening(const Foreshortening<>& link, const Eigen::Ref<const VectorXd>& phi) {

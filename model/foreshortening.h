@@ -37,7 +37,7 @@ struct Foreshortening {
 /// By the quadrature of LinkModes, relative error below 1e-12. Distributed mass only.
 Foreshortening<> ForeshorteningOf(const LinkModes& link, const LinkParameters& p);
 
-/// Adds a point mass at the tip, m_p >= 0.
+/// Adds a point mass at the tip, m_p >= 0. Real-time: safe.
 void AddTipMass(const LinkModes& link, double mass_kg, Foreshortening<>* out);
 
 /// delta(L) of modal coordinates phi, m. Real-time: safe.

@@ -14,6 +14,8 @@ class StepKernel {
   virtual ~StepKernel() = default;
   virtual void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h_s,
                     int passes) noexcept = 0;
+  /// From now on with these constants: the same arm with another payload.
+  virtual void CarryPayload(const ArmConstants& constants) noexcept = 0;
 };
 
 /// The kernel compiled for max(m1, m2) modes a link. A link with fewer modes is padded with modes

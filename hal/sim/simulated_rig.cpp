@@ -83,6 +83,11 @@ void SimulatedRig::Press(Line line, int level) noexcept {
   }
 }
 
+void SimulatedRig::CarryPayload(double payload_kg) noexcept {
+  arm_.CarryPayload(payload_kg);
+  simulator_.CarryPayloadOf(arm_);
+}
+
 SimulatedRig::Truth SimulatedRig::truth() const noexcept {
   const Eigen::Index m1 = arm_.mode_count().link1, m2 = arm_.mode_count().link2;
   const LinkModes& link1 = arm_.link_modes(1);

@@ -58,6 +58,10 @@ class SimulatedRig {
   /// still opens by the arm's own angle.
   void Press(Line line, int level) noexcept;
 
+  /// The arm carries this from now on; where it is and how it moves does not change by that.
+  /// ArmModel::CarryPayload says what becomes of the momentum.
+  void CarryPayload(double payload_kg) noexcept;
+
   Truth truth() const noexcept;
   const ArmState& state() const noexcept { return state_; }
 
