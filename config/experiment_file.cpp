@@ -75,6 +75,7 @@ void ReadSimEvent(TableReader row, SimEvent* out) {
              {{"plant", FreezeTarget::kPlant}, {"control", FreezeTarget::kControl}});
   }
   if (row.Has("kill")) row.Read("kill", &out->kill);
+  if (row.Has("payload_kg")) row.Read("payload_kg", &out->payload_kg.emplace());
 }
 
 // What was appended to a text that was planned or sent before.

@@ -122,9 +122,13 @@ void CheckSimEvent(const Experiment& experiment, std::size_t i, ProblemList* lis
                 NumberText(event.at_s), "must lie inside the experiment");
   const int kinds = static_cast<int>(event.line.has_value()) +
                     static_cast<int>(event.freeze != FreezeTarget::kNone) +
-                    static_cast<int>(event.kill);
+                    static_cast<int>(event.kill) + static_cast<int>(event.payload_kg.has_value());
   list->Require(kinds == 1, row, NumberText(kinds) + " of them",
-                "must have exactly one of line (with level), freeze, kill = true");
+                "must have exactly one of line (with level), freeze, kill = true, payload_kg");
+  if (event.payload_kg) {
+    list->Within(row + ".payload_kg", *event.payload_kg, 0.0, 100.0,
+                 "what the plant carries from then on");
+  }
   list->Require(event.level == 0 || event.level == 1, row + ".level", NumberText(event.level),
                 "must be 0 (open) or 1 (closed)");
 }

@@ -74,11 +74,12 @@ enum class FreezeTarget : std::uint8_t { kNone, kPlant, kControl };
 
 /// A thing that happens to the simulated rig, [[sim_event]]. Real backends refuse it.
 struct SimEvent {
-  double at_s;               ///< after the start of the experiment
-  std::optional<Line> line;  ///< with `level`
-  int level;                 ///< 0 or 1, as in LineLevels
-  FreezeTarget freeze;       ///< that task stops running
-  bool kill;                 ///< the process kills itself with SIGKILL
+  double at_s;                         ///< after the start of the experiment
+  std::optional<Line> line;            ///< with `level`
+  int level;                           ///< 0 or 1, as in LineLevels
+  FreezeTarget freeze;                 ///< that task stops running
+  bool kill;                           ///< the process kills itself with SIGKILL
+  std::optional<double> payload_kg{};  ///< the plant carries this from then on
 };
 
 /// When a row acts: doublet, move, chirp, prbs or csv.

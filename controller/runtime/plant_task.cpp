@@ -110,6 +110,7 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
     if (event.line.has_value()) rig_.Press(*event.line, event.level);
     if (event.freeze == FreezeTarget::kPlant) frozen_ = true;
     if (event.kill) std::raise(SIGKILL);
+    if (event.payload_kg) rig_.CarryPayload(*event.payload_kg);
   }
 }
 

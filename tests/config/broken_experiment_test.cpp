@@ -40,6 +40,10 @@ freeze = "control"
 [[sim_event]]
 at_s = 2.5
 kill = true
+
+[[sim_event]]
+at_s = 3.5
+payload_kg = 0.25
 )";
 
 constexpr const char* kMoves = R"(name = "moves"
@@ -187,13 +191,15 @@ TEST(ExperimentFile, IsReadWhole) {
   EXPECT_EQ(e.doublet[1].shape, DoubletShape::kSine);
   EXPECT_EQ(e.doublet[1].duration_s, 1.5);
   EXPECT_EQ(e.doublet[1].move_deg, (std::array{-30.0, 0.0}));
-  ASSERT_EQ(e.sim_event.size(), 3U);
+  ASSERT_EQ(e.sim_event.size(), 4U);
   EXPECT_EQ(e.sim_event[0].line, Line::kLimit1High);
   EXPECT_EQ(e.sim_event[0].level, 0);
   EXPECT_EQ(e.sim_event[1].freeze, FreezeTarget::kControl);
   EXPECT_FALSE(e.sim_event[1].line.has_value());
   EXPECT_FALSE(e.sim_event[1].kill);
   EXPECT_TRUE(e.sim_event[2].kill);
+  EXPECT_FALSE(e.sim_event[2].payload_kg.has_value());
+  EXPECT_EQ(e.sim_event[3].payload_kg, 0.25);
 }
 
 TEST(ExperimentFile, NeedsNoRows) {
@@ -290,6 +296,14 @@ const BrokenCase kBroken[] = {
      "\"control\"\n\n[[sim_event]]"},
     {"UnknownFreeze", "freeze = \"control\"", "freeze = \"safety\"", "sim_event[1].freeze",
      "one of \"plant\" \"control\""},
+    {"PayloadBelowNothing", "payload_kg = 0.25", "payload_kg = -0.1", "sim_event[3].payload_kg",
+     "0 .. 100: what the plant carries"},
+    {"PayloadOfNoArm", "payload_kg = 0.25", "payload_kg = 101.0", "sim_event[3].payload_kg",
+     "0 .. 100"},
+    {"PayloadThatIsNoNumber", "payload_kg = 0.25", "payload_kg = nan", "sim_event[3].payload_kg",
+     "must be a finite number"},
+    {"PayloadAndAFreeze", "payload_kg = 0.25", "payload_kg = 0.25\nfreeze = \"plant\"",
+     "sim_event[3]", "exactly one of", "kill = true\n\n[[sim_event]]"},
     {"EventIsNoRow", "[[doublet]]", "sim_event = 3\n[[doublet]]", "", "not valid TOML",
      "[[sim_event]]"},
 };

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 
 #include "controller/runtime/float_environment.h"
@@ -14,25 +13,10 @@ namespace {
 
 constexpr std::int64_t kEndNs = 9'000'000'000;  // arm 0.7 s, run 6 s, stop and disarm
 
-template <typename T>
-bool SameBytes(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
-}
-
 std::unique_ptr<StackRun> Recorded(const std::vector<std::string>& overrides = {}) {
   auto run = std::make_unique<StackRun>(ShippedRig(overrides), ShippedExperiment());
   run->Run(kEndNs);
   return run;
-}
-
-bool SameTicks(const StackRun& a, const StackRun& b) {
-  if (a.tick.size() != b.tick.size()) return false;
-  for (std::size_t i = 0; i < a.tick.size(); ++i) {
-    if (!SameBytes(a.tick[i].input, b.tick[i].input)) return false;
-    if (!SameBytes(a.tick[i].output, b.tick[i].output)) return false;
-    if (a.tick[i].truth.tip_m != b.tick[i].truth.tip_m) return false;
-  }
-  return true;
 }
 
 TEST(Determinism, TheSameSeedGivesTheSameBytesAndAnotherSeedDoesNot) {

@@ -1,11 +1,18 @@
 // The drive side of the simulated backend: permit, relay, charge pump and the age of a command each
-// stop the torque alone. In a whole stack they act together, and hide one another.
+// stop the torque alone. In a whole stack they act together, and hide one another. And the load
+// that an experiment drops or picks up.
 
 #include "controller/runtime/plant_task.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/controller/loop/simulated_runs.h"
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "tests/controller/loop/stack_run.h"
+#include "tests/support/no_alloc.h"
 
 namespace flexarm {
 namespace {
@@ -19,6 +26,7 @@ struct World {
   bool relay_closed = true;
   bool pump_toggles = true;
   bool commands_go_on = true;
+  std::int64_t running_since_ns = INT64_MIN;
 };
 
 class PlantTaskTest : public testing::Test {
@@ -46,6 +54,7 @@ class PlantTaskTest : public testing::Test {
         Permit permit = kNoPermit;
         permit.state = world.permit;
         permit.renewed_ns = now_ns_;
+        permit.running_since_ns = world.running_since_ns;
         permits_history_.Push(now_ns_, permit);
         permits_.Publish(permits_history_);
       }
@@ -108,6 +117,62 @@ TEST_F(PlantTaskTest, ACommandOlderThanTwoPeriodsStopsItAlone) {
   EXPECT_EQ(RunTo(60 * kMs, {.commands_go_on = false}), 2.0);
   EXPECT_DOUBLE_EQ(RunTo(80 * kMs, {.commands_go_on = false}), 2.0 * 1.0 / 20.0);
   EXPECT_EQ(RunTo(100 * kMs, {.commands_go_on = false}), 0.0);
+}
+
+SimEvent PayloadEvent(double at_s, double payload_kg) {
+  return {.at_s = at_s,
+          .line = {},
+          .level = 0,
+          .freeze = FreezeTarget::kNone,
+          .kill = false,
+          .payload_kg = payload_kg};
+}
+
+TEST_F(PlantTaskTest, AnotherPayloadTakesNoHeap) {
+  PlannedExperiment planned(std::vector<std::array<double, 2>>(10));
+  planned.sim_events = {PayloadEvent(0.0, 0.8), PayloadEvent(0.04, 0.0)};
+  plans_.Publish({.experiment = &planned, .number = 7});
+  RunTo(20 * kMs, {});
+  {
+    const NoAlloc armed;
+    RunTo(200 * kMs, {.running_since_ns = 20 * kMs});
+  }
+  EXPECT_EQ(task_.released(), 7u) << "the plan was not looked at";
+}
+
+Experiment WithPayload(double at_s, double payload_kg) {
+  Experiment experiment = ShippedExperiment();
+  experiment.sim_event = {PayloadEvent(at_s, payload_kg)};
+  return experiment;
+}
+
+std::unique_ptr<StackRun> Recorded(const Experiment& experiment, double payload_kg) {
+  auto run = std::make_unique<StackRun>(ShippedRig(), experiment, payload_kg);
+  run->Run(4'000 * kMs);
+  return run;
+}
+
+TEST(PlantTaskPayload, OneOfTheSamePayloadIsNone) {
+  EXPECT_TRUE(
+      SameTicks(*Recorded(WithPayload(0.5, 0.1), 0.1), *Recorded(ShippedExperiment(), 0.1)));
+}
+
+// The arm rests at zero until the experiment starts: what it carried by then cannot matter.
+TEST(PlantTaskPayload, FromTheStartOnItIsARunWithThatPayload) {
+  const auto changed = Recorded(WithPayload(0.0, 0.3), 0.1);
+  EXPECT_TRUE(SameTicks(*changed, *Recorded(ShippedExperiment(), 0.3)));
+  EXPECT_FALSE(SameTicks(*changed, *Recorded(ShippedExperiment(), 0.1)));
+}
+
+// In the middle of a push: the frame of that instant is the last one that knows nothing of it.
+TEST(PlantTaskPayload, ItActsFromItsInstantOn) {
+  const auto changed = Recorded(WithPayload(0.4, 0.3), 0.1);
+  const auto plain = Recorded(ShippedExperiment(), 0.1);
+  const auto [first, other] = std::mismatch(
+      changed->tick.begin(), changed->tick.end(), plain->tick.begin(),
+      [](const TickRecord& a, const TickRecord& b) { return a.truth.tip_m == b.truth.tip_m; });
+  ASSERT_NE(first, changed->tick.end());
+  EXPECT_EQ(first->input.sampling_instant_ns, changed->ExperimentStart() + 420 * kMs);
 }
 
 class LossyPlantTaskTest : public PlantTaskTest {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "controller/law/design.h"
@@ -87,5 +88,20 @@ class StackRun {
   std::int64_t now_ns_ = 0;
   std::uint32_t asked_ = 1000;  // apart from the unattended run's numbers
 };
+
+template <typename T>
+bool SameBytes(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+inline bool SameTicks(const StackRun& a, const StackRun& b) {
+  if (a.tick.size() != b.tick.size()) return false;
+  for (std::size_t i = 0; i < a.tick.size(); ++i) {
+    if (!SameBytes(a.tick[i].input, b.tick[i].input)) return false;
+    if (!SameBytes(a.tick[i].output, b.tick[i].output)) return false;
+    if (a.tick[i].truth.tip_m != b.tick[i].truth.tip_m) return false;
+  }
+  return true;
+}
 
 }  // namespace flexarm
