@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "controller/law/experiment.h"
 #include "model/rigid_joint_arm.h"
@@ -38,6 +40,10 @@ inline double RuleDuration_s(const RigidJointArm& arm, double heaviest_kg,
   return duration_s;
 }
 
+/// The recipe turns the elbow by 90 degrees: the shipped soft limit, which heavy arms overshoot.
+inline const std::vector<std::string> kWide = {"limits.soft_angle_deg=[110, 110]",
+                                               "sim.switch_angle_deg=[115, 115]"};
+
 /// A run of the recipe: four moves to anywhere in +-60, +-90 deg, each 1 to 1.5 times the rule for
 /// 1 kg, with 1.5 s of rest after each; and the payload, anything from 0 to `heaviest_kg`.
 struct RandomMoves {
@@ -45,8 +51,8 @@ struct RandomMoves {
   double payload_kg;
 };
 
-inline RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed,
-                                   double heaviest_kg) {
+inline RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed, double heaviest_kg,
+                                   int moves = 4) {
   constexpr double kPeriod_s = 0.02, kRest_s = 1.5;
   const auto on_grid = [](double time_s) { return kPeriod_s * std::ceil(time_s / kPeriod_s); };
   std::mt19937_64 random(seed);
@@ -58,7 +64,7 @@ inline RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed,
   out.experiment.name = "random-moves";
   Eigen::Vector2d from_deg = Eigen::Vector2d::Zero();
   double now_s = 0.0;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < moves; ++i) {
     const Eigen::Vector2d to_deg(uniform(-60.0, 60.0), uniform(-90.0, 90.0));
     const double rad = std::numbers::pi / 180.0;
     const double rule_s = RuleDuration_s(arm, 1.0, from_deg * rad, to_deg * rad);

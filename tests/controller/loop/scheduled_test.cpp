@@ -18,10 +18,6 @@
 namespace flexarm {
 namespace {
 
-// The recipe turns the elbow by 90 degrees: the shipped soft limit, which heavy arms overshoot.
-const std::vector<std::string> kWide = {"limits.soft_angle_deg=[110, 110]",
-                                        "sim.switch_angle_deg=[115, 115]"};
-
 constexpr double kSettled_s = 0.3;
 
 struct Set {

@@ -1,0 +1,347 @@
+// A load picked up or dropped, at rest and in mid-move, and moves without a pause: under the laws
+// that find the payload, on moves, payloads and seeds that nothing was tuned on (beyond.md 4).
+// The numbers in the comments are gain-scheduled's.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include "controller/runlog/metrics.h"
+#include "model/rigid_joint_arm.h"
+#include "tests/controller/loop/random_moves.h"
+#include "tests/controller/loop/simulated_runs.h"
+#include "tests/controller/loop/stack_run.h"
+#include "tools/parallel.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kPeriod_s = 0.02;
+constexpr double kSettled_s = 0.3;
+constexpr double kSettledWithin_m = 0.015;
+
+/// A run before it runs.
+struct Scene {
+  Experiment experiment{};
+  double payload_kg = 0.0;  // that the arm carries at first
+  std::uint64_t seed = 0;
+};
+
+/// What became of it.
+struct Outcome {
+  TripCause trip = TripCause::kNone;
+  bool completed = false;
+  bool finite = true;
+  bool torque_after_trip = false;
+  double last_rate_rad_s = 0.0;  // of the hubs, over the last half second that was simulated
+  double farthest_deg = 0.0;     // that a hub ever was from zero
+  double settling_s = 0.0;       // t15, the largest over the rests
+  std::uint32_t doubts = 0;
+  std::vector<TickRecord> running;  // from sample -1 of the experiment on
+};
+
+class PayloadEvents : public testing::TestWithParam<const char*> {
+ protected:
+  PayloadEvents()
+      : config_([] {
+          std::vector<std::string> overrides = kWide;
+          overrides.push_back(std::string("controller.name=") + GetParam());
+          return ShippedRig(overrides);
+        }()),
+        arm_(config_.arm) {}
+
+  RandomMoves MovesOf(std::uint64_t seed, int moves = 4) const {
+    return MakeRandomMoves(arm_, seed, 1.0, moves);
+  }
+
+  std::vector<Outcome> RunAll(const std::vector<Scene>& scenes) const {
+    std::vector<Outcome> outcomes(scenes.size());
+    ForAllOnAllCores(scenes.size(), [&](std::size_t i) { outcomes[i] = RunOne(scenes[i]); });
+    return outcomes;
+  }
+
+ private:
+  Outcome RunOne(const Scene& scene) const;
+
+  Config config_;
+  RigidJointArm arm_;
+};
+
+bool Finite(const TickRecord& record) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  return std::all_of(record.output.x_hat.begin(), record.output.x_hat.end(), finite) &&
+         std::all_of(record.output.torque_nm.begin(), record.output.torque_nm.end(), finite) &&
+         std::all_of(record.truth.tip_m.begin(), record.truth.tip_m.end(), finite) &&
+         finite(record.output.payload_kg) && finite(record.output.mean_nis);
+}
+
+Outcome PayloadEvents::RunOne(const Scene& scene) const {
+  constexpr double kAround_s = 15.0;  // to arm and to disarm, or to come to rest after a trip
+  Config config = config_;
+  config.sim.seed = scene.seed;
+  StackRun run(config, scene.experiment, scene.payload_kg);
+  run.Run(std::llround((scene.experiment.duration_s + kAround_s) * 1e9));
+  Outcome out;
+  out.trip = run.permit().cause;
+  out.completed = run.permit().state == SafetyState::kIdle && out.trip == TripCause::kNone;
+  int tripped = 0;
+  for (const TickRecord& record : run.tick) {
+    out.finite = out.finite && Finite(record);
+    for (const double angle_rad : record.truth.hub_angle_rad) {
+      out.farthest_deg =
+          std::max(out.farthest_deg, std::fabs(angle_rad) * 180.0 / std::numbers::pi);
+    }
+    if (record.input.safety_state == SafetyState::kRunning) {
+      out.doubts |= record.output.payload_doubts;
+      out.running.push_back(record);
+    }
+    // The frame after the trip still holds the torque of before it.
+    tripped = record.input.safety_state == SafetyState::kTripped ? tripped + 1 : 0;
+    if (tripped > 2 && record.input.applied_torque_nm != std::array{0.0, 0.0}) {
+      out.torque_after_trip = true;
+    }
+  }
+  const TickRecord &last = run.tick.back(), &earlier = run.tick[run.tick.size() - 26];
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.last_rate_rad_s =
+        std::max(out.last_rate_rad_s,
+                 std::fabs(last.truth.hub_angle_rad[i] - earlier.truth.hub_angle_rad[i]) / 0.5);
+  }
+  const RunMetrics metrics = ComputeMetrics(run.tick, scene.experiment, kPeriod_s,
+                                            TipGeometryOf(config.arm, config.controller.nominal));
+  out.settling_s = metrics.tip_settling_time_s.value_or(std::numeric_limits<double>::infinity());
+  return out;
+}
+
+SimEvent PayloadEvent(double at_s, double payload_kg) {
+  return {.at_s = at_s,
+          .line = {},
+          .level = 0,
+          .freeze = FreezeTarget::kNone,
+          .kill = false,
+          .payload_kg = payload_kg};
+}
+
+double MiddleOf(const Move& move) { return move.start_s + 0.5 * *move.duration_s; }
+
+// Half of the rest of 1.5 s after the move.
+double RestAfter(const Move& move) { return move.start_s + *move.duration_s + 0.75; }
+
+void Print(const char* what, const Scene& scene, double load_kg, const Outcome& out) {
+  std::printf("  %-22s seed %llu, %.2f kg: ", what, static_cast<unsigned long long>(scene.seed),
+              load_kg);
+  if (out.completed) {
+    std::printf("t15 %.2f s", out.settling_s);
+  } else {
+    std::printf("trips %s, a hub swings to %.0f deg", Name(out.trip), out.farthest_deg);
+  }
+  std::printf("%s; %.3f kg found\n",
+              (out.doubts & kPayloadModelMismatch) != 0 ? ", payload-model-mismatch" : "",
+              out.running.back().output.payload_kg);
+}
+
+int Completed(const std::vector<Outcome>& outcomes) {
+  return static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(),
+                                        [](const Outcome& out) { return out.completed; }));
+}
+
+// Further than the limit switches of kWide: a real arm meets its end stops there.
+int ThrownBeyondASwitch(const std::vector<Outcome>& outcomes) {
+  constexpr double kSwitch_deg = 115.0;
+  return static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& out) {
+    return out.farthest_deg > kSwitch_deg;
+  }));
+}
+
+// Completed, or tripped by name with the arm at rest and without torque; never out of numbers.
+void ExpectEnded(const Outcome& out) {
+  EXPECT_TRUE(out.finite);
+  EXPECT_TRUE(out.completed || out.trip != TripCause::kNone);
+  EXPECT_NE(out.trip, TripCause::kStateNotFinite);
+  EXPECT_FALSE(out.torque_after_trip);
+  EXPECT_LT(out.last_rate_rad_s, 0.01);
+}
+
+// All dropped loads settle at the end of the move. Of the picked up ones those of 0.9 and 1 kg need
+// 0.34 and 0.70 s after their first move: its doubt of 0.1 kg (estimator.payload.move_sigma_kg) is
+// too little to find a kilogram on the way. With 0.2 kg they need 0.14 and 0.00 s.
+TEST_P(PayloadEvents, ALoadThatChangesAtRestIsFoundOnTheNextMove) {
+  constexpr double kFoundInOneMove_kg = 0.85;
+  std::vector<Scene> scenes;
+  for (int i = 0; i < 16; ++i) {
+    const bool picked_up = i < 8;
+    const double load_kg = 1.0 - 0.1 * (i % 8);
+    Scene scene{.payload_kg = picked_up ? 0.0 : load_kg,
+                .seed = 5001 + static_cast<std::uint64_t>(i)};
+    scene.experiment = MovesOf(scene.seed).experiment;
+    scene.experiment.sim_event = {
+        PayloadEvent(RestAfter(scene.experiment.move[1]), picked_up ? load_kg : 0.0)};
+    scenes.push_back(scene);
+  }
+  const std::vector<Outcome> outcomes = RunAll(scenes);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const bool picked_up = i < 8;
+    const double left_kg = *scenes[i].experiment.sim_event[0].payload_kg;
+    const double load_kg = picked_up ? left_kg : scenes[i].payload_kg;
+    Print(picked_up ? "picked up at rest" : "dropped at rest", scenes[i], load_kg, outcomes[i]);
+    EXPECT_TRUE(outcomes[i].completed) << i;
+    const bool slow = picked_up && load_kg > kFoundInOneMove_kg;
+    EXPECT_LE(outcomes[i].settling_s, slow ? 1.0 : kSettled_s) << i;
+    EXPECT_NEAR(outcomes[i].running.back().output.payload_kg, left_kg, 0.03) << i;
+  }
+}
+
+// 15 of 20 complete, settled after 0.38 s at most; four trip bending-strain-1 and one encoder-jump,
+// with 0.4 kg and more: the torque and the gains of a heavy arm shake an empty one. Two of the five
+// (0.8 and 0.95 kg) trip so late that the elbow coasts on beyond its switch: without end stops, as
+// here, for one and a half turns and more. The sensors contradict the model from 0.25 kg on, and
+// never below.
+TEST_P(PayloadEvents, ALoadDroppedInMidMoveEndsWithoutTorque) {
+  std::vector<Scene> scenes;
+  for (int i = 0; i < 20; ++i) {
+    Scene scene{.payload_kg = 0.05 * (i + 1), .seed = 6001 + static_cast<std::uint64_t>(i)};
+    scene.experiment = MovesOf(scene.seed).experiment;
+    const Move& move = scene.experiment.move[static_cast<std::size_t>(i % 4)];
+    scene.experiment.sim_event = {PayloadEvent(MiddleOf(move), 0.0)};
+    scenes.push_back(scene);
+  }
+  const std::vector<Outcome> outcomes = RunAll(scenes);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    Print("dropped in mid-move", scenes[i], scenes[i].payload_kg, outcomes[i]);
+    ExpectEnded(outcomes[i]);
+    const bool contradicted = (outcomes[i].doubts & kPayloadModelMismatch) != 0;
+    const double load_kg = scenes[i].payload_kg;
+    EXPECT_TRUE(contradicted || load_kg < 0.28) << i;
+    EXPECT_FALSE(contradicted && load_kg < 0.18) << i;
+  }
+  EXPECT_GE(Completed(outcomes), 14);
+  EXPECT_LE(ThrownBeyondASwitch(outcomes), 2);
+}
+
+// All complete, settled after 0.92 s at most: the half of the move that is left is too short to
+// find the load and to lead it. Nothing contradicts the model.
+TEST_P(PayloadEvents, ALoadPickedUpInMidMoveIsCarriedOn) {
+  std::vector<Scene> scenes;
+  for (int i = 0; i < 8; ++i) {
+    Scene scene{.seed = 7001 + static_cast<std::uint64_t>(i)};
+    scene.experiment = MovesOf(scene.seed).experiment;
+    const Move& move = scene.experiment.move[static_cast<std::size_t>(i % 4)];
+    scene.experiment.sim_event = {PayloadEvent(MiddleOf(move), 1.0 - 0.1 * i)};
+    scenes.push_back(scene);
+  }
+  const std::vector<Outcome> outcomes = RunAll(scenes);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    Print("picked up in mid-move", scenes[i], *scenes[i].experiment.sim_event[0].payload_kg,
+          outcomes[i]);
+    ExpectEnded(outcomes[i]);
+  }
+  EXPECT_GE(Completed(outcomes), 7);
+  EXPECT_EQ(ThrownBeyondASwitch(outcomes), 0);
+}
+
+TEST_P(PayloadEvents, TheShippedExperimentRunsToItsEnd) {
+  const Scene scene{
+      .experiment = ShippedExperiment("payload-dropped"), .payload_kg = 0.0, .seed = 1};
+  const Outcome out = RunAll({scene}).front();
+  Print("payload-dropped", scene, 0.3, out);
+  EXPECT_TRUE(out.completed);
+  EXPECT_LE(out.settling_s, kSettled_s);
+  EXPECT_NEAR(out.running.back().output.payload_kg, 0.0, 0.03);
+}
+
+// Each move starts when the one before it ends; a rest follows the last one only.
+Experiment WithoutRests(Experiment experiment) {
+  double now_s = 0.0;
+  for (Move& move : experiment.move) {
+    move.start_s = now_s;
+    now_s = kPeriod_s * std::round((now_s + *move.duration_s) / kPeriod_s);
+  }
+  experiment.duration_s = now_s + 1.5;
+  return experiment;
+}
+
+std::array<double, 2> StraightTip_m(const ArmParameters& arm, const std::array<double, 2>& deg) {
+  const double rad = std::numbers::pi / 180.0, th1 = deg[0] * rad, gamma = th1 + deg[1] * rad;
+  const double L1 = arm.link[0].length_m(), L2 = arm.link[1].length_m();
+  return {L1 * std::cos(th1) + L2 * std::cos(gamma), L1 * std::sin(th1) + L2 * std::sin(gamma)};
+}
+
+// What a run believes, over some of its moves.
+struct Belief {
+  double payload_kg = 0.0;
+  std::array<double, 2> friction_nm{};
+};
+
+Belief MeanBelief(const std::vector<TickRecord>& ends, std::size_t first, std::size_t count) {
+  Belief mean;
+  const double share = 1.0 / static_cast<double>(count);
+  for (std::size_t i = first; i < first + count; ++i) {
+    mean.payload_kg += share * ends[i].output.payload_kg;
+    for (std::size_t j = 0; j < 2; ++j) {
+      mean.friction_nm[j] += share * ends[i].output.friction_nm[j];
+    }
+  }
+  return mean;
+}
+
+// The next move begins at once, so t15 is 0 where the tip is within 15 mm of where the arm would
+// rest at the instant at which a move ends, and counts as usual after the last. Measured: 3.7 mm at
+// most. The payload is known to 0.03 kg after every move but the first; from the first ten moves
+// after that to the last ten the means shift by 0.012 kg, 0.01 and 0.005 N m, which is what they
+// scatter by, so twice that is allowed. 70 to 79 s.
+TEST_P(PayloadEvents, ThirtyMovesWithoutAPauseDoNotWearItOut) {
+  constexpr std::size_t kMoves = 30, kSome = 10;
+  std::vector<Scene> scenes;
+  for (int i = 0; i < 3; ++i) {
+    Scene scene{.payload_kg = 0.25 * (i + 1), .seed = 8001 + static_cast<std::uint64_t>(i)};
+    scene.experiment = WithoutRests(MovesOf(scene.seed, kMoves).experiment);
+    scenes.push_back(scene);
+  }
+  const std::vector<Outcome> outcomes = RunAll(scenes);
+  const ArmParameters arm = ShippedRig().arm;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const Outcome& out = outcomes[i];
+    Print("without a pause", scenes[i], scenes[i].payload_kg, out);
+    ASSERT_TRUE(out.completed) << i;
+    EXPECT_LE(out.settling_s, kSettled_s);
+    std::vector<TickRecord> ends;
+    double farthest_m = 0.0, payload_error_kg = 0.0;
+    for (const Move& move : scenes[i].experiment.move) {
+      const double end_s = move.start_s + *move.duration_s;
+      ends.push_back(out.running[static_cast<std::size_t>(std::lround(end_s / kPeriod_s)) + 1]);
+      const TickRecord& end = ends.back();
+      const std::array<double, 2> place = StraightTip_m(arm, move.to_deg);
+      farthest_m = std::max(
+          farthest_m, std::hypot(end.truth.tip_m[0] - place[0], end.truth.tip_m[1] - place[1]));
+      if (ends.size() == 1) continue;
+      payload_error_kg =
+          std::max(payload_error_kg, std::fabs(end.output.payload_kg - scenes[i].payload_kg));
+    }
+    const Belief early = MeanBelief(ends, 1, kSome), late = MeanBelief(ends, kMoves - kSome, kSome);
+    std::printf(
+        "    %.1f s, tip within %.1f mm at the ends, payload within %.3f kg; shifts %+.3f kg, "
+        "%+.3f %+.4f N m\n",
+        scenes[i].experiment.duration_s, 1e3 * farthest_m, payload_error_kg,
+        late.payload_kg - early.payload_kg, late.friction_nm[0] - early.friction_nm[0],
+        late.friction_nm[1] - early.friction_nm[1]);
+    EXPECT_LE(farthest_m, kSettledWithin_m);
+    EXPECT_LE(payload_error_kg, 0.05);
+    EXPECT_NEAR(late.payload_kg, early.payload_kg, 0.025);
+    EXPECT_NEAR(late.friction_nm[0], early.friction_nm[0], 0.02);
+    EXPECT_NEAR(late.friction_nm[1], early.friction_nm[1], 0.01);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, PayloadEvents, testing::Values("gain-scheduled"),
+                         [](const auto& shown) {
+                           std::string name = shown.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace flexarm
