@@ -56,6 +56,22 @@ std::vector<Act> ActsOf(const Experiment& e) {
   return acts;
 }
 
+// A row against the one above it of the same kind. A move may begin while that one lasts: PlanMoves
+// knows whether the law can take over.
+void CheckOrder(const Act& act, const Act& above, ProblemList* list) {
+  if (act.kind == "move") {
+    list->Require(act.start_s > above.start_s + kRoundingS, act.row + ".start_s",
+                  NumberText(act.start_s),
+                  "must begin later than the move above it, at " + NumberText(above.start_s) +
+                      " s: rows are in order of time");
+  } else {
+    list->Require(
+        !(act.start_s < above.end_s() - kRoundingS), act.row + ".start_s", NumberText(act.start_s),
+        "must not begin before the " + act.kind + " above it ends, at " +
+            NumberText(above.end_s()) + " s: rows are in order of time and do not overlap");
+  }
+}
+
 // The times of acts[i] against the experiment and all acts before it in the list.
 void CheckTimes(const std::vector<Act>& acts, std::size_t i, double experiment_s,
                 ProblemList* list) {
@@ -74,10 +90,7 @@ void CheckTimes(const std::vector<Act>& acts, std::size_t i, double experiment_s
                     "must not overlap a " + other.kind + ": one acts from " +
                         NumberText(other.start_s) + " to " + NumberText(other.end_s()) + " s");
     } else if (j + 1 == i) {
-      list->Require(after, act.row + ".start_s", NumberText(act.start_s),
-                    "must not begin before the " + act.kind + " above it ends, at " +
-                        NumberText(other.end_s()) +
-                        " s: rows are in order of time and do not overlap");
+      CheckOrder(act, other, list);
     }
   }
 }

@@ -24,7 +24,8 @@ struct Doublet {
   std::array<double, 2> move_deg;  ///< of th1, th2 in the reference model
 };
 
-/// A smooth move of both joints to a set-point, [[move]]: from rest to rest, all the way.
+/// A smooth move of both joints to a set-point, [[move]]: at rest when it ends, and when it begins
+/// unless the move before it still lasts (PlannedMove).
 struct Move {
   double start_s;
   std::optional<double> duration_s{};  ///< none: the shortest that the limits allow, see PlanMoves
@@ -82,7 +83,8 @@ struct SimEvent {
   std::optional<double> payload_kg{};  ///< the plant carries this from then on
 };
 
-/// When a row acts: doublet, move, chirp, prbs or csv.
+/// When a row acts: doublet, move, chirp, prbs or csv. A move that the next one takes over acts
+/// until that begins, whatever its duration.
 struct Motion {
   std::string row;  ///< its name in messages: "move[2]"
   double start_s;
@@ -94,7 +96,7 @@ struct Experiment {
   std::string name;
   std::string text;  ///< the file as it was read, and what was attached to it: for the log
   double duration_s;
-  std::vector<Doublet> doublet;  ///< the rows of a kind in order of time; none overlap
+  std::vector<Doublet> doublet;  ///< the rows of a kind in order of time; only moves overlap
   std::vector<SimEvent> sim_event;
   std::vector<Move> move{};
   std::vector<Chirp> chirp{};

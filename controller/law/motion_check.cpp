@@ -61,10 +61,11 @@ double RootStrain(const ReferenceSample& sample, std::size_t link, int states,
 
 std::optional<BrokenLimit> FirstBrokenLimit(std::span<const ReferenceSample> reference, int states,
                                             const MotionLimits& limits, double share,
-                                            double period_s) {
-  ReferenceSample before{};
-  for (std::size_t k = 0; k < reference.size(); ++k) {
-    const ReferenceSample& now = reference[k];
+                                            double period_s, int first) {
+  ReferenceSample before = first > 0 ? reference.front() : ReferenceSample{};
+  for (std::size_t n = first > 0 ? 1 : 0; n < reference.size(); ++n) {
+    const ReferenceSample& now = reference[n];
+    const int k = first + static_cast<int>(n);
     for (std::size_t i = 0; i < 2; ++i) {
       const double rate = now.x_m[static_cast<std::size_t>(states) / 2 + i];
       const double u = now.u_m_nm[i];
@@ -84,9 +85,8 @@ std::optional<BrokenLimit> FirstBrokenLimit(std::span<const ReferenceSample> ref
       for (const Check& check : checks) {
         const double limit = check.share * check.limit;
         if (std::fabs(check.value) <= limit) continue;
-        return BrokenLimit{
-            .sample = static_cast<int>(k),
-            .text = Text(check.quantity, i, check.value, limit, static_cast<double>(k) * period_s)};
+        return BrokenLimit{.sample = k,
+                           .text = Text(check.quantity, i, check.value, limit, k * period_s)};
       }
     }
     before = now;

@@ -27,8 +27,10 @@ struct BrokenLimit {
 /// The thesis's doublets jump by 13.3 N m, 1.3 times what passes in one period, and run.
 /// @param states  of the reference model
 /// @param share   0 .. 1
+/// @param first   number of the sample reference[0]; one beyond 0 is there for the jump of the
+///                torque after it and not judged
 std::optional<BrokenLimit> FirstBrokenLimit(std::span<const ReferenceSample> reference, int states,
                                             const MotionLimits& limits, double share,
-                                            double period_s);
+                                            double period_s, int first = 0);
 
 }  // namespace flexarm

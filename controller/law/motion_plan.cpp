@@ -1,26 +1,20 @@
 #include "controller/law/motion_plan.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
 
-#include "controller/law/motion_check.h"
-#include "controller/law/path_reference.h"
-#include "controller/law/reference_model.h"
 #include "controller/law/refused.h"
 #include "controller/law/rounded_text.h"
 #include "controller/law/sampling_grid.h"
+#include "controller/law/shortest_move.h"
 #include "model/problem_list.h"
 
 namespace flexarm {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr int kShortestMove = 10;    // periods: fewer are no smooth profile any more
-constexpr double kLongest_s = 60.0;  // of a chosen duration
-constexpr int kDecayPeriods = 10;    // the links of the reference go on straightening that long
 
 std::string RowOf(const PlannedMove& move) { return ProblemList::Element("move", move.row); }
 
@@ -70,57 +64,47 @@ std::array<double, 2> GoalOf(const Move& move, const std::string& row, const Mot
   return {goal(0), goal(1)};
 }
 
-int PeriodsOf(const Move& move, const PlannedMove& planned, const Design& design, double period_s,
-              const MotionLimits& limits) {
+// Where it begins, for a message that goes on with "to".
+std::string BeginText(const PlannedMove& move) {
+  if (!move.takes_over) return "the move goes from " + DegText(move.from.angle_rad);
+  return "the move takes over at " + DegText(move.from.angle_rad) + " and " +
+         DegText(move.from.rate_rad_s) + " a second, and goes";
+}
+
+// The last of `moves`, which is all but its periods, and those before it.
+int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Design& design,
+              double period_s, const MotionLimits& limits) {
+  const PlannedMove& planned = moves.back();
   const std::string key = RowOf(planned) + ".duration_s";
   if (move.duration_s) {
     const int periods = OnGrid(*move.duration_s, period_s, key);
-    if (periods >= kShortestMove) return periods;
+    if (periods >= kFewestPeriods) return periods;
     throw Refused(key + " = " + NumberText(*move.duration_s) + " s must be at least " +
-                  NumberText(kShortestMove) + " periods of " + NumberText(period_s) + " s");
+                  NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
   }
-  const auto periods = ShortestPeriods(planned, design, period_s, limits, limits.plan_fraction);
+  const auto periods = ShortestPeriods(moves, design, period_s, limits, limits.plan_fraction);
   if (periods) return *periods;
-  throw Refused(key + ": none up to " + NumberText(kLongest_s) +
-                " s keeps limits.plan_fraction of the limits: the move goes from " +
-                DegText(planned.from_rad) + " to " + DegText(planned.to_rad));
+  throw Refused(key + ": none up to " + NumberText(kLongestChosen_s) +
+                " s keeps limits.plan_fraction of the limits: " + BeginText(planned) + " to " +
+                DegText(planned.to_rad));
 }
 
-// The reference of a move alone, from sample 0 on: as far as limits are concerned.
-std::vector<ReferenceSample> ReferenceOf(const PlannedMove& move, const Design& design,
-                                         double period_s) {
-  const int periods = move.periods + kDecayPeriods;
-  if (design.scheduled) {
-    return QuasiStaticReference(RigidPath({move}, move.from_rad, periods, period_s), ArmOf(design),
-                                design.scheduled->max_kg, period_s);
-  }
-  std::vector<ReferenceSample> samples(static_cast<std::size_t>(periods));
-  AddTorques(TorqueOf(move, design), ProfileAccelerations(move.profile, move.periods, period_s), 0,
-             &samples);
-  RunReferenceModel(design, move.from_rad, &samples);
-  return samples;
+void RequireTakeOver(const PlannedMove& planned, const PlannedMove& above, const Design& design,
+                     double period_s) {
+  if (design.scheduled) return;
+  throw Refused(RowOf(planned) + ".start_s = " + NumberText(InSeconds(planned.first, period_s)) +
+                " s: must not begin before the move above it ends, at " +
+                NumberText(InSeconds(above.first + above.periods, period_s)) +
+                " s; only a law that follows a path takes over a move that lasts: "
+                "controller.name = \"gain-scheduled\"");
+}
+
+// The last of `moves` lasts when a move begins at sample `first`.
+bool TakesOver(const std::vector<PlannedMove>& moves, int first) {
+  return !moves.empty() && first < moves.back().first + moves.back().periods;
 }
 
 }  // namespace
-
-Eigen::Vector2d TorqueOf(const PlannedMove& move, const Design& design) {
-  return design.rigid_inertia_kgm2 * (Eigen::Vector2d(move.to_rad[0], move.to_rad[1]) -
-                                      Eigen::Vector2d(move.from_rad[0], move.from_rad[1]));
-}
-
-RigidPoint PlannedMove::At(double sample, double period_s) const noexcept {
-  const double T = (periods - 1) * period_s;
-  const ProfilePoint point = ProfileAt(profile, (sample - 0.5 - first) / (periods - 1));
-  RigidPoint out{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double by_rad = to_rad[i] - from_rad[i];
-    out.angle_rad[i] = from_rad[i] + by_rad * point.s;
-    out.rate_rad_s[i] = by_rad * point.ds / T;
-    out.acceleration_rad_s2[i] = by_rad * point.dds / (T * T);
-    out.jerk_rad_s3[i] = by_rad * point.ddds / (T * T * T);
-  }
-  return out;
-}
 
 std::array<double, 2> PlaceBefore(const Experiment& experiment,
                                   const std::vector<PlannedMove>& moves,
@@ -144,28 +128,6 @@ std::array<double, 2> PlaceBefore(const Experiment& experiment,
   return {place(0), place(1)};
 }
 
-std::optional<int> ShortestPeriods(const PlannedMove& move, const Design& design, double period_s,
-                                   const MotionLimits& limits, double share) {
-  const auto fits = [&](int periods) {
-    PlannedMove tried = move;
-    tried.first = 0;
-    tried.periods = periods;
-    const int states = static_cast<int>(design.Am.rows());
-    return !FirstBrokenLimit(ReferenceOf(tried, design, period_s), states, limits, share, period_s)
-                .has_value();
-  };
-  const int most = static_cast<int>(kLongest_s / period_s);
-  int enough = kShortestMove;
-  while (enough < most && !fits(enough)) enough = std::min(2 * enough, most);
-  if (!fits(enough)) return std::nullopt;
-  int too_few = enough == kShortestMove ? enough - 1 : enough / 2;
-  while (enough - too_few > 1) {
-    const int middle = (enough + too_few) / 2;
-    (fits(middle) ? enough : too_few) = middle;
-  }
-  return enough;
-}
-
 std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& design,
                                    double period_s, const std::array<double, 2>& start_rad,
                                    const MotionLimits& limits) {
@@ -176,11 +138,19 @@ std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& d
     PlannedMove planned{.row = row,
                         .first = OnGrid(move.start_s, period_s, name + ".start_s"),
                         .periods = 0,
-                        .from_rad = PlaceBefore(experiment, moves, start_rad, move.start_s),
+                        .takes_over = false,
+                        .from = {},
                         .to_rad = GoalOf(move, name, limits),
                         .profile = move.profile};
-    planned.periods = PeriodsOf(move, planned, design, period_s, limits);
+    if (TakesOver(moves, planned.first)) {
+      RequireTakeOver(planned, moves.back(), design, period_s);
+      planned.takes_over = true;
+      planned.from = moves.back().At(planned.first, period_s);
+    } else {
+      planned.from.angle_rad = PlaceBefore(experiment, moves, start_rad, move.start_s);
+    }
     moves.push_back(planned);
+    moves.back().periods = PeriodsOf(move, moves, design, period_s, limits);
   }
   return moves;
 }
@@ -204,7 +174,7 @@ Experiment WithChosenDurations(const Experiment& experiment, const std::vector<P
   for (const PlannedMove& planned : moves) {
     Move& move = chosen.move[planned.row];
     if (move.duration_s) continue;
-    move.duration_s = std::round(planned.periods * period_s * 1e9) * 1e-9;
+    move.duration_s = InSeconds(planned.periods, period_s);
     chosen.text += "\n[[planned_move]]\nrow = " + NumberText(planned.row) +
                    "\nduration_s = " + NumberText(*move.duration_s) + "\n";
   }

@@ -7,14 +7,15 @@
 
 namespace flexarm {
 
-RigidPath::RigidPath(const std::vector<PlannedMove>& moves, const std::array<double, 2>& start_rad,
+RigidPath::RigidPath(std::span<const PlannedMove> moves, const std::array<double, 2>& start_rad,
                      int periods, double period_s) {
   point_.resize(
       static_cast<std::size_t>(periods) + 1,
       {.angle_rad = start_rad, .rate_rad_s = {}, .acceleration_rad_s2 = {}, .jerk_rad_s3 = {}});
-  for (const PlannedMove& move : moves) {
-    for (int k = move.first; k <= periods; ++k) {
-      point_[static_cast<std::size_t>(k)] = move.At(k, period_s);
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    const int until = i + 1 < moves.size() ? std::min(periods, moves[i + 1].first - 1) : periods;
+    for (int k = std::max(moves[i].first, 0); k <= until; ++k) {
+      point_[static_cast<std::size_t>(k)] = moves[i].At(k, period_s);
     }
   }
 }
@@ -36,10 +37,11 @@ std::array<RigidPathPoint, 3> PathPoints(const std::array<RigidPoint, 3>& path) 
 }
 
 std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,
-                                                  double payload_kg, double period_s) {
-  std::vector<ReferenceSample> samples(static_cast<std::size_t>(path.periods()) + 1);
-  for (int k = 0; k <= path.periods(); ++k) {
-    ReferenceSample& sample = samples[static_cast<std::size_t>(k)];
+                                                  double payload_kg, double period_s, int first,
+                                                  int last) {
+  std::vector<ReferenceSample> samples(static_cast<std::size_t>(last - first) + 1);
+  for (int k = first; k <= last; ++k) {
+    ReferenceSample& sample = samples[static_cast<std::size_t>(k - first)];
     const QuasiStaticSample bent =
         QuasiStaticOver(arm, payload_kg, PathPoints(path.Around(k)), period_s);
     std::copy_n(bent.x.data(), bent.x.size(), sample.x_m.begin());

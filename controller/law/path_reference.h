@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
-#include "controller/law/motion_plan.h"
+#include "controller/law/planned_move.h"
 #include "controller/law/rigid_point.h"
 #include "controller/law/step_types.h"
 #include "model/quasi_static_map.h"
@@ -14,10 +15,11 @@ namespace flexarm {
 /// The way of planned moves, sample by sample.
 class RigidPath {
  public:
+  /// From the `first` of a move to that of the next, the path is that move's.
   /// @param moves      in order of time; what is before them rests at `start_rad`
   /// @param periods    of the experiment
-  RigidPath(const std::vector<PlannedMove>& moves, const std::array<double, 2>& start_rad,
-            int periods, double period_s);
+  RigidPath(std::span<const PlannedMove> moves, const std::array<double, 2>& start_rad, int periods,
+            double period_s);
 
   /// Y, k periods after the start; before it the rest at the start, after the end the rest there.
   /// Real-time: safe.
@@ -40,8 +42,9 @@ RigidPathPoint InTermsOfTheMap(const RigidPoint& point) noexcept;
 std::array<RigidPathPoint, 3> PathPoints(const std::array<RigidPoint, 3>& path) noexcept;
 
 /// The reference of the laws that know the payload: an arm that is bent along the path without
-/// vibrating, x_m and u_m by QuasiStaticOver, one sample a period from 0 on.
+/// vibrating, x_m and u_m by QuasiStaticOver, of the samples from `first` to `last`.
 std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,
-                                                  double payload_kg, double period_s);
+                                                  double payload_kg, double period_s, int first,
+                                                  int last);
 
 }  // namespace flexarm

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "controller/law/identification_torques.h"
 #include "controller/law/motion_check.h"
 #include "controller/law/motion_profile.h"
+#include "controller/law/path_check.h"
 #include "controller/law/reference_model.h"
 #include "controller/law/refused.h"
 #include "controller/law/sampling_grid.h"
+#include "controller/law/shortest_move.h"
 #include "controller/law/trajectory.h"
 #include "model/problem_list.h"
 
@@ -131,10 +134,19 @@ std::string RowAt(const Experiment& experiment, double time_s) {
   return row;
 }
 
-// What limits were judged for, where it is not the arm as it is configured.
-std::string WithPayload(const Design& design) {
-  if (!design.scheduled) return {};
-  return " (with " + NumberText(design.scheduled->max_kg) + " kg, controller.payload.max_kg)";
+// What else its duration could be, if another one would keep the limits in its place.
+// @param moves  the one that breaks a limit, and those before it
+std::string Remedy(std::span<const PlannedMove> moves, const Design& design, double period_s,
+                   const MotionLimits& limits) {
+  const PlannedMove& move = moves.back();
+  const auto shortest = ShortestPeriods(moves, design, period_s, limits, 1.0);
+  if (!shortest) {
+    return std::string("; no duration_s up to ") + NumberText(kLongestChosen_s) +
+           " keeps the limits" + (move.takes_over ? " where it takes over" : "");
+  }
+  if (!move.takes_over && *shortest <= move.periods) return {};
+  return std::string("; the shortest duration_s within the limits is ") +
+         NumberText(InSeconds(*shortest, period_s));
 }
 
 }  // namespace
@@ -178,25 +190,21 @@ void ReferenceTable::FollowPath(const Experiment& planned, const Design& design,
                   ": a law that finds the payload follows [[move]] rows only, whose acceleration "
                   "is continuous; use another controller.name, or moves");
   }
-  samples_ = QuasiStaticReference(*path_, ArmOf(design), design.scheduled->reference_kg, period_s);
+  samples_ = QuasiStaticReference(*path_, ArmOf(design), design.scheduled->reference_kg, period_s,
+                                  0, periods());
 }
 
 void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design, double period_s,
                                  const MotionLimits& limits) const {
   const int states = static_cast<int>(design.Am.rows());
-  const auto judged = design.scheduled ? QuasiStaticReference(*path_, ArmOf(design),
-                                                              design.scheduled->max_kg, period_s)
-                                       : samples_;
-  const auto broken = FirstBrokenLimit(judged, states, limits, 1.0, period_s);
+  const auto broken = design.scheduled ? PathCheck(design, limits, 1.0, period_s).First(*path_, 0, periods())
+                            : FirstBrokenLimit(samples_, states, limits, 1.0, period_s);
   if (!broken) return;
   const std::string row = RowAt(planned, broken->sample * period_s);
-  std::string remedy = WithPayload(design);
-  for (const PlannedMove& move : moves_) {
-    if (row != ProblemList::Element("move", move.row)) continue;
-    const auto shortest = ShortestPeriods(move, design, period_s, limits, 1.0);
-    if (!shortest || *shortest <= move.periods) continue;
-    remedy += "; the shortest duration_s within the limits is " +
-              NumberText(std::round(*shortest * period_s * 1e9) * 1e-9);
+  std::string remedy;
+  for (std::size_t i = 0; i < moves_.size(); ++i) {
+    if (row != ProblemList::Element("move", moves_[i].row)) continue;
+    remedy = Remedy(std::span(moves_).first(i + 1), design, period_s, limits);
   }
   throw Refused(row + ": " + broken->text + remedy);
 }

@@ -30,7 +30,8 @@ class ReferenceTable {
   /// so the reference model, a double integrator, ends at rest. A design with a shaper convolves
   /// all that with its weights: every row then ends as much later as the shaper is long.
   /// A design for a law that knows the payload has QuasiStaticReference instead, for the payload of
-  /// its reference; limits are judged for the heaviest payload, and all rows must be moves.
+  /// its reference; limits are judged by PathCheck, and all rows must be moves, which may take
+  /// each other over.
   /// @throws Refused naming the row and key whose times do not lie on the grid of `period_s`, the
   ///         row, joint, instant and limit that the reference would break (FirstBrokenLimit), or
   ///         that the shaped rows would end after the experiment
@@ -43,7 +44,7 @@ class ReferenceTable {
 
   int periods() const noexcept { return static_cast<int>(samples_.size()) - 1; }
 
-  /// The moves as data, in order of time.
+  /// The moves as data, in order of time; the path is that of the last that has begun.
   const std::vector<PlannedMove>& moves() const noexcept { return moves_; }
 
   /// Where the moves begin and end, in order of time. Real-time: safe.

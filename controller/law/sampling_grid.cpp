@@ -22,4 +22,8 @@ int OnGrid(double time_s, double period_s, const std::string& what) {
   return static_cast<int>(std::lround(periods));
 }
 
+double InSeconds(int periods, double period_s) {
+  return std::round(periods * period_s * 1e9) / 1e9;
+}
+
 }  // namespace flexarm

@@ -9,4 +9,7 @@ namespace flexarm {
 /// @throws Refused if it is not a multiple of `period_s`
 int OnGrid(double time_s, double period_s, const std::string& what);
 
+/// `periods` in seconds, rounded to what a person would write: 70 of 0.02 s are 1.4.
+double InSeconds(int periods, double period_s);
+
 }  // namespace flexarm

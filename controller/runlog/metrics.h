@@ -34,7 +34,7 @@ struct Rest {
 };
 
 /// From the end of each move to the start of the next, or to `run_end_s`. Rests that the run did
-/// not reach are left out.
+/// not reach are left out; a move that the next one takes over has none.
 std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s);
 
 /// What an estimated tip position needs: where the state has what, rigid geometry, and the tip

@@ -74,6 +74,13 @@ TEST(ExperimentFile, MovesAreReadWhole) {
   EXPECT_EQ(e.move[0].to_deg, (std::array{10.0, -5.0}));
 }
 
+// Whether a move may take over is for the law to say.
+TEST(ExperimentFile, AMoveMayBeginWhileTheOneAboveItLasts) {
+  const Experiment e =
+      ParseExperiment(Replaced(kMoves, "start_s = 2.6", "start_s = 1.5"), "e.toml");
+  EXPECT_EQ(e.move[1].start_s, 1.5);
+}
+
 TEST(ExperimentFile, MotionsAreDoubletsAndMovesInOrderOfTime) {
   Experiment e = ParseExperiment(kMoves, "e.toml");
   e.doublet[0].start_s = 4.5;
@@ -256,7 +263,8 @@ const BrokenCase kBroken[] = {
      "-360 .. 360"},
     {"MoveBeyondTheEnd", "duration_s = 1.4", "duration_s = 3.6", "move[1].duration_s",
      "the move ends at 6.2 s", "", kMoves},
-    {"MovesOverlap", "start_s = 2.6", "start_s = 1.9", "move[1].start_s", "do not overlap", "",
+    {"MovesOutOfOrder", "start_s = 2.6", "start_s = 1.2", "move[1].start_s",
+     "later than the move above it, at 1.2 s", "to_deg = [10.0, -5.0]\n\n[[move]]\nstart_s = 1.2",
      kMoves},
     {"MoveDuringADoublet", "start_s = 1.2", "start_s = 0.9", "move[0].start_s",
      "must not overlap a doublet", "", kMoves},

@@ -99,6 +99,20 @@ TEST(MotionCheckTorque, FrictionTakesItsShare) {
   EXPECT_THAT(Broken(Ramp(-8.01, 2.0)), HasSubstr("reaches -10.01 N m"));
 }
 
+// Part of a reference, whose first sample is there for the jump after it only.
+TEST(MotionCheckPart, CountsFromItsFirstSampleAndDoesNotJudgeThat) {
+  std::vector<ReferenceSample> samples(10);
+  for (ReferenceSample& sample : samples) sample.u_m_nm[0] = 5.0;
+  samples[0].x_m[0] = 2.0;
+  EXPECT_FALSE(FirstBrokenLimit(samples, kStates, kLimits, 1.0, kPeriod_s, 30));
+  samples[1].u_m_nm[0] = 0.9;
+  const auto jump = FirstBrokenLimit(samples, kStates, kLimits, 1.0, kPeriod_s, 30);
+  ASSERT_TRUE(jump.has_value());
+  EXPECT_EQ(jump->sample, 31);
+  EXPECT_THAT(jump->text, testing::AllOf(HasSubstr("a jump of the torque of joint 1 reaches -4.1"),
+                                         HasSubstr("after 0.62 s")));
+}
+
 TEST(MotionCheckShare, AllButTheAngleAreJudgedByTheirShare) {
   EXPECT_EQ(Broken(With([](auto* s) { s->x_m[0] = 1.4; }), 0.5), "none");
   EXPECT_THAT(Broken(With([](auto* s) { s->x_m[6] = 1.01; }), 0.5), HasSubstr("1 rad/s"));

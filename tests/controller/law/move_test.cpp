@@ -130,7 +130,7 @@ TEST(Move, ThePlanSaysWhereTheRigidCoordinateIs) {
     for (int k = move.first; k <= move.first + move.periods; ++k) {
       const RigidPoint point = move.At(k, kPeriod_s);
       for (std::size_t i = 0; i < 2; ++i) {
-        const double way = std::fabs(move.to_rad[i] - move.from_rad[i]);
+        const double way = std::fabs(move.to_rad[i] - move.from.angle_rad[i]);
         const Eigen::Vector2d& angle = motion.angle[static_cast<std::size_t>(k)];
         EXPECT_NEAR(point.angle_rad[i], angle(static_cast<Eigen::Index>(i)), 4e-4 * way) << k;
       }

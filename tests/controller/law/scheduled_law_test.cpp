@@ -25,11 +25,6 @@ using testing::HasSubstr;
 constexpr double kPeriod_s = 0.02;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
-const Design& ScheduledDesignOfRig() {
-  static const Design design = DesignController(ShippedRig({"controller.name=gain-scheduled"}));
-  return design;
-}
-
 Experiment OneMove(std::array<double, 2> to_deg, std::optional<double> duration_s,
                    double total_s = 8.0) {
   return {.name = "test",
@@ -44,11 +39,11 @@ Experiment OneMove(std::array<double, 2> to_deg, std::optional<double> duration_
 }
 
 ReferenceTable Table(const Experiment& experiment, std::array<double, 2> start_rad = {0.0, 0.0}) {
-  return {experiment, ScheduledDesignOfRig(), kPeriod_s, start_rad, ShippedLimits()};
+  return {experiment, ShippedPathDesign(), kPeriod_s, start_rad, ShippedLimits()};
 }
 
 ScheduledLaw Law() {
-  return {ArmOf(ScheduledDesignOfRig()), ScheduledDesignOfRig().scheduled->gains, kPeriod_s};
+  return {ArmOf(ShippedPathDesign()), ShippedPathDesign().scheduled->gains, kPeriod_s};
 }
 
 Vector2d AskedOf(const ScheduledLaw::State& x, const PayloadKnowledge& knowledge,
@@ -66,7 +61,7 @@ constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
 TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
   const ReferenceTable table = Table(OneMove({30, -20}, 2.0), {0.1, -0.2});
   const std::array<double, 2> to_rad = {30 * kDeg, -20 * kDeg};
-  const RigidJointArm arm = ArmOf(ScheduledDesignOfRig());
+  const RigidJointArm arm = ArmOf(ShippedPathDesign());
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(table.At(0).x_m[i], i == 0 ? 0.1 : -0.2);
     EXPECT_NEAR(table.At(400).x_m[i], to_rad[i], 1e-15);
@@ -136,7 +131,7 @@ TEST(PathReference, AMoveWithoutDurationKeepsTheShareOfTheLimitsWithTheHeaviestP
        {&share.torque_nm, &share.slew_nm_per_s, &share.hub_rate_rad_s, &share.strain}) {
     for (double& value : *values) value *= share.plan_fraction * (1.0 + 1e-9);
   }
-  EXPECT_NO_THROW(ReferenceTable(limit, ScheduledDesignOfRig(), kPeriod_s, {0.0, 0.0}, share));
+  EXPECT_NO_THROW(ReferenceTable(limit, ShippedPathDesign(), kPeriod_s, {0.0, 0.0}, share));
 }
 
 TEST(PathReference, WhatIsNoMoveIsRefused) {
@@ -155,8 +150,8 @@ TEST(ScheduledLaw, AtRestOnItsPathItAsksForNothing) {
 
 TEST(ScheduledLaw, AsksForTheForceOfTheBentArmItsFrictionAndTheGainsOfItsPayload) {
   const ReferenceTable table = Table(OneMove({30, -20}, 2.0));
-  const RigidJointArm arm = ArmOf(ScheduledDesignOfRig());
-  const GainTable& gains = ScheduledDesignOfRig().scheduled->gains;
+  const RigidJointArm arm = ArmOf(ShippedPathDesign());
+  const GainTable& gains = ShippedPathDesign().scheduled->gains;
   for (const int k : {30, 60, 90}) {
     const auto path = table.PathAround(k);
     const QuasiStaticSample desired = QuasiStaticOver(arm, 0.3, PathPoints(path), kPeriod_s);
@@ -178,7 +173,7 @@ TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
   PayloadKnowledge heavy = kKnown;
   heavy.payload_kg = 1.0;
   const Vector2d sure = AskedOf(x, heavy, path, 0.0);
-  const GainTable& gains = ScheduledDesignOfRig().scheduled->gains;
+  const GainTable& gains = ShippedPathDesign().scheduled->gains;
   const Vector2d robust = gains.At(0.15, 0.0) * -x;
   EXPECT_GT((sure - robust).norm(), 0.01) << "the same gains: the test says nothing";
   EXPECT_LT((AskedOf(x, heavy, path, 0.6) - robust).norm(), 1e-12);

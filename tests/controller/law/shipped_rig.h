@@ -20,6 +20,12 @@ inline const Design& ShippedDesign() {
   return design;
 }
 
+/// Its design for a law that follows a path, made once.
+inline const Design& ShippedPathDesign() {
+  static const Design design = DesignController(ShippedRig({"controller.name=gain-scheduled"}));
+  return design;
+}
+
 /// What its references must keep.
 inline const MotionLimits& ShippedLimits() {
   static const MotionLimits limits = MotionLimitsOf(ShippedRig());

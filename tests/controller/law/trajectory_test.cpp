@@ -68,7 +68,7 @@ TEST(Trajectory, TheReferenceFollowsItAndAMoveGoesOnFromThere) {
                              ShippedLimits());
   EXPECT_NEAR(table.At(199).x_m[0], Swing(2.0), 1e-9);
   EXPECT_NEAR(table.At(199).x_m[1], -0.5 * Swing(2.0), 1e-9);
-  EXPECT_NEAR(table.moves()[0].from_rad[0], Swing(2.0), 1e-15);
+  EXPECT_NEAR(table.moves()[0].from.angle_rad[0], Swing(2.0), 1e-15);
   EXPECT_NEAR(table.At(350).x_m[0], 0.0, 1e-9);
   EXPECT_NEAR(table.At(350).x_m[1], 0.0, 1e-9);
 }

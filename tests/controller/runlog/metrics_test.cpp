@@ -149,6 +149,24 @@ TEST(RunMetrics, ARunThatEndedInItsFirstMoveHasNoRestToJudge) {
   EXPECT_FALSE(metrics.tip_settling_time_s.has_value());
 }
 
+// A move that is taken over has no rest of its own, however long its row says that it lasts: here
+// the second takes over the first, and the third one that would have lasted until 5.5 s.
+TEST(Rests, AreThoseOfMovesThatEnd) {
+  Experiment experiment = TwoMoves();
+  experiment.doublet.clear();
+  experiment.move = {{.start_s = 0.0, .duration_s = 2.0},
+                     {.start_s = 0.5, .duration_s = 5.0},
+                     {.start_s = 1.0, .duration_s = 1.5},
+                     {.start_s = 3.0, .duration_s = 2.0},
+                     {.start_s = 4.0, .duration_s = 0.5}};
+  const std::vector<Rest> rests = RestsOf(experiment, 6.0);
+  ASSERT_EQ(rests.size(), 2U);
+  EXPECT_EQ(rests[0].start_s, 2.5);
+  EXPECT_EQ(rests[0].end_s, 3.0);
+  EXPECT_EQ(rests[1].start_s, 4.5);
+  EXPECT_EQ(rests[1].end_s, 6.0);
+}
+
 TEST(RunMetrics, NoTickAtAllIsNoError) {
   const RunMetrics metrics = Judge({});
   EXPECT_EQ(metrics.ticks, 0);
