@@ -48,7 +48,7 @@ class PayloadEvents : public testing::TestWithParam<const char*> {
  protected:
   PayloadEvents()
       : config_([] {
-          std::vector<std::string> overrides = kWide;
+          std::vector<std::string> overrides = kWideRig;
           overrides.push_back(std::string("controller.name=") + GetParam());
           return ShippedRig(overrides);
         }()),
@@ -149,7 +149,7 @@ int Completed(const std::vector<Outcome>& outcomes) {
                                         [](const Outcome& out) { return out.completed; }));
 }
 
-// Further than the limit switches of kWide: a real arm meets its end stops there.
+// Further than the limit switches of kWideRig: a real arm meets its end stops there.
 int ThrownBeyondASwitch(const std::vector<Outcome>& outcomes) {
   constexpr double kSwitch_deg = 115.0;
   return static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& out) {

@@ -18,8 +18,6 @@
 namespace flexarm {
 namespace {
 
-constexpr double kSettled_s = 0.3;
-
 struct Set {
   std::string name;
   double heaviest_kg = 1.0;
@@ -35,7 +33,7 @@ std::vector<std::string> operator+(std::vector<std::string> a, const std::vector
 }
 
 Runs RunSet(const std::string& law, const Set& set) {
-  const std::vector<std::string> known = kWide + set.config;
+  const std::vector<std::string> known = kWideRig + set.config;
   const Config config = ShippedRig(known + std::vector<std::string>{"controller.name=" + law});
   const Config plant = ShippedRig(known + set.plant);
   const RigidJointArm arm(config.arm);
@@ -52,11 +50,6 @@ Runs RunSet(const std::string& law, const Set& set) {
     Add(Simulate(request), &all);
   }
   return all;
-}
-
-int SettledInTime(const Runs& runs) {
-  return static_cast<int>(std::count_if(runs.settling_s.begin(), runs.settling_s.end(),
-                                        [](double time_s) { return time_s <= kSettled_s; }));
 }
 
 double Mean(const std::vector<double>& values) {

@@ -69,6 +69,12 @@ inline Runs RunSeeds(double payload_kg, const std::vector<std::string>& override
   return runs;
 }
 
+/// Runs whose tip is at rest 0.3 s after every move, t15 <= 0.3 s.
+inline int SettledInTime(const Runs& runs) {
+  return static_cast<int>(std::count_if(runs.settling_s.begin(), runs.settling_s.end(),
+                                        [](double time_s) { return time_s <= 0.3; }));
+}
+
 inline double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
