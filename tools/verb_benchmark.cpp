@@ -15,20 +15,21 @@ namespace {
 struct Options {
   ConfigOptions config;
   GridOptions grid;
-  std::string laws, seeds = "1..3";
+  std::string table = Name(BenchmarkKind::kCommands), laws, seeds;
   std::filesystem::path output, page;
   bool json = false;
 };
 
 void Run(const Options& options) {
-  const SweepPlan plan =
-      BenchmarkPlan(options.config.Load(), ExperimentFile({}, options.config.file).parent_path(),
-                    options.laws, options.seeds);
+  const Config config = options.config.Load();
+  const BenchmarkSet set = BenchmarkSetOf(BenchmarkKindNamed(options.table), config,
+                                          ExperimentFile({}, options.config.file).parent_path());
+  const SweepPlan plan = BenchmarkPlan(config, set, options.laws, options.seeds);
   SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
   const std::vector<std::size_t> points = PointsToRun(&file, ParseShard(options.grid.shard));
   RunSweep(plan, points, &file, options.grid.jobs, ProgressBar("runs", points.size()));
   const std::size_t missing = PointsToRun(&file, {}).size();
-  const BenchmarkTable table = TableOf(plan, file.Rows());
+  const BenchmarkTable table = TableOf(set.kind, plan, file.Rows());
   if (!options.page.empty()) {
     WriteText(options.page, BenchmarkMarkdown(table));
     std::cerr << "wrote " << options.page.string() << '\n';
@@ -51,9 +52,17 @@ void RegisterBenchmark(CLI::App& app, Exit&) {
   CLI::App* verb = app.add_subcommand(
       "benchmark", "Every control law in the same situations: settling, errors, effort, one score");
   options->config.AddTo(verb, true);
+  verb->add_option("--table", options->table,
+                   "commands (default): the commands of config/experiments\n"
+                   "moves: random smooth moves with payloads of 0 to 1 kg, for the laws that find "
+                   "the payload as well\n"
+                   "limits: the same moves for those laws, with encoders, gauges and friction "
+                   "made ideal")
+      ->type_name("NAME");
   verb->add_option("--laws", options->laws, "Only these, by name, with commas between")
       ->type_name("NAMES");
-  verb->add_option("--seeds", options->seeds, "Seeds of the measurement noise (default: 1..3)")
+  verb->add_option("--seeds", options->seeds,
+                   "Seeds of the noise and of random moves (default: 1..3, or 4001..4010 on moves)")
       ->type_name("VALUES");
   options->grid.AddTo(verb);
   verb->add_option("--page", options->page, "Write the tables here too, in Markdown")

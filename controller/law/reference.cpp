@@ -197,8 +197,9 @@ void ReferenceTable::FollowPath(const Experiment& planned, const Design& design,
 void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design, double period_s,
                                  const MotionLimits& limits) const {
   const int states = static_cast<int>(design.Am.rows());
-  const auto broken = design.scheduled ? PathCheck(design, limits, 1.0, period_s).First(*path_, 0, periods())
-                            : FirstBrokenLimit(samples_, states, limits, 1.0, period_s);
+  const auto broken = design.scheduled
+                          ? PathCheck(design, limits, 1.0, period_s).First(*path_, 0, periods())
+                          : FirstBrokenLimit(samples_, states, limits, 1.0, period_s);
   if (!broken) return;
   const std::string row = RowAt(planned, broken->sample * period_s);
   std::string remedy;

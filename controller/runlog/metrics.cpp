@@ -12,6 +12,7 @@ namespace {
 constexpr double kDegPerRad = 57.295779513082320877;
 constexpr double kFinalWindow_s = 0.3;
 constexpr double kSettledWithin_m = 0.015;
+constexpr double kSettleBy_s = 0.3;  // the goal: after the end of a move
 
 // What the metrics look at in one tick.
 struct Sample {
@@ -106,6 +107,13 @@ std::span<const Sample> FinalWindow(std::span<const Sample> samples, const Rest&
   return Between(samples, start_s, rest.end_s, slack_s);
 }
 
+// From 0.3 s after the move's end on, or the last window of a rest too short for that.
+std::span<const Sample> AfterSettling(std::span<const Sample> samples, const Rest& rest,
+                                      double slack_s) {
+  const double start_s = std::min(rest.start_s + kSettleBy_s, rest.end_s - kFinalWindow_s);
+  return Between(samples, std::max(rest.start_s, start_s), rest.end_s, slack_s);
+}
+
 void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double slack_s,
                 RunMetrics* metrics) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -113,7 +121,7 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
                 [&](const Rest& rest) { return FinalWindow(samples, rest, slack_s).empty(); });
   if (rests.empty()) {
     metrics->joint_final_error_deg = {kNone, kNone};
-    metrics->tip_residual_rms_mm = kNone;
+    metrics->tip_residual_rms_mm = metrics->tip_motion_rms_mm = kNone;
     return;
   }
   metrics->tip_settling_time_s = 0;
@@ -124,6 +132,9 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
     const std::array<double, 2> place = MeanTip(window);
     metrics->tip_residual_rms_mm =
         std::max(metrics->tip_residual_rms_mm, ResidualRms_mm(window, place));
+    const auto after = AfterSettling(samples, rest, slack_s);
+    metrics->tip_motion_rms_mm +=
+        ResidualRms_mm(after, MeanTip(after)) / static_cast<double>(rests.size());
     const std::optional<double> settled = SettlingTime(all, rest.start_s, place);
     if (!settled) {
       metrics->tip_settling_time_s.reset();

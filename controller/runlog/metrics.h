@@ -20,7 +20,10 @@ struct RunMetrics {
   /// Largest over the rests: from the move's end until the tip stays within 15 mm of its mean over
   /// the last 0.3 s. Nothing: never.
   std::optional<double> tip_settling_time_s;
-  double tip_residual_rms_mm = 0;           ///< largest over the rests: rms about that mean
+  double tip_residual_rms_mm = 0;  ///< largest over the rests: rms about that mean
+  /// Mean over the rests: the tip's rms about its mean from 0.3 s after the move's end to the end
+  /// of the rest (the residual of beyond.md section 4), so slow swings count too.
+  double tip_motion_rms_mm = 0;
   std::array<double, 2> peak_torque_nm{};   ///< after the gate
   std::array<double, 2> torque_rms_nm{};    ///< after the gate, all ticks
   std::array<double, 2> peak_bending_mm{};  ///< largest deflection of each link's tip

@@ -31,6 +31,29 @@ class Benchmark(ProgramTest):
         for name in sobel["scenarios"]:
             self.assertIn(f"| {name} |", text)
 
+    def test_moves_go_on_where_they_were_and_limits_show_in_the_figures(self):
+        moves = ("-c", HIL, "--table", "limits", "--seeds", "4001")
+        results = self.folder / "limits.sqlite"
+        half = self.flexarm_json("benchmark", *moves, "--shard", "1/2", "-o", results)
+        self.assertEqual(half["table"], "limits")
+        self.assertGreater(half["missing"], 0)
+        page = self.folder / "page.md"
+        whole = self.flexarm_json("benchmark", *moves, "-o", results, "--page", page)
+        self.assertEqual(whole["missing"], 0)
+        law = next(law for law in whole["laws"] if law["name"] == "gain-scheduled")
+        as_it_is, ideal = law["scenarios"]["nominal"], law["scenarios"]["all"]
+        self.assertEqual((as_it_is["completed"], as_it_is["settled_in_time"]), (1, 1))
+        self.assertLessEqual(as_it_is["latest_settling_s"], 0.3)
+        self.assertLess(ideal["motion_mean_mm"], as_it_is["motion_mean_mm"])
+        self.assertEqual(as_it_is["motion_mean_mm"], as_it_is["motion_max_mm"])  # of one run
+        for name in law["scenarios"]:
+            self.assertIn(f"| {name} |", page.read_text())
+        self.assert_refused(
+            self.run_program("flexarm", "benchmark", "-c", HIL, "--table", "pictures", "-o",
+                             self.folder / "x.sqlite"), "commands, moves, limits")
+        self.assert_refused(
+            self.run_program("flexarm", "benchmark", "-c", HIL, "-o", results), "another sweep")
+
     def test_a_law_that_does_not_exist_is_refused(self):
         self.assert_refused(
             self.run_program("flexarm", "benchmark", "-c", HIL, "--laws", "pid", "-o",

@@ -44,12 +44,15 @@ class Report(ProgramTest):
         self.assertEqual(page_file, str(folder / "report.html"))
         page = Page(text)
         self.assertEqual((page.open, page.loads), ([], []))
-        self.assertGreaterEqual(page.pictures, 15)
+        self.assertGreaterEqual(page.pictures, 16)
         captions = " ".join(page.captions)
         for figure in FIGURES:
             self.assertIn(figure, captions)
         for chapter in (3, 4, 5, 6, 7):
             self.assertIn(f"Chapter {chapter}", text)
+        self.assertIn("What limits the laws that find the payload", captions)
+        for cell in ("gain-scheduled", "encoders-x10", "reached"):
+            self.assertIn(f"<td>{cell}</td>", text)
         for verdict in ("holds", "does not hold", "holds in part"):
             self.assertIn(f">{verdict}</td>", text)
         self.assertNotIn("no finite number", text)

@@ -7,13 +7,16 @@
 
 #include "controller/runlog/errors.h"
 #include "controller/runlog/metrics.h"
+#include "tools/run_summary.h"
+#include "tools/sweep/random_moves.h"
 
 namespace flexarm {
 namespace {
 
-double ShortestRest_s(const Experiment& experiment) {
+double ShortestRest_s(const Scenario& scenario) {
+  if (scenario.random_up_to_kg) return kRandomMovesRest_s;
   double shortest_s = std::numeric_limits<double>::infinity();
-  for (const Rest& rest : RestsOf(experiment, experiment.duration_s)) {
+  for (const Rest& rest : RestsOf(scenario.experiment, scenario.experiment.duration_s)) {
     shortest_s = std::min(shortest_s, rest.end_s - rest.start_s);
   }
   return shortest_s;
@@ -27,7 +30,7 @@ double ScoreOf(const SweepRow& row, double rest_s) {
 
 BenchmarkCell CellOf(const std::vector<std::size_t>& index, const std::vector<SweepRow>& rows,
                      double rest_s) {
-  BenchmarkCell cell{.group = GroupOf(index, rows), .score = 0.0};
+  BenchmarkCell cell{.group = GroupOf(index, rows), .rests = RestFiguresOf(rows), .score = 0.0};
   for (const SweepRow& row : rows) {
     cell.score += ScoreOf(row, rest_s) / static_cast<double>(rows.size());
   }
@@ -37,23 +40,32 @@ BenchmarkCell CellOf(const std::vector<std::size_t>& index, const std::vector<Sw
 nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
   nlohmann::ordered_json json = GroupJson(cell.group);
   json["score"] = cell.score;
+  const RestFigures& rests = cell.rests;
+  json["settled_in_time"] = rests.settled_in_time;
+  json["latest_settling_s"] = NumberOrNull(rests.latest_settling_s);
+  json["residual_mean_mm"] = NumberOrNull(rests.residual_mean_mm);
+  json["residual_max_mm"] = NumberOrNull(rests.residual_max_mm);
+  json["motion_mean_mm"] = NumberOrNull(rests.motion_mean_mm);
+  json["motion_max_mm"] = NumberOrNull(rests.motion_max_mm);
+  json["rms_mean_deg"] = {NumberOrNull(rests.rms_mean_deg[0]), NumberOrNull(rests.rms_mean_deg[1])};
   return json;
 }
 
 }  // namespace
 
-SweepPlan BenchmarkPlan(const Config& config, const std::filesystem::path& experiments,
-                        const std::string& laws, const std::string& seeds) {
-  SweepPlan plan{
-      .config = config, .experiment = {}, .grid = {}, .scenarios = BenchmarkScenarios(experiments)};
+SweepPlan BenchmarkPlan(const Config& config, const BenchmarkSet& set, const std::string& laws,
+                        const std::string& seeds) {
+  SweepPlan plan{.config = config, .experiment = {}, .grid = {}, .scenarios = set.scenarios};
   plan.experiment = plan.scenarios.front().experiment;
   std::vector<std::string> names;
   for (const Scenario& scenario : plan.scenarios) names.push_back(scenario.name);
   plan.grid = SweepGrid({{.target = AxisTarget::kConfig,
                           .key = "controller.name",
-                          .values = laws.empty() ? BenchmarkLaws() : ParseValues(laws)},
+                          .values = laws.empty() ? set.laws : ParseValues(laws)},
                          {.target = AxisTarget::kScenario, .key = {}, .values = names},
-                         {.target = AxisTarget::kSeed, .key = {}, .values = ParseValues(seeds)}});
+                         {.target = AxisTarget::kSeed,
+                          .key = {},
+                          .values = ParseValues(seeds.empty() ? set.seeds : seeds)}});
   CheckPlan(plan);
   return plan;
 }
@@ -83,9 +95,11 @@ std::size_t BenchmarkTable::Runs(std::size_t law) const {
   return sum;
 }
 
-BenchmarkTable TableOf(const SweepPlan& plan, const std::vector<SweepRow>& rows) {
+BenchmarkTable TableOf(BenchmarkKind kind, const SweepPlan& plan,
+                       const std::vector<SweepRow>& rows) {
   const std::vector<SweepAxis>& axes = plan.grid.axes();
-  BenchmarkTable table{.laws = axes[0].values, .scenarios = plan.scenarios, .cell = {}};
+  BenchmarkTable table{
+      .kind = kind, .laws = axes[0].values, .scenarios = plan.scenarios, .cell = {}};
   std::vector<std::vector<std::vector<SweepRow>>> of_cell(
       table.laws.size(), std::vector<std::vector<SweepRow>>(table.scenarios.size()));
   for (const SweepRow& row : rows) {
@@ -96,14 +110,15 @@ BenchmarkTable TableOf(const SweepPlan& plan, const std::vector<SweepRow>& rows)
     table.cell.emplace_back();
     for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
       table.cell[law].push_back(
-          CellOf({law, i}, of_cell[law][i], ShortestRest_s(table.scenarios[i].experiment)));
+          CellOf({law, i}, of_cell[law][i], ShortestRest_s(table.scenarios[i])));
     }
   }
   return table;
 }
 
 nlohmann::ordered_json BenchmarkJson(const BenchmarkTable& table) {
-  nlohmann::ordered_json json{{"laws", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{{"table", Name(table.kind)},
+                              {"laws", nlohmann::ordered_json::array()}};
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
     const std::size_t worst = table.WorstScenario(law);
     nlohmann::ordered_json of_law{{"name", table.laws[law]},

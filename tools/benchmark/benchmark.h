@@ -1,35 +1,29 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "config/config.h"
+#include "tools/benchmark/benchmark_set.h"
+#include "tools/benchmark/rest_figures.h"
 #include "tools/sweep/sweep.h"
 #include "tools/sweep/sweep_summary.h"
 
 namespace flexarm {
 
-/// The situations of the benchmark, in the order of its tables (docs/benchmark.md).
-/// @param experiments  folder with benchmark-square.toml and the others
-/// @throws ConfigError  one of them is missing or wrong
-std::vector<Scenario> BenchmarkScenarios(const std::filesystem::path& experiments);
-
-/// The laws that it compares, by their names in the config.
-std::vector<std::string> BenchmarkLaws();
-
 /// Every law in every scenario with every seed, as a sweep.
-/// @param laws   empty: all
-/// @param seeds  values of a seed axis, such as "1..3"
+/// @param laws   names with commas between; empty: the set's
+/// @param seeds  empty: the set's
 /// @throws InputError  no such law, no such seeds
-SweepPlan BenchmarkPlan(const Config& config, const std::filesystem::path& experiments,
-                        const std::string& laws, const std::string& seeds);
+SweepPlan BenchmarkPlan(const Config& config, const BenchmarkSet& set, const std::string& laws = {},
+                        const std::string& seeds = {});
 
 /// What a law did in a scenario.
 struct BenchmarkCell {
-  SweepGroup group;  ///< over the seeds
+  SweepGroup group;   ///< over the seeds
+  RestFigures rests;  ///< of the same runs
   /// 100 times the share of the shortest rest in which the tip really rests, mean over the seeds: 0
   /// for a run that did not complete or never settled.
   double score = 0.0;
@@ -37,6 +31,7 @@ struct BenchmarkCell {
 
 /// The results in one table.
 struct BenchmarkTable {
+  BenchmarkKind kind;
   std::vector<std::string> laws;
   std::vector<Scenario> scenarios;
   std::vector<std::vector<BenchmarkCell>> cell;  ///< [law][scenario]
@@ -47,8 +42,10 @@ struct BenchmarkTable {
   std::size_t Runs(std::size_t law) const;
 };
 
+/// @param plan  of a set of this kind
 /// @param rows  of the plan, as many as there are
-BenchmarkTable TableOf(const SweepPlan& plan, const std::vector<SweepRow>& rows);
+BenchmarkTable TableOf(BenchmarkKind kind, const SweepPlan& plan,
+                       const std::vector<SweepRow>& rows);
 
 nlohmann::ordered_json BenchmarkJson(const BenchmarkTable& table);
 
@@ -58,12 +55,15 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// A row a law: score, worst scenario, and the figures of the nominal one.
-TextTable LawTable(const BenchmarkTable& table);
-/// A row a scenario: the settling time of every law.
-TextTable ScenarioTable(const BenchmarkTable& table);
+/// A table, and the sentence before it.
+struct TablePart {
+  std::string about;
+  TextTable table;
+};
 
-/// Both, in Markdown.
+/// What there is to say of the results, by the kind of the table.
+std::vector<TablePart> TableParts(const BenchmarkTable& table);
+/// The same in Markdown.
 std::string BenchmarkMarkdown(const BenchmarkTable& table);
 
 }  // namespace flexarm

@@ -31,18 +31,25 @@ std::string Markdown(const TextTable& table) {
   return text;
 }
 
+std::string Share(std::size_t part, std::size_t whole) {
+  return std::to_string(part) + "/" + std::to_string(whole);
+}
+
+std::string Pair(double a, double b, const char* format) {
+  return Number(a, format) + " " + Number(b, format);
+}
+
 // What a cell says in one word: how long the tip took, or why there is no such time.
 std::string Settling(const BenchmarkCell& cell) {
   const SweepGroup& group = cell.group;
   std::string text = Number(group.median[kSettling], "%.2f");
   if (group.completed < group.runs) {
-    text += " (" + std::to_string(group.completed) + "/" + std::to_string(group.runs) + ")";
+    text += " (" + Share(group.completed, group.runs) + ")";
   }
   return text;
 }
 
-}  // namespace
-
+// A row a law: score, worst scenario, and the figures of the nominal one.
 TextTable LawTable(const BenchmarkTable& table) {
   TextTable text{.head = {"law", "score", "lowest", "in", "completed", "settling, s", "rms, deg",
                           "final, deg", "residual, mm", "torque rms, N m"},
@@ -50,39 +57,121 @@ TextTable LawTable(const BenchmarkTable& table) {
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
     const std::size_t worst = table.WorstScenario(law);
     const auto& m = table.cell[law][kNominal].group.median;
-    text.rows.push_back(
-        {table.laws[law], Number(table.Score(law), "%.1f"),
-         Number(table.cell[law][worst].score, "%.1f"), table.scenarios[worst].name,
-         std::to_string(table.Completed(law)) + "/" + std::to_string(table.Runs(law)),
-         Settling(table.cell[law][kNominal]), Number(m[0], "%.2f") + " " + Number(m[1], "%.2f"),
-         Number(m[2], "%.2f") + " " + Number(m[3], "%.2f"), Number(m[5], "%.1f"),
-         Number(m[8], "%.2f") + " " + Number(m[9], "%.2f")});
+    text.rows.push_back({table.laws[law], Number(table.Score(law), "%.1f"),
+                         Number(table.cell[law][worst].score, "%.1f"), table.scenarios[worst].name,
+                         Share(table.Completed(law), table.Runs(law)),
+                         Settling(table.cell[law][kNominal]), Pair(m[kRms1], m[kRms2], "%.2f"),
+                         Pair(m[2], m[3], "%.2f"), Number(m[kResidual], "%.1f"),
+                         Pair(m[8], m[9], "%.2f")});
   }
   return text;
 }
 
-TextTable ScenarioTable(const BenchmarkTable& table) {
-  TextTable text{.head = {"scenario", "what"}, .rows = {}};
-  text.head.insert(text.head.end(), table.laws.begin(), table.laws.end());
+// How many runs settled in time, and what is left then; which runs that leaves out, if any.
+std::string InTime(const BenchmarkCell& cell) {
+  const SweepGroup& group = cell.group;
+  if (!group.refused.empty() && group.completed == 0) return "refused";
+  std::string text = Share(cell.rests.settled_in_time, group.runs) + ", " +
+                     Number(cell.rests.residual_mean_mm, "%.1f");
+  if (group.completed < group.runs) text += " (" + Share(group.completed, group.runs) + ")";
+  return text;
+}
+
+// Settling, residual, motion and rms of a cell, as InTimeHead names them.
+std::vector<std::string> RestCells(const BenchmarkCell& cell) {
+  const RestFigures& r = cell.rests;
+  return {Share(r.settled_in_time, cell.group.runs), Number(r.latest_settling_s, "%.2f"),
+          Pair(r.residual_mean_mm, r.residual_max_mm, "%.1f"),
+          Pair(r.motion_mean_mm, r.motion_max_mm, "%.1f"),
+          Pair(r.rms_mean_deg[0], r.rms_mean_deg[1], "%.2f")};
+}
+
+std::vector<std::string> RestHead() {
+  return {"settled in time", "latest, s", "residual, mm", "motion, mm", "rms, deg"};
+}
+
+std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// A row a law on the moves: what it did over all scenarios, and the figures of the nominal one.
+TextTable MoveLawTable(const BenchmarkTable& table) {
+  TextTable text{.head = Joined({"law", "score", "completed", "settled in time, all"}, RestHead()),
+                 .rows = {}};
+  for (std::size_t law = 0; law < table.laws.size(); ++law) {
+    std::size_t settled = 0;
+    for (const BenchmarkCell& cell : table.cell[law]) settled += cell.rests.settled_in_time;
+    text.rows.push_back(
+        Joined({table.laws[law], Number(table.Score(law), "%.1f"),
+                Share(table.Completed(law), table.Runs(law)), Share(settled, table.Runs(law))},
+               RestCells(table.cell[law][kNominal])));
+  }
+  return text;
+}
+
+// A row a scenario, a column a law.
+TextTable ScenarioTable(const BenchmarkTable& table, std::string (*says)(const BenchmarkCell&)) {
+  TextTable text{.head = Joined({"scenario", "what"}, table.laws), .rows = {}};
   for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
     const Scenario& scenario = table.scenarios[i];
     std::vector<std::string> cells = {scenario.name,
                                       scenario.what + (scenario.tuned_on ? " (tuned on)" : "")};
     for (std::size_t law = 0; law < table.laws.size(); ++law) {
-      cells.push_back(Settling(table.cell[law][i]));
+      cells.push_back(says(table.cell[law][i]));
     }
     text.rows.push_back(cells);
   }
   return text;
 }
 
+// A row a scenario and law.
+TextTable LimitTable(const BenchmarkTable& table) {
+  TextTable text{.head = Joined({"scenario", "what", "law"}, RestHead()), .rows = {}};
+  for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
+    for (std::size_t law = 0; law < table.laws.size(); ++law) {
+      text.rows.push_back(
+          Joined({table.scenarios[i].name, table.scenarios[i].what, table.laws[law]},
+                 RestCells(table.cell[law][i])));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<TablePart> TableParts(const BenchmarkTable& table) {
+  switch (table.kind) {
+    case BenchmarkKind::kCommands:
+      return {{"Score over all scenarios; the other figures are those of the nominal one, medians "
+               "over the seeds:",
+               LawTable(table)},
+              {"Settling time of the tip in every scenario, s; in brackets the runs that "
+               "completed, where not all did:",
+               ScenarioTable(table, Settling)}};
+    case BenchmarkKind::kMoves:
+      return {{"Score, completed runs and runs that settled in time over all scenarios; the other "
+               "figures are those of the nominal one: residual and motion mean and largest, rms "
+               "mean of joints 1 and 2, over the runs that completed:",
+               MoveLawTable(table)},
+              {"Runs that settled in time and mean residual, mm, in every scenario; in brackets "
+               "the runs that completed, where not all did:",
+               ScenarioTable(table, InTime)}};
+    case BenchmarkKind::kLimits:
+      return {
+          {"What is left when one limit after the other is taken away: residual and motion "
+           "mean and largest, rms mean of joints 1 and 2:",
+           LimitTable(table)}};
+  }
+  return {};
+}
+
 std::string BenchmarkMarkdown(const BenchmarkTable& table) {
-  return "Score over all scenarios; the other figures are those of the nominal one, medians over\n"
-         "the seeds:\n\n" +
-         Markdown(LawTable(table)) +
-         "\nSettling time of the tip in every scenario, s; in brackets the runs that completed,\n"
-         "where not all did:\n\n" +
-         Markdown(ScenarioTable(table));
+  std::string text;
+  for (const TablePart& part : TableParts(table)) {
+    text += (text.empty() ? "" : "\n") + part.about + "\n\n" + Markdown(part.table);
+  }
+  return text;
 }
 
 }  // namespace flexarm

@@ -2,12 +2,12 @@
 
 #include "tools/analysis/chapter7_statements.h"
 #include "tools/analysis/control_study.h"
-#include "tools/benchmark/benchmark.h"
 #include "tools/parallel.h"
 #include "tools/plot_data.h"
 #include "tools/report/chapters.h"
 #include "tools/report/loop_picture.h"
 #include "tools/simulation.h"
+#include "tools/sweep/better_sensors.h"
 
 namespace flexarm {
 namespace {
@@ -101,13 +101,10 @@ void AlphaAndVartheta(const ControlStudy& study, const ReportContext& context, H
 // Figures 7.4 to 7.12: the thesis's simulations know the state; here the sensors are as good as
 // they can be described, and the sample of delay stays.
 std::vector<std::string> IdealSensors(const Config& config) {
-  std::vector<std::string> overrides = {"sensors.strain_input.noise_counts=0",
-                                        "sensors.strain_input.converter_bits=24"};
-  for (std::size_t i = 0; i < config.sensors.encoder.size(); ++i) {
-    const std::string row = "sensors.encoder[" + std::to_string(i) + "].";
-    overrides.push_back(row + "counts_per_turn=1e7");
-    overrides.push_back(row + "counter_bits=32");
-  }
+  constexpr double kFiner = 4000.0;  // 1e7 counts a turn
+  std::vector<std::string> overrides = QuietGauges();
+  const std::vector<std::string> fine = FinerEncoders(config.sensors, kFiner);
+  overrides.insert(overrides.end(), fine.begin(), fine.end());
   return overrides;
 }
 
@@ -180,23 +177,6 @@ void Chapter7(ReportContext* context, HtmlPage* page) {
   const std::vector<Statement> statements = Chapter7Statements(study);
   page->Statements(statements);
   context->statements.insert(context->statements.end(), statements.begin(), statements.end());
-}
-
-void Baselines(ReportContext* context, HtmlPage* page) {
-  page->Section("The laws side by side");
-  page->Paragraph(
-      "The benchmark of docs/benchmark.md with one seed. The score is the share of the rests, in "
-      "percent, in which the tip is at rest, over all situations; the other figures are those of "
-      "the nominal one.");
-  const SweepPlan plan = BenchmarkPlan(context->config, context->experiments, "", "1");
-  SweepFile file =
-      SweepFile::Resume(context->folder / "tables" / "benchmark.sqlite", IdentityOf(plan));
-  const std::vector<std::size_t> points = PointsToRun(&file, {});
-  RunSweep(plan, points, &file, 0, ProgressBar("runs of the benchmark", points.size()));
-  const BenchmarkTable table = TableOf(plan, file.Rows());
-  for (const TextTable& text : {LawTable(table), ScenarioTable(table)}) {
-    page->Table(text.head, text.rows);
-  }
 }
 
 }  // namespace flexarm

@@ -32,6 +32,21 @@ std::vector<std::string> EverySection(const Config& config, const std::string& k
   return overrides;
 }
 
+std::vector<std::string> Together(const Config& config) {
+  std::vector<std::string> overrides = {"joint2.backlash_rad=0.0087266462599716477",
+                                        "joint2.backlash_model=dead_zone",
+                                        "arm.damping=modal",
+                                        "link1.damping_ratio=0.02",
+                                        "link2.damping_ratio=0.02",
+                                        "sim.lost_frame_fraction=0.05"};
+  for (const auto& more : {BothJoints(config, "coulomb_friction_nm", 2.0),
+                           BothJoints(config, "stiffness_nm_per_rad", 0.85),
+                           EverySection(config, "youngs_modulus_pa", 0.95)}) {
+    overrides.insert(overrides.end(), more.begin(), more.end());
+  }
+  return overrides;
+}
+
 }  // namespace
 
 const std::vector<PlantVariant>& PlantVariants() {
@@ -41,7 +56,10 @@ const std::vector<PlantVariant>& PlantVariants() {
       {"friction-x3", "three times the Coulomb friction in both joints"},
       {"soft-joints", "stiffness of both joints 30 % less"},
       {"soft-links", "Young's modulus of both links 10 % less"},
-      {"modal-damping", "3 % damping in every bending mode"}};
+      {"modal-damping", "3 % damping in every bending mode"},
+      {"together",
+       "half a degree of play, friction x 2, joints 15 % and links 5 % softer, 2 % damping, one "
+       "frame in twenty lost"}};
   return variants;
 }
 
@@ -56,6 +74,7 @@ std::vector<std::string> VariantOverrides(const Config& config, const std::strin
   if (name == "modal-damping") {
     return {"arm.damping=modal", "link1.damping_ratio=0.03", "link2.damping_ratio=0.03"};
   }
+  if (name == "together") return Together(config);  // beyond.md section 4
   std::string known;
   for (const PlantVariant& variant : PlantVariants()) {
     known += std::string(known.empty() ? "" : ", ") + variant.name;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct Scenario {
   std::vector<std::string> plant;   ///< --set of the simulated rig alone
   std::vector<std::string> config;  ///< --set of the rig and the controller
   bool tuned_on;                    ///< parameters of some law were chosen on it
+  /// In place of `experiment` and `payload_kg`: moves and a payload up to this that the run's seed
+  /// draws (MakeRandomMoves).
+  std::optional<double> random_up_to_kg = std::nullopt;
 };
 
 }  // namespace flexarm

@@ -13,6 +13,7 @@
 #include "controller/runlog/errors.h"
 #include "tools/parallel.h"
 #include "tools/sweep/plant_variant.h"
+#include "tools/sweep/random_moves.h"
 
 namespace flexarm {
 namespace {
@@ -78,6 +79,13 @@ SimulationRequest RequestFor(const SweepPlan& plan, const Changes& changes) {
       .plant = {},
       .payload_kg = changes.payload_kg,
       .log = {}};
+  if (changes.scenario != nullptr && changes.scenario->random_up_to_kg) {
+    const RandomMoves drawn =
+        MakeRandomMoves(RigidJointArm(request.config.arm), request.config.sim.seed,
+                        *changes.scenario->random_up_to_kg);
+    request.experiment = drawn.experiment;
+    request.payload_kg = drawn.payload_kg;
+  }
   std::vector<std::string> plant = VariantOverrides(request.config, changes.variant);
   plant.insert(plant.end(), changes.plant.begin(), changes.plant.end());
   if (!plant.empty()) request.plant = PlantWith(request.config, plant);

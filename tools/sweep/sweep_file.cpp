@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 
 // Runs `body`; what SQLite refuses becomes a message that names the file.
 template <typename Body>

@@ -21,7 +21,7 @@ SweepRow RowOf(std::size_t point, const SimulationResult& result) {
       .measure = {m.joint_rms_error_deg[0], m.joint_rms_error_deg[1], m.joint_final_error_deg[0],
                   m.joint_final_error_deg[1], m.tip_settling_time_s.value_or(kNone),
                   m.tip_residual_rms_mm, m.peak_torque_nm[0], m.peak_torque_nm[1],
-                  m.torque_rms_nm[0], m.torque_rms_nm[1]}};
+                  m.torque_rms_nm[0], m.torque_rms_nm[1], m.tip_motion_rms_mm}};
 }
 
 SweepRow RefusedRow(std::size_t point, const std::string& why) {

@@ -15,7 +15,7 @@ struct SweepMeasure {
   const char* title;   ///< of a table
 };
 
-inline constexpr std::array<SweepMeasure, 10> kSweepMeasures = {
+inline constexpr std::array<SweepMeasure, 11> kSweepMeasures = {
     {{"joint1_rms_error_deg", "rms1 deg"},
      {"joint2_rms_error_deg", "rms2 deg"},
      {"joint1_final_error_deg", "final1 deg"},
@@ -25,8 +25,13 @@ inline constexpr std::array<SweepMeasure, 10> kSweepMeasures = {
      {"peak_torque1_nm", "peak1 Nm"},
      {"peak_torque2_nm", "peak2 Nm"},
      {"torque1_rms_nm", "effort1 Nm"},
-     {"torque2_rms_nm", "effort2 Nm"}}};
+     {"torque2_rms_nm", "effort2 Nm"},
+     {"tip_motion_rms_mm", "motion mm"}}};
+inline constexpr std::size_t kRms1 = 0;
+inline constexpr std::size_t kRms2 = 1;
 inline constexpr std::size_t kSettling = 4;  ///< its NaN in a completed run: never
+inline constexpr std::size_t kResidual = 5;
+inline constexpr std::size_t kMotion = 10;
 
 /// One run of a sweep.
 struct SweepRow {

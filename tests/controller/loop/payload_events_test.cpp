@@ -12,10 +12,10 @@
 
 #include "controller/runlog/metrics.h"
 #include "model/rigid_joint_arm.h"
-#include "tests/controller/loop/random_moves.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/controller/loop/stack_run.h"
 #include "tools/parallel.h"
+#include "tools/sweep/random_moves.h"
 
 namespace flexarm {
 namespace {
@@ -336,7 +336,7 @@ TEST_P(PayloadEvents, ThirtyMovesWithoutAPauseDoNotWearItOut) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, PayloadEvents, testing::Values("gain-scheduled"),
+INSTANTIATE_TEST_SUITE_P(Laws, PayloadEvents, testing::Values("gain-scheduled", "receding-horizon"),
                          [](const auto& shown) {
                            std::string name = shown.param;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -12,8 +12,8 @@
 #include "controller/law/motion_plan.h"
 #include "controller/law/refused.h"
 #include "model/rigid_joint_arm.h"
-#include "tests/controller/loop/random_moves.h"
 #include "tests/controller/loop/simulated_runs.h"
+#include "tools/sweep/random_moves.h"
 
 namespace flexarm {
 namespace {
@@ -75,8 +75,8 @@ class RandomRetargets {
     for (;;) {
       out->move.push_back(To(start_s));
       try {
-        return PlanMoves(*out, design_, kPeriodOfMoves_s, {0.0, 0.0}, limits_).back().periods *
-               kPeriodOfMoves_s;
+        return PlanMoves(*out, design_, kMoveGrid_s, {0.0, 0.0}, limits_).back().periods *
+               kMoveGrid_s;
       } catch (const Refused&) {
         out->move.pop_back();
       }
@@ -121,7 +121,7 @@ TEST_P(RetargetRuns, TheShippedExperimentEndsAtRest) {
 }
 
 // The laws that follow a path.
-INSTANTIATE_TEST_SUITE_P(Laws, RetargetRuns, testing::Values("gain-scheduled"),
+INSTANTIATE_TEST_SUITE_P(Laws, RetargetRuns, testing::Values("gain-scheduled", "receding-horizon"),
                          [](const auto& law) {
                            std::string name = law.param;
                            std::erase(name, '-');

@@ -101,6 +101,19 @@ TEST(RunMetrics, ATipThatNeverSettlesHasNoTime) {
   EXPECT_NEAR(metrics.tip_residual_rms_mm, std::sqrt(400 - 400.0 / 225), 1e-9);
 }
 
+// The rests are 1..3 and 4..6 s: a tip that moves by +-3 mm in 1.32 .. 2.40 s and rests otherwise.
+TEST(RunMetrics, MotionIsTheRestsMeanFromThreeTenthsAfterTheMove) {
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    const double sign = record->input.tick % 2 != 0 ? 1.0 : -1.0;
+    if (t > 1.31 && t < 2.41) record->truth.tip_m = {sign * 0.003, 0.0};
+    if (t > 4.01 && t < 4.31) record->truth.tip_m = {0.0, sign * 0.1};  // before the window
+  });
+  const RunMetrics metrics = Judge(ticks);
+  EXPECT_NEAR(metrics.tip_residual_rms_mm, 0.0, 1e-9);
+  // 55 of 85 samples of one rest of two; a sample of a sign is left over: the mean is 3/85 mm off.
+  EXPECT_NEAR(metrics.tip_motion_rms_mm, 1.5 * std::sqrt(55.0 / 85.0 - 1.0 / (85.0 * 85.0)), 1e-9);
+}
+
 TEST(RunMetrics, PeakTorqueIsTheLargestAppliedOfEitherSign) {
   const auto ticks = Trace(6, [](double t, TickRecord* record) {
     record->input.applied_torque_nm = {std::sin(t), t < 0.01 && t > -0.01 ? -3.0 : 1.0};
@@ -146,6 +159,7 @@ TEST(RunMetrics, ARunThatEndedInItsFirstMoveHasNoRestToJudge) {
   EXPECT_EQ(metrics.ticks, 27);
   EXPECT_TRUE(std::isnan(metrics.joint_final_error_deg[0]));
   EXPECT_TRUE(std::isnan(metrics.tip_residual_rms_mm));
+  EXPECT_TRUE(std::isnan(metrics.tip_motion_rms_mm));
   EXPECT_FALSE(metrics.tip_settling_time_s.has_value());
 }
 

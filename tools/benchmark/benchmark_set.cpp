@@ -1,0 +1,75 @@
+#include "tools/benchmark/benchmark_set.h"
+
+#include <algorithm>
+#include <array>
+
+#include "controller/runlog/errors.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::array kKinds = {BenchmarkKind::kCommands, BenchmarkKind::kMoves,
+                               BenchmarkKind::kLimits};
+
+// None of the sets that a law was tried on while it was made, tests included.
+constexpr const char* kMoveSeeds = "4001..4010";
+
+}  // namespace
+
+const char* Name(BenchmarkKind kind) {
+  switch (kind) {
+    case BenchmarkKind::kCommands:
+      return "commands";
+    case BenchmarkKind::kMoves:
+      return "moves";
+    case BenchmarkKind::kLimits:
+      return "limits";
+  }
+  return "?";
+}
+
+BenchmarkKind BenchmarkKindNamed(const std::string& name) {
+  std::string known;
+  for (const BenchmarkKind kind : kKinds) {
+    if (name == Name(kind)) return kind;
+    known += std::string(known.empty() ? "" : ", ") + Name(kind);
+  }
+  throw InputError("--table " + name + ": expected one of " + known);
+}
+
+std::vector<std::string> CommandLaws() {
+  return {"sobel", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv", "pd-zvd"};
+}
+
+std::vector<std::string> PayloadLaws() { return {"gain-scheduled", "receding-horizon"}; }
+
+BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const Config& config,
+                            const std::filesystem::path& experiments) {
+  BenchmarkSet set{.kind = kind, .scenarios = {}, .laws = PayloadLaws(), .seeds = kMoveSeeds};
+  switch (kind) {
+    case BenchmarkKind::kCommands:
+      set.scenarios = CommandScenarios(experiments);
+      set.laws = CommandLaws();
+      set.seeds = "1..3";
+      break;
+    case BenchmarkKind::kMoves: {
+      const std::vector<std::string> others = CommandLaws();
+      set.scenarios = MoveScenarios(config);
+      set.laws.insert(set.laws.end(), others.begin(), others.end());
+      break;
+    }
+    case BenchmarkKind::kLimits:
+      set.scenarios = LimitScenarios(config);
+      break;
+  }
+  return set;
+}
+
+BenchmarkSet Only(BenchmarkSet set, const std::vector<std::string>& scenarios) {
+  std::erase_if(set.scenarios, [&scenarios](const Scenario& scenario) {
+    return std::find(scenarios.begin(), scenarios.end(), scenario.name) == scenarios.end();
+  });
+  return set;
+}
+
+}  // namespace flexarm

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "tools/sweep/scenario.h"
+
+namespace flexarm {
+
+/// The tables of the benchmark (docs/benchmark.md).
+enum class BenchmarkKind : std::uint8_t {
+  kCommands,  ///< the commands of config/experiments
+  kMoves,     ///< random smooth moves, for the laws that follow nothing else as well
+  kLimits,    ///< the same moves, with what limits the arm taken away
+};
+
+const char* Name(BenchmarkKind kind);  ///< "commands", "moves", "limits"
+/// @throws InputError  none of that name
+BenchmarkKind BenchmarkKindNamed(const std::string& name);
+
+/// What a table compares, and with which seeds unless others are asked for.
+struct BenchmarkSet {
+  BenchmarkKind kind;
+  std::vector<Scenario> scenarios;  ///< in the order of the tables; the first is the nominal one
+  std::vector<std::string> laws;    ///< by their names in the config
+  std::string seeds;                ///< values of a seed axis, such as "1..3"
+};
+
+/// @param experiments  folder with benchmark-square.toml and the others
+/// @throws ConfigError  one of them is missing or wrong
+BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const Config& config,
+                            const std::filesystem::path& experiments);
+
+/// The laws that take any command.
+std::vector<std::string> CommandLaws();
+/// The laws that find the payload, and follow smooth moves only.
+std::vector<std::string> PayloadLaws();
+
+std::vector<Scenario> CommandScenarios(const std::filesystem::path& experiments);
+/// The payload ranges and the plants of beyond.md section 4, and finer encoders.
+std::vector<Scenario> MoveScenarios(const Config& config);
+std::vector<Scenario> LimitScenarios(const Config& config);
+
+/// The set with these scenarios alone, in its own order.
+BenchmarkSet Only(BenchmarkSet set, const std::vector<std::string>& scenarios);
+
+}  // namespace flexarm

@@ -1,0 +1,113 @@
+#include "tools/benchmark/benchmark_set.h"
+#include "tools/benchmark/disturbance.h"
+#include "tools/sweep/better_sensors.h"
+#include "tools/sweep/random_moves.h"
+
+namespace flexarm {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+const Overrides kNoFriction = {"joint1.coulomb_friction_nm=0", "joint2.coulomb_friction_nm=0"};
+constexpr double kHeaviest_kg = 1.0;
+constexpr double kFiner = 10.0;
+
+Overrides Both(Overrides a, const Overrides& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Scenario RandomScenario(const Disturbance& d, double up_to_kg = kHeaviest_kg) {
+  Scenario scenario{.name = d.name,
+                    .what = d.what,
+                    .experiment = {},
+                    .payload_kg = 0.0,
+                    .variant = d.variant,
+                    .plant = d.plant,
+                    .config = Both(kWideRig, d.config),
+                    .tuned_on = false,
+                    .random_up_to_kg = up_to_kg};
+  scenario.experiment.name = "random-moves";
+  return scenario;
+}
+
+Disturbance FineTheta1(const Config& config) {
+  return {.name = "theta1-x10",
+          .what = "encoder of theta1 ten times finer",
+          .config = FinerEncoders(config.sensors, kFiner, true)};
+}
+
+Disturbance FineEncoders(const Config& config) {
+  return {.name = "encoders-x10",
+          .what = "all encoders ten times finer",
+          .config = FinerEncoders(config.sensors, kFiner)};
+}
+
+Disturbance NoFriction() {
+  return {.name = "no-friction", .what = "no Coulomb friction", .plant = kNoFriction};
+}
+
+// Of the study, beside those that are common to all tables.
+std::vector<Disturbance> MorePlants() {
+  return {
+      NoFriction(),
+      {.name = "backlash-0.2",
+       .what = "0.2 degrees of play at the elbow",
+       .plant = {"joint2.backlash_rad=0.00349066", "joint2.backlash_model=dead_zone"}},
+      {.name = "modal-damping", .what = "modal damping 3 %", .variant = "modal-damping"},
+      {.name = "modal-damping-1",
+       .what = "modal damping 1 %",
+       .plant = {"arm.damping=modal", "link1.damping_ratio=0.01", "link2.damping_ratio=0.01"}},
+      {.name = "viscous",
+       .what = "viscous friction of the motors, 0.05 and 0.02 N m s/rad",
+       .plant = {"joint1.viscous_friction_nm_s_per_rad=0.05",
+                 "joint2.viscous_friction_nm_s_per_rad=0.02"}},
+      {.name = "together",
+       .what = "play, friction, softness, damping and lost frames at once",
+       .variant = "together"},
+  };
+}
+
+}  // namespace
+
+std::vector<Scenario> MoveScenarios(const Config& config) {
+  std::vector<Scenario> scenarios = {RandomScenario({.name = "nominal", .what = "0 to 1 kg"}),
+                                     RandomScenario({.name = "light", .what = "0 to 0.2 kg"}, 0.2)};
+  for (const auto& disturbances : {CommonDisturbances(), MorePlants()}) {
+    for (const Disturbance& d : disturbances) scenarios.push_back(RandomScenario(d));
+  }
+  scenarios.push_back(RandomScenario(FineTheta1(config)));
+  scenarios.push_back(RandomScenario(FineEncoders(config)));
+  return scenarios;
+}
+
+std::vector<Scenario> LimitScenarios(const Config& config) {
+  const Overrides theta1 = FineTheta1(config).config, encoders = FineEncoders(config).config;
+  const std::vector<Disturbance> taken_away = {
+      {.name = "nominal", .what = "the rig as it is"},
+      FineTheta1(config),
+      FineEncoders(config),
+      {.name = "quiet-gauges", .what = "gauges without noise, 24 bits", .config = QuietGauges()},
+      NoFriction(),
+      {.name = "encoders-quiet",
+       .what = "all encoders x 10, quiet gauges",
+       .config = Both(encoders, QuietGauges())},
+      {.name = "no-friction-theta1",
+       .what = "no friction, encoder of theta1 x 10",
+       .plant = kNoFriction,
+       .config = theta1},
+      {.name = "no-friction-encoders",
+       .what = "no friction, all encoders x 10",
+       .plant = kNoFriction,
+       .config = encoders},
+      {.name = "all",
+       .what = "no friction, all encoders x 10, quiet gauges",
+       .plant = kNoFriction,
+       .config = Both(encoders, QuietGauges())},
+  };
+  std::vector<Scenario> scenarios;
+  for (const Disturbance& d : taken_away) scenarios.push_back(RandomScenario(d));
+  return scenarios;
+}
+
+}  // namespace flexarm
