@@ -96,7 +96,7 @@ void RequireTakeOver(const PlannedMove& planned, const PlannedMove& above, const
                 " s: must not begin before the move above it ends, at " +
                 NumberText(InSeconds(above.first + above.periods, period_s)) +
                 " s; only a law that follows a path takes over a move that lasts: "
-                "controller.name = \"gain-scheduled\"");
+                "controller.name = \"gain-scheduled\" or \"receding-horizon\"");
 }
 
 // The last of `moves` lasts when a move begins at sample `first`.

@@ -69,6 +69,8 @@ class LoopStack {
   virtual std::string BusText(TripCause /*cause*/, const Evidence& /*evidence*/) const {
     return {};
   }
+  /// Whether [[sim_event]] rows can happen: a real rig refuses an experiment that has some.
+  virtual bool simulated() const noexcept { return false; }
   /// False: this backend has no simulated switches.
   virtual bool Press(const LinePress& /*press*/) noexcept { return false; }
 

@@ -262,6 +262,7 @@ void OperatorTask::FinishCommissioning(Json answer) {
 
 void OperatorTask::PlanExperiment(const Experiment& experiment,
                                   const std::array<double, 2>& start_rad) {
+  if (!context_.stack->simulated()) RefuseSimEvents(experiment);
   auto planned = std::make_unique<PlannedExperiment>(
       experiment, *context_.design, context_.grid.period_s(), start_rad, context_.limits);
   const Experiment chosen = planned->accepted;

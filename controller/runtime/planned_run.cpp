@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "controller/law/refused.h"
+
 namespace flexarm {
 
 PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design& design,
@@ -12,6 +14,13 @@ PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design&
       sim_events(experiment.sim_event) {
   std::stable_sort(sim_events.begin(), sim_events.end(),
                    [](const SimEvent& a, const SimEvent& b) { return a.at_s < b.at_s; });
+}
+
+void RefuseSimEvents(const Experiment& experiment) {
+  if (experiment.sim_event.empty()) return;
+  throw Refused(
+      "sim_event[0]: this rig is real, and its switches, threads and payload are not ours to "
+      "change; take the [[sim_event]] rows out, or use the simulated backend");
 }
 
 PlannedExperiment::PlannedExperiment(const std::vector<std::array<double, 2>>& torque_nm)

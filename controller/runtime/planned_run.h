@@ -29,6 +29,10 @@ struct PlannedExperiment {
   HomingPlan homing{};  ///< if mode is kRegulate
 };
 
+/// For a rig that is real.
+/// @throws Refused naming the first row of what can only happen to a simulated one
+void RefuseSimEvents(const Experiment& experiment);
+
 /// The experiment that the next run follows. The operator's side keeps it alive until every reader
 /// has released its number.
 struct PlannedRun {

@@ -38,6 +38,7 @@ class SimulatedStack final : private SimulatedWires, public LoopStack {
 
   void Plan(const PlannedRun& plan) noexcept override;
   std::uint32_t released_plans() const noexcept override;
+  bool simulated() const noexcept override { return true; }
   bool Press(const LinePress& press) noexcept override { return presses.Push(press); }
 
  private:

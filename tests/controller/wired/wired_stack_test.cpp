@@ -1,15 +1,18 @@
 #include "controller/runtime/wired_stack.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
+#include "controller/law/refused.h"
 #include "controller/runlog/metrics.h"
 #include "controller/runtime/lockstep_executor.h"
 #include "controller/runtime/unattended_run.h"
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/loop/simulated_runs.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -147,6 +150,15 @@ TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend
   EXPECT_EQ(metrics.ticks, 300);
   EXPECT_LE(metrics.joint_rms_error_deg[0], 0.90);  // control.md section 8, payload 0.1 kg
   EXPECT_LE(metrics.joint_rms_error_deg[1], 1.35);
+}
+
+// What OperatorTask asks before it plans.
+TEST_F(WiredStackTest, ARealRigRefusesWhatOnlyASimulatedOneCanMeet) {
+  EXPECT_FALSE(stack_.simulated());
+  EXPECT_NO_THROW(RefuseSimEvents(experiment_));
+  const std::string message =
+      MessageOf<Refused>([] { RefuseSimEvents(ShippedExperiment("payload-dropped")); });
+  EXPECT_THAT(message, testing::HasSubstr("sim_event[0]"));
 }
 
 TEST_F(WiredStackTest, TheDriveBusGetsNoTorqueBeforeTheRunAndNoneAfter) {
