@@ -4,6 +4,7 @@
 #include <string>
 
 #include "model/arm_model.h"
+#include "model/tip_acceleration.h"
 
 namespace flexarm {
 namespace {
@@ -85,6 +86,24 @@ OutboardBody RigidJointArm::Outboard(double payload_kg) const noexcept {
           .k2 = empty_.k2 + m * per_kg_.k2,
           .a2 = empty_.a2 + m * per_kg_.a2,
           .N2 = empty_.N2 + m * per_kg_.N2};
+}
+
+double RigidJointArm::TipAcceleration(const Vector& q, const Vector& v,
+                                      const Vector& a) const noexcept {
+  const auto link1 = [](const Eigen::Vector2d& shape, const Vector& x) {
+    return shape.dot(x.segment<2>(2));
+  };
+  // A kilogram at the tip shows where the tip is: its first moment is L2, k2 is psi2(L2).
+  const double L2 = per_kg_.Sx;
+  const auto w2 = [this](const Vector& x) { return per_kg_.k2.dot(x.tail<2>()); };
+  return flexarm::TipAcceleration({.theta1 = {q[0], v[0], a[0]},
+                                   .theta2 = {q[1], v[1], a[1]},
+                                   .length1 = {L1_, 0.0, 0.0},
+                                   .length2 = {L2, 0.0, 0.0},
+                                   .w1 = {link1(p1_, q), link1(p1_, v), link1(p1_, a)},
+                                   .w2 = {w2(q), w2(v), w2(a)},
+                                   .slope1 = {link1(s1_, q), link1(s1_, v), link1(s1_, a)},
+                                   .slope2 = s2_.dot(q.tail<2>())});
 }
 
 }  // namespace flexarm

@@ -56,6 +56,9 @@ class RigidJointArm {
   template <typename Math = PortableMath>
   Inertia At(const OutboardBody& body, const Vector& q, const Vector& v) const noexcept;
 
+  /// Of the tip, along the normal of link 2 there, m/s^2: tip_acceleration.h.
+  double TipAcceleration(const Vector& q, const Vector& v, const Vector& a) const noexcept;
+
   const Matrix& stiffness() const noexcept { return stiffness_; }  ///< K; zero for the hubs
   const Matrix& damping() const noexcept { return damping_; }      ///< D
 

@@ -50,8 +50,35 @@ GaugedState RigidJointStepper::Advance(const GaugedState& start, const SampleInp
   return x;
 }
 
-// (M + h/2 D + h^2/4 K) a = applied - bias + friction at the middle of the step. The modal
-// coordinates are eliminated; friction acts on what is left.
+RigidJointArm::Vector RigidJointStepper::AccelerationAt(const GaugedState& x,
+                                                        const SampleInputs& inputs) const noexcept {
+  const RigidJointArm::Inertia at = arm_.At(arm_.Outboard(inputs.payload_kg), x.q, x.v);
+  Vector r = -arm_.damping().lazyProduct(x.v);
+  r -= arm_.stiffness().lazyProduct(x.q);
+  r.head<2>() += inputs.torque_nm;
+  r -= at.bias;
+  return Solve(at.M, r, x.v, inputs.friction_nm);
+}
+
+// A a = r + friction, v the rates at the start of a step. The modal coordinates are eliminated;
+// friction acts on what is left.
+inline RigidJointArm::Vector RigidJointStepper::Solve(
+    const RigidJointArm::Matrix& A, const Vector& r, const Vector& v,
+    const std::array<double, 2>& friction_nm) const noexcept {
+  const Eigen::LLT<Eigen::Matrix4d> flexible(A.bottomRightCorner<4, 4>());
+  const Eigen::Matrix<double, 4, 2> X = flexible.solve(A.bottomLeftCorner<4, 2>());
+  const Eigen::Vector4d y = flexible.solve(r.tail<4>());
+  const Eigen::Matrix2d Z = A.topLeftCorner<2, 2>() - A.topRightCorner<2, 4>().lazyProduct(X);
+  const Eigen::Vector2d r_hub = r.head<2>() - A.topRightCorner<2, 4>().lazyProduct(y);
+  const FrictionSolution hubs = BoxFriction(Z(0, 0), Z(1, 0), Z(1, 1), r_hub[0], r_hub[1])
+                                    .Solve({v[0], v[1]}, friction_nm, h_);
+  Vector a;
+  a.head<2>() << hubs.acceleration[0], hubs.acceleration[1];
+  a.tail<4>() = y - X.lazyProduct(a.head<2>());
+  return a;
+}
+
+// (M + h/2 D + h^2/4 K) a = applied - bias + friction at the middle of the step.
 RigidJointArm::Vector RigidJointStepper::Acceleration(
     const OutboardBody& body, const GaugedState& start, const Vector& applied,
     const std::array<double, 2>& friction_nm) const noexcept {
@@ -60,17 +87,7 @@ RigidJointArm::Vector RigidJointStepper::Acceleration(
     const Vector v_m = start.v + 0.5 * h_ * a;
     const RigidJointArm::Inertia at = arm_.At(body, start.q + 0.5 * h_ * v_m, v_m);
     const RigidJointArm::Matrix A = at.M + implicit_;
-    const Vector r = applied - at.bias;
-
-    const Eigen::LLT<Eigen::Matrix4d> flexible(A.bottomRightCorner<4, 4>());
-    const Eigen::Matrix<double, 4, 2> X = flexible.solve(A.bottomLeftCorner<4, 2>());
-    const Eigen::Vector4d y = flexible.solve(r.tail<4>());
-    const Eigen::Matrix2d Z = A.topLeftCorner<2, 2>() - A.topRightCorner<2, 4>().lazyProduct(X);
-    const Eigen::Vector2d r_hub = r.head<2>() - A.topRightCorner<2, 4>().lazyProduct(y);
-    const FrictionSolution hubs = BoxFriction(Z(0, 0), Z(1, 0), Z(1, 1), r_hub[0], r_hub[1])
-                                      .Solve({start.v[0], start.v[1]}, friction_nm, h_);
-    a.head<2>() << hubs.acceleration[0], hubs.acceleration[1];
-    a.tail<4>() = y - X.lazyProduct(a.head<2>());
+    a = Solve(A, applied - at.bias, start.v, friction_nm);
   }
   return a;
 }

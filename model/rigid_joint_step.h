@@ -51,6 +51,11 @@ class RigidJointStepper {
   GaugedState Advance(const GaugedState& start, const SampleInputs& inputs,
                       int steps) const noexcept;
 
+  /// Accelerations at this very state. A hub that friction can stop within a step is being stopped:
+  /// one at rest stays so. rad/s^2, m/s^2
+  RigidJointArm::Vector AccelerationAt(const GaugedState& x,
+                                       const SampleInputs& inputs) const noexcept;
+
   const RigidJointArm& arm() const noexcept { return arm_; }
   int steps() const noexcept { return steps_; }
   double period_s() const noexcept { return steps_ * h_; }
@@ -61,6 +66,8 @@ class RigidJointStepper {
  private:
   using Vector = RigidJointArm::Vector;
 
+  Vector Solve(const RigidJointArm::Matrix& A, const Vector& r, const Vector& v,
+               const std::array<double, 2>& friction_nm) const noexcept;
   Vector Acceleration(const OutboardBody& body, const GaugedState& start, const Vector& applied,
                       const std::array<double, 2>& friction_nm) const noexcept;
 
