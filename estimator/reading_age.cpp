@@ -23,6 +23,7 @@ SensorFrame WithoutStaleReadings(SensorFrame frame, std::int64_t instant_ns,
   const std::int64_t age_ns = instant_ns - frame.sampled_at_ns;
   frame.counter_valid &= Fresh(frame.counter_offset_ns, age_ns, max_age_ns);
   frame.strain_valid &= Fresh(frame.strain_offset_ns, age_ns, max_age_ns);
+  frame.accelerometer_valid &= Fresh(frame.accelerometer_offset_ns, age_ns, max_age_ns);
   return frame;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,10 @@
 
 namespace flexarm {
 namespace {
+
+// Rails of a two's complement converter.
+int LowestCount(int bits) { return -(1 << (bits - 1)); }
+int HighestCount(int bits) { return (1 << (bits - 1)) - 1; }
 
 constexpr std::array<const char*, kCounters> kJointNames = {"hub1", "hub2", "rotor1", "rotor2"};
 
@@ -55,6 +60,21 @@ void CheckStrainInput(const StrainInputConfig& input, ProblemList* list) {
       "for a first-order one");
   list->Within("strain_input.noise_counts", input.noise_counts, 0.0, 1e4,
                "standard deviation before quantising");
+}
+
+// Up to its corner's tenth the filter is a delay, and so the estimator takes it: the arm's own
+// vibrations that it knows end at 10 Hz or so.
+constexpr double kLeastAccelerometerFilter_hz = 100.0;
+
+void CheckTipAccelerometer(const TipAccelerometerConfig& config, ProblemList* list) {
+  list->Within("tip_accelerometer.range_m_s2", config.range_m_s2, 1.0, 1e4,
+               "full scale is -range_m_s2 .. +range_m_s2");
+  list->Within("tip_accelerometer.converter_bits", config.converter_bits, 8, 24,
+               "two's complement; below 8 bits it tells nothing that the gauges do not");
+  list->Within("tip_accelerometer.noise_counts", config.noise_counts, 0.0, 1e4,
+               "standard deviation before quantising");
+  list->Within("tip_accelerometer.filter_hz", config.filter_hz, kLeastAccelerometerFilter_hz, 1e5,
+               "corner of the analogue filter: \"ekf-payload\" takes it as a short delay");
 }
 
 void CheckStrainPosition(const StrainChannelConfig& channel, const std::string& key,
@@ -103,9 +123,19 @@ double StrainInputConfig::volts_per_count() const {
   return 2.0 * range_v / std::ldexp(1.0, converter_bits);
 }
 
-int StrainInputConfig::lowest_count() const { return -(1 << (converter_bits - 1)); }
+int StrainInputConfig::lowest_count() const { return LowestCount(converter_bits); }
 
-int StrainInputConfig::highest_count() const { return (1 << (converter_bits - 1)) - 1; }
+int StrainInputConfig::highest_count() const { return HighestCount(converter_bits); }
+
+double TipAccelerometerConfig::m_s2_per_count() const {
+  return 2.0 * range_m_s2 / std::ldexp(1.0, converter_bits);
+}
+
+double TipAccelerometerConfig::lag_s() const { return 1.0 / (2.0 * std::numbers::pi * filter_hz); }
+
+int TipAccelerometerConfig::lowest_count() const { return LowestCount(converter_bits); }
+
+int TipAccelerometerConfig::highest_count() const { return HighestCount(converter_bits); }
 
 std::uint32_t SensorConfig::counters_present() const {
   std::uint32_t present = 0;
@@ -122,6 +152,7 @@ std::vector<Problem> SensorConfig::Problems(const std::array<double, 2>& link_le
   CheckEncoders(encoder, &list);
   CheckStrainInput(strain_input, &list);
   CheckStrainChannels(strain, strain_input, link_length_m, &list);
+  if (tip_accelerometer) CheckTipAccelerometer(*tip_accelerometer, &list);
   return list.Take();
 }
 

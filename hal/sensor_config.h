@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "hal/sensor_frame.h"
@@ -45,11 +46,29 @@ struct StrainInputConfig {
   int highest_count() const;       ///< 2^(bits-1) - 1
 };
 
-/// What the rig measures, section [sensors]. Rotor encoders may be absent.
+/// A single-axis accelerometer at the tip: [sensors.tip_accelerometer].
+///
+/// Glued to the end of link 2, its axis normal to the link there and in the plane of the arm, so
+/// that it turns with the tip; positive counter-clockwise, the way the deflection w2 grows. Gravity
+/// stands on the plane and does not show. counts = round(acceleration / m_s2_per_count()).
+struct TipAccelerometerConfig {
+  double range_m_s2;    ///< full scale is -range_m_s2 .. +range_m_s2
+  int converter_bits;   ///< 8..24, two's complement, clips at its rails
+  double noise_counts;  ///< standard deviation before quantising
+  double filter_hz;     ///< corner of the first-order analogue filter, 100 Hz at least
+
+  double m_s2_per_count() const;  ///< 2 range / 2^bits
+  double lag_s() const;           ///< of the filter well below its corner: 1 / (2 pi filter_hz)
+  int lowest_count() const;       ///< -2^(bits-1)
+  int highest_count() const;      ///< 2^(bits-1) - 1
+};
+
+/// What the rig measures, section [sensors]. Rotor encoders and accelerometer may be absent.
 struct SensorConfig {
   std::vector<EncoderConfig> encoder;
   std::vector<StrainChannelConfig> strain;
   StrainInputConfig strain_input;
+  std::optional<TipAccelerometerConfig> tip_accelerometer{};
 
   /// Bit i: counter i exists.
   std::uint32_t counters_present() const;

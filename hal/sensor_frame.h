@@ -8,6 +8,7 @@ namespace flexarm {
 
 inline constexpr int kCounters = 4;            ///< hub 1, hub 2, rotor 1, rotor 2, as th1..th4
 inline constexpr int kMaxStrainChannels = 32;  ///< both links together
+inline constexpr int kAccelerometers = 1;      ///< the one at the tip
 
 /// Digital input lines of the rig, by bit number in `LineLevels`.
 ///
@@ -51,13 +52,16 @@ struct SensorFrame {
   std::array<std::int32_t, kCounters> counter_offset_ns;
   std::array<std::int32_t, kMaxStrainChannels> strain;  ///< raw converter counts, in config order
   std::array<std::int32_t, kMaxStrainChannels> strain_offset_ns;
-  std::uint32_t counter_valid;  ///< bit i: counter[i] was read for this frame
-  std::uint32_t strain_valid;   ///< bit i: strain[i] was read for this frame
-  LineLevels levels;            ///< digital inputs at the sampling instant
-  std::uint32_t reserved;       ///< zero
+  std::array<std::int32_t, kAccelerometers> accelerometer;  ///< raw converter counts
+  std::array<std::int32_t, kAccelerometers> accelerometer_offset_ns;
+  std::uint32_t counter_valid;        ///< bit i: counter[i] was read for this frame
+  std::uint32_t strain_valid;         ///< bit i: strain[i] was read for this frame
+  std::uint32_t accelerometer_valid;  ///< bit i: accelerometer[i] was read for this frame
+  LineLevels levels;                  ///< digital inputs at the sampling instant
 };
 static_assert(std::is_trivially_copyable_v<SensorFrame>);
-static_assert(sizeof(SensorFrame) == 8 + 2 * 4 * kCounters + 2 * 4 * kMaxStrainChannels + 16,
+static_assert(sizeof(SensorFrame) ==
+                  8 + 2 * 4 * (kCounters + kMaxStrainChannels + kAccelerometers) + 16,
               "no padding: the bytes are logged and compared");
 
 }  // namespace flexarm

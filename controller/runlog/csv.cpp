@@ -11,8 +11,15 @@
 namespace flexarm {
 namespace {
 
-std::uint64_t AllMask(std::uint32_t counters, std::size_t channels) {
-  return counters | (((std::uint64_t{1} << channels) - 1) << kCounters);
+constexpr const char* kTipColumn = "tip_acceleration";
+
+// Bits of the column `valid`: counters, strain channels in config order, the accelerometer.
+std::uint64_t TipBit(std::size_t channels) { return std::uint64_t{1} << (kCounters + channels); }
+
+std::uint64_t AllMask(const SensorConfig& sensors) {
+  const std::uint64_t tip_bit = TipBit(sensors.strain.size());
+  const std::uint64_t strain = tip_bit - (std::uint64_t{1} << kCounters);
+  return sensors.counters_present() | strain | (sensors.tip_accelerometer ? tip_bit : 0);
 }
 
 std::string Shortest(double value) {
@@ -21,9 +28,10 @@ std::string Shortest(double value) {
   return error == std::errc() ? std::string(text.begin(), end) : std::string("nan");
 }
 
-std::string ValidText(const SensorFrame& frame, std::uint64_t all) {
+std::string ValidText(const SensorFrame& frame, std::size_t channels, std::uint64_t all) {
   const std::uint64_t strain = frame.strain_valid;
-  const std::uint64_t mask = (frame.counter_valid | (strain << kCounters)) & all;
+  const std::uint64_t tip = frame.accelerometer_valid != 0 ? TipBit(channels) : 0;
+  const std::uint64_t mask = (frame.counter_valid | (strain << kCounters) | tip) & all;
   if (mask == all) return "1";
   if (mask == 0) return "0";
   std::array<char, 20> text;
@@ -37,6 +45,8 @@ class Reader {
   Reader(const std::filesystem::path& file, const SensorConfig& sensors, double period_s)
       : table_(file),
         counters_(sensors.counters_present()),
+        has_tip_(sensors.tip_accelerometer.has_value()),
+        all_(AllMask(sensors)),
         strain_(StrainColumns(sensors)),
         period_s_(period_s) {
     for (const char* name : {"time_s", "valid", "torque_1_nm", "torque_2_nm"}) table_.Need(name);
@@ -44,6 +54,7 @@ class Reader {
       if ((counters_ >> i & 1U) != 0) table_.Need("counter_" + std::to_string(i + 1));
     }
     for (const std::string& name : strain_) table_.Need(name);
+    if (has_tip_) table_.Need(kTipColumn);
   }
 
   std::vector<StepInput> Read() {
@@ -55,14 +66,13 @@ class Reader {
 
  private:
   std::uint64_t ValidMask() const {
-    const std::uint64_t all = AllMask(counters_, strain_.size());
     const std::string_view cell = table_.Cell("valid");
-    if (cell == "1") return all;
+    if (cell == "1") return all_;
     if (cell == "0") return 0;
     if (!cell.starts_with("0x")) table_.FailCell("valid", "1, 0, or a mask as 0x..");
     const std::string expected = "a mask of the counters and channels of this config";
     const auto mask = table_.Whole<std::uint64_t>("valid", expected, 16, 2);
-    if ((mask & ~all) != 0) table_.FailCell("valid", expected);
+    if ((mask & ~all_) != 0) table_.FailCell("valid", expected);
     return mask;
   }
 
@@ -77,7 +87,11 @@ class Reader {
     }
     const std::uint64_t mask = ValidMask();
     frame->counter_valid = static_cast<std::uint32_t>(mask & ((1U << kCounters) - 1));
-    frame->strain_valid = static_cast<std::uint32_t>(mask >> kCounters);
+    const std::uint64_t tip_bit = TipBit(strain_.size());
+    frame->strain_valid = static_cast<std::uint32_t>((mask & (tip_bit - 1)) >> kCounters);
+    if (!has_tip_) return;
+    frame->accelerometer[0] = table_.Whole<std::int32_t>(kTipColumn, expected);
+    frame->accelerometer_valid = (mask & tip_bit) != 0 ? 1 : 0;
   }
 
   StepInput Input(const std::vector<StepInput>& before) {
@@ -95,6 +109,8 @@ class Reader {
 
   CsvTable table_;
   std::uint32_t counters_;
+  bool has_tip_;
+  std::uint64_t all_;
   std::vector<std::string> strain_;
   double period_s_;
 };
@@ -114,12 +130,14 @@ std::vector<std::string> StrainColumns(const SensorConfig& sensors) {
 
 CsvWriter::CsvWriter(std::ostream* out, const SensorConfig& sensors, std::int64_t start_ns)
     : out_(out),
-      counters_present_(sensors.counters_present()),
       strain_columns_(StrainColumns(sensors)),
+      has_tip_(sensors.tip_accelerometer.has_value()),
+      readings_(AllMask(sensors)),
       start_ns_(start_ns) {
   *out_ << "time_s";
   for (int i = 1; i <= kCounters; ++i) *out_ << ",counter_" << i;
   for (const std::string& name : strain_columns_) *out_ << ',' << name;
+  if (has_tip_) *out_ << ',' << kTipColumn;
   *out_ << ",valid,torque_1_nm,torque_2_nm\n";
 }
 
@@ -128,7 +146,8 @@ void CsvWriter::Row(const StepInput& input) {
   *out_ << Shortest(static_cast<double>(input.sampling_instant_ns - start_ns_) * 1e-9);
   for (const std::uint32_t count : frame.counter) *out_ << ',' << count;
   for (std::size_t i = 0; i < strain_columns_.size(); ++i) *out_ << ',' << frame.strain[i];
-  *out_ << ',' << ValidText(frame, AllMask(counters_present_, strain_columns_.size()));
+  if (has_tip_) *out_ << ',' << frame.accelerometer[0];
+  *out_ << ',' << ValidText(frame, strain_columns_.size(), readings_);
   for (const double torque : input.applied_torque_nm) *out_ << ',' << Shortest(torque);
   *out_ << '\n';
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <ostream>
 #include <string>
@@ -12,9 +13,10 @@ namespace flexarm {
 
 // Plain data of a run:
 //   time_s, counter_1..counter_4, strain_1_01.., strain_2_01.., valid, torque_1_nm, torque_2_nm
-// Counters and strain channels are raw counts; torques are what was applied up to the sample.
-// `valid` is 1 if every reading is good, 0 if none is, otherwise a mask in hexadecimal: bits 0..3
-// are the counters, bit 4 + i is strain channel i in the order of the config.
+// and, of a rig that has the sensor, tip_acceleration before `valid`. Counters, strain channels and
+// the accelerometer are raw counts; torques are what was applied up to the sample. `valid` is 1 if
+// every reading is good, 0 if none is, otherwise a mask in hexadecimal: bits 0..3 are the counters,
+// bit 4 + i is strain channel i in the order of the config, the next one the accelerometer.
 
 /// Names of the strain columns in the order of the config: link, then number within the link.
 std::vector<std::string> StrainColumns(const SensorConfig& sensors);
@@ -28,8 +30,9 @@ class CsvWriter {
 
  private:
   std::ostream* out_;
-  std::uint32_t counters_present_;
   std::vector<std::string> strain_columns_;
+  bool has_tip_;
+  std::uint64_t readings_;  // bits of `valid` when everything was read
   std::int64_t start_ns_;
 };
 

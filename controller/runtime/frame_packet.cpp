@@ -36,6 +36,9 @@ void Join(const FramePacket& part, FramePacket* packet) noexcept {
                &frame.counter, &frame.counter_offset_ns, &frame.counter_valid);
   JoinReadings(part.frame.strain, part.frame.strain_offset_ns, part.frame.strain_valid, shift_ns,
                &frame.strain, &frame.strain_offset_ns, &frame.strain_valid);
+  JoinReadings(part.frame.accelerometer, part.frame.accelerometer_offset_ns,
+               part.frame.accelerometer_valid, shift_ns, &frame.accelerometer,
+               &frame.accelerometer_offset_ns, &frame.accelerometer_valid);
 }
 
 }  // namespace flexarm

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <utility>
 
+#include "model/tip_acceleration.h"
+
 namespace flexarm {
 
 SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
@@ -19,6 +21,8 @@ SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors
     motor_[i] = DcMotor(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
     switch_angle_rad_[i] = sim.switch_angle_deg[i] * std::numbers::pi / 180.0;
   }
+  if (!sensors.tip_accelerometer) return;
+  accelerometer_.emplace(*sensors.tip_accelerometer, sim.step_ms * 1e-3, sim.seed);
 }
 
 void SimulatedRig::Step() noexcept {
@@ -28,15 +32,26 @@ void SimulatedRig::Step() noexcept {
     torque(static_cast<Eigen::Index>(i)) = motor_[i].Step(set_point_nm_[i]);
   }
   const ArmVector before(filter_.output());
+  const ArmState start = state_;
   simulator_.Step(state_, torque, static_cast<double>(step_ns_) * 1e-9);
+  if (accelerometer_) Feel(start);
   filter_.Step(state_.q.tail(filter_.output().size()));
   if (!frame_) return;
   Scan(frame_age_ns_ + step_ns_, before);
   frame_age_ns_ += step_ns_;
 }
 
+// The step's mean acceleration: with the impulse of a hub that comes to rest within it.
+void SimulatedRig::Feel(const ArmState& before) noexcept {
+  const double h = static_cast<double>(step_ns_) * 1e-9;
+  accelerometer_->Step(TipAcceleration(arm_, ArmVector(0.5 * (before.q + state_.q)),
+                                       ArmVector(0.5 * (before.v + state_.v)),
+                                       ArmVector((state_.v - before.v) / h)));
+}
+
 void SimulatedRig::StartFrame(std::int64_t now_ns) noexcept {
   frame_ = sensors_.SampleCounters(now_ns, state_.q, levels());
+  if (accelerometer_) accelerometer_->Sample(&*frame_);
   next_channel_ = 0;
   frame_age_ns_ = 0;
   Scan(0, ArmVector(filter_.output()));
@@ -60,7 +75,9 @@ void SimulatedRig::Scan(std::int64_t until_ns, const ArmVector& before) noexcept
 }
 
 SensorFrame SimulatedRig::Sample(std::int64_t now_ns) noexcept {
-  return sensors_.Sample(now_ns, state_.q, ArmVector(filter_.output()), levels());
+  SensorFrame frame = sensors_.Sample(now_ns, state_.q, ArmVector(filter_.output()), levels());
+  if (accelerometer_) accelerometer_->Sample(&frame);
+  return frame;
 }
 
 LineLevels SimulatedRig::levels() const noexcept {

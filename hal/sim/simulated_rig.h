@@ -8,6 +8,7 @@
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
 #include "hal/sim/sim_config.h"
+#include "hal/sim/simulated_accelerometer.h"
 #include "hal/sim/simulated_sensors.h"
 #include "model/arm_model.h"
 #include "model/arm_simulator.h"
@@ -45,9 +46,9 @@ class SimulatedRig {
   /// What the converters show now, every strain channel at once.
   SensorFrame Sample(std::int64_t now_ns) noexcept;
 
-  /// Begins a frame: counters and lines now, the strain channels `channel_skew_us` apart, the first
-  /// of them now. The others follow in Step, between its ends by a straight line: next to a signal
-  /// of w rad/s that errs by (w h)^2 / 8, 4e-4 of the second modes.
+  /// Begins a frame: counters, accelerometer and lines now, the strain channels `channel_skew_us`
+  /// apart, the first of them now. The others follow in Step, between its ends by a straight line:
+  /// next to a signal of w rad/s that errs by (w h)^2 / 8, 4e-4 of the second modes.
   void StartFrame(std::int64_t now_ns) noexcept;
   /// The frame that was begun, once its last channel has been sampled; then never again.
   std::optional<SensorFrame> TakeFrame() noexcept;
@@ -66,6 +67,8 @@ class SimulatedRig {
   const ArmState& state() const noexcept { return state_; }
 
  private:
+  // One step of the arm, as the accelerometer feels it.
+  void Feel(const ArmState& before) noexcept;
   // Samples the channels whose turn comes until `until_ns` after the frame's begin.
   void Scan(std::int64_t until_ns, const ArmVector& before) noexcept;
 
@@ -74,6 +77,7 @@ class SimulatedRig {
   SimulatedSensors sensors_;
   ArmState state_;
   GaugeFilter filter_;  // of the modal coordinates
+  std::optional<SimulatedAccelerometer> accelerometer_;
   std::int64_t step_ns_;
   std::array<DcMotor, 2> motor_;
   std::array<double, 2> switch_angle_rad_;

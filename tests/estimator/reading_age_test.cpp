@@ -13,6 +13,7 @@ SensorFrame FrameAt(std::int64_t sampled_at_ns) {
   frame.sampled_at_ns = sampled_at_ns;
   frame.counter_valid = 0b1111;
   frame.strain_valid = 0xFFFFF;
+  frame.accelerometer_valid = 1;
   return frame;
 }
 
@@ -20,6 +21,7 @@ TEST(ReadingAge, ReadingsOfTheInstantStayValid) {
   const SensorFrame frame = WithoutStaleReadings(FrameAt(kInstant), kInstant, 10 * kMs);
   EXPECT_EQ(frame.counter_valid, 0b1111u);
   EXPECT_EQ(frame.strain_valid, 0xFFFFFu);
+  EXPECT_EQ(frame.accelerometer_valid, 1u);
 }
 
 TEST(ReadingAge, TheLimitItselfIsYoungEnoughAndANanosecondMoreIsNot) {
@@ -29,6 +31,7 @@ TEST(ReadingAge, TheLimitItselfIsYoungEnoughAndANanosecondMoreIsNot) {
     const SensorFrame beyond = WithoutStaleReadings(FrameAt(at_limit + side), kInstant, 10 * kMs);
     EXPECT_EQ(beyond.counter_valid, 0u);
     EXPECT_EQ(beyond.strain_valid, 0u);
+    EXPECT_EQ(beyond.accelerometer_valid, 0u);
   }
 }
 

@@ -73,6 +73,32 @@ TEST_F(CsvTest, WhatIsWrittenReadsBackExactly) {
   }
 }
 
+TEST_F(CsvTest, ATipAccelerometerHasItsColumnAndItsBit) {
+  SensorConfig sensors = TwoAndOneChannels();
+  sensors.tip_accelerometer = {
+      .range_m_s2 = 50.0, .converter_bits = 14, .noise_counts = 0.0, .filter_hz = 200.0};
+  std::vector<StepInput> written = {Sample(0), Sample(1), Sample(2)};
+  written[0].frame.accelerometer[0] = -8000;
+  written[0].frame.accelerometer_valid = written[2].frame.accelerometer_valid = 1;
+  written[2].frame.strain_valid = 0x3;
+  std::ostringstream out;
+  CsvWriter writer(&out, sensors, 0);
+  for (const StepInput& input : written) writer.Row(input);
+  WriteText(File("tip.csv"), out.str());
+  const std::vector<StepInput> read = ReadCsv(File("tip.csv"), sensors, 0.02);
+  ASSERT_EQ(read.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read[i].frame.accelerometer, written[i].frame.accelerometer);
+    EXPECT_EQ(read[i].frame.accelerometer_valid, written[i].frame.accelerometer_valid) << i;
+    EXPECT_EQ(read[i].frame.strain_valid, written[i].frame.strain_valid) << i;
+    EXPECT_EQ(read[i].frame.counter_valid, written[i].frame.counter_valid) << i;
+  }
+  WriteText(File("none.csv"), kHeader);
+  EXPECT_EQ(MessageOf<InputError>([&] { ReadCsv(File("none.csv"), sensors, 0.02); }),
+            File("none.csv").string() +
+                ":1: found no column tip_acceleration in the header, expected it for this config");
+}
+
 TEST_F(CsvTest, ColumnsMayComeInAnyOrderWithOthersBetween) {
   const auto read = Read(
       "# from elsewhere\r\ntorque_2_nm, note, time_s,valid,counter_1,counter_2,counter_3,"

@@ -24,6 +24,8 @@ FramePacket Gauges(std::int64_t sampled_at_ns) {
   packet.frame.strain[7] = -5;
   packet.frame.strain_offset_ns[7] = 100;
   packet.frame.strain_valid = 1u << 7;
+  packet.frame.accelerometer[0] = 12;
+  packet.frame.accelerometer_valid = 1;
   packet.applied_torque_nm = {0.0, 0.25};
   return packet;
 }
@@ -35,6 +37,8 @@ TEST(JoinFrames, TakesFromEachBusWhatIsItsOwn) {
   EXPECT_EQ(packet.frame.counter_valid, 0b1111u);
   EXPECT_EQ(packet.frame.strain[7], -5);
   EXPECT_EQ(packet.frame.strain_valid, 1u << 7);
+  EXPECT_EQ(packet.frame.accelerometer[0], 12);
+  EXPECT_EQ(packet.frame.accelerometer_valid, 1u);
   EXPECT_EQ(packet.applied_torque_nm, (std::array<double, 2>{1.5, 0.25}));
 }
 
