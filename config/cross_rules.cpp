@@ -109,6 +109,23 @@ void CheckPayloadEstimator(const Config& c, ProblemLog* log, std::vector<Problem
           "filter_damping");
 }
 
+// A board or bus that could bring its reading is not told of it; without the model's share of the
+// doubt the filter would believe it blindly.
+void CheckTipAccelerometer(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+  constexpr const char* kTable = "sensors.tip_accelerometer";
+  if (!c.sensors.tip_accelerometer) return;
+  if (log->Clear({kTable, "hal.backend"}) && c.backend == "wired") {
+    out->push_back({kTable, "a table",
+                    "must not be there with hal.backend = \"wired\": only the simulated rig has "
+                    "this sensor, no bus or board is read for it"});
+  }
+  if (!log->Clear({kTable, "estimator.payload"}) || !c.estimator.payload) return;
+  if (c.estimator.payload->tip_extra_sigma_m_s2) return;
+  out->push_back({kTable, "a table",
+                  "needs the key estimator.payload.tip_extra_sigma_m_s2: what the filter's model "
+                  "lacks of the reading"});
+}
+
 // Between two samples a counter moves by less than half its range, or its direction is lost.
 void CheckCounters(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr std::string_view kKey = "estimator.max_joint_rate_rad_s";
@@ -262,6 +279,7 @@ void CheckCrossRules(const Config& config, ProblemLog* log) {
   CheckStateWeight(config, log, &problems);
   CheckPayloadStart(config, log, &problems);
   CheckPayloadEstimator(config, log, &problems);
+  CheckTipAccelerometer(config, log, &problems);
   CheckCounters(config, log, &problems);
   CheckRates(config, log, &problems);
   CheckAnglesAndTorques(config, log, &problems);

@@ -79,6 +79,13 @@ void ReadStrainChannel(TableReader row, StrainChannelConfig* out) {
   row.Read("offset_counts", &out->offset_counts);
 }
 
+void ReadTipAccelerometer(TableReader sensor, TipAccelerometerConfig* out) {
+  sensor.Read("range_m_s2", &out->range_m_s2);
+  sensor.Read("converter_bits", &out->converter_bits);
+  sensor.Read("noise_counts", &out->noise_counts);
+  sensor.Read("filter_hz", &out->filter_hz);
+}
+
 void ReadSensors(TableReader sensors, SensorConfig* out) {
   for (const TableReader& row : sensors.Rows("encoder")) {
     ReadEncoder(row, &out->encoder.emplace_back());
@@ -94,6 +101,9 @@ void ReadSensors(TableReader sensors, SensorConfig* out) {
     input.Read("filter_damping", &out->strain_input.filter_damping);
   }
   input.Read("noise_counts", &out->strain_input.noise_counts);
+  if (sensors.Has("tip_accelerometer")) {
+    ReadTipAccelerometer(sensors.Table("tip_accelerometer"), &out->tip_accelerometer.emplace());
+  }
 }
 
 void ReadSim(TableReader sim, SimConfig* out) {
@@ -123,6 +133,9 @@ void ReadPayloadEstimator(TableReader payload, PayloadEstimatorConfig* out) {
   payload.Read("play_threshold_counts", &out->play_threshold_counts);
   payload.Read("play_memory", &out->play_memory);
   payload.Read("gate_sigmas", &out->gate_sigmas);
+  if (payload.Has("tip_extra_sigma_m_s2")) {
+    payload.Read("tip_extra_sigma_m_s2", &out->tip_extra_sigma_m_s2.emplace());
+  }
 }
 
 void ReadEstimator(TableReader estimator, EstimatorConfig* out) {

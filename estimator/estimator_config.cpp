@@ -32,6 +32,9 @@ void CheckPayload(const PayloadEstimatorConfig& p, ProblemList* list) {
                  "counts of hub 2 between it and its rotor that are play, not quantisation");
   list->Within("payload.play_memory", p.play_memory, 0.0, 1.0, "kept of the play after a sample");
   list->Within("payload.gate_sigmas", p.gate_sigmas, 1.0, 100.0, "beyond it an output is a glitch");
+  if (!p.tip_extra_sigma_m_s2) return;
+  list->Within("payload.tip_extra_sigma_m_s2", *p.tip_extra_sigma_m_s2, 0.0, 1e3,
+               "what the model lacks of the accelerometer's reading");
 }
 
 }  // namespace

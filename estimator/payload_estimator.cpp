@@ -67,6 +67,13 @@ PayloadFilterConfig PayloadFilterFor(const ArmParameters& arm, const SensorConfi
   c.play_threshold_rad = p.play_threshold_counts * Quantum(sensors, 1);
   c.play_memory = p.play_memory;
   c.gate_sigmas = p.gate_sigmas;
+  if (sensors.tip_accelerometer) {
+    const TipAccelerometerConfig& tip = *sensors.tip_accelerometer;
+    c.tip_sigma_m_s2 =
+        std::hypot(OfQuantum(tip.m_s2_per_count(), tip.noise_counts * tip.m_s2_per_count()),
+                   p.tip_extra_sigma_m_s2.value());
+    c.tip_lag_s = tip.lag_s();
+  }
   return c;
 }
 
@@ -75,14 +82,15 @@ PayloadEstimator::PayloadEstimator(std::span<const double> model, const PayloadF
 
 const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& counters,
                                                         const FittedModes& modes,
-                                                        const TorquePieces& applied) noexcept {
+                                                        const TorquePieces& applied,
+                                                        std::optional<double> tip_m_s2) noexcept {
   if (!started_) {
     RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
     q.head<2>() << counters.angle_rad[0], counters.angle_rad[1];
     filter_.Reset(q);
     started_ = true;
   }
-  PayloadFilter::Reading reading{.z = {}, .good = counters.good & 0b1111u};
+  PayloadFilter::Reading reading{.z = {}, .good = counters.good & 0b1111u, .tip_m_s2 = tip_m_s2};
   for (std::size_t i = 0; i < 4; ++i) {
     reading.z[static_cast<int>(i)] = counters.angle_rad[i];
     reading.z[static_cast<int>(4 + i)] = modes.modal_m[i];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "estimator/counter_decoder.h"
@@ -36,8 +37,10 @@ class PayloadEstimator {
 
   void Reset() noexcept { started_ = false; }
 
+  /// @param tip_m_s2  of the accelerometer at the tip (TipReading), if there is a reading
   const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
-                                        const TorquePieces& applied) noexcept;
+                                        const TorquePieces& applied,
+                                        std::optional<double> tip_m_s2 = std::nullopt) noexcept;
 
   /// A move starts: the payload may be another than before.
   void BeginMove() noexcept { filter_.BeginMove(); }

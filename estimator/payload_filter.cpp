@@ -41,6 +41,11 @@ constexpr std::array<int, PayloadFilter::kOutputs> kSeen = {0, 1, 0, 1, 12, 13, 
 
 double Square(double x) noexcept { return x * x; }
 
+// What the variance of a glitch grows by.
+double Loosening(double sigmas, double gate_sigmas) noexcept {
+  return 4.0 * Square(sigmas / gate_sigmas);
+}
+
 }  // namespace
 
 PayloadFilter::PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config)
@@ -54,7 +59,8 @@ void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
                .payload_sigma_kg = config_.payload_start_sigma_kg,
                .friction_nm = config_.friction_start_nm,
                .nis = 0.0,
-               .innovation = Outputs::Zero()};
+               .innovation = Outputs::Zero(),
+               .tip_innovation_m_s2 = 0.0};
   P_.setZero();
   for (int i = 0; i < kMotion; ++i) {
     P_(i, i) = Square(config_.start_sigma[static_cast<std::size_t>(i)]);
@@ -107,6 +113,8 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
     mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
     Correct(K, e, R);
   }
+  estimate_.tip_innovation_m_s2 = 0.0;
+  if (reading.tip_m_s2) CorrectByTip(*reading.tip_m_s2, torque.last_nm());
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
   return estimate_;
 }
@@ -195,7 +203,7 @@ PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Out
   }
   if (beyond > kMostGlitches) return R;
   for (int i = 0; i < kOutputs; ++i) {
-    if (sigmas[i] > config_.gate_sigmas) R[i] *= 4.0 * Square(sigmas[i] / config_.gate_sigmas);
+    if (sigmas[i] > config_.gate_sigmas) R[i] *= Loosening(sigmas[i], config_.gate_sigmas);
   }
   return R;
 }
@@ -203,13 +211,55 @@ PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Out
 void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation,
                             const Outputs& variance) noexcept {
   Gain K = optimal;
+  if (!learns_payload()) K.row(kPayload).setZero();
+  if (!learns_) K.bottomRows<2>().setZero();
+  Add(K.lazyProduct(innovation));
+  // P <- (I - K H) P (I - K H)' + K R K', right for any K.
+  Matrix J = Matrix::Identity();
+  for (int i = 0; i < kOutputs; ++i) J.col(kSeen[static_cast<std::size_t>(i)]) -= K.col(i);
+  const Matrix JP = J.lazyProduct(P_);
+  Gain KR = K;
+  for (int i = 0; i < kOutputs; ++i) KR.col(i) *= variance[i];
+  P_ = JP.lazyProduct(J.transpose()) + KR.lazyProduct(K.transpose());
+  P_(kPayload, kPayload) = std::min(P_(kPayload, kPayload), Square(config_.payload_max_sigma_kg));
+}
+
+void PayloadFilter::CorrectByTip(double reading_m_s2,
+                                 const std::array<double, 2>& torque_nm) noexcept {
+  const TipOutput shown = TipOutputAt(stepper_, config_.tip_lag_s, estimate_.state,
+                                      {.torque_nm = {torque_nm[0], torque_nm[1]},
+                                       .payload_kg = estimate_.payload_kg,
+                                       .friction_nm = estimate_.friction_nm},
+                                      config_.friction_probe_nm);
+  Vector H = Vector::Zero();
+  H.head<2 * RigidJointArm::kDof>() = shown.by_motion;
+  H[kPayload] = shown.by_payload;
+  H.tail<2>() << shown.by_friction[0], shown.by_friction[1];
+
+  const double e = reading_m_s2 - shown.m_s2;
+  const Vector PHt = P_.lazyProduct(H);
+  const double spread = H.dot(PHt);
+  double R = Square(config_.tip_sigma_m_s2);
+  const double sigmas = std::fabs(e) / std::sqrt(spread + R);
+  if (sigmas > config_.gate_sigmas) R *= Loosening(sigmas, config_.gate_sigmas);
+  Vector K = PHt / (spread + R);
+  if (!learns_payload()) K[kPayload] = 0.0;
+  if (!learns_) K.tail<2>().setZero();
+  estimate_.tip_innovation_m_s2 = e;
+  Add(K * e);
+  // Joseph's form, as in Correct.
+  const Matrix J = Matrix::Identity() - K.lazyProduct(H.transpose());
+  const Matrix JP = J.lazyProduct(P_);
+  P_ = JP.lazyProduct(J.transpose()) + (R * K).lazyProduct(K.transpose());
+}
+
+bool PayloadFilter::learns_payload() const noexcept {
   const RigidJointArm::Vector& v = estimate_.state.v;
-  if (!learns_) K.bottomRows<3>().setZero();
-  if (std::fabs(v[0]) < config_.payload_min_rate_rad_s &&
-      std::fabs(v[1]) < config_.payload_min_rate_rad_s) {
-    K.row(kPayload).setZero();
-  }
-  const Vector dx = K.lazyProduct(innovation);
+  return learns_ && (std::fabs(v[0]) >= config_.payload_min_rate_rad_s ||
+                     std::fabs(v[1]) >= config_.payload_min_rate_rad_s);
+}
+
+void PayloadFilter::Add(const Vector& dx) noexcept {
   estimate_.state.q += dx.head<6>();
   estimate_.state.v += dx.segment<6>(6);
   estimate_.state.phi_f += dx.segment<4>(12);
@@ -220,14 +270,6 @@ void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation,
         std::clamp(estimate_.friction_nm[i] + dx[kFriction + static_cast<int>(i)], 0.0,
                    config_.friction_max_nm[i]);
   }
-  // P <- (I - K H) P (I - K H)' + K R K', right for any K.
-  Matrix J = Matrix::Identity();
-  for (int i = 0; i < kOutputs; ++i) J.col(kSeen[static_cast<std::size_t>(i)]) -= K.col(i);
-  const Matrix JP = J.lazyProduct(P_);
-  Gain KR = K;
-  for (int i = 0; i < kOutputs; ++i) KR.col(i) *= variance[i];
-  P_ = JP.lazyProduct(J.transpose()) + KR.lazyProduct(K.transpose());
-  P_(kPayload, kPayload) = std::min(P_(kPayload, kPayload), Square(config_.payload_max_sigma_kg));
 }
 
 }  // namespace flexarm

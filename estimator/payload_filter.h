@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 
+#include "estimator/tip_output.h"
 #include "estimator/torque_pieces.h"
 #include "model/rigid_joint_step.h"
 #include "model/rigid_joint_transition.h"
@@ -37,6 +39,10 @@ struct PayloadFilterConfig {
   double play_threshold_rad;  ///< rotor 2 further than this from hub 2: joint 2 has play
   double play_memory;         ///< share of the largest such distance kept after a sample, 0..1
   double gate_sigmas;         ///< a single output beyond this is a glitch
+
+  /// Of an accelerometer at the tip: standard deviation of its reading about the model's, and the
+  /// lag of its analogue filter. Not used without readings.
+  double tip_sigma_m_s2, tip_lag_s;
 };
 
 /// Extended Kalman filter that finds the payload and the joints' friction while the arm moves.
@@ -48,9 +54,10 @@ struct PayloadFilterConfig {
 ///      (NIS), so that the filter forgets faster when the model is wrong;
 ///   3. variance of rotor 2 raised while joint 2 has play; one or two outputs beyond the gate get
 ///      less weight, with three or more the model is wrong and all count;
-///   4. update with the payload's gain row zero at rest, and the friction's too after EndMove.
-///      That gain is not the optimal one, so the
-///      covariance follows by Joseph's form.
+///   4. update with the payload's gain row zero at rest, and the friction's too after EndMove. That
+///      gain is not the optimal one, so the covariance follows by Joseph's form;
+///   5. if the tip's acceleration was read, it updates what (4) found, gated and in the same form.
+///      It is no part of NIS and innovation.
 /// Source: beyond.md 2.3. Real-time: all but the constructor is safe; no loop without a
 /// bound.
 class PayloadFilter {
@@ -63,6 +70,7 @@ class PayloadFilter {
   struct Reading {
     Outputs z;           ///< th1 th2 th3 th4 as counted, rad; fitted modal coordinates, m
     std::uint32_t good;  ///< bit i: z[i] was read; none: the frame was lost
+    std::optional<double> tip_m_s2{};  ///< of the accelerometer at the tip
   };
   static constexpr std::uint32_t kAllGood = (1u << kOutputs) - 1;
 
@@ -73,6 +81,7 @@ class PayloadFilter {
     std::array<double, 2> friction_nm;
     double nis;  ///< of this sample, 8 expected; 0 without a frame
     Outputs innovation;
+    double tip_innovation_m_s2;  ///< of the accelerometer; 0 without its reading
   };
 
   PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config);
@@ -111,6 +120,9 @@ class PayloadFilter {
                       const std::array<double, 2>& friction_nm) const noexcept;
   Outputs OutputVariance(const Outputs& y, const Outputs& innovation, std::uint32_t good) noexcept;
   void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance) noexcept;
+  void CorrectByTip(double reading_m_s2, const std::array<double, 2>& torque_nm) noexcept;
+  bool learns_payload() const noexcept;
+  void Add(const Vector& dx) noexcept;
 
   RigidJointStepper stepper_;
   PayloadFilterConfig config_;

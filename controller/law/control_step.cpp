@@ -20,6 +20,7 @@
 #include "estimator/reading_age.h"
 #include "estimator/state_estimator.h"
 #include "estimator/strain_fit.h"
+#include "estimator/tip_reading.h"
 
 namespace flexarm {
 namespace {
@@ -88,7 +89,8 @@ struct ControlStep::Stages {
         supervisor(config.safety, config.estimator, period_s, config.sensors.counters_present(),
                    JointStiffness(config.arm)),
         law(design, config.controller, config.safety.torque_limit_nm),
-        nominal({.A = design.A, .B = design.B}, design.A_rate, design.B_rate, period_s) {
+        nominal({.A = design.A, .B = design.B}, design.A_rate, design.B_rate, period_s),
+        tip_accelerometer(config.sensors.tip_accelerometer) {
     if (design.payload_model.empty()) return;
     payload.emplace(design.payload_model,
                     PayloadFilterFor(config.arm, config.sensors, config.estimator));
@@ -131,9 +133,12 @@ struct ControlStep::Stages {
   }
 
   StateEstimator::Estimate Estimate(const DecodedCounters& counters, const FittedModes& modes,
-                                    const TorquePieces& applied) noexcept {
+                                    const TorquePieces& applied,
+                                    const SensorFrame& frame) noexcept {
     if (!payload) return estimator.Update(counters, modes, applied);
-    const PayloadFilter::Estimate& found = payload->Update(counters, modes, applied);
+    const std::optional<double> tip_m_s2 =
+        tip_accelerometer ? TipReading(frame, *tip_accelerometer) : std::nullopt;
+    const PayloadFilter::Estimate& found = payload->Update(counters, modes, applied, tip_m_s2);
     known = payload_supervisor->Judge(found, payload->mean_nis(), move.moving());
     StateEstimator::Estimate out{.x = payload->Now(), .innovation = {}};
     std::copy_n(found.innovation.data(), found.innovation.size(), out.innovation.begin());
@@ -238,6 +243,7 @@ struct ControlStep::Stages {
   LoopSupervisor supervisor;
   TrackingLaw law;
   FractionalHold nominal;
+  const std::optional<TipAccelerometerConfig> tip_accelerometer;
   std::optional<PayloadEstimator> payload;
   std::optional<ScheduledLaw> scheduled;
   std::optional<PayloadSupervisor> payload_supervisor;
@@ -271,7 +277,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const TorquePieces applied = s.Applied(input);
   const FittedModes modes = s.Fit(frame, input.sampling_instant_ns, applied);
   s.WatchMoves(input);
-  const StateEstimator::Estimate estimate = s.Estimate(counters, modes, applied);
+  const StateEstimator::Estimate estimate = s.Estimate(counters, modes, applied, frame);
   const LoopSupervisor::Verdict verdict =
       s.supervisor.Judge({.counters = &counters,
                           .modes = &modes,

@@ -296,6 +296,60 @@ TEST(BrokenConfigs, ALawThatFindsThePayloadNeedsItsTables) {
   EXPECT_FALSE(told(without("gain-scheduled", plan), plan)) << "it plans nothing";
 }
 
+// A rig with the sensor, and what may be wrong with it.
+std::string WithTipAccelerometer() {
+  return Replaced(Replaced(FileText(Shipped("thesis-rig.toml")), "[sim]",
+                           "[sensors.tip_accelerometer]\nrange_m_s2 = 50.0\nconverter_bits = 14\n"
+                           "noise_counts = 4.0\nfilter_hz = 200.0\n\n[sim]"),
+                  "gate_sigmas = 4.0", "gate_sigmas = 4.0\ntip_extra_sigma_m_s2 = 0.5");
+}
+
+TEST(BrokenConfigs, OfATipAccelerometerAreReportedOnce) {
+  const std::string rig = WithTipAccelerometer();
+  EXPECT_TRUE(ProblemsOf(rig).empty());
+  const std::string table = "sensors.tip_accelerometer";
+  const BrokenCase cases[] = {
+      {"NoRange", "range_m_s2 = 50.0", "range_m_s2 = 0.0", table + ".range_m_s2", "1 .. 10000"},
+      {"ThirtyBits", "converter_bits = 14", "converter_bits = 30", table + ".converter_bits",
+       "8 .. 24"},
+      {"NegativeNoise", "noise_counts = 4.0", "noise_counts = -4.0", table + ".noise_counts",
+       "0 .. 10000"},
+      {"SlowFilter", "filter_hz = 200.0", "filter_hz = 50.0", table + ".filter_hz", "100 .. 1e+05"},
+      {"NegativeExtra", "tip_extra_sigma_m_s2 = 0.5", "tip_extra_sigma_m_s2 = -0.5",
+       "estimator.payload.tip_extra_sigma_m_s2", "0 .. 1000"},
+      {"NoExtra", "tip_extra_sigma_m_s2 = 0.5", "", table, "estimator.payload.tip_extra_sigma_m_s2",
+       "[sensors.tip_accelerometer]"},
+      {"UnknownKey", "range_m_s2 = 50.0", "range_m_s2 = 50.0\nrange_g = 5.0", table + ".range_g",
+       "unknown key", "range_g = 5.0"},
+  };
+  for (const BrokenCase& c : cases) {
+    const std::string text = Replaced(rig, c.from, c.to);
+    const std::vector<ConfigProblem> problems = ProblemsOf(text);
+    ASSERT_EQ(problems.size(), 1U) << c.name;
+    EXPECT_EQ(problems[0].key, c.key);
+    EXPECT_EQ(problems[0].line, LineOf(text, c.line_of.empty() ? c.to : c.line_of)) << c.name;
+    EXPECT_THAT(problems[0].rule, HasSubstr(c.rule));
+  }
+  const std::vector<ConfigProblem> missing = ProblemsOf(Replaced(rig, "noise_counts = 4.0\n", ""));
+  ASSERT_EQ(missing.size(), 1U);
+  EXPECT_EQ(missing[0].key, table + ".noise_counts");
+  EXPECT_THAT(missing[0].rule, HasSubstr("missing"));
+}
+
+TEST(BrokenConfigs, AWiredRigHasNoTipAccelerometer) {
+  try {
+    LoadConfig(Shipped("daq-rig.toml"),
+               {"sensors.tip_accelerometer={range_m_s2=50, converter_bits=14, noise_counts=4, "
+                "filter_hz=200}",
+                "estimator.payload.tip_extra_sigma_m_s2=0.5"});
+    FAIL() << "was accepted";
+  } catch (const ConfigError& error) {
+    ASSERT_EQ(error.problems().size(), 1U);
+    EXPECT_EQ(error.problems()[0].key, "sensors.tip_accelerometer");
+    EXPECT_THAT(error.problems()[0].rule, HasSubstr("hal.backend = \"wired\""));
+  }
+}
+
 TEST(BrokenConfigs, TooManyStrainChannels) {
   std::string text = FileText(Shipped("thesis-rig.toml"));
   for (int i = 0; i < 13; ++i) {

@@ -63,6 +63,25 @@ TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
   EXPECT_EQ(With({}).sensors.strain_input.filter_damping, 0.0);  // no key: of first order
 }
 
+TEST(RigBinding, PutsEveryKeyOfATipAccelerometerInItsField) {
+  EXPECT_FALSE(With({}).sensors.tip_accelerometer.has_value());
+  EXPECT_FALSE(With({}).estimator.payload->tip_extra_sigma_m_s2.has_value());
+  const Config rig =
+      With({"sensors.tip_accelerometer={range_m_s2=40, converter_bits=15, "
+            "noise_counts=3, filter_hz=250}",
+            "estimator.payload.tip_extra_sigma_m_s2=0.7"});
+  const TipAccelerometerConfig& tip = rig.sensors.tip_accelerometer.value();
+  EXPECT_EQ(tip.range_m_s2, 40.0);
+  EXPECT_EQ(tip.converter_bits, 15);
+  EXPECT_EQ(tip.noise_counts, 3.0);
+  EXPECT_EQ(tip.filter_hz, 250.0);
+  EXPECT_EQ(tip.m_s2_per_count(), 80.0 / 32768.0);
+  EXPECT_EQ(tip.lowest_count(), -16384);
+  EXPECT_EQ(tip.highest_count(), 16383);
+  EXPECT_DOUBLE_EQ(tip.lag_s(), 1.0 / (2.0 * std::numbers::pi * 250.0));
+  EXPECT_EQ(rig.estimator.payload->tip_extra_sigma_m_s2, 0.7);
+}
+
 TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
   EXPECT_FALSE(With({}).csv.has_value());
   const Config rig =

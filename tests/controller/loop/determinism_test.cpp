@@ -55,8 +55,8 @@ TEST(Determinism, RecordedInputsThroughAFreshStepGiveTheSameBytes) { ExpectRepla
 
 // Its design goes through the log's text: the filter's model is not computed again. Plans come from
 // the recorded inputs: the planner is not asked again.
-void ExpectReplaysWithPayload(const std::string& law, bool plans) {
-  StackRun run(ShippedRig({"controller.name=" + law}), ShippedExperiment("benchmark-waypoints"));
+void ExpectThePayloadReplays(const std::vector<std::string>& overrides, bool plans) {
+  StackRun run(ShippedRig(overrides), ShippedExperiment("benchmark-waypoints"));
   run.Run(kEndNs);
   ControlStep fresh(run.config(), DesignFromJson(DesignToJson(run.design(), "h"), "h"));
   const FlushDenormals as_in_the_tasks;
@@ -72,8 +72,17 @@ void ExpectReplaysWithPayload(const std::string& law, bool plans) {
 }
 
 TEST(Determinism, SoDoTheLawsThatFindThePayload) {
-  ExpectReplaysWithPayload("gain-scheduled", false);
-  ExpectReplaysWithPayload("receding-horizon", true);
+  ExpectThePayloadReplays({"controller.name=gain-scheduled"}, false);
+  ExpectThePayloadReplays({"controller.name=receding-horizon"}, true);
+}
+
+// Lost frames too: they have no reading of the accelerometer either.
+TEST(Determinism, SoDoesItWithAnAccelerometerAtTheTip) {
+  ExpectThePayloadReplays({"controller.name=gain-scheduled", "sim.lost_frame_fraction=0.1",
+                           "sensors.tip_accelerometer={range_m_s2=50, converter_bits=14, "
+                           "noise_counts=4, filter_hz=200}",
+                           "estimator.payload.tip_extra_sigma_m_s2=0.2"},
+                          false);
 }
 
 TEST(Determinism, RecordedInputsReplayWithDifferencesToo) {
