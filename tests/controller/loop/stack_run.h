@@ -18,11 +18,15 @@ namespace flexarm {
 class StackRun {
  public:
   explicit StackRun(const Config& config, const Experiment& experiment, double payload_kg = 0.1)
+      : StackRun(config, config, experiment, payload_kg) {}
+  /// @param plant  the simulated rig, where that is not what the loop was designed for
+  StackRun(const Config& config, const Config& plant, const Experiment& experiment,
+           double payload_kg)
       : config_(config),
         design_(DesignFor(config)),
         grid_(config.loop),
         planned_(experiment, design_, grid_.period_s(), {0.0, 0.0}, MotionLimitsOf(config)),
-        stack_(config, design_, payload_kg) {
+        stack_(config, plant, design_, payload_kg) {
     stack_.Plan({.experiment = &planned_, .number = 1});
     executor_.Add(stack_.safety());
     executor_.Add(stack_.control());
