@@ -69,9 +69,10 @@ PayloadFilterConfig PayloadFilterFor(const ArmParameters& arm, const SensorConfi
   c.gate_sigmas = p.gate_sigmas;
   if (sensors.tip_accelerometer) {
     const TipAccelerometerConfig& tip = *sensors.tip_accelerometer;
-    c.tip_sigma_m_s2 =
-        std::hypot(OfQuantum(tip.m_s2_per_count(), tip.noise_counts * tip.m_s2_per_count()),
-                   p.tip_extra_sigma_m_s2.value());
+    const double noise_m_s2 = tip.noise_counts * tip.m_s2_per_count();
+    const double extra_m_s2 = p.tip_extra_sigma_m_s2.value();
+    c.tip_sigma_m_s2 = OfQuantum(tip.m_s2_per_count(),
+                                 std::sqrt(noise_m_s2 * noise_m_s2 + extra_m_s2 * extra_m_s2));
     c.tip_lag_s = tip.lag_s();
   }
   return c;
