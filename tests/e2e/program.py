@@ -101,15 +101,16 @@ class ProgramTest(unittest.TestCase):
             self.assertNotIn(sign, result.stderr, told)
         return result
 
-    def flexarm(self, *arguments, expect=0):
-        result = self.run_program("flexarm", *arguments)
+    def flexarm(self, *arguments, expect=0, timeout_s=120):
+        result = self.run_program("flexarm", *arguments, timeout_s=timeout_s)
         self.assertEqual(result.returncode, expect,
                          f"flexarm {' '.join(map(str, arguments))}\n{result.stdout}\n{result.stderr}")
         return result
 
-    def flexarm_json(self, *arguments, expect=0):
+    def flexarm_json(self, *arguments, expect=0, timeout_s=120):
         """One JSON object on stdout, and nothing else."""
-        return json.loads(self.flexarm(*arguments, "--json", expect=expect).stdout)
+        return json.loads(self.flexarm(*arguments, "--json", expect=expect,
+                                       timeout_s=timeout_s).stdout)
 
     def simulate(self, name, *arguments, experiment=SQUARE):
         run = self.folder / name

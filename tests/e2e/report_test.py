@@ -39,7 +39,7 @@ class Page(html.parser.HTMLParser):
 class Report(ProgramTest):
     def test_is_one_whole_page_with_every_figure(self):
         folder = self.folder / "report"
-        page_file = self.flexarm_json("report", "-c", HIL, "-o", folder)["page"]
+        page_file = self.flexarm_json("report", "-c", HIL, "-o", folder, timeout_s=280)["page"]
         text = (folder / "report.html").read_text()
         self.assertEqual(page_file, str(folder / "report.html"))
         page = Page(text)

@@ -106,6 +106,7 @@ std::vector<Scenario> LimitScenarios(const Config& config) {
        .config = Both(encoders, QuietGauges())},
   };
   std::vector<Scenario> scenarios;
+  scenarios.reserve(taken_away.size());
   for (const Disturbance& d : taken_away) scenarios.push_back(RandomScenario(d));
   return scenarios;
 }
