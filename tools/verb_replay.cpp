@@ -36,7 +36,7 @@ StepFunction Fresh(const StackConfig& config, const Design& design) {
 
 Design GainsOf(const RunReader& reader, const Config& config) {
   try {
-    return DesignFromJson(reader.info().gains_json, DesignHash(config));
+    return DesignFromJson(reader.info().gains_json, config);
   } catch (const std::runtime_error& error) {
     throw InputError(reader.file().string() + ": its gains cannot be used: " + error.what());
   }

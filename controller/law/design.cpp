@@ -247,7 +247,7 @@ Design ReadDesign(const StackConfig& config) {
   std::stringstream text;
   text << file.rdbuf();
   try {
-    return DesignFromJson(text.str(), DesignHash(config));
+    return DesignFromJson(text.str(), config);
   } catch (const Refused& error) {
     throw Refused(name + ": " + error.what());
   }

@@ -73,9 +73,9 @@ std::string DesignHash(const StackConfig& config);
 /// A design as JSON text, doubles in 17 digits, with the digest of its config.
 std::string DesignToJson(const Design& design, const std::string& config_hash);
 
-/// Reads what DesignToJson wrote.
-/// @throws Refused naming what is missing or misshapen, or that `expected_hash` differs
-Design DesignFromJson(const std::string& text, const std::string& expected_hash);
+/// Reads what DesignToJson wrote, with all that the laws and the estimator of `config` need.
+/// @throws Refused naming what is missing or misshapen, or that it was designed for another config
+Design DesignFromJson(const std::string& text, const StackConfig& config);
 
 /// The design to run with: the one in `controller.gains`, or a new one.
 /// @throws Refused when there is none, or a check of it failed

@@ -178,23 +178,37 @@ nlohmann::ordered_json PayloadToJson(const Design& design) {
   return out;
 }
 
-void PayloadFromJson(const nlohmann::json& in, Design* design) {
+// What is at `key` of the table 'payload'.
+const nlohmann::json& NeededAt(const nlohmann::json& payload, const char* key) {
+  if (payload.contains(key)) return payload.at(key);
+  throw Refused(std::string("gains file: 'payload.") + key +
+                "' is missing, which the law or the estimator of this config needs; run `flexarm "
+                "design` again");
+}
+
+std::vector<double> NumbersAt(const nlohmann::json& payload, const char* key) {
+  return NeededAt(payload, key).get<std::vector<double>>();
+}
+
+// All that the config needs, and nothing else: a gain table too many would change the law.
+void PayloadFromJson(const nlohmann::json& in, const StackConfig& config, Design* design) {
   try {
-    design->payload_model = in.at("model").get<std::vector<double>>();
+    design->payload_model = NumbersAt(in, "model");
     static_cast<void>(RigidJointStepper(design->payload_model));
-    if (!in.contains("gain")) return;
-    const GainGrid grid{.payload_kg = in.at("gain_payload_kg").get<std::vector<double>>(),
-                        .theta2_rad = in.at("gain_theta2_rad").get<std::vector<double>>()};
-    design->scheduled =
-        ScheduledDesign{.gains = {grid, KnotsFromJson(in.at("gain"), "payload.gain")},
-                        .start_gains = {},
-                        .max_kg = in.at("max_kg").get<double>(),
-                        .reference_kg = in.at("reference_kg").get<double>()};
-    if (!in.contains("start_gain")) return;
-    design->scheduled->start_gains =
-        GainTable(grid, KnotsFromJson(in.at("start_gain"), "payload.start_gain"));
+    if (!IsScheduled(config.controller.kind)) return;
+    const GainGrid grid{.payload_kg = NumbersAt(in, "gain_payload_kg"),
+                        .theta2_rad = NumbersAt(in, "gain_theta2_rad")};
+    const auto table = [&](const char* key) {
+      return GainTable(grid, KnotsFromJson(NeededAt(in, key), std::string("payload.") + key));
+    };
+    design->scheduled = ScheduledDesign{.gains = table("gain"),
+                                        .start_gains = {},
+                                        .max_kg = NeededAt(in, "max_kg").get<double>(),
+                                        .reference_kg = NeededAt(in, "reference_kg").get<double>()};
+    if (!PlansAhead(config.controller.kind)) return;
+    design->scheduled->start_gains = table("start_gain");
   } catch (const nlohmann::json::exception&) {
-    throw Refused("gains file: 'payload' lacks one of its members, or it is not numbers");
+    throw Refused("gains file: a member of 'payload' is not numbers");
   } catch (const std::invalid_argument& error) {
     throw Refused(std::string("gains file: 'payload': ") + error.what());
   }
@@ -306,12 +320,13 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
   return out.dump(1);
 }
 
-Design DesignFromJson(const std::string& text, const std::string& expected_hash) {
+Design DesignFromJson(const std::string& text, const StackConfig& config) {
   const nlohmann::json in = nlohmann::json::parse(text, nullptr, false);
   if (!in.is_object() || TextAt(in, "format", "") != kFormat) {
     throw Refused(std::string("not a gains file: expected JSON with \"format\": \"") + kFormat +
                   "\", as `flexarm design` writes it");
   }
+  const std::string expected_hash = DesignHash(config);
   if (TextAt(in, "config_hash", "") != expected_hash) {
     throw Refused("gains file: designed for another config (hash " +
                   TextAt(in, "config_hash", "missing") + ", this config has " + expected_hash +
@@ -324,7 +339,9 @@ Design DesignFromJson(const std::string& text, const std::string& expected_hash)
     MatrixFromJson(in.at(name), name, &m);
   });
   RequireShapes(design);
-  if (in.contains("payload")) PayloadFromJson(in.at("payload"), &design);
+  if (config.uses_payload_estimator()) {
+    PayloadFromJson(in.value("payload", nlohmann::json::object()), config, &design);
+  }
   if (!in.contains("checks") || !in.at("checks").is_array()) {
     throw Refused("gains file: 'checks' is missing or not an array");
   }

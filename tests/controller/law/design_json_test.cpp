@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "controller/law/refused.h"
 #include "tests/controller/law/shipped_rig.h"
@@ -34,14 +36,25 @@ void ExpectSameBits(const Design& a, const Design& b) {
   EXPECT_TRUE(SameBits(a.rigid_inertia_kgm2, b.rigid_inertia_kgm2));
 }
 
-std::string RefusalOf(const std::string& text, const std::string& hash = "h") {
-  return MessageOf<Refused>([&] { DesignFromJson(text, hash); });
+std::string JsonOf(const Design& design, const StackConfig& config) {
+  return DesignToJson(design, DesignHash(config));
 }
 
-nlohmann::json ShippedJson() { return nlohmann::json::parse(DesignToJson(ShippedDesign(), "h")); }
+std::string RefusalOf(const std::string& text, const StackConfig& config) {
+  return MessageOf<Refused>([&] { DesignFromJson(text, config); });
+}
+
+std::string RefusalOf(const std::string& text) {
+  static const Config shipped = ShippedRig();
+  return RefusalOf(text, shipped);
+}
+
+nlohmann::json ShippedJson() {
+  return nlohmann::json::parse(JsonOf(ShippedDesign(), ShippedRig()));
+}
 
 TEST(DesignJson, ComesBackBitForBit) {
-  const Design back = DesignFromJson(DesignToJson(ShippedDesign(), "h"), "h");
+  const Design back = DesignFromJson(ShippedJson().dump(), ShippedRig());
   ExpectSameBits(back, ShippedDesign());
   ASSERT_EQ(back.checks.size(), ShippedDesign().checks.size());
   for (std::size_t i = 0; i < back.checks.size(); ++i) {
@@ -53,25 +66,80 @@ TEST(DesignJson, ComesBackBitForBit) {
 }
 
 TEST(DesignJson, TheGainsOfALawThatPlansComeBackToo) {
-  const Design design = DesignController(ShippedRig({"controller.name=receding-horizon"}));
-  const nlohmann::json json = nlohmann::json::parse(DesignToJson(design, "h"));
-  const Design back = DesignFromJson(json.dump(), "h");
+  const Config config = ShippedRig({"controller.name=receding-horizon"});
+  const Design design = DesignController(config);
+  const Design back = DesignFromJson(JsonOf(design, config), config);
   ASSERT_TRUE(back.scheduled && back.scheduled->start_gains);
   const auto& gains = design.scheduled->gains.knots();
   const auto& start = design.scheduled->start_gains->knots();
+  EXPECT_EQ(back.payload_model, design.payload_model);
   EXPECT_EQ(back.scheduled->gains.knots(), gains);
   EXPECT_EQ(back.scheduled->start_gains->knots(), start);
+  EXPECT_EQ(back.scheduled->max_kg, design.scheduled->max_kg);
+  EXPECT_EQ(back.scheduled->reference_kg, design.scheduled->reference_kg);
   EXPECT_GT((gains[0] - start[0]).norm(), 1.0) << "of another alpha";
+}
 
-  nlohmann::json broken = json;
-  broken["payload"]["start_gain"].erase(0);
-  EXPECT_THAT(RefusalOf(broken.dump()), HasSubstr("'payload'"));
+// Members of 'payload' that a law or its estimator cannot do without.
+TEST(DesignJson, WhatALawNeedsForThePayloadIsAskedForByName) {
+  struct Case {
+    const char* law;
+    std::vector<std::string> needs;
+  };
+  const std::vector<std::string> scheduled = {"model", "gain_payload_kg", "gain_theta2_rad",
+                                              "gain",  "max_kg",          "reference_kg"};
+  std::vector<std::string> planned = scheduled;
+  planned.emplace_back("start_gain");
+  for (const auto& [law, needs] : {Case{"sobel", {"model"}}, Case{"gain-scheduled", scheduled},
+                                   Case{"receding-horizon", planned}}) {
+    const Config config =
+        ShippedRig({std::string("controller.name=") + law, "estimator.name=ekf-payload"});
+    const nlohmann::json json = nlohmann::json::parse(JsonOf(DesignController(config), config));
+    ASSERT_EQ(RefusalOf(json.dump(), config), "") << law;
+    for (const std::string& key : needs) {
+      const std::string name = std::string("'payload.") + key + "'";
+      nlohmann::json without = json;
+      ASSERT_EQ(without["payload"].erase(key), 1u) << key;
+      EXPECT_THAT(RefusalOf(without.dump(), config),
+                  AllOf(HasSubstr(name + " is missing"), HasSubstr("flexarm design")))
+          << law;
+      nlohmann::json of_another_type = json;
+      of_another_type["payload"][key] = "heavy";
+      EXPECT_THAT(RefusalOf(of_another_type.dump(), config), HasSubstr("'payload")) << key;
+    }
+    nlohmann::json without = json;
+    without.erase("payload");
+    EXPECT_THAT(RefusalOf(without.dump(), config), HasSubstr("'payload.model' is missing")) << law;
+  }
+}
+
+TEST(DesignJson, ATableWithAKnotTooFewIsRefused) {
+  const Config config = ShippedRig({"controller.name=receding-horizon"});
+  nlohmann::json json = nlohmann::json::parse(JsonOf(DesignController(config), config));
+  json["payload"]["start_gain"].erase(0);
+  EXPECT_THAT(RefusalOf(json.dump(), config), HasSubstr("'payload'"));
+}
+
+// Gains of the payload in the file of a law that does not take them must not make it another law.
+TEST(DesignJson, WhatAConfigDoesNotNeedIsLeftInTheFile) {
+  const Config path = ShippedRig({"controller.name=receding-horizon"});
+  const nlohmann::json of_path = nlohmann::json::parse(JsonOf(DesignController(path), path));
+  nlohmann::json json = ShippedJson();
+  json["payload"] = of_path["payload"];
+  const Design plain = DesignFromJson(json.dump(), ShippedRig());
+  EXPECT_TRUE(plain.payload_model.empty());
+  EXPECT_FALSE(plain.scheduled);
+  const Config estimated = ShippedRig({"estimator.name=ekf-payload"});
+  json["config_hash"] = DesignHash(estimated);
+  const Design read = DesignFromJson(json.dump(), estimated);
+  EXPECT_FALSE(read.payload_model.empty());
+  EXPECT_FALSE(read.scheduled);
 }
 
 TEST(DesignJson, AnotherConfigsGainsAreRefusedWithBothHashes) {
-  EXPECT_THAT(RefusalOf(DesignToJson(ShippedDesign(), "aaaa"), "bbbb"),
-              AllOf(HasSubstr("another config"), HasSubstr("aaaa"), HasSubstr("bbbb"),
-                    HasSubstr("flexarm design")));
+  EXPECT_THAT(RefusalOf(DesignToJson(ShippedDesign(), "aaaa")),
+              AllOf(HasSubstr("another config"), HasSubstr("aaaa"),
+                    HasSubstr(DesignHash(ShippedRig())), HasSubstr("flexarm design")));
 }
 
 TEST(DesignJson, EachMissingMatrixIsNamed) {
@@ -107,7 +175,7 @@ TEST(DesignJson, TheNominalModelIsReadAndItsShapesAreAskedFor) {
 TEST(DesignJson, GainsBehindASecondOrderFilterAreReadBack) {
   const Config config = ShippedRig({"sensors.strain_input.filter_damping=0.9"});
   const Design design = DesignController(config);
-  const Design read = DesignFromJson(DesignToJson(design, "same"), "same");
+  const Design read = DesignFromJson(JsonOf(design, config), config);
   EXPECT_EQ(read.filter_A, design.filter_A);
   EXPECT_EQ(read.layout, design.layout);
 }
@@ -155,8 +223,8 @@ class GainsFile : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
   void Write(const std::string& text) const { std::ofstream(path_) << text; }
-  Config RigWithGains() const {
-    Config config = ShippedRig();
+  Config RigWithGains(const std::vector<std::string>& overrides = {}) const {
+    Config config = ShippedRig(overrides);
     config.controller.gains_file = path_;
     return config;
   }
@@ -168,42 +236,43 @@ class GainsFile : public testing::Test {
 TEST_F(GainsFile, IsUsedWhenTheConfigNamesIt) {
   Design marked = ShippedDesign();
   marked.G(0, 0) += 0.25;  // no design would give this: it must come from the file
-  Write(DesignToJson(marked, DesignHash(ShippedRig())));
+  Write(JsonOf(marked, ShippedRig()));
   ExpectSameBits(DesignFor(RigWithGains()), marked);
 }
 
 TEST_F(GainsFile, OfAnotherAlphaIsRefused) {
   const Config other = ShippedRig({"controller.alpha=2.5"});
-  Write(DesignToJson(DesignController(other), DesignHash(other)));
+  Write(JsonOf(DesignController(other), other));
   EXPECT_THROW(DesignFor(RigWithGains()), Refused);
 }
 
 TEST_F(GainsFile, ThatIsNotThereIsRefusedByName) {
-  try {
-    DesignFor(RigWithGains());
-    FAIL() << "accepted";
-  } catch (const Refused& refused) {
-    EXPECT_THAT(refused.what(), AllOf(HasSubstr(path_), HasSubstr("flexarm design")));
-  }
+  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains()); }),
+              AllOf(HasSubstr(path_), HasSubstr("flexarm design")));
+}
+
+TEST_F(GainsFile, WithoutWhatItsLawNeedsIsRefusedByFileAndKey) {
+  const std::vector<std::string> plans = {"controller.name=receding-horizon"};
+  Design design = DesignController(ShippedRig(plans));
+  design.scheduled->start_gains.reset();
+  Write(JsonOf(design, ShippedRig(plans)));
+  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains(plans)); }),
+              AllOf(HasSubstr(path_), HasSubstr("'payload.start_gain' is missing")));
 }
 
 TEST_F(GainsFile, WithAFailedCheckIsRefusedByItsName) {
   Design bad = ShippedDesign();
   bad.checks[0].value = 2.0 * bad.checks[0].limit;
-  Write(DesignToJson(bad, DesignHash(ShippedRig())));
-  try {
-    DesignFor(RigWithGains());
-    FAIL() << "accepted";
-  } catch (const Refused& refused) {
-    EXPECT_THAT(refused.what(), HasSubstr(bad.checks[0].name));
-  }
+  Write(JsonOf(bad, ShippedRig()));
+  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains()); }),
+              HasSubstr(bad.checks[0].name));
 }
 
 TEST_F(GainsFile, WithAFailedCheckThatWasWaivedIsUsed) {
   Design bad = ShippedDesign();
   bad.checks[0].value = 2.0 * bad.checks[0].limit;
   bad.checks[0].waived = true;
-  Write(DesignToJson(bad, DesignHash(ShippedRig())));
+  Write(JsonOf(bad, ShippedRig()));
   const Design read = DesignFor(RigWithGains());
   EXPECT_TRUE(read.checks[0].waived);
   EXPECT_FALSE(read.checks[0].passed());
