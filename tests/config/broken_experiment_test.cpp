@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "config/config.h"
+#include "tests/config/broken_text.h"
 #include "tests/config/config_testing.h"
 #include "tests/support/message_of.h"
 
@@ -213,37 +214,15 @@ TEST(ExperimentFile, NeedsNoRows) {
   EXPECT_NO_THROW(ParseExperiment("name = \"hold\"\nduration_s = 2\n", "e.toml"));
 }
 
-struct BrokenCase {
-  std::string name;
-  std::string from;
-  std::string to;
-  std::string key;
-  std::string rule;
-  std::string line_of = {};
-  std::string text = kExperiment;
-};
-
-void PrintTo(const BrokenCase& c, std::ostream* out) { *out << c.name; }
-
-class BrokenExperiment : public ::testing::TestWithParam<BrokenCase> {};
+class BrokenExperiment : public ::testing::TestWithParam<BrokenText> {};
 
 TEST_P(BrokenExperiment, IsReportedOnceWithLineKeyAndRule) {
-  const BrokenCase& c = GetParam();
-  const std::string text = Replaced(c.text, c.from, c.to);
-  try {
-    ParseExperiment(text, "e.toml");
-    FAIL() << "was accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_EQ(error.problems().size(), 1U) << error.what();
-    const ConfigProblem& problem = error.problems()[0];
-    EXPECT_EQ(problem.file, "e.toml");
-    EXPECT_EQ(problem.line, LineOf(text, c.line_of.empty() ? c.to : c.line_of));
-    EXPECT_EQ(problem.key, c.key);
-    EXPECT_THAT(problem.rule, HasSubstr(c.rule));
-  }
+  const BrokenText& c = GetParam();
+  const std::string text = c.Edit(c.text.empty() ? kExperiment : c.text);
+  ExpectReportedOnce(c, text, "e.toml", ProblemsFrom([&] { ParseExperiment(text, "e.toml"); }));
 }
 
-const BrokenCase kBroken[] = {
+const BrokenText kBroken[] = {
     {"NoName", "name = \"switch\"", "", "name", "missing", "no line"},
     {"EmptyName", "name = \"switch\"", "name = \"\"", "name", "1 to 64 printable"},
     {"NoDuration", "duration_s = 6.0", "", "duration_s", "missing", "no line"},
@@ -315,16 +294,11 @@ const BrokenCase kBroken[] = {
     {"EventIsNoRow", "[[doublet]]", "sim_event = 3\n[[doublet]]", "", "not valid TOML",
      "[[sim_event]]"},
 };
-INSTANTIATE_TEST_SUITE_P(All, BrokenExperiment, ::testing::ValuesIn(kBroken),
-                         [](const auto& c) { return c.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, BrokenExperiment, ::testing::ValuesIn(kBroken), NameOfCase);
 
 TEST(ExperimentFile, ThatIsNotThereIsNamed) {
-  try {
-    LoadExperiment("no-such-file.toml");
-    FAIL();
-  } catch (const ConfigError& error) {
-    EXPECT_STREQ(error.what(), "no-such-file.toml: cannot be read: No such file or directory");
-  }
+  EXPECT_EQ(MessageOf<ConfigError>([] { LoadExperiment("no-such-file.toml"); }),
+            "no-such-file.toml: cannot be read: No such file or directory");
 }
 
 }  // namespace

@@ -43,14 +43,20 @@ inline std::string Replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// What is wrong with a rig's text; empty if nothing is.
-inline std::vector<ConfigProblem> ProblemsOf(const std::string& text) {
+/// What is wrong with what `action` reads; empty if nothing is.
+template <typename Action>
+std::vector<ConfigProblem> ProblemsFrom(const Action& action) {
   try {
-    ParseConfig(text, "rig.toml");
+    action();
   } catch (const ConfigError& error) {
     return error.problems();
   }
   return {};
+}
+
+/// What is wrong with a rig's text.
+inline std::vector<ConfigProblem> ProblemsOf(const std::string& text) {
+  return ProblemsFrom([&] { ParseConfig(text, "rig.toml"); });
 }
 
 /// An empty folder for the files of one test, gone afterwards.

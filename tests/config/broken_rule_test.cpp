@@ -1,0 +1,130 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "tests/config/broken_text.h"
+#include "tests/config/config_testing.h"
+
+namespace flexarm {
+namespace {
+
+using ::testing::HasSubstr;
+
+const BrokenText kContradiction[] = {
+    {"PayloadLawOnAnotherModel", "name = \"sobel\"\nnominal = \"R12\"",
+     "name = \"gain-scheduled\"\nnominal = \"T16\"", "controller.name",
+     "needs controller.nominal = \"R12\"", "name = \"gain-scheduled\""},
+    {"OutputBeforeTheDeadline",
+     "output = \"next_tick\"            # torque acts at the next sampling instant; \"at_once\": "
+     "docs/timing.md\noutput_after_ms = 15.0",
+     "output = \"at_once\"\noutput_after_ms = 12.0", "loop.output_after_ms", "15 .. 20"},
+    {"UnknownOutput", "output = \"next_tick\"", "output = \"later\"", "loop.output",
+     "must be one of \"next_tick\" \"at_once\""},
+    {"ActuationBeyondTwoPeriods", "actuation_delay_ms = 0.0", "actuation_delay_ms = 41.0",
+     "loop.actuation_delay_ms", "at most two periods"},
+    {"TransportBetweenMilliseconds", "transport_delay_ms = 0.0", "transport_delay_ms = 0.5",
+     "sim.transport_delay_ms", "whole milliseconds"},
+    {"SkewBeyondTheStep", "channel_skew_us = 0.0", "channel_skew_us = 500.0", "sim.channel_skew_us",
+     "sampled 2 ms before the step is due"},
+    {"DeadlineBeyondThePeriod", "acquire_before_ms = 10.0", "acquire_before_ms = 15.0",
+     "loop.step_deadline_ms", "15 + 5 < 20", "step_deadline_ms"},
+    {"SoftAngleAtTheSwitch", "soft_angle_deg = [90.0, 90.0]", "soft_angle_deg = [90.0, 95.0]",
+     "limits.soft_angle_deg[1]", "sim.switch_angle_deg[1] = 95"},
+    {"CounterTooNarrow", "max_joint_rate_rad_s = 14.0", "max_joint_rate_rad_s = 15.9",
+     "estimator.max_joint_rate_rad_s", "sensors.encoder[0] (8 bits)"},
+    {"CounterOfAnotherBitWidth", "counter_bits = 16", "counter_bits = 11",
+     "estimator.max_joint_rate_rad_s", "sensors.encoder[3] (11 bits)", "max_joint_rate_rad_s = 14"},
+    {"MoreModesInTheModelThanInTheFit", "modes_per_link = 2", "modes_per_link = 1",
+     "controller.nominal", "has 2 modes a link: estimator.modes_per_link = 1", "nominal = \"R12\""},
+    {"StateWeightOfAnotherModel", "torque_weight = 2.0",
+     "torque_weight = 2.0\nstate_weight = [100, 20, 0, 0, 5, 1, 0, 0]", "controller.state_weight",
+     "one for each state of controller.nominal: 12", "state_weight = [100"},
+    {"RateAboveTheJump", "hub_rate_rad_s = [8.0, 10.0]", "hub_rate_rad_s = [8.0, 14.0]",
+     "limits.hub_rate_rad_s[1]", "impossible jump"},
+    {"RestAboveTheRateLimit", "hub_rate_rad_s = [8.0, 10.0]", "hub_rate_rad_s = [0.05, 10.0]",
+     "safety.rest_hub_rate_rad_s", "limits.hub_rate_rad_s[0]", "rest_hub_rate_rad_s"},
+    {"StopShorterThanRest", "stop_timeout_s = 3.0", "stop_timeout_s = 0.5", "safety.stop_timeout_s",
+     "safety.rest_time_s = 0.5"},
+    {"TorqueBelowFriction", "torque_limit_nm = [30.0, 6.0]", "torque_limit_nm = [0.16, 6.0]",
+     "limits.torque_limit_nm[0]", "joint1.coulomb_friction_nm = 0.16"},
+    {"StrainTripAboveFullScale", "strain_limit = [1.9e-3, 1.9e-3]", "strain_limit = [1.9e-3, 2e-3]",
+     "limits.strain_limit[1]", "sensors.strain[10]"},
+    {"FamilyLimitInTheNoise", "strain_family_limit = 4e-4", "strain_family_limit = 3e-6",
+     "estimator.strain_family_limit", "four times the noise"},
+    {"PeriodOffTheGrid", "period_ms = 20.0", "period_ms = 20.2", "loop.period_ms",
+     "sim.step_ms = 0.5"},
+};
+INSTANTIATE_TEST_SUITE_P(Contradiction, BrokenConfig, ::testing::ValuesIn(kContradiction),
+                         NameOfCase);
+
+TEST(BrokenConfigs, TooFewGaugesForTheModes) {
+  std::string text = FileText(Shipped("thesis-rig.toml"));
+  const std::size_t begin = text.find("# Link 1: the middles");
+  const std::size_t end = text.find("# Link 2: the middles");
+  text.replace(begin, end - begin,
+               "[[sensors.strain]]\nlink = 1\nposition_m = 0.04\nface = 1\n"
+               "gain_v_per_unit = 5000.0\noffset_counts = 0.0\n");
+  ASSERT_EQ(ProblemsOf(text).size(), 1U);
+  EXPECT_EQ(ProblemsOf(text)[0].key, "estimator.modes_per_link");
+  // One gauge at the clamp is enough for one mode.
+  const std::string one = Replaced(text, "modes_per_link = 2", "modes_per_link = 1");
+  EXPECT_TRUE(ProblemsOf(Replaced(one, "nominal = \"R12\"", "nominal = \"R8\"")).empty());
+}
+
+TEST(BrokenConfigs, RotorEncodersMayBeAbsent) {
+  std::string text = FileText(Shipped("thesis-rig.toml"));
+  const std::size_t begin = text.find("[[sensors.encoder]]\njoint = \"rotor1\"");
+  text.erase(begin, text.find("[sensors.strain_input]") - begin);
+  EXPECT_TRUE(ProblemsOf(text).empty());
+}
+
+// Differences of angles that nobody measures are none; the Kalman filter infers them.
+TEST(BrokenConfigs, ATorsionalModelWithoutRotorEncodersNeedsTheKalmanFilter) {
+  std::string text = FileText(Shipped("thesis-rig.toml"));
+  const std::size_t begin = text.rfind("[[sensors.encoder]]");
+  text.erase(begin, text.find("sign = 1", begin) + 8 - begin);  // rotor 2
+  text = Replaced(text, "nominal = \"R12\"", "nominal = \"T12\"");
+  EXPECT_TRUE(ProblemsOf(text).empty());
+  const auto problems = ProblemsOf(Replaced(text, "name = \"kalman\"", "name = \"difference\""));
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].key, "controller.nominal");
+  EXPECT_THAT(problems[0].rule, HasSubstr("an encoder on each rotor"));
+}
+
+TEST(BrokenConfigs, ALawThatFindsThePayloadNeedsItsTables) {
+  const auto without = [](const std::string& law, const std::string& table) {
+    return ProblemsOf(Replaced(Replaced(FileText(Shipped("thesis-rig.toml")), "name = \"sobel\"",
+                                        "name = \"" + law + "\""),
+                               "[" + table + "]  ", "[rig2]  "));
+  };
+  const auto told = [](const std::vector<ConfigProblem>& problems, const std::string& table) {
+    return std::any_of(problems.begin(), problems.end(), [&](const ConfigProblem& problem) {
+      return problem.key == "controller.name" && problem.rule == "needs the table [" + table + "]";
+    });
+  };
+  const std::string payload = "controller.payload", plan = "controller.plan";
+  EXPECT_TRUE(told(without("gain-scheduled", payload), payload));
+  EXPECT_TRUE(told(without("receding-horizon", payload), payload));
+  EXPECT_TRUE(told(without("receding-horizon", plan), plan));
+  EXPECT_FALSE(told(without("gain-scheduled", plan), plan)) << "it plans nothing";
+}
+
+TEST(BrokenConfigs, AWiredRigHasNoTipAccelerometer) {
+  const std::vector<ConfigProblem> problems = ProblemsFrom([] {
+    LoadConfig(Shipped("daq-rig.toml"),
+               {"sensors.tip_accelerometer={range_m_s2=50, converter_bits=14, noise_counts=4, "
+                "filter_hz=200}",
+                "estimator.payload.tip_extra_sigma_m_s2=0.5"});
+  });
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].key, "sensors.tip_accelerometer");
+  EXPECT_THAT(problems[0].rule, HasSubstr("hal.backend = \"wired\""));
+}
+
+}  // namespace
+}  // namespace flexarm
