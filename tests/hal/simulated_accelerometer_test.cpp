@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "hal/sim/simulated_rig.h"
+#include "tests/hal/ideal_sim.h"
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
 
@@ -24,14 +25,7 @@ SensorConfig SensorsWith(const TipAccelerometerConfig& config) {
   return sensors;
 }
 
-constexpr SimConfig kSim{.plant_modes = 4,
-                         .step_ms = 0.1,
-                         .seed = 1,
-                         .motor_lag_ms = {2.0, 2.0},
-                         .transport_delay_ms = 0.0,
-                         .lost_frame_fraction = 0.0,
-                         .channel_skew_us = 0.0,
-                         .switch_angle_deg = {95.0, 95.0}};
+constexpr SimConfig kSim = IdealSim(4, 0.1);
 
 // Where the tip's normal points, by the slopes of the rig's modes.
 class Tip {

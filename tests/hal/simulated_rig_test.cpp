@@ -9,20 +9,14 @@
 #include <optional>
 #include <vector>
 
+#include "tests/hal/ideal_sim.h"
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
 namespace {
 
-constexpr SimConfig kSim{.plant_modes = 2,
-                         .step_ms = 0.5,
-                         .seed = 1,
-                         .motor_lag_ms = {2.0, 2.0},
-                         .transport_delay_ms = 0.0,
-                         .lost_frame_fraction = 0.0,
-                         .channel_skew_us = 0.0,
-                         .switch_angle_deg = {95.0, 95.0}};
+constexpr SimConfig kSim = IdealSim(2, 0.5);
 
 // Link 1 behind a gauge filter of `filter_hz`, in counts fine enough (24 bits) to see its shape.
 SensorConfig FineGauge(double filter_hz) {

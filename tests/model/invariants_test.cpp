@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/arm_simulator.h"
+#include "tests/model/swinging_arm.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
@@ -28,16 +29,6 @@ ArmParameters Conservative(bool foreshortening) {
   return p;
 }
 
-ArmState Swinging(const ArmModel& model) {
-  ArmState x(model.dof());
-  x.q[kTheta2] = x.q[kTheta4] = 1.0;
-  x.v[kTheta1] = x.v[kTheta3] = 1.5;
-  x.v[kTheta2] = x.v[kTheta4] = -2.5;
-  x.q[kPhi1] = 0.01;
-  x.q[model.constants().phi2()] = -0.02;
-  return x;
-}
-
 double Energy(const ArmModel& model, const ArmState& x) {
   return model.KineticEnergy(x.q, x.v) + model.PotentialEnergy(x.q);
 }
@@ -54,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Links, Invariants, testing::Bool(), [](const auto& show
 double Imbalance(bool foreshortening, double h) {
   const ArmModel model(Rig(foreshortening), {2, 2});
   ArmSimulator simulator(model, {.passes = 5});
-  ArmState x = Swinging(model);
+  ArmState x = SwingingArm(model);
   const double E0 = Energy(model, x);
   double work = 0.0, turned_over = 0.0;
   // While both hubs slide: the impulse that stops a hub takes energy outside of the sum.
@@ -88,7 +79,7 @@ TEST_P(Invariants, PowerOfMotorsFrictionAndDampingBalances) {
 TEST_P(Invariants, TimeCanBeReversed) {
   const ArmModel model(Conservative(GetParam()), {2, 2});
   ArmSimulator simulator(model, {.passes = 12});
-  const ArmState start = Swinging(model);
+  const ArmState start = SwingingArm(model);
   ArmState x = start;
   const int steps = 2000;
   const auto torque = [&](int i) { return Vector2d(i < 600 ? 1.0 : -0.5, i < 900 ? -0.2 : 0.3); };
@@ -105,7 +96,7 @@ TEST_P(Invariants, WholeMotionsDoNotKnowWhereTheBasePoints) {
   const ArmModel model(Rig(GetParam()), {3, 3});
   const double turn = 1.234;
   ArmSimulator simulator(model);
-  ArmState a = Swinging(model), b = a;
+  ArmState a = SwingingArm(model), b = a;
   b.q[kTheta1] += turn;
   b.q[kTheta3] += turn;
   for (int i = 0; i < 2000; ++i) simulator.Step(a, Vector2d(2.0, -0.4), 5e-4);

@@ -117,15 +117,6 @@ Outcome PayloadEvents::RunOne(const Scene& scene) const {
   return out;
 }
 
-SimEvent PayloadEvent(double at_s, double payload_kg) {
-  return {.at_s = at_s,
-          .line = {},
-          .level = 0,
-          .freeze = FreezeTarget::kNone,
-          .kill = false,
-          .payload_kg = payload_kg};
-}
-
 double MiddleOf(const Move& move) { return move.start_s + 0.5 * *move.duration_s; }
 
 // Half of the rest of 1.5 s after the move.

@@ -119,15 +119,6 @@ TEST_F(PlantTaskTest, ACommandOlderThanTwoPeriodsStopsItAlone) {
   EXPECT_EQ(RunTo(100 * kMs, {.commands_go_on = false}), 0.0);
 }
 
-SimEvent PayloadEvent(double at_s, double payload_kg) {
-  return {.at_s = at_s,
-          .line = {},
-          .level = 0,
-          .freeze = FreezeTarget::kNone,
-          .kill = false,
-          .payload_kg = payload_kg};
-}
-
 TEST_F(PlantTaskTest, AnotherPayloadTakesNoHeap) {
   PlannedExperiment planned(std::vector<std::array<double, 2>>(10));
   planned.sim_events = {PayloadEvent(0.0, 0.8), PayloadEvent(0.04, 0.0)};

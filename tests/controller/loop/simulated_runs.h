@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "config/config.h"
 #include "controller/safety/trip_cause.h"
+#include "tests/controller/law/shipped_rig.h"
 #include "tools/simulation.h"
 
 // Runs of the whole stack (Simulate), and what the bars are held against.
@@ -18,12 +18,18 @@ namespace flexarm {
 
 inline constexpr int kSeeds = 11;  // the bars speak of seeds 1 to 11
 
-inline Config ShippedRig(std::vector<std::string> overrides = {}) {
-  return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", overrides);
-}
-
 inline Experiment ShippedExperiment(const std::string& name = "square-30deg") {
   return LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/" + name + ".toml");
+}
+
+/// The simulated arm carries `payload_kg` from then on.
+inline SimEvent PayloadEvent(double at_s, double payload_kg) {
+  return {.at_s = at_s,
+          .line = {},
+          .level = 0,
+          .freeze = FreezeTarget::kNone,
+          .kill = false,
+          .payload_kg = payload_kg};
 }
 
 /// One run of the shipped rig with `overrides`.
@@ -31,7 +37,7 @@ inline SimulationResult Run(double payload_kg, std::uint64_t seed,
                             std::vector<std::string> overrides = {},
                             const std::string& experiment = "square-30deg") {
   overrides.push_back("sim.seed=" + std::to_string(seed));
-  return Simulate({.config = ShippedRig(std::move(overrides)),
+  return Simulate({.config = ShippedRig(overrides),
                    .experiment = ShippedExperiment(experiment),
                    .payload_kg = payload_kg,
                    .log = {}});
