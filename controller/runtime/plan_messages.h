@@ -18,6 +18,7 @@ namespace flexarm {
 
 /// Control task -> planner: the rest of a move is to be planned.
 struct PlanRequest {
+  /// Of the longest wait for a plan, of the longest plan, one before them and two beyond.
   static constexpr std::size_t kMostPoints = kMostReadyPeriods + HorizonPlan::kMaxStages + 3;
 
   std::uint32_t number;      ///< ascending; 0: none yet
