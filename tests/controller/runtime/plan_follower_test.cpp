@@ -18,22 +18,23 @@ constexpr double kPeriod_s = 0.02;
 constexpr std::int64_t kPeriodNs = 20'000'000;
 constexpr PlanSchedule kSchedule{.every = 10, .ready = 5, .rest = 20, .period_ns = kPeriodNs};
 
-// A move from sample 50 to 150, and one from sample 158 to 258, before the first one's plans have
+ReferenceTable MovesOf(double duration_s, const std::vector<double>& starts_s) {
+  Experiment experiment{};
+  experiment.name = "moves";
+  experiment.duration_s = starts_s.back() + duration_s + 2.0;
+  for (const double start_s : starts_s) {
+    experiment.move.push_back({.start_s = start_s,
+                               .duration_s = duration_s,
+                               .to_deg = {10.0 * start_s, -5.0},
+                               .profile = MoveProfile::kSeptic});
+  }
+  return {experiment, ShippedPathDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits()};
+}
+
+// A move from sample 50 to 150, and one from sample 154 to 254, before the first one's plans have
 // rested for 20 periods.
 const ReferenceTable& TwoMoves() {
-  static const ReferenceTable table = [] {
-    Experiment experiment{};
-    experiment.name = "two-moves";
-    experiment.duration_s = 8.0;
-    for (const double start_s : {1.0, 3.16}) {
-      experiment.move.push_back({.start_s = start_s,
-                                 .duration_s = 2.0,
-                                 .to_deg = {10.0 * start_s, -5.0},
-                                 .profile = MoveProfile::kSeptic});
-    }
-    const Design design = DesignController(ShippedRig({"controller.name=gain-scheduled"}));
-    return ReferenceTable(experiment, design, kPeriod_s, {0.0, 0.0}, ShippedLimits());
-  }();
+  static const ReferenceTable table = MovesOf(2.0, {1.0, 3.08});
   return table;
 }
 
@@ -43,6 +44,7 @@ StepOutput AnOutput() {
   out.payload_sigma_kg = 0.02;
   out.mean_nis = 9.0;
   out.payload_doubts = kPayloadAtBound;
+  out.friction_nm = {0.16, 0.01};
   for (std::size_t i = 0; i < 12; ++i) out.x_next[i] = 0.1 * static_cast<double>(i);
   return out;
 }
@@ -90,20 +92,48 @@ TEST_F(PlanFollowerTest, AsksSoThatAPlanHoldsFromTheBeginningOfEachMoveAndEveryT
   std::vector<int> first;
   for (const PlanRequest& request : asked) first.push_back(request.first);
   const std::vector<int> expected = {50,  60,  70,  80,  90,  100, 110, 120, 130, 140,
-                                     158, 168, 178, 188, 198, 208, 218, 228, 238, 248};
+                                     154, 164, 174, 184, 194, 204, 214, 224, 234, 244};
   EXPECT_EQ(first, expected);
   for (const PlanRequest& request : asked) {
     EXPECT_EQ(request.sample, request.first - 5);
     EXPECT_EQ(request.needed_ns, request.first * kPeriodNs);
     EXPECT_EQ(request.run, 7u);
-    EXPECT_EQ(request.stretch, request.first < 158 ? 50 : 158);
-    EXPECT_EQ(request.end, request.first < 158 ? 150 : 258);
+    EXPECT_EQ(request.stretch, request.first < 154 ? 50 : 154);
+    EXPECT_EQ(request.end, request.first < 154 ? 150 : 254);
   }
 }
 
 TEST_F(PlanFollowerTest, ARunThatBeginsInItsMoveGetsItsPlanAtOnce) {
   EXPECT_EQ(AskedBetween(80, 80).at(0).first, 85);
   EXPECT_EQ(AskedBetween(81, 95).at(0).first, 95) << "then every ten";
+}
+
+TEST_F(PlanFollowerTest, AsksUntilAPlanWouldHoldForFivePeriodsOnly) {
+  EXPECT_EQ(AskedBetween(140, 140).at(0).first, 145);
+  follower_.Start(8);
+  EXPECT_TRUE(AskedBetween(141, 148).empty());
+}
+
+// Ten periods after 145 the next move has begun.
+TEST_F(PlanFollowerTest, TheNextMoveDoesNotWaitForTheTenPeriodsOfTheOneBefore) {
+  ASSERT_EQ(AskedBetween(140, 140).at(0).first, 145);
+  EXPECT_EQ(AskedBetween(141, 155).at(0).first, 154);
+}
+
+TEST_F(PlanFollowerTest, TheNextRunDoesNotWaitForTheTenPeriodsOfTheOneBefore) {
+  ASSERT_EQ(AskedBetween(45, 45).at(0).first, 50);
+  follower_.Start(8);
+  EXPECT_EQ(AskedBetween(46, 46).at(0).first, 51);
+}
+
+// A plan has 500 samples at the most; this move has 600.
+TEST_F(PlanFollowerTest, OfALongMoveThePathIsToldAsFarAsAPlanGoes) {
+  const ReferenceTable table = MovesOf(12.0, {1.0});
+  follower_.Ask(45, 45 * kPeriodNs, table, AnOutput());
+  const PlanRequest& request = requests_->Read();
+  ASSERT_EQ(request.points, PlanRequest::kMostPoints);
+  EXPECT_EQ(request.end, 650);
+  EXPECT_EQ(request.path[522].angle_rad, table.PathAround(44 + 522)[1].angle_rad);
 }
 
 TEST_F(PlanFollowerTest, TellsTheStateThePayloadAndThePathAroundTheHorizon) {
@@ -113,9 +143,10 @@ TEST_F(PlanFollowerTest, TellsTheStateThePayloadAndThePathAroundTheHorizon) {
   EXPECT_EQ(first.known.payload_sigma_kg, 0.02);
   EXPECT_EQ(first.known.mean_nis, 9.0);
   EXPECT_EQ(first.known.doubts, static_cast<std::uint32_t>(kPayloadAtBound));
+  EXPECT_EQ(first.known.friction_nm, AnOutput().friction_nm);
   EXPECT_EQ(first.x[11], AnOutput().x_next[11]);
   // From one before `sample` to one after the plan's end: at the next move's beginning, ...
-  EXPECT_EQ(static_cast<int>(first.points), 158 + 1 - (first.sample - 1) + 1);
+  EXPECT_EQ(static_cast<int>(first.points), 154 + 1 - (first.sample - 1) + 1);
   for (const std::uint32_t i : {0u, 6u, 60u, first.points - 1}) {
     const RigidPoint expected = TwoMoves().PathAround(first.sample - 1 + static_cast<int>(i))[1];
     EXPECT_EQ(first.path[i].angle_rad, expected.angle_rad) << i;
@@ -123,7 +154,7 @@ TEST_F(PlanFollowerTest, TellsTheStateThePayloadAndThePathAroundTheHorizon) {
   }
   // ... or 20 periods after the end.
   const PlanRequest& last = asked.back();
-  EXPECT_EQ(static_cast<int>(last.points), 258 + 20 + 1 - (last.sample - 1) + 1);
+  EXPECT_EQ(static_cast<int>(last.points), 254 + 20 + 1 - (last.sample - 1) + 1);
 }
 
 TEST_F(PlanFollowerTest, TakesThePlanThatHoldsWhenTheStepIsDue) {
