@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -13,6 +15,7 @@
 #include "controller/law/path_reference.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/no_alloc.h"
+#include "tests/support/study_planner.h"
 
 namespace flexarm {
 namespace {
@@ -62,6 +65,7 @@ class PlannerTaskTest : public testing::Test {
     PlanState::Map(output.x_next.data()) = x;
     output.payload_kg = payload_kg;
     output.mean_nis = 8.0;
+    output.friction_nm = {0.16, 0.01};
     follower_->Ask(sample, sample * kPeriodNs, OneMove(), output);
     planner_->Run({.due_ns = sample * kPeriodNs, .missed_in_a_row = 0});
   }
@@ -69,6 +73,33 @@ class PlannerTaskTest : public testing::Test {
   std::optional<PlanSample> At(int sample) { return follower_->At(sample, sample * kPeriodNs); }
 
   PlanState StateAt(int sample) { return PlanState::Map(At(sample).value().x.data()); }
+
+  // Where an arm with 0.3 kg will be five samples after it was at x, under the law towards
+  // desired(sample). Without friction: what the law feeds forward against it, it takes.
+  template <typename Desired>
+  PlanState FiveSamplesAfter(int sample, const PlanState& x, const Desired& desired) {
+    const RigidJointArm arm = ArmOf(DesignOfRig());
+    const ScheduledLaw law(arm, DesignOfRig().scheduled->gains, kPeriod_s);
+    const RigidJointStepper stepper(arm, kPeriod_s, 1.0);
+    const PayloadKnowledge known{.payload_kg = 0.3,
+                                 .payload_sigma_kg = 0.0,
+                                 .friction_nm = {0.0, 0.0},
+                                 .mean_nis = 8.0,
+                                 .doubts = 0};
+    GaugedState at{.q = x.head<6>(), .v = x.tail<6>(), .phi_f = Eigen::Vector4d::Zero()};
+    for (int k = sample; k < sample + 5; ++k) {
+      const PlanState now = (PlanState() << at.q, at.v).finished();
+      const Eigen::Vector2d torque_nm = law.Torque(now, known, desired(k), 0.0);
+      at = stepper.Advance(at,
+                           {.torque_nm = torque_nm, .payload_kg = 0.3, .friction_nm = {0.0, 0.0}});
+    }
+    return (PlanState() << at.q, at.v).finished();
+  }
+
+  static QuasiStaticSample ClosedForm(int sample) {
+    return QuasiStaticOver(ArmOf(DesignOfRig()), 0.3, PathPoints(OneMove().PathAround(sample)),
+                           kPeriod_s);
+  }
 
   std::unique_ptr<PlannerTask> planner_;
   std::unique_ptr<PlanFollower> follower_;
@@ -88,6 +119,49 @@ TEST_F(PlannerTaskTest, ThePlanHoldsFromTheBeginningOfTheMoveAndEndsAtRestAtItsG
   EXPECT_FALSE(planner_->figures().warm);
 }
 
+// Each number of the config in its place: the plan is that of a planner which was told the study's.
+TEST_F(PlannerTaskTest, PlansWithTheWeightsAndLimitsOfTheConfig) {
+  for (const double torque_share : {0.93, 0.05}) {
+    Make({"controller.plan.torque_share=" + std::to_string(torque_share),
+          "controller.plan.roughness=2"});
+    AskAt(kFirst - 5, PlanState::Zero(), 0.3);
+    HorizonPlannerConfig told = StudyPlannerConfig();
+    told.torque_limit_nm = {torque_share * 30.0, torque_share * 6.0};
+    told.roughness = 2.0;
+    const auto planner = std::make_unique<HorizonPlanner>(
+        ArmOf(DesignOfRig()), kPeriod_s, *DesignOfRig().scheduled->start_gains, told);
+    std::vector<RigidPathPoint> path;
+    for (int k = kFirst - 1; k <= kEnd + 21; ++k) {
+      path.push_back(InTermsOfTheMap(OneMove().PathAround(k)[1]));
+    }
+    const auto plan = std::make_unique<HorizonPlan>();
+    ASSERT_TRUE(planner->Plan({.first_tick = kFirst,
+                               .x = PlanState::Zero(),
+                               .payload_kg = 0.3,
+                               .torque_before_nm = {0.0, 0.0},
+                               .path = path,
+                               .move_samples = kEnd - kFirst},
+                              nullptr, plan.get()));
+    double largest = 0.0;
+    for (int k = kFirst; k < kEnd + 20; ++k) {
+      const PlanEntry expected = plan->At(k).value();
+      ASSERT_EQ(StateAt(k), expected.x) << k;
+      largest = std::max(largest, std::fabs(expected.torque_nm[1]) / told.torque_limit_nm[1]);
+    }
+    EXPECT_EQ(largest == 1.0, torque_share < 0.1) << "the limit counts in the second plan only";
+  }
+}
+
+// Due when the step has published, 15 ms after its sample; what was asked for at one step holds for
+// the fifth after it.
+TEST_F(PlannerTaskTest, IsDueWhenAStepHasAskedAndReadyBeforeThePlanHolds) {
+  Make();
+  const Task::Traits traits = planner_->traits();
+  EXPECT_EQ(traits.phase_ns, 15'000'000);
+  EXPECT_EQ(traits.period_ns, kPeriodNs);
+  EXPECT_EQ(traits.deadline_ns, 4 * kPeriodNs);
+}
+
 // On its plan the arm will be where the plan is: 5 samples with 8 steps each, where the plan
 // takes 4.
 TEST_F(PlannerTaskTest, TheNextPlanBeginsWhereTheArmWillBeByThen) {
@@ -100,12 +174,44 @@ TEST_F(PlannerTaskTest, TheNextPlanBeginsWhereTheArmWillBeByThen) {
   EXPECT_GT((then - now).cwiseAbs().maxCoeff(), 0.05) << "no motion: the test says nothing";
 }
 
+TEST_F(PlannerTaskTest, TheOldPlanHoldsUntilTheNextOneDoes) {
+  Make();
+  AskAt(kFirst - 5, PlanState::Zero(), 0.3);
+  const PlanState before = StateAt(kFirst + 9);
+  AskAt(kFirst + 5, StateAt(kFirst + 5), 0.3);
+  ASSERT_TRUE(At(kFirst + 9));
+  EXPECT_EQ(StateAt(kFirst + 9), before);
+}
+
+// Round-off only: the plan begins where the law will have taken the arm.
+TEST_F(PlannerTaskTest, AnArmBesideItsPlanIsLedBackByTheLawUntilTheNextOneHolds) {
+  Make();
+  AskAt(kFirst - 5, PlanState::Zero(), 0.3);
+  PlanState beside = StateAt(kFirst + 5);
+  beside[0] += 0.02;
+  const PlanState expected = FiveSamplesAfter(kFirst + 5, beside, [this](int k) {
+    const PlanSample plan = At(k).value();
+    return QuasiStaticSample{.x = PlanState::Map(plan.x.data()),
+                             .torque_nm = Eigen::Vector2d::Map(plan.torque_nm.data())};
+  });
+  AskAt(kFirst + 5, beside, 0.3);
+  EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// The plan of the run before is for an arm of another payload, and would lead it elsewhere.
+TEST_F(PlannerTaskTest, InAnotherRunItIsLedByTheClosedForm) {
+  Make();
+  AskAt(kFirst - 5, PlanState::Zero(), 0.8);
+  follower_->Start(2);
+  const PlanState beside = ClosedForm(kFirst + 5).x + PlanState::Constant(1e-3);
+  AskAt(kFirst + 5, beside, 0.3);
+  const PlanState expected = FiveSamplesAfter(kFirst + 5, beside, ClosedForm);
+  EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST_F(PlannerTaskTest, WithoutAPlanTheArmIsOnTheWayOfTheClosedForm) {
   Make();
-  const RigidJointArm arm = ArmOf(DesignOfRig());
-  const auto closed = [&](int k) {
-    return QuasiStaticOver(arm, 0.3, PathPoints(OneMove().PathAround(k)), kPeriod_s).x;
-  };
+  const auto closed = [](int k) { return ClosedForm(k).x; };
   AskAt(kFirst + 30, closed(kFirst + 30), 0.3);
   EXPECT_FALSE(planner_->figures().warm);
   // The closed form leaves out inertia of the links' bending: some 1e-3 rad over 0.1 s.
@@ -148,6 +254,25 @@ TEST_F(RefusedPlans, LeaveNoneIfThatIsForAnotherPayload) {
   AskAt(kFirst + 5, displaced_, 0.6);
   EXPECT_FALSE(At(kFirst + 20));
   EXPECT_FALSE(At(kFirst + 10));
+}
+
+// A fifth of 0.05 kg is less than the 0.03 kg that a plan may always be off by.
+TEST_F(PlannerTaskTest, ARefusedPlanForALightPayloadLeavesTheOneBeforeToo) {
+  Make({"controller.plan.roughness=0.05"});
+  AskAt(kFirst - 5, PlanState::Zero(), 0.05);
+  PlanState displaced = StateAt(kFirst + 5);
+  displaced[7] += 10.0;
+  AskAt(kFirst + 5, displaced, 0.07);
+  EXPECT_TRUE(At(kFirst + 20));
+}
+
+// Rough is what jumps from the torque that acts before the plan does, not from nothing.
+TEST_F(PlannerTaskTest, APlanMadeInMidMoveIsNoJump) {
+  Make({"controller.plan.roughness=0.05"});
+  AskAt(kFirst + 20, ClosedForm(kFirst + 20).x, 0.3);
+  ASSERT_TRUE(At(kFirst + 25));
+  const std::array<double, 2> torque_nm = At(kFirst + 25)->torque_nm;
+  EXPECT_GT(std::fabs(torque_nm[0]) / 28.0 + std::fabs(torque_nm[1]) / 5.6, 0.06) << "no test";
 }
 
 TEST_F(PlannerTaskTest, AnotherRunStartsFromScratch) {
