@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "config/config.h"
 
@@ -63,7 +65,21 @@ TEST(RandomMoves, KeepToTheRecipe) {
 // mt19937_64's bits are in the standard: its 10000th number from the default seed 5489 is
 // 9981545732273789042. Here the first from seed 1, 2469588189546311528 = 0.1338765... of 2^64.
 TEST(RandomMoves, AreTheSameOnEveryMachine) {
-  EXPECT_NEAR(MakeRandomMoves(Arm(), 1, 1.0).payload_kg, 2469588189546311528.0 / 0x1p64, 1e-15);
+  const RandomMoves moves = MakeRandomMoves(Arm(), 1, 1.0);
+  EXPECT_NEAR(moves.payload_kg, 2469588189546311528.0 / 0x1p64, 1e-15);
+  // Then the elbow's target, then the shoulder's: scores of other machines speak of these.
+  std::mt19937_64 random(1);
+  random.discard(1);
+  const double second = static_cast<double>(random()), third = static_cast<double>(random());
+  EXPECT_NEAR(moves.experiment.move[0].to_deg[1], 180.0 * second / 0x1p64 - 90.0, 1e-12);
+  EXPECT_NEAR(moves.experiment.move[0].to_deg[0], 120.0 * third / 0x1p64 - 60.0, 1e-12);
+}
+
+TEST(RandomMoves, AreAsManyAsAskedForAndBeginAlike) {
+  const RandomMoves four = MakeRandomMoves(Arm(), 1, 1.0),
+                    seven = MakeRandomMoves(Arm(), 1, 1.0, 7);
+  ASSERT_EQ(seven.experiment.move.size(), 7U);
+  EXPECT_EQ(seven.experiment.move[3].to_deg, four.experiment.move[3].to_deg);
 }
 
 // Small angles of the heavy elbow: two limits by hand. At rest M_tt is symmetric; 7.51 = the
@@ -76,8 +92,38 @@ TEST(RuleDuration, IsWhatTorqueAndSpeedAllow) {
   const double of_torque_s = std::sqrt(7.51 * std::max(M(0, 0) / 9.0, std::fabs(M(1, 0)) / 3.8));
   EXPECT_NEAR(RuleDuration_s(arm, 1.0, zero, by), of_torque_s, 1e-12);
   EXPECT_GT(of_torque_s, 2.19 / 4.0) << "the rate would have been the limit";
-  // Shortest of all; and without anything to carry the rate decides.
-  EXPECT_EQ(RuleDuration_s(arm, 1.0, zero, 1e-6 * by), 0.4);
+  EXPECT_EQ(RuleDuration_s(arm, 1.0, zero, 1e-6 * by), 0.4) << "the shortest of all";
+  // Of turns that nobody makes the rate decides: torque asks for the root of the angle only.
+  EXPECT_NEAR(RuleDuration_s(arm, 0.0, zero, -40.0 * by), 2.19 * 40.0 / 4.0, 1e-12);
+  EXPECT_NEAR(RuleDuration_s(arm, 0.0, zero, {0.0, -60.0}), 2.19 * 60.0 / 6.0, 1e-12);
+}
+
+// Of both joints, wherever the elbow is on its way: a straight arm is the heaviest for the
+// shoulder, and what the shoulder's turn asks of the elbow's motor grows as it bends the other way.
+TEST(RuleDuration, IsThatOfTheWorstOfFivePointsOfTheWay) {
+  const RigidJointArm arm = Arm();
+  const RigidJointArm::Vector at_rest = RigidJointArm::Vector::Zero();
+  std::array<int, 2> decides{};
+  for (const auto& [from1, from2, to1, to2] : {std::array{0.3, -1.2, -0.4, 0.9},
+                                               {-0.5, 1.5, 0.4, 0.2},
+                                               {0.2, 0.4, 0.1, -1.1},
+                                               {0.9, -0.1, 0.8, 1.4},
+                                               {-0.2, 1.4, 0.9, 1.5}}) {
+    const Eigen::Vector2d by(to1 - from1, to2 - from2);
+    Eigen::Vector2d effort = Eigen::Vector2d::Zero();
+    for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      RigidJointArm::Vector q = at_rest;
+      q[1] = (1.0 - part) * from2 + part * to2;
+      const auto M = arm.At(arm.Outboard(0.7), q, at_rest).M;
+      effort[0] = std::max(effort[0], std::fabs(M(0, 0) * by[0] + M(0, 1) * by[1]) / 9.0);
+      effort[1] = std::max(effort[1], std::fabs(M(1, 0) * by[0] + M(1, 1) * by[1]) / 3.8);
+    }
+    ++decides[effort[0] > effort[1] ? 0 : 1];
+    EXPECT_NEAR(RuleDuration_s(arm, 0.7, {from1, from2}, {to1, to2}),
+                std::sqrt(7.51 * effort.maxCoeff()), 1e-12);
+  }
+  EXPECT_GT(decides[0], 0);
+  EXPECT_GT(decides[1], 0);
 }
 
 }  // namespace
