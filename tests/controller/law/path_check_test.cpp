@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/controller/law/no_limits.h"
 #include "tests/controller/law/shipped_rig.h"
 
 namespace flexarm {
@@ -38,15 +39,6 @@ RigidPath OutAndBack() {
                          .to_rad = {0.1, 0.3},
                          .profile = MoveProfile::kSeptic};
   return {std::array{out, back}, {0.0, 0.0}, kPeriods, kPeriod_s};
-}
-
-MotionLimits NoLimits() {
-  MotionLimits limits = ShippedLimits();
-  for (auto* limit : {&limits.soft_angle_rad, &limits.torque_nm, &limits.slew_nm_per_s,
-                      &limits.hub_rate_rad_s, &limits.strain}) {
-    limit->fill(1e6);
-  }
-  return limits;
 }
 
 // What a limit of PathCheck is compared with: index 0 or 1 is the joint.
