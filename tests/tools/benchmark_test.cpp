@@ -1,5 +1,6 @@
 #include "tools/benchmark/benchmark.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,36 +9,17 @@
 #include <set>
 
 #include "controller/runlog/errors.h"
+#include "tests/support/message_of.h"
+#include "tests/tools/benchmark_rows.h"
 #include "tools/report/study_figures.h"
 
 namespace flexarm {
 namespace {
 
+using testing::HasSubstr;
+
 constexpr std::array kKinds = {BenchmarkKind::kCommands, BenchmarkKind::kMoves,
                                BenchmarkKind::kLimits};
-constexpr const char* kExperiments = FLEXARM_SOURCE_DIR "/config/experiments";
-
-const Config& Rig() {
-  static const Config rig = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml");
-  return rig;
-}
-
-SweepPlan Plan(const std::string& laws, const std::string& seeds,
-               BenchmarkKind kind = BenchmarkKind::kCommands) {
-  return BenchmarkPlan(Rig(), BenchmarkSetOf(kind, Rig(), kExperiments), laws, seeds);
-}
-
-BenchmarkTable Table(const SweepPlan& plan, const std::vector<SweepRow>& rows,
-                     BenchmarkKind kind = BenchmarkKind::kCommands) {
-  return TableOf(kind, plan, rows);
-}
-
-SweepRow Made(std::size_t point, double settling_s) {
-  SweepRow row{.point = point, .completed = true, .trip = {}, .refused = {}, .ticks = 801};
-  row.measure.fill(1.0);
-  row.measure[kSettling] = settling_s;
-  return row;
-}
 
 TEST(BenchmarkPlan, RunsEveryLawInEveryScenarioWithEverySeed) {
   for (const BenchmarkKind kind : kKinds) {
@@ -49,7 +31,35 @@ TEST(BenchmarkPlan, RunsEveryLawInEveryScenarioWithEverySeed) {
     EXPECT_EQ(names.size(), plan.scenarios.size()) << Name(kind);
     EXPECT_EQ(BenchmarkKindNamed(Name(kind)), kind);
   }
-  EXPECT_THROW(BenchmarkKindNamed("pictures"), InputError);
+  EXPECT_THAT(MessageOf<InputError>([] { BenchmarkKindNamed("pictures"); }),
+              HasSubstr("expected one of commands, moves, limits"));
+}
+
+TEST(BenchmarkPlan, ALawThatThereIsNotIsRefusedBeforeARunIsMade) {
+  EXPECT_THROW(Plan("pid", "1"), ConfigError);
+}
+
+TEST(BenchmarkPlan, WithoutWishesTakesTheSetsLawsAndSeeds) {
+  const SweepPlan commands = Plan("", ""), moves = Plan("", "", BenchmarkKind::kMoves);
+  EXPECT_EQ(commands.grid.axes()[0].values, CommandLaws());
+  EXPECT_EQ(commands.grid.axes()[2].values, (std::vector<std::string>{"1", "2", "3"}));
+  EXPECT_EQ(commands.experiment.name, "benchmark-square") << "that of the nominal scenario";
+  EXPECT_EQ(moves.grid.axes()[2].values.front(), "4001");
+  EXPECT_EQ(moves.grid.axes()[2].values.size(), 10U);
+}
+
+TEST(BenchmarkSet, OfSomeScenariosHasThoseOnly) {
+  const BenchmarkSet set = Only(BenchmarkSetOf(BenchmarkKind::kMoves, Rig(), kExperiments),
+                                {"viscous", "nominal", "no such"});
+  ASSERT_EQ(set.scenarios.size(), 2U);
+  EXPECT_EQ(set.scenarios[0].name, "nominal");
+  EXPECT_EQ(set.scenarios[1].name, "viscous");
+}
+
+TEST(BenchmarkSet, OfTheLimitsTakesThemAwayOneByOneAndAllAtLast) {
+  const auto limits = BenchmarkSetOf(BenchmarkKind::kLimits, Rig(), kExperiments).scenarios;
+  EXPECT_EQ(limits.front().name, "nominal");
+  EXPECT_EQ(limits.back().name, "all");
 }
 
 TEST(BenchmarkPlan, ComparesTheLawsThatFindThePayloadOnMovesWithAllTheOthers) {
@@ -165,6 +175,37 @@ TEST(BenchmarkTable, TheScoreIsTheShareOfTheRestInWhichTheTipRests) {
   EXPECT_NE(table.WorstScenario(0), 0U);
 }
 
+// A score never falls below 0: the rests of benchmark-waypoints last 6.4 s, and a longer one than
+// the shortest may take longer to settle.
+TEST(BenchmarkTable, ARestThatTakesLongerThanTheShortestCountsNothing) {
+  const SweepPlan plan = Plan("sobel", "1..2");
+  const BenchmarkTable table = Table(plan, {Made(0, 7.7), Made(1, 0.0)});
+  EXPECT_NEAR(table.cell[0][0].score, (0.0 + 100.0) / 2.0, 1e-12);
+}
+
+TEST(BenchmarkJson, HasEveryRunAtItsLawAndScenario) {
+  const SweepPlan plan = Plan("sobel,pd", "1");
+  const std::size_t scenarios = plan.scenarios.size();
+  ASSERT_EQ(plan.scenarios[9].name, "waypoints");
+  const auto json = BenchmarkJson(Table(plan, OneEach(plan)));
+  ASSERT_EQ(json["laws"].size(), 2U);
+  const auto &sobel = json["laws"][0], &pd = json["laws"][1];
+  EXPECT_EQ(sobel["name"], "sobel");
+  EXPECT_EQ(sobel["runs"], scenarios);
+  EXPECT_EQ(sobel["completed"], scenarios - 1);
+  EXPECT_EQ(sobel["worst_scenario"], plan.scenarios[3].name);
+  EXPECT_EQ(sobel["worst_score"], 0.0);
+  EXPECT_EQ(sobel["scenarios"]["nominal"]["score"], 90.0);
+  EXPECT_EQ(pd["completed"], scenarios);
+  EXPECT_EQ(pd["worst_scenario"], "waypoints");
+  EXPECT_NEAR(pd["worst_score"].get<double>(), 25.0, 1e-12);
+  EXPECT_NEAR(pd["scenarios"]["waypoints"]["score"].get<double>(), 25.0, 1e-12);
+  EXPECT_NEAR(pd["scenarios"]["nominal"]["score"].get<double>(), 80.0, 1e-12);
+  double sum = 0.0;
+  for (const auto& scenario : pd["scenarios"]) sum += scenario["score"].get<double>();
+  EXPECT_NEAR(pd["score"].get<double>(), sum / static_cast<double>(scenarios), 1e-12);
+}
+
 TEST(BenchmarkJson, TellsATripFromARefusal) {
   std::vector<SweepRow> rows = {Made(0, 1.4), Made(1, 1.4)};
   rows[0].completed = rows[1].completed = false;
@@ -174,28 +215,6 @@ TEST(BenchmarkJson, TellsATripFromARefusal) {
   const auto& nominal = json["laws"][0]["scenarios"]["nominal"];
   EXPECT_EQ(nominal["trips"], nlohmann::ordered_json({"strain-limit"}));
   EXPECT_EQ(nominal["refused"], nlohmann::ordered_json({"no such design"}));
-}
-
-TEST(BenchmarkPage, SaysNeverAndHowManyCompleted) {
-  const SweepPlan plan = Plan("sobel", "1..2");
-  std::vector<SweepRow> rows = {Made(0, std::nan("")), Made(1, std::nan(""))};
-  rows[1].completed = false;
-  const std::string page = BenchmarkMarkdown(Table(plan, rows));
-  EXPECT_NE(page.find("never (1/2)"), std::string::npos) << page;
-}
-
-// Five runs: at once, late, never, one that tripped, and one at the limit.
-std::vector<SweepRow> FiveRuns() {
-  std::vector<SweepRow> rows = {Made(0, 0.0), Made(1, 0.32), Made(2, std::nan("")), Made(3, 0.0),
-                                Made(4, 0.3)};
-  rows[0].measure[kResidual] = 2.0;
-  rows[0].measure[kMotion] = 5.0;
-  rows[1].measure[kRms1] = 3.0;
-  rows[2].measure[kRms2] = 9.0;
-  rows[3].completed = false;
-  rows[3].trip = "bending-strain-1";
-  rows[3].measure.fill(1000.0);
-  return rows;
 }
 
 TEST(RestFigures, AreOverTheCompletedRuns) {
@@ -208,6 +227,10 @@ TEST(RestFigures, AreOverTheCompletedRuns) {
   EXPECT_EQ(figures.motion_max_mm, 5.0);
   EXPECT_NEAR(figures.rms_mean_deg[0], 6.0 / 4.0, 1e-12);
   EXPECT_NEAR(figures.rms_mean_deg[1], 12.0 / 4.0, 1e-12);
+}
+
+TEST(RestFigures, HaveTheLatestOfAllSettlingTimes) {
+  EXPECT_EQ(RestFiguresOf({Made(0, 0.1), Made(1, 0.5), Made(2, 0.0)}).latest_settling_s, 0.5);
 }
 
 TEST(RestFigures, OfNoCompletedRunAreNone) {
@@ -228,27 +251,11 @@ TEST(BenchmarkJson, HasTheFiguresOfTheRests) {
   EXPECT_EQ(nominal["completed"], 4);
   EXPECT_EQ(nominal["settled_in_time"], 2);
   EXPECT_TRUE(nominal["latest_settling_s"].is_null());
+  EXPECT_EQ(nominal["residual_mean_mm"], 1.25);
   EXPECT_EQ(nominal["residual_max_mm"], 2.0);
   EXPECT_EQ(nominal["motion_mean_mm"], 2.0);
+  EXPECT_EQ(nominal["motion_max_mm"], 5.0);
   EXPECT_EQ(nominal["rms_mean_deg"], nlohmann::ordered_json({1.5, 3.0}));
-}
-
-// The rests of random moves last 1.5 s: settling at once and after 0.3 and 0.32 s.
-TEST(BenchmarkPage, OfTheMovesCountsWhatSettledInTime) {
-  const SweepPlan plan = Plan("sobel", "1..5", BenchmarkKind::kMoves);
-  const BenchmarkTable table = Table(plan, FiveRuns(), BenchmarkKind::kMoves);
-  EXPECT_NEAR(table.cell[0][0].score, 100.0 * (1.0 + 1.18 / 1.5 + 1.2 / 1.5) / 5.0, 1e-12);
-  const std::string page = BenchmarkMarkdown(table);
-  EXPECT_NE(page.find("| nominal | 0 to 1 kg | 2/5, 1.2 (4/5) |"), std::string::npos) << page;
-  EXPECT_NE(page.find("| 2/5 | never | 1.2 2.0 | 2.0 5.0 | 1.50 3.00 |"), std::string::npos)
-      << page;
-}
-
-TEST(BenchmarkPage, SaysRefusedWhereNoRunWasMade) {
-  const SweepPlan plan = Plan("sobel", "1", BenchmarkKind::kMoves);
-  const std::string page =
-      BenchmarkMarkdown(Table(plan, {RefusedRow(0, "a move is too short")}, BenchmarkKind::kMoves));
-  EXPECT_NE(page.find("| nominal | 0 to 1 kg | refused |"), std::string::npos) << page;
 }
 
 // The study: nominal 100 %, motion 1.1 mm, rms 0.89 2.14 deg, of which 20 % more still count.
