@@ -23,6 +23,11 @@ constexpr double kMostFading = 30.0;
 
 constexpr int kMostGlitches = 2;
 
+// After a load is taken for dropped, standard deviations: of what is left of it, little, so that
+// the first samples do not throw the estimate about; of what the wrong load has done to the hubs.
+constexpr double kDroppedPayload_kg = 0.1;
+constexpr double kDroppedAngle_rad = 3e-3, kDroppedRate_rad_s = 0.1;
+
 // Of an output that was not read, with no innovation: far more than any, so that it says nothing.
 constexpr double kUnreadVariance = 1e12;
 
@@ -77,8 +82,23 @@ void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
 
 void PayloadFilter::BeginMove() noexcept {
   learns_ = true;
+  estimate_.payload_kg = std::max(estimate_.payload_kg, config_.payload_start_kg);
   P_(kPayload, kPayload) = std::max(P_(kPayload, kPayload), Square(config_.payload_move_sigma_kg));
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
+}
+
+void PayloadFilter::TakeLoadForDropped() noexcept {
+  if (!learns_) return;
+  P_.row(kPayload).setZero();
+  P_.col(kPayload).setZero();
+  P_(kPayload, kPayload) = Square(kDroppedPayload_kg);
+  estimate_.payload_kg = 0.0;
+  estimate_.payload_sigma_kg = kDroppedPayload_kg;
+  for (int hub = 0; hub < 2; ++hub) {
+    P_(hub, hub) += Square(kDroppedAngle_rad);
+    P_(RigidJointArm::kDof + hub, RigidJointArm::kDof + hub) += Square(kDroppedRate_rad_s);
+  }
+  mean_nis_ = kOutputs;
 }
 
 const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,

@@ -92,6 +92,10 @@ class PayloadFilter {
   /// A move starts: the payload may be another than before, and is learnt.
   void BeginMove() noexcept;
 
+  /// The model has been contradicted: the load is taken for dropped, and found anew from nothing.
+  /// It is the likely cause, and the safe one: what moves an empty arm does little to a heavy one.
+  void TakeLoadForDropped() noexcept;
+
   /// The arm has come to rest: payload and friction are learnt no more until the next move. Counts
   /// that flicker look like motion to a filter that has grown unsure, and would drag both.
   void EndMove() noexcept { learns_ = false; }

@@ -139,7 +139,9 @@ struct ControlStep::Stages {
     const std::optional<double> tip_m_s2 =
         tip_accelerometer ? TipReading(frame, *tip_accelerometer) : std::nullopt;
     const PayloadFilter::Estimate& found = payload->Update(counters, modes, applied, tip_m_s2);
-    known = payload_supervisor->Judge(found, payload->mean_nis(), move.moving());
+    const double mean_nis = payload->mean_nis();
+    if (ContradictsModel(mean_nis)) payload->TakeLoadForDropped();
+    known = payload_supervisor->Judge(found, mean_nis, move.moving());
     StateEstimator::Estimate out{.x = payload->Now(), .innovation = {}};
     std::copy_n(found.innovation.data(), found.innovation.size(), out.innovation.begin());
     return out;

@@ -8,6 +8,12 @@ inline constexpr double kPayloadUncertain_kg = 0.1;
 /// From this mean NIS on, of 8 outputs, the filter's model is wrong, and what it finds with it.
 inline constexpr double kModelWrongNis = 60.0;
 
+/// The sensors say that the filter's model is wrong. Real-time: safe.
+/// @param mean_nis  as PayloadFilter's
+inline constexpr bool ContradictsModel(double mean_nis) noexcept {
+  return mean_nis > kModelWrongNis;
+}
+
 /// The payload for which the gains of a GainTable are taken, kg: the estimate, or less.
 ///
 /// Gains for a light arm are stable on a heavy one, gains for a heavy arm are not on a light one:

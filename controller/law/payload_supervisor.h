@@ -21,13 +21,13 @@ struct PayloadKnowledge {
 /// Judges the payload that is found.
 ///
 /// Bound and model are judged anew at every sample. Whether a move has shown the payload is judged
-/// once, when it ends, and holds until the next one begins: the standard deviation that a move
-/// leaves is then compared with that which it was opened to. At rest it only grows, by the
-/// payload's walk, and says nothing about the move. Real-time: safe.
+/// once, when it ends, and holds until the next one begins: a payload that is as good as unknown
+/// then (kPayloadUncertain_kg). At rest the standard deviation only grows, by the payload's walk,
+/// and says nothing about the move. Real-time: safe.
 class PayloadSupervisor {
  public:
   explicit PayloadSupervisor(const PayloadEstimatorConfig& config) noexcept
-      : max_kg_(config.max_kg), move_sigma_kg_(config.move_sigma_kg) {}
+      : max_kg_(config.max_kg) {}
 
   void Reset() noexcept { moving_ = not_found_ = false; }
 
@@ -39,12 +39,12 @@ class PayloadSupervisor {
     if (moving) {
       not_found_ = false;
     } else if (moving_) {
-      not_found_ = found.payload_sigma_kg >= move_sigma_kg_;
+      not_found_ = found.payload_sigma_kg >= kPayloadUncertain_kg;
     }
     moving_ = moving;
     std::uint32_t doubts = 0;
     if (found.payload_kg >= max_kg_) doubts |= kPayloadAtBound;
-    if (mean_nis > kModelWrongNis) doubts |= kPayloadModelMismatch;
+    if (ContradictsModel(mean_nis)) doubts |= kPayloadModelMismatch;
     if (not_found_) doubts |= kPayloadNotFound;
     return {.payload_kg = found.payload_kg,
             .payload_sigma_kg = found.payload_sigma_kg,
@@ -54,7 +54,7 @@ class PayloadSupervisor {
   }
 
  private:
-  double max_kg_, move_sigma_kg_;
+  double max_kg_;
   bool moving_ = false, not_found_ = false;
 };
 

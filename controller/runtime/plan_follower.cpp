@@ -14,7 +14,7 @@ void PlanFollower::Start(std::uint32_t run) noexcept {
 
 std::optional<PlanSample> PlanFollower::At(int sample, std::int64_t due_ns) noexcept {
   const MotionPlan& motion = plans_->Read().At(due_ns).value;
-  if (motion.run != request_.run) return {};
+  if (motion.run != request_.run || motion.number < request_.valid_from) return {};
   const std::optional<PlanEntry> entry = motion.plan.At(sample);
   if (!entry) return {};
   PlanSample out{};
@@ -26,6 +26,10 @@ std::optional<PlanSample> PlanFollower::At(int sample, std::int64_t due_ns) noex
 void PlanFollower::Ask(int sample, std::int64_t due_ns, const ReferenceTable& reference,
                        const StepOutput& output) noexcept {
   const int first = sample + schedule_.ready;
+  if ((output.payload_doubts & kPayloadModelMismatch) != 0) {
+    request_.valid_from = request_.number + 1;
+    next_ask_ = first;
+  }
   const std::vector<Stretch>& all = reference.stretches();
   // The motion that is on at `first`, or was on last.
   const auto next = std::upper_bound(all.begin(), all.end(), first,

@@ -23,6 +23,7 @@ struct PlanRequest {
 
   std::uint32_t number;      ///< ascending; 0: none yet
   std::uint32_t run;         ///< PlannedRun::number
+  std::uint32_t valid_from;  ///< plans of requests before this one are void: of another load
   int stretch;               ///< first sample of the motion: plans of another one are no start
   int sample;                ///< of `x`
   int first;                 ///< sample from which the plan is to hold
@@ -37,7 +38,8 @@ struct PlanRequest {
 /// Planner -> control task. Holds from PlanRequest::needed_ns on.
 struct MotionPlan {
   std::uint32_t run;
-  HorizonPlan plan;  ///< by samples; empty: the closed form is to take over
+  std::uint32_t number;  ///< of the request it answers
+  HorizonPlan plan;      ///< by samples; empty: the closed form is to take over
 };
 
 using PlanRequestChannel = LatestValue<PlanRequest>;

@@ -60,6 +60,8 @@ void PlannerTask::Run(const Activation& /*activation*/) noexcept {
   std::transform(request.path.begin(), request.path.begin() + request.points, path_.begin(),
                  [](const RigidPoint& point) { return InTermsOfTheMap(point); });
 
+  if (newest_.run != request.run || newest_.number < request.valid_from) newest_.plan.Begin(0, 0.0);
+
   const int periods = request.first - request.sample;
   const Start start = Predict(request, periods);
   const bool continues = newest_.run == request.run && stretch_ == request.stretch;
@@ -79,6 +81,7 @@ void PlannerTask::Run(const Activation& /*activation*/) noexcept {
     return;
   }
   newest_.run = request.run;
+  newest_.number = request.number;
   stretch_ = request.stretch;
   Publish(request.needed_ns);
 }
@@ -93,10 +96,8 @@ PlannerTask::Start PlannerTask::Predict(const PlanRequest& request, int periods)
                                                 path_[static_cast<std::size_t>(i) + 1],
                                                 path_[static_cast<std::size_t>(i) + 2]};
     QuasiStaticSample desired = law_.ClosedForm(known.payload_kg, path);
-    if (newest_.run == request.run) {
-      const auto entry = newest_.plan.At(request.sample + i);
-      if (entry) desired = {.x = entry->x, .torque_nm = entry->torque_nm};
-    }
+    const auto entry = newest_.plan.At(request.sample + i);
+    if (entry) desired = {.x = entry->x, .torque_nm = entry->torque_nm};
     at.torque_before_nm = law_.Torque(at.x, known, desired, 0.0)
                               .cwiseMax(-torque_limit_nm_)
                               .cwiseMin(torque_limit_nm_);

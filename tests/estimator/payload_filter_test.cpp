@@ -303,6 +303,49 @@ TEST(PayloadFilter, AMoveOpensThePayloadAgain) {
   EXPECT_DOUBLE_EQ(filter.estimate().payload_sigma_kg, 0.1);
 }
 
+// A model of a light arm answers a torque so much more than one of a heavy arm that a filter sure
+// of no load would find a fraction of a kilogram, and be sure of that.
+TEST(PayloadFilter, NoMoveBeginsLighterThanTheFirst) {
+  for (const double payload_kg : {0.0, 0.6}) {
+    Plant plant(RigWith(payload_kg));
+    PayloadFilter filter = StudyFilter();
+    for (int k = 0; k < 140; ++k) {
+      filter.Update(Held(MoveTorque(k)),
+                    {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
+    }
+    const double found_kg = filter.estimate().payload_kg;
+    ASSERT_NEAR(found_kg, payload_kg, 0.05);
+    filter.BeginMove();
+    EXPECT_EQ(filter.estimate().payload_kg,
+              payload_kg == 0.0 ? StudyPayload().payload_start_kg : found_kg);
+  }
+}
+
+// The load is there all the same: taken for dropped, it is found again.
+TEST(PayloadFilter, ALoadTakenForDroppedIsFoundAgainFromNothing) {
+  Plant plant(RigWith(0.6));
+  PayloadFilter filter = StudyFilter();
+  const auto sample = [&](int k) {
+    filter.Update(Held(MoveTorque(k)),
+                  {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
+  };
+  for (int k = 0; k < 140; ++k) sample(k);
+  ASSERT_NEAR(filter.estimate().payload_kg, 0.6, 0.05);
+  const PayloadFilter::Estimate before = filter.estimate();
+  filter.TakeLoadForDropped();
+  EXPECT_EQ(filter.estimate().payload_kg, 0.0);
+  EXPECT_EQ(filter.estimate().payload_sigma_kg, 0.1);
+  EXPECT_EQ(filter.estimate().state.q, before.state.q);
+  EXPECT_EQ(filter.estimate().friction_nm, before.friction_nm);
+  EXPECT_EQ(filter.mean_nis(), 8.0) << "what contradicted is dealt with";
+  for (int k = 140; k < 280; ++k) sample(k);
+  EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.05);
+
+  filter.EndMove();
+  filter.TakeLoadForDropped();
+  EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.05) << "at rest somebody leans on the arm";
+}
+
 TEST(PayloadFilter, LearnsNothingOfTheArmBetweenTwoMoves) {
   Plant plant(RigWith(0.6));
   PayloadFilter filter = StudyFilter();

@@ -144,6 +144,74 @@ TEST(BenchmarkPlan, TheControllerKnowsItsSensorsAndNotThePlant) {
   }
 }
 
+SimulationRequest RequestOf(const SweepPlan& plan, const std::string& name) {
+  for (std::size_t point = 0; point < plan.scenarios.size(); ++point) {
+    if (plan.scenarios[point].name == name) return RequestAt(plan, point);
+  }
+  throw InputError("no scenario " + name);
+}
+
+// The rig that is simulated in a scenario.
+Config PlantOf(const SweepPlan& plan, const std::string& name) {
+  const SimulationRequest request = RequestOf(plan, name);
+  return request.plant ? *request.plant : request.config;
+}
+
+// A name with another plant behind it would be another situation too.
+TEST(BenchmarkPlan, AScenarioIsWhatItsNameSays) {
+  const SweepPlan plan = Plan("sobel", "1");
+  const Config& rig = Rig();
+  for (const char* payload : {"0", "0.01", "0.05", "0.15", "0.2", "0.5", "1"}) {
+    EXPECT_EQ(RequestOf(plan, std::string("payload-") + payload).payload_kg, std::stod(payload));
+  }
+  EXPECT_EQ(RequestOf(plan, "sine").experiment.name, "benchmark-sine");
+  EXPECT_EQ(RequestOf(plan, "waypoints-0.5").experiment.name, "benchmark-waypoints");
+  EXPECT_EQ(RequestOf(plan, "unseen").experiment.name, "benchmark-unseen");
+  EXPECT_EQ(PlantOf(plan, "noise-x3").sensors.strain_input.noise_counts,
+            3.0 * rig.sensors.strain_input.noise_counts);
+  EXPECT_EQ(PlantOf(plan, "lost-frames").sim.lost_frame_fraction, 0.1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const JointParameters& joint = rig.arm.joint[i];
+    EXPECT_NEAR(PlantOf(plan, "soft-joints").arm.joint[i].stiffness_nm_per_rad,
+                0.7 * joint.stiffness_nm_per_rad, 1e-9);
+    EXPECT_NEAR(PlantOf(plan, "soft-links").arm.link[i].section[0].youngs_modulus_pa,
+                0.9 * rig.arm.link[i].section[0].youngs_modulus_pa, 1.0);
+    EXPECT_NEAR(PlantOf(plan, "friction-x3").arm.joint[i].coulomb_friction_nm,
+                3.0 * joint.coulomb_friction_nm, 1e-12);
+  }
+  EXPECT_NEAR(PlantOf(plan, "backlash").arm.joint2_backlash.clearance_rad, M_PI / 180.0, 1e-6);
+  for (const char* late : {"delay-2", "delay-2-unknown"}) {
+    EXPECT_EQ(PlantOf(plan, late).sim.transport_delay_ms, 20.0) << late;
+  }
+  EXPECT_EQ(RequestOf(plan, "delay-2").config.loop.actuation_delay_ms, 20.0);
+  EXPECT_EQ(RequestOf(plan, "delay-2-unknown").config.loop.actuation_delay_ms, 0.0);
+}
+
+TEST(BenchmarkPlan, AScenarioOfTheMovesIsWhatItsNameSaysOnTheWiderRig) {
+  const SweepPlan moves = Plan("gain-scheduled", "4001", BenchmarkKind::kMoves);
+  const SweepPlan limits = Plan("gain-scheduled", "4001", BenchmarkKind::kLimits);
+  for (const Scenario& scenario : moves.scenarios) {
+    EXPECT_EQ(PlantOf(moves, scenario.name).sim.switch_angle_deg[1], 115.0) << scenario.name;
+  }
+  const auto& viscous = PlantOf(moves, "viscous").arm.joint;
+  EXPECT_EQ(viscous[0].viscous_friction_nm_s_per_rad, 0.05);
+  EXPECT_EQ(viscous[1].viscous_friction_nm_s_per_rad, 0.02);
+  EXPECT_NEAR(PlantOf(moves, "backlash-0.2").arm.joint2_backlash.clearance_rad, 0.2 * M_PI / 180.0,
+              1e-6);
+  EXPECT_EQ(PlantOf(moves, "modal-damping-1").arm.link[1].damping_ratio, 0.01);
+  for (const SweepPlan* plan : {&moves, &limits}) {
+    for (const JointParameters& joint : PlantOf(*plan, "no-friction").arm.joint) {
+      EXPECT_EQ(joint.coulomb_friction_nm, 0.0);
+    }
+  }
+  for (const char* quiet : {"quiet-gauges", "encoders-quiet", "all"}) {
+    EXPECT_EQ(PlantOf(limits, quiet).sensors.strain_input.noise_counts, 0.0) << quiet;
+  }
+  for (const char* finer : {"encoders-x10", "encoders-quiet", "no-friction-encoders", "all"}) {
+    EXPECT_EQ(PlantOf(limits, finer).sensors.encoder[1].counts_per_turn, 25400.0) << finer;
+  }
+}
+
 TEST(BenchmarkPlan, AScenarioChangesThePlantAndNotTheController) {
   const SweepPlan plan = Plan("sobel", "1");
   for (std::size_t point = 0; point < plan.grid.size(); ++point) {

@@ -68,6 +68,7 @@ class PlanFollowerTest : public testing::Test {
   void Publish(std::uint32_t run, int first, double angle_rad, std::int64_t from_ns) {
     auto motion = std::make_unique<MotionPlan>();
     motion->run = run;
+    motion->number = requests_->Read().number;
     motion->plan.Begin(first, 0.3);
     for (int k = 0; k < 20; ++k) {
       motion->plan.Append({.x = Eigen::Matrix<double, 12, 1>::Constant(angle_rad + k),
@@ -176,6 +177,24 @@ TEST_F(PlanFollowerTest, TakesNoPlanOfAnotherRun) {
   follower_.Start(8);
   EXPECT_FALSE(follower_.At(62, 62 * kPeriodNs));
   EXPECT_EQ(AskedBetween(62, 62).at(0).run, 8u) << "and asks for one of its own";
+}
+
+// A plan that was asked for before is not taken even if it comes after.
+TEST_F(PlanFollowerTest, WhereTheModelIsContradictedThePlansAreVoidAndANewOneIsAskedFor) {
+  const std::uint32_t before = AskedBetween(45, 55).back().number;
+  Publish(7, 60, 0.5, 60 * kPeriodNs);
+  ASSERT_TRUE(follower_.At(62, 62 * kPeriodNs));
+  StepOutput dropped = AnOutput();
+  dropped.payload_doubts = kPayloadModelMismatch;
+  follower_.Ask(62, 62 * kPeriodNs, TwoMoves(), dropped);
+  const PlanRequest& request = requests_->Read();
+  EXPECT_EQ(request.number, before + 1);
+  EXPECT_EQ(request.first, 67);
+  EXPECT_EQ(request.valid_from, request.number);
+  EXPECT_FALSE(follower_.At(63, 63 * kPeriodNs));
+  Publish(7, 67, -0.5, 67 * kPeriodNs);
+  EXPECT_EQ(follower_.At(67, 67 * kPeriodNs).value().x[0], -0.5);
+  EXPECT_EQ(AskedBetween(63, 77).at(1).first, 77) << "then every ten";
 }
 
 TEST_F(PlanFollowerTest, NothingAllocates) {

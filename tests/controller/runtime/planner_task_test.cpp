@@ -60,8 +60,9 @@ class PlannerTaskTest : public testing::Test {
   }
 
   // The control task asks at a sample, and the planner runs.
-  void AskAt(int sample, const PlanState& x, double payload_kg) {
+  void AskAt(int sample, const PlanState& x, double payload_kg, std::uint32_t doubts = 0) {
     StepOutput output{};
+    output.payload_doubts = doubts;
     PlanState::Map(output.x_next.data()) = x;
     output.payload_kg = payload_kg;
     output.mean_nis = 8.0;
@@ -205,6 +206,16 @@ TEST_F(PlannerTaskTest, InAnotherRunItIsLedByTheClosedForm) {
   follower_->Start(2);
   const PlanState beside = ClosedForm(kFirst + 5).x + PlanState::Constant(1e-3);
   AskAt(kFirst + 5, beside, 0.3);
+  const PlanState expected = FiveSamplesAfter(kFirst + 5, beside, ClosedForm);
+  EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_F(PlannerTaskTest, WhereTheModelIsContradictedTheOldPlanIsNoGuide) {
+  Make();
+  AskAt(kFirst - 5, PlanState::Zero(), 0.31);
+  const PlanState beside = ClosedForm(kFirst + 5).x + PlanState::Constant(1e-3);
+  AskAt(kFirst + 5, beside, 0.3, kPayloadModelMismatch);
+  EXPECT_FALSE(planner_->figures().warm);
   const PlanState expected = FiveSamplesAfter(kFirst + 5, beside, ClosedForm);
   EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
