@@ -24,7 +24,8 @@ PlantTask::PlantTask(const StackConfig& config, double payload_kg, PlantChannels
               .slew_nm_per_s = config.safety.slew_limit_nm_per_s,
               .command_timeout_ns = 2 * grid_.period_ns,
               .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
-      transport_delay_ns_(std::llround(config.sim.transport_delay_ms * 1e6)),
+      drive_{.delay_ns = std::llround(config.sim.transport_delay_ms * 1e6)},
+      reported_{.delay_ns = grid_.actuation_ns},
       channels_(channels) {
   StartFrame(0);
   PublishFrame();
@@ -55,29 +56,31 @@ void PlantTask::Run(const Activation& activation) noexcept {
 }
 
 void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
-  applied_nm_ = Drive(start_ns);
-  rig_.SetTorque(applied_nm_);
+  const bool enabled = Enabled(start_ns);
+  LetThrough(start_ns, enabled, &drive_);
+  LetThrough(start_ns, enabled, &reported_);
+  rig_.SetTorque(drive_.torque_nm);
   for (std::int64_t t = 0; t < kPeriodNs; t += rig_.step_ns()) rig_.Step();
-  for (std::size_t i = 0; i < 2; ++i) applied_sum_nm_[i] += applied_nm_[i];
+  for (std::size_t i = 0; i < 2; ++i) applied_sum_nm_[i] += reported_.torque_nm[i];
   ++applied_slices_;
 }
 
 // The slew limit counts from command to command: between two commands the drive holds its
 // set-point.
-std::array<double, 2> PlantTask::Drive(std::int64_t start_ns) noexcept {
-  const std::int64_t acting_ns = start_ns - transport_delay_ns_;
+void PlantTask::LetThrough(std::int64_t start_ns, bool enabled, Drive* drive) noexcept {
+  const std::int64_t acting_ns = start_ns - drive->delay_ns;
   const CommandHistory::Entry& command = channels_.commands->Read().At(acting_ns);
   const Permit& permit = channels_.permits->Read().At(start_ns).value;
-  const bool fresh = command.from_ns != command_acts_ns_;
-  command_acts_ns_ = command.from_ns;
+  const bool fresh = command.from_ns != drive->command_acts_ns;
+  drive->command_acts_ns = command.from_ns;
   const GateResult gated = Gate({.asked_nm = command.value.torque_nm,
                                  .asked_age_ns = AgeNs(acting_ns, command.from_ns),
                                  .permit = permit.state,
                                  .permit_age_ns = AgeNs(start_ns, permit.renewed_ns),
-                                 .previous_nm = applied_nm_,
+                                 .previous_nm = drive->torque_nm,
                                  .dt_s = fresh ? grid_.period_s() : 0.0},
                                 limits_);
-  return Enabled(start_ns) ? gated.torque_nm : std::array<double, 2>{};
+  drive->torque_nm = enabled ? gated.torque_nm : std::array<double, 2>{};
 }
 
 bool PlantTask::Enabled(std::int64_t start_ns) noexcept {

@@ -38,8 +38,10 @@ struct PlantChannels {
 /// acts, through the gate on the permit of s, and nothing if the relay is open or the charge pump
 /// has not toggled for 5 ms. The slice is integrated when it is over, so everybody had a
 /// millisecond to publish what holds at its start. Frames are taken at exactly k Ts; a lost one
-/// holds no reading, as after an exchange of a bus that failed, and the drive goes on. A late
-/// thread catches up: the simulated world does not lose time. Real-time: safe after construction.
+/// holds no reading, as after an exchange of a bus that failed, and the drive goes on. What it
+/// reports of torques is what a bus knows: through the same gate, after the delay that is declared
+/// (`loop.actuation_delay_ms`), whatever `sim.transport_delay_ms` is. A late thread catches up: the
+/// simulated world does not lose time. Real-time: safe after construction.
 class PlantTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -56,8 +58,15 @@ class PlantTask final : public Task {
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
  private:
+  // A drive that commands reach after a delay.
+  struct Drive {
+    std::int64_t delay_ns;
+    std::array<double, 2> torque_nm{};
+    std::int64_t command_acts_ns = INT64_MIN;  // of the command that the gate saw last
+  };
+
   void AdvanceSlice(std::int64_t start_ns) noexcept;
-  std::array<double, 2> Drive(std::int64_t start_ns) noexcept;
+  void LetThrough(std::int64_t start_ns, bool enabled, Drive* drive) noexcept;
   bool Enabled(std::int64_t start_ns) noexcept;
   void HandleEvents(std::int64_t now_ns) noexcept;
   void StartFrame(std::int64_t now_ns) noexcept;
@@ -67,7 +76,8 @@ class PlantTask final : public Task {
   FrameLoss loss_;
   LoopGrid grid_;
   GateLimits limits_;
-  std::int64_t transport_delay_ns_;
+  Drive drive_;      // what moves the plant
+  Drive reported_;   // what it would be with the delay that is declared
   PlannedRun plan_;  // of the run that began at run_since_ns_
   std::int64_t run_since_ns_ = INT64_MIN;
   std::size_t next_event_ = 0;
@@ -76,9 +86,7 @@ class PlantTask final : public Task {
 
   std::int64_t now_ns_ = 0;  // the plant has been integrated up to here
   bool frozen_ = false;
-  std::array<double, 2> applied_nm_{};
-  std::int64_t command_acts_ns_ = INT64_MIN;  // of the command that the gate saw last
-  std::array<double, 2> applied_sum_nm_{};
+  std::array<double, 2> applied_sum_nm_{};  // as reported
   int applied_slices_ = 0;
   FramePacket packet_{};  // of the last sampling instant, until its readings are there
   std::int64_t packet_ns_ = 0;

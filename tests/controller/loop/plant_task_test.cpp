@@ -166,6 +166,22 @@ TEST(PlantTaskPayload, ItActsFromItsInstantOn) {
   EXPECT_EQ(first->input.sampling_instant_ns, changed->ExperimentStart() + 420 * kMs);
 }
 
+class LatePlantTaskTest : public PlantTaskTest {
+ protected:
+  LatePlantTaskTest()
+      : PlantTaskTest({"sim.transport_delay_ms=40", "loop.actuation_delay_ms=20"}) {}
+};
+
+// Commands from 0 ms on; declared to act 20 ms later, they act 40 ms later. What is told of the arm
+// itself is true.
+TEST_F(LatePlantTaskTest, ADelayThatIsNotDeclaredIsNotReportedEither) {
+  EXPECT_EQ(RunTo(20 * kMs, {}), 0.0);
+  EXPECT_EQ(RunTo(40 * kMs, {}), 2.0);
+  EXPECT_EQ(frames_.Read().At(40 * kMs).value.truth.hub_angle_rad[0], 0.0);
+  EXPECT_EQ(RunTo(60 * kMs, {}), 2.0);
+  EXPECT_GT(frames_.Read().At(60 * kMs).value.truth.hub_angle_rad[0], 0.0);
+}
+
 class LossyPlantTaskTest : public PlantTaskTest {
  protected:
   LossyPlantTaskTest() : PlantTaskTest({"sim.lost_frame_fraction=0.5"}) {}
