@@ -35,6 +35,7 @@ struct PayloadEstimatorConfig {
   double play_threshold_counts;    ///< of hub 2: rotor 2 further away than this is play in the gear
   double play_memory;              ///< share of the largest such distance kept after a sample
   double gate_sigmas;              ///< a single output beyond this is a glitch
+  bool detect_delay;  ///< look for whole samples of delay that nobody knows of (delay_detector.h)
   /// Of an accelerometer at the tip: what the model lacks of its reading, added to its noise.
   /// Needed with [sensors.tip_accelerometer] only.
   std::optional<double> tip_extra_sigma_m_s2{};

@@ -28,6 +28,17 @@ double Quantum(const SensorConfig& sensors, int counter) {
   return 0.0;
 }
 
+PayloadFilter::Reading ReadingOf(const DecodedCounters& counters, const FittedModes& modes,
+                                 std::optional<double> tip_m_s2) noexcept {
+  PayloadFilter::Reading reading{.z = {}, .good = counters.good & 0b1111u, .tip_m_s2 = tip_m_s2};
+  for (std::size_t i = 0; i < 4; ++i) {
+    reading.z[static_cast<int>(i)] = counters.angle_rad[i];
+    reading.z[static_cast<int>(4 + i)] = modes.modal_m[i];
+    if (modes.valid[i / 2]) reading.good |= 1u << (4 + i);
+  }
+  return reading;
+}
+
 }  // namespace
 
 std::vector<double> PayloadModelConstants(const ArmParameters& arm, const SensorConfig& sensors,
@@ -85,19 +96,37 @@ const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& c
                                                         const FittedModes& modes,
                                                         const TorquePieces& applied,
                                                         std::optional<double> tip_m_s2) noexcept {
-  if (!started_) {
-    RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
-    q.head<2>() << counters.angle_rad[0], counters.angle_rad[1];
-    filter_.Reset(q);
-    started_ = true;
+  if (!started_) StartAt(counters);
+  return filter_.Update(applied, ReadingOf(counters, modes, tip_m_s2));
+}
+
+const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& counters,
+                                                        const FittedModes& modes,
+                                                        const TorqueByDelay& applied,
+                                                        std::optional<double> tip_m_s2) noexcept {
+  if (!started_) StartAt(counters);
+  const PayloadFilter::Reading reading = ReadingOf(counters, modes, tip_m_s2);
+  for (std::size_t d = 0; d < kDelays; ++d) rivals_[d].torque = applied[d].value_or(TorquePieces());
+  const PayloadFilter::Estimate& estimate =
+      filter_.Update(rivals_[delay_.index()].torque, reading, rivals_);
+  if (reading.good == 0) return estimate;
+  DelayDetector::Misfit misfit;
+  for (std::size_t d = 0; d < kDelays; ++d) {
+    if (applied[d]) misfit[d] = rivals_[d].nis;
   }
-  PayloadFilter::Reading reading{.z = {}, .good = counters.good & 0b1111u, .tip_m_s2 = tip_m_s2};
-  for (std::size_t i = 0; i < 4; ++i) {
-    reading.z[static_cast<int>(i)] = counters.angle_rad[i];
-    reading.z[static_cast<int>(4 + i)] = modes.modal_m[i];
-    if (modes.valid[i / 2]) reading.good |= 1u << (4 + i);
+  if (delay_.Take(misfit)) {
+    filter_.GiveWayTo(rivals_[delay_.index()]);
+    for (PayloadFilter::Rival& rival : rivals_) rival.apart.setZero();
   }
-  return filter_.Update(applied, reading);
+  return estimate;
+}
+
+void PayloadEstimator::StartAt(const DecodedCounters& counters) noexcept {
+  RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
+  q.head<2>() << counters.angle_rad[0], counters.angle_rad[1];
+  filter_.Reset(q);
+  for (PayloadFilter::Rival& rival : rivals_) rival.apart.setZero();
+  started_ = true;
 }
 
 std::array<double, 4> PayloadEstimator::ModalRates() const noexcept {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "estimator/counter_decoder.h"
+#include "estimator/delay_detector.h"
 #include "estimator/estimator_config.h"
 #include "estimator/payload_filter.h"
 #include "estimator/strain_fit.h"
@@ -35,12 +36,26 @@ class PayloadEstimator {
   /// @param model  as PayloadModelConstants
   PayloadEstimator(std::span<const double> model, const PayloadFilterConfig& config);
 
-  void Reset() noexcept { started_ = false; }
+  /// The delay found is forgotten as well: the torques act as known.
+  void Reset() noexcept {
+    started_ = false;
+    delay_.Reset();
+  }
 
   /// @param tip_m_s2  of the accelerometer at the tip (TipReading), if there is a reading
   const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
                                         const TorquePieces& applied,
                                         std::optional<double> tip_m_s2 = std::nullopt) noexcept;
+
+  /// The same with the torque of the delay that was found, and a look at whether another explains
+  /// the readings better. If so, what was learnt by now is forgotten.
+  /// @param applied  of the delay that was found there is one
+  const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
+                                        const TorqueByDelay& applied,
+                                        std::optional<double> tip_m_s2 = std::nullopt) noexcept;
+
+  /// Beyond the known delay, in samples.
+  int delay_found() const noexcept { return delay_.samples(); }
 
   /// A move starts: the payload may be another than before.
   void BeginMove() noexcept { filter_.BeginMove(); }
@@ -60,6 +75,8 @@ class PayloadEstimator {
   const RigidJointStepper& stepper() const noexcept { return filter_.stepper(); }
 
  private:
+  void StartAt(const DecodedCounters& counters) noexcept;
+
   static State StateOf(const GaugedState& x) noexcept {
     State out;
     out << x.q, x.v;
@@ -67,6 +84,8 @@ class PayloadEstimator {
   }
 
   PayloadFilter filter_;
+  DelayDetector delay_;
+  std::array<PayloadFilter::Rival, kDelays> rivals_;  // by delay; that which holds is the filter
   bool started_ = false;
 };
 

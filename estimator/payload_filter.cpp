@@ -59,13 +59,20 @@ PayloadFilter::PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfi
 }
 
 void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
-  estimate_ = {.state = {.q = q, .v = RigidJointArm::Vector::Zero(), .phi_f = q.tail<4>()},
-               .payload_kg = config_.payload_start_kg,
-               .payload_sigma_kg = config_.payload_start_sigma_kg,
-               .friction_nm = config_.friction_start_nm,
-               .nis = 0.0,
-               .innovation = Outputs::Zero(),
-               .tip_innovation_m_s2 = 0.0};
+  estimate_.state = {.q = q, .v = RigidJointArm::Vector::Zero(), .phi_f = q.tail<4>()};
+  estimate_.nis = 0.0;
+  estimate_.innovation.setZero();
+  estimate_.tip_innovation_m_s2 = 0.0;
+  ForgetAllButMotion();
+  mean_nis_ = kOutputs;
+  learns_ = true;
+  play_rad_ = 0.0;
+}
+
+void PayloadFilter::ForgetAllButMotion() noexcept {
+  estimate_.payload_kg = config_.payload_start_kg;
+  estimate_.payload_sigma_kg = config_.payload_start_sigma_kg;
+  estimate_.friction_nm = config_.friction_start_nm;
   P_.setZero();
   for (int i = 0; i < kMotion; ++i) {
     P_(i, i) = Square(config_.start_sigma[static_cast<std::size_t>(i)]);
@@ -75,9 +82,11 @@ void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
     P_(kFriction + i, kFriction + i) =
         Square(config_.friction_start_sigma_nm[static_cast<std::size_t>(i)]);
   }
-  mean_nis_ = kOutputs;
-  learns_ = true;
-  play_rad_ = 0.0;
+}
+
+void PayloadFilter::GiveWayTo(const Rival& rival) noexcept {
+  Add(rival.apart);
+  ForgetAllButMotion();
 }
 
 void PayloadFilter::BeginMove() noexcept {
@@ -102,16 +111,15 @@ void PayloadFilter::TakeLoadForDropped() noexcept {
 }
 
 const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
-                                                     const Reading& reading) noexcept {
-  Predict(torque);
+                                                     const Reading& reading,
+                                                     std::span<Rival> rivals) noexcept {
+  Predict(torque, rivals);
   estimate_.nis = 0.0;
   estimate_.innovation.setZero();
   if (reading.good != 0) {
-    const std::array<double, 2> torque_nm = torque.last_nm();
+    const Eigen::Vector2d torsion = Torsion(torque);
     Outputs y = reading.z;
-    for (std::size_t i = 0; i < 2; ++i) {
-      y[2 + static_cast<int>(i)] -= torque_nm[i] / config_.joint_stiffness_nm_per_rad[i];
-    }
+    y.segment<2>(2) -= torsion;
     const MotionVector x = Stacked(estimate_.state);
     Outputs e;
     Gain PHt;
@@ -131,12 +139,28 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
     estimate_.nis = e.dot(S_llt.solve(e));
     estimate_.innovation = e;
     mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
-    Correct(K, e, R);
+    for (Rival& rival : rivals) {
+      rival.innovation = e;
+      for (int i = 0; i < kOutputs; ++i) {
+        if ((reading.good >> i & 1u) == 0) continue;
+        rival.innovation[i] -= rival.apart[kSeen[static_cast<std::size_t>(i)]];
+        if (i == 2 || i == 3) rival.innovation[i] -= Torsion(rival.torque)[i - 2] - torsion[i - 2];
+      }
+      rival.nis = rival.innovation.dot(S_llt.solve(rival.innovation));
+    }
+    Correct(K, e, R, rivals);
   }
   estimate_.tip_innovation_m_s2 = 0.0;
-  if (reading.tip_m_s2) CorrectByTip(*reading.tip_m_s2, torque.last_nm());
+  if (reading.tip_m_s2) CorrectByTip(*reading.tip_m_s2, torque, rivals);
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
   return estimate_;
+}
+
+// What the torque at the end of the sample twists the joints by, rad.
+Eigen::Vector2d PayloadFilter::Torsion(const TorquePieces& torque) const noexcept {
+  const std::array<double, 2> torque_nm = torque.last_nm();
+  return {torque_nm[0] / config_.joint_stiffness_nm_per_rad[0],
+          torque_nm[1] / config_.joint_stiffness_nm_per_rad[1]};
 }
 
 GaugedState PayloadFilter::After(const TorquePieces& torque) const noexcept {
@@ -161,7 +185,7 @@ GaugedState PayloadFilter::Through(const TorquePieces& torque, double payload_kg
   return x;
 }
 
-void PayloadFilter::Predict(const TorquePieces& torque) noexcept {
+void PayloadFilter::Predict(const TorquePieces& torque, std::span<Rival> rivals) noexcept {
   const double payload_kg = estimate_.payload_kg;
   std::array<double, 2> friction_nm = estimate_.friction_nm;
   const GaugedState start = estimate_.state;
@@ -186,6 +210,15 @@ void PayloadFilter::Predict(const TorquePieces& torque) noexcept {
   const Matrix FP = F.lazyProduct(P_);
   P_ = FP.lazyProduct(F.transpose());
   AddProcessNoise(transition);
+
+  const std::array<double, 2> mean_nm = torque.mean_nm();
+  for (Rival& rival : rivals) {
+    const std::array<double, 2> other_nm = rival.torque.mean_nm();
+    const Eigen::Vector2d more(other_nm[0] - mean_nm[0], other_nm[1] - mean_nm[1]);
+    const Vector apart = F.lazyProduct(rival.apart);
+    rival.apart = apart;
+    rival.apart.head<kMotion>() += transition.G.leftCols<2>().lazyProduct(more);
+  }
 }
 
 void PayloadFilter::AddProcessNoise(const Transition& transition) noexcept {
@@ -228,11 +261,12 @@ PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Out
   return R;
 }
 
-void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation,
-                            const Outputs& variance) noexcept {
+void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance,
+                            std::span<Rival> rivals) noexcept {
   Gain K = optimal;
   if (!learns_payload()) K.row(kPayload).setZero();
   if (!learns_) K.bottomRows<2>().setZero();
+  for (Rival& rival : rivals) rival.apart += K.lazyProduct(rival.innovation - innovation);
   Add(K.lazyProduct(innovation));
   // P <- (I - K H) P (I - K H)' + K R K', right for any K.
   Matrix J = Matrix::Identity();
@@ -244,8 +278,9 @@ void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation,
   P_(kPayload, kPayload) = std::min(P_(kPayload, kPayload), Square(config_.payload_max_sigma_kg));
 }
 
-void PayloadFilter::CorrectByTip(double reading_m_s2,
-                                 const std::array<double, 2>& torque_nm) noexcept {
+void PayloadFilter::CorrectByTip(double reading_m_s2, const TorquePieces& torque,
+                                 std::span<Rival> rivals) noexcept {
+  const std::array<double, 2> torque_nm = torque.last_nm();
   const TipOutput shown = TipOutputAt(stepper_, config_.tip_lag_s, estimate_.state,
                                       {.torque_nm = {torque_nm[0], torque_nm[1]},
                                        .payload_kg = estimate_.payload_kg,
@@ -266,6 +301,14 @@ void PayloadFilter::CorrectByTip(double reading_m_s2,
   if (!learns_payload()) K[kPayload] = 0.0;
   if (!learns_) K.tail<2>().setZero();
   estimate_.tip_innovation_m_s2 = e;
+  for (Rival& rival : rivals) {
+    const std::array<double, 2> other_nm = rival.torque.last_nm();
+    double shown_apart = H.dot(rival.apart);
+    for (std::size_t i = 0; i < 2; ++i) {
+      shown_apart += shown.by_torque[i] * (other_nm[i] - torque_nm[i]);
+    }
+    rival.apart -= K * shown_apart;
+  }
   Add(K * e);
   // Joseph's form, as in Correct.
   const Matrix J = Matrix::Identity() - K.lazyProduct(H.transpose());

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "estimator/tip_output.h"
 #include "estimator/torque_pieces.h"
@@ -84,6 +85,15 @@ class PayloadFilter {
     double tip_innovation_m_s2;  ///< of the accelerometer; 0 without its reading
   };
 
+  /// A filter beside this one, with the same gains and readings but another torque, to first order:
+  /// the two differ by what the other torques did since they were one.
+  struct Rival {
+    TorquePieces torque;                      ///< during the sample
+    Eigen::Matrix<double, kStates, 1> apart;  ///< its state minus this filter's
+    Outputs innovation;                       ///< of the last reading
+    double nis;  ///< the same squared, by the covariance of this filter
+  };
+
   PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config);
 
   /// At rest at q, payload and friction unknown again.
@@ -100,8 +110,14 @@ class PayloadFilter {
   /// that flicker look like motion to a filter that has grown unsure, and would drag both.
   void EndMove() noexcept { learns_ = false; }
 
+  /// The rival's torques were the right ones: its motion is taken over. What was learnt came from
+  /// the wrong ones: payload, friction and all doubt are as at a start.
+  void GiveWayTo(const Rival& rival) noexcept;
+
   /// @param torque  really applied during the sample that ends with the reading
-  const Estimate& Update(const TorquePieces& torque, const Reading& reading) noexcept;
+  /// @param rivals  go on as well
+  const Estimate& Update(const TorquePieces& torque, const Reading& reading,
+                         std::span<Rival> rivals = {}) noexcept;
 
   const Estimate& estimate() const noexcept { return estimate_; }
 
@@ -118,15 +134,19 @@ class PayloadFilter {
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
   using Gain = Eigen::Matrix<double, kStates, kOutputs>;
 
-  void Predict(const TorquePieces& torque) noexcept;
+  void ForgetAllButMotion() noexcept;
+  void Add(const Vector& dx) noexcept;
+  Eigen::Vector2d Torsion(const TorquePieces& torque) const noexcept;
+  void Predict(const TorquePieces& torque, std::span<Rival> rivals) noexcept;
   void AddProcessNoise(const Transition& transition) noexcept;
   GaugedState Through(const TorquePieces& torque, double payload_kg,
                       const std::array<double, 2>& friction_nm) const noexcept;
   Outputs OutputVariance(const Outputs& y, const Outputs& innovation, std::uint32_t good) noexcept;
-  void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance) noexcept;
-  void CorrectByTip(double reading_m_s2, const std::array<double, 2>& torque_nm) noexcept;
+  void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance,
+               std::span<Rival> rivals) noexcept;
+  void CorrectByTip(double reading_m_s2, const TorquePieces& torque,
+                    std::span<Rival> rivals) noexcept;
   bool learns_payload() const noexcept;
-  void Add(const Vector& dx) noexcept;
 
   RigidJointStepper stepper_;
   PayloadFilterConfig config_;

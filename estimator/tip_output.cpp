@@ -9,6 +9,7 @@ using Vector = RigidJointArm::Vector;
 
 constexpr double kProbe = 1e-6;  // rad, m, rad/s, m/s
 constexpr double kPayloadProbe_kg = 1e-3;
+constexpr double kTorqueProbe_nm = 1e-3;
 
 // `by_s` earlier, under an acceleration that hardly changes meanwhile.
 GaugedState Before(const GaugedState& x, const Vector& a, double by_s) noexcept {
@@ -43,6 +44,9 @@ TipOutput TipOutputAt(const RigidJointStepper& stepper, double lag_s, const Gaug
     SampleInputs rougher = inputs;
     rougher.friction_nm[i] += friction_probe_nm[i];
     out.by_friction[i] = (shown(at, rougher) - out.m_s2) / friction_probe_nm[i];
+    SampleInputs stronger = inputs;
+    stronger.torque_nm[static_cast<int>(i)] += kTorqueProbe_nm;
+    out.by_torque[i] = (shown(at, stronger) - out.m_s2) / kTorqueProbe_nm;
   }
   return out;
 }

@@ -13,6 +13,7 @@ struct TipOutput {
   Eigen::Matrix<double, 2 * RigidJointArm::kDof, 1> by_motion;  ///< of q, q'
   double by_payload;                                            ///< m/s^2 a kg
   std::array<double, 2> by_friction;  ///< m/s^2 an N m, of hub 1 and hub 2
+  std::array<double, 2> by_torque;    ///< the same
 };
 
 /// The acceleration that an accelerometer with a lag shows of the model's motion.

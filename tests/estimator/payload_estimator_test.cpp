@@ -98,6 +98,85 @@ TEST(PayloadEstimator, PiecesOfTorqueActOneAfterTheOther) {
   EXPECT_EQ(estimator.After(mixed).tail<6>(), x.v);
 }
 
+// An arm that is just as the filter's model thinks, moved by torques that act `late` samples later
+// than is known.
+class LateArm {
+ public:
+  explicit LateArm(int late) : late_(late) {}
+
+  /// @returns the delay found by then
+  int Run(int samples, PayloadEstimator* estimator) {
+    for (int k = next_; k < next_ + samples; ++k) {
+      const TorquePieces acting = Torque(k - late_);
+      x_ =
+          estimator->stepper().Advance(x_, {.torque_nm = {acting.last_nm()[0], acting.last_nm()[1]},
+                                            .payload_kg = 0.2,
+                                            .friction_nm = StudyPayload().friction_start_nm});
+      estimator->Update(Angles(x_.q[0], x_.q[1]),
+                        Bend({x_.phi_f[0], x_.phi_f[1], x_.phi_f[2], x_.phi_f[3]}),
+                        TorqueByDelay{Torque(k + 1), Torque(k), Torque(k - 1), Torque(k - 2)});
+    }
+    next_ += samples;
+    return estimator->delay_found();
+  }
+
+ private:
+  static TorquePieces Torque(int k) {
+    const double s = k < 0 ? 0.0 : std::sin(2.0 * M_PI * k / 50.0);
+    return Held(4.0 * s, 0.6 * s);
+  }
+
+  int late_, next_ = 0;
+  GaugedState x_{.q = RigidJointArm::Vector::Zero(),
+                 .v = RigidJointArm::Vector::Zero(),
+                 .phi_f = Eigen::Vector4d::Zero()};
+};
+
+// Rotors are where the hubs are: the arm's joints are rigid, and the estimator takes u/K off them.
+TEST(PayloadEstimator, FindsTheDelayOfItsTorquesWhileTheArmMoves) {
+  for (const int late : {-1, 0, 1, 2}) {
+    PayloadEstimator estimator = Estimator();
+    LateArm arm(late);
+    EXPECT_EQ(arm.Run(50, &estimator), late);
+    EXPECT_EQ(arm.Run(100, &estimator), late) << "and stays with it";
+  }
+}
+
+TEST(PayloadEstimator, WithADelayFoundWhatWasLearntIsForgotten) {
+  PayloadEstimator estimator = Estimator();
+  LateArm arm(1);
+  double sigma_kg = estimator.estimate().payload_sigma_kg;
+  int k = 0;
+  for (; estimator.delay_found() == 0; ++k) {
+    ASSERT_LT(k, 50);
+    sigma_kg = estimator.estimate().payload_sigma_kg;
+    arm.Run(1, &estimator);
+  }
+  EXPECT_LT(sigma_kg, 0.39) << "nothing had been learnt";
+  EXPECT_EQ(estimator.estimate().payload_kg, 0.2);
+  EXPECT_EQ(estimator.estimate().payload_sigma_kg, 0.4);
+  estimator.Reset();
+  EXPECT_EQ(estimator.delay_found(), 0);
+}
+
+// The torque that is not among those offered is never taken, nor is any without a frame.
+TEST(PayloadEstimator, TakesTheTorqueOfTheDelayThatHolds) {
+  PayloadEstimator estimator = Estimator(), alone = Estimator();
+  for (int k = 0; k < 5; ++k) {
+    const TorquePieces torque = Held(1.0 + k, 0.2);
+    estimator.Update(Angles(0.0, 0.0), Bend({}),
+                     TorqueByDelay{std::nullopt, torque, Held(9.0, 2.0), std::nullopt});
+    alone.Update(Angles(0.0, 0.0), Bend({}), torque);
+    ASSERT_EQ(estimator.delay_found(), 0);
+    EXPECT_EQ(estimator.Now(), alone.Now());
+  }
+  for (int k = 0; k < 50; ++k) {
+    estimator.Update(Angles(0.0, 0.0, 0), Bend({}, false),
+                     TorqueByDelay{Held(0.0, 0.0), Held(6.0, 1.0), Held(0.0, 0.0), Held(0.0, 0.0)});
+  }
+  EXPECT_EQ(estimator.delay_found(), 0);
+}
+
 TEST(PayloadModel, ComesBackFromItsConstantsToTheBit) {
   const std::vector<double> constants = Model();
   const std::vector<double> again = RigidJointStepper(constants).Constants();

@@ -63,8 +63,8 @@ TEST(TipOutput, IsOfTheLagBeforeTheInstant) {
   EXPECT_LT(std::fabs(shown - was), 0.2 * std::fabs(is - was));
 }
 
-// Of every state, payload and friction, by central differences of the whole; forward ones of 1e-6
-// (1e-3 kg, a hundredth of the friction) leave 1e-4 of the largest slope.
+// Of every state, payload, friction and torque, by central differences of the whole; forward ones
+// of 1e-6 (1e-3 kg, a hundredth of the friction) leave 1e-4 of the largest slope.
 TEST(TipOutput, SlopesAreDifferencesOfTheOutput) {
   const RigidJointStepper stepper(RigidJointArm(ThesisRig()), 0.02, kGauge_hz);
   constexpr double kLag_s = 8e-4;
@@ -96,6 +96,11 @@ TEST(TipOutput, SlopesAreDifferencesOfTheOutput) {
         central(1e-3, [i](double by, GaugedState*, SampleInputs* in) { in->friction_nm[i] += by; });
     EXPECT_NEAR(out.by_friction[i], by_friction, 0.02 * std::fabs(by_friction)) << i;
     EXPECT_NE(by_friction, 0.0);
+    const double by_torque = central(1e-3, [i](double by, GaugedState*, SampleInputs* in) {
+      in->torque_nm[static_cast<int>(i)] += by;
+    });
+    EXPECT_NEAR(out.by_torque[i], by_torque, 0.02 * std::fabs(by_torque)) << i;
+    EXPECT_NE(by_torque, 0.0);
   }
 }
 

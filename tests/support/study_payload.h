@@ -24,7 +24,8 @@ inline EstimatorConfig StudyEstimator() {
                     .friction_min_rate_rad_s = 0.05,
                     .play_threshold_counts = 1.5,
                     .play_memory = 0.999,
-                    .gate_sigmas = 4.0};
+                    .gate_sigmas = 4.0,
+                    .detect_delay = true};
   return config;
 }
 
