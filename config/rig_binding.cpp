@@ -136,6 +136,7 @@ void ReadPayloadEstimator(TableReader payload, PayloadEstimatorConfig* out) {
   if (payload.Has("tip_extra_sigma_m_s2")) {
     payload.Read("tip_extra_sigma_m_s2", &out->tip_extra_sigma_m_s2.emplace());
   }
+  payload.Read("detect_delay", &out->detect_delay);
 }
 
 void ReadEstimator(TableReader estimator, EstimatorConfig* out) {

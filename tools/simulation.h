@@ -30,6 +30,7 @@ struct SimulationResult {
   std::int64_t ticks = 0;  ///< in state Running
   RunMetrics metrics;
   std::vector<double> move_duration_s;  ///< of the rows [[move]], as given or as chosen
+  int delay_found = 0;  ///< samples beyond the known delay, the last that was found in the run
   double realtime_factor = 0.0;  ///< simulated time over wall time of the loop, recorder included
 };
 

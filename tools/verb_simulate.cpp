@@ -56,6 +56,7 @@ nlohmann::ordered_json ToJson(const SimulationResult& result, const std::filesys
   json["ticks"] = result.ticks;
   json.update(ToJson(result.metrics));
   json["move_duration_s"] = result.move_duration_s;
+  json["delay_found"] = result.delay_found;
   json["realtime_factor"] = NumberOrNull(result.realtime_factor);
   json["run"] =
       run.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(run.string());
@@ -86,6 +87,9 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
   std::printf("torque rms                %.2f, %.2f N m\n", m.torque_rms_nm[0], m.torque_rms_nm[1]);
   for (std::size_t i = 0; i < result.move_duration_s.size(); ++i) {
     std::printf("move[%zu] takes             %.2f s\n", i, result.move_duration_s[i]);
+  }
+  if (result.delay_found != 0) {
+    std::printf("delay found               %+d samples beyond the known one\n", result.delay_found);
   }
   std::printf("real-time factor          %.0f\n", result.realtime_factor);
   if (!run.empty()) std::printf("run                       %s\n", run.c_str());

@@ -46,6 +46,9 @@ void PrintStatus(const Json& s) {
     const Json& payload = s["payload"];
     std::printf("payload        %.3f kg, standard deviation %.3f kg", payload.value("kg", 0.0),
                 payload.value("sigma_kg", 0.0));
+    if (const int samples = payload.value("delay_found", 0); samples != 0) {
+      std::printf("; delay found: %+d samples beyond the known one", samples);
+    }
     for (const Json& doubt : payload.value("doubts", Json::array())) {
       std::printf("; %s", doubt.get<std::string>().c_str());
     }

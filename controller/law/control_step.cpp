@@ -95,6 +95,9 @@ struct ControlStep::Stages {
     payload.emplace(design.payload_model,
                     PayloadFilterFor(config.arm, config.sensors, config.estimator));
     payload_supervisor.emplace(*config.estimator.payload);
+    detect_delay = config.estimator.payload->detect_delay;
+    // No torque acts before it is put out.
+    delay_may_be_less = config.loop.actuation_delay_ms >= config.loop.period_ms;
     if (!design.scheduled) return;
     scheduled.emplace(payload->stepper().arm(), design.scheduled->gains, period_s);
   }
@@ -108,6 +111,7 @@ struct ControlStep::Stages {
     move.Reset();
     if (payload_supervisor) payload_supervisor->Reset();
     asked.Clear();
+    reported_nm = {};
     pending_nm = {};
     saturated_s = {};
     phase = Phase::kNoTorque;
@@ -120,10 +124,30 @@ struct ControlStep::Stages {
 
   // Over [k-1, k] Ts: changes when the commands did, and has the mean that the drive side knows.
   TorquePieces Applied(const StepInput& input) noexcept {
-    const std::int64_t now_ns = input.sampling_instant_ns;
-    asked.CorrectNewest(now_ns + input.acted_late_ns);
-    return asked.Between(now_ns - period_ns, now_ns, period_ns).WithMean(input.applied_torque_nm);
+    asked.CorrectNewest(input.sampling_instant_ns + input.acted_late_ns);
+    std::copy_backward(reported_nm.begin(), reported_nm.end() - 1, reported_nm.end());
+    reported_nm[0] = input.applied_torque_nm;
+    return AppliedWith(delay_found(), input);
   }
+
+  // The same if torques act that many samples later than known: then what the drive side believes
+  // of a sample is true of the one so much later. Of the next sample it knows nothing yet.
+  TorquePieces AppliedWith(int delay, const StepInput& input) const noexcept {
+    const std::int64_t end_ns = input.sampling_instant_ns - delay * period_ns;
+    const TorquePieces pieces = asked.Between(end_ns - period_ns, end_ns, period_ns);
+    return delay < 0 ? pieces : pieces.WithMean(reported_nm[static_cast<std::size_t>(delay)]);
+  }
+
+  TorqueByDelay AppliedByDelay(const StepInput& input) const noexcept {
+    TorqueByDelay applied;
+    if (delay_may_be_less) applied[0] = AppliedWith(-1, input);
+    for (std::size_t d = kDelayAsKnown; d < kDelays; ++d) {
+      applied[d] = AppliedWith(static_cast<int>(d - kDelayAsKnown), input);
+    }
+    return applied;
+  }
+
+  int delay_found() const noexcept { return payload ? payload->delay_found() : 0; }
 
   FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
                   const TorquePieces& applied) noexcept {
@@ -133,12 +157,14 @@ struct ControlStep::Stages {
   }
 
   StateEstimator::Estimate Estimate(const DecodedCounters& counters, const FittedModes& modes,
-                                    const TorquePieces& applied,
-                                    const SensorFrame& frame) noexcept {
+                                    const TorquePieces& applied, const SensorFrame& frame,
+                                    const StepInput& input) noexcept {
     if (!payload) return estimator.Update(counters, modes, applied);
     const std::optional<double> tip_m_s2 =
         tip_accelerometer ? TipReading(frame, *tip_accelerometer) : std::nullopt;
-    const PayloadFilter::Estimate& found = payload->Update(counters, modes, applied, tip_m_s2);
+    const PayloadFilter::Estimate& found =
+        detect_delay ? payload->Update(counters, modes, AppliedByDelay(input), tip_m_s2)
+                     : payload->Update(counters, modes, applied, tip_m_s2);
     const double mean_nis = payload->mean_nis();
     if (ContradictsModel(mean_nis)) payload->TakeLoadForDropped();
     known = payload_supervisor->Judge(found, mean_nis, move.moving());
@@ -159,10 +185,11 @@ struct ControlStep::Stages {
     return input.sampling_instant_ns + period_ns + input.acts_late_ns;
   }
 
-  // From k Ts to the instant at which the torque computed now will act, under those on their way.
+  // From k Ts to the instant at which the torque computed now will act, under those on their way:
+  // all as much later as was found.
   StateVector Predict(const StateVector& x, const StepInput& input) const noexcept {
-    const TorquePieces pending =
-        asked.Between(input.sampling_instant_ns, ActsFrom(input), period_ns);
+    const TorquePieces pending = asked.Between(
+        input.sampling_instant_ns - delay_found() * period_ns, ActsFrom(input), period_ns);
     if (payload) return payload->After(pending);
     StateVector next = x;
     nominal.Advance(pending, &next);
@@ -250,9 +277,12 @@ struct ControlStep::Stages {
   std::optional<ScheduledLaw> scheduled;
   std::optional<PayloadSupervisor> payload_supervisor;
   PayloadKnowledge known = kNoPayloadSought;
+  bool detect_delay = false, delay_may_be_less = false;
   MoveWatch move;
   TorqueTimeline asked;
-  std::array<double, 2> pending_nm{};  // the newest of them
+  // By the drive side, of this sample and of those before it.
+  std::array<std::array<double, 2>, kDelays - kDelayAsKnown> reported_nm{};
+  std::array<double, 2> pending_nm{};  // the newest of those asked
   std::array<double, 2> saturated_s{};
   Phase phase = Phase::kNoTorque;
   Eigen::Vector2d stop_hub_rad = Eigen::Vector2d::Zero();
@@ -279,7 +309,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const TorquePieces applied = s.Applied(input);
   const FittedModes modes = s.Fit(frame, input.sampling_instant_ns, applied);
   s.WatchMoves(input);
-  const StateEstimator::Estimate estimate = s.Estimate(counters, modes, applied, frame);
+  const StateEstimator::Estimate estimate = s.Estimate(counters, modes, applied, frame, input);
   const LoopSupervisor::Verdict verdict =
       s.supervisor.Judge({.counters = &counters,
                           .modes = &modes,
@@ -322,6 +352,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   out.adaptive_gain_change = s.law.adaptive_gain_change();
   out.saturated_s = s.saturated_s;
   Store(s.known, &out);
+  out.delay_found = static_cast<std::int8_t>(s.delay_found());
   out.fault_value = verdict.value;
   out.fault_limit = verdict.limit;
   out.fault_channel = verdict.channel;

@@ -45,7 +45,7 @@ struct StepInput {
   std::int64_t acted_late_ns;  ///< torque k-1 began to act this long after k Ts, as far as is known
   std::int64_t acts_late_ns;   ///< torque k will act this long after (k+1) Ts; negative: before it
   ReferenceSample reference_now;   ///< at k Ts
-  ReferenceSample reference_next;  ///< when the torque computed now acts
+  ReferenceSample reference_next;  ///< when the torque computed now acts, as found
   std::array<RigidPoint, 3> path;  ///< one period before that, then, and one after; of a path
   PlanSample plan;                 ///< of the law `receding-horizon`, then; see `planned`
   std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts known before a reset
@@ -110,7 +110,8 @@ struct StepOutput {
   std::uint8_t at_rest;  ///< hub and strain rates within their bounds for rest_time
   std::uint8_t experiment_done;  ///< the reference has ended
   std::uint32_t payload_doubts;  ///< PayloadDoubt
-  std::array<std::uint8_t, 4> reserved;
+  std::int8_t delay_found;       ///< samples by which torques act later than known, as found
+  std::array<std::uint8_t, 3> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);
 static_assert(sizeof(StepOutput) ==

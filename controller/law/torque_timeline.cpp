@@ -5,7 +5,7 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kMostPeriods = 4;
+constexpr std::int64_t kMostPeriods = 6;
 
 }  // namespace
 

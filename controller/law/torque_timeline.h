@@ -9,7 +9,7 @@
 namespace flexarm {
 
 /// Torques and the instants from which each acts until the next: what was asked and is still on its
-/// way. Before the first one, no torque. Remembers eight: more than three periods of delay need.
+/// way. Before the first one, no torque. Remembers eight: more than five periods of delay need.
 ///
 /// Real-time: safe.
 class TorqueTimeline {
@@ -22,7 +22,7 @@ class TorqueTimeline {
   /// The newest torque began at `from_ns`, as it turned out. Nothing if there is none.
   void CorrectNewest(std::int64_t from_ns) noexcept;
 
-  /// The torque from `start_ns` to `end_ns`, at most four periods later. Borders are rounded to
+  /// The torque from `start_ns` to `end_ns`, at most six periods later. Borders are rounded to
   /// ticks from the start, so that errors do not add up.
   TorquePieces Between(std::int64_t start_ns, std::int64_t end_ns,
                        std::int64_t period_ns) const noexcept;

@@ -17,7 +17,7 @@ constexpr double kDegPerRad = 57.295779513082320877;
 
 constexpr const char* kInsertTick =
     "INSERT INTO tick VALUES "
-    "(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    "(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 
 std::string Utc(const char* format) {
   const std::time_t now = std::time(nullptr);
@@ -62,7 +62,7 @@ void BindReadable(Row& row, const TickRecord& record) {
   for (const double seconds : output.saturated_s) row << seconds;
   row << output.payload_kg << output.payload_sigma_kg;
   for (const double torque : output.friction_nm) row << torque;
-  row << output.mean_nis << std::int64_t{input.planned};
+  row << output.mean_nis << std::int64_t{output.delay_found} << std::int64_t{input.planned};
   for (const std::uint32_t count : input.frame.counter) row << std::int64_t{count};
   row << static_cast<std::int64_t>(output.faults) << std::int64_t{output.limits};
 }

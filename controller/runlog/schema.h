@@ -31,7 +31,7 @@ CREATE TABLE tick (
   adaptive_gain_change REAL, lyapunov_nm2 REAL,
   saturated_1_s REAL, saturated_2_s REAL,
   payload_kg REAL, payload_sigma_kg REAL,
-  friction_1_nm REAL, friction_2_nm REAL, mean_nis REAL, planned INTEGER,
+  friction_1_nm REAL, friction_2_nm REAL, mean_nis REAL, delay_found INTEGER, planned INTEGER,
   counter_1 INTEGER, counter_2 INTEGER, counter_3 INTEGER, counter_4 INTEGER,
   faults INTEGER, limits INTEGER,
   truth_known INTEGER,

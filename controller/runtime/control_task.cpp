@@ -36,10 +36,12 @@ void ControlTask::Run(const Activation& activation) noexcept {
   record.output = step_->Step(record.input);
   record.truth = packet.truth;
   counts_ = record.output.counts;
+  delay_found_ = record.output.delay_found;
   hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
   Publish(activation, record.input, record.output);
   if (PlansAhead(record.input)) {
-    channels_.planner->Ask(sample_, activation.due_ns, plan_.experiment->reference, record.output);
+    channels_.planner->Ask(sample_ + delay_found_, activation.due_ns, plan_.experiment->reference,
+                           record.output);
   }
   channels_.records->Push(record);
   channels_.operator_ticks->Push(record);
@@ -109,6 +111,7 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
   input.calibration = calibration_;
   input.safety_state = state;
   input.reset = reset_ ? 1 : 0;
+  if (reset_) delay_found_ = 0;
   reset_ = false;
   if (TorqueAllowed(state)) FollowReference(state, &input);
   return input;
@@ -131,8 +134,10 @@ void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept 
   const int last = reference.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
   input->reference_now = ReferenceAtSample(reference);
-  input->reference_next = reference.At(sample_);
-  input->path = reference.PathAround(sample_);
+  // A torque of an open loop is handed on as it is, none left out and none twice.
+  const int acts = input->mode == LoopMode::kFollow ? sample_ + delay_found_ : sample_;
+  input->reference_next = reference.At(acts);
+  input->path = reference.PathAround(acts);
   input->reference_ended = sample_ >= last ? 1 : 0;
   if (PlansAhead(*input)) FollowPlan(input);
 }
@@ -143,7 +148,8 @@ bool ControlTask::PlansAhead(const StepInput& input) const noexcept {
 }
 
 void ControlTask::FollowPlan(StepInput* input) noexcept {
-  const std::optional<PlanSample> plan = channels_.planner->At(sample_, input->now_ns);
+  const std::optional<PlanSample> plan =
+      channels_.planner->At(sample_ + delay_found_, input->now_ns);
   if (!plan) return;
   input->plan = *plan;
   input->planned = 1;

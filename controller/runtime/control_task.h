@@ -36,7 +36,8 @@ struct ControlChannels {
 /// permit that held before it was due. It is reset when it finds the arm newly armed, or newly
 /// calibrated; a calibration is taken over while no torque is allowed. Its torque
 /// is put out when the grid says; it is expected to act as late as the last one did, as far as the
-/// drive side knows. A fault that it sees takes the torque away at its deadline. Real-time: safe
+/// drive side knows; where a step found more delay, or less, the reference is that of the instant
+/// found. A fault that it sees takes the torque away at its deadline. Real-time: safe
 /// after construction.
 class ControlTask final : public Task {
  public:
@@ -73,7 +74,8 @@ class ControlTask final : public Task {
   Calibration calibration_{};
   SafetyState state_ = SafetyState::kStarting;
   LineLevels levels_ = kHealthyLevels;  // as the safety task read them last
-  int sample_ = -1;                     // of the experiment, at the instant the torque acts
+  int sample_ = -1;                     // of the experiment, when the torque acts as known
+  int delay_found_ = 0;                 // samples that the last step found beyond that
   bool reset_ = true;                   // the next step starts afresh
   std::int64_t frozen_from_ns_ = INT64_MAX;
   std::array<std::int64_t, kCounters> counts_{};  // of the last step

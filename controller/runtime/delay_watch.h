@@ -54,4 +54,23 @@ class DelayWatch {
   bool warned_ = false;
 };
 
+/// A delay that nobody knew of was found: what the operator is told, once a run.
+class DelayFoundWatch {
+ public:
+  /// Every step, in order.
+  /// @returns true once a run: it goes on with another delay than the known one
+  bool Take(const StepInput& input, const StepOutput& output) noexcept {
+    if (input.safety_state != SafetyState::kRunning) {
+      told_ = false;
+      return false;
+    }
+    if (told_ || output.delay_found == 0) return false;
+    told_ = true;
+    return true;
+  }
+
+ private:
+  bool told_ = false;
+};
+
 }  // namespace flexarm

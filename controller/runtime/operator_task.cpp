@@ -44,9 +44,13 @@ Json PayloadJson(const StepInput& in, const StepOutput& out) {
   for (const PayloadWarning& warning : kPayloadWarnings) {
     if ((out.payload_doubts & warning.doubt) != 0) doubts.push_back(warning.name);
   }
-  return {{"kg", out.payload_kg},           {"sigma_kg", out.payload_sigma_kg},
-          {"friction_nm", out.friction_nm}, {"mean_nis", out.mean_nis},
-          {"planned", in.planned != 0},     {"doubts", doubts}};
+  return {{"kg", out.payload_kg},
+          {"sigma_kg", out.payload_sigma_kg},
+          {"friction_nm", out.friction_nm},
+          {"mean_nis", out.mean_nis},
+          {"delay_found", out.delay_found},
+          {"planned", in.planned != 0},
+          {"doubts", doubts}};
 }
 
 std::optional<RequestKind> RequestByName(const std::string& name) {
@@ -132,6 +136,7 @@ void OperatorTask::TakeTicks() {
     commissioner_.Take(telemetry_);
     if (delay_.Take(telemetry_.input)) WarnOfDelay();
     WarnOfPayload(payload_.Take(telemetry_.input, telemetry_.output));
+    if (delay_found_.Take(telemetry_.input, telemetry_.output)) WarnOfDelayFound();
   }
   if (std::optional<Json> answer = commissioner_.TakeAnswer()) {
     FinishCommissioning(std::move(*answer));
@@ -154,6 +159,19 @@ void OperatorTask::WarnOfDelay() {
       "left: " +
       figures.dump() + "; declare what the drives need (loop.actuation_delay_ms)";
   Warn("delay-margin", text, figures);
+}
+
+void OperatorTask::WarnOfDelayFound() {
+  const int samples = telemetry_.output.delay_found;
+  const double period_ms = 1e-6 * static_cast<double>(context_.grid.period_ns);
+  const Json figures{{"delay_found", samples},
+                     {"delay_ms", delay_.delay_ms() + samples * period_ms}};
+  const std::string text =
+      std::string("torques act whole samples later or earlier than is declared and measured, as ") +
+      "the sensors show: " + figures.dump() +
+      "; the loop reckons with it until the arm is armed again, better declare it "
+      "(loop.actuation_delay_ms)";
+  Warn("delay-found", text, figures);
 }
 
 void OperatorTask::Warn(const std::string& name, const std::string& text, const Json& figures) {

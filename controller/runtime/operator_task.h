@@ -85,6 +85,7 @@ class OperatorTask final : public Task {
   void TakeAnswers();
   void TakeTicks();
   void WarnOfDelay();
+  void WarnOfDelayFound();
   /// An event of the log and a line for the operator.
   void Warn(const std::string& name, const std::string& text, const nlohmann::json& figures);
   void WarnOfPayload(std::uint32_t doubts);
@@ -102,6 +103,7 @@ class OperatorTask final : public Task {
   UnattendedRun unattended_;
   BusJournal bus_journal_;
   DelayWatch delay_;
+  DelayFoundWatch delay_found_;
   PayloadWatch payload_;
   Commissioner commissioner_;
   int commissioning_client_ = -1;            // -1: nobody waits

@@ -43,7 +43,7 @@ def main():
     plan = run(folder / "planner_benchmark")
     steps = [b for name, b in control.items() if name.startswith("Step/")]
     payload = [b for b in steps
-               if b["label"] in ("ekf-payload", "gain-scheduled", "receding-horizon")]
+               if b["label"].startswith(("ekf-payload", "gain-scheduled", "receding-horizon"))]
     slowest = max((b for b in steps if b not in payload), key=lambda b: b["p99.9_us"])
     with_payload = max(payload, key=lambda b: b["p99.9_us"])
     sobel = next(b for b in steps if b["label"] == "sobel")

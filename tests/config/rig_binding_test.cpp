@@ -174,6 +174,7 @@ TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
                            "estimator.payload.play_threshold_counts=2.5",
                            "estimator.payload.play_memory=0.9",
                            "estimator.payload.gate_sigmas=5",
+                           "estimator.payload.detect_delay=false",
                            "controller.payload.max_kg=0.9",
                            "controller.payload.reference_kg=0.25",
                            "controller.payload.gain_payload_kg=[0, 0.5]",
@@ -198,6 +199,7 @@ TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
   EXPECT_EQ(e.play_threshold_counts, 2.5);
   EXPECT_EQ(e.play_memory, 0.9);
   EXPECT_EQ(e.gate_sigmas, 5.0);
+  EXPECT_FALSE(e.detect_delay);
   const PayloadLawConfig& c = set.controller.payload.value();
   EXPECT_EQ(c.max_kg, 0.9);
   EXPECT_EQ(c.reference_kg, 0.25);

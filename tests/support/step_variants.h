@@ -32,6 +32,10 @@ inline std::vector<StepVariant> StepVariants() {
   for (const char* law : {"gain-scheduled", "receding-horizon"}) {
     variants.push_back({law, {std::string("controller.name=") + law}, kMostWithPayload});
   }
+  // With a sample of delay declared, one less is possible as well.
+  variants.push_back({"gain-scheduled-late",
+                      {"controller.name=gain-scheduled", "loop.actuation_delay_ms=20"},
+                      kMostWithPayload});
   return variants;
 }
 

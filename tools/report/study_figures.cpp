@@ -57,10 +57,7 @@ std::vector<StudyRow> Study() {
       {"delay-0", std::nullopt, {{100, 0.0, 1.0, 2.4}}},
       {"delay-2", std::nullopt, {{100, 0.0, 1.1, 3.4}}},
       // Its filter finds the delay out in the first move, which suffers: 90 % at most.
-      {"delay-2-unknown",
-       {{90, 0.32, 2.1, 6.2}},
-       {{90, 0.96, 2.5, 16.0}},
-       "nobody looks for the delay here; the study's filter does"},
+      {"delay-2-unknown", {{90, 0.32, 2.1, 6.2}}, {{90, 0.96, 2.5, 16.0}}},
       {"noise-x3", {{100, 0.0, 1.3, 3.5}}, {{100, 0.0, 1.2, 3.1}}},
       {"viscous", {{100, 0.0, 1.3, 2.6}}, {{100, 0.0, 1.2, 3.6}}},
       {"together", {{100, 0.0, 2.1, 5.9}}, {{100, 0.0, 1.8, 4.3}}},

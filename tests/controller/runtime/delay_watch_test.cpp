@@ -44,6 +44,22 @@ TEST(DelayWatch, WarnsOnceARunWhenLessThanHalfOfTheMarginIsLeft) {
   EXPECT_TRUE(watch.Take(Acted(5 * kMs, 0))) << "the next run";
 }
 
+TEST(DelayFoundWatch, TellsOnceARunThatADelayWasFound) {
+  DelayFoundWatch watch;
+  const auto take = [&watch](int found, SafetyState state = SafetyState::kRunning) {
+    StepOutput output{};
+    output.delay_found = static_cast<std::int8_t>(found);
+    return watch.Take(Acted(0, 0, state), output);
+  };
+  EXPECT_FALSE(take(1, SafetyState::kArmed));
+  EXPECT_FALSE(take(0));
+  EXPECT_TRUE(take(-1));
+  EXPECT_FALSE(take(-1)) << "said already";
+  EXPECT_FALSE(take(1)) << "said already";
+  EXPECT_FALSE(take(1, SafetyState::kStopping));
+  EXPECT_TRUE(take(1)) << "the next run";
+}
+
 TEST(DelayWatch, SaysNothingWhileNothingRuns) {
   DelayWatch watch(20 * kMs, 0.008);
   for (int k = 0; k < 5; ++k) EXPECT_FALSE(watch.Take(Acted(9 * kMs, 0, SafetyState::kArmed)));
