@@ -31,7 +31,7 @@ class DelayDetector {
   static constexpr double kMemory = 0.99;
   static constexpr double kMost = 200.0;
   static constexpr double kExplained = 32.0;  ///< NIS that the right delay stays below: 1 in 1e4
-  static constexpr double kBetter = 25.0;
+  static constexpr double kBetter = 40.0;
 
   /// NIS of a sample under each delay; nothing of one that is out of the question.
   using Misfit = std::array<std::optional<double>, kDelays>;

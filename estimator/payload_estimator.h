@@ -60,7 +60,7 @@ class PayloadEstimator {
   /// A move starts: the payload may be another than before.
   void BeginMove() noexcept { filter_.BeginMove(); }
   /// The model has been contradicted.
-  void TakeLoadForDropped() noexcept { filter_.TakeLoadForDropped(); }
+  void TakeLoadForDropped() noexcept { filter_.TakeLoadForDropped(rivals_); }
   /// The arm has come to rest after a move.
   void EndMove() noexcept { filter_.EndMove(); }
 

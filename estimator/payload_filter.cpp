@@ -96,8 +96,9 @@ void PayloadFilter::BeginMove() noexcept {
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
 }
 
-void PayloadFilter::TakeLoadForDropped() noexcept {
+void PayloadFilter::TakeLoadForDropped(std::span<Rival> rivals) noexcept {
   if (!learns_) return;
+  for (Rival& rival : rivals) rival.apart[kPayload] = 0.0;
   P_.row(kPayload).setZero();
   P_.col(kPayload).setZero();
   P_(kPayload, kPayload) = Square(kDroppedPayload_kg);

@@ -104,7 +104,8 @@ class PayloadFilter {
 
   /// The model has been contradicted: the load is taken for dropped, and found anew from nothing.
   /// It is the likely cause, and the safe one: what moves an empty arm does little to a heavy one.
-  void TakeLoadForDropped() noexcept;
+  /// @param rivals  take it for dropped as well
+  void TakeLoadForDropped(std::span<Rival> rivals = {}) noexcept;
 
   /// The arm has come to rest: payload and friction are learnt no more until the next move. Counts
   /// that flicker look like motion to a filter that has grown unsure, and would drag both.

@@ -30,23 +30,23 @@ TEST(DelayDetector, StaysWithWhatIsKnownWhereAllDelaysExplainTheSame) {
 // A constant difference adds up to 1 / (1 - 0.99) = 100 times itself.
 TEST(DelayDetector, ForgetsSoThatASmallDifferenceNeverCounts) {
   DelayDetector detector;
-  EXPECT_EQ(SamplesUntilAnother(&detector, Misfit{8.2, 8.2, 8.0, 8.2}), 0);
-  EXPECT_NEAR(detector.lead(), 20.0, 0.01);
-  EXPECT_GT(SamplesUntilAnother(&detector, Misfit{8.3, 8.3, 8.0, 8.3}), 0);
+  EXPECT_EQ(SamplesUntilAnother(&detector, Misfit{8.3, 8.3, 8.0, 8.3}), 0);
+  EXPECT_NEAR(detector.lead(), 30.0, 0.01);
+  EXPECT_GT(SamplesUntilAnother(&detector, Misfit{8.5, 8.5, 8.0, 8.5}), 0);
   EXPECT_EQ(detector.samples(), 1);
 }
 
-// 5 (1 - 0.99^k) / 0.01 is 24.5 after five samples, 29.3 after six.
-TEST(DelayDetector, TheBetterDelayTakesOverWhenItLeadsByTwentyFive) {
+// 5 (1 - 0.99^k) / 0.01 is 38.6 after eight samples, 43.2 after nine.
+TEST(DelayDetector, TheBetterDelayTakesOverWhenItLeadsByForty) {
   for (const int samples : {-1, 1, 2}) {
     DelayDetector detector;
     Misfit misfit = {13.0, 13.0, 13.0, 13.0};
     misfit[static_cast<std::size_t>(1 + samples)] = 8.0;
-    EXPECT_EQ(SamplesUntilAnother(&detector, misfit), 6);
+    EXPECT_EQ(SamplesUntilAnother(&detector, misfit), 9);
     EXPECT_EQ(detector.samples(), samples);
     EXPECT_EQ(detector.lead(), 0.0) << "all begin again";
-    EXPECT_FALSE(detector.Take({30.0, 6.0, 30.0, 30.0})) << "24 are not enough for the way back";
-    EXPECT_NEAR(detector.lead(), 24.0, 1e-12);
+    EXPECT_FALSE(detector.Take({45.0, 6.0, 45.0, 45.0})) << "39 are not enough for the way back";
+    EXPECT_NEAR(detector.lead(), 39.0, 1e-12);
     EXPECT_TRUE(detector.Take({30.0, 28.0, 30.0, 30.0})) << "0.99 of them and 2 are";
     EXPECT_EQ(detector.samples(), 0);
   }
@@ -55,10 +55,10 @@ TEST(DelayDetector, TheBetterDelayTakesOverWhenItLeadsByTwentyFive) {
 // Such as a blow, or a load that is dropped: it is neither added nor forgotten.
 TEST(DelayDetector, WhatNoDelayExplainsSaysNothing) {
   DelayDetector detector;
-  ASSERT_FALSE(detector.Take({30.0, 30.0, 6.0, 30.0}));
+  ASSERT_FALSE(detector.Take({45.0, 45.0, 6.0, 45.0}));
   EXPECT_FALSE(detector.Take({60.0, 60.0, 33.0, 60.0}));
   EXPECT_FALSE(detector.Take({1e4, 2e4, 3e4, 4e4}));
-  EXPECT_NEAR(detector.lead(), 24.0, 1e-12);
+  EXPECT_NEAR(detector.lead(), 39.0, 1e-12);
   EXPECT_TRUE(detector.Take({60.0, 60.0, 31.0, 60.0}));
 }
 
@@ -90,7 +90,7 @@ TEST(DelayDetector, NotANumberIsTheWorst) {
 
 TEST(DelayDetector, ForgetsWhatItFoundAtAReset) {
   DelayDetector detector;
-  ASSERT_TRUE(detector.Take({30.0, 30.0, 0.0, 30.0}));
+  ASSERT_TRUE(detector.Take({45.0, 45.0, 0.0, 45.0}));
   detector.Take({0.0, 0.0, 3.0, 0.0});
   detector.Reset();
   EXPECT_EQ(detector.samples(), 0);
@@ -100,7 +100,7 @@ TEST(DelayDetector, ForgetsWhatItFoundAtAReset) {
 TEST(DelayDetector, DoesNotAllocate) {
   DelayDetector detector;
   const NoAlloc armed;
-  EXPECT_EQ(SamplesUntilAnother(&detector, Misfit{13.0, 13.0, 8.0, 13.0}), 6);
+  EXPECT_EQ(SamplesUntilAnother(&detector, Misfit{13.0, 13.0, 8.0, 13.0}), 9);
 }
 
 }  // namespace
