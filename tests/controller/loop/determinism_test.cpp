@@ -56,8 +56,9 @@ TEST(Determinism, RecordedInputsThroughAFreshStepGiveTheSameBytes) { ExpectRepla
 // Its design goes through the log's text: the filter's model is not computed again. Plans come from
 // the recorded inputs: the planner is not asked again.
 void ExpectThePayloadReplays(const std::vector<std::string>& overrides, bool plans) {
+  constexpr std::int64_t kTwoMovesNs = 11'000'000'000;
   StackRun run(ShippedRig(overrides), ShippedExperiment("benchmark-waypoints"));
-  run.Run(kEndNs);
+  run.Run(kTwoMovesNs);
   const std::string json = DesignToJson(run.design(), DesignHash(run.config()));
   ControlStep fresh(run.config(), DesignFromJson(json, run.config()));
   const FlushDenormals as_in_the_tasks;
