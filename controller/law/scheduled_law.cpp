@@ -1,5 +1,7 @@
 #include "controller/law/scheduled_law.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 
 #include "controller/law/gain_payload.h"
@@ -11,6 +13,11 @@ namespace {
 // Below this rate the friction that is fed forward fades away: at the ends of a move its sign is
 // a guess.
 constexpr double kFrictionRate_rad_s = 0.05;
+
+// After a move the feedback is weaker than the friction: the joints stick, and the arm would swing
+// on as if clamped. So it is helped against most of the friction, as soon as it is worth half of
+// it; less and less, for a feedback that counts flicker should not keep an arm at rest awake.
+constexpr double kFrictionHelped = 0.7, kFrictionAsked = 0.5, kHelped_s = 2.0;
 
 }  // namespace
 
@@ -28,7 +35,15 @@ Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& kno
       at_bound ? std::numeric_limits<double>::infinity() : knowledge.payload_sigma_kg;
   const double gain_payload_kg =
       GainPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s);
-  u += gains_.At(gain_payload_kg, x[1]).lazyProduct(desired.x - x);
+  const Eigen::Vector2d feedback_nm = gains_.At(gain_payload_kg, x[1]).lazyProduct(desired.x - x);
+  u += feedback_nm;
+  const double help = rested_s > 0.0 ? std::max(0.0, 1.0 - rested_s / kHelped_s) : 0.0;
+  for (int i = 0; i < 2; ++i) {
+    const double friction_nm = knowledge.friction_nm[static_cast<std::size_t>(i)];
+    if (help == 0.0 || friction_nm <= 0.0) continue;
+    u[i] += help * kFrictionHelped * friction_nm *
+            PortableMath::Tanh(feedback_nm[i] / (kFrictionAsked * friction_nm));
+  }
   return u;
 }
 

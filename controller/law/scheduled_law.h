@@ -14,8 +14,10 @@ namespace flexarm {
 /// The laws `gain-scheduled` and `receding-horizon`: the arm is led along a motion that leaves its
 /// tip at rest, for the payload that is known by now.
 ///
-///   u = u_d + F tanh(theta_d' / 0.05 rad/s) + K(m_K, |theta2|) (x_d - x)
+///   u = u_d + F tanh(theta_d' / 0.05 rad/s) + u_K + h,  u_K = K(m_K, |theta2|) (x_d - x)
 ///
+/// h helps u_K over the joints' friction in the two seconds after a move, 0.7 F tanh(u_K / 0.5 F)
+/// less and less; it is not in the source, and takes a fifth to a quarter of the tip's motion then.
 /// x_d and u_d: in closed form for the payload found, the way on which the arm bends without
 /// vibrating; or of a plan (horizon_plan.h). K from the gain table at GainPayload, for which a
 /// payload at its bound is wholly uncertain: it may be heavier.
@@ -36,7 +38,7 @@ class ScheduledLaw {
 
   /// @param x         of the arm at the instant the torque acts, as RigidJointArm's q, q'
   /// @param desired   x_d and u_d then, without friction
-  /// @param rested_s  since the last move ended; 0 while one lasts
+  /// @param rested_s  since the last move ended, infinite before the first; 0 while one lasts
   /// @returns the torque, not clipped
   Eigen::Vector2d Torque(const State& x, const PayloadKnowledge& knowledge,
                          const QuasiStaticSample& desired, double rested_s) const noexcept;
