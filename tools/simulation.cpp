@@ -204,7 +204,8 @@ SimulationResult Simulation::Result(double wall_s) const {
     result.move_duration_s.push_back(move.duration_s.value());
   }
   for (const TickRecord& record : contents_.tick) {
-    if (record.output.delay_found != 0) result.delay_found = record.output.delay_found;
+    const auto samples = int{record.output.delay_found};
+    if (samples != 0) result.delay_found = samples;
   }
   result.realtime_factor = static_cast<double>(simulated_ns_) * 1e-9 / wall_s;
   return result;

@@ -36,7 +36,7 @@ void ControlTask::Run(const Activation& activation) noexcept {
   record.output = step_->Step(record.input);
   record.truth = packet.truth;
   counts_ = record.output.counts;
-  delay_found_ = record.output.delay_found;
+  delay_found_ = int{record.output.delay_found};
   hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
   Publish(activation, record.input, record.output);
   if (PlansAhead(record.input)) {

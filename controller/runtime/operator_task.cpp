@@ -162,7 +162,7 @@ void OperatorTask::WarnOfDelay() {
 }
 
 void OperatorTask::WarnOfDelayFound() {
-  const int samples = telemetry_.output.delay_found;
+  const auto samples = int{telemetry_.output.delay_found};
   const double period_ms = 1e-6 * static_cast<double>(context_.grid.period_ns);
   const Json figures{{"delay_found", samples},
                      {"delay_ms", delay_.delay_ms() + samples * period_ms}};
