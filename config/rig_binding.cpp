@@ -1,9 +1,9 @@
 #include "config/rig_binding.h"
 
-#include <numbers>
 #include <string>
 
 #include "config/hal_binding.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -257,8 +257,6 @@ void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {
   commissioning.Read("home_back_deg", &out->home_back_deg);
   commissioning.Read("switch_angle_deg", &out->switch_angle_deg);
 }
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 CsvImport ReadCsvImport(TableReader csv) {
   CsvImport import{};

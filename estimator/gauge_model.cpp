@@ -1,11 +1,10 @@
 #include "estimator/gauge_model.h"
 
-#include <numbers>
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kNoFilterHz = 1600.0;
 
 }  // namespace

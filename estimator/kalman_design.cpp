@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -10,14 +9,13 @@
 #include "estimator/gauge_model.h"
 #include "model/discretize.h"
 #include "model/riccati.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
 // Regularises W: keeps the Riccati equation definite, far below every physical noise (SI units).
-constexpr double kNoiseFloor = 1e-13;
+constexpr double kCovarianceFloor = 1e-13;
 
 Eigen::MatrixXd OutputMatrix(const StateLayout& layout, Eigen::Index states) {
   const Eigen::Index flex = Eigen::Index{2} * layout.modes_per_link;
@@ -77,7 +75,8 @@ Eigen::MatrixXd ProcessNoise(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G,
                              const Eigen::VectorXd& sigma, double period_s) {
   const Eigen::MatrixXd G_d = ZeroOrderHold(A, G, period_s).B;
   const Eigen::MatrixXd scaled = G_d * sigma.asDiagonal();
-  return scaled * scaled.transpose() + kNoiseFloor * Eigen::MatrixXd::Identity(A.rows(), A.rows());
+  return scaled * scaled.transpose() +
+         kCovarianceFloor * Eigen::MatrixXd::Identity(A.rows(), A.rows());
 }
 
 // The filter's Riccati equation is the controller's of the transposed system.

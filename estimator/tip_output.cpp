@@ -8,7 +8,7 @@ namespace {
 using Vector = RigidJointArm::Vector;
 
 constexpr double kProbe = 1e-6;  // rad, m, rad/s, m/s
-constexpr double kPayloadProbe_kg = 1e-3;
+constexpr double kPayloadStep_kg = 1e-3;
 constexpr double kTorqueProbe_nm = 1e-3;
 
 // `by_s` earlier, under an acceleration that hardly changes meanwhile.
@@ -38,8 +38,8 @@ TipOutput TipOutputAt(const RigidJointStepper& stepper, double lag_s, const Gaug
     out.by_motion[i] = (shown(moved, inputs) - out.m_s2) / kProbe;
   }
   SampleInputs heavier = inputs;
-  heavier.payload_kg += kPayloadProbe_kg;
-  out.by_payload = (shown(at, heavier) - out.m_s2) / kPayloadProbe_kg;
+  heavier.payload_kg += kPayloadStep_kg;
+  out.by_payload = (shown(at, heavier) - out.m_s2) / kPayloadStep_kg;
   for (std::size_t i = 0; i < 2; ++i) {
     SampleInputs rougher = inputs;
     rougher.friction_nm[i] += friction_probe_nm[i];

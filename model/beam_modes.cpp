@@ -7,11 +7,10 @@
 #include "model/beam_basis.h"
 #include "model/beam_equations.h"
 #include "model/root_search_error.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // int of the products of Hermite's cubics: consistent mass at unit mass per length.
 Eigen::Matrix4d StaticMass(double l) {

@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "model/arm_equations.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -13,7 +14,6 @@ using Complex = std::complex<double>;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kStep = 1e-30;  // any value whose square vanishes: nothing is subtracted
 
 // Generalised K x = w^2 M x on the chosen coordinates; w^2 ascending.

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "model/link_modes.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kDegPerRad = 57.295779513082320877;
 constexpr double kRestWindow_s = 0.3;
 constexpr double kPoseEvery_s = 0.1;
 constexpr int kPointsPerLink = 16;

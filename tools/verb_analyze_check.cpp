@@ -12,13 +12,13 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct ThesisCheckOptions {
   ConfigOptions config;
   bool json = false;
   std::filesystem::path output;
 };
 
-void Analyze(const Options& options) {
+void Analyze(const ThesisCheckOptions& options) {
   const Config config = options.config.Load();
   const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 5));
   const std::string page = ThesisCheckPage(config, statements);
@@ -36,7 +36,7 @@ void Analyze(const Options& options) {
 }  // namespace
 
 void RegisterAnalyzeCheck(CLI::App& analyze, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ThesisCheckOptions>();
   CLI::App* verb = analyze.add_subcommand(
       "check", "Which statements of the thesis come out of the model, with numbers");
   options->config.AddTo(verb, true);

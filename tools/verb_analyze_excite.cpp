@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct ExciteOptions {
   ConfigOptions config;
   int modes = 4;
   double theta2_deg = 0.0;
@@ -24,7 +24,7 @@ struct Options {
   std::filesystem::path output;
 };
 
-ExcitationRun RunOf(const Options& options) {
+ExcitationRun RunOf(const ExciteOptions& options) {
   ArmParameters arm = options.config.Load().arm;
   if (options.without_dissipation) {
     arm.damping = DampingReading::kNone;
@@ -34,7 +34,7 @@ ExcitationRun RunOf(const Options& options) {
                        options.excitation, options.duration_s);
 }
 
-nlohmann::ordered_json ToJson(const Options& options, const ExcitationRun& run) {
+nlohmann::ordered_json ToJson(const ExciteOptions& options, const ExcitationRun& run) {
   return {{"torque_nm", options.excitation.torque_nm},
           {"duration_s", options.duration_s},
           {"modes", options.modes},
@@ -43,7 +43,7 @@ nlohmann::ordered_json ToJson(const Options& options, const ExcitationRun& run) 
           {"final_tip_m", std::array{run.tip_m.x(), run.tip_m.y()}}};
 }
 
-void Excite(const Options& options) {
+void Excite(const ExciteOptions& options) {
   if (!options.output.empty()) CheckPicture(options.output);
   const ExcitationRun run = RunOf(options);
   if (!options.output.empty()) {
@@ -63,7 +63,7 @@ void Excite(const Options& options) {
 }  // namespace
 
 void RegisterAnalyzeExcite(CLI::App& analyze, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExciteOptions>();
   CLI::App* verb =
       analyze.add_subcommand("excite", "The arm under one period of a square wave (chapter 4)");
   options->config.AddTo(verb, true);

@@ -14,6 +14,7 @@
 #include "model/arm_simulator.h"
 #include "model/linearization.h"
 #include "model/perturbation.h"
+#include "model/units.h"
 #include "tools/analysis/perturbation_figures.h"
 #include "tools/options.h"
 #include "tools/verbs.h"
@@ -24,10 +25,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr double kRadPerDeg = 0.017453292519943295769;
-constexpr double kTwoPi = 6.2831853071795864769;
-
-struct Options {
+struct LinearizeOptions {
   ConfigOptions config;
   int modes = 4;
   double theta2_deg = 0.0, theta1_rate_rad_s = 0.0, theta2_rate_rad_s = 0.0;
@@ -44,7 +42,7 @@ struct State {
 };
 
 // Links unbent, rotors with their hubs.
-State StateOf(const Options& options, const ArmModel& model) {
+State StateOf(const LinearizeOptions& options, const ArmModel& model) {
   State x{VectorXd::Zero(model.dof()), VectorXd::Zero(model.dof())};
   x.q[kTheta2] = x.q[kTheta4] = options.theta2_deg * kRadPerDeg;
   x.v[kTheta1] = x.v[kTheta3] = options.theta1_rate_rad_s;
@@ -79,7 +77,8 @@ nlohmann::ordered_json RootsJson(const Eigen::MatrixXd& A) {
 }
 
 // Figures 6.1 and 6.2: the deltas as a square wave of 1 s period, one period long.
-PerturbationRun PerturbationOf(const Options& options, const ArmModel& model, const State& x) {
+PerturbationRun PerturbationOf(const LinearizeOptions& options, const ArmModel& model,
+                               const State& x) {
   Vector2d torque(options.torque_nm[0], options.torque_nm[1]);
   const Vector2d delta(options.delta_nm[0], options.delta_nm[1]);
   const auto wave = [delta](double t) {
@@ -91,7 +90,7 @@ PerturbationRun PerturbationOf(const Options& options, const ArmModel& model, co
       ArmSimulator::kDefaultStep_s);
 }
 
-nlohmann::ordered_json PerturbationJson(const Options& options, const ArmModel& model,
+nlohmann::ordered_json PerturbationJson(const LinearizeOptions& options, const ArmModel& model,
                                         const PerturbationRun& run) {
   nlohmann::ordered_json json;
   json["delta_torque_nm"] = options.delta_nm;
@@ -103,7 +102,8 @@ nlohmann::ordered_json PerturbationJson(const Options& options, const ArmModel& 
   return json;
 }
 
-nlohmann::ordered_json LinearJson(const Options& options, const ArmModel& model, const State& x) {
+nlohmann::ordered_json LinearJson(const LinearizeOptions& options, const ArmModel& model,
+                                  const State& x) {
   const LinearModel linear =
       Linearize(model, x.q, x.v, Vector2d(options.torque_nm[0], options.torque_nm[1]),
                 options.friction_gain_s_per_rad);
@@ -122,7 +122,7 @@ nlohmann::ordered_json LinearJson(const Options& options, const ArmModel& model,
   return json;
 }
 
-void PrintText(const nlohmann::ordered_json& json) {
+void PrintLinearization(const nlohmann::ordered_json& json) {
   std::cout << "roots of the linearised arm\n"
             << std::setprecision(5) << std::setw(14) << "real, 1/s" << std::setw(14)
             << "imag, rad/s" << std::setw(12) << "Hz" << std::setw(12) << "damping" << '\n';
@@ -140,7 +140,7 @@ void PrintText(const nlohmann::ordered_json& json) {
   }
 }
 
-void Run(const Options& options) {
+void Run(const LinearizeOptions& options) {
   if (!options.output.empty()) CheckPicture(options.output);
   const ArmModel model(options.config.Load().arm, {options.modes, options.modes});
   const State x = StateOf(options, model);
@@ -154,11 +154,11 @@ void Run(const Options& options) {
   if (options.json) {
     std::cout << json.dump(2) << '\n';
   } else {
-    PrintText(json);
+    PrintLinearization(json);
   }
 }
 
-void AddState(CLI::App* verb, Options* options) {
+void AddState(CLI::App* verb, LinearizeOptions* options) {
   verb->add_option("--modes", options->modes, "Bending modes a link")
       ->check(CLI::Range(1, kMaxSteppedModes))
       ->capture_default_str();
@@ -183,7 +183,7 @@ void AddState(CLI::App* verb, Options* options) {
 }  // namespace
 
 void RegisterAnalyzeLinearize(CLI::App& analyze, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<LinearizeOptions>();
   CLI::App* verb = analyze.add_subcommand(
       "linearize", "The linear model at a state, its roots, and how far it can be trusted");
   options->config.AddTo(verb, true);

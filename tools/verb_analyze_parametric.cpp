@@ -11,14 +11,14 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct ParametricOptions {
   ConfigOptions config;
   Excitation excitation;
   bool json = false;
   std::filesystem::path output;
 };
 
-void Analyze(const Options& options) {
+void Analyze(const ParametricOptions& options) {
   const Config config = options.config.Load();
   const std::size_t runs = ParametricRuns(config);
   const ParametricStudy study =
@@ -41,7 +41,7 @@ void Analyze(const Options& options) {
 }  // namespace
 
 void RegisterAnalyzeParametric(CLI::App& analyze, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ParametricOptions>();
   CLI::App* verb = analyze.add_subcommand(
       "parametric", "What payload, stiffness, friction, backlash and lengths do to the vibrations");
   options->config.AddTo(verb, true);

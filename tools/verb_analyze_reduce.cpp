@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "controller/runlog/errors.h"
+#include "model/units.h"
 #include "tools/analysis/reduction_figures.h"
 #include "tools/analysis/reduction_report.h"
 #include "tools/options.h"
@@ -13,9 +14,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295769;
-
-struct Options {
+struct ReduceOptions {
   ConfigOptions config;
   std::filesystem::path system;
   int modes = 10;
@@ -27,7 +26,7 @@ struct Options {
   std::filesystem::path output;
 };
 
-void Check(const Options& options) {
+void Check(const ReduceOptions& options) {
   if (options.system.empty() == !options.config.given()) {
     throw InputError("analyze reduce: expected either --config FILE or --system FILE");
   }
@@ -39,7 +38,7 @@ void Check(const Options& options) {
   }
 }
 
-nlohmann::ordered_json Reduce(const Options& options) {
+nlohmann::ordered_json Reduce(const ReduceOptions& options) {
   if (!options.system.empty()) {
     return SystemReductionJson(LoadLinearSystem(options.system), options.reduction);
   }
@@ -65,7 +64,7 @@ nlohmann::ordered_json Reduce(const Options& options) {
   return json;
 }
 
-void AddMotion(CLI::App* verb, Options* options) {
+void AddMotion(CLI::App* verb, ReduceOptions* options) {
   verb->add_option("--modes", options->modes, "Bending modes a link")
       ->check(CLI::Range(1, kMaxModesPerLink))
       ->capture_default_str();
@@ -89,7 +88,7 @@ void AddMotion(CLI::App* verb, Options* options) {
       ->default_str("mass");
 }
 
-void AddGrid(CLI::App* verb, Options* options) {
+void AddGrid(CLI::App* verb, ReduceOptions* options) {
   verb->add_flag("--grid", options->with_grid,
                  "Also over the whole range of elbow angle and both rates, on all cores");
   verb->add_option("--grid-cells", options->grid.cells, "Intervals of the grid on each axis")
@@ -111,7 +110,7 @@ void AddGrid(CLI::App* verb, Options* options) {
 }  // namespace
 
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReduceOptions>();
   CLI::App* verb = analyze.add_subcommand(
       "reduce", "How many modes matter: power balancing, and truncation by Gramians");
   options->config.AddTo(verb, false);

@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct BenchmarkOptions {
   ConfigOptions config;
   GridOptions grid;
   std::string table = Name(BenchmarkKind::kCommands), laws, seeds;
@@ -20,7 +20,7 @@ struct Options {
   bool json = false;
 };
 
-void Run(const Options& options) {
+void Run(const BenchmarkOptions& options) {
   const Config config = options.config.Load();
   const BenchmarkSet set = BenchmarkSetOf(BenchmarkKindNamed(options.table), config,
                                           ExperimentFile({}, options.config.file).parent_path());
@@ -48,7 +48,7 @@ void Run(const Options& options) {
 }  // namespace
 
 void RegisterBenchmark(CLI::App& app, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BenchmarkOptions>();
   CLI::App* verb = app.add_subcommand(
       "benchmark", "Every control law in the same situations: settling, errors, effort, one score");
   options->config.AddTo(verb, true);

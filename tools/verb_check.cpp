@@ -11,7 +11,7 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::filesystem::path run;
   bool json = false;
 };
@@ -27,7 +27,7 @@ void PrintJson(const std::vector<ConformanceCheck>& checks, bool passed) {
   std::cout << json.dump(2) << '\n';
 }
 
-int Check(const Options& options) {
+int Check(const CheckOptions& options) {
   const std::vector<ConformanceCheck> checks = CheckConformance(LoadRun(options.run));
   const bool passed = std::all_of(checks.begin(), checks.end(),
                                   [](const ConformanceCheck& check) { return check.passed; });
@@ -45,7 +45,7 @@ int Check(const Options& options) {
 }  // namespace
 
 void RegisterCheck(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = app.add_subcommand("check", "Does a run obey the rules that every run obeys?");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   AddJson(verb, &options->json);

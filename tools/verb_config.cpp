@@ -8,6 +8,7 @@
 
 #include "model/arm_model.h"
 #include "model/linearization.h"
+#include "model/units.h"
 #include "tools/options.h"
 #include "tools/verbs.h"
 #include "tools/wiring_report.h"
@@ -15,21 +16,20 @@
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-constexpr double kTwoPi = 6.2831853071795864769;
 constexpr std::array<const char*, kCounters> kCounterNames = {"hub1", "hub2", "rotor1", "rotor2"};
 
-struct Options {
+struct ConfigCheckOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;
   bool json = false;
 };
 
-Json ArmJson(const Config& config) {
+OrderedJson ArmJson(const Config& config) {
   const ArmParameters& arm = config.arm;
   const ArmModel model(arm, {2, 2});
-  Json json;
+  OrderedJson json;
   json["link_length_m"] = {arm.link[0].length_m(), arm.link[1].length_m()};
   json["link_mass_kg"] = {arm.link[0].mass_kg(), arm.link[1].mass_kg()};
   for (const bool held : {false, true}) {
@@ -44,7 +44,7 @@ Json ArmJson(const Config& config) {
 
 // A counter unwraps without doubt while it moves by less than half its range between two readings;
 // one reading may be lost.
-Json EncoderJson(const EncoderConfig& encoder, double period_s) {
+OrderedJson EncoderJson(const EncoderConfig& encoder, double period_s) {
   const double rad_per_count = kTwoPi / encoder.counts_per_turn;
   const double half_range = std::ldexp(1.0, encoder.counter_bits - 1);
   return {{"joint", kCounterNames[static_cast<std::size_t>(encoder.counter)]},
@@ -52,8 +52,8 @@ Json EncoderJson(const EncoderConfig& encoder, double period_s) {
           {"unwraps_below_rad_s", half_range * rad_per_count / (2 * period_s)}};
 }
 
-Json StrainJson(const SensorConfig& sensors) {
-  Json json;
+OrderedJson StrainJson(const SensorConfig& sensors) {
+  OrderedJson json;
   for (const int link : {1, 2}) {
     int channels = 0;
     for (const StrainChannelConfig& channel : sensors.strain)
@@ -67,12 +67,12 @@ Json StrainJson(const SensorConfig& sensors) {
   return json;
 }
 
-Json Derived(const Config& config) {
+OrderedJson Derived(const Config& config) {
   const double period_s = config.loop.period_ms * 1e-3;
-  Json json;
+  OrderedJson json;
   json["valid"] = true;
   json["rig"] = config.rig_name;
-  json["backend"] = config.backend.empty() ? Json(nullptr) : Json(config.backend);
+  json["backend"] = config.backend.empty() ? OrderedJson(nullptr) : OrderedJson(config.backend);
   json["rate_hz"] = 1 / period_s;
   json["arm"] = ArmJson(config);
   for (const EncoderConfig& encoder : config.sensors.encoder) {
@@ -83,8 +83,8 @@ Json Derived(const Config& config) {
   return json;
 }
 
-Json ProblemsJson(const ConfigError& error) {
-  Json json;
+OrderedJson ProblemsJson(const ConfigError& error) {
+  OrderedJson json;
   json["valid"] = false;
   for (const ConfigProblem& problem : error.problems()) {
     json["problems"].push_back({{"file", problem.file},
@@ -96,19 +96,19 @@ Json ProblemsJson(const ConfigError& error) {
   return json;
 }
 
-std::string Number(const Json& value) {
+std::string Number(const OrderedJson& value) {
   std::ostringstream text;
   text << std::setprecision(4) << value.get<double>();
   return text.str();
 }
 
-std::string List(const Json& values) {
+std::string List(const OrderedJson& values) {
   std::string text;
-  for (const Json& value : values) text += (text.empty() ? "" : ", ") + Number(value);
+  for (const OrderedJson& value : values) text += (text.empty() ? "" : ", ") + Number(value);
   return text;
 }
 
-void PrintText(const Options& options, const Json& json) {
+void PrintText(const ConfigCheckOptions& options, const OrderedJson& json) {
   const auto line = [](const std::string& name, const std::string& value) {
     std::cout << "  " << std::left << std::setw(26) << name << value << '\n';
   };
@@ -116,17 +116,17 @@ void PrintText(const Options& options, const Json& json) {
   line("rig", json["rig"]);
   line("backend", json["backend"].is_null() ? "none: [hal] is missing" : json["backend"]);
   line("rate", Number(json["rate_hz"]) + " Hz");
-  const Json& arm = json["arm"];
+  const OrderedJson& arm = json["arm"];
   line("link lengths", List(arm["link_length_m"]) + " m");
   line("link masses", List(arm["link_mass_kg"]) + " kg");
   line("frequencies, motors free", List(arm["motors_free_frequency_hz"]) + " Hz");
   line("frequencies, motors held", List(arm["motors_held_frequency_hz"]) + " Hz");
-  for (const Json& encoder : json["encoders"]) {
+  for (const OrderedJson& encoder : json["encoders"]) {
     line("encoder " + encoder["joint"].get<std::string>(),
          Number(encoder["resolution_deg"]) + " deg a count, unwraps below " +
              Number(encoder["unwraps_below_rad_s"]) + " rad/s");
   }
-  const Json& strain = json["strain"];
+  const OrderedJson& strain = json["strain"];
   line("strain channels", List(strain["channels"]));
   if (strain.contains("resolution_microstrain")) {
     line("strain resolution", Number(strain["resolution_microstrain"]) + " microstrain of +-" +
@@ -135,9 +135,9 @@ void PrintText(const Options& options, const Json& json) {
   PrintWiring(json);
 }
 
-void Check(const Options& options) {
+void Check(const ConfigCheckOptions& options) {
   try {
-    const Json json = Derived(LoadConfig(options.file, options.overrides));
+    const OrderedJson json = Derived(LoadConfig(options.file, options.overrides));
     if (options.json) {
       std::cout << json.dump(2) << '\n';
     } else {
@@ -152,7 +152,7 @@ void Check(const Options& options) {
 }  // namespace
 
 void RegisterConfig(CLI::App& app, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConfigCheckOptions>();
   CLI::App* verb = app.add_subcommand("config", "Look at configs");
   verb->require_subcommand(1);
   CLI::App* check = verb->add_subcommand(

@@ -17,7 +17,7 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct DesignOptions {
   ConfigOptions config;
   std::filesystem::path output;
   std::vector<double> payload_kg = {0.0, 0.01, 0.1, 0.2, 0.5, 1.0};
@@ -54,7 +54,7 @@ nlohmann::ordered_json ToJson(const Screen& screen) {
 }
 
 nlohmann::ordered_json ToJson(const Design& design, const Screen& screen,
-                              const Conditioning& conditioning, const Options& options,
+                              const Conditioning& conditioning, const DesignOptions& options,
                               const std::string& hash) {
   nlohmann::ordered_json json;
   json["nominal"] = NameOf(design.layout);
@@ -133,7 +133,7 @@ std::string Where(const Screen& screen) {
   return text.str();
 }
 
-int Run(const Options& options) {
+int Run(const DesignOptions& options) {
   Config config = options.config.Load();
   config.controller.gains_file.clear();  // a new design, whatever the config runs with
   Design design = DesignController(config);
@@ -164,7 +164,7 @@ int Run(const Options& options) {
 }  // namespace
 
 void RegisterDesign(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DesignOptions>();
   CLI::App* verb = app.add_subcommand(
       "design", "Design reference model, gains and filter for a rig, check them, write them down");
   options->config.AddTo(verb, true);

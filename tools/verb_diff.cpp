@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "controller/runlog/blob.h"
+#include "model/units.h"
 #include "tools/options.h"
 #include "tools/run_summary.h"
 #include "tools/verbs.h"
@@ -14,9 +15,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kDegPerRad = 57.295779513082320877;
-
-struct Options {
+struct DiffOptions {
   std::filesystem::path first, second;
   bool json = false;
 };
@@ -117,7 +116,7 @@ void PrintText(const Difference& difference) {
 }  // namespace
 
 void RegisterDiff(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DiffOptions>();
   CLI::App* verb = app.add_subcommand("diff", "Where do two runs differ, and by how much?");
   verb->add_option("first", options->first, "Run log")->required()->type_name("RUN");
   verb->add_option("second", options->second, "Run log")->required()->type_name("RUN");

@@ -13,11 +13,11 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::filesystem::path run, output;
 };
 
-void Export(const Options& options) {
+void Export(const ExportOptions& options) {
   RunReader reader(options.run);
   const Config config = ConfigOf(reader);
   std::ofstream file(options.output, std::ios::binary);
@@ -43,7 +43,7 @@ void Export(const Options& options) {
 }  // namespace
 
 void RegisterExport(CLI::App& app, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportOptions>();
   CLI::App* verb = app.add_subcommand("export", "Write a run as CSV, which replay reads again");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   AddOutput(verb, &options->output, "CSV file to write");

@@ -16,7 +16,7 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct IdentifyOptions {
   ConfigOptions config;
   std::filesystem::path run, validate, output;
   std::vector<std::string> free;
@@ -44,7 +44,7 @@ TimeSpan SpanOf(const std::vector<double>& given) {
   return {.from_s = given[0], .until_s = given[1]};
 }
 
-Config ConfigFor(const Options& options) {
+Config ConfigFor(const IdentifyOptions& options) {
   if (options.config.given()) return options.config.Load();
   if (options.run.extension() == ".csv") {
     throw InputError(options.run.string() +
@@ -83,7 +83,7 @@ nlohmann::ordered_json ToJson(const Identification& result, const std::vector<Ju
   return json;
 }
 
-void PrintText(const nlohmann::ordered_json& json) {
+void PrintIdentification(const nlohmann::ordered_json& json) {
   std::printf("%-44s %12s %12s %12s\n", "parameter", "start", "found", "std. error");
   for (const auto& p : json["parameters"]) {
     const auto& error = p["standard_error"];
@@ -110,8 +110,8 @@ void PrintText(const nlohmann::ordered_json& json) {
               json["converged"].get<bool>() ? "" : ", the most that were allowed: not converged");
 }
 
-void Write(const Options& options, const Identification& result, const std::vector<Judged>& judged,
-           const nlohmann::ordered_json& json) {
+void Write(const IdentifyOptions& options, const Identification& result,
+           const std::vector<Judged>& judged, const nlohmann::ordered_json& json) {
   std::filesystem::create_directories(options.output);
   const auto write = [&](const char* name, const std::string& text) {
     const std::filesystem::path file = options.output / name;
@@ -129,7 +129,7 @@ void Write(const Options& options, const Identification& result, const std::vect
   std::cerr << "wrote " << (options.output / "identification.png").string() << '\n';
 }
 
-int Run(const Options& options) {
+int Run(const IdentifyOptions& options) {
   const Config config = ConfigFor(options);
   std::vector<FreeParameter> free;
   for (const std::string& text : options.free) free.push_back(ParseFreeParameter(config, text));
@@ -147,7 +147,7 @@ int Run(const Options& options) {
   if (options.json) {
     std::cout << json.dump(2) << '\n';
   } else {
-    PrintText(json);
+    PrintIdentification(json);
   }
   return result.converged ? Exit::kDone : Exit::kFailed;
 }
@@ -155,7 +155,7 @@ int Run(const Options& options) {
 }  // namespace
 
 void RegisterIdentify(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<IdentifyOptions>();
   CLI::App* verb = app.add_subcommand(
       "identify", "Find parameters of the rig that let the model predict a measured run");
   options->config.AddTo(verb, false);

@@ -13,14 +13,14 @@
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-struct Options {
+struct InfoOptions {
   std::filesystem::path run;
   bool json = false;
 };
 
-Json TripJson(const LoadedRun& run) {
+OrderedJson TripJson(const LoadedRun& run) {
   const std::optional<SafetyRecord> trip = TripOf(run.contents.safety);
   if (!trip) return nullptr;
   return {{"name", Name(trip->after.cause)},
@@ -31,7 +31,7 @@ Json TripJson(const LoadedRun& run) {
           {"text", OperatorText(trip->after.cause)}};
 }
 
-Json TimingJson(const std::vector<TimingRecord>& records) {
+OrderedJson TimingJson(const std::vector<TimingRecord>& records) {
   if (records.empty()) return nullptr;
   std::vector<double> late_us, took_us;
   for (const TimingRecord& record : records) {
@@ -53,7 +53,7 @@ std::int64_t MissingTicks(const std::vector<TickRecord>& ticks) {
 }
 
 // From sampling instant to torque, as the drive side measured it; the longest of the run.
-Json DelayJson(const LoadedRun& run) {
+OrderedJson DelayJson(const LoadedRun& run) {
   if (run.contents.tick.empty()) return nullptr;
   const auto latest = std::max_element(
       run.contents.tick.begin(), run.contents.tick.end(),
@@ -61,17 +61,18 @@ Json DelayJson(const LoadedRun& run) {
   return 1e3 * run.period_s() + 1e-6 * static_cast<double>(latest->input.acted_late_ns);
 }
 
-Json Info(const LoadedRun& run) {
+OrderedJson Info(const LoadedRun& run) {
   const RunInfo& info = run.contents.info;
   const auto& ticks = run.contents.tick;
-  Json json;
+  OrderedJson json;
   json["run"] = run.file.string();
   json["start_utc"] = info.start_utc;
   json["rig"] = info.rig_name;
   json["backend"] = info.backend;
   json["clock"] = info.clock;
   json["seed"] = info.seed;
-  json["experiment"] = info.experiment_name.empty() ? Json(nullptr) : Json(info.experiment_name);
+  json["experiment"] =
+      info.experiment_name.empty() ? OrderedJson(nullptr) : OrderedJson(info.experiment_name);
   json["version"] = info.version;
   json["build_id"] = info.build_id;
   json["closed"] = run.closed;
@@ -83,18 +84,18 @@ Json Info(const LoadedRun& run) {
           : static_cast<double>(ticks.back().input.now_ns - ticks.front().input.now_ns) * 1e-9;
   json["delay_max_ms"] = DelayJson(run);
   json["final_state"] = run.contents.safety.empty()
-                            ? Json(nullptr)
-                            : Json(Name(run.contents.safety.back().after.state));
+                            ? OrderedJson(nullptr)
+                            : OrderedJson(Name(run.contents.safety.back().after.state));
   json["trip"] = TripJson(run);
-  json["result"] = Json::parse(info.result_json, nullptr, false);
+  json["result"] = OrderedJson::parse(info.result_json, nullptr, false);
   if (json["result"].is_discarded()) json["result"] = nullptr;
   const std::optional<RunMetrics> metrics = MetricsOf(run);
-  json["metrics"] = metrics ? ToJson(*metrics) : Json(nullptr);
+  json["metrics"] = metrics ? ToJson(*metrics) : OrderedJson(nullptr);
   json["timing"] = TimingJson(run.contents.timing);
   return json;
 }
 
-std::string Text(const Json& value) {
+std::string Text(const OrderedJson& value) {
   if (value.is_null()) return "-";
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
@@ -110,12 +111,12 @@ std::string Text(const Json& value) {
   return text.str();
 }
 
-void Line(const std::string& name, const Json& value, const std::string& unit = "") {
+void Line(const std::string& name, const OrderedJson& value, const std::string& unit = "") {
   std::cout << "  " << std::left << std::setw(24) << name << Text(value)
             << (unit.empty() || value.is_null() ? "" : " " + unit) << '\n';
 }
 
-void PrintMetrics(const Json& metrics) {
+void PrintMetrics(const OrderedJson& metrics) {
   std::cout << (metrics["truth"].get<bool>() ? "Figures, from the plant's true motion\n"
                                              : "Figures, from the estimate\n");
   Line("joint error, rms", metrics["joint_rms_error_deg"], "deg");
@@ -143,7 +144,7 @@ void PrintSafety(const RunContents& run) {
   std::cout << std::defaultfloat;
 }
 
-void PrintText(const Json& json, const RunContents& run) {
+void PrintText(const OrderedJson& json, const RunContents& run) {
   std::cout << json["run"].get<std::string>() << '\n';
   for (const char* key : {"start_utc", "rig", "backend", "clock", "seed", "experiment", "version",
                           "build_id", "closed", "ticks", "missing_ticks"}) {
@@ -168,14 +169,14 @@ void PrintText(const Json& json, const RunContents& run) {
 }  // namespace
 
 void RegisterInfo(CLI::App& app, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   CLI::App* verb = app.add_subcommand("info", "What happened in a run: a summary and its figures");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   AddJson(verb, &options->json);
   verb->footer("Example: flexarm info runs/today.flexarm");
   verb->callback([options] {
     const LoadedRun run = LoadRun(options->run);
-    const Json json = Info(run);
+    const OrderedJson json = Info(run);
     if (options->json) {
       std::cout << json.dump(2) << '\n';
     } else {

@@ -9,6 +9,7 @@
 #include "model/arm_model.h"
 #include "model/linearization.h"
 #include "model/link_modes.h"
+#include "model/units.h"
 #include "tools/analysis/beam_report.h"
 #include "tools/options.h"
 #include "tools/verbs.h"
@@ -16,9 +17,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295769;
-
-struct Options {
+struct ModesOptions {
   ConfigOptions config;
   int modes = 4;
   double theta2_deg = 0;
@@ -30,7 +29,7 @@ struct Options {
   std::filesystem::path output;
 };
 
-BeamRoot RootOf(const Options& options) {
+BeamRoot RootOf(const ModesOptions& options) {
   const bool spring = options.base == "spring";
   if (spring != options.base_spring_nm_per_rad.has_value()) {
     throw InputError("modes: --base spring and --base-spring-nm-per-rad go together");
@@ -39,7 +38,7 @@ BeamRoot RootOf(const Options& options) {
   return options.base == "pinned" ? BeamRoot::Pinned() : BeamRoot::Clamped();
 }
 
-nlohmann::ordered_json ArmJson(const Options& options, const ArmModel& model, bool held) {
+nlohmann::ordered_json ArmJson(const ModesOptions& options, const ArmModel& model, bool held) {
   const double theta2_rad = options.theta2_deg * kRadPerDeg;
   const Eigen::VectorXd frequency =
       held ? HeldMotorFrequenciesHz(model, theta2_rad) : FreeMotorFrequenciesHz(model, theta2_rad);
@@ -51,7 +50,7 @@ nlohmann::ordered_json ArmJson(const Options& options, const ArmModel& model, bo
   return json;
 }
 
-nlohmann::ordered_json Modes(const Options& options) {
+nlohmann::ordered_json Modes(const ModesOptions& options) {
   if (!options.output.empty()) CheckPicture(options.output);
   ArmParameters arm = options.config.Load().arm;
   // The modes of an arm with this payload: its shapes too, or the figures would converge slower.
@@ -81,35 +80,35 @@ nlohmann::ordered_json Modes(const Options& options) {
   return json;
 }
 
-void PrintRow(const std::string& name, const nlohmann::ordered_json& values) {
+void PrintFigures(const std::string& name, const nlohmann::ordered_json& values) {
   std::cout << std::left << std::setw(30) << name << std::right;
   for (const double value : values) std::cout << ' ' << std::setw(10) << value;
   std::cout << '\n';
 }
 
-void PrintText(const nlohmann::ordered_json& json) {
+void PrintModes(const nlohmann::ordered_json& json) {
   std::cout << std::setprecision(6);
   for (const auto& link : json["links"]) {
     const std::string name = "link " + std::to_string(link["link"].get<int>()) + ", " +
                              link["base"].get<std::string>() + ": ";
-    PrintRow(name + "beta L", link["beta_l"]);
-    PrintRow(name + "Hz", link["frequency_hz"]);
+    PrintFigures(name + "beta L", link["beta_l"]);
+    PrintFigures(name + "Hz", link["frequency_hz"]);
   }
-  PrintRow("arm, motors free: Hz", json["arm"]["frequency_hz"]);
-  PrintRow("arm, motors held: Hz", json["arm_motors_held"]["frequency_hz"]);
+  PrintFigures("arm, motors free: Hz", json["arm"]["frequency_hz"]);
+  PrintFigures("arm, motors held: Hz", json["arm_motors_held"]["frequency_hz"]);
   if (!json.contains("convergence")) return;
   std::cout << std::setprecision(4);
   for (const auto& link : json["convergence"]) {
     const std::string name = "link " + std::to_string(link["link"].get<int>()) + ", ";
     for (std::size_t i = 0; i < link["parts"].size(); ++i) {
-      PrintRow(name + std::to_string(link["parts"][i].get<int>()) + " parts: error %",
-               link["error_percent"][i]);
+      PrintFigures(name + std::to_string(link["parts"][i].get<int>()) + " parts: error %",
+                   link["error_percent"][i]);
     }
-    PrintRow(name + "fit (3.7): residual", link["fit_rms_residual"]);
+    PrintFigures(name + "fit (3.7): residual", link["fit_rms_residual"]);
   }
 }
 
-void AddBase(CLI::App* verb, Options* options) {
+void AddBase(CLI::App* verb, ModesOptions* options) {
   verb->add_option("--base", options->base, "What holds the roots of the links by themselves")
       ->check(CLI::IsMember({"clamped", "pinned", "spring"}))
       ->capture_default_str();
@@ -125,7 +124,7 @@ void AddBase(CLI::App* verb, Options* options) {
 }  // namespace
 
 void RegisterModes(CLI::App& app, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ModesOptions>();
   CLI::App* verb = app.add_subcommand(
       "modes", "Natural frequencies of the links and of the whole arm, undamped");
   options->config.AddTo(verb, true);
@@ -148,7 +147,7 @@ void RegisterModes(CLI::App& app, Exit&) {
     if (options->json) {
       std::cout << json.dump(2) << '\n';
     } else {
-      PrintText(json);
+      PrintModes(json);
     }
   });
 }

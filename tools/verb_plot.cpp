@@ -11,12 +11,12 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct PlotOptions {
   std::vector<std::filesystem::path> runs;
   std::filesystem::path output;
 };
 
-void Plot(const Options& options) {
+void Plot(const PlotOptions& options) {
   CheckPicture(options.output);
   std::vector<PlotRun> runs;
   for (const auto& file : options.runs) {
@@ -32,7 +32,7 @@ void Plot(const Options& options) {
 }  // namespace
 
 void RegisterPlot(CLI::App& app, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PlotOptions>();
   CLI::App* verb =
       app.add_subcommand("plot", "A picture of one run, or of several over each other");
   verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");

@@ -17,7 +17,7 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::filesystem::path source;
   ConfigOptions config;
   std::filesystem::path calibration;  // empty: none
@@ -42,7 +42,7 @@ Design GainsOf(const RunReader& reader, const Config& config) {
   }
 }
 
-Outcome ReplayRun(const Options& options) {
+Outcome ReplayRun(const ReplayOptions& options) {
   if (!options.calibration.empty()) {
     throw InputError("--calibration: a run log brings its own; it is for CSV files");
   }
@@ -60,7 +60,7 @@ Outcome ReplayRun(const Options& options) {
 }
 
 // A CSV file has no outputs of its own. What was applied up to a row was asked one row before.
-Outcome ReplayCsv(const Options& options) {
+Outcome ReplayCsv(const ReplayOptions& options) {
   if (!options.config.given()) {
     throw InputError(options.source.string() +
                      ": a CSV file needs the config of its rig: add -c FILE");
@@ -131,7 +131,7 @@ void PrintText(const Outcome& outcome) {
   }
 }
 
-int Run(const Options& options) {
+int Run(const ReplayOptions& options) {
   const bool is_run = options.source.extension() != ".csv";
   const Outcome outcome = is_run ? ReplayRun(options) : ReplayCsv(options);
   if (!outcome.other_build.empty()) {
@@ -151,7 +151,7 @@ int Run(const Options& options) {
 }  // namespace
 
 void RegisterReplay(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   CLI::App* verb = app.add_subcommand(
       "replay", "Run recorded inputs through the loop again and compare what it asks for");
   verb->add_option("source", options->source, "Run log, or CSV file (*.csv)")

@@ -10,13 +10,13 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct ReportOptions {
   ConfigOptions config;
   std::filesystem::path output;
   bool json = false;
 };
 
-void Run(const Options& options) {
+void Run(const ReportOptions& options) {
   const std::filesystem::path page =
       WriteReport({.config = options.config.Load(),
                    .experiments = ExperimentFile({}, options.config.file).parent_path(),
@@ -31,7 +31,7 @@ void Run(const Options& options) {
 }  // namespace
 
 void RegisterReport(CLI::App& app, Exit&) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   CLI::App* verb = app.add_subcommand(
       "report", "Every figure and table of chapters 4 to 7 recomputed, in one HTML page");
   options->config.AddTo(verb, true);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kSliceNs = 1'000'000;
 
-struct Options {
+struct RigOptions {
   ConfigOptions config;
   std::optional<double> payload_kg;
   std::optional<double> run_for_s;
@@ -75,7 +75,7 @@ void Report(const WireRig& rig, bool json) {
   std::fflush(stdout);
 }
 
-int Run(const Options& options) {
+int Run(const RigOptions& options) {
   const Config config = options.config.Load();
   if (config.hal.empty()) {
     throw Refused(options.config.file.string() +
@@ -115,7 +115,7 @@ int Run(const Options& options) {
 }  // namespace
 
 void RegisterRig(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RigOptions>();
   CLI::App* verb = app.add_subcommand(
       "rig", "Play the devices of a wired rig, with the simulated arm behind them");
   options->config.AddTo(verb, true);

@@ -15,7 +15,7 @@
 namespace flexarm {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   ConfigOptions config;
   std::filesystem::path experiment;
   std::string controller, estimator;
@@ -29,7 +29,7 @@ struct Options {
 };
 
 // The short options are words for config keys: the log's config then says what was run.
-Config LoadWithOptions(const Options& options) {
+Config LoadWithOptions(const SimulateOptions& options) {
   ConfigOptions config = options.config;
   const auto set = [&config](const char* key, const std::string& value) {
     config.overrides.push_back(std::string(key) + "=" + value);
@@ -95,7 +95,7 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
   if (!run.empty()) std::printf("run                       %s\n", run.c_str());
 }
 
-int Run(const Options& options) {
+int Run(const SimulateOptions& options) {
   SimulationRequest request;
   request.config = LoadWithOptions(options);
   request.experiment = LoadExperiment(ExperimentFile(options.experiment, options.config.file));
@@ -116,7 +116,7 @@ int Run(const Options& options) {
 }  // namespace
 
 void RegisterSimulate(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   CLI::App* verb = app.add_subcommand(
       "simulate", "Run an experiment with the whole stack against the simulated arm, in lock step");
   options->config.AddTo(verb, true);

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 
 constexpr double kLongest_s = 120.0;  // a search for a switch over 180 deg at 5 deg/s, and to rest
 
-struct Options {
+struct CommissionOptions {
   DaemonClient daemon;
   std::vector<double> angle_deg;
   int link = 1;
@@ -48,7 +48,7 @@ void PrintPluck(const Json& answer) {
   }
 }
 
-int Run(const Options& options, const Json& command) {
+int Run(const CommissionOptions& options, const Json& command) {
   const Json answer = options.daemon.Ask(command, kLongest_s);
   if (!options.daemon.json) {
     if (answer.contains("strain")) PrintStrain(answer);
@@ -59,7 +59,7 @@ int Run(const Options& options, const Json& command) {
 }
 
 void AddTare(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb = options->daemon.AddVerb(app, "tare", "Take the strain channels' zeros");
   verb->footer(
       "Only in Idle, at rest, with nothing touching the links: nothing bends them then. A channel\n"
@@ -69,7 +69,7 @@ void AddTare(CLI::App& app, Exit& exit) {
 }
 
 void AddZero(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb = options->daemon.AddVerb(app, "zero", "Say at which angles the joints stand now");
   verb->add_option("--angle-deg", options->angle_deg,
                    "Hub angles of joint 1 and 2, counter-clockwise positive (default 0 0)")
@@ -86,7 +86,7 @@ void AddZero(CLI::App& app, Exit& exit) {
 }
 
 void AddCalibrate(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb =
       options->daemon.AddVerb(app, "calibrate", "Take a link's strain gains from a known load");
   verb->add_option("--link", options->link, "1 or 2")->required()->check(CLI::Range(1, 2));
@@ -110,7 +110,7 @@ void AddCalibrate(CLI::App& app, Exit& exit) {
 }
 
 void AddPluck(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb = options->daemon.AddVerb(
       app, "pluck", "Prove the wiring: a small torque on each joint, held against the model");
   verb->footer(
@@ -121,7 +121,7 @@ void AddPluck(CLI::App& app, Exit& exit) {
 }
 
 void AddHome(CLI::App& app, Exit& exit) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb =
       options->daemon.AddVerb(app, "home", "Find a limit switch, and so the joint's angle");
   verb->add_option("joint", options->joint, "1 or 2")->required()->check(CLI::Range(1, 2));

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-struct Options {
+struct OperateOptions {
   DaemonClient daemon;
   std::filesystem::path experiment;
   std::string line;
@@ -70,7 +70,7 @@ void PrintStatus(const Json& s) {
   }
 }
 
-int Status(const Options& options) {
+int Status(const OperateOptions& options) {
   for (;;) {
     const Json answer = options.daemon.Ask({{"command", "status"}});
     if (options.daemon.json) {
@@ -86,7 +86,7 @@ int Status(const Options& options) {
   }
 }
 
-int RunExperiment(const Options& options) {
+int RunExperiment(const OperateOptions& options) {
   const Experiment experiment = LoadExperiment(options.experiment);  // complains with file and line
   return options.daemon.Conclude(
       options.daemon.Ask({{"command", "run"},
@@ -95,7 +95,7 @@ int RunExperiment(const Options& options) {
 }
 
 void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<OperateOptions>();
   CLI::App* verb = options->daemon.AddVerb(app, name, what);
   verb->footer(footer);
   verb->callback([options, &exit, name] {
@@ -106,7 +106,7 @@ void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, c
 }  // namespace
 
 void RegisterOperate(CLI::App& app, Exit& exit) {
-  const auto status = std::make_shared<Options>();
+  const auto status = std::make_shared<OperateOptions>();
   CLI::App* verb = status->daemon.AddVerb(app, "status", "What the running daemon is doing");
   verb->add_flag("--watch", status->watch, "Again and again, until interrupted");
   verb->footer("Example: flexarm status --watch");
@@ -115,7 +115,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
   AddCommand(app, exit, "arm", "Close the relay: zero torque, ready to run",
              "Only from Idle, at rest, with no fault present. Example: flexarm arm");
 
-  const auto run = std::make_shared<Options>();
+  const auto run = std::make_shared<OperateOptions>();
   verb = run->daemon.AddVerb(app, "run", "Run an experiment on the armed arm");
   verb->add_option("experiment", run->experiment, "Experiment, a TOML file")
       ->required()
@@ -134,7 +134,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
              "Only after the reset button was pressed, at rest, with the cause gone.\n"
              "Example: flexarm reset");
 
-  const auto sim = std::make_shared<Options>();
+  const auto sim = std::make_shared<OperateOptions>();
   verb = sim->daemon.AddVerb(app, "sim", "Press a switch of the simulated rig");
   verb->add_option(
           "line", sim->line,

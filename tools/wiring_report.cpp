@@ -13,13 +13,13 @@
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // To the microsecond, which is what the bounds are good for.
 double Milliseconds(std::int64_t ns) { return std::round(static_cast<double>(ns) / 1e3) / 1e3; }
 
-Json BusJson(const BusCost& bus, std::int64_t available_ns) {
-  Json json;
+OrderedJson BusJson(const BusCost& bus, std::int64_t available_ns) {
+  OrderedJson json;
   json["kind"] = bus.kind;
   json["name"] = bus.name;
   json["worst_case_ms"] = Milliseconds(bus.worst_ns);
@@ -30,21 +30,21 @@ Json BusJson(const BusCost& bus, std::int64_t available_ns) {
     const auto shares = std::count_if(
         bus.channel.begin(), bus.channel.end(),
         [&](const ChannelCost& other) { return other.transaction == channel.transaction; });
-    Json row = {{"device", channel.device},
-                {"channel", channel.channel},
-                {"transaction", channel.transaction},
-                {"shared_by", shares},
-                {"cost_ms", Milliseconds(channel.cost_ns)}};
+    OrderedJson row = {{"device", channel.device},
+                       {"channel", channel.channel},
+                       {"transaction", channel.transaction},
+                       {"shared_by", shares},
+                       {"cost_ms", Milliseconds(channel.cost_ns)}};
     if (channel.convert_ns > 0) row["convert_ms"] = Milliseconds(channel.convert_ns);
     json["channels"].push_back(row);
   }
   return json;
 }
 
-Json AcquisitionJson(const Config& config) {
+OrderedJson AcquisitionJson(const Config& config) {
   const std::int64_t available_ns = std::llround(config.loop.acquire_before_ms * 1e6);
   const std::vector<BusCost> costs = AcquisitionCosts(config.hal);
-  Json json;
+  OrderedJson json;
   json["available_ms"] = Milliseconds(available_ns);
   const auto slowest =
       std::max_element(costs.begin(), costs.end(),
@@ -58,9 +58,9 @@ Json AcquisitionJson(const Config& config) {
   return json;
 }
 
-Json DriveJson(const DriveFigures& drive, const Config& config) {
+OrderedJson DriveJson(const DriveFigures& drive, const Config& config) {
   const bool volts = std::string(drive.unit) == "V";
-  Json json;
+  OrderedJson json;
   json["joint"] = drive.joint + 1;
   json["bus"] = drive.bus;
   json[volts ? "torque_per_volt_nm" : "torque_per_mille_nm"] = drive.torque_per_unit_nm;
@@ -76,13 +76,13 @@ void PrintLine(const std::string& name, const std::string& value) {
   std::cout << "  " << std::left << std::setw(26) << name << value << '\n';
 }
 
-std::string Ms(const Json& value) { return NumberText(value.get<double>()) + " ms"; }
+std::string Ms(const OrderedJson& value) { return NumberText(value.get<double>()) + " ms"; }
 
-void PrintBus(const Json& bus) {
+void PrintBus(const OrderedJson& bus) {
   PrintLine(
       bus["kind"].get<std::string>() + " " + bus["name"].get<std::string>(),
       Ms(bus["worst_case_ms"]) + " an exchange at worst, " + Ms(bus["spare_ms"]) + " to spare");
-  for (const Json& channel : bus["channels"]) {
+  for (const OrderedJson& channel : bus["channels"]) {
     const int shares = channel["shared_by"].get<int>();
     std::string text = Ms(channel["cost_ms"]);
     if (shares > 1) text += " for " + std::to_string(shares) + " together";
@@ -99,7 +99,7 @@ void PrintBus(const Json& bus) {
   }
 }
 
-void PrintDrive(const Json& drive) {
+void PrintDrive(const OrderedJson& drive) {
   const bool volts = drive.contains("torque_per_volt_nm");
   const auto number = [&](const char* key) { return NumberText(drive[key].get<double>()); };
   const std::string per = volts ? number("torque_per_volt_nm") + " N m per volt"
@@ -118,7 +118,7 @@ void PrintDrive(const Json& drive) {
 
 }  // namespace
 
-void AddWiring(const Config& config, Json* json) {
+void AddWiring(const Config& config, OrderedJson* json) {
   if (config.hal.empty()) return;
   (*json)["acquisition"] = AcquisitionJson(config);
   for (const DriveFigures& drive : FiguresOfDrives(config.hal)) {
@@ -126,15 +126,15 @@ void AddWiring(const Config& config, Json* json) {
   }
 }
 
-void PrintWiring(const Json& json) {
+void PrintWiring(const OrderedJson& json) {
   if (!json.contains("acquisition")) return;
-  const Json& acquisition = json["acquisition"];
+  const OrderedJson& acquisition = json["acquisition"];
   PrintLine("acquisition", Ms(acquisition["worst_case_ms"]) + " on " +
                                acquisition["slowest_bus"].get<std::string>() +
                                ", the slowest bus, of the " + Ms(acquisition["available_ms"]) +
                                " until the step is due");
-  for (const Json& bus : acquisition["buses"]) PrintBus(bus);
-  for (const Json& drive : json["drives"]) PrintDrive(drive);
+  for (const OrderedJson& bus : acquisition["buses"]) PrintBus(bus);
+  for (const OrderedJson& drive : json["drives"]) PrintDrive(drive);
 }
 
 }  // namespace flexarm

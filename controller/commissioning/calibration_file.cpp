@@ -16,14 +16,16 @@
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
   throw InputError(file.string() + ": " + what);
 }
 
-Json ToJson(const SensorConfig& sensors, const Calibration& calibration) {
-  Json json{{"flexarm", "calibration"}, {"encoder", Json::array()}, {"strain", Json::array()}};
+OrderedJson ToJson(const SensorConfig& sensors, const Calibration& calibration) {
+  OrderedJson json{{"flexarm", "calibration"},
+                   {"encoder", OrderedJson::array()},
+                   {"strain", OrderedJson::array()}};
   for (const EncoderConfig& encoder : sensors.encoder) {
     const auto i = static_cast<std::size_t>(encoder.counter);
     json["encoder"].push_back({{"joint", CounterName(encoder.counter)},
@@ -46,7 +48,8 @@ Json ToJson(const SensorConfig& sensors, const Calibration& calibration) {
 
 // The rows of another rig must not pass for this one's: all but what was measured is compared.
 template <typename Number>
-void Take(const std::filesystem::path& file, const Json& row, const char* name, Number* value) {
+void Take(const std::filesystem::path& file, const OrderedJson& row, const char* name,
+          Number* value) {
   const auto found = row.find(name);
   if (found == row.end() || !found->is_number() || !std::isfinite(found->get<double>())) {
     Fail(file, "row " + row.dump() + ": expected a number in '" + name + "'");
@@ -54,10 +57,10 @@ void Take(const std::filesystem::path& file, const Json& row, const char* name, 
   *value = found->get<Number>();
 }
 
-void CheckSensors(const std::filesystem::path& file, Json found, Json expected) {
-  for (Json* json : {&found, &expected}) {
-    for (Json& row : (*json)["encoder"]) row.erase("zero_counts");
-    for (Json& row : (*json)["strain"]) {
+void CheckSensors(const std::filesystem::path& file, OrderedJson found, OrderedJson expected) {
+  for (OrderedJson* json : {&found, &expected}) {
+    for (OrderedJson& row : (*json)["encoder"]) row.erase("zero_counts");
+    for (OrderedJson& row : (*json)["strain"]) {
       row.erase("zero_counts");
       row.erase("gain_error");
     }
@@ -100,7 +103,7 @@ std::optional<Calibration> ReadCalibration(const std::filesystem::path& file,
     Fail(file, "cannot be read");
   }
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const Json json = Json::parse(text, nullptr, false);
+  const OrderedJson json = OrderedJson::parse(text, nullptr, false);
   const auto is_rows = [&json](const char* name) {
     return json.contains(name) && json[name].is_array();
   };

@@ -2,20 +2,18 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <utility>
 
 #include "controller/commissioning/calibration_file.h"
 #include "controller/law/refused.h"
 #include "controller/runlog/csv.h"
 #include "hal/line_names.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 void RequireIdle(const std::string& command, SafetyState state) {
   if (state == SafetyState::kIdle) return;

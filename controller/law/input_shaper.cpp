@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 
+#include "model/units.h"
+
 namespace flexarm {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Oscillation {
   double half_period;  // samples

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
+
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kRateTicks = 2;
 constexpr int kMissingTicks = 2;  // no good reading for two periods
 constexpr double kStalePeriods = 2.0;

@@ -3,14 +3,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "controller/law/rounded_text.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kJumpPeriods = 4.0;
 
 struct Quantity {

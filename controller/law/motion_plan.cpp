@@ -10,11 +10,10 @@
 #include "controller/law/sampling_grid.h"
 #include "controller/law/shortest_move.h"
 #include "model/problem_list.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 std::string RowOf(const PlannedMove& move) { return ProblemList::Element("move", move.row); }
 

@@ -2,16 +2,15 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "controller/law/refused.h"
 #include "controller/law/sampling_grid.h"
 #include "model/problem_list.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kStartTolerance_rad = 1.0 / kDegPerRad;
 
 /// Clamped cubic spline: continuous to the second derivative, slope 0 at both ends.

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "model/link_modes.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kDegPerRad = 57.295779513082320877;
 constexpr double kFinalWindow_s = 0.3;
 constexpr double kSettledWithin_m = 0.015;
 constexpr double kSettleBy_s = 0.3;  // the goal: after the end of a move

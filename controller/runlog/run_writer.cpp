@@ -9,11 +9,10 @@
 #include "controller/runlog/blob.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/schema.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kDegPerRad = 57.295779513082320877;
 
 constexpr const char* kInsertTick =
     "INSERT INTO tick VALUES "

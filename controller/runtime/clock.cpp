@@ -3,10 +3,10 @@
 #include <cerrno>
 #include <ctime>
 
+#include "hal/time_units.h"
+
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 std::int64_t Now(clockid_t clock) noexcept {
   timespec now{};

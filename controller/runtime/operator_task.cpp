@@ -2,19 +2,18 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <utility>
 
 #include "controller/law/refused.h"
 #include "controller/runtime/trip_channel.h"
 #include "hal/line_names.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr int kNoClient = -1;
 constexpr std::int64_t kShutdownLimitNs = 6'000'000'000;  // a stop takes 3 s at most, or trips
 constexpr std::int64_t kAfterTripNs = 5'000'000'000;  // the log of a tripped run goes on this long

@@ -1,9 +1,9 @@
 #include "controller/safety/safety_config.h"
 
 #include <cstddef>
-#include <numbers>
 
 #include "model/problem_list.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -60,7 +60,6 @@ std::vector<Problem> SafetyConfig::Problems() const {
 }
 
 std::array<double, 2> SoftAngleRad(const SafetyConfig& safety) noexcept {
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   return {safety.soft_angle_deg[0] * kRadPerDeg, safety.soft_angle_deg[1] * kRadPerDeg};
 }
 

@@ -5,10 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "hal/time_units.h"
+
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
 // One lost frame happens on any bus; three in a row at 50 Hz is 60 ms without a drive.
 constexpr int kMissedIsSilent = 3;
 constexpr int kStuckIsFault = 3;
@@ -40,7 +41,7 @@ void CanopenDevice::Open() {
   setup_.Begin();
   NodeSetup::Progress progress = NodeSetup::Progress::kBusy;
   while (progress == NodeSetup::Progress::kBusy) {
-    progress = setup_.Advance(bus_->now_ns() + 100 * kMillisecond_ns);
+    progress = setup_.Advance(bus_->now_ns() + 100 * kMillisecondNs);
   }
   if (progress == NodeSetup::Progress::kFailed) {
     bus_->Close();
@@ -186,7 +187,7 @@ void CanopenDevice::CheckHeartbeats() noexcept {
   if (first_) {
     for (Node& node : nodes()) node.heartbeat_ns = bus_->now_ns();
   }
-  const std::int64_t oldest_ns = bus_->now_ns() - config_.node_timeout_ms * kMillisecond_ns;
+  const std::int64_t oldest_ns = bus_->now_ns() - config_.node_timeout_ms * kMillisecondNs;
   for (const Node& node : nodes()) {
     if (node.heartbeat_ns < oldest_ns) Latch(CanopenFaultKind::kHeartbeatLost, &node, 0);
   }

@@ -7,11 +7,11 @@
 
 #include "hal/canopen/canopen_codec.h"
 #include "hal/canopen/sdo.h"
+#include "hal/time_units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
 constexpr std::uint32_t kProfileMask = 0xFFFF;
 constexpr std::uint32_t kProfileDrive = 402, kProfileEncoder = 406;
 constexpr int kPdosByDefault = 4;  // of the predefined connection set
@@ -206,7 +206,7 @@ void NodeSetup::BeginStep() noexcept {
   const int patience_ms = step().action == SetupAction::kAwaitBoot
                               ? config_.boot_timeout_ms
                               : config_.node_timeout_ms + config_.sdo_timeout_ms;
-  deadline_ns_ = bus_->now_ns() + patience_ms * kMillisecond_ns;
+  deadline_ns_ = bus_->now_ns() + patience_ms * kMillisecondNs;
   phase_ = Phase::kListening;
 }
 
@@ -216,7 +216,7 @@ void NodeSetup::Ask(Phase phase) noexcept {
                                ? SdoWriteRequest(node_id, step().object, step().value, step().size)
                                : SdoReadRequest(node_id, step().object);
   asked_ns_ = bus_->now_ns();
-  deadline_ns_ = asked_ns_ + config_.sdo_timeout_ms * kMillisecond_ns;
+  deadline_ns_ = asked_ns_ + config_.sdo_timeout_ms * kMillisecondNs;
   phase_ = phase;
   if (bus_->Send(request) != SendResult::kSent) Fail(Failure::kNotSent, 0);
 }

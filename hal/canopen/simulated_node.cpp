@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/time_units.h"
+
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kMillisecond_ns = 1'000'000;
 constexpr std::uint16_t kHeartbeatError = 0x8130;  // emergency code of CiA 301
 
 constexpr bool IsMapping(std::uint16_t index) {
@@ -141,13 +142,13 @@ void SimulatedNode::Run() noexcept {
     if (!wrong_.silent) Handle(received.frame);
   }
   const std::int64_t now = bus_->now_ns();
-  const std::int64_t producer_ns = kMillisecond_ns * std::int64_t{Value(kObjectProducerHeartbeat)};
+  const std::int64_t producer_ns = kMillisecondNs * std::int64_t{Value(kObjectProducerHeartbeat)};
   if (producer_ns > 0 && now >= next_heartbeat_ns_) {
     if (!wrong_.no_heartbeat) Transmit(EncodeHeartbeat(config_.node_id, nmt_));
     next_heartbeat_ns_ = now + producer_ns;
   }
   const std::int64_t consumer_ns =
-      kMillisecond_ns * std::int64_t{Value(kObjectConsumerHeartbeat) & 0xFFFFU};
+      kMillisecondNs * std::int64_t{Value(kObjectConsumerHeartbeat) & 0xFFFFU};
   if (consumer_ns > 0 && master_heard_ns_ && now - *master_heard_ns_ >= consumer_ns &&
       !wrong_.keeps_torque) {
     LoseMaster();

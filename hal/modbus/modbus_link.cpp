@@ -17,11 +17,11 @@
 #include <new>
 
 #include "hal/modbus/serial_latency.h"
+#include "hal/time_units.h"
 
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 // Longer than the kernel's shortest retransmission time-out, 200 ms: one lost packet must not end a
 // connection.
 constexpr unsigned kUserTimeoutMs = 250;

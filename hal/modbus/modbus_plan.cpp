@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <numeric>
 
+#include "hal/time_units.h"
+
 namespace flexarm {
 namespace {
 
 constexpr int kMostRegisters = 125;  // Modbus application protocol V1.1b3, 6.3
 constexpr int kMostBits = 2000;      // 6.1
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-constexpr std::int64_t kMillisecondNs = 1'000'000;
 // System calls, the driver's own work, and the granularity of select (1 us and timer slack 50 us).
 constexpr std::int64_t kOverheadNs = 200'000;
 

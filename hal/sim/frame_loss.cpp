@@ -6,12 +6,12 @@ namespace flexarm {
 namespace {
 
 // Apart from the noise, which has the seed itself: losing frames leaves the noise as it was.
-constexpr std::uint64_t kStream = 0x6c6f7373;
+constexpr std::uint64_t kFrameLossStream = 0x6c6f7373;
 
 }  // namespace
 
 FrameLoss::FrameLoss(double fraction, std::uint64_t seed)
-    : probability_(fraction / (1.0 - fraction)), random_(seed ^ kStream) {}
+    : probability_(fraction / (1.0 - fraction)), random_(seed ^ kFrameLossStream) {}
 
 bool FrameLoss::Next() noexcept {
   const double uniform = std::ldexp(static_cast<double>(random_() >> 11), -53);  // 0 .. 1, open

@@ -7,13 +7,15 @@ namespace flexarm {
 namespace {
 
 // Apart from the gauges' noise, which has the seed itself.
-constexpr std::uint64_t kStream = 0x74697061;
+constexpr std::uint64_t kAccelerometerStream = 0x74697061;
 
 }  // namespace
 
 SimulatedAccelerometer::SimulatedAccelerometer(const TipAccelerometerConfig& config, double step_s,
                                                std::uint64_t seed)
-    : config_(config), blend_(1.0 - std::exp(-step_s / config.lag_s())), random_(seed ^ kStream) {}
+    : config_(config),
+      blend_(1.0 - std::exp(-step_s / config.lag_s())),
+      random_(seed ^ kAccelerometerStream) {}
 
 void SimulatedAccelerometer::Step(double acceleration_m_s2) noexcept {
   filtered_m_s2_ += blend_ * (acceleration_m_s2 - filtered_m_s2_);

@@ -8,13 +8,13 @@
 
 #include "model/lumped_beam.h"
 #include "model/mode_shape_fit.h"
+#include "model/units.h"
 #include "tools/gnuplot.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kTwoPi = 6.2831853071795864769;
-constexpr std::array kParts = {10, 20, 31, 50, 86, 100, 200};
+constexpr std::array kPartCounts = {10, 20, 31, 50, 86, 100, 200};
 constexpr int kPoints = 200;  // of a drawn shape
 
 std::string NameOf(const LinkBeam& beam) { return "link " + std::to_string(beam.link); }
@@ -51,7 +51,7 @@ void AddShapes(const std::vector<BeamMode>& modes, std::ostream* script) {
 }
 
 void AddErrors(const LinkBeam& beam, const std::vector<BeamMode>& modes, std::ostream* script) {
-  for (const int parts : kParts) {
+  for (const int parts : kPartCounts) {
     *script << parts;
     for (const double error : ErrorPercent(beam, modes, parts)) *script << ' ' << std::fabs(error);
     *script << '\n';
@@ -90,10 +90,11 @@ nlohmann::ordered_json BeamJson(const LinkBeam& beam, const std::vector<BeamMode
 
 nlohmann::ordered_json ConvergenceJson(const LinkBeam& beam, const std::vector<BeamMode>& modes) {
   nlohmann::ordered_json json{{"link", beam.link}};
-  json["parts"] = kParts;
+  json["parts"] = kPartCounts;
   json["error_percent"] = nlohmann::ordered_json::array();
-  for (const int parts : kParts) json["error_percent"].push_back(ErrorPercent(beam, modes, parts));
-  const int finest = kParts.back();
+  for (const int parts : kPartCounts)
+    json["error_percent"].push_back(ErrorPercent(beam, modes, parts));
+  const int finest = kPartCounts.back();
   json["fit_parts"] = finest;
   json["fit_rms_residual"] = nlohmann::ordered_json::array();
   json["fit_coefficients"] = nlohmann::ordered_json::array();

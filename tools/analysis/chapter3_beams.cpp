@@ -10,7 +10,7 @@ namespace {
 
 constexpr BeamTip kBare{0.0, 0.0};
 constexpr double kClaimed_percent = 0.05;  // 3.2
-constexpr int kModes = 4;
+constexpr int kFirstModes = 4;
 
 // A uniform beam like link 2, the thesis's case with analytic solutions.
 std::vector<BeamSection> Uniform(const ArmParameters& arm) {
@@ -24,7 +24,7 @@ class LumpedErrors {
   LumpedErrors(const ArmParameters& arm, BeamRoot root)
       : section_(Uniform(arm)),
         root_(root),
-        exact_(NaturalModes(section_, kBare, root, kModes, "link 2")) {}
+        exact_(NaturalModes(section_, kBare, root, kFirstModes, "link 2")) {}
 
   double Percent(int parts, std::size_t mode, LumpInertia inertia = LumpInertia::kNone) const {
     const LumpedBeam beam(section_, kBare, root_, parts, "link 2", inertia);
@@ -37,7 +37,7 @@ class LumpedErrors {
     const auto enough = [&](int parts) {
       return std::abs(Percent(parts, mode)) < kClaimed_percent;
     };
-    int low = kModes, high = 2 * kModes;
+    int low = kFirstModes, high = 2 * kFirstModes;
     for (; !enough(high); high *= 2) low = high;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
@@ -55,17 +55,17 @@ class LumpedErrors {
 Statement LumpedBeamError(const ArmParameters& arm) {
   constexpr int kFew = 10;
   std::string text = "a uniform link in " + std::to_string(kFew) + " parts: modes 1 to " +
-                     std::to_string(kModes) + " off by";
+                     std::to_string(kFirstModes) + " off by";
   const LumpedErrors clamped(arm, BeamRoot::Clamped()), pinned(arm, BeamRoot::Pinned());
   double worst = 0.0;
-  for (std::size_t i = 0; i < kModes; ++i) {
+  for (std::size_t i = 0; i < kFirstModes; ++i) {
     const double percent = clamped.Percent(kFew, i);
     worst = std::max(worst, std::abs(percent));
     text += (i > 0 ? ", " : " ") + Figure(percent);
   }
   const auto needed = [](const LumpedErrors& errors) {
     return std::to_string(errors.PartsFor(0)) + " parts for the first mode, " +
-           std::to_string(errors.PartsFor(kModes - 1)) + " for " + std::to_string(kModes);
+           std::to_string(errors.PartsFor(kFirstModes - 1)) + " for " + std::to_string(kFirstModes);
   };
   text += " % if clamped. It takes " + needed(clamped) + "; if pinned, " + needed(pinned);
   return {"3.2",
@@ -77,10 +77,10 @@ Statement LumpedBeamError(const ArmParameters& arm) {
 Statement LumpInertias(const ArmParameters& arm) {
   constexpr int kParts = 20;
   const LumpedErrors clamped(arm, BeamRoot::Clamped());
-  const double without = clamped.Percent(kParts, kModes - 1);
-  const double with = clamped.Percent(kParts, kModes - 1, LumpInertia::kSlab);
+  const double without = clamped.Percent(kParts, kFirstModes - 1);
+  const double with = clamped.Percent(kParts, kFirstModes - 1, LumpInertia::kSlab);
   return {"3.2", "each point has a mass and a concentrated moment of inertia",
-          "with a slab's moment of inertia, mode " + std::to_string(kModes) +
+          "with a slab's moment of inertia, mode " + std::to_string(kFirstModes) +
               " of a uniform link in " + std::to_string(kParts) + " parts is off by " +
               Figure(with) + " %, with none by " + Figure(without) + " %",
           std::abs(with) < std::abs(without) ? Verdict::kHolds : Verdict::kDoesNot};

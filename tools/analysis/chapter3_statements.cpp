@@ -6,13 +6,12 @@
 #include "model/friction_root.h"
 #include "model/linearization.h"
 #include "model/reduction/arm_reduction.h"
+#include "model/units.h"
 #include "tools/analysis/thesis_check.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kTwoPi = 6.2831853071795864769;
-constexpr double kRadPerDeg = 0.017453292519943295769;
 constexpr double kThesisRate_rad_s = 4.0;  // 6.5.2: joint 1 turns no faster
 
 Statement FrictionSwitch(const ArmParameters& arm) {

@@ -137,7 +137,7 @@ constexpr std::array<double, 2> kTorque_nm = {0.4, 0.1};  // assumed: the thesis
 constexpr int kTipAfter_s = 3;
 
 // One period of a square wave of 1 s from rest, then free.
-Chapter4Run Experiment(const ArmParameters& arm, int modes) {
+Chapter4Run RunChapter4(const ArmParameters& arm, int modes) {
   const ArmModel model(arm, {modes, modes});
   ArmSimulator simulator(model, {.passes = 4, .substeps = 10});
   ArmState x(model.dof());
@@ -157,10 +157,10 @@ Chapter4Run Experiment(const ArmParameters& arm, int modes) {
 }
 
 Statement Agreement(ArmParameters arm) {
-  const Chapter4Run damped = Experiment(arm, 4);
+  const Chapter4Run damped = RunChapter4(arm, 4);
   arm.damping = DampingReading::kNone;
   for (JointParameters& joint : arm.joint) joint.coulomb_friction_nm = 0.0;
-  const Chapter4Run two = Experiment(arm, 2), four = Experiment(arm, 4);
+  const Chapter4Run two = RunChapter4(arm, 2), four = RunChapter4(arm, 4);
   return {"4.3", "simulation and experiment agree well (figures 4.4 and 4.5)",
           "the amplitude of the square wave is not stated. With " + Figure(kTorque_nm[0], 1) +
               " and " + Figure(kTorque_nm[1], 1) + " N m the links bend by up to " +

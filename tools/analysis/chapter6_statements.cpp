@@ -3,14 +3,14 @@
 #include <cmath>
 
 #include "model/perturbation.h"
+#include "model/units.h"
 #include "tools/analysis/reduction_grid.h"
 #include "tools/analysis/thesis_check.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295769;
-constexpr int kModes = 10;  // 6.5: the M of figures 6.3 to 6.9
+constexpr int kReductionModes = 10;  // 6.5: the M of figures 6.3 to 6.9
 
 constexpr double kPerturbedAt_deg = 45.0;
 constexpr int kPerturbed_s = 3;
@@ -96,7 +96,7 @@ Statement Scaling(const ArmModel& model) {
 }
 
 Statement LightlyDamped(const ArmParameters& arm) {
-  const ArmModel model(arm, {kModes, kModes});
+  const ArmModel model(arm, {kReductionModes, kReductionModes});
   const Eigen::VectorXcd root = DampedArm(model, {0.0, 0.0, 0.0}).A.eigenvalues();
   double first = 1.0, slowest = 1e300;
   int creeping = 0, all = 0;
@@ -111,7 +111,7 @@ Statement LightlyDamped(const ArmParameters& arm) {
   return {"6.5.1", "the arm is lightly damped, so that damping can be neglected",
           "with the links' damping of this rig the lowest mode has the damping ratio " +
               Figure(first, 2) + ", but " + Count(creeping) + " of " + Count(all) + " roots with " +
-              Count(kModes) + " modes a link do not oscillate at all",
+              Count(kReductionModes) + " modes a link do not oscillate at all",
           creeping == 0 ? Verdict::kHolds : Verdict::kInPart};
 }
 
@@ -248,7 +248,7 @@ void AddGrid(const ArmModel& model, std::vector<Statement>* out) {
 }  // namespace
 
 std::vector<Statement> Chapter6Statements(const Config& config) {
-  const ArmModel model(config.arm, {kModes, kModes});
+  const ArmModel model(config.arm, {kReductionModes, kReductionModes});
   std::vector<Statement> out = {Linearised(config.arm),    BothConditions(model),
                                 TimeAverages(model),       Scaling(model),
                                 LightlyDamped(config.arm), CellCentres()};

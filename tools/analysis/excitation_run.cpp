@@ -6,12 +6,11 @@
 #include <sstream>
 
 #include "model/arm_simulator.h"
+#include "model/units.h"
 #include "tools/gnuplot.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kDegPerRad = 57.295779513082320877;
 
 ExcitationRun::Sample SampleOf(const ArmModel& model, const ArmState& x, double time_s) {
   return {time_s,

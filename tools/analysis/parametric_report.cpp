@@ -14,7 +14,7 @@
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kDrawn_hz = 15.0;
 
@@ -32,8 +32,8 @@ constexpr std::array<SignalName, kSignals> kSignalNames = {
 constexpr std::array<const char*, kSweeps> kFigureOf = {"5.1", "5.2", "5.2", "5.3",
                                                         "5.4", "5.4", "5.5", "5.5"};
 
-Json PointJson(const ParametricPoint& point) {
-  Json json{{"value", point.value}};
+OrderedJson PointJson(const ParametricPoint& point) {
+  OrderedJson json{{"value", point.value}};
   for (std::size_t i = 0; i < kSignals; ++i) {
     const std::string name = kSignalNames[i].column;
     const std::string plain = name.substr(0, name.rfind('_'));
@@ -151,13 +151,13 @@ std::string Csv(const ParametricStudy& study) {
 
 }  // namespace
 
-Json ParametricJson(const ParametricStudy& study, const std::vector<Statement>& statements) {
-  Json json{{"torque_nm", study.excitation.torque_nm},
-            {"excitation_s", Excitation::kPeriod_s},
-            {"sweeps", Json::array()}};
+OrderedJson ParametricJson(const ParametricStudy& study, const std::vector<Statement>& statements) {
+  OrderedJson json{{"torque_nm", study.excitation.torque_nm},
+                   {"excitation_s", Excitation::kPeriod_s},
+                   {"sweeps", OrderedJson::array()}};
   json.update(StatementsJson(statements));
   for (const ParametricSweep& sweep : study.sweep) {
-    Json points = Json::array();
+    OrderedJson points = OrderedJson::array();
     for (const ParametricPoint& point : sweep.point) points.push_back(PointJson(point));
     json["sweeps"].push_back(
         {{"parameter", sweep.name}, {"nominal", sweep.nominal}, {"points", std::move(points)}});

@@ -7,12 +7,12 @@
 
 #include "model/arm_simulator.h"
 #include "model/linearization.h"
+#include "model/units.h"
 #include "tools/parallel.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295769;
 constexpr double kSample_s = 2e-3;
 constexpr std::size_t kSpectrumSamples = 4096;  // 8.192 s: lines 0.24 Hz wide
 constexpr std::size_t kExcitedSamples = 500;    // Excitation::kPeriod_s

@@ -4,12 +4,11 @@
 #include <iomanip>
 #include <sstream>
 
+#include "model/units.h"
 #include "tools/gnuplot.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kDegPerRad = 57.295779513082320877;
 
 // th1, th2 in deg and the tips' deflections in mm: with psi(L) = 1 the sum of the coordinates.
 void AddRow(const ArmModel& model, const Eigen::VectorXd& q, std::ostream* out) {

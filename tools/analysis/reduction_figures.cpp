@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "model/units.h"
 #include "tools/analysis/reduction_report.h"
 #include "tools/gnuplot.h"
 #include "tools/text_file.h"
@@ -11,7 +12,6 @@
 namespace flexarm {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295769;
 constexpr int kRatePoints = 20;
 
 struct Curve {

@@ -1,11 +1,10 @@
 #include "tools/analysis/reduction_grid.h"
 
+#include "model/units.h"
 #include "tools/parallel.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kRadPerDeg = 0.017453292519943295769;
 
 double CentreOf(double low, double high, int i, int cells) {
   return low + (high - low) * (i + 0.5) / cells;

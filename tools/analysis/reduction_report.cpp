@@ -6,15 +6,13 @@
 #include <stdexcept>
 
 #include "model/reduction/balanced_truncation.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using Eigen::Index;
-
-constexpr double kTwoPi = 6.2831853071795864769;
-constexpr double kDegPerRad = 57.295779513082320877;
 
 std::vector<double> List(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
 
@@ -35,8 +33,8 @@ const char* Name(DroppedRoot::Reason reason) {
 }
 
 // What a reader has to know to compare the figures with others.
-Json Notes(const Json& power) {
-  Json notes = Json::array();
+OrderedJson Notes(const OrderedJson& power) {
+  OrderedJson notes = OrderedJson::array();
   notes.push_back("mu, and so each contribution, depends on how the coordinates are scaled");
   notes.push_back("damping is left out in power balancing; roots are squared frequencies");
   if (!power["dropped_roots"].empty()) {
@@ -44,7 +42,7 @@ Json Notes(const Json& power) {
         "roots that do not oscillate (rigid, negative or complex) are left out: their power grows "
         "without bound");
   }
-  for (const Json& mode : power["modes"]) {
+  for (const OrderedJson& mode : power["modes"]) {
     if (!mode["rigid_origin"].get<bool>()) continue;
     notes.push_back(
         "a rigid-body root has turned into a slow oscillation: it counts in mu; shares of rho are "
@@ -54,20 +52,21 @@ Json Notes(const Json& power) {
   return notes;
 }
 
-Json PowerJson(const PowerBalance& balance) {
-  Json json;
+OrderedJson PowerJson(const PowerBalance& balance) {
+  OrderedJson json;
   json["condition"] = Name(balance.condition);
   double flexible = 0.0;
   for (const PowerMode& mode : balance.mode) flexible += mode.rigid_origin ? 0.0 : mode.rho;
-  json["modes"] = Json::array();
+  json["modes"] = OrderedJson::array();
   for (const PowerMode& mode : balance.mode) {
     const double share = flexible > 0.0 ? 100.0 * mode.rho / flexible : 0.0;
-    json["modes"].push_back({{"frequency_hz", mode.frequency_rad_s / kTwoPi},
-                             {"rho", mode.rho},
-                             {"rho_percent", mode.rigid_origin ? Json(nullptr) : Json(share)},
-                             {"rigid_origin", mode.rigid_origin}});
+    json["modes"].push_back(
+        {{"frequency_hz", mode.frequency_rad_s / kTwoPi},
+         {"rho", mode.rho},
+         {"rho_percent", mode.rigid_origin ? OrderedJson(nullptr) : OrderedJson(share)},
+         {"rigid_origin", mode.rigid_origin}});
   }
-  json["dropped_roots"] = Json::array();
+  json["dropped_roots"] = OrderedJson::array();
   for (const DroppedRoot& root : balance.dropped) {
     json["dropped_roots"].push_back({{"real_rad2_s2", root.squared_frequency_rad2_s2.real()},
                                      {"imaginary_rad2_s2", root.squared_frequency_rad2_s2.imag()},
@@ -76,8 +75,8 @@ Json PowerJson(const PowerBalance& balance) {
   return json;
 }
 
-Json GramianJson(const BalancedSystem& balanced) {
-  Json json;
+OrderedJson GramianJson(const BalancedSystem& balanced) {
+  OrderedJson json;
   json["hankel"] = List(balanced.hankel);
   json["states_kept_whole"] = balanced.rest_states();
   const int states = static_cast<int>(balanced.stable.A.rows());
@@ -101,13 +100,13 @@ Eigen::VectorXd GramianShares(const BalancedSystem& balanced, Index first, const
   return 100.0 * energy / sum;
 }
 
-Json Extreme(const std::vector<ReductionCell>& cells,
-             const std::function<double(const ReductionCell&)>& value) {
+OrderedJson Extreme(const std::vector<ReductionCell>& cells,
+                    const std::function<double(const ReductionCell&)>& value) {
   const auto less = [&](const ReductionCell& a, const ReductionCell& b) {
     return value(a) < value(b);
   };
   const auto [low, high] = std::minmax_element(cells.begin(), cells.end(), less);
-  Json json;
+  OrderedJson json;
   for (const auto& [key, cell] : {std::pair{"least", low}, std::pair{"largest", high}}) {
     json[key] = {{"percent", value(*cell)},
                  {"theta2_deg", cell->motion.theta2_rad * kDegPerRad},
@@ -117,9 +116,9 @@ Json Extreme(const std::vector<ReductionCell>& cells,
   return json;
 }
 
-void PrintModes(const Json& power) {
+void PrintModes(const OrderedJson& power) {
   std::printf("\nmodes of the system     Hz         rho   %% of the flexible modes' rho\n");
-  for (const Json& mode : power["modes"]) {
+  for (const OrderedJson& mode : power["modes"]) {
     std::printf("                  %8.3f %11.4e", mode["frequency_hz"].get<double>(),
                 mode["rho"].get<double>());
     if (mode["rho_percent"].is_null()) {
@@ -128,13 +127,13 @@ void PrintModes(const Json& power) {
       std::printf("   %8.4f\n", mode["rho_percent"].get<double>());
     }
   }
-  for (const Json& root : power["dropped_roots"]) {
+  for (const OrderedJson& root : power["dropped_roots"]) {
     std::printf("left out: root %.3g%+.3gi rad2/s2, %s\n", root["real_rad2_s2"].get<double>(),
                 root["imaginary_rad2_s2"].get<double>(), root["reason"].get<std::string>().c_str());
   }
 }
 
-void PrintGramians(const Json& gramians) {
+void PrintGramians(const OrderedJson& gramians) {
   std::printf("\nHankel singular values, damped:");
   const std::size_t shown = std::min<std::size_t>(8, gramians["hankel"].size());
   for (std::size_t i = 0; i < shown; ++i) {
@@ -146,28 +145,28 @@ void PrintGramians(const Json& gramians) {
               gramians["states_within_one_percent"].get<int>());
 }
 
-void PrintLinks(const Json& json) {
+void PrintLinks(const OrderedJson& json) {
   std::printf("elbow %g deg, rates %g and %g rad/s; scaling of phi: %s\n",
               json["theta2_deg"].get<double>(), json["theta1_rate_rad_s"].get<double>(),
               json["theta2_rate_rad_s"].get<double>(), json["scaling"].get<std::string>().c_str());
   std::printf(
       "contribution of the first k modes, %%\n   k   link 1    link 2    by Gramians, damped\n");
-  const Json& links = json["links"];
+  const OrderedJson& links = json["links"];
   const std::size_t modes = std::max(links[0]["mu"].size(), links[1]["mu"].size());
   for (std::size_t k = 0; k < modes; ++k) {
     std::printf("  %2zu", k + 1);
     for (const char* kind : {"epsilon_percent", "gramian_epsilon_percent"}) {
-      for (const Json& link : links) std::printf("  %8.4f", link[kind][k].get<double>());
+      for (const OrderedJson& link : links) std::printf("  %8.4f", link[kind][k].get<double>());
     }
     std::printf("\n");
   }
 }
 
-void PrintGrid(const Json& grid) {
+void PrintGrid(const OrderedJson& grid) {
   std::printf("\n%d cells\n", grid["cells"].get<int>());
-  for (const Json& link : grid["links"]) {
+  for (const OrderedJson& link : grid["links"]) {
     for (const char* which : {"epsilon_1", "epsilon_2"}) {
-      const Json &low = link[which]["least"], &high = link[which]["largest"];
+      const OrderedJson &low = link[which]["least"], &high = link[which]["largest"];
       std::printf("link %d, %s: %.3f .. %.3f %%, least at %.4g deg, %.3g and %.3g rad/s\n",
                   link["link"].get<int>(), which, low["percent"].get<double>(),
                   high["percent"].get<double>(), low["theta2_deg"].get<double>(),
@@ -193,17 +192,17 @@ const char* Name(ModalScaling scaling) {
   return "";
 }
 
-Json ArmReductionJson(const ArmModel& model, const NominalMotion& motion,
-                      const ReductionOptions& options) {
+OrderedJson ArmReductionJson(const ArmModel& model, const NominalMotion& motion,
+                             const ReductionOptions& options) {
   const ArmReduction reduction =
       ReduceArm(model, motion, options.scaling, options.rigid_below_rad2_s2);
   const BalancedSystem balanced = BalanceGramians(DampedArm(model, motion), options.margin_per_s);
-  Json json{{"theta2_deg", motion.theta2_rad * kDegPerRad},
-            {"theta1_rate_rad_s", motion.theta1_rate_rad_s},
-            {"theta2_rate_rad_s", motion.theta2_rate_rad_s},
-            {"payload_kg", model.parameters().payload_mass_kg},
-            {"modes_per_link", model.mode_count().link1},
-            {"scaling", Name(options.scaling)}};
+  OrderedJson json{{"theta2_deg", motion.theta2_rad * kDegPerRad},
+                   {"theta1_rate_rad_s", motion.theta1_rate_rad_s},
+                   {"theta2_rate_rad_s", motion.theta2_rate_rad_s},
+                   {"payload_kg", model.parameters().payload_mass_kg},
+                   {"modes_per_link", model.mode_count().link1},
+                   {"scaling", Name(options.scaling)}};
   const ArmConstants& c = model.constants();
   for (const int link : {1, 2}) {
     const LinkContribution& contribution = reduction.link[static_cast<std::size_t>(link - 1)];
@@ -220,8 +219,8 @@ Json ArmReductionJson(const ArmModel& model, const NominalMotion& motion,
   return json;
 }
 
-Json SystemReductionJson(const LinearSystemFile& file, const ReductionOptions& options) {
-  Json json{{"system", file.name}, {"power", nullptr}, {"power_refused", file.not_undamped}};
+OrderedJson SystemReductionJson(const LinearSystemFile& file, const ReductionOptions& options) {
+  OrderedJson json{{"system", file.name}, {"power", nullptr}, {"power_refused", file.not_undamped}};
   if (file.undamped) {
     try {
       const PowerBalance balance =
@@ -240,12 +239,12 @@ Json SystemReductionJson(const LinearSystemFile& file, const ReductionOptions& o
   return json;
 }
 
-Json GridJson(const ReductionGrid& grid, const std::vector<ReductionCell>& cells) {
-  Json json{{"cells", cells.size()},
-            {"cells_per_axis", grid.cells},
-            {"theta2_deg", grid.theta2_deg},
-            {"theta1_rate_limit_rad_s", grid.theta1_rate_rad_s},
-            {"theta2_rate_limit_rad_s", grid.theta2_rate_rad_s}};
+OrderedJson GridJson(const ReductionGrid& grid, const std::vector<ReductionCell>& cells) {
+  OrderedJson json{{"cells", cells.size()},
+                   {"cells_per_axis", grid.cells},
+                   {"theta2_deg", grid.theta2_deg},
+                   {"theta1_rate_limit_rad_s", grid.theta1_rate_rad_s},
+                   {"theta2_rate_limit_rad_s", grid.theta2_rate_rad_s}};
   for (std::size_t link = 0; link < 2; ++link) {
     json["links"].push_back(
         {{"link", link + 1},
@@ -262,7 +261,7 @@ Json GridJson(const ReductionGrid& grid, const std::vector<ReductionCell>& cells
   return json;
 }
 
-void PrintReduction(const Json& json) {
+void PrintReduction(const OrderedJson& json) {
   if (json.contains("links")) PrintLinks(json);
   if (json.contains("system")) {
     std::printf("%s\n", json["system"].get<std::string>().c_str());
@@ -275,7 +274,8 @@ void PrintReduction(const Json& json) {
   if (json.contains("grid")) PrintGrid(json["grid"]);
   if (!json.contains("notes")) return;
   std::printf("\n");
-  for (const Json& note : json["notes"]) std::printf("- %s\n", note.get<std::string>().c_str());
+  for (const OrderedJson& note : json["notes"])
+    std::printf("- %s\n", note.get<std::string>().c_str());
 }
 
 }  // namespace flexarm

@@ -7,12 +7,10 @@
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
 
+#include "model/units.h"
+
 namespace flexarm {
-namespace {
-
-constexpr double kTwoPi = 6.2831853071795864769;
-
-}  // namespace
+namespace {}  // namespace
 
 std::size_t Spectrum::Largest(double from_hz) const {
   const auto first = static_cast<std::ptrdiff_t>(std::ceil(from_hz / step_hz));

@@ -62,7 +62,7 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-std::string Row(const std::vector<std::string>& cells, const char* tag) {
+std::string TableRow(const std::vector<std::string>& cells, const char* tag) {
   std::string row = "<tr>";
   for (const std::string& cell : cells) {
     row += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
@@ -101,8 +101,8 @@ void HtmlPage::Paragraph(const std::string& text) { body_ += "<p>" + Escaped(tex
 
 void HtmlPage::Table(const std::vector<std::string>& head,
                      const std::vector<std::vector<std::string>>& rows) {
-  body_ += "<table>\n" + Row(head, "th");
-  for (const auto& row : rows) body_ += Row(row, "td");
+  body_ += "<table>\n" + TableRow(head, "th");
+  for (const auto& row : rows) body_ += TableRow(row, "td");
   body_ += "</table>\n";
 }
 
@@ -115,7 +115,8 @@ void HtmlPage::Picture(const std::filesystem::path& png, const std::string& capt
 }
 
 void HtmlPage::Statements(const std::vector<Statement>& statements) {
-  body_ += "<table>\n" + Row({"section", "the thesis says", "the model says", "verdict"}, "th");
+  body_ +=
+      "<table>\n" + TableRow({"section", "the thesis says", "the model says", "verdict"}, "th");
   for (const Statement& s : statements) {
     body_ += "<tr><td>" + Escaped(s.section) + "</td><td>" + Escaped(s.thesis) + "</td><td>" +
              Escaped(s.model) + "</td><td class=\"" + ClassOf(s.verdict) + "\">" + Name(s.verdict) +
