@@ -1,12 +1,12 @@
 #include "estimator/kalman_design.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "estimator/gauge_model.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/riccati.h"
 #include "model/units.h"

@@ -1,11 +1,10 @@
 #include "estimator/nominal_model.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "model/arm_model.h"
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -1,7 +1,8 @@
 #include "estimator/polynomial_fit.h"
 
-#include <Eigen/QR>
 #include <cmath>
+
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

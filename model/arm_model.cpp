@@ -1,11 +1,11 @@
 #include "model/arm_model.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "model/arm_equations.h"
+#include "model/dense_decompositions.h"
 #include "model/quadrature.h"
 
 namespace flexarm {

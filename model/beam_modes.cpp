@@ -1,11 +1,11 @@
 #include "model/beam_modes.h"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <stdexcept>
 
 #include "model/beam_basis.h"
 #include "model/beam_equations.h"
+#include "model/dense_decompositions.h"
 #include "model/root_search_error.h"
 #include "model/units.h"
 

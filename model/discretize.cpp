@@ -1,9 +1,9 @@
 #include "model/discretize.h"
 
-#include <Eigen/Dense>
 #include <stdexcept>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "model/dense_decompositions.h"
 #include "model/matrix_scaling.h"
 
 namespace flexarm {

@@ -1,10 +1,10 @@
 #include "model/friction_root.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
 #include "model/beam_equations.h"
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -1,10 +1,10 @@
 #include "model/linearization.h"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <complex>
 
 #include "model/arm_equations.h"
+#include "model/dense_decompositions.h"
 #include "model/units.h"
 
 namespace flexarm {

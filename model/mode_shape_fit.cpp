@@ -1,6 +1,5 @@
 #include "model/mode_shape_fit.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,6 +7,7 @@
 
 #include "model/beam_basis.h"
 #include "model/beam_equations.h"
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -1,11 +1,11 @@
 #include "model/perturbation.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "model/arm_simulator.h"
+#include "model/dense_decompositions.h"
 #include "model/linearization.h"
 
 namespace flexarm {

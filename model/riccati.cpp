@@ -1,9 +1,10 @@
 #include "model/riccati.h"
 
-#include <Eigen/Dense>
 #include <complex>
 #include <stdexcept>
 #include <string>
+
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "controller/runlog/errors.h"
 #include "model/arm_simulator.h"
+#include "model/dense_decompositions.h"
 #include "model/linearization.h"
 #include "model/perturbation.h"
 #include "model/units.h"

@@ -1,10 +1,9 @@
 #include "controller/law/command_generator.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <stdexcept>
 
+#include "model/dense_decompositions.h"
 #include "model/riccati.h"
 
 namespace flexarm {
@@ -78,7 +77,7 @@ double SteinCondition(const TrackingProblem& problem) {
       system.block(i * n, j * n, n, n) -= right(i, j) * Omega.topLeftCorner(n, n);
     }
   }
-  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(system).singularValues();
+  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(system).singularValues();
   return singular(0) / singular(n * n - 1);
 }
 

@@ -1,8 +1,5 @@
 #include "controller/law/design.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -19,6 +16,7 @@
 #include "estimator/kalman_design.h"
 #include "estimator/nominal_model.h"
 #include "estimator/payload_estimator.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/riccati.h"
 

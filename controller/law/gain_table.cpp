@@ -1,6 +1,5 @@
 #include "controller/law/gain_table.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/library_math.h"
 #include "model/riccati.h"

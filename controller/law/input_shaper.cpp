@@ -1,12 +1,12 @@
 #include "controller/law/input_shaper.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <stdexcept>
 #include <vector>
 
+#include "model/dense_decompositions.h"
 #include "model/units.h"
 
 namespace flexarm {

@@ -1,7 +1,5 @@
 #include "controller/law/screen.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "controller/runtime/stack_config.h"
 #include "estimator/gauge_model.h"
 #include "model/arm_model.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/linearization.h"
 

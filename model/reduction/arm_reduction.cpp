@@ -1,8 +1,8 @@
 #include "model/reduction/arm_reduction.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "model/dense_decompositions.h"
 #include "model/linearization.h"
 
 namespace flexarm {

@@ -1,7 +1,8 @@
 #include "model/reduction/balanced_truncation.h"
 
-#include <Eigen/Dense>
 #include <stdexcept>
+
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

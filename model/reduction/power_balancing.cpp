@@ -1,11 +1,11 @@
 #include "model/reduction/power_balancing.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/matrix_scaling.h"
 

@@ -1,10 +1,10 @@
 #include "model/reduction/spectral_split.h"
 
-#include <Eigen/Dense>
 #include <Eigen/Jacobi>
 #include <cmath>
 #include <stdexcept>
 
+#include "model/dense_decompositions.h"
 #include "model/matrix_scaling.h"
 
 namespace flexarm {
@@ -69,7 +69,7 @@ MatrixXcd TriangularSylvester(const MatrixXcd& T, Index stable) {
 
 // The part of the system in the range of the real projector `projector`, of the given rank.
 StateSpace Part(const StateSpace& s, const MatrixXd& projector, Index rank, MatrixXd* V) {
-  const Eigen::BDCSVD<MatrixXd> svd(projector, Eigen::ComputeFullU);
+  const Eigen::JacobiSVD<MatrixXd> svd(projector, Eigen::ComputeFullU);
   *V = svd.matrixU().leftCols(rank);
   const MatrixXd W = V->transpose() * projector;  // W V = 1, as the projector leaves V alone
   return {W * s.A * *V, W * s.B, s.C * *V};

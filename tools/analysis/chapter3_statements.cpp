@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "model/backlash.h"
+#include "model/dense_decompositions.h"
 #include "model/friction_root.h"
 #include "model/linearization.h"
 #include "model/reduction/arm_reduction.h"

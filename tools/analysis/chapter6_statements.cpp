@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "model/dense_decompositions.h"
 #include "model/perturbation.h"
 #include "model/units.h"
 #include "tools/analysis/reduction_grid.h"

@@ -1,11 +1,11 @@
 #include "tools/analysis/chapter7_statements.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
 #include "controller/law/design.h"
+#include "model/dense_decompositions.h"
 #include "model/linearization.h"
 
 namespace flexarm {

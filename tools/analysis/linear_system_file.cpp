@@ -1,12 +1,12 @@
 #include "tools/analysis/linear_system_file.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "controller/runlog/errors.h"
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -1,6 +1,5 @@
 #include "tools/identification/identification.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <nlopt.hpp>
 
 #include "controller/runlog/errors.h"
+#include "model/dense_decompositions.h"
 #include "model/problem_list.h"
 #include "tools/parallel.h"
 

@@ -1,6 +1,5 @@
 #include "tools/identification/run_comparison.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "hal/gauge_filter.h"
 #include "model/arm_simulator.h"
 #include "model/dc_motor.h"
+#include "model/dense_decompositions.h"
 #include "model/problem_list.h"
 #include "tools/run_summary.h"
 
