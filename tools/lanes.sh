@@ -1,0 +1,232 @@
+#!/usr/bin/env bash
+# The lanes of tools/run-tests, which runs `tools/lanes.sh NAME` for each and keeps what it writes.
+# docs/testing.md says what each lane is for; tools/lint/check_docs.py compares the two.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# Cheap lanes first. Lanes run one after the other: hil, e2e and guest measure time.
+# shellcheck disable=SC2034  # tools/run-tests reads them
+{
+  quick_lanes=(format layers unit)
+  ci_lanes=(format layers release step-cost install hil bench e2e headers build-cost tsan asan
+            clang-tidy guest)
+  only_all_lanes=(unit headers-all separate clang-tidy-all asan-all)
+}
+
+logs=build/logs
+passes=build/lanes
+jobs=$(nproc)
+export CTEST_PARALLEL_LEVEL=$jobs
+
+# What a pass stands for: the commit, all that differs from it, and the installed packages. Empty
+# where there is no git: then nothing is known to have passed.
+tree_state() {
+  git rev-parse --quiet --verify HEAD >/dev/null 2>&1 || return 0
+  {
+    git rev-parse HEAD
+    git diff --binary HEAD
+    git ls-files -z --others --exclude-standard | xargs -0 -r sha256sum
+    dpkg-query -W 2>/dev/null || true
+  } | sha256sum | cut -d' ' -f1
+}
+
+has_passed() {  # has_passed NAME STATE: on this tree, and the caller asked for --resume
+  [[ ${FLEXARM_RESUME:-no} == yes && -n $2 && $(cat "$passes/$1.passed" 2>/dev/null) == "$2" ]]
+}
+
+record_pass() {  # record_pass NAME STATE: the state from before the run, if it still holds
+  rm -f "$passes/$1.passed"
+  if [[ -n $2 && $(tree_state) == "$2" ]]; then
+    mkdir -p "$passes"
+    echo "$2" >"$passes/$1.passed"
+  fi
+}
+
+part() {  # part NAME COMMAND..: a piece of a long lane; --resume does not repeat one that passed
+  local name=$lane.$1 state
+  state=$(tree_state)
+  if has_passed "$name" "$state"; then
+    echo "$name: passed before on this tree"
+    return
+  fi
+  "${@:2}"
+  record_pass "$name" "$state"
+}
+
+# A lane may leave one line for the summary.
+note() { printf '%s\n' "$*" >"$logs/$lane.note"; }
+
+configure() {  # configure PRESET: once a run of run-tests; after that ninja sees what has changed
+  local mark=$passes/$1.configured
+  if [[ -n ${FLEXARM_RUN:-} && $(cat "$mark" 2>/dev/null) == "$FLEXARM_RUN" ]]; then return; fi
+  cmake --preset "$1"
+  mkdir -p "$passes"
+  echo "${FLEXARM_RUN:-}" >"$mark"
+}
+
+build() {  # build PRESET [TARGET..]
+  configure "$1"
+  if (($# > 1)); then
+    cmake --build --preset "$1" -j "$jobs" --target "${@:2}"
+  else
+    cmake --build --preset "$1" -j "$jobs"
+  fi
+}
+
+test_folder() {  # test_folder PRESET FOLDER LABELS: none, or one whose program is missing, fails
+  local listed
+  listed=$(ctest --test-dir "build/$1/$2" -N)
+  # CMake lists a program that was not built as one test without a label: a filter would hide it.
+  if grep '_NOT_BUILT$' <<<"$listed"; then
+    echo "error: $2 has tests whose programs were not built" >&2
+    return 1
+  fi
+  ctest --test-dir "build/$1/$2" -L "$3" --output-on-failure --no-tests=error "${@:4}"
+}
+
+# ctest takes no folder beside a preset: what the preset sets is set here.
+use_environment_of() {  # use_environment_of TEST_PRESET
+  local assignments
+  assignments=$(python3 -c '
+import json, shlex, sys
+presets = json.load(open("CMakePresets.json", encoding="utf-8"))["testPresets"]
+preset = next(p for p in presets if p["name"] == sys.argv[1])
+for name, value in preset["environment"].items():
+    print(f"export {name}={shlex.quote(value)}")
+' "$1")
+  eval "$assignments"
+}
+
+sources() { git ls-files -z -- '*.h' '*.cpp'; }
+
+lane_format() {  # clang-format 14 changes nothing
+  sources | xargs -0 -P "$jobs" -n 40 clang-format-14 --dry-run -Werror
+  note "$(sources | tr -cd '\0' | wc -c) files"
+}
+
+lane_layers() {  # includes, documents and other rules of tools/lint; shellcheck
+  python3 tools/lint/check_layers.py
+  python3 tools/lint/check_docs.py
+  git ls-files -z -- tools/install-deps tools/run-hil tools/run-tests .ci/run '*.sh' |
+    xargs -0 shellcheck --severity=warning
+}
+
+lane_unit() {  # tests labelled unit, release build (part of release)
+  configure release
+  local programs
+  # Without a program of this name: all are built.
+  mapfile -t programs < <(ninja -C build/release -t targets all |
+                          sed -n 's/^\([a-z_]*_unit_test\): phony$/\1/p')
+  build release flexarm "${programs[@]:-all}"
+  ctest --preset unit
+}
+
+lane_release() {  # all tests but those of whole programs, release build
+  build release
+  ctest --preset release
+}
+
+lane_step-cost() {  # instructions of one control step are within their limits
+  build release step_instructions
+  python3 tests/bench/step_cost.py --program build/release/tests/bench/step_instructions \
+    --note "$logs/$lane.note"
+}
+
+lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, bad input
+  build release flexarm flexarmd
+  ctest --preset e2e
+}
+
+lane_hil() {  # tools/run-hil, in real time where that is permitted
+  if ! chrt -f 90 true 2>/dev/null; then
+    note "SCHED_FIFO is not permitted here: ran without it"
+  fi
+  python3 tests/e2e/hil_check.py
+}
+
+lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
+  build release flexarm flexarmd guest_daq_test hal_canopen_socketcan_test
+  tests/guest/run_all.sh build/release --note "$logs/$lane.note"
+}
+
+lane_bench() {  # benchmarks; the default experiment runs 100 times faster than real time
+  build release control_benchmark model_benchmark planner_benchmark
+  python3 tests/bench/bench_report.py --build build/release --note "$logs/$lane.note"
+}
+
+lane_headers() {  # public headers that changed of late compile on their own
+  build release flexarm_build_info
+  tools/lint/headers.py --changed --jobs "$jobs" --note "$logs/$lane.note"
+}
+
+lane_headers-all() {  # every public header compiles on its own
+  build release all_verify_interface_header_sets
+}
+
+lane_install() {  # cmake --install leaves a complete tree, and systemd accepts the unit
+  build release flexarm flexarmd
+  tests/e2e/install_check.sh build/release
+}
+
+lane_build-cost() {  # what the product costs the compiler is within the committed figures
+  build release flexarm_build_info
+  tools/lint/build_cost.py --jobs "$jobs" --note "$logs/$lane.note"
+}
+
+# Code that parses input, drives a bus or runs in a thread.
+exposed_tests=(tests/hal tests/config tests/tools tests/support
+               tests/controller/{runtime,runlog,safety,commissioning,wired})
+asan_labels='^(unit|loop|hostile)$'
+
+lane_asan() {  # address, undefined behaviour: code that parses, drives a bus or has threads
+  local folder
+  build asan flexarm flexarmd "${exposed_tests[@]/%//all}"
+  use_environment_of asan
+  for folder in "${exposed_tests[@]}"; do test_folder asan "$folder" "$asan_labels"; done
+  test_folder asan tests/e2e '^hostile$'
+}
+
+lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop or hostile
+  local folders folder
+  build asan
+  use_environment_of asan
+  # All folders that have tests to run; the folders in hal run with it. Left out:
+  # figures of whole simulations, which the release build checks.
+  mapfile -t folders < <(git ls-files 'tests/*/CMakeLists.txt' | xargs -n 1 dirname |
+                         grep -vxE 'tests/(bench|guest|controller|hal/.*)')
+  for folder in "${folders[@]}"; do
+    part "${folder//\//-}" test_folder asan "$folder" "$asan_labels" -E 'Grams[0-9]+Stiffened'
+  done
+}
+
+lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
+  build tsan tests/controller/runtime/all flexarm flexarmd
+  use_environment_of tsan
+  test_folder tsan tests/e2e '^threads$'
+  test_folder tsan tests/controller/runtime .
+}
+
+lane_separate() {  # every source compiles by itself, without batches
+  build separate
+}
+
+tidy() {  # tidy OPTION..: a finding is an error (WarningsAsErrors)
+  # Commands of the files themselves: the release build's are those of batches.
+  build separate flexarm_build_info
+  tools/lint/tidy.py --jobs "$jobs" --note "$logs/$lane.note" "$@" \
+    model hal estimator controller config tools tests
+}
+
+# In CI the time is limited; what it leaves is named, and clang-tidy-all checks it.
+lane_clang-tidy() {  # .clang-tidy on files that changed of late
+  tidy --changed --within 450
+}
+
+lane_clang-tidy-all() {  # .clang-tidy on product and tests; not again where unchanged
+  tidy
+}
+
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+  lane=$1
+  "lane_$lane"
+fi
