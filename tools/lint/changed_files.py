@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Names the files that changed of late, the most recent first: those that differ from the last
-commit, then those of the last 30 commits, or of the three days before the last commit where that is
-more. No clock is read: the answer for a commit is always the same. A shallow clone has no answer.
+commit, then those of the last 30 commits, or of the day before the last commit where that is more.
+No clock is read: the answer for a commit is always the same. A shallow clone has no answer.
 """
 
 import argparse
@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMITS = 30
-SECONDS = 3 * 24 * 3600
+SECONDS = 24 * 3600
 
 
 def git(root, *command):
