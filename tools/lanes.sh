@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck disable=SC2034  # tools/run-tests reads them
 {
   quick_lanes=(format layers unit)
-  ci_lanes=(format layers release step-cost install hil bench e2e headers build-cost tsan asan
+  ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan
             clang-tidy guest)
   only_all_lanes=(unit headers-all separate clang-tidy-all asan-all)
 }
@@ -166,11 +166,6 @@ lane_headers-all() {  # every public header compiles on its own
 lane_install() {  # cmake --install leaves a complete tree, and systemd accepts the unit
   build release flexarm flexarmd
   tests/e2e/install_check.sh build/release
-}
-
-lane_build-cost() {  # what the product costs the compiler is within the committed figures
-  build release flexarm_build_info
-  tools/lint/build_cost.py --jobs "$jobs" --note "$logs/$lane.note"
 }
 
 # Code that parses input, drives a bus or runs in a thread.

@@ -6,10 +6,15 @@ is the hash of all that the answer depends on: the file and every header of this
 includes, as they are written (a comment may be a NOLINT), its compile command with the clone's
 folder taken out, the .clang-tidy files above it, and the versions of clang-tidy and of the
 installed -dev packages, which stand for the system's headers. A file with findings leaves none.
+
+With --changed it is the files that changed of late (changed_files.py), the most recent first. A
+header is checked with the source of its name, or with one that includes it; a .clang-tidy with
+all files below it. Without history all files are checked, and --within does not hold.
 """
 
 import argparse
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -18,6 +23,8 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+from changed_files import changed_files
 
 ROOT = Path(__file__).resolve().parents[2]
 STAMPS = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "flexarm-tidy"
@@ -67,12 +74,16 @@ def stamp_of(entry, versions):
     return STAMPS / digest.hexdigest()
 
 
-def check(entry, build, versions):
-    """'unchanged', 'passed' or 'failed'; prints what clang-tidy says of a file that fails."""
+def check(entry, build, versions, end):
+    """'unchanged', 'passed', 'failed', or 'left' where the time `end` was over; prints what
+    clang-tidy says of a file that fails, and the name of one that is left."""
     stamp = stamp_of(entry, versions)
     if stamp.exists():
         os.utime(stamp)
         return "unchanged"
+    if time.monotonic() > end:
+        print(f"left: {Path(entry['file']).relative_to(ROOT)}", flush=True)
+        return "left"
     run = subprocess.run([*TIDY, "-p", str(build), entry["file"]], check=False,
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if run.returncode != 0:
@@ -80,6 +91,30 @@ def check(entry, build, versions):
         return "failed"
     stamp.touch()
     return "passed"
+
+
+def concerned(name, by_name):
+    """Those of the files `by_name` that show what a change of the file `name` did."""
+    if name in by_name:
+        return [name]
+    if name.endswith(".clang-tidy"):
+        folder = name.removesuffix(".clang-tidy")
+        return [other for other in by_name if other.startswith(folder)]
+    if not name.endswith(".h"):
+        return []
+    source = name.removesuffix(".h") + ".cpp"
+    if source in by_name:
+        return [source]
+    users = (other for other in by_name
+             if name.encode() in INCLUDE.findall(Path(by_name[other]["file"]).read_bytes()))
+    return list(itertools.islice(users, 1))
+
+
+def only_changed(entries, changed):
+    """The compile commands that show what became of the `changed` files, in their order."""
+    by_name = {Path(e["file"]).relative_to(ROOT).as_posix(): e for e in entries}
+    names = dict.fromkeys(other for name in changed for other in concerned(name, by_name))
+    return [by_name[name] for name in names]
 
 
 def drop_old_stamps():
@@ -100,8 +135,11 @@ def compile_commands(build, places):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("places", nargs="+", type=Path, help="source files, or folders of them")
-    parser.add_argument("--build", type=Path, default=ROOT / "build/release",
-                        help="where compile_commands.json is (default: build/release)")
+    parser.add_argument("--build", type=Path, default=ROOT / "build/separate",
+                        help="where compile_commands.json is (default: build/separate)")
+    parser.add_argument("--changed", action="store_true", help="only what changed of late")
+    parser.add_argument("--within", type=float, default=float("inf"), metavar="SECONDS",
+                        help="with --changed: begin with no file after this time")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count(), help="files at a time")
     parser.add_argument("--note", type=Path, help="write the last line here too")
     options = parser.parse_args()
@@ -110,11 +148,18 @@ def main():
     entries = list(compile_commands(options.build, options.places))
     if not entries:
         sys.exit(f"tidy: nothing to check: {options.build} compiles none of these files")
+    end = float("inf")
+    changed = changed_files() if options.changed else None
+    if changed is not None:
+        entries = only_changed(entries, changed)
+        end = time.monotonic() + options.within
     versions = tool_versions()
     with ThreadPoolExecutor(options.jobs) as pool:
-        results = list(pool.map(lambda entry: check(entry, options.build, versions), entries))
+        results = list(pool.map(lambda entry: check(entry, options.build, versions, end), entries))
     summary = (f"{len(results)} files, {results.count('unchanged')} unchanged since they passed, "
                f"{results.count('failed')} failed")
+    if "left" in results:
+        summary += f", {results.count('left')} left for clang-tidy-all when the time was over"
     print(summary)
     if options.note:
         options.note.write_text(summary + "\n", encoding="utf-8")
