@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck disable=SC2034  # tools/run-tests reads them
 {
   quick_lanes=(format layers unit)
-  ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan
+  ci_lanes=(format layers release step-cost install hil bench e2e headers build-cost tsan asan
             clang-tidy guest)
   only_all_lanes=(unit headers-all separate clang-tidy-all asan-all)
 }
@@ -16,7 +16,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 logs=build/logs
 passes=build/lanes
 jobs=$(nproc)
-export CTEST_PARALLEL_LEVEL=$jobs
+export CTEST_PARALLEL_LEVEL=$jobs PYTHONDONTWRITEBYTECODE=1
 
 # What a pass stands for: the commit, all that differs from it, and the installed packages. Empty
 # where there is no git: then nothing is known to have passed.
@@ -166,6 +166,11 @@ lane_headers-all() {  # every public header compiles on its own
 lane_install() {  # cmake --install leaves a complete tree, and systemd accepts the unit
   build release flexarm flexarmd
   tests/e2e/install_check.sh build/release
+}
+
+lane_build-cost() {  # what the product costs the compiler is within the committed figures
+  build release flexarm_build_info
+  tools/lint/build_cost.py --jobs "$jobs" --note "$logs/$lane.note"
 }
 
 # Code that parses input, drives a bus or runs in a thread.
