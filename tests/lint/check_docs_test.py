@@ -42,6 +42,48 @@ class CheckDocs(unittest.TestCase):
         self.assertEqual(self.findings("[page](other.md)"),
                          ["docs/page.md:1: link: there is no other.md"])
 
+    def lane_findings(self, *rows, script="""
+ci_lanes=(format
+          asan)
+only_all_lanes=(unit)
+quick_lanes=(format unit)
+lane_format() {
+lane_asan() {
+lane_unit() {
+"""):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name, text in (("tools/lanes.sh", script), ("docs/testing.md", "\n".join(rows))):
+                (root / name).parent.mkdir()
+                (root / name).write_text(text)
+            return list(check_docs.check_tree(root))
+
+    ROWS = ("| `format` | layout | 5 s | quick, CI, all | cheap |",
+            "| `asan` | memory | | CI, all | input |",
+            "| `unit` | tests | | quick, all | part |")
+
+    def test_takes_a_row_for_each_lane(self):
+        self.assertEqual(self.lane_findings(*self.ROWS), [])
+
+    def test_finds_a_lane_without_a_row(self):
+        self.assertEqual(self.lane_findings(*self.ROWS[:2]),
+                         ["docs/testing.md:1: lane: there is no row for unit"])
+
+    def test_finds_a_row_without_a_lane(self):
+        self.assertEqual(self.lane_findings(*self.ROWS, "| `fuzz` | input | | all | slow |"),
+                         ["docs/testing.md:4: lane: run-tests has no lane fuzz"])
+
+    def test_finds_a_row_with_other_sets(self):
+        self.assertEqual(
+            self.lane_findings(*self.ROWS[:2], "| `unit` | tests | | quick, CI, all | part |"),
+            ["docs/testing.md:3: lane: unit runs in 'quick, all'"])
+
+    def test_finds_a_lane_that_no_set_runs(self):
+        self.assertEqual(
+            self.lane_findings(self.ROWS[0], script="ci_lanes=(format)\nquick_lanes=(format)\n"
+                               "lane_format() {\nlane_fuzz() {\n"),
+            ["tools/lanes.sh:1: lane: fuzz is either a function or in a set, and not both"])
+
     def test_this_tree_speaks_of_what_is_there(self):
         self.assertEqual(list(check_docs.check_tree(ROOT)), [])
 
