@@ -33,7 +33,7 @@ ROOMS = {
     "hal/sim/": ["hal/", "model/"],
     "hal/rig/": ["hal/", "hal/sim/", "model/"],
     "estimator/": ["model/", "hal/"],
-    "controller/safety/": ["hal/", "model/problem.h", "model/problem_list.h",
+    "controller/safety/": ["hal/", "model/problem.h", "model/problem_list.h", "model/units.h",
                            "controller/runtime/messages.h", "controller/runtime/runtime_config.h"],
     "controller/law/": ["model/", "hal/", "estimator/",
                         "controller/safety/safety_config.h", "controller/safety/safety_state.h",
