@@ -20,6 +20,11 @@ inline std::filesystem::path Shipped(const std::string& name) {
   return std::filesystem::path(FLEXARM_SOURCE_DIR) / "config" / name;
 }
 
+/// The shipped simulated rig with `overrides`.
+inline Config HilWith(const std::vector<std::string>& overrides) {
+  return LoadConfig(Shipped("hil.toml"), overrides);
+}
+
 inline std::string FileText(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;

@@ -15,7 +15,7 @@ namespace {
 
 const std::string kFile = FLEXARM_SOURCE_DIR "/config/hil-wire.toml";
 
-std::string Replaced(const std::string& from, const std::string& to) {
+std::string WiringWith(const std::string& from, const std::string& to) {
   std::ifstream file(kFile);
   std::stringstream text;
   text << file.rdbuf();
@@ -33,7 +33,7 @@ std::string Complaint(const std::string& from, const std::string& to) {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string name =
       testing::TempDir() + "/" + test->name() + ".toml";  // tests run in parallel
-  std::ofstream(name) << Replaced(from, to);
+  std::ofstream(name) << WiringWith(from, to);
   return MessageOf<ConfigError>([&] { LoadConfig(name); });
 }
 

@@ -12,13 +12,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Config With(const std::vector<std::string>& overrides) {
-  return LoadConfig(Shipped("hil.toml"), overrides);
-}
-
 std::vector<ConfigProblem> ProblemsWith(const std::vector<std::string>& overrides) {
   try {
-    With(overrides);
+    HilWith(overrides);
   } catch (const ConfigError& error) {
     return error.problems();
   }
@@ -27,9 +23,9 @@ std::vector<ConfigProblem> ProblemsWith(const std::vector<std::string>& override
 
 TEST(Overrides, SetNumbersWordsAndArrays) {
   const Config config =
-      With({"controller.alpha=2", "controller.name=lqr-cgt", "controller.prediction=false",
-            "limits.soft_angle_deg = [80, 85.5]", "daemon.socket=/tmp/a.sock",
-            "rig.name=\"two words\"", "controller.gains=gains.json"});
+      HilWith({"controller.alpha=2", "controller.name=lqr-cgt", "controller.prediction=false",
+               "limits.soft_angle_deg = [80, 85.5]", "daemon.socket=/tmp/a.sock",
+               "rig.name=\"two words\"", "controller.gains=gains.json"});
   EXPECT_EQ(config.controller.alpha, 2.0);
   EXPECT_EQ(config.controller.kind, ControllerKind::kLqrCgt);
   EXPECT_FALSE(config.controller.prediction);
@@ -41,8 +37,8 @@ TEST(Overrides, SetNumbersWordsAndArrays) {
 }
 
 TEST(Overrides, ReachRowsAndElementsByNumber) {
-  const Config config = With({"sensors.strain[3].face=-1", "limits.soft_angle_deg[1]=80",
-                              "link2.section[0].length_m=0.95"});
+  const Config config = HilWith({"sensors.strain[3].face=-1", "limits.soft_angle_deg[1]=80",
+                                 "link2.section[0].length_m=0.95"});
   EXPECT_EQ(config.sensors.strain[3].face, -1);
   EXPECT_EQ(config.sensors.strain[2].face, 1);
   EXPECT_EQ(config.sensors.strain.size(), 20U);
@@ -51,13 +47,13 @@ TEST(Overrides, ReachRowsAndElementsByNumber) {
 }
 
 TEST(Overrides, LastOneWins) {
-  EXPECT_EQ(With({"controller.alpha=1", "controller.alpha=2"}).controller.alpha, 2.0);
+  EXPECT_EQ(HilWith({"controller.alpha=1", "controller.alpha=2"}).controller.alpha, 2.0);
 }
 
 TEST(Overrides, AreInTheText) {
-  const Config config = With({"controller.alpha=2.5"});
+  const Config config = HilWith({"controller.alpha=2.5"});
   EXPECT_EQ(ParseConfig(config.text, "log").controller.alpha, 2.5);
-  EXPECT_NE(config.text, With({}).text);
+  EXPECT_NE(config.text, HilWith({}).text);
 }
 
 TEST(Overrides, AreNamedAsTheFileOfTheirProblems) {

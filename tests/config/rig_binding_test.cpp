@@ -12,16 +12,12 @@ namespace {
 
 // Every key of a section gets a value that no other key of its type has: a value in the wrong field
 // shows.
-Config With(const std::vector<std::string>& overrides) {
-  return LoadConfig(Shipped("hil.toml"), overrides);
-}
-
 TEST(RigBinding, PutsEveryKeyOfTheArmInItsField) {
   const ArmParameters arm =
-      With({"arm.hub2_mass_kg=1", "arm.motor2_mass_kg=2", "arm.motor2_inertia_kgm2=3",
-            "arm.payload_mass_kg=4", "arm.payload_inertia_kgm2=5", "arm.shape_payload_mass_kg=6",
-            "arm.foreshortening=true", "joint2.backlash_rad=0.07", "joint2.backlash_model=thesis",
-            "joint2.restitution_slope_s_per_rad=0.08"})
+      HilWith({"arm.hub2_mass_kg=1", "arm.motor2_mass_kg=2", "arm.motor2_inertia_kgm2=3",
+               "arm.payload_mass_kg=4", "arm.payload_inertia_kgm2=5", "arm.shape_payload_mass_kg=6",
+               "arm.foreshortening=true", "joint2.backlash_rad=0.07",
+               "joint2.backlash_model=thesis", "joint2.restitution_slope_s_per_rad=0.08"})
           .arm;
   EXPECT_EQ(arm.hub2_mass_kg, 1.0);
   EXPECT_EQ(arm.motor2_mass_kg, 2.0);
@@ -37,12 +33,12 @@ TEST(RigBinding, PutsEveryKeyOfTheArmInItsField) {
 
 TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
   const SensorConfig s =
-      With({"sensors.encoder[1].sign=-1", "sensors.encoder[1].counter_bits=9",
-            "sensors.encoder[1].counts_per_turn=2541", "sensors.strain[11].position_m=0.2",
-            "sensors.strain[11].face=-1", "sensors.strain[11].gain_v_per_unit=4000",
-            "sensors.strain[11].offset_counts=7", "sensors.strain_input.converter_bits=13",
-            "sensors.strain_input.range_v=11", "sensors.strain_input.filter_hz=21",
-            "sensors.strain_input.noise_counts=2", "sensors.strain_input.filter_damping=0.7"})
+      HilWith({"sensors.encoder[1].sign=-1", "sensors.encoder[1].counter_bits=9",
+               "sensors.encoder[1].counts_per_turn=2541", "sensors.strain[11].position_m=0.2",
+               "sensors.strain[11].face=-1", "sensors.strain[11].gain_v_per_unit=4000",
+               "sensors.strain[11].offset_counts=7", "sensors.strain_input.converter_bits=13",
+               "sensors.strain_input.range_v=11", "sensors.strain_input.filter_hz=21",
+               "sensors.strain_input.noise_counts=2", "sensors.strain_input.filter_damping=0.7"})
           .sensors;
   for (std::size_t i = 0; i < s.encoder.size(); ++i) {
     EXPECT_EQ(s.encoder[i].counter, static_cast<int>(i));
@@ -60,16 +56,16 @@ TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
   EXPECT_EQ(s.strain_input.filter_hz, 21.0);
   EXPECT_EQ(s.strain_input.noise_counts, 2.0);
   EXPECT_EQ(s.strain_input.filter_damping, 0.7);
-  EXPECT_EQ(With({}).sensors.strain_input.filter_damping, 0.0);  // no key: of first order
+  EXPECT_EQ(HilWith({}).sensors.strain_input.filter_damping, 0.0);  // no key: of first order
 }
 
 TEST(RigBinding, PutsEveryKeyOfATipAccelerometerInItsField) {
-  EXPECT_FALSE(With({}).sensors.tip_accelerometer.has_value());
-  EXPECT_FALSE(With({}).estimator.payload->tip_extra_sigma_m_s2.has_value());
+  EXPECT_FALSE(HilWith({}).sensors.tip_accelerometer.has_value());
+  EXPECT_FALSE(HilWith({}).estimator.payload->tip_extra_sigma_m_s2.has_value());
   const Config rig =
-      With({"sensors.tip_accelerometer={range_m_s2=40, converter_bits=15, "
-            "noise_counts=3, filter_hz=250}",
-            "estimator.payload.tip_extra_sigma_m_s2=0.7"});
+      HilWith({"sensors.tip_accelerometer={range_m_s2=40, converter_bits=15, "
+               "noise_counts=3, filter_hz=250}",
+               "estimator.payload.tip_extra_sigma_m_s2=0.7"});
   const TipAccelerometerConfig& tip = rig.sensors.tip_accelerometer.value();
   EXPECT_EQ(tip.range_m_s2, 40.0);
   EXPECT_EQ(tip.converter_bits, 15);
@@ -83,7 +79,7 @@ TEST(RigBinding, PutsEveryKeyOfATipAccelerometerInItsField) {
 }
 
 TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
-  EXPECT_FALSE(With({}).csv.has_value());
+  EXPECT_FALSE(HilWith({}).csv.has_value());
   const Config rig =
       LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[3].offset=0.25", "csv.decimation=5"});
   ASSERT_TRUE(rig.csv.has_value());
@@ -105,7 +101,7 @@ TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
 
 // What a search over parameters does many times.
 TEST(RigBinding, ANumberIsFoundAndReplacedByItsKey) {
-  const Config rig = With({});
+  const Config rig = HilWith({});
   EXPECT_EQ(NumberAt(rig, "link1.section[0].length_m"), 0.8);
   EXPECT_EQ(NumberAt(rig, "sensors.encoder[3].counter_bits"), 16.0);
   EXPECT_EQ(NumberAt(rig, "limits.soft_angle_deg[1]"), 90.0);
@@ -120,9 +116,9 @@ TEST(RigBinding, ANumberIsFoundAndReplacedByItsKey) {
 
 TEST(RigBinding, PutsEveryKeyOfTheSimulationInItsField) {
   const SimConfig sim =
-      With({"sim.plant_modes=3", "sim.step_ms=0.25", "sim.seed=12", "sim.motor_lag_ms=[4, 5]",
-            "sim.transport_delay_ms=6", "sim.lost_frame_fraction=0.07", "sim.channel_skew_us=8",
-            "sim.switch_angle_deg=[97, 98]"})
+      HilWith({"sim.plant_modes=3", "sim.step_ms=0.25", "sim.seed=12", "sim.motor_lag_ms=[4, 5]",
+               "sim.transport_delay_ms=6", "sim.lost_frame_fraction=0.07", "sim.channel_skew_us=8",
+               "sim.switch_angle_deg=[97, 98]"})
           .sim;
   EXPECT_EQ(sim.plant_modes, 3);
   EXPECT_EQ(sim.step_ms, 0.25);
@@ -142,11 +138,12 @@ TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
   EXPECT_EQ(e.modes_per_link, 1);
   EXPECT_EQ(e.fault_ticks, 2);
   const EstimatorConfig set =
-      With({"estimator.process_force=[1, 2, 3, 4, 5, 6]",
-            "estimator.rotor_extra_sigma_rad=[0.01, 0.02]",
-            "estimator.modal_sigma_m=[0.01, 0.02, 0.03, 0.04]", "estimator.max_joint_rate_rad_s=15",
-            "estimator.hub_rotor_limit_rad=0.11", "estimator.strain_family_limit=0.005",
-            "estimator.strain_stuck_limit=0.006", "estimator.innovation_limit_rad=0.36"})
+      HilWith({"estimator.process_force=[1, 2, 3, 4, 5, 6]",
+               "estimator.rotor_extra_sigma_rad=[0.01, 0.02]",
+               "estimator.modal_sigma_m=[0.01, 0.02, 0.03, 0.04]",
+               "estimator.max_joint_rate_rad_s=15", "estimator.hub_rotor_limit_rad=0.11",
+               "estimator.strain_family_limit=0.005", "estimator.strain_stuck_limit=0.006",
+               "estimator.innovation_limit_rad=0.36"})
           .estimator;
   EXPECT_EQ(set.process_force, (std::array{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
   EXPECT_EQ(set.rotor_extra_sigma_rad, (std::array{0.01, 0.02}));
@@ -159,28 +156,28 @@ TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
 }
 
 TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
-  const Config set = With({"estimator.payload.process_force=[1, 2, 3, 4, 5, 6]",
-                           "estimator.payload.rotor_extra_sigma_rad=[0.01, 0.02]",
-                           "estimator.payload.start_kg=0.3",
-                           "estimator.payload.start_sigma_kg=0.5",
-                           "estimator.payload.max_kg=1.2",
-                           "estimator.payload.move_sigma_kg=0.6",
-                           "estimator.payload.walk_kg=0.004",
-                           "estimator.payload.min_rate_rad_s=0.05",
-                           "estimator.payload.friction_start_sigma_nm=[0.2, 0.3]",
-                           "estimator.payload.friction_max_nm=[2, 3]",
-                           "estimator.payload.friction_walk_nm=[0.4, 0.5]",
-                           "estimator.payload.friction_min_rate_rad_s=0.06",
-                           "estimator.payload.play_threshold_counts=2.5",
-                           "estimator.payload.play_memory=0.9",
-                           "estimator.payload.gate_sigmas=5",
-                           "estimator.payload.detect_delay=false",
-                           "controller.payload.max_kg=0.9",
-                           "controller.payload.reference_kg=0.25",
-                           "controller.payload.gain_payload_kg=[0, 0.5]",
-                           "controller.payload.gain_elbow_deg=[0, 45, 90]",
-                           "estimator.name=ekf-payload",
-                           "controller.name=gain-scheduled"});
+  const Config set = HilWith({"estimator.payload.process_force=[1, 2, 3, 4, 5, 6]",
+                              "estimator.payload.rotor_extra_sigma_rad=[0.01, 0.02]",
+                              "estimator.payload.start_kg=0.3",
+                              "estimator.payload.start_sigma_kg=0.5",
+                              "estimator.payload.max_kg=1.2",
+                              "estimator.payload.move_sigma_kg=0.6",
+                              "estimator.payload.walk_kg=0.004",
+                              "estimator.payload.min_rate_rad_s=0.05",
+                              "estimator.payload.friction_start_sigma_nm=[0.2, 0.3]",
+                              "estimator.payload.friction_max_nm=[2, 3]",
+                              "estimator.payload.friction_walk_nm=[0.4, 0.5]",
+                              "estimator.payload.friction_min_rate_rad_s=0.06",
+                              "estimator.payload.play_threshold_counts=2.5",
+                              "estimator.payload.play_memory=0.9",
+                              "estimator.payload.gate_sigmas=5",
+                              "estimator.payload.detect_delay=false",
+                              "controller.payload.max_kg=0.9",
+                              "controller.payload.reference_kg=0.25",
+                              "controller.payload.gain_payload_kg=[0, 0.5]",
+                              "controller.payload.gain_elbow_deg=[0, 45, 90]",
+                              "estimator.name=ekf-payload",
+                              "controller.name=gain-scheduled"});
   EXPECT_EQ(set.estimator.kind, EstimatorKind::kPayload);
   EXPECT_EQ(set.controller.kind, ControllerKind::kGainScheduled);
   const PayloadEstimatorConfig& e = set.estimator.payload.value();
@@ -209,14 +206,14 @@ TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
 
 TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
   const ControllerConfig c =
-      With({"controller.alpha=0.1", "controller.vartheta=0.2", "controller.sigma=0.3",
-            "controller.hub_angle_weight=[4, 5]", "controller.hub_rate_weight=[6, 7]",
-            "controller.torque_weight=8", "controller.passivity_margin=9",
-            "controller.adaptation_gain=10", "controller.prediction=false",
-            "controller.adaptation_dead_zone_nm=0.5", "controller.adaptation_bound=0.7",
-            "controller.pd_stiffness_nm_per_rad=[11, 12]",
-            "controller.pd_damping_nms_per_rad=[13, 14]", "controller.nominal=T12",
-            "controller.state_weight=[1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3]"})
+      HilWith({"controller.alpha=0.1", "controller.vartheta=0.2", "controller.sigma=0.3",
+               "controller.hub_angle_weight=[4, 5]", "controller.hub_rate_weight=[6, 7]",
+               "controller.torque_weight=8", "controller.passivity_margin=9",
+               "controller.adaptation_gain=10", "controller.prediction=false",
+               "controller.adaptation_dead_zone_nm=0.5", "controller.adaptation_bound=0.7",
+               "controller.pd_stiffness_nm_per_rad=[11, 12]",
+               "controller.pd_damping_nms_per_rad=[13, 14]", "controller.nominal=T12",
+               "controller.state_weight=[1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3]"})
           .controller;
   EXPECT_EQ(c.nominal, kT12);
   EXPECT_EQ(c.state_weight, (std::vector<double>{1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3}));
@@ -232,9 +229,9 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
   EXPECT_EQ(c.adaptation_bound, 0.7);
   EXPECT_EQ(c.pd_stiffness_nm_per_rad, (std::array{11.0, 12.0}));
   EXPECT_EQ(c.pd_damping_nms_per_rad, (std::array{13.0, 14.0}));
-  EXPECT_TRUE(With({}).controller.state_weight.empty());
+  EXPECT_TRUE(HilWith({}).controller.state_weight.empty());
   for (const NamedLayout& model : kNominalModels) {
-    EXPECT_EQ(With({"controller.nominal=" + std::string(model.name)}).controller.nominal,
+    EXPECT_EQ(HilWith({"controller.nominal=" + std::string(model.name)}).controller.nominal,
               model.layout);
   }
   EXPECT_FALSE(c.prediction);
@@ -244,12 +241,12 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
 
 TEST(RigBinding, PutsEveryLimitInItsField) {
   const SafetyConfig s =
-      With({"limits.torque_limit_nm=[1, 2]", "limits.slew_limit_nm_per_s=[3, 4]",
-            "limits.soft_angle_deg=[5, 6]", "limits.hub_rate_rad_s=[7, 8]",
-            "limits.strain_limit=[1e-4, 2e-4]", "limits.plan_fraction=0.7",
-            "safety.rest_hub_rate_rad_s=0.1", "safety.rest_strain_rate_per_s=0.2",
-            "safety.rest_time_s=0.3", "safety.stop_timeout_s=0.4", "safety.permit_timeout_ms=6",
-            "safety.missed_deadlines_to_trip=4"})
+      HilWith({"limits.torque_limit_nm=[1, 2]", "limits.slew_limit_nm_per_s=[3, 4]",
+               "limits.soft_angle_deg=[5, 6]", "limits.hub_rate_rad_s=[7, 8]",
+               "limits.strain_limit=[1e-4, 2e-4]", "limits.plan_fraction=0.7",
+               "safety.rest_hub_rate_rad_s=0.1", "safety.rest_strain_rate_per_s=0.2",
+               "safety.rest_time_s=0.3", "safety.stop_timeout_s=0.4", "safety.permit_timeout_ms=6",
+               "safety.missed_deadlines_to_trip=4"})
           .safety;
   EXPECT_EQ(s.torque_limit_nm, (std::array{1.0, 2.0}));
   EXPECT_EQ(s.slew_limit_nm_per_s, (std::array{3.0, 4.0}));
@@ -267,47 +264,47 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
 
 TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
   const Config c =
-      With({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
-            "loop.output=at_once", "loop.output_after_ms=14", "loop.actuation_delay_ms=3",
-            "daemon.socket=/tmp/s", "log.directory=/tmp/d"});
+      HilWith({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
+               "loop.output=at_once", "loop.output_after_ms=14", "loop.actuation_delay_ms=3",
+               "daemon.socket=/tmp/s", "log.directory=/tmp/d"});
   EXPECT_EQ(c.loop.period_ms, 18.0);
   EXPECT_EQ(c.loop.acquire_before_ms, 9.0);
   EXPECT_EQ(c.loop.step_deadline_ms, 4.0);
   EXPECT_EQ(c.loop.output, OutputTiming::kAtOnce);
   EXPECT_EQ(c.loop.output_after_ms, 14.0);
   EXPECT_EQ(c.loop.actuation_delay_ms, 3.0);
-  EXPECT_EQ(With({}).loop.output, OutputTiming::kNextTick);
+  EXPECT_EQ(HilWith({}).loop.output, OutputTiming::kNextTick);
   EXPECT_EQ(c.daemon.socket, "/tmp/s");
   EXPECT_EQ(c.daemon.log_directory, "/tmp/d");
 }
 
 TEST(RigBinding, KnowsEveryNamedChoice) {
   const auto damping = [](const char* name) {
-    return With({std::string("arm.damping=") + name}).arm.damping;
+    return HilWith({std::string("arm.damping=") + name}).arm.damping;
   };
   EXPECT_EQ(damping("none"), DampingReading::kNone);
   EXPECT_EQ(damping("ca_rho"), DampingReading::kCurvatureRho);
   EXPECT_EQ(damping("ca_lit"), DampingReading::kCurvatureAsPrinted);
   EXPECT_EQ(damping("modal"), DampingReading::kModal);
   const auto inertia = [](const char* name) {
-    return With({std::string("arm.link1_tip_inertia=") + name}).arm.link1_tip_inertia;
+    return HilWith({std::string("arm.link1_tip_inertia=") + name}).arm.link1_tip_inertia;
   };
   EXPECT_EQ(inertia("motor"), Link1TipInertia::kMotor);
   EXPECT_EQ(inertia("motor_and_rotor"), Link1TipInertia::kMotorAndRotor);
-  EXPECT_EQ(With({}).estimator.kind, EstimatorKind::kKalman);
-  EXPECT_EQ(With({"estimator.name=difference"}).estimator.kind, EstimatorKind::kDifference);
-  EXPECT_EQ(With({"estimator.name=polynomial"}).estimator.kind, EstimatorKind::kPolynomial);
-  EXPECT_EQ(With({}).controller.kind, ControllerKind::kSobel);
-  EXPECT_EQ(With({"controller.name=lqr-cgt"}).controller.kind, ControllerKind::kLqrCgt);
-  EXPECT_EQ(With({"controller.name=sobel-original"}).controller.kind,
+  EXPECT_EQ(HilWith({}).estimator.kind, EstimatorKind::kKalman);
+  EXPECT_EQ(HilWith({"estimator.name=difference"}).estimator.kind, EstimatorKind::kDifference);
+  EXPECT_EQ(HilWith({"estimator.name=polynomial"}).estimator.kind, EstimatorKind::kPolynomial);
+  EXPECT_EQ(HilWith({}).controller.kind, ControllerKind::kSobel);
+  EXPECT_EQ(HilWith({"controller.name=lqr-cgt"}).controller.kind, ControllerKind::kLqrCgt);
+  EXPECT_EQ(HilWith({"controller.name=sobel-original"}).controller.kind,
             ControllerKind::kSobelOriginal);
-  EXPECT_EQ(With({"controller.name=lqr-um"}).controller.kind, ControllerKind::kLqrUm);
-  EXPECT_EQ(With({"controller.name=lqg"}).controller.kind, ControllerKind::kLqg);
-  EXPECT_EQ(With({"controller.name=pd"}).controller.kind, ControllerKind::kPd);
-  EXPECT_EQ(With({"controller.name=pd-zv"}).controller.kind, ControllerKind::kPdZv);
-  EXPECT_EQ(With({"controller.name=pd-zvd"}).controller.kind, ControllerKind::kPdZvd);
-  EXPECT_EQ(With({}).controller.feedforward_sign, FeedforwardSign::kPrinted);
-  EXPECT_EQ(With({"controller.feedforward_sign=corrected"}).controller.feedforward_sign,
+  EXPECT_EQ(HilWith({"controller.name=lqr-um"}).controller.kind, ControllerKind::kLqrUm);
+  EXPECT_EQ(HilWith({"controller.name=lqg"}).controller.kind, ControllerKind::kLqg);
+  EXPECT_EQ(HilWith({"controller.name=pd"}).controller.kind, ControllerKind::kPd);
+  EXPECT_EQ(HilWith({"controller.name=pd-zv"}).controller.kind, ControllerKind::kPdZv);
+  EXPECT_EQ(HilWith({"controller.name=pd-zvd"}).controller.kind, ControllerKind::kPdZvd);
+  EXPECT_EQ(HilWith({}).controller.feedforward_sign, FeedforwardSign::kPrinted);
+  EXPECT_EQ(HilWith({"controller.feedforward_sign=corrected"}).controller.feedforward_sign,
             FeedforwardSign::kCorrected);
 }
 

@@ -7,10 +7,11 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
 
-constexpr double kPeriod_s = 0.02;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // One encoder on hub 1: 1000 counts a turn, so that a period at 14 rad/s is 44.6 counts.

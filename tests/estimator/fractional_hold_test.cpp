@@ -6,6 +6,7 @@
 #include <random>
 
 #include "estimator/nominal_model.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
@@ -13,8 +14,6 @@ namespace {
 
 using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
-
-constexpr double kPeriod_s = 0.02;
 
 // exp(M) by its own series, in extended precision: 30 terms of a matrix scaled below 1/16 leave
 // 16^-30, then squaring. Shares nothing with the Pade approximant that the product uses.

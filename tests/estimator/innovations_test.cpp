@@ -20,8 +20,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kSteps = 4000, kSettled = 200, kOutputs = 8, kStates = 16;
-const std::array<double, 2> kStiffness = {761.59, 497.96};
+constexpr int kInnovations = 4000, kSettled = 200, kOutputs = 8, kStates = 16;
 
 // Continuous model with the gauge filter, written down here again: phi_f' = w_f (phi - phi_f).
 struct Truth {
@@ -80,7 +79,7 @@ std::vector<VectorXd> Innovations(const Truth& truth) {
   std::normal_distribution<double> normal;
   VectorXd x = VectorXd::Zero(kStates);
   std::vector<VectorXd> out;
-  for (int k = 0; k < kSteps + kSettled; ++k) {
+  for (int k = 0; k < kInnovations + kSettled; ++k) {
     VectorXd y = truth.C * x;
     for (int i = 0; i < kOutputs; ++i) y(i) += std::sqrt(truth.R(i, i)) * normal(random);
     DecodedCounters counters{};
@@ -113,22 +112,22 @@ TEST_F(InnovationsTest, NormalisedSquareLiesInsideItsChiSquareBounds) {
   const Eigen::LLT<MatrixXd> S(S_);
   double sum = 0.0;
   for (const VectorXd& v : innovation_) sum += v.dot(S.solve(v));
-  EXPECT_NEAR(sum / kSteps, 8.0, 4.0 * std::sqrt(16.0 / kSteps));
+  EXPECT_NEAR(sum / kInnovations, 8.0, 4.0 * std::sqrt(16.0 / kInnovations));
 }
 
 // Each output's mean, and its correlation with every output one and two samples earlier: standard
 // error 1 / sqrt(N), 4.5 of them for 8 + 128 comparisons.
 TEST_F(InnovationsTest, AreWhiteAndOfZeroMean) {
-  const double bound = 4.5 / std::sqrt(kSteps);
+  const double bound = 4.5 / std::sqrt(kInnovations);
   for (int i = 0; i < kOutputs; ++i) {
     double mean = 0.0;
-    for (const VectorXd& v : innovation_) mean += v(i) / kSteps;
+    for (const VectorXd& v : innovation_) mean += v(i) / kInnovations;
     EXPECT_LT(std::abs(mean), bound * std::sqrt(S_(i, i))) << "output " << i;
     for (int j = 0; j < kOutputs; ++j) {
       for (const std::size_t lag : {std::size_t{1}, std::size_t{2}}) {
         double correlation = 0.0;
         for (std::size_t k = lag; k < innovation_.size(); ++k) {
-          correlation += innovation_[k](i) * innovation_[k - lag](j) / kSteps;
+          correlation += innovation_[k](i) * innovation_[k - lag](j) / kInnovations;
         }
         EXPECT_LT(std::abs(correlation), bound * std::sqrt(S_(i, i) * S_(j, j)))
             << "outputs " << i << " and " << j << ", lag " << lag;

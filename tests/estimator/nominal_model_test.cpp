@@ -13,14 +13,13 @@
 
 #include "model/discretize.h"
 #include "tests/model/golden_data.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
 namespace {
 
 using Eigen::MatrixXd;
-
-constexpr double kPeriod_s = 0.02;
 
 struct Mode {
   double hz, zeta;

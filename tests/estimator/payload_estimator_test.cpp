@@ -26,7 +26,7 @@ DecodedCounters Angles(double th1, double th2, std::uint32_t good = 0b1111) {
   return counters;
 }
 
-FittedModes Bend(const std::array<double, 4>& modal, bool valid = true) {
+FittedModes BendWith(const std::array<double, 4>& modal, bool valid = true) {
   FittedModes modes{};
   modes.modal_m = modal;
   modes.valid = {valid, valid};
@@ -37,14 +37,14 @@ TorquePieces Held(double u1, double u2) { return TorquePieces::WholePeriod({u1, 
 
 TEST(PayloadEstimator, StartsAtRestWhereTheHubsAre) {
   PayloadEstimator estimator = Estimator();
-  estimator.Update(Angles(0.4, -0.3), Bend({}), Held(0.0, 0.0));
+  estimator.Update(Angles(0.4, -0.3), BendWith({}), Held(0.0, 0.0));
   PayloadEstimator::State expected = PayloadEstimator::State::Zero();
   expected.head<2>() << 0.4, -0.3;
   EXPECT_LT((estimator.Now() - expected).norm(), 1e-12);
   EXPECT_EQ(estimator.estimate().payload_kg, 0.2);
-  estimator.Update(Angles(0.5, -0.3), Bend({}), Held(0.0, 0.0));
+  estimator.Update(Angles(0.5, -0.3), BendWith({}), Held(0.0, 0.0));
   estimator.Reset();
-  estimator.Update(Angles(-0.1, 0.2), Bend({}), Held(0.0, 0.0));
+  estimator.Update(Angles(-0.1, 0.2), BendWith({}), Held(0.0, 0.0));
   EXPECT_NEAR(estimator.Now()[0], -0.1, 1e-12);
 }
 
@@ -52,13 +52,13 @@ TEST(PayloadEstimator, StartsAtRestWhereTheHubsAre) {
 TEST(PayloadEstimator, AnInputThatIsNotGoodCountsForNothing) {
   PayloadEstimator clean = Estimator(), garbage = Estimator();
   for (auto* estimator : {&clean, &garbage}) {
-    estimator->Update(Angles(0.0, 0.0), Bend({}), Held(0.0, 0.0));
+    estimator->Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   }
   constexpr std::uint32_t kHubsOnly = 0b0011;
   DecodedCounters wrong = Angles(0.001, 0.002, kHubsOnly);
   wrong.angle_rad[2] = wrong.angle_rad[3] = 7.0;
-  clean.Update(Angles(0.001, 0.002, kHubsOnly), Bend({}, false), Held(1.0, 0.2));
-  garbage.Update(wrong, Bend({1.0, 1.0, 1.0, 1.0}, false), Held(1.0, 0.2));
+  clean.Update(Angles(0.001, 0.002, kHubsOnly), BendWith({}, false), Held(1.0, 0.2));
+  garbage.Update(wrong, BendWith({1.0, 1.0, 1.0, 1.0}, false), Held(1.0, 0.2));
   EXPECT_EQ(clean.Now(), garbage.Now());
   EXPECT_EQ(clean.estimate().nis, garbage.estimate().nis);
   EXPECT_GT((clean.Now() - Estimator().Now()).norm(), 1e-4) << "nothing was read at all";
@@ -67,16 +67,16 @@ TEST(PayloadEstimator, AnInputThatIsNotGoodCountsForNothing) {
 // Without any input the filter predicts, with the same model as After.
 TEST(PayloadEstimator, ALostFrameIsPredicted) {
   PayloadEstimator estimator = Estimator();
-  estimator.Update(Angles(0.0, 0.0), Bend({}), Held(0.0, 0.0));
+  estimator.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   const PayloadEstimator::State predicted = estimator.After(Held(2.0, 0.4));
-  estimator.Update(Angles(9.0, 9.0, 0), Bend({}, false), Held(2.0, 0.4));
+  estimator.Update(Angles(9.0, 9.0, 0), BendWith({}, false), Held(2.0, 0.4));
   EXPECT_EQ(estimator.Now(), predicted);
 }
 
 // Two pieces are the first for its time, then the second; equal ones are one.
 TEST(PayloadEstimator, PiecesOfTorqueActOneAfterTheOther) {
   PayloadEstimator estimator = Estimator();
-  estimator.Update(Angles(0.0, 0.0), Bend({}), Held(0.0, 0.0));
+  estimator.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   TorquePieces halves, mixed, quarter;
   halves.Add({.torque_nm = {2.0, 0.4}, .ticks = kPeriodTicks / 2});
   halves.Add({.torque_nm = {2.0, 0.4}, .ticks = kPeriodTicks / 2});
@@ -113,7 +113,7 @@ class LateArm {
                                             .payload_kg = 0.2,
                                             .friction_nm = StudyPayload().friction_start_nm});
       estimator->Update(Angles(x_.q[0], x_.q[1]),
-                        Bend({x_.phi_f[0], x_.phi_f[1], x_.phi_f[2], x_.phi_f[3]}),
+                        BendWith({x_.phi_f[0], x_.phi_f[1], x_.phi_f[2], x_.phi_f[3]}),
                         TorqueByDelay{Torque(k + 1), Torque(k), Torque(k - 1), Torque(k - 2)});
     }
     next_ += samples;
@@ -164,14 +164,14 @@ TEST(PayloadEstimator, TakesTheTorqueOfTheDelayThatHolds) {
   PayloadEstimator estimator = Estimator(), alone = Estimator();
   for (int k = 0; k < 5; ++k) {
     const TorquePieces torque = Held(1.0 + k, 0.2);
-    estimator.Update(Angles(0.0, 0.0), Bend({}),
+    estimator.Update(Angles(0.0, 0.0), BendWith({}),
                      TorqueByDelay{std::nullopt, torque, Held(9.0, 2.0), std::nullopt});
-    alone.Update(Angles(0.0, 0.0), Bend({}), torque);
+    alone.Update(Angles(0.0, 0.0), BendWith({}), torque);
     ASSERT_EQ(estimator.delay_found(), 0);
     EXPECT_EQ(estimator.Now(), alone.Now());
   }
   for (int k = 0; k < 50; ++k) {
-    estimator.Update(Angles(0.0, 0.0, 0), Bend({}, false),
+    estimator.Update(Angles(0.0, 0.0, 0), BendWith({}, false),
                      TorqueByDelay{Held(0.0, 0.0), Held(6.0, 1.0), Held(0.0, 0.0), Held(0.0, 0.0)});
   }
   EXPECT_EQ(estimator.delay_found(), 0);
@@ -191,7 +191,7 @@ TEST(PayloadModel, ComesBackFromItsConstantsToTheBit) {
 TEST(PayloadEstimator, TellsHowFastTheGaugesChange) {
   PayloadEstimator estimator = Estimator();
   for (int k = 0; k < 10; ++k) {
-    estimator.Update(Angles(0.0, 0.0, 0), Bend({}, false), Held(2.0, 0.4));
+    estimator.Update(Angles(0.0, 0.0, 0), BendWith({}, false), Held(2.0, 0.4));
   }
   const GaugedState& x = estimator.estimate().state;
   constexpr double kCorner_rad_s = 2.0 * M_PI * 20.0;

@@ -10,6 +10,7 @@
 #include "model/arm_model.h"
 #include "model/arm_simulator.h"
 #include "model/tip_acceleration.h"
+#include "tests/hal/thesis_sensors.h"
 #include "tests/model/golden_data.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/study_payload.h"
@@ -22,7 +23,6 @@ using Eigen::Vector2d;
 using Eigen::VectorXd;
 using Outputs = PayloadFilter::Outputs;
 
-constexpr double kGauge_hz = 20.0;
 constexpr double kCount_rad = 2.0 * M_PI / 2540.0, kFineCount_rad = 2.0 * M_PI / 24480.0;
 
 TorquePieces Held(const Vector2d& torque_nm) {

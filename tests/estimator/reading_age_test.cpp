@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kInstant = 1'000 * kMs;
 
 SensorFrame FrameAt(std::int64_t sampled_at_ns) {

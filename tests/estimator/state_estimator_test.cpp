@@ -14,8 +14,6 @@
 namespace flexarm {
 namespace {
 
-const std::array<double, 2> kStiffness = {761.59, 497.96};
-
 FilterGains GainsOf(const KalmanDesign& design, const StateLayout& layout = kR12) {
   return {.layout = layout,
           .A = design.A,

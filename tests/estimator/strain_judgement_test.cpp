@@ -12,12 +12,12 @@
 namespace flexarm {
 namespace {
 
-const std::array<double, 4> kBend = {0.03, 1e-4, -0.02, 5e-4};
+const std::array<double, 4> kBent = {0.03, 1e-4, -0.02, 5e-4};
 
 // A count is 0.98 microstrain. Rounding of half a count on every channel moves a coordinate by
 // 5e-5 m (measured, f21 without its root channel); a bad channel that stays in the fit, by 1e-3 m
 // and more.
-constexpr double kRounding_m = 1e-4;
+constexpr double kCoarseRounding_m = 1e-4;
 
 class StrainJudgement : public testing::Test {
  protected:
@@ -38,7 +38,8 @@ class StrainJudgement : public testing::Test {
                          std::size_t channel) {
     EXPECT_TRUE(out.valid[0] && out.valid[1]);
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(out.modal_m[i], modal[i], kRounding_m) << "f" << i << ", bad channel " << channel;
+      EXPECT_NEAR(out.modal_m[i], modal[i], kCoarseRounding_m)
+          << "f" << i << ", bad channel " << channel;
     }
   }
 
@@ -50,13 +51,13 @@ TEST_F(StrainJudgement, ASaturatedChannelIsLeftOutAtOnce) {
   for (std::size_t i = 0; i < 20; ++i) {
     for (const std::int32_t rail : {-2048, 2047}) {
       StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
-      SensorFrame frame = FrameOf(kBend);
+      SensorFrame frame = FrameOf(kBent);
       frame.strain[i] = rail;
       const FittedModes out = fit.Fit(frame);
       EXPECT_EQ(out.saturated, 1u << i);
       EXPECT_EQ(out.outlier, 0u);
       EXPECT_EQ(out.used, 0xFFFFFu & ~(1u << i));
-      ExpectBend(out, kBend, i);
+      ExpectBend(out, kBent, i);
     }
   }
 }
@@ -66,13 +67,13 @@ TEST_F(StrainJudgement, AWildChannelIsLeftOutAtOnce) {
   for (std::size_t i = 0; i < 20; ++i) {
     for (const int sign : {-1, 1}) {
       StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
-      SensorFrame frame = FrameOf(kBend);
+      SensorFrame frame = FrameOf(kBent);
       frame.strain[i] += sign * 1024;  // 1000 microstrain
       const FittedModes out = fit.Fit(frame);
       EXPECT_EQ(out.outlier, 1u << i);
       EXPECT_EQ(out.used, 0xFFFFFu & ~(1u << i));
       EXPECT_GT(out.worst_outlier, 4e-4);
-      ExpectBend(out, kBend, i);
+      ExpectBend(out, kBent, i);
     }
   }
 }
@@ -80,12 +81,12 @@ TEST_F(StrainJudgement, AWildChannelIsLeftOutAtOnce) {
 // Two wild ones a link are the most that are removed.
 TEST_F(StrainJudgement, TwoWildChannelsOfALinkAreLeftOut) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
-  SensorFrame frame = FrameOf(kBend);
+  SensorFrame frame = FrameOf(kBent);
   frame.strain[5] += 1500;
   frame.strain[8] -= 1500;
   const FittedModes out = fit.Fit(frame);
   EXPECT_EQ(out.outlier, 1u << 5 | 1u << 8);
-  ExpectBend(out, kBend, 5);
+  ExpectBend(out, kBent, 5);
 }
 
 // A channel that holds its value while its link bends: stuck once the fit at its station has moved
@@ -120,13 +121,13 @@ TEST_F(StrainJudgement, AStuckChannelIsLeftOutInTheSampleThatShowsIt) {
 
 TEST_F(StrainJudgement, ChannelsOfAnArmAtRestAreNotStuck) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
-  for (int k = 0; k < 500; ++k) EXPECT_EQ(fit.Fit(FrameOf(kBend)).stuck, 0u);
+  for (int k = 0; k < 500; ++k) EXPECT_EQ(fit.Fit(FrameOf(kBent)).stuck, 0u);
 }
 
 TEST_F(StrainJudgement, ResetForgetsWhatWasStuck) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
   fit.Fit(FrameOf({}));
-  SensorFrame frame = FrameOf(kBend);
+  SensorFrame frame = FrameOf(kBent);
   frame.strain[0] = 0;
   EXPECT_NE(fit.Fit(frame).stuck, 0u);
   fit.Reset({});

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <array>
+
 #include "estimator/estimator_config.h"
 #include "estimator/kalman_design.h"
 #include "estimator/nominal_model.h"
 #include "tests/hal/thesis_sensors.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
 
-inline constexpr double kPeriod_s = 0.02;
+/// Of the joints of the simulated rig, N m/rad.
+inline constexpr std::array<double, 2> kStiffness = {761.59, 497.96};
 
 /// The estimator of the simulated rig (study of the control law, section 4).
 inline EstimatorConfig ThesisEstimator(EstimatorKind kind = EstimatorKind::kKalman) {

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
@@ -15,7 +16,6 @@ namespace {
 
 using Vector = RigidJointArm::Vector;
 
-constexpr double kGauge_hz = 20.0;
 constexpr std::array<double, 2> kProbe_nm = {1.6e-3, 1e-4};
 
 // Both hubs slide, the links are bent and swing.

@@ -25,7 +25,7 @@ SensorConfig SensorsWith(const TipAccelerometerConfig& config) {
   return sensors;
 }
 
-constexpr SimConfig kSim = IdealSim(4, 0.1);
+constexpr SimConfig kFineSim = IdealSim(4, 0.1);
 
 // Where the tip's normal points, by the slopes of the rig's modes.
 class Tip {
@@ -49,7 +49,7 @@ class Tip {
 TEST(SimulatedAccelerometer, ReadsTheSecondDifferenceOfTheTipsPosition) {
   const ArmParameters arm = ThesisRig();
   const Tip tip(arm);
-  SimulatedRig rig(arm, SensorsWith(kFine), kSim);
+  SimulatedRig rig(arm, SensorsWith(kFine), kFineSim);
   const double h = 1e-4, T = 1.0 / (2.0 * std::numbers::pi * 200.0);
   const double e = std::exp(-h / T), b = (1.0 - e) * T / h;
   const auto position = [&rig] { return Eigen::Vector2d(rig.truth().tip_m.data()); };
@@ -125,8 +125,8 @@ TEST(SimulatedAccelerometer, ItsNoiseHasTheSizeOfTheConfig) {
 TEST(SimulatedAccelerometer, LeavesTheOtherSensorsAsTheyAre) {
   TipAccelerometerConfig noisy = kFine;
   noisy.noise_counts = 100.0;
-  SimulatedRig with(ThesisRig(), SensorsWith(noisy), kSim);
-  SimulatedRig without(ThesisRig(), ThesisSensors(), kSim);
+  SimulatedRig with(ThesisRig(), SensorsWith(noisy), kFineSim);
+  SimulatedRig without(ThesisRig(), ThesisSensors(), kFineSim);
   for (int k = 0; k < 200; ++k) {
     for (SimulatedRig* rig : {&with, &without}) {
       rig->SetTorque({3.0, 0.3});

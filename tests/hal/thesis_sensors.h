@@ -4,6 +4,9 @@
 
 namespace flexarm {
 
+/// Corner of the simulated rig's gauge filters.
+inline constexpr double kGauge_hz = 20.0;
+
 /// Sensors of the simulated rig (study of the control law, section 2): four encoders, ten gauges a
 /// link in the middles of ten equal parts, 12 bit over +-10 V at 5000 V per unit strain.
 inline SensorConfig ThesisSensors(double noise_counts = 1.0) {
@@ -24,7 +27,7 @@ inline SensorConfig ThesisSensors(double noise_counts = 1.0) {
   }
   sensors.strain_input = {.converter_bits = 12,
                           .range_v = 10.0,
-                          .filter_hz = 20.0,
+                          .filter_hz = kGauge_hz,
                           .noise_counts = noise_counts,
                           .filter_damping = 0.0};  // of first order
   return sensors;

@@ -7,6 +7,7 @@
 #include "model/arm_simulator.h"
 #include "model/linearization.h"
 #include "model/reference_integrator.h"
+#include "tests/model/arm_energy.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
@@ -24,10 +25,6 @@ ArmParameters WithPlay(BacklashModel model, double clearance, double zeta) {
   p.damping = DampingReading::kNone;
   p.joint2_backlash = {model, clearance, zeta};
   return p;
-}
-
-double Energy(const ArmModel& model, const ArmState& x) {
-  return model.KineticEnergy(x.q, x.v) + model.PotentialEnergy(x.q);
 }
 
 TEST(Backlash, SpringWithPlayHasADeadZoneOfTheWholeClearance) {

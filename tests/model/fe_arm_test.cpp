@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 constexpr int kElements = 20;
 
-ArmParameters Rig(double payload) {
+ArmParameters RigCarrying(double payload) {
   ArmParameters p = ThesisRig();
   p.payload_mass_kg = p.shape_payload_mass_kg = payload;
   return p;
@@ -31,7 +31,7 @@ ArmParameters Rig(double payload) {
 // agree to 4e-6.
 TEST(FeArm, HasTheExactFrequenciesOfTheReference) {
   const double exact[] = {6.620644715, 8.758385487, 16.67434804, 17.35428850};
-  const VectorXd fe = FeArm(Rig(0.1), 0.0, kElements).FreeFrequenciesHz();
+  const VectorXd fe = FeArm(RigCarrying(0.1), 0.0, kElements).FreeFrequenciesHz();
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(fe[i] / exact[i], 1.0, 4e-6) << i;
 }
 
@@ -41,8 +41,8 @@ TEST(FeArm, SixModesGiveTheFirstSixFrequencies) {
   for (const double degrees : {0.0, 30.0, 60.0, 90.0, 135.0}) {
     for (const double payload : {0.0, 0.1, 0.5, 1.0}) {
       const double theta2 = degrees * M_PI / 180.0;
-      const VectorXd fe = FeArm(Rig(payload), theta2, kElements).FreeFrequenciesHz();
-      const VectorXd modes = FreeMotorFrequenciesHz(ArmModel(Rig(payload), {6, 6}), theta2);
+      const VectorXd fe = FeArm(RigCarrying(payload), theta2, kElements).FreeFrequenciesHz();
+      const VectorXd modes = FreeMotorFrequenciesHz(ArmModel(RigCarrying(payload), {6, 6}), theta2);
       for (int i = 0; i < 6; ++i) {
         EXPECT_NEAR(modes[i] / fe[i], 1.0, 1e-4)
             << degrees << " deg, " << payload << " kg, frequency " << i + 1;
@@ -55,7 +55,7 @@ TEST(FeArm, SixModesGiveTheFirstSixFrequencies) {
 // moment of motor 2's inertia, and are 2.9 % off in f2 with two modes and converge like 1/M; those
 // for the inertia too are off by 0.106 % (plant.md, to its digits).
 TEST(FeArm, ShapesForATipMassAloneConvergeSlowly) {
-  const ArmParameters p = Rig(0.1);
+  const ArmParameters p = RigCarrying(0.1);
   const FeArm fe(p, 0.0, kElements);
   const double exact = fe.FreeFrequenciesHz()[1];
   const auto error_percent = [&](double tip_inertia, int modes) {
@@ -71,7 +71,7 @@ TEST(FeArm, ShapesForATipMassAloneConvergeSlowly) {
 
 // Links with a step and with two sections of different material.
 TEST(FeArm, SteppedLinksAgreeToo) {
-  ArmParameters p = Rig(0.2);
+  ArmParameters p = RigCarrying(0.2);
   BeamSection root = p.link[0].section[0], end = root;
   root.length_m = 0.15, root.second_moment_m4 *= 4.0, root.area_m2 *= 1.6;
   end.length_m = 0.65;
@@ -86,8 +86,8 @@ TEST(FeArm, SteppedLinksAgreeToo) {
 TEST(FeArm, StaticDisplacementOfTheTipAgrees) {
   for (const double degrees : {0.0, 45.0, 90.0}) {
     const double theta2 = degrees * M_PI / 180.0;
-    const ArmModel arm(Rig(0.1), {6, 6});
-    const FeArm fe(Rig(0.1), theta2, kElements);
+    const ArmModel arm(RigCarrying(0.1), {6, 6});
+    const FeArm fe(RigCarrying(0.1), theta2, kElements);
     VectorXd q = VectorXd::Zero(arm.dof());
     q[kTheta2] = q[kTheta4] = theta2;
     MatrixXd J(2, arm.dof());

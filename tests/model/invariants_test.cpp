@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/arm_simulator.h"
+#include "tests/model/arm_energy.h"
 #include "tests/model/swinging_arm.h"
 #include "tests/support/thesis_rig.h"
 
@@ -27,10 +28,6 @@ ArmParameters Conservative(bool foreshortening) {
   p.joint[0].coulomb_friction_nm = p.joint[1].coulomb_friction_nm = 0.0;
   p.damping = DampingReading::kNone;
   return p;
-}
-
-double Energy(const ArmModel& model, const ArmState& x) {
-  return model.KineticEnergy(x.q, x.v) + model.PotentialEnergy(x.q);
 }
 
 class Invariants : public testing::TestWithParam<bool> {};

@@ -13,7 +13,7 @@ namespace {
 
 const BeamTip kTip{0.2, 1e-3};
 
-std::vector<BeamSection> Stepped() {
+std::vector<BeamSection> TwoSections() {
   const BeamSection s = ThesisRig().link[1].section[0];
   std::vector<BeamSection> section = {s, s};
   section[0].length_m = 0.3, section[0].second_moment_m4 *= 5.0;
@@ -43,7 +43,7 @@ double Printed(const std::array<double, 4>& C, double z) {
 // Sampled exactly, a shape comes back: residual and shape at round-off (1e-10 of a shape of size
 // 1..10), in both bases (mode 1 has beta l < 2 in a section, mode 6 far above).
 TEST(ModeShapeFit, ExactShapesComeBack) {
-  const auto section = Stepped();
+  const auto section = TwoSections();
   for (const BeamMode& mode : ClampedModes(section, kTip, 6)) {
     const Samples s = ExactSamples(mode);
     const ModeShapeFit fit = FitModeShape(section, mode.frequency_rad_s(), s.x, s.w);
@@ -62,21 +62,21 @@ TEST(ModeShapeFit, ExactShapesComeBack) {
 
 // Alternating noise of size d that no smooth shape follows stays in the residual.
 TEST(ModeShapeFit, ResidualIsWhatDoesNotFit) {
-  const BeamMode mode = ClampedModes(Stepped(), kTip, 2).back();
+  const BeamMode mode = ClampedModes(TwoSections(), kTip, 2).back();
   const Samples s = ExactSamples(mode, 0.01);
-  const ModeShapeFit fit = FitModeShape(Stepped(), mode.frequency_rad_s(), s.x, s.w);
+  const ModeShapeFit fit = FitModeShape(TwoSections(), mode.frequency_rad_s(), s.x, s.w);
   EXPECT_NEAR(fit.rms_residual, 0.01, 1e-3);
   EXPECT_GE(fit.max_residual, fit.rms_residual);
 }
 
 // The thesis's single beta on a link with a step: a residual that one beta per section has not.
 TEST(ModeShapeFit, SingleBetaDoesNotFitASteppedLink) {
-  const BeamMode mode = ClampedModes(Stepped(), kTip, 3).back();
+  const BeamMode mode = ClampedModes(TwoSections(), kTip, 3).back();
   const Samples s = ExactSamples(mode);
-  BeamSection uniform = Stepped()[1];
+  BeamSection uniform = TwoSections()[1];
   uniform.length_m = 0.9;
   const ModeShapeFit single = FitModeShape({uniform}, mode.frequency_rad_s(), s.x, s.w);
-  const ModeShapeFit each = FitModeShape(Stepped(), mode.frequency_rad_s(), s.x, s.w);
+  const ModeShapeFit each = FitModeShape(TwoSections(), mode.frequency_rad_s(), s.x, s.w);
   EXPECT_GT(single.rms_residual, 1e-2);
   EXPECT_LT(each.rms_residual, 1e-9);
 }
@@ -84,11 +84,12 @@ TEST(ModeShapeFit, SingleBetaDoesNotFitASteppedLink) {
 // What the thesis does: shapes of the lumped beam, compressed into (3.7). With N parts the samples
 // are off by N^-2, and so is the fit.
 TEST(ModeShapeFit, LumpedShapesFitToTheirOwnError) {
-  const BeamMode exact = ClampedModes(Stepped(), kTip, 2).back();
+  const BeamMode exact = ClampedModes(TwoSections(), kTip, 2).back();
   const auto error = [&](int parts) {
     const LumpedMode lumped =
-        LumpedBeam(Stepped(), kTip, BeamRoot::Clamped(), parts).Modes(2).back();
-    const ModeShapeFit fit = FitModeShape(Stepped(), lumped.frequency_rad_s, lumped.x_m, lumped.w);
+        LumpedBeam(TwoSections(), kTip, BeamRoot::Clamped(), parts).Modes(2).back();
+    const ModeShapeFit fit =
+        FitModeShape(TwoSections(), lumped.frequency_rad_s, lumped.x_m, lumped.w);
     EXPECT_LT(fit.rms_residual, 1e-2);
     return std::fabs(fit.mode.Value(0.45) - exact.Value(0.45));
   };
@@ -96,11 +97,11 @@ TEST(ModeShapeFit, LumpedShapesFitToTheirOwnError) {
 }
 
 TEST(ModeShapeFit, TooFewSamplesAreRefused) {
-  const BeamMode mode = ClampedModes(Stepped(), kTip, 1).back();
-  EXPECT_THROW(FitModeShape(Stepped(), mode.frequency_rad_s(), {0.0, 0.1, 0.2, 0.5, 0.6, 0.7, 0.9},
-                            {0, 0, 0, 0, 0, 0, 0}),
+  const BeamMode mode = ClampedModes(TwoSections(), kTip, 1).back();
+  EXPECT_THROW(FitModeShape(TwoSections(), mode.frequency_rad_s(),
+                            {0.0, 0.1, 0.2, 0.5, 0.6, 0.7, 0.9}, {0, 0, 0, 0, 0, 0, 0}),
                std::invalid_argument);
-  EXPECT_THROW(FitModeShape(Stepped(), mode.frequency_rad_s(), {0.0, 0.1}, {0.0}),
+  EXPECT_THROW(FitModeShape(TwoSections(), mode.frequency_rad_s(), {0.0, 0.1}, {0.0}),
                std::invalid_argument);
 }
 

@@ -41,7 +41,7 @@ ArmState Swinging(const ArmModel& model) {
 }
 
 // @returns how often a hub was stopped
-int Swing(ArmSimulator* simulator, ArmState* x, int steps) {
+int SwingOn(ArmSimulator* simulator, ArmState* x, int steps) {
   int stops = 0;
   for (int i = 0; i < steps; ++i) {
     const ArmVector before = x->v;
@@ -100,12 +100,12 @@ TEST_P(PayloadChange, TheSamePayloadChangesNothing) {
   ArmModel model(Rig(GetParam(), 0.4), kModes);
   ArmSimulator simulator(model), undisturbed(model);
   ArmState x = Swinging(model), same = x;
-  Swing(&simulator, &x, 200);
-  Swing(&undisturbed, &same, 200);
+  SwingOn(&simulator, &x, 200);
+  SwingOn(&undisturbed, &same, 200);
   model.CarryPayload(0.4);
   simulator.CarryPayloadOf(model);
-  Swing(&simulator, &x, 200);
-  Swing(&undisturbed, &same, 200);
+  SwingOn(&simulator, &x, 200);
+  SwingOn(&undisturbed, &same, 200);
   EXPECT_TRUE(SameBytes(x, same));
 }
 
@@ -117,19 +117,19 @@ TEST_P(PayloadChange, AfterItTheArmIsOneMadeWithThatPayload) {
   double carried_kg = 0.1;
   int stops = 0;
   for (const double payload_kg : {1.0, 0.0, 0.3}) {
-    Swing(&simulator, &x, 100);
+    SwingOn(&simulator, &x, 100);
     const ArmState start = x;
     model.CarryPayload(payload_kg);
     simulator.CarryPayloadOf(model);
     EXPECT_TRUE(SameBytes(x, start)) << "it jumped";
-    stops += Swing(&simulator, &x, 200);
+    stops += SwingOn(&simulator, &x, 200);
 
     const ArmModel anew(Rig(GetParam(), payload_kg), kModes),
         before(Rig(GetParam(), carried_kg), kModes);
     ArmSimulator stepped(anew), unchanged(before);
     ArmState expected = start, other = start;
-    Swing(&stepped, &expected, 200);
-    Swing(&unchanged, &other, 200);
+    SwingOn(&stepped, &expected, 200);
+    SwingOn(&unchanged, &other, 200);
     EXPECT_TRUE(SameBytes(x, expected)) << payload_kg;
     EXPECT_GT((x.q - other.q).norm(), 1e-4) << "the payload makes no difference";
     const VectorXd q = x.q, v = x.v;
@@ -144,11 +144,11 @@ TEST_P(PayloadChange, TakesNoHeap) {
   ArmModel model(Rig(GetParam(), 0.1), kModes);
   ArmSimulator simulator(model);
   ArmState x = Swinging(model);
-  Swing(&simulator, &x, 1);
+  SwingOn(&simulator, &x, 1);
   const NoAlloc armed;
   model.CarryPayload(0.8);
   simulator.CarryPayloadOf(model);
-  Swing(&simulator, &x, 1);
+  SwingOn(&simulator, &x, 1);
 }
 
 }  // namespace

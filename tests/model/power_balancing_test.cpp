@@ -84,7 +84,7 @@ TEST(PowerBalancing, PowerElementsAreTimeAverages) {
   }
 }
 
-UndampedSystem RandomSystem(unsigned seed, bool symmetric) {
+UndampedSystem RandomUndamped(unsigned seed, bool symmetric) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
   const Index n = 2 + static_cast<Index>(seed % 6);
@@ -108,7 +108,7 @@ UndampedSystem RandomSystem(unsigned seed, bool symmetric) {
 // output's. The means are exact: by the modal form, not by time.
 TEST(PowerBalancing, TransformedSystemIsInternallyPowerBalanced) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
-    const UndampedSystem s = RandomSystem(seed, seed % 2 == 0);
+    const UndampedSystem s = RandomUndamped(seed, seed % 2 == 0);
     const PowerBalance balance = BalancePower(s);
     EXPECT_EQ(balance.condition,
               seed % 2 == 0 ? PowerCondition::kSymmetric : PowerCondition::kDiagonalisable);

@@ -9,6 +9,7 @@
 
 #include "model/rigid_joint_step.h"
 #include "tests/model/golden_data.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/study_move.h"
 #include "tests/support/thesis_rig.h"
@@ -19,8 +20,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Vector = RigidJointArm::Vector;
-
-constexpr double kPeriod_s = SepticMove::kPeriod_s;
 
 static_assert(noexcept(QuasiStaticOver(std::declval<const RigidJointArm&>(), 0.1, {}, kPeriod_s)));
 

@@ -12,7 +12,9 @@
 #include "model/arm_simulator.h"
 #include "model/discretize.h"
 #include "model/rigid_joint_transition.h"
+#include "tests/hal/thesis_sensors.h"
 #include "tests/model/golden_data.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/thesis_rig.h"
 
@@ -22,8 +24,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Vector = RigidJointArm::Vector;
-
-constexpr double kPeriod_s = 0.02, kGauge_hz = 20.0;
 
 VectorXd Stacked(const GaugedState& x) {
   VectorXd out(16);

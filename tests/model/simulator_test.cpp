@@ -6,6 +6,7 @@
 
 #include "model/arm_simulator.h"
 #include "model/reference_integrator.h"
+#include "tests/model/arm_energy.h"
 #include "tests/support/thesis_rig.h"
 
 namespace {
@@ -41,10 +42,6 @@ ArmParameters Conservative() {
   p.damping = DampingReading::kNone;
   p.link1_tip_inertia = Link1TipInertia::kMotor;  // the basis of plant.md's energy figure
   return p;
-}
-
-double Energy(const ArmModel& model, const ArmState& x) {
-  return model.KineticEnergy(x.q, x.v) + model.PotentialEnergy(x.q);
 }
 
 // Elbow at 60 deg, rates 1 and -2 rad/s, tips bent by 10 and 20 mm (plant.md).

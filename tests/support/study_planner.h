@@ -1,6 +1,7 @@
 #pragma once
 
 #include "controller/law/horizon_planner.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/study_gains.h"
 #include "tests/support/study_move.h"
 #include "tests/support/thesis_rig.h"
@@ -22,7 +23,6 @@ inline HorizonPlannerConfig StudyPlannerConfig() {
 
 inline HorizonPlanner StudyPlanner(const HorizonPlannerConfig& config = StudyPlannerConfig()) {
   const RigidJointArm arm(ThesisRig());
-  constexpr double kPeriod_s = SepticMove::kPeriod_s;
   return {arm, kPeriod_s, DesignGainTable(arm, StudyGrid(), StudyWeights(1.5), kPeriod_s), config};
 }
 

@@ -11,12 +11,12 @@
 #include <random>
 
 #include "config/config.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
-constexpr double kPeriod_s = 0.02;
 constexpr double kRoundOff_s = 1e-9;
 
 RigidJointArm Arm() {

@@ -16,12 +16,12 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-constexpr const char* kRig = FLEXARM_SOURCE_DIR "/config/hil.toml";
+constexpr const char* kHilRig = FLEXARM_SOURCE_DIR "/config/hil.toml";
 
 SweepAxis Axis(const std::string& text) { return ParseAxis(AxisTarget::kConfig, text); }
 
 SweepPlan Plan(std::vector<SweepAxis> axes) {
-  return {.config = LoadConfig(kRig),
+  return {.config = LoadConfig(kHilRig),
           .experiment = LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/square-30deg.toml"),
           .grid = SweepGrid(std::move(axes))};
 }
@@ -148,7 +148,7 @@ TEST_F(SweepFiles, HoldWhatSingleRunsGiveWhateverTheNumberOfJobs) {
   ASSERT_EQ(rows4.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(SameOutcome(rows[i], rows4[i])) << i;
   const SimulationResult single =
-      Simulate({.config = LoadConfig(kRig, {"controller.alpha=3.0", "sim.seed=1"}),
+      Simulate({.config = LoadConfig(kHilRig, {"controller.alpha=3.0", "sim.seed=1"}),
                 .experiment = plan.experiment,
                 .plant = {},
                 .payload_kg = {},

@@ -13,7 +13,7 @@ Eigen::MatrixXd Initial() { return Eigen::MatrixXd::Constant(2, 6, 0.5); }
 AdaptiveGain::Regressor Large() { return AdaptiveGain::Regressor::Constant(6, 2.0); }
 AdaptiveGain::Regressor Small() { return AdaptiveGain::Regressor::Constant(6, 0.01); }
 
-ControllerConfig Config(double dead_zone_nm, double bound) {
+ControllerConfig GainConfig(double dead_zone_nm, double bound) {
   ControllerConfig config = ShippedRig().controller;
   config.adaptation_gain = 0.1;
   config.sigma = 0.25;
@@ -24,7 +24,7 @@ ControllerConfig Config(double dead_zone_nm, double bound) {
 
 // 0.1 * 1 * 2 in each of the first row's six entries: |change| = 0.2 sqrt(6).
 TEST(AdaptiveGain, LearnsTheOuterProduct) {
-  AdaptiveGain gain(Initial(), Config(0.0, 100.0));
+  AdaptiveGain gain(Initial(), GainConfig(0.0, 100.0));
   gain.Update({1.0, 0.0}, Large());
   EXPECT_NEAR(gain.change(), 0.2 * std::sqrt(6.0), 1e-15);
   EXPECT_NEAR(gain.energy(), 0.04 * 6.0 / 0.1, 1e-13);
@@ -34,7 +34,7 @@ TEST(AdaptiveGain, LearnsTheOuterProduct) {
 }
 
 TEST(AdaptiveGain, InsideTheDeadZoneItOnlyForgets) {
-  AdaptiveGain gain(Initial(), Config(0.1, 100.0));
+  AdaptiveGain gain(Initial(), GainConfig(0.1, 100.0));
   gain.Update({1.0, 0.0}, Large());
   const double learnt = gain.change();
   gain.Update({1.0, 0.0}, Small());
@@ -42,7 +42,7 @@ TEST(AdaptiveGain, InsideTheDeadZoneItOnlyForgets) {
 }
 
 TEST(AdaptiveGain, IsScaledBackToItsBound) {
-  AdaptiveGain gain(Initial(), Config(0.0, 0.1));
+  AdaptiveGain gain(Initial(), GainConfig(0.0, 0.1));
   gain.Update({1.0, 0.0}, Large());
   EXPECT_NEAR(gain.change(), 0.1, 1e-15);
   EXPECT_NEAR(gain.Torque(Large())(0), 6.0 + 12.0 * 0.1 / std::sqrt(6.0), 1e-14);
@@ -50,7 +50,7 @@ TEST(AdaptiveGain, IsScaledBackToItsBound) {
 }
 
 TEST(AdaptiveGain, ResetForgetsAll) {
-  AdaptiveGain gain(Initial(), Config(0.0, 100.0));
+  AdaptiveGain gain(Initial(), GainConfig(0.0, 100.0));
   gain.Update({1.0, 1.0}, Large());
   gain.Reset();
   EXPECT_EQ(gain.change(), 0.0);

@@ -38,7 +38,7 @@ StepInput Followed(const ReferenceTable& table, int k, const ArmParameters& arm)
   return input;
 }
 
-bool Moves(const RigidPoint& point) {
+bool IsMoving(const RigidPoint& point) {
   return point.rate_rad_s[0] != 0.0 || point.rate_rad_s[1] != 0.0;
 }
 
@@ -71,12 +71,12 @@ TEST(ControlStepWithPayload, AMoveOpensTheDoubtOfThePayload) {
       StepInput input = Followed(arm_moves, k, config.arm);
       input.path = table.PathAround(k);
       const StepOutput out = step.Step(input);
-      if (Moves(input.path[1]) && !moved && ++moves == 2) {
+      if (IsMoving(input.path[1]) && !moved && ++moves == 2) {
         EXPECT_LT(sigma_before_kg, 0.05) << "nothing learnt: the test says nothing";
         EXPECT_GE(out.payload_sigma_kg, 0.2);
         EXPECT_LT(out.payload_sigma_kg, 0.201);
       }
-      moved = Moves(input.path[1]);
+      moved = IsMoving(input.path[1]);
       sigma_before_kg = out.payload_sigma_kg;
       EXPECT_EQ(out.payload_doubts, 0u) << k;
     }

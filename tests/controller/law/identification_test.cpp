@@ -13,13 +13,12 @@
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kPeriod_s = 0.02;
 
 // Golomb: N ones and minus ones with N = 2^n - 1, one more 1 than -1, and an autocorrelation of -1
 // at every shift. Only a primitive polynomial gives that.
@@ -101,7 +100,7 @@ Experiment With(std::vector<Chirp> chirps, std::vector<Prbs> prbs) {
           .prbs = std::move(prbs)};
 }
 
-ReferenceTable Table(const Experiment& experiment) {
+ReferenceTable ExcitedTable(const Experiment& experiment) {
   return {experiment, ShippedDesign(), kPeriod_s, {0.1, -0.2}, ShippedLimits()};
 }
 
@@ -114,7 +113,7 @@ constexpr Prbs kPrbs = {
 // 1e-16 x 600 samples squared.
 TEST(Identification, TheReferenceEndsAtRestWhereItBegan) {
   for (const Experiment& experiment : {With({kChirp}, {}), With({}, {kPrbs})}) {
-    const ReferenceTable table = Table(experiment);
+    const ReferenceTable table = ExcitedTable(experiment);
     const ReferenceSample& end = table.At(table.periods());
     EXPECT_NEAR(end.x_m[0], 0.1, 1e-9);
     EXPECT_NEAR(end.x_m[1], -0.2, 1e-9);
@@ -144,7 +143,7 @@ TEST(Chirp, BeyondAQuarterOfTheSamplingRateIsRefused) {
   Chirp fast = kChirp;
   fast.to_hz = 13.0;
   try {
-    Table(With({fast}, {}));
+    ExcitedTable(With({fast}, {}));
     FAIL() << "accepted";
   } catch (const Refused& refused) {
     EXPECT_THAT(refused.what(), AllOf(HasSubstr("chirp[0]"), HasSubstr("12.5 Hz")));
@@ -152,7 +151,7 @@ TEST(Chirp, BeyondAQuarterOfTheSamplingRateIsRefused) {
 }
 
 TEST(Prbs, TorquesHaveTheAmplitudesThatWereAskedFor) {
-  const ReferenceTable table = Table(With({}, {kPrbs}));
+  const ReferenceTable table = ExcitedTable(With({}, {kPrbs}));
   for (int k = 50; k < 50 + 63 * 12; ++k) {
     EXPECT_EQ(std::fabs(table.At(k).u_m_nm[0]), 3.0) << k;
     EXPECT_EQ(std::fabs(table.At(k).u_m_nm[1]), 0.3) << k;

@@ -8,14 +8,14 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
 
 struct Pole {
   double frequency_hz, damping_ratio;
 };
-
-constexpr double kPeriod_s = 0.02;
 
 std::complex<double> Discrete(const Pole& pole) {
   const double w = 2.0 * std::numbers::pi * pole.frequency_hz;

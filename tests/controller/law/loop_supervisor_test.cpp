@@ -10,12 +10,11 @@
 #include <numbers>
 
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/degrees.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kPeriod_s = 0.02;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 // Facts of a healthy arm at rest at zero.
 struct Facts {

@@ -9,12 +9,13 @@
 #include <functional>
 #include <vector>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr double kPeriod_s = 0.02;
 constexpr int kStates = 12;  // th1 th2 f11 f12 f21 f22 | rates
 
 // Round numbers: torques of 10 and 5, friction 1 and 0.5, jumps of 4 x 50 x 0.02 = 4 and 2 N m.
@@ -31,7 +32,7 @@ constexpr MotionLimits kLimits = {.soft_angle_rad = {1.5, 1.0},
                                   .link_length_m = {0.8, 0.9}};
 
 // Ten samples of which the fifth is filled.
-std::vector<ReferenceSample> With(const std::function<void(ReferenceSample*)>& fill) {
+std::vector<ReferenceSample> SamplesWith(const std::function<void(ReferenceSample*)>& fill) {
   std::vector<ReferenceSample> samples(10);
   fill(&samples[5]);
   return samples;
@@ -55,7 +56,7 @@ TEST_P(MotionCheck, JustWithinIsAcceptedAndJustBeyondIsNamed) {
   const LimitCase& c = GetParam();
   for (const double sign : {1.0, -1.0}) {
     const auto at = [&](double share) {
-      return With([&](ReferenceSample* s) { c.fill(s, sign * share * c.limit); });
+      return SamplesWith([&](ReferenceSample* s) { c.fill(s, sign * share * c.limit); });
     };
     EXPECT_EQ(Broken(at(0.999)), "none");
     const std::string text = Broken(at(1.001));
@@ -114,9 +115,9 @@ TEST(MotionCheckPart, CountsFromItsFirstSampleAndDoesNotJudgeThat) {
 }
 
 TEST(MotionCheckShare, AllButTheAngleAreJudgedByTheirShare) {
-  EXPECT_EQ(Broken(With([](auto* s) { s->x_m[0] = 1.4; }), 0.5), "none");
-  EXPECT_THAT(Broken(With([](auto* s) { s->x_m[6] = 1.01; }), 0.5), HasSubstr("1 rad/s"));
-  EXPECT_EQ(Broken(With([](auto* s) { s->x_m[6] = 0.99; }), 0.5), "none");
+  EXPECT_EQ(Broken(SamplesWith([](auto* s) { s->x_m[0] = 1.4; }), 0.5), "none");
+  EXPECT_THAT(Broken(SamplesWith([](auto* s) { s->x_m[6] = 1.01; }), 0.5), HasSubstr("1 rad/s"));
+  EXPECT_EQ(Broken(SamplesWith([](auto* s) { s->x_m[6] = 0.99; }), 0.5), "none");
   EXPECT_NE(Broken(Ramp(4.1, 0.0), 0.5), "none");
   EXPECT_EQ(Broken(Ramp(3.9, 0.0), 0.5), "none");
 }

@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
 
 constexpr MoveProfile kProfiles[] = {MoveProfile::kQuintic, MoveProfile::kSeptic};
-constexpr double kPeriod_s = 0.02;
 
 // Central differences over h = 1e-5 err by h^2/6 times a fifth derivative up to 1e4, 2e-7, and by
 // round-off of 1e-16 / h.

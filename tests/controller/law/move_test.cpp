@@ -6,20 +6,18 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/degrees.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kPeriod_s = 0.02;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 Experiment Moves(std::vector<Move> moves, std::vector<Doublet> doublets = {}) {
   return {.name = "test",
@@ -30,7 +28,7 @@ Experiment Moves(std::vector<Move> moves, std::vector<Doublet> doublets = {}) {
           .move = std::move(moves)};
 }
 
-ReferenceTable Table(const Experiment& experiment, std::array<double, 2> start = {0.0, 0.0}) {
+ReferenceTable MoveTable(const Experiment& experiment, std::array<double, 2> start = {0.0, 0.0}) {
   return {experiment, ShippedDesign(), kPeriod_s, start, ShippedLimits()};
 }
 
@@ -59,7 +57,7 @@ TEST(Move, GoesThroughItsWayPointsAndRestsThere) {
   const Experiment experiment = Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {40, -20}},
                                        {.start_s = 2.0, .duration_s = 1.0, .to_deg = {25, 60}},
                                        {.start_s = 3.0, .duration_s = 2.0, .to_deg = {0, 0}}});
-  const RigidMotion motion = Integrate(Table(experiment, {0.1, -0.2}), {0.1, -0.2});
+  const RigidMotion motion = Integrate(MoveTable(experiment, {0.1, -0.2}), {0.1, -0.2});
   for (const Move& move : experiment.move) {
     const auto k =
         static_cast<std::size_t>(std::lround((move.start_s + *move.duration_s) / kPeriod_s));
@@ -72,8 +70,8 @@ TEST(Move, GoesThroughItsWayPointsAndRestsThere) {
 
 // The angles never leave the way between two set-points: a quintic does not overshoot.
 TEST(Move, StaysBetweenItsEnds) {
-  const RigidMotion motion =
-      Integrate(Table(Moves({{.start_s = 0.2, .duration_s = 1.0, .to_deg = {30, -10}}})), {0, 0});
+  const RigidMotion motion = Integrate(
+      MoveTable(Moves({{.start_s = 0.2, .duration_s = 1.0, .to_deg = {30, -10}}})), {0, 0});
   for (const Eigen::Vector2d& angle : motion.angle) {
     EXPECT_GE(angle(0), -1e-12);
     EXPECT_LE(angle(0), 30 * kDeg + 1e-12);
@@ -86,7 +84,7 @@ TEST(Move, StaysBetweenItsEnds) {
 // damping at 42 rad/s, so that 6 s later only round-off is left.
 TEST(Move, TheReferenceModelFollowsAndEndsAtTheSetPoint) {
   const ReferenceTable table =
-      Table(Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {30, -45}}}));
+      MoveTable(Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {30, -45}}}));
   Eigen::VectorXd x_m = Eigen::VectorXd::Zero(12);
   for (int k = 0; k <= table.periods(); ++k) {
     const ReferenceSample& sample = table.At(k);
@@ -107,9 +105,9 @@ TEST(Move, AfterADoubletStartsWhereThatEnded) {
   const Doublet later{
       .start_s = 4.0, .duration_s = 1.0, .shape = DoubletShape::kSine, .move_deg = {-5, 5}};
   const RigidMotion motion =
-      Integrate(Table(Moves({{.start_s = 2.0, .duration_s = 1.0, .to_deg = {5, 5}},
-                             {.start_s = 6.0, .duration_s = 1.0, .to_deg = {7, 0}}},
-                            {doublet, later})),
+      Integrate(MoveTable(Moves({{.start_s = 2.0, .duration_s = 1.0, .to_deg = {5, 5}},
+                                 {.start_s = 6.0, .duration_s = 1.0, .to_deg = {7, 0}}},
+                                {doublet, later})),
                 {0, 0});
   EXPECT_NEAR(motion.angle[150](0), 5 * kDeg, 1e-12);
   EXPECT_NEAR(motion.angle[250](1), 10 * kDeg, 1e-12);
@@ -123,7 +121,7 @@ TEST(Move, ThePlanSaysWhereTheRigidCoordinateIs) {
   Experiment experiment = Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {40, -20}},
                                  {.start_s = 2.0, .duration_s = 1.2, .to_deg = {25, 60}}});
   experiment.move[1].profile = MoveProfile::kSeptic;
-  const ReferenceTable table = Table(experiment, {0.1, -0.2});
+  const ReferenceTable table = MoveTable(experiment, {0.1, -0.2});
   const RigidMotion motion = Integrate(table, {0.1, -0.2});
   ASSERT_EQ(table.moves().size(), 2U);
   for (const PlannedMove& move : table.moves()) {
@@ -142,7 +140,7 @@ TEST(Move, ThePlanSaysWhereTheRigidCoordinateIs) {
 TEST(Move, TheDerivativesOfThePlanAreThoseOfItsAngles) {
   constexpr double h = 1e-3;
   const ReferenceTable table =
-      Table(Moves({{.start_s = 0.4, .duration_s = 1.0, .to_deg = {30, -45}}}));
+      MoveTable(Moves({{.start_s = 0.4, .duration_s = 1.0, .to_deg = {30, -45}}}));
   const PlannedMove& move = table.moves()[0];
   for (double k = 22.5; k < 70.0; k += 3.7) {
     const RigidPoint before = move.At(k - h, kPeriod_s), after = move.At(k + h, kPeriod_s);
@@ -182,7 +180,7 @@ TEST(Move, WithoutADurationTakesTheShortestThatKeepsItsShareOfTheLimits) {
   for (const MoveProfile profile : {MoveProfile::kQuintic, MoveProfile::kSeptic}) {
     Experiment experiment = Moves({{.start_s = 0.2, .to_deg = {30, 30}}});
     experiment.move[0].profile = profile;
-    const ReferenceTable chosen = Table(experiment);
+    const ReferenceTable chosen = MoveTable(experiment);
     MotionLimits share = ShippedLimits();
     for (std::size_t i = 0; i < 2; ++i) {
       for (auto* limit :
@@ -204,7 +202,7 @@ TEST(Move, WithoutADurationTakesTheShortestThatKeepsItsShareOfTheLimits) {
 // 30/30 deg by a quintic: the strain at the root of link 1 falls with T^2 from 1.16e-3 in 1 s (an
 // independent calculation with the golden reference model); 0.6 of 1.9e-3 is 1.14e-3.
 TEST(Move, TheShortestDurationIsThatOfTheStrain) {
-  const ReferenceTable table = Table(Moves({{.start_s = 0.0, .to_deg = {30, 30}}}));
+  const ReferenceTable table = MoveTable(Moves({{.start_s = 0.0, .to_deg = {30, 30}}}));
   EXPECT_NEAR(table.moves()[0].periods * kPeriod_s, 1.0 * std::sqrt(1.16 / 1.14), 0.021);
 }
 
@@ -212,13 +210,13 @@ TEST(Move, AChosenDurationIsWrittenIntoTheExperimentAndItsText) {
   Experiment experiment = Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {10, 10}},
                                  {.start_s = 2.0, .to_deg = {-10, 10}}});
   experiment.text = "x = 1";
-  const ReferenceTable table = Table(experiment);
+  const ReferenceTable table = MoveTable(experiment);
   const Experiment chosen = WithChosenDurations(experiment, table.moves(), kPeriod_s);
   EXPECT_NEAR(chosen.move[1].duration_s.value(), table.moves()[1].periods * kPeriod_s, 1e-12);
   EXPECT_THAT(chosen.text, AllOf(testing::StartsWith("x = 1\n"), HasSubstr("[[planned_move]]\n"),
                                  HasSubstr("row = 1\n")));
   experiment.move.push_back({.start_s = 2.2, .to_deg = {0, 0}});
-  EXPECT_THROW(Table(experiment), Refused) << "overlaps the move whose duration was chosen";
+  EXPECT_THROW(MoveTable(experiment), Refused) << "overlaps the move whose duration was chosen";
 }
 
 // The tip of two straight links of 0.8 and 0.9 m at th1 = 60, th2 = 60 deg: L1 at 60, L2 at 120.
@@ -227,22 +225,22 @@ TEST(Move, GoesToAPositionOfTheTip) {
                                      0.8 * std::sin(60 * kDeg) + 0.9 * std::sin(120 * kDeg)};
   Experiment experiment = Moves({{.start_s = 0.0, .duration_s = 3.0, .to_tip_m = tip}});
   experiment.move[0].elbow = ElbowSide::kRight;
-  const ReferenceTable table = Table(experiment);
+  const ReferenceTable table = MoveTable(experiment);
   EXPECT_NEAR(table.moves()[0].to_rad[0], 60 * kDeg, 1e-12);
   EXPECT_NEAR(table.moves()[0].to_rad[1], 60 * kDeg, 1e-12);
 }
 
-std::string RefusalOf(const Experiment& experiment) {
-  return MessageOf<Refused>([&] { Table(experiment); });
+std::string MoveRefusal(const Experiment& experiment) {
+  return MessageOf<Refused>([&] { MoveTable(experiment); });
 }
 
 TEST(Move, OffTheGridTooShortOrBeyondTheSoftLimitIsRefused) {
-  EXPECT_THAT(RefusalOf(Moves({{.start_s = 0.01, .duration_s = 1.0, .to_deg = {5, 5}}})),
+  EXPECT_THAT(MoveRefusal(Moves({{.start_s = 0.01, .duration_s = 1.0, .to_deg = {5, 5}}})),
               HasSubstr("move[0].start_s"));
-  EXPECT_THAT(RefusalOf(Moves({{.start_s = 0.0, .duration_s = 0.18, .to_deg = {5, 5}}})),
+  EXPECT_THAT(MoveRefusal(Moves({{.start_s = 0.0, .duration_s = 0.18, .to_deg = {5, 5}}})),
               AllOf(HasSubstr("move[0].duration_s"), HasSubstr("at least 10 periods")));
-  EXPECT_EQ(RefusalOf(Moves({{.start_s = 0.0, .duration_s = 0.2, .to_deg = {1, 1}}})), "");
-  EXPECT_THAT(RefusalOf(Moves({{.start_s = 0.0, .duration_s = 2.0, .to_deg = {0, 95}}})),
+  EXPECT_EQ(MoveRefusal(Moves({{.start_s = 0.0, .duration_s = 0.2, .to_deg = {1, 1}}})), "");
+  EXPECT_THAT(MoveRefusal(Moves({{.start_s = 0.0, .duration_s = 2.0, .to_deg = {0, 95}}})),
               AllOf(HasSubstr("move[0]: the angle of joint 2 reaches"),
                     HasSubstr("beyond limits.soft_angle_deg, 90 deg")));
 }
@@ -250,20 +248,20 @@ TEST(Move, OffTheGridTooShortOrBeyondTheSoftLimitIsRefused) {
 TEST(Move, TooFastIsRefusedWithTheLimitAndTheShortestDuration) {
   const Experiment slow = Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {10, 10}},
                                  {.start_s = 2.0, .duration_s = 0.6, .to_deg = {40, 40}}});
-  const std::string refusal = RefusalOf(slow);
+  const std::string refusal = MoveRefusal(slow);
   EXPECT_THAT(refusal, AllOf(HasSubstr("move[1]: the strain at the root of link 1 reaches"),
                              HasSubstr("beyond limits.strain_limit, 1900 microstrain"),
                              HasSubstr("the shortest duration_s within the limits is 0.")));
   Experiment repaired = slow;
   repaired.move[1].duration_s = std::stod(refusal.substr(refusal.rfind(' ')));
-  EXPECT_EQ(RefusalOf(repaired), "");
+  EXPECT_EQ(MoveRefusal(repaired), "");
   *repaired.move[1].duration_s -= kPeriod_s;
-  EXPECT_NE(RefusalOf(repaired), "");
+  EXPECT_NE(MoveRefusal(repaired), "");
 }
 
 TEST(Move, ATipOutOfReachOrOfTwoPosesIsRefused) {
   const auto to = [](double x, double y) {
-    return RefusalOf(Moves({{.start_s = 0.0, .duration_s = 3.0, .to_tip_m = {{x, y}}}}));
+    return MoveRefusal(Moves({{.start_s = 0.0, .duration_s = 3.0, .to_tip_m = {{x, y}}}}));
   };
   EXPECT_THAT(to(1.5, 1.0), AllOf(HasSubstr("move[0].to_tip_m = [1.5, 1]"),
                                   HasSubstr("out of reach"), HasSubstr("1.7 m")));

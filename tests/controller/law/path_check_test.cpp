@@ -13,11 +13,11 @@
 
 #include "tests/controller/law/no_limits.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kPeriod_s = 0.02;
 constexpr double kShare = 0.8;
 constexpr int kPeriods = 160;
 

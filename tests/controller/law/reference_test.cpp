@@ -9,15 +9,14 @@
 #include "controller/law/refused.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/model/golden_data.h"
+#include "tests/support/degrees.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kPeriod_s = 0.02;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 Experiment Doublets(std::vector<Doublet> doublets, double duration_s = 6.0) {
   return {.name = "test",
@@ -27,8 +26,8 @@ Experiment Doublets(std::vector<Doublet> doublets, double duration_s = 6.0) {
           .sim_event = {}};
 }
 
-Doublet Move(double th1_deg, double th2_deg, double start_s = 0.0, double duration_s = 1.0,
-             DoubletShape shape = DoubletShape::kSquare) {
+Doublet MoveBy(double th1_deg, double th2_deg, double start_s = 0.0, double duration_s = 1.0,
+               DoubletShape shape = DoubletShape::kSquare) {
   return {
       .start_s = start_s, .duration_s = duration_s, .shape = shape, .move_deg = {th1_deg, th2_deg}};
 }
@@ -47,7 +46,7 @@ ReferenceTable Table(const Experiment& experiment, std::array<double, 2> start =
   return {experiment, ShippedDesign(), kPeriod_s, start, SoftAngles()};
 }
 
-const Experiment kBase = Doublets({Move(30, 30), Move(-30, -30, 3.0)});
+const Experiment kBase = Doublets({MoveBy(30, 30), MoveBy(-30, -30, 3.0)});
 
 // The golden amplitudes are M_r 4 dth / T^2 rounded to four decimals: M_r^-1 (5e-5, 5e-5) T^2 / 4
 // is 1.2e-4 rad of joint 2, 2.3e-4 of its move.
@@ -91,7 +90,7 @@ TEST(ReferenceTable, TheGoldenReferenceModelMovesAlike) {
 TEST(ReferenceTable, ADoubletMovesByItsAngleAndEndsAtRest) {
   for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
     for (const double duration_s : {0.4, 1.0, 2.0}) {
-      const ReferenceTable table = Table(Doublets({Move(13, -7, 0.0, duration_s, shape)}));
+      const ReferenceTable table = Table(Doublets({MoveBy(13, -7, 0.0, duration_s, shape)}));
       const ReferenceSample& end = table.At(table.periods());
       EXPECT_NEAR(end.x_m[0], 13 * kDeg, 1e-10) << duration_s;
       EXPECT_NEAR(end.x_m[1], -7 * kDeg, 1e-10) << duration_s;
@@ -102,7 +101,7 @@ TEST(ReferenceTable, ADoubletMovesByItsAngleAndEndsAtRest) {
 
 TEST(ReferenceTable, DoubletsHaveZeroArea) {
   for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
-    const ReferenceTable table = Table(Doublets({Move(20, 10, 0.2, 0.8, shape)}));
+    const ReferenceTable table = Table(Doublets({MoveBy(20, 10, 0.2, 0.8, shape)}));
     std::array<double, 2> area{};
     for (int k = 0; k < table.periods(); ++k) {
       for (std::size_t i = 0; i < 2; ++i) area[i] += table.At(k).u_m_nm[i] * kPeriod_s;
@@ -120,8 +119,8 @@ TEST(ReferenceTable, DoubletsHaveZeroArea) {
 // move it needs pi/2 the amplitude. Sampled and held at 50 points the figure differs by
 // (pi/50)^2 / 6 = 0.07 %.
 TEST(ReferenceTable, ASineNeedsHalfPiTimesTheAmplitude) {
-  const ReferenceTable sine = Table(Doublets({Move(30, 0, 0.0, 1.0, DoubletShape::kSine)}));
-  const ReferenceTable square = Table(Doublets({Move(30, 0)}));
+  const ReferenceTable sine = Table(Doublets({MoveBy(30, 0, 0.0, 1.0, DoubletShape::kSine)}));
+  const ReferenceTable square = Table(Doublets({MoveBy(30, 0)}));
   double peak = 0.0;
   for (int k = 0; k < 50; ++k) peak = std::max(peak, sine.At(k).u_m_nm[0]);
   EXPECT_NEAR(peak / square.At(0).u_m_nm[0], std::numbers::pi / 2.0, 0.004);
@@ -176,33 +175,34 @@ std::string RefusalOf(const Experiment& experiment) {
 }
 
 TEST(ReferenceTable, TimesOffTheSamplingGridAreRefusedByName) {
-  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10), Move(-10, -10, 3.01)})),
+  EXPECT_THAT(RefusalOf(Doublets({MoveBy(10, 10), MoveBy(-10, -10, 3.01)})),
               AllOf(HasSubstr("doublet[1].start_s"), HasSubstr("3.01")));
-  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10, 0.0, 1.005)})), HasSubstr("doublet[0].duration_s"));
-  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10)}, 6.013)), HasSubstr("duration_s"));
+  EXPECT_THAT(RefusalOf(Doublets({MoveBy(10, 10, 0.0, 1.005)})),
+              HasSubstr("doublet[0].duration_s"));
+  EXPECT_THAT(RefusalOf(Doublets({MoveBy(10, 10)}, 6.013)), HasSubstr("duration_s"));
 }
 
 TEST(ReferenceTable, AnOddNumberOfPeriodsHasNoTwoHalvesAndIsRefused) {
-  EXPECT_THAT(RefusalOf(Doublets({Move(10, 10, 0.0, 0.98)})),
+  EXPECT_THAT(RefusalOf(Doublets({MoveBy(10, 10, 0.0, 0.98)})),
               AllOf(HasSubstr("doublet[0].duration_s"), HasSubstr("even")));
 }
 
 TEST(ReferenceTable, ALongSeriesOfDecimalTimesIsOnTheGrid) {
-  EXPECT_EQ(RefusalOf(Doublets({Move(5, 5, 0.06, 0.28), Move(-5, -5, 1.14, 0.36)}, 3.3)), "");
+  EXPECT_EQ(RefusalOf(Doublets({MoveBy(5, 5, 0.06, 0.28), MoveBy(-5, -5, 1.14, 0.36)}, 3.3)), "");
 }
 
 TEST(ReferenceTable, LeavingTheSoftLimitIsRefusedWithJointAndInstant) {
-  const std::string refusal = RefusalOf(Doublets({Move(80, 0), Move(30, 0, 2.0)}));
+  const std::string refusal = RefusalOf(Doublets({MoveBy(80, 0), MoveBy(30, 0, 2.0)}));
   EXPECT_THAT(refusal, AllOf(HasSubstr("joint 1"), HasSubstr("90"), HasSubstr("after 2.")));
-  EXPECT_THAT(RefusalOf(Doublets({Move(0, -95, 0.0, 2.0)})), HasSubstr("joint 2"));
-  EXPECT_EQ(RefusalOf(Doublets({Move(80, 0, 0.0, 2.0)})), "");
+  EXPECT_THAT(RefusalOf(Doublets({MoveBy(0, -95, 0.0, 2.0)})), HasSubstr("joint 2"));
+  EXPECT_EQ(RefusalOf(Doublets({MoveBy(80, 0, 0.0, 2.0)})), "");
 }
 
 // The gate's slew limit is no trip; the thesis's square jumps beyond one period of it, and runs.
 TEST(ReferenceTable, TheThesissExperimentsKeepTheLimitsOfTheRig) {
   for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
     const Experiment experiment =
-        Doublets({Move(30, 30, 0.0, 1.0, shape), Move(-30, -30, 3.0, 1.0, shape)});
+        Doublets({MoveBy(30, 30, 0.0, 1.0, shape), MoveBy(-30, -30, 3.0, 1.0, shape)});
     EXPECT_NO_THROW(
         ReferenceTable(experiment, ShippedDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits()));
   }
@@ -210,8 +210,8 @@ TEST(ReferenceTable, TheThesissExperimentsKeepTheLimitsOfTheRig) {
 
 TEST(ReferenceTable, ABrokenLimitIsRefusedWithItsRow) {
   try {
-    const ReferenceTable table(Doublets({Move(10, 10), Move(60, 60, 2.0, 0.6)}), ShippedDesign(),
-                               kPeriod_s, {0.0, 0.0}, ShippedLimits());
+    const ReferenceTable table(Doublets({MoveBy(10, 10), MoveBy(60, 60, 2.0, 0.6)}),
+                               ShippedDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits());
     FAIL() << "accepted";
   } catch (const Refused& refused) {
     EXPECT_THAT(refused.what(), AllOf(HasSubstr("doublet[1]: "), HasSubstr("beyond limits.")));

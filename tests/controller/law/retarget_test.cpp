@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "controller/law/motion_check.h"
 #include "controller/law/move_watch.h"
@@ -14,6 +13,8 @@
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/degrees.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
@@ -22,10 +23,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr double kPeriod_s = 0.02;
-constexpr double kDeg = std::numbers::pi / 180.0;
-
-Experiment Moves(std::vector<Move> moves) {
+Experiment PathMoves(std::vector<Move> moves) {
   return {.name = "test",
           .text = "",
           .duration_s = 12.0,
@@ -34,17 +32,19 @@ Experiment Moves(std::vector<Move> moves) {
           .move = std::move(moves)};
 }
 
-ReferenceTable Table(const Experiment& experiment, const MotionLimits& limits = ShippedLimits()) {
+ReferenceTable PathTable(const Experiment& experiment,
+                         const MotionLimits& limits = ShippedLimits()) {
   return {experiment, ShippedPathDesign(), kPeriod_s, {0.0, 0.0}, limits};
 }
 
-std::string RefusalOf(const Experiment& experiment, const MotionLimits& limits = ShippedLimits()) {
-  return MessageOf<Refused>([&] { Table(experiment, limits); });
+std::string PathRefusal(const Experiment& experiment,
+                        const MotionLimits& limits = ShippedLimits()) {
+  return MessageOf<Refused>([&] { PathTable(experiment, limits); });
 }
 
 // Out, elsewhere while it still moves, and again elsewhere while that lasts.
 Experiment Chain() {
-  return Moves(
+  return PathMoves(
       {{.start_s = 0.2, .duration_s = 2.4, .to_deg = {40, -30}, .profile = MoveProfile::kSeptic},
        {.start_s = 1.4, .duration_s = 2.6, .to_deg = {-20, 50}},
        {.start_s = 2.6, .duration_s = 3.0, .to_deg = {25, 10}},
@@ -52,7 +52,7 @@ Experiment Chain() {
 }
 
 TEST(Retarget, EachMoveBeginsAsThePathBeforeItMoves) {
-  const ReferenceTable table = Table(Chain());
+  const ReferenceTable table = PathTable(Chain());
   ASSERT_EQ(table.moves().size(), 4U);
   const std::array<int, 4> first = {10, 70, 130, 400}, periods = {120, 130, 150, 120};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -74,7 +74,7 @@ TEST(Retarget, EachMoveBeginsAsThePathBeforeItMoves) {
 // derivative of at most 300 rad/s^4 (septics of 1 rad and 1 rad/s in 2.4 s). A jump of a tenth of
 // Y''' = 5 rad/s^3 at a take-over would miss the acceleration by 0.01 rad/s^2.
 TEST(Retarget, ThePathIsSmoothThroughEveryTakeOver) {
-  const ReferenceTable table = Table(Chain());
+  const ReferenceTable table = PathTable(Chain());
   constexpr double h = kPeriod_s, fourth = 300.0;
   for (int k = 1; k < table.periods(); ++k) {
     const auto [before, now, after] = table.PathAround(k);
@@ -96,7 +96,7 @@ TEST(Retarget, ThePathIsSmoothThroughEveryTakeOver) {
 }
 
 TEST(Retarget, ThePathIsThatOfTheLastMoveThatHasBegunAndRestsAtItsEnd) {
-  const ReferenceTable table = Table(Chain());
+  const ReferenceTable table = PathTable(Chain());
   for (const auto& [k, i] : {std::pair{69, 0}, {71, 1}, {129, 1}, {131, 2}, {279, 2}, {420, 3}}) {
     const RigidPoint point = table.moves()[static_cast<std::size_t>(i)].At(k, kPeriod_s);
     EXPECT_EQ(table.PathAround(k)[1].angle_rad, point.angle_rad) << k;
@@ -114,7 +114,7 @@ TEST(Retarget, ThePathIsThatOfTheLastMoveThatHasBegunAndRestsAtItsEnd) {
 TEST(Retarget, AQuinticMoveIsTakenOverWithItsJerk) {
   Experiment experiment = Chain();
   experiment.move[0].profile = MoveProfile::kQuintic;
-  const ReferenceTable table = Table(experiment);
+  const ReferenceTable table = PathTable(experiment);
   const RigidPoint quintic = table.moves()[0].At(70, kPeriod_s);
   EXPECT_EQ(table.moves()[1].from.jerk_rad_s3, quintic.jerk_rad_s3);
   EXPECT_NEAR(table.moves()[1].At(70, kPeriod_s).jerk_rad_s3[0], quintic.jerk_rad_s3[0], 1e-9);
@@ -122,7 +122,7 @@ TEST(Retarget, AQuinticMoveIsTakenOverWithItsJerk) {
 
 // Nobody can have loaded an arm that moves: the estimator is not to open its doubt again.
 TEST(Retarget, IsNoBeginOfAMoveForTheEstimator) {
-  const ReferenceTable table = Table(Chain());
+  const ReferenceTable table = PathTable(Chain());
   MoveWatch watch;
   std::vector<int> begins;
   for (int k = 0; k <= table.periods(); ++k) {
@@ -161,54 +161,54 @@ TEST(Retarget, WithoutADurationItTakesTheShortestThatKeepsItsShareOfTheLimits) {
   Experiment experiment = Chain();
   experiment.move.resize(2);
   for (Move& move : experiment.move) move.duration_s.reset();
-  const ReferenceTable chosen = Table(experiment);
+  const ReferenceTable chosen = PathTable(experiment);
   const MotionLimits limits = Share(ShippedLimits().plan_fraction * (1.0 + 1e-9));
   for (std::size_t i = 0; i < 2; ++i) {
     experiment.move[i].duration_s = chosen.moves()[i].periods * kPeriod_s;
   }
-  EXPECT_EQ(RefusalOf(experiment, limits), "");
+  EXPECT_EQ(PathRefusal(experiment, limits), "");
   *experiment.move[1].duration_s -= kPeriod_s;
-  EXPECT_THAT(RefusalOf(experiment, limits), HasSubstr("move[1]: "));
+  EXPECT_THAT(PathRefusal(experiment, limits), HasSubstr("move[1]: "));
 }
 
 TEST(Retarget, TooFastIsRefusedWithTheShortestDurationFromThere) {
   Experiment experiment = Chain();
   experiment.move[1].duration_s = 0.6;
   experiment.move.resize(2);
-  const std::string refusal = RefusalOf(experiment);
+  const std::string refusal = PathRefusal(experiment);
   EXPECT_THAT(refusal, AllOf(HasSubstr("move[1]: the "), HasSubstr("reaches"),
                              HasSubstr("controller.payload.max_kg"),
                              HasSubstr("the shortest duration_s within the limits is ")));
   experiment.move[1].duration_s = std::stod(refusal.substr(refusal.rfind(' ')));
-  EXPECT_EQ(RefusalOf(experiment), "");
+  EXPECT_EQ(PathRefusal(experiment), "");
   *experiment.move[1].duration_s -= kPeriod_s;
-  EXPECT_NE(RefusalOf(experiment), "");
+  EXPECT_NE(PathRefusal(experiment), "");
 }
 
 // An arm that is to come back slowly goes on first, the farther the longer it may take.
 TEST(Retarget, TooSlowIsRefusedAsItLeavesTheSoftLimits) {
-  Experiment experiment = Moves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
-                                 {.start_s = 1.16, .duration_s = 5.0, .to_deg = {70, 0}}});
-  const std::string refusal = RefusalOf(experiment);
+  Experiment experiment = PathMoves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
+                                     {.start_s = 1.16, .duration_s = 5.0, .to_deg = {70, 0}}});
+  const std::string refusal = PathRefusal(experiment);
   EXPECT_THAT(refusal, AllOf(HasSubstr("move[1]: the angle of joint 1 reaches"),
                              HasSubstr("beyond limits.soft_angle_deg, 90 deg")));
   const double shortest_s = std::stod(refusal.substr(refusal.rfind(' ')));
   EXPECT_LT(shortest_s, 5.0);
   experiment.move[1].duration_s = shortest_s;
-  EXPECT_EQ(RefusalOf(experiment), "");
+  EXPECT_EQ(PathRefusal(experiment), "");
 }
 
 // At 40 of 80 deg, as fast as it gets, with a soft limit at 42 deg.
 TEST(Retarget, WhereNoDurationKeepsTheLimitsItSaysSo) {
-  Experiment experiment = Moves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
-                                 {.start_s = 1.4, .duration_s = 2.0, .to_deg = {10, 0}}});
+  Experiment experiment = PathMoves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
+                                     {.start_s = 1.4, .duration_s = 2.0, .to_deg = {10, 0}}});
   MotionLimits limits = ShippedLimits();
   limits.soft_angle_rad[0] = 42 * kDeg;
-  EXPECT_THAT(RefusalOf(experiment, limits),
+  EXPECT_THAT(PathRefusal(experiment, limits),
               AllOf(HasSubstr("move[1]: the angle of joint 1"),
                     HasSubstr("no duration_s up to 60 keeps the limits where it takes over")));
   experiment.move[1].duration_s.reset();
-  EXPECT_THAT(RefusalOf(experiment, limits),
+  EXPECT_THAT(PathRefusal(experiment, limits),
               AllOf(HasSubstr("move[1].duration_s: none up to 60 s"),
                     HasSubstr("takes over at [40."), HasSubstr("goes to [10.0, 0.0] deg")));
 }
@@ -218,8 +218,8 @@ TEST(Retarget, WhereNoDurationKeepsTheLimitsItSaysSo) {
 // payload does to the other joint.
 TEST(Retarget, AngleLimitsHoldForLightArmsToo) {
   const ReferenceTable table =
-      Table(Moves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
-                   {.start_s = 1.6, .duration_s = 3.0, .to_deg = {40, 0}}}));
+      PathTable(PathMoves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
+                           {.start_s = 1.6, .duration_s = 3.0, .to_deg = {40, 0}}}));
   const RigidPath path(table.moves(), {0.0, 0.0}, table.periods(), kPeriod_s);
   const RigidJointArm arm = ArmOf(ShippedPathDesign());
   const auto farthest = [&](double payload_kg) {

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "controller/law/gain_payload.h"
 #include "controller/law/move_watch.h"
@@ -15,6 +14,8 @@
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/degrees.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
@@ -22,9 +23,6 @@ namespace {
 
 using Eigen::Vector2d;
 using testing::HasSubstr;
-
-constexpr double kPeriod_s = 0.02;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 Experiment OneMove(std::array<double, 2> to_deg, std::optional<double> duration_s,
                    double total_s = 8.0) {
@@ -39,17 +37,18 @@ Experiment OneMove(std::array<double, 2> to_deg, std::optional<double> duration_
                     .profile = MoveProfile::kSeptic}}};
 }
 
-ReferenceTable Table(const Experiment& experiment, std::array<double, 2> start_rad = {0.0, 0.0}) {
+ReferenceTable ScheduledTable(const Experiment& experiment,
+                              std::array<double, 2> start_rad = {0.0, 0.0}) {
   return {experiment, ShippedPathDesign(), kPeriod_s, start_rad, ShippedLimits()};
 }
 
-ScheduledLaw Law() {
+ScheduledLaw ShippedLaw() {
   return {ArmOf(ShippedPathDesign()), ShippedPathDesign().scheduled->gains, kPeriod_s};
 }
 
 Vector2d AskedOf(const ScheduledLaw::State& x, const PayloadKnowledge& knowledge,
                  const std::array<RigidPoint, 3>& path, double rested_s) {
-  const ScheduledLaw law = Law();
+  const ScheduledLaw law = ShippedLaw();
   return law.Torque(x, knowledge, law.ClosedForm(knowledge.payload_kg, PathPoints(path)), rested_s);
 }
 
@@ -60,7 +59,7 @@ constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
                                      .doubts = 0};
 
 TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
-  const ReferenceTable table = Table(OneMove({30, -20}, 2.0), {0.1, -0.2});
+  const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0), {0.1, -0.2});
   const std::array<double, 2> to_rad = {30 * kDeg, -20 * kDeg};
   const RigidJointArm arm = ArmOf(ShippedPathDesign());
   for (std::size_t i = 0; i < 2; ++i) {
@@ -81,7 +80,7 @@ TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
 }
 
 TEST(PathReference, ThePathIsTheMovesWithWhatIsAroundTheSample) {
-  const ReferenceTable table = Table(OneMove({30, -20}, 2.0));
+  const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0));
   for (const int k : {-3, 0, 10, 11, 60, 109, 110, 111, 400, 500}) {
     const auto path = table.PathAround(k);
     for (int j = 0; j < 3; ++j) {
@@ -96,7 +95,7 @@ TEST(PathReference, ThePathIsTheMovesWithWhatIsAroundTheSample) {
 TEST(PathReference, AnExperimentWithoutMovesRestsWhereItStarts) {
   Experiment nothing = OneMove({0, 0}, 1.0);
   nothing.move.clear();
-  const ReferenceTable table = Table(nothing, {0.1, -0.2});
+  const ReferenceTable table = ScheduledTable(nothing, {0.1, -0.2});
   for (const RigidPoint& point : table.PathAround(30)) {
     EXPECT_EQ(point.angle_rad, (std::array<double, 2>{0.1, -0.2}));
     EXPECT_EQ(point.rate_rad_s, (std::array<double, 2>{0.0, 0.0}));
@@ -106,7 +105,7 @@ TEST(PathReference, AnExperimentWithoutMovesRestsWhereItStarts) {
 TEST(PathReference, LawsThatDoNotFollowThePathKnowIt) {
   const Experiment experiment = OneMove({30, -20}, 2.0);
   const ReferenceTable table(experiment, ShippedDesign(), kPeriod_s, {0.1, -0.2}, ShippedLimits());
-  const ReferenceTable scheduled = Table(experiment, {0.1, -0.2});
+  const ReferenceTable scheduled = ScheduledTable(experiment, {0.1, -0.2});
   for (const int k : {0, 10, 11, 60, 111, 400}) {
     for (std::size_t j = 0; j < 3; ++j) {
       EXPECT_EQ(table.PathAround(k)[j].angle_rad, scheduled.PathAround(k)[j].angle_rad) << k;
@@ -116,16 +115,16 @@ TEST(PathReference, LawsThatDoNotFollowThePathKnowIt) {
 }
 
 TEST(PathReference, AMoveTooFastForTheHeaviestPayloadIsRefusedWithTheDurationThatWouldDo) {
-  const std::string message = MessageOf<Refused>([] { Table(OneMove({60, 80}, 1.0)); });
+  const std::string message = MessageOf<Refused>([] { ScheduledTable(OneMove({60, 80}, 1.0)); });
   EXPECT_THAT(message, AllOf(HasSubstr("move[0]"), HasSubstr("controller.payload.max_kg"),
                              HasSubstr("the shortest duration_s within the limits is ")));
   const double shortest_s = std::stod(message.substr(message.rfind(' ')));
-  EXPECT_NO_THROW(Table(OneMove({60, 80}, shortest_s)));
-  EXPECT_THROW(Table(OneMove({60, 80}, shortest_s - kPeriod_s)), Refused);
+  EXPECT_NO_THROW(ScheduledTable(OneMove({60, 80}, shortest_s)));
+  EXPECT_THROW(ScheduledTable(OneMove({60, 80}, shortest_s - kPeriod_s)), Refused);
 }
 
 TEST(PathReference, AMoveWithoutDurationKeepsTheShareOfTheLimitsWithTheHeaviestPayload) {
-  const ReferenceTable table = Table(OneMove({60, 80}, std::nullopt, 20.0));
+  const ReferenceTable table = ScheduledTable(OneMove({60, 80}, std::nullopt, 20.0));
   const Experiment limit = OneMove({60, 80}, table.moves()[0].periods * kPeriod_s, 20.0);
   MotionLimits share = ShippedLimits();
   for (auto* values :
@@ -139,18 +138,18 @@ TEST(PathReference, WhatIsNoMoveIsRefused) {
   Experiment doublet = OneMove({10, 10}, 1.0);
   doublet.doublet = {
       {.start_s = 4.0, .duration_s = 1.0, .shape = DoubletShape::kSquare, .move_deg = {5, 5}}};
-  EXPECT_THAT(MessageOf<Refused>([&] { Table(doublet); }),
+  EXPECT_THAT(MessageOf<Refused>([&] { ScheduledTable(doublet); }),
               AllOf(HasSubstr("doublet[0]"), HasSubstr("[[move]] rows only")));
 }
 
 TEST(ScheduledLaw, AtRestOnItsPathItAsksForNothing) {
-  const auto path = Table(OneMove({30, -20}, 2.0)).PathAround(0);
+  const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const ScheduledLaw::State x = ScheduledLaw::State::Zero();
   EXPECT_EQ(AskedOf(x, kKnown, path, 1.0), Vector2d(0.0, 0.0));
 }
 
 TEST(ScheduledLaw, AsksForTheForceOfTheBentArmItsFrictionAndTheGainsOfItsPayload) {
-  const ReferenceTable table = Table(OneMove({30, -20}, 2.0));
+  const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0));
   const RigidJointArm arm = ArmOf(ShippedPathDesign());
   const GainTable& gains = ShippedPathDesign().scheduled->gains;
   for (const int k : {30, 60, 90}) {
@@ -169,7 +168,7 @@ TEST(ScheduledLaw, AsksForTheForceOfTheBentArmItsFrictionAndTheGainsOfItsPayload
 
 // A payload in doubt gets the gains that hold every payload, and so does an arm that rests.
 TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
-  const auto path = Table(OneMove({30, -20}, 2.0)).PathAround(0);
+  const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const ScheduledLaw::State x = -0.01 * ScheduledLaw::State::Unit(0);
   PayloadKnowledge heavy = kKnown;
   heavy.payload_kg = 1.0;
@@ -195,7 +194,7 @@ TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
 // friction; three quarters of it half a second after the move, and none while a move lasts or two
 // seconds after.
 TEST(ScheduledLaw, AfterAMoveTheFeedbackIsHelpedOverTheFriction) {
-  const auto path = Table(OneMove({30, -20}, 2.0)).PathAround(0);
+  const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const Vector2d friction_nm(0.16, 0.01);
   for (const double off_rad : {-0.02, 1e-4}) {
     const ScheduledLaw::State x = off_rad * ScheduledLaw::State::Unit(0);

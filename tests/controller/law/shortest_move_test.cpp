@@ -15,11 +15,10 @@
 #include "controller/law/path_reference.h"
 #include "tests/controller/law/no_limits.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kPeriod_s = 0.02;
 
 PlannedMove FromRest(double from_rad, double to_rad, int periods = 0, int first = 0) {
   PlannedMove move{.row = 0,

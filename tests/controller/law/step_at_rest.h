@@ -3,12 +3,13 @@
 #include <cstdint>
 
 #include "controller/law/step_types.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 
 /// Input of a step of the shipped rig, at rest at zero: every counter and channel reads 0.
 inline StepInput AtRest(std::int64_t tick, SafetyState state) {
-  constexpr std::int64_t kPeriodNs = 20'000'000, kPhaseNs = 10'000'000;
+  constexpr std::int64_t kPhaseNs = 10'000'000;
   StepInput input{};
   input.tick = tick;
   input.sampling_instant_ns = tick * kPeriodNs;

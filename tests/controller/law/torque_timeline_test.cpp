@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000, kPeriodNs = 20 * kMs;
 
 std::int64_t Ticks(double ms) { return std::llround(ms / 20.0 * kPeriodTicks); }
 

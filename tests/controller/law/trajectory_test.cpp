@@ -9,15 +9,14 @@
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/degrees.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kPeriod_s = 0.02;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 // A half cosine of 2 s: at rest at both ends, smooth, at rows that are not on the grid.
 double Swing(double t) { return 0.25 * (1.0 - std::cos(std::numbers::pi * t / 2.0)); }
@@ -52,7 +51,7 @@ TEST(Trajectory, WhatTheArmIsAwayFromTheFirstRowIsFadedOut) {
   EXPECT_NEAR(away[0][50] + 0.01, exact[0][50] + 0.005, 1e-12) << "half of it at half time";
 }
 
-Experiment With(const CsvTrajectory& csv, double duration_s) {
+Experiment Following(const CsvTrajectory& csv, double duration_s) {
   return {.name = "test",
           .text = "",
           .duration_s = duration_s,
@@ -64,8 +63,8 @@ Experiment With(const CsvTrajectory& csv, double duration_s) {
 
 // The reference's bending has died out 1 s after a motion: critical damping at 42 rad/s.
 TEST(Trajectory, TheReferenceFollowsItAndAMoveGoesOnFromThere) {
-  const ReferenceTable table(With(Swinging(0.1), 7.0), ShippedDesign(), kPeriod_s, {0.005, 0.0},
-                             ShippedLimits());
+  const ReferenceTable table(Following(Swinging(0.1), 7.0), ShippedDesign(), kPeriod_s,
+                             {0.005, 0.0}, ShippedLimits());
   EXPECT_NEAR(table.At(199).x_m[0], Swing(2.0), 1e-9);
   EXPECT_NEAR(table.At(199).x_m[1], -0.5 * Swing(2.0), 1e-9);
   EXPECT_NEAR(table.moves()[0].from.angle_rad[0], Swing(2.0), 1e-15);
@@ -74,7 +73,7 @@ TEST(Trajectory, TheReferenceFollowsItAndAMoveGoesOnFromThere) {
 }
 
 std::string RefusalOf(const CsvTrajectory& csv, double start_rad, double duration_s = 7.0) {
-  Experiment experiment = With(csv, duration_s);
+  Experiment experiment = Following(csv, duration_s);
   if (duration_s < 7.0) experiment.move.clear();
   return MessageOf<Refused>([&] {
     ReferenceTable(experiment, ShippedDesign(), kPeriod_s, {start_rad, 0.0}, ShippedLimits());

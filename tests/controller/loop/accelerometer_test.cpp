@@ -12,6 +12,7 @@
 #include "controller/runlog/metrics.h"
 #include "model/rigid_joint_arm.h"
 #include "tests/controller/loop/stack_run.h"
+#include "tests/support/loop_time.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/random_moves.h"
 
@@ -31,8 +32,7 @@ Overrides operator+(Overrides a, const Overrides& b) {
   return a;
 }
 
-constexpr int kRuns = 24;
-constexpr double kPeriod_s = 0.02;
+constexpr int kSensorRuns = 24;
 constexpr std::array<double, 3> kAfter_s = {0.1, 0.2, 0.4};  // the start of the first move
 
 // Means and largest values over the runs.
@@ -54,12 +54,12 @@ void Add(const StackRun& run, const RandomMoves& moves, Figures* figures) {
   const double settled_s = metrics.tip_settling_time_s.value_or(moves.experiment.duration_s);
   if (settled_s <= 0.3) ++figures->in_time;
   figures->settled_s = std::max(figures->settled_s, settled_s);
-  figures->residual_mm += metrics.tip_residual_rms_mm / kRuns;
+  figures->residual_mm += metrics.tip_residual_rms_mm / kSensorRuns;
   figures->worst_residual_mm = std::max(figures->worst_residual_mm, metrics.tip_residual_rms_mm);
   for (std::size_t i = 0; i < kAfter_s.size(); ++i) {
     const auto ticks = 1 + std::lround(kAfter_s[i] / kPeriod_s);  // sample 0 follows the first tick
     figures->payload_error_kg[i] +=
-        std::fabs((running + ticks)->output.payload_kg - moves.payload_kg) / kRuns;
+        std::fabs((running + ticks)->output.payload_kg - moves.payload_kg) / kSensorRuns;
   }
 }
 
@@ -69,7 +69,7 @@ Figures Measure(const char* name, const Overrides& plant, bool with_sensor) {
   Config rig = ShippedRig(kWideRig + sensor + plant);
   const RigidJointArm arm(config.arm);
   Figures figures;
-  for (int i = 0; i < kRuns; ++i) {
+  for (int i = 0; i < kSensorRuns; ++i) {
     const std::uint64_t seed = 6001 + static_cast<std::uint64_t>(i);
     const RandomMoves moves = MakeRandomMoves(arm, seed, 1.0);
     config.sim.seed = rig.sim.seed = seed;
@@ -81,7 +81,7 @@ Figures Measure(const char* name, const Overrides& plant, bool with_sensor) {
   std::printf(
       "  %-14s %-7s %2d of %d settle in time, %d trip, %.2f s at most; residual %.2f, %.2f mm; "
       "payload off by %.3f %.3f %.3f kg\n",
-      name, with_sensor ? "with" : "without", figures.in_time, kRuns, figures.tripped,
+      name, with_sensor ? "with" : "without", figures.in_time, kSensorRuns, figures.tripped,
       figures.settled_s, figures.residual_mm, figures.worst_residual_mm,
       figures.payload_error_kg[0], figures.payload_error_kg[1], figures.payload_error_kg[2]);
   return figures;

@@ -22,7 +22,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kRuns = 20;
+constexpr int kDelayRuns = 20;
 
 // How the plant's delay differs from the declared one.
 struct Undeclared {
@@ -60,7 +60,7 @@ double Settling_s(const StackRun& run, const Experiment& experiment, std::size_t
   return metrics.tip_settling_time_s.value_or(std::numeric_limits<double>::infinity());
 }
 
-struct Outcome {
+struct DelayOutcome {
   bool tripped;
   int found;           // at the end of the experiment
   int changes;         // of the delay found
@@ -69,14 +69,14 @@ struct Outcome {
   double first_settling_s, later_settling_s;
 };
 
-Outcome RunOf(const Undeclared& rig, const std::string& law, std::uint64_t seed, bool detect) {
+DelayOutcome RunOf(const Undeclared& rig, const std::string& law, std::uint64_t seed, bool detect) {
   Config config = RigWith(rig.config, law, detect);
   config.sim.seed = seed;
   const RandomMoves moves = MakeRandomMoves(RigidJointArm(config.arm), seed, 1.0);
   StackRun run(config, moves.experiment, moves.payload_kg);
   run.Run(std::llround(1e9 * (moves.experiment.duration_s + 2.0)));
   const Experiment& experiment = moves.experiment;
-  Outcome out{};
+  DelayOutcome out{};
   out.tripped = run.safety.back().after.state == SafetyState::kTripped;
   out.first_end_s = *experiment.move[0].duration_s;
   const auto first = std::find_if(run.tick.begin(), run.tick.end(), IsRunning);
@@ -103,9 +103,9 @@ struct Summary {
 
 Summary RunAll(const Undeclared& rig, const std::string& law, bool detect) {
   Summary all;
-  for (int i = 0; i < kRuns; ++i) {
+  for (int i = 0; i < kDelayRuns; ++i) {
     const std::uint64_t seed = 4001 + static_cast<std::uint64_t>(i);
-    const Outcome run = RunOf(rig, law, seed, detect);
+    const DelayOutcome run = RunOf(rig, law, seed, detect);
     const bool found = run.found == rig.samples;
     all.found += found ? 1 : 0;
     all.found_in_first += found && run.found_s < run.first_end_s ? 1 : 0;
@@ -121,7 +121,7 @@ Summary RunAll(const Undeclared& rig, const std::string& law, bool detect) {
   std::printf(
       "  %s, %s, %s: found in %d of %d runs, %d in the first move, after %.2f to %.2f s; %d trips; "
       "settled in time after the first move %d, latest %.2f s, after the later ones %d, %.2f s\n",
-      law.c_str(), rig.name, detect ? "looked for" : "not looked for", all.found, kRuns,
+      law.c_str(), rig.name, detect ? "looked for" : "not looked for", all.found, kDelayRuns,
       all.found_in_first, all.earliest_s, all.found_s, all.tripped, all.settled,
       all.first_settling_s, all.settled_later, all.later_settling_s);
   return all;
@@ -134,16 +134,16 @@ class UndeclaredDelay : public testing::TestWithParam<LawAndDelay> {};
 TEST_P(UndeclaredDelay, IsFoundAndTheLaterMovesSettleInTime) {
   const auto& [law, rig] = GetParam();
   const Summary all = RunAll(rig, law, true), blind = RunAll(rig, law, false);
-  EXPECT_EQ(all.found, kRuns);
+  EXPECT_EQ(all.found, kDelayRuns);
   // Torques that act earlier do little harm, and show as little.
-  EXPECT_GE(all.found_in_first, rig.samples > 0 ? kRuns : 16);
-  EXPECT_EQ(all.changes, kRuns) << "one a run: none is taken back";
+  EXPECT_GE(all.found_in_first, rig.samples > 0 ? kDelayRuns : 16);
+  EXPECT_EQ(all.changes, kDelayRuns) << "one a run: none is taken back";
   EXPECT_EQ(all.tripped, 0);
-  EXPECT_GE(all.settled, kRuns - 1);
-  EXPECT_EQ(all.settled_later, kRuns);
+  EXPECT_GE(all.settled, kDelayRuns - 1);
+  EXPECT_EQ(all.settled_later, kDelayRuns);
   EXPECT_EQ(blind.changes, 0);
   if (rig.samples > 0) {
-    EXPECT_LT(blind.settled_later, kRuns) << "a delay that does no harm shows nothing";
+    EXPECT_LT(blind.settled_later, kDelayRuns) << "a delay that does no harm shows nothing";
   }
 }
 

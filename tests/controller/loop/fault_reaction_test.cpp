@@ -10,11 +10,10 @@
 #include <algorithm>
 
 #include "tests/controller/loop/stack_run.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 SimEvent LineEvent(double at_s, Line line) {
   return {.at_s = at_s, .line = line, .level = 0, .freeze = FreezeTarget::kNone, .kill = false};

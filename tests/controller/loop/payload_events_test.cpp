@@ -14,13 +14,13 @@
 #include "model/rigid_joint_arm.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/controller/loop/stack_run.h"
+#include "tests/support/loop_time.h"
 #include "tools/parallel.h"
 #include "tools/sweep/random_moves.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kPeriod_s = 0.02;
 constexpr double kSettled_s = 0.3;
 constexpr double kSettledWithin_m = 0.015;
 
@@ -32,7 +32,7 @@ struct Scene {
 };
 
 /// What became of it.
-struct Outcome {
+struct EventOutcome {
   TripCause trip = TripCause::kNone;
   bool completed = false;
   bool finite = true;
@@ -58,14 +58,14 @@ class PayloadEvents : public testing::TestWithParam<const char*> {
     return MakeRandomMoves(arm_, seed, 1.0, moves);
   }
 
-  std::vector<Outcome> RunAll(const std::vector<Scene>& scenes) const {
-    std::vector<Outcome> outcomes(scenes.size());
+  std::vector<EventOutcome> RunAll(const std::vector<Scene>& scenes) const {
+    std::vector<EventOutcome> outcomes(scenes.size());
     ForAllOnAllCores(scenes.size(), [&](std::size_t i) { outcomes[i] = RunOne(scenes[i]); });
     return outcomes;
   }
 
  private:
-  Outcome RunOne(const Scene& scene) const;
+  EventOutcome RunOne(const Scene& scene) const;
 
   Config config_;
   RigidJointArm arm_;
@@ -79,13 +79,13 @@ bool Finite(const TickRecord& record) {
          finite(record.output.payload_kg) && finite(record.output.mean_nis);
 }
 
-Outcome PayloadEvents::RunOne(const Scene& scene) const {
+EventOutcome PayloadEvents::RunOne(const Scene& scene) const {
   constexpr double kAround_s = 15.0;  // to arm and to disarm, or to come to rest after a trip
   Config config = config_;
   config.sim.seed = scene.seed;
   StackRun run(config, scene.experiment, scene.payload_kg);
   run.Run(std::llround((scene.experiment.duration_s + kAround_s) * 1e9));
-  Outcome out;
+  EventOutcome out;
   out.trip = run.permit().cause;
   out.completed = run.permit().state == SafetyState::kIdle && out.trip == TripCause::kNone;
   int tripped = 0;
@@ -125,7 +125,7 @@ double MiddleOf(const Move& move) { return move.start_s + 0.5 * *move.duration_s
 // Half of the rest of 1.5 s after the move.
 double RestAfter(const Move& move) { return move.start_s + *move.duration_s + 0.75; }
 
-void Print(const char* what, const Scene& scene, double load_kg, const Outcome& out) {
+void Print(const char* what, const Scene& scene, double load_kg, const EventOutcome& out) {
   std::printf("  %-22s seed %llu, %.2f kg: ", what, static_cast<unsigned long long>(scene.seed),
               load_kg);
   if (out.completed) {
@@ -138,20 +138,20 @@ void Print(const char* what, const Scene& scene, double load_kg, const Outcome& 
               out.running.back().output.payload_kg);
 }
 
-int SettledInTime(const std::vector<Outcome>& outcomes) {
-  return static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& out) {
-    return out.settling_s <= kSettled_s;
-  }));
+int SettledInTime(const std::vector<EventOutcome>& outcomes) {
+  return static_cast<int>(
+      std::count_if(outcomes.begin(), outcomes.end(),
+                    [](const EventOutcome& out) { return out.settling_s <= kSettled_s; }));
 }
 
-int Completed(const std::vector<Outcome>& outcomes) {
+int Completed(const std::vector<EventOutcome>& outcomes) {
   return static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(),
-                                        [](const Outcome& out) { return out.completed; }));
+                                        [](const EventOutcome& out) { return out.completed; }));
 }
 
 // Completed, or tripped by name with the arm at rest and without torque; never out of numbers, and
 // never beyond the limit switches of kWideRig: a real arm meets its end stops there.
-void ExpectEnded(const Outcome& out) {
+void ExpectEnded(const EventOutcome& out) {
   constexpr double kSwitch_deg = 115.0;
   EXPECT_TRUE(out.finite);
   EXPECT_TRUE(out.completed || out.trip != TripCause::kNone);
@@ -174,7 +174,7 @@ TEST_P(PayloadEvents, ALoadThatChangesAtRestIsFoundOnTheNextMove) {
         PayloadEvent(RestAfter(scene.experiment.move[1]), picked_up ? load_kg : 0.0)};
     scenes.push_back(scene);
   }
-  const std::vector<Outcome> outcomes = RunAll(scenes);
+  const std::vector<EventOutcome> outcomes = RunAll(scenes);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const bool picked_up = i < 8;
     const double left_kg = *scenes[i].experiment.sim_event[0].payload_kg;
@@ -197,7 +197,7 @@ TEST_P(PayloadEvents, ALoadDroppedInMidMoveIsNoticed) {
     scene.experiment.sim_event = {PayloadEvent(MiddleOf(move), 0.0)};
     scenes.push_back(scene);
   }
-  const std::vector<Outcome> outcomes = RunAll(scenes);
+  const std::vector<EventOutcome> outcomes = RunAll(scenes);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     Print("dropped in mid-move", scenes[i], scenes[i].payload_kg, outcomes[i]);
     ExpectEnded(outcomes[i]);
@@ -224,7 +224,7 @@ TEST_P(PayloadEvents, ALoadDroppedAtAnyTimeOfAMoveTripsNothing) {
     scene.experiment.sim_event = {PayloadEvent(move.start_s + share * *move.duration_s, 0.0)};
     scenes.push_back(scene);
   }
-  const std::vector<Outcome> outcomes = RunAll(scenes);
+  const std::vector<EventOutcome> outcomes = RunAll(scenes);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (!outcomes[i].completed || outcomes[i].settling_s > kSettled_s) {
       Print("dropped in mid-move", scenes[i], scenes[i].payload_kg, outcomes[i]);
@@ -246,7 +246,7 @@ TEST_P(PayloadEvents, ALoadPickedUpInMidMoveIsCarriedOn) {
     scene.experiment.sim_event = {PayloadEvent(MiddleOf(move), 1.0 - 0.1 * i)};
     scenes.push_back(scene);
   }
-  const std::vector<Outcome> outcomes = RunAll(scenes);
+  const std::vector<EventOutcome> outcomes = RunAll(scenes);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     Print("picked up in mid-move", scenes[i], *scenes[i].experiment.sim_event[0].payload_kg,
           outcomes[i]);
@@ -258,7 +258,7 @@ TEST_P(PayloadEvents, ALoadPickedUpInMidMoveIsCarriedOn) {
 TEST_P(PayloadEvents, TheShippedExperimentRunsToItsEnd) {
   const Scene scene{
       .experiment = ShippedExperiment("payload-dropped"), .payload_kg = 0.0, .seed = 1};
-  const Outcome out = RunAll({scene}).front();
+  const EventOutcome out = RunAll({scene}).front();
   Print("payload-dropped", scene, 0.3, out);
   EXPECT_TRUE(out.completed);
   EXPECT_LE(out.settling_s, kSettled_s);
@@ -313,10 +313,10 @@ TEST_P(PayloadEvents, ThirtyMovesWithoutAPauseDoNotWearItOut) {
     scene.experiment = WithoutRests(MovesOf(scene.seed, kMoves).experiment);
     scenes.push_back(scene);
   }
-  const std::vector<Outcome> outcomes = RunAll(scenes);
+  const std::vector<EventOutcome> outcomes = RunAll(scenes);
   const ArmParameters arm = ShippedRig().arm;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const Outcome& out = outcomes[i];
+    const EventOutcome& out = outcomes[i];
     Print("without a pause", scenes[i], scenes[i].payload_kg, out);
     ASSERT_TRUE(out.completed) << i;
     EXPECT_LE(out.settling_s, kSettled_s);

@@ -12,12 +12,11 @@
 #include <vector>
 
 #include "tests/controller/loop/stack_run.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/no_alloc.h"
 
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 // What the other tasks say in every millisecond.
 struct World {

@@ -18,7 +18,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kRuns = 8;
+constexpr int kRetargetRuns = 8;
 constexpr std::uint64_t kFirstSeed = 5001;
 
 Config RigFor(const std::string& law) {
@@ -96,7 +96,7 @@ TEST_P(RetargetRuns, TheTipIsAtRestWhenTheLastMoveEnds) {
   const Config config = RigFor(GetParam());
   const Design design = DesignController(config);
   Runs runs;
-  for (int i = 0; i < kRuns; ++i) {
+  for (int i = 0; i < kRetargetRuns; ++i) {
     const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(i);
     const RandomMoves moves = RandomRetargets(config, design, seed).Make();
     SimulationRequest request{.config = config,
@@ -111,7 +111,7 @@ TEST_P(RetargetRuns, TheTipIsAtRestWhenTheLastMoveEnds) {
                 runs.peak1_nm.back(), runs.peak2_nm.back());
   }
   EXPECT_EQ(runs.tripped, 0);
-  EXPECT_EQ(SettledInTime(runs), kRuns);
+  EXPECT_EQ(SettledInTime(runs), kRetargetRuns);
 }
 
 TEST_P(RetargetRuns, TheShippedExperimentEndsAtRest) {

@@ -2,16 +2,13 @@
 
 #include "controller/runlog/csv_import.h"
 
-#include <numbers>
-
 #include "controller/runlog/csv.h"
 #include "tests/controller/runlog/runlog_fixture.h"
+#include "tests/support/degrees.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 SensorConfig OneGaugeALink() {
   SensorConfig sensors{};
@@ -36,13 +33,10 @@ CsvImport Import() {
     return CsvColumn{.column = name, .unit = unit, .scale = scale, .offset = 0.0, .target = target};
   };
   CsvImport import{.decimation = 4, .column = {}};
-  import.column = {column("t", 1e-3, 1.0, "time"),
-                   column("a", kRadPerDeg, 1.0, "hub1"),
-                   column("b", kRadPerDeg, 2.0, "hub2"),
-                   column("i1", 1.0, 8.0, "torque_1"),
-                   column("i2", 1.0, 0.5, "torque_2"),
-                   column("g1", 1.0, 1.0, "strain_1_01"),
-                   column("g2", kRadPerDeg, 100.0, "strain_2_01")};
+  import.column = {column("t", 1e-3, 1.0, "time"),          column("a", kDeg, 1.0, "hub1"),
+                   column("b", kDeg, 2.0, "hub2"),          column("i1", 1.0, 8.0, "torque_1"),
+                   column("i2", 1.0, 0.5, "torque_2"),      column("g1", 1.0, 1.0, "strain_1_01"),
+                   column("g2", kDeg, 100.0, "strain_2_01")};
   return import;
 }
 
@@ -57,10 +51,10 @@ class CsvImportTest : public RunLogTest {
   }
 };
 
-const std::string kHeader = "g2,t,a,b,i1,i2,g1,comment\n";
+const std::string kForeignHeader = "g2,t,a,b,i1,i2,g1,comment\n";
 
 TEST_F(CsvImportTest, EveryDecimationthRowIsATick) {
-  std::string text = kHeader;
+  std::string text = kForeignHeader;
   for (int row = 0; row < 10; ++row) {  // 5 ms apart
     text += "0," + std::to_string(100 + 5 * row) + ",0,0," + std::to_string(row) + ",0,0,x\n";
   }
@@ -80,7 +74,7 @@ TEST_F(CsvImportTest, EveryDecimationthRowIsATick) {
 TEST_F(CsvImportTest, NumbersBecomeWhatTheConvertersWouldShow) {
   CsvImport import = Import();
   import.column[3].offset = 0.25;
-  const StepInput input = Read(kHeader + "0.1,0,-12.54,13,-1,4,0.0124,x\n", import).at(0);
+  const StepInput input = Read(kForeignHeader + "0.1,0,-12.54,13,-1,4,0.0124,x\n", import).at(0);
   // 10 counts a degree: -125.4 of 8 bits; the second encoder counts clockwise, and its column
   // twice.
   EXPECT_EQ(input.frame.counter[0], 256U - 125U);
@@ -96,8 +90,8 @@ TEST_F(CsvImportTest, NumbersBecomeWhatTheConvertersWouldShow) {
 }
 
 TEST_F(CsvImportTest, VoltagesBeyondTheRailsSaturate) {
-  EXPECT_EQ(Read(kHeader + "0,0,0,0,0,0,1e9,x\n").at(0).frame.strain[0], 2047);
-  EXPECT_EQ(Read(kHeader + "0,0,0,0,0,0,-1e9,x\n").at(0).frame.strain[0], -2048);
+  EXPECT_EQ(Read(kForeignHeader + "0,0,0,0,0,0,1e9,x\n").at(0).frame.strain[0], 2047);
+  EXPECT_EQ(Read(kForeignHeader + "0,0,0,0,0,0,-1e9,x\n").at(0).frame.strain[0], -2048);
 }
 
 TEST_F(CsvImportTest, OurOwnFilesAreReadAsOurOwn) {
@@ -112,14 +106,16 @@ TEST_F(CsvImportTest, OurOwnFilesAreReadAsOurOwn) {
 
 TEST_F(CsvImportTest, MistakesAreNamedWithTheirPlace) {
   ExpectError("t,a\n", ":1: found no column b in the header, expected it for this config");
-  ExpectError(kHeader, ":1: found no rows, expected at least one sample");
-  ExpectError(kHeader + "0,0,east,0,0,0,0,x\n", ":2: a: found \"east\", expected a number");
-  ExpectError(kHeader + "0,0,0,0,0,0,0,x\n0,6,0,0,0,0,0,x\n",
+  ExpectError(kForeignHeader, ":1: found no rows, expected at least one sample");
+  ExpectError(kForeignHeader + "0,0,east,0,0,0,0,x\n", ":2: a: found \"east\", expected a number");
+  ExpectError(kForeignHeader + "0,0,0,0,0,0,0,x\n0,6,0,0,0,0,0,x\n",
               ":3: t: found \"6\", expected 0.005 s: the rows are 0.005 s apart, loop.period_ms / "
               "csv.decimation");
-  ExpectError(kHeader + "0,0,0,0,0,0,x\n", ":2: found 7 values, expected 8 as in the header");
-  ExpectError(kHeader + "0,1e300,0,0,0,0,0,x\n", ":2: t: found \"1e300\", expected at most 1e8 s");
-  ExpectError(kHeader + "0,0,1e300,0,0,0,0,x\n",
+  ExpectError(kForeignHeader + "0,0,0,0,0,0,x\n",
+              ":2: found 7 values, expected 8 as in the header");
+  ExpectError(kForeignHeader + "0,1e300,0,0,0,0,0,x\n",
+              ":2: t: found \"1e300\", expected at most 1e8 s");
+  ExpectError(kForeignHeader + "0,0,1e300,0,0,0,0,x\n",
               ":2: a: found \"1e300\", expected an angle of this encoder");
 }
 

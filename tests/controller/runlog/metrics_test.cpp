@@ -7,11 +7,12 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/degrees.h"
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
 
-constexpr double kPeriod_s = 0.02;
-constexpr double kDeg = 3.14159265358979323846 / 180;
 const TipGeometry kGeometry{.layout = kR12, .length_m = {1.0, 0.7}, .tip_slope_per_m = {1.5, 4.0}};
 
 // Two moves: rests are 1..3 s and 4..6 s.

@@ -10,7 +10,6 @@ namespace flexarm {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr SafetyStatus kIdleStatus{SafetyState::kIdle, TripCause::kNone};
 constexpr SafetyStatus kArmedStatus{SafetyState::kArmed, TripCause::kNone};
 constexpr SafetyStatus kRunningStatus{SafetyState::kRunning, TripCause::kNone};
 

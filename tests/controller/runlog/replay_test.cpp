@@ -90,8 +90,6 @@ TEST(Replay, UnderAnotherConfigBytesAreNotCompared) {
   EXPECT_EQ(result.max_torque_difference_nm[0], 1);
 }
 
-constexpr SafetyStatus kIdleStatus{SafetyState::kIdle, TripCause::kNone};
-
 std::vector<SafetyRecord> SafetyStory() {
   const SafetyRecord arm = MakeSafety(1, kIdleStatus, RequestKind::kArm);
   const SafetyRecord run = MakeSafety(2, arm.after, RequestKind::kRun);

@@ -49,6 +49,9 @@ class RunLogTest : public ::testing::Test {
 
 inline constexpr std::int64_t kTestPeriodNs = 20'000'000;
 
+/// Before anybody asked for anything.
+inline constexpr SafetyStatus kIdleStatus{SafetyState::kIdle, TripCause::kNone};
+
 /// A tick with something of its own in every field that has a column.
 inline TickRecord MakeTick(std::int64_t tick, SafetyState state = SafetyState::kRunning) {
   TickRecord record{};

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 struct Journal {
   void Follow(std::int64_t now_ns, const std::vector<BusHealth>& buses) {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 StepInput Acted(std::int64_t acted_late_ns, std::int64_t acts_late_ns,
                 SafetyState state = SafetyState::kRunning) {

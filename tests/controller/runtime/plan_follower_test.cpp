@@ -9,13 +9,12 @@
 
 #include "controller/law/design.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/no_alloc.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kPeriod_s = 0.02;
-constexpr std::int64_t kPeriodNs = 20'000'000;
 constexpr PlanSchedule kSchedule{.every = 10, .ready = 5, .rest = 20, .period_ns = kPeriodNs};
 
 ReferenceTable MovesOf(double duration_s, const std::vector<double>& starts_s) {

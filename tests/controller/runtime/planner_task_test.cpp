@@ -14,14 +14,13 @@
 
 #include "controller/law/path_reference.h"
 #include "tests/controller/law/shipped_rig.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/study_planner.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kPeriod_s = 0.02;
-constexpr std::int64_t kPeriodNs = 20'000'000;
 constexpr int kFirst = 50, kEnd = 150;  // of the move
 
 Config Rig(const std::vector<std::string>& overrides = {}) {

@@ -16,6 +16,7 @@
 #include "controller/runtime/latest_value.h"
 #include "controller/runtime/lockstep_executor.h"
 #include "controller/runtime/realtime_setup.h"
+#include "tests/support/loop_time.h"
 
 // These machines promise no latency: nothing here asserts how late a thread woke, only order and
 // counts, which hold however late it is.
@@ -23,7 +24,6 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kLeadNs = 20 * kMs;
 
 bool FifoPermitted(int priority) { return ReadRealtimeHost(priority).fifo_error == 0; }

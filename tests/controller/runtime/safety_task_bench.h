@@ -9,13 +9,12 @@
 #include "controller/runtime/lockstep_executor.h"
 #include "controller/runtime/safety_task.h"
 #include "controller/safety/gate.h"
+#include "tests/support/loop_time.h"
 
 // The safety task between a control and a drive side that can be stopped, on the lock-step clock.
 
 namespace flexarm {
 
-inline constexpr std::int64_t kMs = 1'000'000;
-inline constexpr std::int64_t kPeriodNs = 20 * kMs;
 inline constexpr std::int64_t kPhaseNs = 5 * kMs;
 inline constexpr std::int64_t kDeadlineNs = 10 * kMs;
 inline constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,

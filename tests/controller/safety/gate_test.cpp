@@ -7,19 +7,20 @@
 #include <cstdlib>
 #include <limits>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr std::int64_t kMs = 1'000'000;
 
-constexpr GateLimits kLimits{.torque_nm = {30.0, 6.0},
-                             .slew_nm_per_s = {500.0, 150.0},
-                             .command_timeout_ns = 40 * kMs,
-                             .permit_timeout_ns = 5 * kMs};
+constexpr GateLimits kGateLimits{.torque_nm = {30.0, 6.0},
+                                 .slew_nm_per_s = {500.0, 150.0},
+                                 .command_timeout_ns = 40 * kMs,
+                                 .permit_timeout_ns = 5 * kMs};
 
-constexpr GateInput Fine() {
+constexpr GateInput FineInput() {
   return {.asked_nm = {2.0, -1.0},
           .asked_age_ns = 3 * kMs,
           .permit = SafetyState::kRunning,
@@ -29,24 +30,24 @@ constexpr GateInput Fine() {
 }
 
 void ExpectZeroed(const GateInput& in, std::uint32_t why) {
-  const GateResult result = Gate(in, kLimits);
+  const GateResult result = Gate(in, kGateLimits);
   EXPECT_EQ(result.torque_nm[0], 0.0);
   EXPECT_EQ(result.torque_nm[1], 0.0);
   EXPECT_EQ(result.why, why);
 }
 
 TEST(Gate, LetsAnAdmissibleTorqueThroughUnchanged) {
-  const GateResult result = Gate(Fine(), kLimits);
+  const GateResult result = Gate(FineInput(), kGateLimits);
   EXPECT_EQ(result.torque_nm[0], 2.0);
   EXPECT_EQ(result.torque_nm[1], -1.0);
   EXPECT_EQ(result.why, 0u);
 }
 
 TEST(Gate, AnOldCommandIsZeroAtOnce) {
-  GateInput in = Fine();
+  GateInput in = FineInput();
   in.previous_nm = {25.0, 5.0};  // far from zero: no slew on the way down
   in.asked_age_ns = 40 * kMs;
-  EXPECT_EQ(Gate(in, kLimits).why & kGateZeroed, 0u) << "exactly two periods is still young";
+  EXPECT_EQ(Gate(in, kGateLimits).why & kGateZeroed, 0u) << "exactly two periods is still young";
   in.asked_age_ns = 40 * kMs + 1;
   ExpectZeroed(in, kGateCommandOld);
   in.asked_age_ns = AgeNs(0, INT64_MIN);  // there never was one
@@ -56,10 +57,10 @@ TEST(Gate, AnOldCommandIsZeroAtOnce) {
 }
 
 TEST(Gate, AnOldPermitIsZeroAtOnce) {
-  GateInput in = Fine();
+  GateInput in = FineInput();
   in.previous_nm = {25.0, 5.0};
   in.permit_age_ns = 5 * kMs;
-  EXPECT_EQ(Gate(in, kLimits).why & kGateZeroed, 0u);
+  EXPECT_EQ(Gate(in, kGateLimits).why & kGateZeroed, 0u);
   in.permit_age_ns = 5 * kMs + 1;
   ExpectZeroed(in, kGatePermitOld);
   in.permit_age_ns = -1;
@@ -68,10 +69,10 @@ TEST(Gate, AnOldPermitIsZeroAtOnce) {
 
 TEST(Gate, OnlyRunningAndStoppingLetTorqueThrough) {
   for (int state = 0; state < 256; ++state) {
-    GateInput in = Fine();
+    GateInput in = FineInput();
     in.permit = static_cast<SafetyState>(state);
     if (in.permit == SafetyState::kRunning || in.permit == SafetyState::kStopping) {
-      EXPECT_EQ(Gate(in, kLimits).why, 0u) << state;
+      EXPECT_EQ(Gate(in, kGateLimits).why, 0u) << state;
     } else {
       SCOPED_TRACE(state);
       ExpectZeroed(in, kGateNotAllowed);
@@ -82,62 +83,62 @@ TEST(Gate, OnlyRunningAndStoppingLetTorqueThrough) {
 TEST(Gate, WhatIsNotFiniteIsZeroOnBothJoints) {
   for (const double bad : {kNan, kInf, -kInf}) {
     for (std::size_t joint = 0; joint < 2; ++joint) {
-      GateInput in = Fine();
+      GateInput in = FineInput();
       in.asked_nm[joint] = bad;
       ExpectZeroed(in, kGateNotFinite);
-      in = Fine();
+      in = FineInput();
       in.previous_nm[joint] = bad;
       ExpectZeroed(in, kGateNotFinite);
-      GateLimits limits = kLimits;
+      GateLimits limits = kGateLimits;
       limits.torque_nm[joint] = bad;
-      EXPECT_EQ(Gate(Fine(), limits).why, kGateNotFinite);
-      limits = kLimits;
+      EXPECT_EQ(Gate(FineInput(), limits).why, kGateNotFinite);
+      limits = kGateLimits;
       limits.slew_nm_per_s[joint] = bad;
-      EXPECT_EQ(Gate(Fine(), limits).why, kGateNotFinite);
+      EXPECT_EQ(Gate(FineInput(), limits).why, kGateNotFinite);
     }
-    GateInput in = Fine();
+    GateInput in = FineInput();
     in.dt_s = bad;
     ExpectZeroed(in, kGateNotFinite);
   }
 }
 
 TEST(Gate, LimitsTorqueAndSaysOnWhichJoint) {
-  GateInput in = Fine();
+  GateInput in = FineInput();
   in.asked_nm = {1e300, -6.1};
   in.previous_nm = {30.0, -6.0};
-  const GateResult result = Gate(in, kLimits);
+  const GateResult result = Gate(in, kGateLimits);
   EXPECT_EQ(result.torque_nm[0], 30.0);
   EXPECT_EQ(result.torque_nm[1], -6.0);
   EXPECT_EQ(result.why, kGateTorque1 | kGateTorque2);
 }
 
 TEST(Gate, LimitsSlewInBothDirectionsAndSaysOnWhichJoint) {
-  GateInput in = Fine();
+  GateInput in = FineInput();
   in.asked_nm = {10.0, -5.0};
   in.previous_nm = {0.0, 0.0};
-  const GateResult up = Gate(in, kLimits);
+  const GateResult up = Gate(in, kGateLimits);
   EXPECT_DOUBLE_EQ(up.torque_nm[0], 0.5);    // 500 N m/s for 1 ms
   EXPECT_DOUBLE_EQ(up.torque_nm[1], -0.15);  // 150 N m/s for 1 ms
   EXPECT_EQ(up.why, kGateSlew1 | kGateSlew2);
   in.asked_nm = {0.0, -1.0};
   in.previous_nm = {10.0, -1.0};
-  const GateResult down = Gate(in, kLimits);
+  const GateResult down = Gate(in, kGateLimits);
   EXPECT_DOUBLE_EQ(down.torque_nm[0], 9.5);
   EXPECT_EQ(down.why, kGateSlew1);
 }
 
 TEST(Gate, TorqueLimitHasTheLastWordOverSlew) {
-  GateInput in = Fine();
+  GateInput in = FineInput();
   in.asked_nm = {29.0, 0.0};
   in.previous_nm = {40.0, 0.0};
-  EXPECT_EQ(Gate(in, kLimits).torque_nm[0], 30.0);
+  EXPECT_EQ(Gate(in, kGateLimits).torque_nm[0], 30.0);
 }
 
 TEST(Gate, NoTimePassedMeansNoChange) {
-  GateInput in = Fine();
+  GateInput in = FineInput();
   for (const double dt : {0.0, -1.0}) {
     in.dt_s = dt;
-    EXPECT_EQ(Gate(in, kLimits).torque_nm, in.previous_nm);
+    EXPECT_EQ(Gate(in, kGateLimits).torque_nm, in.previous_nm);
   }
 }
 
@@ -163,19 +164,19 @@ TEST(Gate, NeverExceedsItsLimitsWhateverComesIn) {
                  .previous_nm = {},
                  .dt_s = *rc::gen::inRange(0, 21) * 1e-3};
     for (std::size_t joint = 0; joint < 2; ++joint) {
-      in.previous_nm[joint] = *rc::gen::inRange(-1000, 1001) * 1e-3 * kLimits.torque_nm[joint];
+      in.previous_nm[joint] = *rc::gen::inRange(-1000, 1001) * 1e-3 * kGateLimits.torque_nm[joint];
     }
-    const GateResult out = Gate(in, kLimits);
+    const GateResult out = Gate(in, kGateLimits);
     const bool allowed = in.permit == SafetyState::kRunning || in.permit == SafetyState::kStopping;
     for (std::size_t joint = 0; joint < 2; ++joint) {
       const double torque = out.torque_nm[joint];
-      RC_ASSERT(std::abs(torque) <= kLimits.torque_nm[joint]);  // false for NaN too
+      RC_ASSERT(std::abs(torque) <= kGateLimits.torque_nm[joint]);  // false for NaN too
       if ((out.why & kGateZeroed) != 0) {
         RC_ASSERT(torque == 0.0);
       } else {
         // previous +- step is rounded once: half an ulp of at most 40 N m, 4e-15. A slew limit that
         // is wrong by 0.1 % would be off by 1e-4.
-        const double step = kLimits.slew_nm_per_s[joint] * in.dt_s;
+        const double step = kGateLimits.slew_nm_per_s[joint] * in.dt_s;
         RC_ASSERT(std::abs(torque - in.previous_nm[joint]) <= step + 1e-14);
       }
       if (torque != 0.0) {

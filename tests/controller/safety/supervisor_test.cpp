@@ -4,13 +4,13 @@
 
 #include "controller/runtime/runtime_config.h"
 #include "controller/safety/safety_config.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
 
 using enum SafetyState;
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
                                    .stop_timeout_ns = 3000 * kMs,
                                    .missed_deadlines_to_trip = 3,

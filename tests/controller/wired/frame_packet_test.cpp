@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/loop_time.h"
+
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 FramePacket Encoders(std::int64_t sampled_at_ns) {
   FramePacket packet{};

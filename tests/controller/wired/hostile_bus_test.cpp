@@ -15,6 +15,7 @@
 #include "hal/modbus/modbus_plan.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/controller/wired/wired_world.h"
+#include "tests/support/loop_time.h"
 
 // The whole wired stack with its real drivers, in mid-run, when a device begins to misbehave. A
 // failed exchange with an amplifier takes as long as its driver declares, on the clock of the test.
@@ -27,7 +28,6 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kHalfMs = 500'000;
 // Of the real sockets, where no answer comes anyway: an ordinary machine's peer is quicker.
 constexpr double kPatience_ms = 100.0;

@@ -12,12 +12,11 @@
 #include "controller/runtime/unattended_run.h"
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/loop/simulated_runs.h"
+#include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 /// The arm behind two buses: encoders and drives on one, gauges on the other.
 struct World {

@@ -9,10 +9,9 @@
 #include "hal/canopen/canopen_device.h"
 #include "hal/canopen/memory_bus.h"
 #include "hal/canopen/simulated_node.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
-
-inline constexpr std::int64_t kMs = 1'000'000;
 
 inline CanopenNodeConfig BenchDrive(CanopenRole role, int node_id) {
   const bool first = role == CanopenRole::kDrive1;

@@ -34,7 +34,6 @@ namespace {
 using enum WireFault;
 using enum BusStatus;
 
-constexpr BusCommand kNoCommand{.torque_nm = {}, .enabled = false};
 // An ordinary thread of the build machines was seen to wake 234 ms late. A call that waits for
 // something that it should not wait for does so every time: the shortest one tells.
 constexpr std::int64_t kLateWakeNs = 500'000'000;
@@ -104,9 +103,9 @@ class Judge {
     const std::int64_t begin_ns = MonotonicNow();
     if (kNoAllocWorks) {
       const NoAlloc guard;
-      status = device.Exchange(kNoCommand, &part);
+      status = device.Exchange(kDrivesOff, &part);
     } else {
-      status = device.Exchange(kNoCommand, &part);
+      status = device.Exchange(kDrivesOff, &part);
     }
     const std::int64_t took_ns = MonotonicNow() - begin_ns;
     took_ns_.push_back(took_ns);

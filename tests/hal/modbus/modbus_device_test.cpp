@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "controller/runtime/clock.h"
+#include "tests/hal/modbus/modbus_testing.h"
 #include "tests/hal/modbus/served_device.h"
 #include "tests/support/message_of.h"
 #include "tests/support/no_alloc.h"
@@ -17,8 +18,6 @@
 
 namespace flexarm {
 namespace {
-
-constexpr BusCommand kNoCommand{.torque_nm = {}, .enabled = false};
 
 class ModbusDeviceOver : public testing::TestWithParam<ModbusTransport> {
  protected:
@@ -44,7 +43,7 @@ TEST_P(ModbusDeviceOver, ReadsEveryRowOfTheMap) {
   ModbusDevice device(served.config(), MonotonicNow);
   device.Open();
   SensorFrame part{};
-  ASSERT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kOk);
+  ASSERT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   EXPECT_EQ(part.strain_valid, 0x3FFU);
   EXPECT_EQ(part.strain, shown.strain);
   EXPECT_EQ(part.levels, LineBit(Line::kResetButton));  // the limit switch is another bus's
@@ -71,7 +70,7 @@ TEST_P(ModbusDeviceOver, EachTypeComesThroughTheWire) {
   ModbusDevice device(served.config(), MonotonicNow);
   device.Open();
   SensorFrame part{};
-  ASSERT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kOk);
+  ASSERT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   EXPECT_EQ(part.strain_valid, 0x3FU);
   const std::array<std::int32_t, 6> expected = {-2, 65534, 65538, 131073, 1500, -1493};
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(part.strain[i], expected[i]) << i;
@@ -86,11 +85,11 @@ TEST_P(ModbusDeviceOver, AChannelThatIsNoNumberIsNotValidAlone) {
   ModbusDevice device(served.config(), MonotonicNow);
   device.Open();
   SensorFrame before{}, part{};
-  ASSERT_EQ(device.Exchange(kNoCommand, &before), BusStatus::kOk);
+  ASSERT_EQ(device.Exchange(kDrivesOff, &before), BusStatus::kOk);
   EXPECT_EQ(before.strain_valid, 0b11U);
   const std::vector<std::uint16_t> broken = {0x7FC0, 0x0000, 0x41A0, 0x0000};  // NaN, 20
   served.image.Set(ModbusTable::kInputRegister, 0, broken);
-  ASSERT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kOk);
+  ASSERT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   EXPECT_EQ(part.strain_valid, 0b10U);
   EXPECT_EQ(part.strain[0], 10);  // the last good value, as old as it is
   EXPECT_EQ(part.sampled_at_ns + part.strain_offset_ns[0], before.sampled_at_ns);
@@ -106,7 +105,7 @@ TEST_P(ModbusDeviceOver, StampsTheMiddleOfEachRequest) {
   device.Open();
   SensorFrame part{};
   const std::int64_t before_ns = MonotonicNow();
-  ASSERT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kOk);
+  ASSERT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   const std::int64_t after_ns = MonotonicNow();
   const std::int64_t middle_ns = before_ns + (after_ns - before_ns) / 2;
   EXPECT_GT(part.sampled_at_ns, before_ns);
@@ -124,7 +123,7 @@ TEST_P(ModbusDeviceOver, AsksNoMoreThanItsPlan) {
   device.Open();
   const std::uint64_t before = served.server.requests();
   SensorFrame part{};
-  for (int i = 0; i < 10; ++i) ASSERT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kOk);
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   EXPECT_EQ(served.server.requests() - before, 20U);  // one of bits, one of registers
 }
 
@@ -138,12 +137,12 @@ TEST_P(ModbusDeviceOver, ExchangeAndReconnectDoNotAllocate) {
   BusStatus exchanged = BusStatus::kTimeout, silent = BusStatus::kOk, back = BusStatus::kTimeout;
   {
     const NoAlloc guard;
-    for (int i = 0; i < 20; ++i) exchanged = device.Exchange(kNoCommand, &part);
+    for (int i = 0; i < 20; ++i) exchanged = device.Exchange(kDrivesOff, &part);
   }
   served.SetSilent(true);
   {
     const NoAlloc guard;
-    silent = device.Exchange(kNoCommand, &part);
+    silent = device.Exchange(kDrivesOff, &part);
   }
   served.SetSilent(false);
   {
@@ -230,7 +229,7 @@ TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
   device.Open();
   SensorFrame part{};
   served->SetSilent(true);
-  EXPECT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kTimeout);
+  EXPECT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kTimeout);
   EXPECT_EQ(part.strain_valid, 0U);
   EXPECT_NE(device.Reconnect(), BusStatus::kOk);
   served->SetSilent(false);
@@ -240,7 +239,7 @@ TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
     status = device.Reconnect();
   }
   ASSERT_EQ(status, BusStatus::kOk);
-  EXPECT_EQ(device.Exchange(kNoCommand, &part), BusStatus::kOk);
+  EXPECT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   EXPECT_EQ(part.strain_valid, 0x3FFU);
 }
 

@@ -3,11 +3,15 @@
 #include <string>
 #include <vector>
 
+#include "hal/bus_device.h"
 #include "hal/modbus/modbus_config.h"
 
 // Devices as the tests of this folder use them.
 
 namespace flexarm {
+
+/// What a device without drives is told.
+inline constexpr BusCommand kDrivesOff{.torque_nm = {}, .enabled = false};
 
 inline ModbusRegister StrainRow(int index, int address, ModbusType type = ModbusType::kInt16,
                                 ModbusWordOrder order = ModbusWordOrder::kBig) {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+namespace flexarm {
+
+/// A millisecond, in the unit of every clock of the loop.
+inline constexpr std::int64_t kMs = 1'000'000;
+
+/// The control period of every shipped rig.
+inline constexpr double kPeriod_s = 0.02;
+inline constexpr std::int64_t kPeriodNs = 20 * kMs;
+
+}  // namespace flexarm
