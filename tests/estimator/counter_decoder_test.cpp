@@ -5,14 +5,12 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
+#include "model/units.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // One encoder on hub 1: 1000 counts a turn, so that a period at 14 rad/s is 44.6 counts.
 SensorConfig OneEncoder(int bits, int sign = 1) {

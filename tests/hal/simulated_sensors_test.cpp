@@ -4,15 +4,14 @@
 
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
+#include "model/units.h"
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr ModeCount kModes{.link1 = 4, .link2 = 4};
 
 class SimulatedSensorsTest : public testing::Test {

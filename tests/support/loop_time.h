@@ -2,10 +2,12 @@
 
 #include <cstdint>
 
+#include "hal/time_units.h"
+
 namespace flexarm {
 
 /// A millisecond, in the unit of every clock of the loop.
-inline constexpr std::int64_t kMs = 1'000'000;
+inline constexpr std::int64_t kMs = kMillisecondNs;
 
 /// The control period of every shipped rig.
 inline constexpr double kPeriod_s = 0.02;

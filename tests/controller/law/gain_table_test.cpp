@@ -13,8 +13,8 @@
 #include "model/arm_model.h"
 #include "model/discretize.h"
 #include "model/linearization.h"
+#include "model/units.h"
 #include "tests/model/golden_data.h"
-#include "tests/support/degrees.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/study_gains.h"
@@ -70,7 +70,7 @@ TEST(GainTable, AgreesWithTheGoldenTable) {
 TEST(GainTable, IsConstantBeyondItsBorders) {
   EXPECT_EQ(StudyTable().At(-0.1, 0.5), StudyTable().At(0.0, 0.5));
   EXPECT_EQ(StudyTable().At(1.2, 0.5), StudyTable().At(1.0, 0.5));
-  EXPECT_EQ(StudyTable().At(0.3, 3.0), StudyTable().At(0.3, 150.0 * kDeg));
+  EXPECT_EQ(StudyTable().At(0.3, 3.0), StudyTable().At(0.3, 150.0 * kRadPerDeg));
 }
 
 // beyond.md 2.4: max |z| on the 4-mode plant is .885-.894, on and off the grid. These are far from
@@ -78,7 +78,7 @@ TEST(GainTable, IsConstantBeyondItsBorders) {
 TEST(GainTable, HoldsTheArmWithFourModesBetweenItsKnots) {
   for (const double payload_kg : {0.02, 0.14, 0.28, 0.43, 0.62, 0.9}) {
     for (const double theta2_deg : {10.0, 50.0, 90.0, 135.0}) {
-      const double theta2_rad = theta2_deg * kDeg;
+      const double theta2_rad = theta2_deg * kRadPerDeg;
       const auto K = StudyTable().At(payload_kg, theta2_rad);
       EXPECT_LT(SpectralRadius(K, payload_kg, theta2_rad), 0.90) << payload_kg << ' ' << theta2_deg;
     }
@@ -88,7 +88,7 @@ TEST(GainTable, HoldsTheArmWithFourModesBetweenItsKnots) {
 // The reason for GainPayload, beyond.md 2.4.
 TEST(GainTable, GainsOf150GramsHoldEveryPayloadThoseOfAKilogramDoNot) {
   for (const double theta2_deg : {0.0, 60.0, 120.0}) {
-    const double theta2_rad = theta2_deg * kDeg;
+    const double theta2_rad = theta2_deg * kRadPerDeg;
     const auto robust = StudyTable().At(0.15, theta2_rad);
     for (const double payload_kg : {0.0, 0.05, 0.3, 0.6, 1.0}) {
       EXPECT_LT(SpectralRadius(robust, payload_kg, theta2_rad), 0.99)

@@ -7,10 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "controller/law/tracking_law.h"
 #include "model/arm_simulator.h"
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/model/golden_data.h"
 #include "tests/support/thesis_rig.h"
@@ -18,7 +17,6 @@
 namespace flexarm {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr int kModes = 4;
 
 StateVector NominalState(const ArmState& arm) {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "model/arm_model.h"
+#include "model/units.h"
 #include "tests/model/golden_data.h"
-#include "tests/support/degrees.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/study_planner.h"
 
@@ -43,8 +43,9 @@ PlanProblem ProblemAt(const std::vector<RigidPathPoint>& path, int sample, int p
 PlanEntry EntryAt(const HorizonPlan& plan, std::int64_t tick) { return plan.At(tick).value(); }
 
 // The heavy swing: elbow from one side to the other. 2.6 s is the study's rule for 1 kg.
-const SepticMove kWideSwing{
-    .from_rad = {0.0, -60.0 * kDeg}, .to_rad = {40.0 * kDeg, 85.0 * kDeg}, .periods = 130};
+const SepticMove kWideSwing{.from_rad = {0.0, -60.0 * kRadPerDeg},
+                            .to_rad = {40.0 * kRadPerDeg, 85.0 * kRadPerDeg},
+                            .periods = 130};
 
 class Planner : public testing::Test {
  protected:

@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
-#include "tests/support/degrees.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
@@ -74,12 +74,12 @@ TEST_F(LoopSupervisorTest, AHealthyArmRaisesNothing) {
 TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSampleThatShowsThem) {
   for (const double sign : {1.0, -1.0}) {
     Facts facts;
-    facts.counters.angle_rad = {sign * 90.1 * kDeg, 0, sign * 90.1 * kDeg, 0};
-    Expect(TripCause::kSoftLimit1, 1, facts, 90.1 * kDeg, 90.0 * kDeg, 1);
-    facts.counters.angle_rad = {0, sign * 90.1 * kDeg, 0, sign * 90.1 * kDeg};
-    Expect(TripCause::kSoftLimit2, 1, facts, 90.1 * kDeg, 90.0 * kDeg, 2);
-    facts.counters.angle_rad = {sign * 89.9 * kDeg, sign * 89.9 * kDeg, sign * 89.9 * kDeg,
-                                sign * 89.9 * kDeg};
+    facts.counters.angle_rad = {sign * 90.1 * kRadPerDeg, 0, sign * 90.1 * kRadPerDeg, 0};
+    Expect(TripCause::kSoftLimit1, 1, facts, 90.1 * kRadPerDeg, 90.0 * kRadPerDeg, 1);
+    facts.counters.angle_rad = {0, sign * 90.1 * kRadPerDeg, 0, sign * 90.1 * kRadPerDeg};
+    Expect(TripCause::kSoftLimit2, 1, facts, 90.1 * kRadPerDeg, 90.0 * kRadPerDeg, 2);
+    facts.counters.angle_rad = {sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg,
+                                sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg};
     EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
   }
 }
@@ -223,7 +223,7 @@ TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
   EXPECT_EQ(verdict.faults, CauseBit(TripCause::kSoftLimit2) | CauseBit(TripCause::kEncoderJump) |
                                 CauseBit(TripCause::kStaleFrame));
   EXPECT_DOUBLE_EQ(verdict.value, 2.0);
-  EXPECT_DOUBLE_EQ(verdict.limit, 90.0 * kDeg);
+  EXPECT_DOUBLE_EQ(verdict.limit, 90.0 * kRadPerDeg);
   EXPECT_EQ(verdict.channel, 2);
 }
 

@@ -9,8 +9,8 @@
 
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
-#include "tests/support/degrees.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
@@ -62,7 +62,8 @@ TEST(Move, GoesThroughItsWayPointsAndRestsThere) {
     const auto k =
         static_cast<std::size_t>(std::lround((move.start_s + *move.duration_s) / kPeriod_s));
     for (int i = 0; i < 2; ++i) {
-      EXPECT_NEAR(motion.angle[k](i), move.to_deg[static_cast<std::size_t>(i)] * kDeg, 1e-12) << k;
+      EXPECT_NEAR(motion.angle[k](i), move.to_deg[static_cast<std::size_t>(i)] * kRadPerDeg, 1e-12)
+          << k;
       EXPECT_NEAR(motion.rate[k](i), 0.0, 1e-12) << k;
     }
   }
@@ -74,9 +75,9 @@ TEST(Move, StaysBetweenItsEnds) {
       MoveTable(Moves({{.start_s = 0.2, .duration_s = 1.0, .to_deg = {30, -10}}})), {0, 0});
   for (const Eigen::Vector2d& angle : motion.angle) {
     EXPECT_GE(angle(0), -1e-12);
-    EXPECT_LE(angle(0), 30 * kDeg + 1e-12);
+    EXPECT_LE(angle(0), 30 * kRadPerDeg + 1e-12);
     EXPECT_LE(angle(1), 1e-12);
-    EXPECT_GE(angle(1), -10 * kDeg - 1e-12);
+    EXPECT_GE(angle(1), -10 * kRadPerDeg - 1e-12);
   }
 }
 
@@ -94,8 +95,8 @@ TEST(Move, TheReferenceModelFollowsAndEndsAtTheSetPoint) {
     x_m = ShippedDesign().Am * x_m +
           ShippedDesign().Bm * Eigen::Vector2d(sample.u_m_nm[0], sample.u_m_nm[1]);
   }
-  EXPECT_NEAR(x_m(0), 30 * kDeg, 1e-10);
-  EXPECT_NEAR(x_m(1), -45 * kDeg, 1e-10);
+  EXPECT_NEAR(x_m(0), 30 * kRadPerDeg, 1e-10);
+  EXPECT_NEAR(x_m(1), -45 * kRadPerDeg, 1e-10);
   for (int i = 2; i < 12; ++i) EXPECT_NEAR(x_m(i), 0.0, 1e-9) << i;
 }
 
@@ -109,9 +110,9 @@ TEST(Move, AfterADoubletStartsWhereThatEnded) {
                                  {.start_s = 6.0, .duration_s = 1.0, .to_deg = {7, 0}}},
                                 {doublet, later})),
                 {0, 0});
-  EXPECT_NEAR(motion.angle[150](0), 5 * kDeg, 1e-12);
-  EXPECT_NEAR(motion.angle[250](1), 10 * kDeg, 1e-12);
-  EXPECT_NEAR(motion.angle.back()(0), 7 * kDeg, 1e-12);
+  EXPECT_NEAR(motion.angle[150](0), 5 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(motion.angle[250](1), 10 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(motion.angle.back()(0), 7 * kRadPerDeg, 1e-12);
   EXPECT_NEAR(motion.angle.back()(1), 0.0, 1e-12);
 }
 
@@ -221,13 +222,14 @@ TEST(Move, AChosenDurationIsWrittenIntoTheExperimentAndItsText) {
 
 // The tip of two straight links of 0.8 and 0.9 m at th1 = 60, th2 = 60 deg: L1 at 60, L2 at 120.
 TEST(Move, GoesToAPositionOfTheTip) {
-  const std::array<double, 2> tip = {0.8 * std::cos(60 * kDeg) + 0.9 * std::cos(120 * kDeg),
-                                     0.8 * std::sin(60 * kDeg) + 0.9 * std::sin(120 * kDeg)};
+  const std::array<double, 2> tip = {
+      0.8 * std::cos(60 * kRadPerDeg) + 0.9 * std::cos(120 * kRadPerDeg),
+      0.8 * std::sin(60 * kRadPerDeg) + 0.9 * std::sin(120 * kRadPerDeg)};
   Experiment experiment = Moves({{.start_s = 0.0, .duration_s = 3.0, .to_tip_m = tip}});
   experiment.move[0].elbow = ElbowSide::kRight;
   const ReferenceTable table = MoveTable(experiment);
-  EXPECT_NEAR(table.moves()[0].to_rad[0], 60 * kDeg, 1e-12);
-  EXPECT_NEAR(table.moves()[0].to_rad[1], 60 * kDeg, 1e-12);
+  EXPECT_NEAR(table.moves()[0].to_rad[0], 60 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(table.moves()[0].to_rad[1], 60 * kRadPerDeg, 1e-12);
 }
 
 std::string MoveRefusal(const Experiment& experiment) {

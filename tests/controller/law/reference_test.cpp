@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "controller/law/refused.h"
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/model/golden_data.h"
-#include "tests/support/degrees.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
@@ -92,8 +92,8 @@ TEST(ReferenceTable, ADoubletMovesByItsAngleAndEndsAtRest) {
     for (const double duration_s : {0.4, 1.0, 2.0}) {
       const ReferenceTable table = Table(Doublets({MoveBy(13, -7, 0.0, duration_s, shape)}));
       const ReferenceSample& end = table.At(table.periods());
-      EXPECT_NEAR(end.x_m[0], 13 * kDeg, 1e-10) << duration_s;
-      EXPECT_NEAR(end.x_m[1], -7 * kDeg, 1e-10) << duration_s;
+      EXPECT_NEAR(end.x_m[0], 13 * kRadPerDeg, 1e-10) << duration_s;
+      EXPECT_NEAR(end.x_m[1], -7 * kRadPerDeg, 1e-10) << duration_s;
       for (std::size_t i = 2; i < 12; ++i) EXPECT_NEAR(end.x_m[i], 0.0, 1e-9) << i;
     }
   }
@@ -147,7 +147,7 @@ TEST(ReferenceTable, FollowsTheReferenceModelFromItsStart) {
 TEST(ReferenceTable, OnATorsionalModelItMovesRotorsAndHubs) {
   const Design design = DesignController(ShippedRig({"controller.nominal=T16"}));
   const ReferenceTable table(kBase, design, kPeriod_s, {0.1, -0.2}, SoftAngles());
-  const double by = 30 * kDeg;
+  const double by = 30 * kRadPerDeg;
   double twist = 0.0;
   for (int k = 0; k <= 50; ++k) {
     twist = std::max(twist, std::fabs(table.At(k).x_m[2] - table.At(k).x_m[0]));

@@ -12,8 +12,8 @@
 #include "controller/law/path_reference.h"
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
-#include "tests/support/degrees.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
@@ -104,7 +104,7 @@ TEST(Retarget, ThePathIsThatOfTheLastMoveThatHasBegunAndRestsAtItsEnd) {
   }
   for (const int k : {280, 281, 400}) {
     const RigidPoint rest = table.PathAround(k)[1];
-    EXPECT_EQ(rest.angle_rad, (std::array{25 * kDeg, 10 * kDeg})) << k;
+    EXPECT_EQ(rest.angle_rad, (std::array{25 * kRadPerDeg, 10 * kRadPerDeg})) << k;
     EXPECT_EQ(rest.rate_rad_s, (std::array<double, 2>{})) << k;
     EXPECT_EQ(rest.acceleration_rad_s2, (std::array<double, 2>{})) << k;
   }
@@ -203,7 +203,7 @@ TEST(Retarget, WhereNoDurationKeepsTheLimitsItSaysSo) {
   Experiment experiment = PathMoves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
                                      {.start_s = 1.4, .duration_s = 2.0, .to_deg = {10, 0}}});
   MotionLimits limits = ShippedLimits();
-  limits.soft_angle_rad[0] = 42 * kDeg;
+  limits.soft_angle_rad[0] = 42 * kRadPerDeg;
   EXPECT_THAT(PathRefusal(experiment, limits),
               AllOf(HasSubstr("move[1]: the angle of joint 1"),
                     HasSubstr("no duration_s up to 60 keeps the limits where it takes over")));
@@ -235,10 +235,10 @@ TEST(Retarget, AngleLimitsHoldForLightArmsToo) {
     farthest_Y = std::max(farthest_Y, path.At(k).angle_rad[0]);
   }
   const double heavy = farthest(1.0);
-  ASSERT_LT(heavy, farthest_Y - 0.5 * kDeg) << "no difference: the test says nothing";
+  ASSERT_LT(heavy, farthest_Y - 0.5 * kRadPerDeg) << "no difference: the test says nothing";
   for (const double payload_kg : {0.0, 0.05, 0.15, 0.4}) {
     EXPECT_GT(farthest(payload_kg), heavy) << payload_kg;
-    EXPECT_LT(farthest(payload_kg), farthest_Y + 0.02 * kDeg) << payload_kg;
+    EXPECT_LT(farthest(payload_kg), farthest_Y + 0.02 * kRadPerDeg) << payload_kg;
   }
   MotionLimits limits = ShippedLimits();
   limits.soft_angle_rad[0] = 0.5 * (heavy + farthest_Y);

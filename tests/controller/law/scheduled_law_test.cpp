@@ -13,8 +13,8 @@
 #include "controller/law/path_reference.h"
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
-#include "tests/support/degrees.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
@@ -60,7 +60,7 @@ constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
 
 TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0), {0.1, -0.2});
-  const std::array<double, 2> to_rad = {30 * kDeg, -20 * kDeg};
+  const std::array<double, 2> to_rad = {30 * kRadPerDeg, -20 * kRadPerDeg};
   const RigidJointArm arm = ArmOf(ShippedPathDesign());
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(table.At(0).x_m[i], i == 0 ? 0.1 : -0.2);

@@ -8,8 +8,8 @@
 
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
-#include "tests/support/degrees.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
@@ -81,8 +81,8 @@ std::string RefusalOf(const CsvTrajectory& csv, double start_rad, double duratio
 }
 
 TEST(Trajectory, OneThatCannotBeFollowedIsRefused) {
-  EXPECT_EQ(RefusalOf(Swinging(0.1), 0.9 * kDeg), "");
-  EXPECT_THAT(RefusalOf(Swinging(0.1), 1.1 * kDeg),
+  EXPECT_EQ(RefusalOf(Swinging(0.1), 0.9 * kRadPerDeg), "");
+  EXPECT_THAT(RefusalOf(Swinging(0.1), 1.1 * kRadPerDeg),
               AllOf(HasSubstr("swing.csv: the first row puts joint 1 at 0 deg"), HasSubstr("1.1")));
   EXPECT_EQ(RefusalOf(Swinging(0.1), 0.0, 3.02), "");
   EXPECT_THAT(RefusalOf(Swinging(0.1), 0.0, 3.0), HasSubstr("one period after its last row"));

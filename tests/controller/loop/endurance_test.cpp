@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "model/units.h"
 #include "tests/controller/loop/stack_run.h"
 
 namespace flexarm {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr int kCycles = 10;
 constexpr double kCycle_s = 6.0;
-constexpr double kDegPerRad = 57.29577951308232;
 
 Experiment Cycling() {
   const Experiment base = ShippedExperiment();

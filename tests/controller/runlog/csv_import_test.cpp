@@ -3,8 +3,8 @@
 #include "controller/runlog/csv_import.h"
 
 #include "controller/runlog/csv.h"
+#include "model/units.h"
 #include "tests/controller/runlog/runlog_fixture.h"
-#include "tests/support/degrees.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
@@ -33,10 +33,13 @@ CsvImport Import() {
     return CsvColumn{.column = name, .unit = unit, .scale = scale, .offset = 0.0, .target = target};
   };
   CsvImport import{.decimation = 4, .column = {}};
-  import.column = {column("t", 1e-3, 1.0, "time"),          column("a", kDeg, 1.0, "hub1"),
-                   column("b", kDeg, 2.0, "hub2"),          column("i1", 1.0, 8.0, "torque_1"),
-                   column("i2", 1.0, 0.5, "torque_2"),      column("g1", 1.0, 1.0, "strain_1_01"),
-                   column("g2", kDeg, 100.0, "strain_2_01")};
+  import.column = {column("t", 1e-3, 1.0, "time"),
+                   column("a", kRadPerDeg, 1.0, "hub1"),
+                   column("b", kRadPerDeg, 2.0, "hub2"),
+                   column("i1", 1.0, 8.0, "torque_1"),
+                   column("i2", 1.0, 0.5, "torque_2"),
+                   column("g1", 1.0, 1.0, "strain_1_01"),
+                   column("g2", kRadPerDeg, 100.0, "strain_2_01")};
   return import;
 }
 

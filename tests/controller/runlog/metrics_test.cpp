@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/support/degrees.h"
+#include "model/units.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
@@ -51,9 +51,9 @@ RunMetrics Judge(const std::vector<TickRecord>& ticks) {
 TEST(RunMetrics, RmsIsOverAllRunningTicksAgainstTheReference) {
   const auto ticks = Trace(6, [](double t, TickRecord* record) {
     record->input.reference_now.x_m[0] = std::sin(t);
-    record->truth.hub_angle_rad[0] = std::sin(t) + 2 * kDeg;
+    record->truth.hub_angle_rad[0] = std::sin(t) + 2 * kRadPerDeg;
     const bool odd = record->input.tick % 2 != 0;
-    record->truth.hub_angle_rad[1] = odd ? 4 * kDeg : 0;  // 999 .. 1300: 151 of 302 are odd
+    record->truth.hub_angle_rad[1] = odd ? 4 * kRadPerDeg : 0;  // 999 .. 1300: 151 of 302 are odd
   });
   const RunMetrics metrics = Judge(ticks);
   EXPECT_EQ(metrics.ticks, 302);
@@ -64,10 +64,11 @@ TEST(RunMetrics, RmsIsOverAllRunningTicksAgainstTheReference) {
 
 TEST(RunMetrics, FinalErrorIsTheWorstRestsMeanOverItsLastThreeTenths) {
   const auto ticks = Trace(6, [](double t, TickRecord* record) {
-    if (t > 2.71 && t < 3.01) record->truth.hub_angle_rad[0] = -0.5 * kDeg;  // the window exactly
-    if (t > 5.71) record->truth.hub_angle_rad[0] = 0.3 * kDeg;
-    if (t > 2.69 && t < 2.71) record->truth.hub_angle_rad[1] = 50 * kDeg;  // just before it
-    if (t > 3.01 && t < 3.03) record->truth.hub_angle_rad[1] = 50 * kDeg;  // just after it
+    if (t > 2.71 && t < 3.01)
+      record->truth.hub_angle_rad[0] = -0.5 * kRadPerDeg;  // the window exactly
+    if (t > 5.71) record->truth.hub_angle_rad[0] = 0.3 * kRadPerDeg;
+    if (t > 2.69 && t < 2.71) record->truth.hub_angle_rad[1] = 50 * kRadPerDeg;  // just before it
+    if (t > 3.01 && t < 3.03) record->truth.hub_angle_rad[1] = 50 * kRadPerDeg;  // just after it
   });
   const RunMetrics metrics = Judge(ticks);
   EXPECT_NEAR(metrics.joint_final_error_deg[0], 0.5, 1e-12);
@@ -150,7 +151,7 @@ TEST(RunMetrics, PeakBendingIsTheTipsTrueDeflectionOrTheSumOfTheEstimatedModes) 
 
 TEST(RunMetrics, ARunThatEndedInItsFirstRestIsJudgedOnThatRestAlone) {
   const auto ticks = Trace(2, [](double t, TickRecord* record) {
-    record->truth.hub_angle_rad[0] = t > 1.71 ? kDeg : 0;
+    record->truth.hub_angle_rad[0] = t > 1.71 ? kRadPerDeg : 0;
   });
   EXPECT_NEAR(Judge(ticks).joint_final_error_deg[0], 1, 1e-12);
 }
@@ -192,7 +193,7 @@ TEST(RunMetrics, NoTickAtAllIsNoError) {
 TEST(RunMetrics, WithoutTruthTheEstimateIsJudged) {
   const auto ticks = Trace(6, [](double, TickRecord* record) {
     record->truth.known = false;
-    record->output.x_hat[0] = kDeg;
+    record->output.x_hat[0] = kRadPerDeg;
   });
   const RunMetrics metrics = Judge(ticks);
   EXPECT_FALSE(metrics.truth);
@@ -200,7 +201,7 @@ TEST(RunMetrics, WithoutTruthTheEstimateIsJudged) {
 }
 
 TEST(EstimatedTip, IsTheEndOfTwoRigidLinksWithoutBending) {
-  const auto tip = EstimatedTip(kGeometry, {kDeg * 90, kDeg * 90});
+  const auto tip = EstimatedTip(kGeometry, {kRadPerDeg * 90, kRadPerDeg * 90});
   EXPECT_NEAR(tip[0], -0.7, 1e-12);
   EXPECT_NEAR(tip[1], 1.0, 1e-12);
 }
