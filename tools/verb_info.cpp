@@ -111,7 +111,7 @@ std::string Text(const OrderedJson& value) {
   return text.str();
 }
 
-void Line(const std::string& name, const OrderedJson& value, const std::string& unit = "") {
+void PrintLine(const std::string& name, const OrderedJson& value, const std::string& unit = "") {
   std::cout << "  " << std::left << std::setw(24) << name << Text(value)
             << (unit.empty() || value.is_null() ? "" : " " + unit) << '\n';
 }
@@ -119,13 +119,13 @@ void Line(const std::string& name, const OrderedJson& value, const std::string& 
 void PrintMetrics(const OrderedJson& metrics) {
   std::cout << (metrics["truth"].get<bool>() ? "Figures, from the plant's true motion\n"
                                              : "Figures, from the estimate\n");
-  Line("joint error, rms", metrics["joint_rms_error_deg"], "deg");
-  Line("joint error, final", metrics["joint_final_error_deg"], "deg");
-  Line("tip settling time", metrics["tip_settling_time_s"], "s");
-  Line("tip residual, rms", metrics["tip_residual_rms_mm"], "mm");
-  Line("peak torque", metrics["peak_torque_nm"], "N m");
-  Line("torque, rms", metrics["torque_rms_nm"], "N m");
-  Line("peak bending", metrics["peak_bending_mm"], "mm");
+  PrintLine("joint error, rms", metrics["joint_rms_error_deg"], "deg");
+  PrintLine("joint error, final", metrics["joint_final_error_deg"], "deg");
+  PrintLine("tip settling time", metrics["tip_settling_time_s"], "s");
+  PrintLine("tip residual, rms", metrics["tip_residual_rms_mm"], "mm");
+  PrintLine("peak torque", metrics["peak_torque_nm"], "N m");
+  PrintLine("torque, rms", metrics["torque_rms_nm"], "N m");
+  PrintLine("peak bending", metrics["peak_bending_mm"], "mm");
 }
 
 void PrintSafety(const RunContents& run) {
@@ -148,20 +148,20 @@ void PrintText(const OrderedJson& json, const RunContents& run) {
   std::cout << json["run"].get<std::string>() << '\n';
   for (const char* key : {"start_utc", "rig", "backend", "clock", "seed", "experiment", "version",
                           "build_id", "closed", "ticks", "missing_ticks"}) {
-    Line(key, json[key]);
+    PrintLine(key, json[key]);
   }
-  Line("duration", json["duration_s"], "s");
-  Line("delay, longest", json["delay_max_ms"], "ms");
-  Line("final state", json["final_state"]);
+  PrintLine("duration", json["duration_s"], "s");
+  PrintLine("delay, longest", json["delay_max_ms"], "ms");
+  PrintLine("final state", json["final_state"]);
   if (!json["trip"].is_null()) {
-    Line("TRIPPED", json["trip"]["name"]);
-    Line("", json["trip"]["text"]);
+    PrintLine("TRIPPED", json["trip"]["name"]);
+    PrintLine("", json["trip"]["text"]);
   }
   if (!json["metrics"].is_null()) PrintMetrics(json["metrics"]);
   if (!json["timing"].is_null()) {
     std::cout << "Timing of the loop\n";
-    Line("woke late, worst", json["timing"]["late_max_us"], "us");
-    Line("step took, worst", json["timing"]["took_max_us"], "us");
+    PrintLine("woke late, worst", json["timing"]["late_max_us"], "us");
+    PrintLine("step took, worst", json["timing"]["took_max_us"], "us");
   }
   if (!run.safety.empty()) PrintSafety(run);
 }

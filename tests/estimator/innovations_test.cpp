@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include "estimator/state_estimator.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "tests/estimator/thesis_estimator.h"
 

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <vector>
 
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "tests/model/golden_data.h"
 #include "tests/support/loop_time.h"

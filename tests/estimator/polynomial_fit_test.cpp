@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
+#include "model/dense_decompositions.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "hal/gauge_filter.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "tests/estimator/thesis_estimator.h"
 

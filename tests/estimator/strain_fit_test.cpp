@@ -6,13 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <cmath>
 #include <complex>
 #include <cstdio>
 #include <random>
 
 #include "model/arm_model.h"
+#include "model/dense_decompositions.h"
 #include "tests/estimator/thesis_estimator.h"
 
 namespace flexarm {

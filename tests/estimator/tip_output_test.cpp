@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "model/dense_decompositions.h"
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
 

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 
 #include "model/arm_equations.h"
+#include "model/dense_decompositions.h"
 #include "model/linearization.h"
 #include "tests/support/thesis_rig.h"
 

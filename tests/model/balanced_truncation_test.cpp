@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <vector>
 
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/reduction/arm_reduction.h"
 #include "tests/support/thesis_rig.h"

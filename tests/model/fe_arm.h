@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <vector>
 
 #include "model/arm_parameters.h"
+#include "model/dense_decompositions.h"
 
 namespace flexarm {
 

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 
 #include "model/arm_model.h"
+#include "model/dense_decompositions.h"
 #include "model/linearization.h"
 #include "model/link_modes.h"
 #include "tests/support/thesis_rig.h"

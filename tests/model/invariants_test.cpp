@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "model/arm_simulator.h"
+#include "model/dense_decompositions.h"
 #include "tests/model/arm_energy.h"
 #include "tests/model/swinging_arm.h"
 #include "tests/support/thesis_rig.h"

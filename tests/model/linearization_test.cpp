@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "model/dense_decompositions.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 
+#include "model/dense_decompositions.h"
 #include "model/reduction/arm_reduction.h"
 #include "tests/support/thesis_rig.h"
 

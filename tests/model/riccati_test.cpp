@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <vector>
+
+#include "model/dense_decompositions.h"
 
 extern "C" void sb02od_(const char* dico, const char* jobb, const char* fact, const char* uplo,
                         const char* jobl, const char* sort, const int* n, const int* m,

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "model/arm_model.h"
 #include "model/arm_simulator.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/rigid_joint_transition.h"
 #include "tests/hal/thesis_sensors.h"

@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "controller/law/refused.h"
 #include "model/arm_model.h"
+#include "model/dense_decompositions.h"
 #include "tests/controller/commissioning/rest_ticks.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/message_of.h"

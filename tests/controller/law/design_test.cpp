@@ -5,14 +5,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
 #include "controller/law/refused.h"
+#include "model/dense_decompositions.h"
 #include "tests/controller/law/golden_design.h"
 #include "tests/controller/law/shipped_rig.h"
 

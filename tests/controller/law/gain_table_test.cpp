@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <stdexcept>
 
 #include "controller/law/gain_payload.h"
 #include "model/arm_model.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/linearization.h"
 #include "model/units.h"

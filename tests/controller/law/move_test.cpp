@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "controller/law/reference.h"
 #include "controller/law/refused.h"
+#include "model/dense_decompositions.h"
 #include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"

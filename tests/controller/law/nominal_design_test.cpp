@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -12,6 +11,7 @@
 #include "controller/law/design.h"
 #include "estimator/nominal_model.h"
 #include "model/arm_model.h"
+#include "model/dense_decompositions.h"
 #include "model/discretize.h"
 #include "model/linearization.h"
 #include "tests/controller/law/golden_design.h"

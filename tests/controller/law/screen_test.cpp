@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,6 +15,7 @@
 #include "hal/gauge_filter.h"
 #include "model/arm_model.h"
 #include "model/arm_simulator.h"
+#include "model/dense_decompositions.h"
 #include "tests/controller/law/shipped_rig.h"
 
 namespace flexarm {

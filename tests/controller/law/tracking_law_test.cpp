@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 
+#include "model/dense_decompositions.h"
 #include "tests/controller/law/shipped_rig.h"
 
 namespace flexarm {
