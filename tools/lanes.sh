@@ -8,9 +8,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck disable=SC2034  # tools/run-tests reads them
 {
   quick_lanes=(format layers unit)
-  ci_lanes=(format layers release step-cost install hil bench e2e headers build-cost tsan asan
-            clang-tidy guest)
-  only_all_lanes=(unit headers-all separate clang-tidy-all asan-all)
+  ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan clang-tidy guest)
+  only_all_lanes=(unit build-cost headers-all separate clang-tidy-all asan-all)
 }
 
 logs=build/logs
@@ -211,20 +210,21 @@ lane_separate() {  # every source compiles by itself, without batches
   build separate
 }
 
-tidy() {  # tidy OPTION..: a finding is an error (WarningsAsErrors)
+product=(model hal estimator controller config tools)
+
+tidy() {  # tidy OPTION.. FOLDER..: a finding is an error (WarningsAsErrors)
   # Commands of the files themselves: the release build's are those of batches.
   build separate flexarm_build_info
-  tools/lint/tidy.py --jobs "$jobs" --note "$logs/$lane.note" "$@" \
-    model hal estimator controller config tools tests
+  tools/lint/tidy.py --jobs "$jobs" --note "$logs/$lane.note" "$@"
 }
 
 # In CI the time is limited; what it leaves is named, and clang-tidy-all checks it.
-lane_clang-tidy() {  # .clang-tidy on files that changed of late
-  tidy --changed --within 450
+lane_clang-tidy() {  # .clang-tidy on files of the product that changed of late
+  tidy --changed --within 450 "${product[@]}"
 }
 
 lane_clang-tidy-all() {  # .clang-tidy on product and tests; not again where unchanged
-  tidy
+  tidy "${product[@]}" tests
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then

@@ -216,7 +216,8 @@ TEST(KalmanFilter, ATorqueThatChangesWithinThePeriodIsFollowed) {
   const auto out = estimator.Update(none, invalid, pieces);
   const auto mean = by_mean.Update(none, invalid, {0.6, 0.12});
   Eigen::VectorXd x = Eigen::VectorXd::Zero(16);
-  const double first_s = kPeriod_s * static_cast<double>(kPeriodTicks * 3 / 10) / kPeriodTicks;
+  constexpr auto kFirstTicks = kPeriodTicks * 3 / 10;
+  const double first_s = kPeriod_s * static_cast<double>(kFirstTicks) / kPeriodTicks;
   const DiscreteModel first = ZeroOrderHold(design.A_rate, design.B_rate, first_s),
                       second = ZeroOrderHold(design.A_rate, design.B_rate, kPeriod_s - first_s);
   x = first.A * x + first.B * Eigen::Vector2d(before[0], before[1]);

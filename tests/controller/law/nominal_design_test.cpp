@@ -122,7 +122,7 @@ MatrixXd NominalOf(const Config& config, const ArmModel& plant) {
     for (Index i = 0; i < 10; ++i) {
       const auto& gauge = config.sensors.strain[static_cast<std::size_t>(10 * link + i)];
       for (Index j = 0; j < modes; ++j) {
-        const VectorXd unit = VectorXd::Unit(dof, 4 + link * modes + j);
+        const VectorXd unit = VectorXd::Unit(dof, 4 + Index{link} * modes + j);
         shape(i, j) = plant.Strain(link + 1, gauge.position_m, unit);
       }
     }
