@@ -53,8 +53,9 @@ Eigen::VectorXd OutputVariance(const SensorConfig& sensors, const EstimatorConfi
 // G: generalised forces on all degrees of freedom.
 Eigen::MatrixXd ForceMatrix(const NominalModel& nominal, Eigen::Index states) {
   const Eigen::Index dof = nominal.M.rows();
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(dof, dof);
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(states, dof);
-  G.middleRows(dof, dof) = nominal.M.llt().solve(Eigen::MatrixXd::Identity(dof, dof));
+  G.middleRows(dof, dof) = nominal.M.llt().solve(I);
   return G;
 }
 
@@ -115,8 +116,8 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
 
   const Eigen::MatrixXd A_t = discrete.A.transpose(), C_t = C.transpose();
   const Eigen::MatrixXd P = FilterCovariance(nominal, A_t, C_t, W, R);
-  const Eigen::MatrixXd S = C * P * C_t + R;
-  const Eigen::MatrixXd gain = S.llt().solve(C * P).transpose();
+  const Eigen::MatrixXd CP = C * P, S = CP * C_t + R;
+  const Eigen::MatrixXd gain = S.llt().solve(CP).transpose();
 
   KalmanDesign design{.A = discrete.A,
                       .B = discrete.B,

@@ -49,7 +49,8 @@ Eigen::Matrix2d NominalModel::RigidInertia_kgm2() const {
   for (int joint = 0; joint < 2; ++joint) {
     turn(layout.hub(joint), joint) = turn(layout.rotor(joint), joint) = 1.0;
   }
-  return turn.transpose() * M * turn;
+  const Eigen::MatrixXd inertia = turn.transpose() * M * turn;
+  return inertia;
 }
 
 NominalModel MakeNominalModel(const ArmParameters& arm, const StateLayout& layout) {

@@ -137,7 +137,8 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
     S.diagonal() += R;
     const Eigen::LLT<Eigen::Matrix<double, kOutputs, kOutputs>> S_llt(S);
     const Gain K = S_llt.solve(PHt.transpose()).transpose();
-    estimate_.nis = e.dot(S_llt.solve(e));
+    const Outputs weighted = S_llt.solve(e);
+    estimate_.nis = e.dot(weighted);
     estimate_.innovation = e;
     mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
     for (Rival& rival : rivals) {
@@ -147,7 +148,8 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
         rival.innovation[i] -= rival.apart[kSeen[static_cast<std::size_t>(i)]];
         if (i == 2 || i == 3) rival.innovation[i] -= Torsion(rival.torque)[i - 2] - torsion[i - 2];
       }
-      rival.nis = rival.innovation.dot(S_llt.solve(rival.innovation));
+      const Outputs rival_weighted = S_llt.solve(rival.innovation);
+      rival.nis = rival.innovation.dot(rival_weighted);
     }
     Correct(K, e, R, rivals);
   }

@@ -29,8 +29,8 @@ Eigen::MatrixXd PolynomialModalMap(const LinkModes& link, const std::vector<Stra
                            std::pow(at.position_m / L, p - 2) / (L * L);
     }
   }
-  const Eigen::MatrixXd coefficients =
-      curvature.colPivHouseholderQr().solve(Eigen::MatrixXd(root_weight.asDiagonal()));
+  const Eigen::MatrixXd weights = root_weight.asDiagonal();
+  const Eigen::MatrixXd coefficients = curvature.colPivHouseholderQr().solve(weights);
 
   Eigen::MatrixXd powers(kPoints, kPolynomialTerms), shapes(kPoints, modes);
   for (Eigen::Index i = 0; i < kPoints; ++i) {
@@ -40,7 +40,8 @@ Eigen::MatrixXd PolynomialModalMap(const LinkModes& link, const std::vector<Stra
       shapes(i, j) = link.mode[static_cast<std::size_t>(j)].Value(s * L);
     }
   }
-  return shapes.colPivHouseholderQr().solve(powers * coefficients);
+  const Eigen::MatrixXd deflection = powers * coefficients;
+  return shapes.colPivHouseholderQr().solve(deflection);
 }
 
 }  // namespace flexarm

@@ -3,6 +3,7 @@
 // Bodies of model/articulated_arm.h, which explains them.
 
 #include "model/articulated_arm.h"
+#include "model/small_cholesky.h"
 
 namespace flexarm {
 
@@ -44,9 +45,9 @@ StepConstants<M>::StepConstants(const FixedConstants<M>& c, double step) : h(ste
   DhG1 = c.D1 + half * c.G1, DhG2 = c.D2 + half * c.G2;
   const Mat A1 = c.N1 + half * c.D1 + quarter * c.G1;
   const Mat A2 = c.N2 + half * c.D2 + quarter * c.G2;
-  // LLT of a fixed size: no allocation, and A is positive definite.
-  A1_inv = A1.llt().solve(Mat::Identity());
-  A2_inv = A2.llt().solve(Mat::Identity());
+  const Mat I = Mat::Identity();
+  A1_inv = SmallCholesky<M>(A1).Solve(I);
+  A2_inv = SmallCholesky<M>(A2).Solve(I);
   Eigen::Matrix<double, M, 3> C1, C2;
   C1 << c.a1, c.p1, c.s1;
   C2 << c.k2, c.a2, c.s2;

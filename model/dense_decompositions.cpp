@@ -5,7 +5,11 @@ namespace Eigen {
 template void PartialPivLU<MatrixXd>::compute();
 template void PartialPivLU<MatrixXcd>::compute();
 template LLT<MatrixXd>& LLT<MatrixXd>::compute<MatrixXd>(const EigenBase<MatrixXd>&);
+template void LLT<MatrixXd>::_solve_impl(const MatrixXd&, MatrixXd&) const;
+template void LLT<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 template void ColPivHouseholderQR<MatrixXd>::computeInPlace();
+template void ColPivHouseholderQR<MatrixXd>::_solve_impl(const MatrixXd&, MatrixXd&) const;
+template void ColPivHouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 template JacobiSVD<MatrixXd>& JacobiSVD<MatrixXd>::compute(const MatrixXd&, unsigned int);
 template ComplexSchur<MatrixXd>& ComplexSchur<MatrixXd>::compute<MatrixXd>(
     const EigenBase<MatrixXd>&, bool);

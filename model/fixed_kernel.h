@@ -4,6 +4,7 @@
 
 #include "model/articulated_arm.h"
 #include "model/backlash.h"
+#include "model/dense_kernels.h"
 #include "model/step_kernel.h"
 
 namespace flexarm {

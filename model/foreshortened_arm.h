@@ -5,6 +5,7 @@
 
 #include "model/articulated_arm.h"
 #include "model/shortened_link.h"
+#include "model/small_cholesky.h"
 
 namespace flexarm {
 
@@ -64,7 +65,7 @@ class ForeshortenedArm {
   Outer f_;                             // bias on outer
   Vec f2_;                              // bias on phi2
   Eigen::Matrix<double, kInner, 3> V_;  // L^-1 [inner against th1, th2 | inner right side]
-  Eigen::LLT<Eigen::Matrix<double, kInner, kInner>> L_;
+  SmallCholesky<kInner> factor_;
   Eigen::Matrix2d Z_;
   Eigen::Vector2d y_;
 };

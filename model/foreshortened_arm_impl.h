@@ -115,11 +115,11 @@ void ForeshortenedArm<M>::Factorise(const AppliedForces<M>& r) noexcept {
   A.template block<M, M>(1, 1) = A_.template topLeftCorner<M, M>();
   A.template block<M, M>(1 + M, 1) = B_.template leftCols<M>();
   A.template block<M, M>(1 + M, 1 + M) = A2_;
-  L_.compute(A);                                                         // reads the lower half
+  factor_.Compute(A);
   V_ << c_.J2, -r.K2h, r.th4 - c_.J2 * kappa_,                           //
       A_.template topRightCorner<M, 2>(), r.f1 - f_.template head<M>(),  //
       B_.template rightCols<2>(), r.f2 - f2_;
-  L_.matrixL().solveInPlace(V_);
+  factor_.SolveLower(&V_);
   Z_ = A_.template bottomRightCorner<2, 2>();
   Z_(1, 1) += r.K2h + k_.b2h;
   Z_.noalias() -= V_.template leftCols<2>().transpose() * V_.template leftCols<2>();
@@ -143,7 +143,7 @@ template <int M>
 void ForeshortenedArm<M>::Expand(const std::array<double, 2>& hub,
                                  ArmCoordinates<M>* a) const noexcept {
   Eigen::Matrix<double, kInner, 1> inner = V_.col(2) - hub[0] * V_.col(0) - hub[1] * V_.col(1);
-  L_.matrixU().solveInPlace(inner);
+  factor_.L().transpose().template triangularView<Eigen::Upper>().solveInPlace(inner);
   a->th[0] = hub[0], a->th[1] = hub[1], a->th[3] = inner[0];
   a->f1 = inner.template segment<M>(1);
   a->f2 = inner.template tail<M>();

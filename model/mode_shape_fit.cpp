@@ -26,7 +26,8 @@ BeamMode::Piece FitSection(const BeamSection& s, double omega, double start,
   // Krylov's functions start as powers of beta x: columns of one size before the factorisation.
   const Eigen::Vector4d scale = basis.colwise().norm().transpose().cwiseInverse();
   const Eigen::MatrixXd scaled = basis * scale.asDiagonal();
-  const Eigen::Vector4d c = scale.asDiagonal() * scaled.colPivHouseholderQr().solve(value);
+  const Eigen::VectorXd solution = scaled.colPivHouseholderQr().solve(value);
+  const Eigen::Vector4d c = scale.cwiseProduct(solution);
   *residual = basis * c - value;
   const double beta = Beta(s, omega);
   const bool decaying = UseDecayingBasis(beta * s.length_m);

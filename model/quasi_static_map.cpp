@@ -1,6 +1,6 @@
 #include "model/quasi_static_map.h"
 
-#include <Eigen/Cholesky>
+#include "model/small_cholesky.h"
 
 namespace flexarm {
 namespace {
@@ -21,13 +21,13 @@ QuasiStaticPose QuasiStaticAt(const RigidJointArm& arm, const OutboardBody& body
   const RigidJointArm::Inertia at = arm.At(body, OfHubs(point.Y), v);
   const Vector g = at.M.lazyProduct(a) + at.bias + arm.damping().lazyProduct(v);
 
-  const Eigen::LLT<Eigen::Matrix4d> K_ff(arm.stiffness().bottomRightCorner<4, 4>());
-  const Eigen::LLT<Eigen::Matrix2d> M_tt(at.M.topLeftCorner<2, 2>());
-  const Eigen::Vector4d f = -K_ff.solve(g.tail<4>());
+  const SmallCholesky<4> K_ff(arm.stiffness().bottomRightCorner<4, 4>());
+  const SmallCholesky<2> M_tt(at.M.topLeftCorner<2, 2>());
+  const Eigen::Vector4d g_f = g.tail<4>(), f = -K_ff.Solve(g_f);
   const Eigen::Vector2d M_tf_f = at.M.topRightCorner<2, 4>().lazyProduct(f);
 
   QuasiStaticPose out;
-  out.q << point.Y - M_tt.solve(M_tf_f), f;
+  out.q << point.Y - M_tt.Solve(M_tf_f), f;
   out.torque_nm = g.head<2>();
   return out;
 }

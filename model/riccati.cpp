@@ -71,7 +71,8 @@ MatrixXcd SolveTriangularStein(const MatrixXcd& S, const MatrixXcd& T, const Mat
 
 MatrixXd DareGain(const MatrixXd& A, const MatrixXd& B, const MatrixXd& R, const MatrixXd& P) {
   const MatrixXd H = Symmetric(R + B.transpose() * P * B);
-  return H.llt().solve(B.transpose() * P * A);
+  const MatrixXd BtPA = B.transpose() * P * A;
+  return H.llt().solve(BtPA);
 }
 
 double DareResidual(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R,
@@ -86,7 +87,8 @@ MatrixXd SolveDare(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, cons
   CheckDare(A, B, Q, R);
   constexpr int kMaxDoublings = 60;
   const MatrixXd one = MatrixXd::Identity(A.rows(), A.cols());
-  MatrixXd Ak = A, Gk = Symmetric(B * R.llt().solve(B.transpose())), Hk = Symmetric(Q);
+  const MatrixXd Bt = B.transpose(), G = B * R.llt().solve(Bt);
+  MatrixXd Ak = A, Gk = Symmetric(G), Hk = Symmetric(Q);
   for (int i = 0; i < kMaxDoublings; ++i) {
     const Eigen::PartialPivLU<MatrixXd> W(one + Gk * Hk);
     const MatrixXd WA = W.solve(Ak), WG = W.solve(Gk);
@@ -115,7 +117,8 @@ MatrixXd SolveStein(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
     const MatrixXd residual = C - (X - A * X * B);
     const MatrixXcd F = a.matrixU().adjoint() * residual * b.matrixU();
     const MatrixXcd Y = SolveTriangularStein(a.matrixT(), b.matrixT(), F);
-    X += (a.matrixU() * Y * b.matrixU().adjoint()).real();
+    const MatrixXcd correction = a.matrixU() * Y * b.matrixU().adjoint();
+    X += correction.real();
   }
   return X;
 }

@@ -38,7 +38,7 @@ RigidJointArm::RigidJointArm(const ArmParameters& parameters)
   N1_ = c.link1.N;
   s2_ = c.link2.slope_tip;
 
-  Eigen::Matrix<double, 8, kDof> T_r = Eigen::Matrix<double, 8, kDof>::Zero();
+  Eigen::MatrixXd T_r = Eigen::MatrixXd::Zero(8, kDof);
   T_r(kTheta1, 0) = T_r(kTheta3, 0) = T_r(kTheta2, 1) = T_r(kTheta4, 1) = 1.0;
   T_r.bottomRightCorner<4, 4>().setIdentity();
   stiffness_ = T_r.transpose() * model.stiffness() * T_r;

@@ -1,12 +1,12 @@
 #include "model/rigid_joint_step.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "model/box_friction.h"
+#include "model/small_cholesky.h"
 
 namespace flexarm {
 
@@ -65,9 +65,9 @@ RigidJointArm::Vector RigidJointStepper::AccelerationAt(const GaugedState& x,
 inline RigidJointArm::Vector RigidJointStepper::Solve(
     const RigidJointArm::Matrix& A, const Vector& r, const Vector& v,
     const std::array<double, 2>& friction_nm) const noexcept {
-  const Eigen::LLT<Eigen::Matrix4d> flexible(A.bottomRightCorner<4, 4>());
-  const Eigen::Matrix<double, 4, 2> X = flexible.solve(A.bottomLeftCorner<4, 2>());
-  const Eigen::Vector4d y = flexible.solve(r.tail<4>());
+  const SmallCholesky<4> flexible(A.bottomRightCorner<4, 4>());
+  const Eigen::Matrix<double, 4, 2> A_fh = A.bottomLeftCorner<4, 2>(), X = flexible.Solve(A_fh);
+  const Eigen::Vector4d r_f = r.tail<4>(), y = flexible.Solve(r_f);
   const Eigen::Matrix2d Z = A.topLeftCorner<2, 2>() - A.topRightCorner<2, 4>().lazyProduct(X);
   const Eigen::Vector2d r_hub = r.head<2>() - A.topRightCorner<2, 4>().lazyProduct(y);
   const FrictionSolution hubs = BoxFriction(Z(0, 0), Z(1, 0), Z(1, 1), r_hub[0], r_hub[1])

@@ -117,7 +117,7 @@ lane_unit() {  # tests labelled unit, release build (part of release)
   list=$(ninja -C build/release -t targets all | sed -n 's/^\([a-z_]*_test\): phony$/\1/p' |
          grep -vE '^cmake_|_(loop|long|rt)_test$')
   mapfile -t programs <<<"$list"
-  build release flexarm "${programs[@]}"
+  build release flexarm flexarm-study "${programs[@]}"
   ctest --preset unit
 }
 
@@ -133,7 +133,7 @@ lane_step-cost() {  # instructions of one control step are within their limits
 }
 
 lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, bad input
-  build release flexarm flexarmd
+  build release flexarm flexarm-study flexarmd
   ctest --preset e2e
 }
 
@@ -164,7 +164,7 @@ lane_headers-all() {  # every public header compiles on its own
 }
 
 lane_install() {  # cmake --install leaves a complete tree, and systemd accepts the unit
-  build release flexarm flexarmd
+  build release flexarm flexarm-study flexarmd
   tests/e2e/install_check.sh build/release
 }
 
@@ -180,7 +180,7 @@ asan_labels='^(unit|loop|hostile)$'
 
 lane_asan() {  # address, undefined behaviour: code that parses, drives a bus or has threads
   local folder
-  build asan flexarm flexarmd "${exposed_tests[@]/%//all}"
+  build asan flexarm flexarm-study flexarmd "${exposed_tests[@]/%//all}"
   use_environment_of asan
   for folder in "${exposed_tests[@]}"; do test_folder asan "$folder" "$asan_labels"; done
   test_folder asan tests/e2e '^hostile$'

@@ -1,11 +1,12 @@
 #include <CLI/CLI.hpp>
 
+#include "tools/studies.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
 
 void RegisterAnalyze(CLI::App& app, Exit& exit) {
-  CLI::App* verb = app.add_subcommand("analyze", "What the model says about the arm");
+  CLI::App* verb = AddStudy(app, "analyze");
   verb->require_subcommand(1);
   RegisterAnalyzeCheck(*verb, exit);
   RegisterAnalyzeExcite(*verb, exit);

@@ -6,6 +6,7 @@
 #include "tools/benchmark/benchmark.h"
 #include "tools/options.h"
 #include "tools/parallel.h"
+#include "tools/studies.h"
 #include "tools/text_file.h"
 #include "tools/verbs.h"
 
@@ -49,8 +50,7 @@ void Run(const BenchmarkOptions& options) {
 
 void RegisterBenchmark(CLI::App& app, Exit&) {
   const auto options = std::make_shared<BenchmarkOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "benchmark", "Every control law in the same situations: settling, errors, effort, one score");
+  CLI::App* verb = AddStudy(app, "benchmark");
   options->config.AddTo(verb, true);
   verb->add_option("--table", options->table,
                    "commands (default): the commands of config/experiments\n"

@@ -10,6 +10,7 @@
 #include "tools/options.h"
 #include "tools/parallel.h"
 #include "tools/run_summary.h"
+#include "tools/studies.h"
 #include "tools/text_file.h"
 #include "tools/verbs.h"
 
@@ -156,8 +157,7 @@ int Run(const IdentifyOptions& options) {
 
 void RegisterIdentify(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<IdentifyOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "identify", "Find parameters of the rig that let the model predict a measured run");
+  CLI::App* verb = AddStudy(app, "identify");
   options->config.AddTo(verb, false);
   verb->add_option("--run", options->run, "Run log or CSV file (*.csv) to find them from")
       ->required()

@@ -12,6 +12,7 @@
 #include "model/units.h"
 #include "tools/analysis/beam_report.h"
 #include "tools/options.h"
+#include "tools/studies.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -125,8 +126,7 @@ void AddBase(CLI::App* verb, ModesOptions* options) {
 
 void RegisterModes(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ModesOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "modes", "Natural frequencies of the links and of the whole arm, undamped");
+  CLI::App* verb = AddStudy(app, "modes");
   options->config.AddTo(verb, true);
   verb->add_option("--modes", options->modes, "Bending modes a link")
       ->check(CLI::Range(1, 6))

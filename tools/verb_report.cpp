@@ -5,6 +5,7 @@
 
 #include "tools/options.h"
 #include "tools/report/report.h"
+#include "tools/studies.h"
 #include "tools/verbs.h"
 
 namespace flexarm {
@@ -32,8 +33,7 @@ void Run(const ReportOptions& options) {
 
 void RegisterReport(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "report", "Every figure and table of chapters 4 to 7 recomputed, in one HTML page");
+  CLI::App* verb = AddStudy(app, "report");
   options->config.AddTo(verb, true);
   verb->add_option("-o,--output", options->output, "Folder to write, new or empty")
       ->required()

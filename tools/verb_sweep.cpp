@@ -7,6 +7,7 @@
 #include "controller/runlog/errors.h"
 #include "tools/options.h"
 #include "tools/parallel.h"
+#include "tools/studies.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/sweep.h"
 #include "tools/sweep/sweep_summary.h"
@@ -208,8 +209,7 @@ void AddAxisOptions(CLI::App* verb, RunOptions* options) {
 
 void RegisterSweep(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<RunOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "sweep", "Simulate an experiment over a grid of values, on all cores, resumable");
+  CLI::App* verb = AddStudy(app, "sweep");
   options->config.AddTo(verb, false);
   verb->add_option(
           "--experiment", options->experiment,

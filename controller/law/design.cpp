@@ -61,8 +61,9 @@ void DesignRegulator(const StackConfig& config, Design* design) {
   const Eigen::Matrix2d I2 = Eigen::Matrix2d::Identity();
   const Eigen::MatrixXd P = SolveDare(a * A, a * B, Q, I2);
   design->P = a * a * P;
-  const Eigen::Matrix2d S = I2 + B.transpose() * design->P * B;
-  design->K = S.llt().solve(B.transpose() * design->P * A);
+  const Eigen::MatrixXd BtP = B.transpose() * design->P, BtPA = BtP * A;
+  const Eigen::MatrixXd S = I2 + BtP * B;
+  design->K = S.llt().solve(BtPA);
   design->K_stop = CalmGain(A, B, Q);
   design->J = 0.5 * B.transpose() * design->P * B;
   design->G = design->J + controller.passivity_margin * I2;
@@ -103,9 +104,16 @@ void DesignCommandGenerator(const NominalModel& nominal, Design* design) {
   design->checks.push_back({"cgt-residual", TrackingResidual(problem, generator), 1e-8, true});
 
   const Eigen::MatrixXd& B = design->B;
-  const Eigen::Matrix2d BtB = B.transpose() * B;
-  design->Ufx = BtB.llt().solve(B.transpose() * (design->Am - design->A));  // (7.25)
-  design->Ufu = BtB.llt().solve(B.transpose() * design->Bm);
+  const Eigen::MatrixXd BtB = B.transpose() * B;
+  const Eigen::MatrixXd missing = B.transpose() * (design->Am - design->A);
+  const Eigen::MatrixXd BtBm = B.transpose() * design->Bm;
+  design->Ufx = BtB.llt().solve(missing);  // (7.25)
+  design->Ufu = BtB.llt().solve(BtBm);
+}
+
+// Of the Hermitian matrix [a b; b* d].
+double SmallestEigenvalue(double a, double d, const std::complex<double>& b) {
+  return 0.5 * (a + d) - std::hypot(0.5 * (a - d), std::abs(b));
 }
 
 // Smallest eigenvalue of S + S* on the unit circle, S(z) = J + K (zI - A_c)^-1 B: the lemma says
@@ -115,15 +123,14 @@ double PositiveRealMargin(const Design& design) {
   const Eigen::MatrixXcd A_c = (design.A - design.B * design.K).cast<std::complex<double>>();
   const Eigen::MatrixXcd B = design.B.cast<std::complex<double>>();
   const Eigen::MatrixXcd K = design.K.cast<std::complex<double>>();
+  const Eigen::MatrixXcd J = design.J.cast<std::complex<double>>();
   const Eigen::MatrixXcd I = Eigen::MatrixXcd::Identity(A_c.rows(), A_c.cols());
   double smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kFrequencies; ++i) {
     const std::complex<double> z = std::polar(1.0, std::numbers::pi * i / kFrequencies);
-    const Eigen::Matrix2cd S =
-        design.J.cast<std::complex<double>>() + K * (z * I - A_c).partialPivLu().solve(B);
-    const Eigen::Matrix2cd hermitian = S + S.adjoint();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> eigen(hermitian, Eigen::EigenvaluesOnly);
-    smallest = std::min(smallest, eigen.eigenvalues()(0));
+    const Eigen::MatrixXcd state = (z * I - A_c).partialPivLu().solve(B);
+    const Eigen::MatrixXcd S = J + K * state, H = S + S.adjoint();
+    smallest = std::min(smallest, SmallestEigenvalue(H(0, 0).real(), H(1, 1).real(), H(0, 1)));
   }
   return smallest;
 }
@@ -133,8 +140,8 @@ void CheckLemma(double alpha, double period_s, Design* design) {
   const Eigen::MatrixXd mismatch = A_c.transpose() * design->P * design->B - design->K.transpose();
   const Eigen::MatrixXd LLt = design->P - A_c.transpose() * design->P * A_c;
   const auto smallest = [](const Eigen::MatrixXd& symmetric) {
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (symmetric + symmetric.transpose()),
-                                                          Eigen::EigenvaluesOnly)
+    const Eigen::MatrixXd even = 0.5 * (symmetric + symmetric.transpose());
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(even, Eigen::EigenvaluesOnly)
         .eigenvalues()(0);
   };
   design->checks.push_back({"lemma-residual",

@@ -41,13 +41,15 @@ DiscreteModel SampledAt(const RigidJointArm& arm, double payload_kg, double thet
   constexpr Eigen::Index n = RigidJointArm::kDof;
   const RigidJointArm::Vector rest = RigidJointArm::Vector::Zero();
   const RigidJointArm::Vector q = theta2_rad * RigidJointArm::Vector::Unit(1);
-  const Eigen::LLT<RigidJointArm::Matrix> M(
-      arm.At<LibraryMath>(arm.Outboard(payload_kg), q, rest).M);
+  const Eigen::MatrixXd mass = arm.At<LibraryMath>(arm.Outboard(payload_kg), q, rest).M;
+  const Eigen::MatrixXd stiffness = arm.stiffness(), damping = arm.damping();
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::LLT<Eigen::MatrixXd> M(mass);
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n), B = Eigen::MatrixXd::Zero(2 * n, 2);
   A.topRightCorner(n, n).setIdentity();
-  A.bottomLeftCorner(n, n) = -M.solve(arm.stiffness());
-  A.bottomRightCorner(n, n) = -M.solve(arm.damping());
-  B.bottomRows(n) = M.solve(RigidJointArm::Matrix::Identity()).leftCols<2>();
+  A.bottomLeftCorner(n, n) = -M.solve(stiffness);
+  A.bottomRightCorner(n, n) = -M.solve(damping);
+  B.bottomRows(n) = M.solve(I).leftCols<2>();
   return ZeroOrderHold(A, B, period_s);
 }
 

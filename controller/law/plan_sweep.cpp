@@ -1,8 +1,7 @@
 #include "controller/law/plan_sweep.h"
 
-#include <Eigen/Cholesky>
-
 #include "model/rigid_joint_transition.h"
+#include "model/small_cholesky.h"
 
 namespace flexarm {
 namespace {
@@ -39,10 +38,10 @@ void SweepBackward(const RigidJointStepper& stepper, double payload_kg, const Pl
                                     track.torque_nm[k] - targets.quasi_static().torque_nm[k]) +
                                 B.transpose().lazyProduct(v);
 
-    const Eigen::LLT<Eigen::Matrix2d> Q_uu_llt(Q_uu);
-    const Matrix2x12 K = -Q_uu_llt.solve(Q_ux);
+    const SmallCholesky<2> Q_uu_factor(Q_uu);
+    const Matrix2x12 K = -Q_uu_factor.Solve(Q_ux);
     policy->K[k] = K;
-    policy->step_nm[k] = -Q_uu_llt.solve(Q_u);
+    policy->step_nm[k] = -Q_uu_factor.Solve(Q_u);
 
     const PlanState v_next = v;
     v = slope(k) + A.transpose().lazyProduct(v_next) +

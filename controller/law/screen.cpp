@@ -60,9 +60,9 @@ MatrixXd FitOf(const ArmModel& plant, const StackConfig& config) {
   const ArmModel few(config.arm,
                      ModeCount{.link1 = static_cast<int>(modes), .link2 = static_cast<int>(modes)});
   const MatrixXd fitted = StrainShape(few, config.sensors);
-  const MatrixXd fit = (fitted.transpose() * fitted)
-                           .llt()
-                           .solve(fitted.transpose() * StrainShape(plant, config.sensors));
+  const MatrixXd normal = fitted.transpose() * fitted;
+  const MatrixXd seen = fitted.transpose() * StrainShape(plant, config.sensors);
+  const MatrixXd fit = normal.llt().solve(seen);
   MatrixXd used(2 * known, fit.cols());
   used << fit.topRows(known), fit.middleRows(modes, known);
   return used;

@@ -16,7 +16,7 @@ DESTDIR=$machine cmake --install "$build" >/dev/null
 cd "$machine"
 find . -type f | sort
 
-for program in flexarmd flexarm; do
+for program in flexarmd flexarm flexarm-study; do
   file=$(find . -type f -name "$program" -path '*/bin/*')
   [[ -n $file ]] || fail "$program is not installed"
   "$file" --version
@@ -31,6 +31,7 @@ while read -r config; do
   "$flexarm" config check "$config" >/dev/null || fail "$config is refused"
 done < <(find "$(dirname "$hil")" -maxdepth 1 -name '*.toml')
 "$flexarm" simulate -c "$hil" --json >/dev/null || fail "the installed config does not simulate"
+"$flexarm" modes -c "$hil" --json >/dev/null || fail "the installed flexarm does not find flexarm-study"
 
 unit=$(find . -name flexarmd.service)
 [[ -n $unit ]] || fail "no service is installed"

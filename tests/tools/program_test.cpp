@@ -2,12 +2,14 @@
 
 #include <sys/wait.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "controller/law/control_step.h"
 #include "controller/law/design.h"
 #include "tests/controller/runlog/runlog_fixture.h"
 #include "tools/run_summary.h"
+#include "tools/studies.h"
 
 namespace flexarm {
 namespace {
@@ -92,6 +94,30 @@ TEST_F(ProgramTest, BadUsageIsExitCodeTwo) {
   ExpectBadInput("info run.flexarm --frobnicate", "--frobnicate");
   ExpectBadInput("modes", "--config is required");
   ExpectBadInput("modes -c '" + kRig + "' --modes 7", "--modes");
+}
+
+TEST_F(ProgramTest, AStudyAnswersToItsVerb) {
+  for (const Study& study : kStudies) {
+    const std::string verb(study.verb);
+    const Answer help = Run(verb + " --help");
+    EXPECT_EQ(help.code, 0) << verb;
+    EXPECT_EQ(help.out.find(study.description), 0U) << help.out;
+    EXPECT_NE(Run("--help").out.find(study.description.substr(0, 40)), std::string::npos) << verb;
+    EXPECT_EQ(Run(verb + " --no-such-option").code, 2) << verb;
+  }
+}
+
+TEST_F(ProgramTest, AStudyWhoseProgramIsMissingSaysHowToBuildIt) {
+  std::filesystem::copy_file(FLEXARM_PROGRAM, File("flexarm"));
+  const std::string command =
+      "cd '" + folder_.string() + "' && ./flexarm modes -c '" + kRig + "' >out 2>err </dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+  EXPECT_EQ(Bytes(File("out")), "");
+  const std::string said = Bytes(File("err"));
+  EXPECT_NE(said.find("flexarm-study, which has the verb \"modes\": No such file"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("cmake --build --preset release --target flexarm-study"), std::string::npos);
 }
 
 TEST_F(ProgramTest, BadInputIsExitCodeTwoInEveryVerbThatReadsARun) {

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace flexarm {
+
+/// Cholesky factor L of A = L L' for a size known when compiled, at most about 16.
+///
+/// Eigen's LLT has an algorithm for large matrices too, in every size: it costs a compiler seconds
+/// and small systems do not reach it, or pay for its copies. Sums are taken in the order of
+/// Eigen's, so both give the same bits where no fused multiply-add is used. NaN if A is not
+/// positive definite. Real-time: safe.
+template <int N>
+class SmallCholesky {
+ public:
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  SmallCholesky() = default;
+  template <typename Derived>
+  explicit SmallCholesky(const Eigen::MatrixBase<Derived>& A) noexcept {
+    Compute(A);
+  }
+
+  /// Reads the lower half of A.
+  template <typename Derived>
+  void Compute(const Eigen::MatrixBase<Derived>& A) noexcept {
+    L_ = A;
+    for (int k = 0; k < N; ++k) {
+      double square = 0.0;
+      for (int j = 0; j < k; ++j) square += L_(k, j) * L_(k, j);
+      L_(k, k) = std::sqrt(L_(k, k) - square);
+      for (int i = k + 1; i < N; ++i) {
+        double sum = 0.0;
+        for (int j = 0; j < k; ++j) sum += L_(i, j) * L_(k, j);
+        L_(i, k) = (L_(i, k) - sum) / L_(k, k);
+      }
+      inverse_[k] = 1.0 / L_(k, k);
+    }
+  }
+
+  /// The factor; above its diagonal stands what A had there.
+  const Matrix& L() const noexcept { return L_; }
+
+  /// X = L^-1 X, for a few columns.
+  template <int Columns>
+  void SolveLower(Eigen::Matrix<double, N, Columns>* X) const noexcept {
+    for (int panel = 0; panel < N; panel += kPanel) {
+      const int end = panel + kPanel < N ? panel + kPanel : N;
+      for (int column = 0; column < Columns; ++column) {
+        double* x = X->col(column).data();
+        for (int k = panel; k < end; ++k) {
+          x[k] *= inverse_[k];
+          for (int i = k + 1; i < end; ++i) x[i] -= L_(i, k) * x[k];
+        }
+        for (int i = end; i < N; ++i) {
+          double sum = 0.0;
+          for (int k = panel; k < end; ++k) sum += L_(i, k) * x[k];
+          x[i] -= sum;
+        }
+      }
+    }
+  }
+
+  /// A^-1 B, for a few columns.
+  template <int Columns>
+  Eigen::Matrix<double, N, Columns> Solve(Eigen::Matrix<double, N, Columns> B) const noexcept {
+    SolveLower(&B);
+    for (int end = N; end > 0; end -= kPanel) {
+      const int start = end > kPanel ? end - kPanel : 0;
+      for (int column = 0; column < Columns; ++column) {
+        double* x = B.col(column).data();
+        for (int i = end - 1; i >= start; --i) {
+          double sum = 0.0;
+          for (int k = i + 1; k < end; ++k) sum += L_(k, i) * x[k];
+          x[i] = (x[i] - sum) * inverse_[i];
+        }
+        for (int i = 0; i < start; ++i) {
+          double sum = 0.0;
+          for (int k = start; k < end; ++k) sum += L_(k, i) * x[k];
+          x[i] -= sum;
+        }
+      }
+    }
+    return B;
+  }
+
+  /// A^-1 b
+  Eigen::Matrix<double, N, 1> Solve(Eigen::Matrix<double, N, 1> x) const noexcept {
+    static_assert(N <= 4, "Eigen sums the terms of larger systems in another order");
+    for (int i = 0; i < N; ++i) {
+      double sum = 0.0;
+      for (int j = i - 1; j >= 0; --j) sum += L_(i, j) * x[j];
+      x[i] = (x[i] - sum) / L_(i, i);
+    }
+    for (int i = N - 1; i >= 0; --i) {
+      double sum = 0.0;
+      for (int j = i + 1; j < N; ++j) sum += L_(j, i) * x[j];
+      x[i] = (x[i] - sum) / L_(i, i);
+    }
+    return x;
+  }
+
+ private:
+  static constexpr int kPanel = 4;  // columns that Eigen eliminates at a time
+
+  Matrix L_;
+  Eigen::Matrix<double, N, 1> inverse_;  // of L's diagonal
+};
+
+}  // namespace flexarm
