@@ -7,9 +7,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Cheap lanes first. Lanes run one after the other: hil, e2e and guest measure time.
 # shellcheck disable=SC2034  # tools/run-tests reads them
 {
-  quick_lanes=(format layers unit)
+  quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan clang-tidy guest)
-  only_all_lanes=(unit build-cost headers-all separate clang-tidy-all asan-all)
+  only_all_lanes=(guards unit build-cost headers-all separate clang-tidy-all asan-all)
 }
 
 logs=build/logs
@@ -108,6 +108,15 @@ lane_layers() {  # includes, documents and other rules of tools/lint; shellcheck
   python3 tools/lint/check_docs.py
   git ls-files -z -- tools/install-deps tools/run-hil tools/run-tests .ci/run '*.sh' |
     xargs -0 shellcheck --severity=warning
+}
+
+# What stands between the world and the arm.
+guards=(tests/hal tests/controller/safety tests/config)
+
+lane_guards() {  # unit tests of drivers, safety logic and configs, release build (part of release)
+  local folder
+  build release "${guards[@]/%//all}"
+  for folder in "${guards[@]}"; do test_folder release "$folder" '^unit$'; done
 }
 
 lane_unit() {  # tests labelled unit, release build (part of release)
