@@ -31,14 +31,15 @@ CLI::App* DaemonClient::AddVerb(CLI::App& app, const char* name, const char* wha
   return verb;
 }
 
-nlohmann::json DaemonClient::Ask(const nlohmann::json& command, double within_s) const {
+nlohmann::ordered_json DaemonClient::Ask(const nlohmann::ordered_json& command,
+                                         double within_s) const {
   const std::string reply = AskDaemon(SocketOf(*this), command.dump(), within_s);
-  nlohmann::json answer = nlohmann::json::parse(reply, nullptr, false);
+  nlohmann::ordered_json answer = nlohmann::ordered_json::parse(reply, nullptr, false);
   if (!answer.is_object()) throw InputError("the daemon answered with something that is not JSON");
   return answer;
 }
 
-int DaemonClient::Conclude(const nlohmann::json& answer) const {
+int DaemonClient::Conclude(const nlohmann::ordered_json& answer) const {
   const bool ok = answer.value("ok", false);
   if (json) {
     std::cout << answer.dump(2) << '\n';

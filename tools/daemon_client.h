@@ -18,10 +18,10 @@ struct DaemonClient {
   CLI::App* AddVerb(CLI::App& app, const char* name, const char* what);
 
   /// Sends `command` and waits for the answer. @throws Refused, InputError
-  nlohmann::json Ask(const nlohmann::json& command, double within_s = 5.0) const;
+  nlohmann::ordered_json Ask(const nlohmann::ordered_json& command, double within_s = 5.0) const;
 
   /// The answer as JSON if that was asked for; why it was refused, on stderr. @returns exit code
-  int Conclude(const nlohmann::json& answer) const;
+  int Conclude(const nlohmann::ordered_json& answer) const;
 };
 
 }  // namespace flexarm

@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kLongest_s = 120.0;  // a search for a switch over 180 deg at 5 deg/s, and to rest
 

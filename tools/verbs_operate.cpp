@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 struct OperateOptions {
   DaemonClient daemon;

@@ -91,10 +91,10 @@ void ForEachMatrix(D& design, F&& visit) {
 }
 
 template <typename M>
-nlohmann::json MatrixToJson(const M& matrix) {
-  nlohmann::json rows = nlohmann::json::array();
+nlohmann::ordered_json MatrixToJson(const M& matrix) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    nlohmann::json row = nlohmann::json::array();
+    nlohmann::ordered_json row = nlohmann::ordered_json::array();
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
     rows.push_back(std::move(row));
   }
@@ -102,7 +102,7 @@ nlohmann::json MatrixToJson(const M& matrix) {
 }
 
 template <typename M>
-void MatrixFromJson(const nlohmann::json& rows, const std::string& name, M* matrix) {
+void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name, M* matrix) {
   if (!rows.is_array() || rows.empty() || !rows[0].is_array()) {
     throw Refused("gains file: '" + name + "' is not a matrix (an array of rows)");
   }
@@ -123,7 +123,7 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name, M* matr
 }
 
 template <>
-void MatrixFromJson(const nlohmann::json& rows, const std::string& name,
+void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name,
                     Eigen::RowVectorXd* matrix) {
   Eigen::MatrixXd read;
   MatrixFromJson(rows, name, &read);
@@ -134,7 +134,8 @@ void MatrixFromJson(const nlohmann::json& rows, const std::string& name,
 }
 
 template <>
-void MatrixFromJson(const nlohmann::json& rows, const std::string& name, Eigen::Matrix2d* matrix) {
+void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name,
+                    Eigen::Matrix2d* matrix) {
   Eigen::MatrixXd read;
   MatrixFromJson(rows, name, &read);
   if (read.rows() != 2 || read.cols() != 2) {
@@ -150,9 +151,10 @@ nlohmann::ordered_json KnotsToJson(const GainTable& table) {
   return out;
 }
 
-std::vector<GainTable::Gain> KnotsFromJson(const nlohmann::json& in, const std::string& name) {
+std::vector<GainTable::Gain> KnotsFromJson(const nlohmann::ordered_json& in,
+                                           const std::string& name) {
   std::vector<GainTable::Gain> knots;
-  for (const nlohmann::json& knot : in) {
+  for (const nlohmann::ordered_json& knot : in) {
     Eigen::MatrixXd gain;
     MatrixFromJson(knot, name, &gain);
     if (gain.rows() != 2 || gain.cols() != 12) {
@@ -179,19 +181,19 @@ nlohmann::ordered_json PayloadToJson(const Design& design) {
 }
 
 // What is at `key` of the table 'payload'.
-const nlohmann::json& NeededAt(const nlohmann::json& payload, const char* key) {
+const nlohmann::ordered_json& NeededAt(const nlohmann::ordered_json& payload, const char* key) {
   if (payload.contains(key)) return payload.at(key);
   throw Refused(std::string("gains file: 'payload.") + key +
                 "' is missing, which the law or the estimator of this config needs; run `flexarm "
                 "design` again");
 }
 
-std::vector<double> NumbersAt(const nlohmann::json& payload, const char* key) {
+std::vector<double> NumbersAt(const nlohmann::ordered_json& payload, const char* key) {
   return NeededAt(payload, key).get<std::vector<double>>();
 }
 
 // All that the config needs, and nothing else: a gain table too many would change the law.
-void PayloadFromJson(const nlohmann::json& in, const StackConfig& config, Design* design) {
+void PayloadFromJson(const nlohmann::ordered_json& in, const StackConfig& config, Design* design) {
   try {
     design->payload_model = NumbersAt(in, "model");
     static_cast<void>(RigidJointStepper(design->payload_model));
@@ -207,7 +209,7 @@ void PayloadFromJson(const nlohmann::json& in, const StackConfig& config, Design
                                         .reference_kg = NeededAt(in, "reference_kg").get<double>()};
     if (!PlansAhead(config.controller.kind)) return;
     design->scheduled->start_gains = table("start_gain");
-  } catch (const nlohmann::json::exception&) {
+  } catch (const nlohmann::ordered_json::exception&) {
     throw Refused("gains file: a member of 'payload' is not numbers");
   } catch (const std::invalid_argument& error) {
     throw Refused(std::string("gains file: 'payload': ") + error.what());
@@ -215,22 +217,22 @@ void PayloadFromJson(const nlohmann::json& in, const StackConfig& config, Design
 }
 
 // The text at `key`, or what stands for a missing one; of another type it is not ours.
-std::string TextAt(const nlohmann::json& in, const char* key, const char* missing) {
+std::string TextAt(const nlohmann::ordered_json& in, const char* key, const char* missing) {
   const auto found = in.find(key);
   if (found == in.end()) return missing;
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
-DesignCheck CheckFromJson(const nlohmann::json& in) {
+DesignCheck CheckFromJson(const nlohmann::ordered_json& in) {
   try {
     return {in.at("name").get<std::string>(), in.at("value").get<double>(),
             in.at("limit").get<double>(), in.at("below").get<bool>(), in.value("waived", false)};
-  } catch (const nlohmann::json::exception&) {
+  } catch (const nlohmann::ordered_json::exception&) {
     throw Refused("gains file: a row of 'checks' lacks its name, value, limit or below");
   }
 }
 
-StateLayout LayoutFromJson(const nlohmann::json& in) {
+StateLayout LayoutFromJson(const nlohmann::ordered_json& in) {
   const std::string name = TextAt(in, "nominal", "missing");
   const std::optional<StateLayout> layout = LayoutNamed(name);
   if (!layout) throw Refused("gains file: 'nominal' names no model: " + name);
@@ -321,7 +323,7 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
 }
 
 Design DesignFromJson(const std::string& text, const StackConfig& config) {
-  const nlohmann::json in = nlohmann::json::parse(text, nullptr, false);
+  const nlohmann::ordered_json in = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!in.is_object() || TextAt(in, "format", "") != kFormat) {
     throw Refused(std::string("not a gains file: expected JSON with \"format\": \"") + kFormat +
                   "\", as `flexarm design` writes it");
@@ -340,12 +342,13 @@ Design DesignFromJson(const std::string& text, const StackConfig& config) {
   });
   RequireShapes(design);
   if (config.uses_payload_estimator()) {
-    PayloadFromJson(in.value("payload", nlohmann::json::object()), config, &design);
+    PayloadFromJson(in.value("payload", nlohmann::ordered_json::object()), config, &design);
   }
   if (!in.contains("checks") || !in.at("checks").is_array()) {
     throw Refused("gains file: 'checks' is missing or not an array");
   }
-  for (const nlohmann::json& check : in.at("checks")) design.checks.push_back(CheckFromJson(check));
+  for (const nlohmann::ordered_json& check : in.at("checks"))
+    design.checks.push_back(CheckFromJson(check));
   return design;
 }
 

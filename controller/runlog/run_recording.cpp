@@ -9,8 +9,6 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kAfterTripNs = 5'000'000'000;
-
 RunEvent TripEvent(const SafetyRecord& record) {
   const nlohmann::json value = {{"value", record.evidence.value},
                                 {"limit", record.evidence.limit},

@@ -18,11 +18,13 @@ OpenSink RunsInDirectory(const std::filesystem::path& directory);  ///< NewRunFi
 OpenSink RunInFile(const std::filesystem::path& file);             ///< the one run; must not exist
 OpenSink RunInMemory(RunContents* contents);
 
+inline constexpr std::int64_t kAfterTripNs = 5'000'000'000;  ///< what a run records of a trip
+
 /// Which records belong to a run, and the events that follow from them.
 ///
-/// A run lasts from Idle -> Armed until Idle, or 5 s after a trip. Its first tick is the one in
-/// which the loop was reset, so that it replays on its own. Records must come in order of time.
-/// Disk errors end the recording of the run; they are reported and counted, never thrown.
+/// A run lasts from Idle -> Armed until Idle, or kAfterTripNs after a trip. Its first tick is the
+/// one in which the loop was reset, so that it replays on its own. Records must come in order of
+/// time. Disk errors end the recording of the run; they are reported and counted, never thrown.
 class RunRecording {
  public:
   /// For the journal. Called on the recorder's thread.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "controller/law/refused.h"
+#include "controller/runlog/run_recording.h"
 #include "controller/runtime/trip_channel.h"
 #include "hal/line_names.h"
 #include "model/units.h"
@@ -16,9 +17,8 @@ using Json = nlohmann::json;
 
 constexpr int kNoClient = -1;
 constexpr std::int64_t kShutdownLimitNs = 6'000'000'000;  // a stop takes 3 s at most, or trips
-constexpr std::int64_t kAfterTripNs = 5'000'000'000;  // the log of a tripped run goes on this long
-constexpr std::int64_t kSettleNs = 300'000'000;       // until the recorder has seen everything
-constexpr std::int64_t kAliveNs = 100'000'000;        // an older heartbeat starves the watchdog
+constexpr std::int64_t kSettleNs = 300'000'000;           // until the recorder has seen everything
+constexpr std::int64_t kAliveNs = 100'000'000;            // an older heartbeat starves the watchdog
 
 Json Failure(const std::string& error, const std::string& remedy) {
   return {{"ok", false}, {"error", error}, {"remedy", remedy}};
