@@ -28,14 +28,14 @@ class SmallCholesky {
     L_ = A;
     for (int k = 0; k < N; ++k) {
       double square = 0.0;
-      for (int j = 0; j < k; ++j) square += L_(k, j) * L_(k, j);
-      L_(k, k) = std::sqrt(L_(k, k) - square);
+      for (int j = 0; j < k; ++j) square += At(k, j) * At(k, j);
+      At(k, k) = std::sqrt(At(k, k) - square);
       for (int i = k + 1; i < N; ++i) {
         double sum = 0.0;
-        for (int j = 0; j < k; ++j) sum += L_(i, j) * L_(k, j);
-        L_(i, k) = (L_(i, k) - sum) / L_(k, k);
+        for (int j = 0; j < k; ++j) sum += At(i, j) * At(k, j);
+        At(i, k) = (At(i, k) - sum) / At(k, k);
       }
-      inverse_[k] = 1.0 / L_(k, k);
+      inverse_.coeffRef(k) = 1.0 / At(k, k);
     }
   }
 
@@ -50,12 +50,12 @@ class SmallCholesky {
       for (int column = 0; column < Columns; ++column) {
         double* x = X->col(column).data();
         for (int k = panel; k < end; ++k) {
-          x[k] *= inverse_[k];
-          for (int i = k + 1; i < end; ++i) x[i] -= L_(i, k) * x[k];
+          x[k] *= inverse_.coeff(k);
+          for (int i = k + 1; i < end; ++i) x[i] -= At(i, k) * x[k];
         }
         for (int i = end; i < N; ++i) {
           double sum = 0.0;
-          for (int k = panel; k < end; ++k) sum += L_(i, k) * x[k];
+          for (int k = panel; k < end; ++k) sum += At(i, k) * x[k];
           x[i] -= sum;
         }
       }
@@ -72,12 +72,12 @@ class SmallCholesky {
         double* x = B.col(column).data();
         for (int i = end - 1; i >= start; --i) {
           double sum = 0.0;
-          for (int k = i + 1; k < end; ++k) sum += L_(k, i) * x[k];
-          x[i] = (x[i] - sum) * inverse_[i];
+          for (int k = i + 1; k < end; ++k) sum += At(k, i) * x[k];
+          x[i] = (x[i] - sum) * inverse_.coeff(i);
         }
         for (int i = 0; i < start; ++i) {
           double sum = 0.0;
-          for (int k = start; k < end; ++k) sum += L_(k, i) * x[k];
+          for (int k = start; k < end; ++k) sum += At(k, i) * x[k];
           x[i] -= sum;
         }
       }
@@ -86,23 +86,28 @@ class SmallCholesky {
   }
 
   /// A^-1 b
-  Eigen::Matrix<double, N, 1> Solve(Eigen::Matrix<double, N, 1> x) const noexcept {
+  Eigen::Matrix<double, N, 1> Solve(Eigen::Matrix<double, N, 1> b) const noexcept {
     static_assert(N <= 4, "Eigen sums the terms of larger systems in another order");
+    double* x = b.data();
     for (int i = 0; i < N; ++i) {
       double sum = 0.0;
-      for (int j = i - 1; j >= 0; --j) sum += L_(i, j) * x[j];
-      x[i] = (x[i] - sum) / L_(i, i);
+      for (int j = i - 1; j >= 0; --j) sum += At(i, j) * x[j];
+      x[i] = (x[i] - sum) / At(i, i);
     }
     for (int i = N - 1; i >= 0; --i) {
       double sum = 0.0;
-      for (int j = i + 1; j < N; ++j) sum += L_(j, i) * x[j];
-      x[i] = (x[i] - sum) / L_(i, i);
+      for (int j = i + 1; j < N; ++j) sum += At(j, i) * x[j];
+      x[i] = (x[i] - sum) / At(i, i);
     }
-    return x;
+    return b;
   }
 
  private:
   static constexpr int kPanel = 4;  // columns that Eigen eliminates at a time
+
+  // Without the range check of operator(): sanitizer builds step the planner in real time too.
+  double& At(int row, int column) noexcept { return L_.coeffRef(row, column); }
+  double At(int row, int column) const noexcept { return L_.coeff(row, column); }
 
   Matrix L_;
   Eigen::Matrix<double, N, 1> inverse_;  // of L's diagonal
