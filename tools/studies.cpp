@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -17,9 +16,10 @@ namespace flexarm {
 namespace {
 
 const Study* Find(std::string_view verb) noexcept {
-  const auto found = std::find_if(kStudies.begin(), kStudies.end(),
-                                  [&](const Study& study) { return study.verb == verb; });
-  return found == kStudies.end() ? nullptr : found;
+  for (const Study& study : kStudies) {
+    if (study.verb == verb) return &study;
+  }
+  return nullptr;
 }
 
 }  // namespace
