@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "controller/law/experiment.h"
+#include "controller/types/experiment.h"
 
 namespace flexarm {
 

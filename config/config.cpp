@@ -10,19 +10,20 @@
 #include "config/rig_binding.h"
 #include "config/table_reader.h"
 #include "config/toml_text.h"
+#include "controller/runlog/csv_import.h"
 #include "model/problem_list.h"
 
 namespace flexarm {
 namespace {
 
 // The length of a link if it was read well; NaN, which no rule minds, if not.
-double KnownLength(const Config& config, std::size_t link, const ProblemLog& log) {
+double KnownLength(const RigConfig& config, std::size_t link, const ProblemLog& log) {
   const std::string section = "link" + NumberText(link + 1) + ".section";
   return log.Clear({section}) ? config.arm.link[link].length_m()
                               : std::numeric_limits<double>::quiet_NaN();
 }
 
-void CheckRules(const Config& config, ProblemLog* log) {
+void CheckRules(const RigConfig& config, ProblemLog* log) {
   ProblemList rig("rig.");
   rig.Require(!config.rig_name.empty(), "name", "\"\"", "must name the rig: logs carry it");
   log->AddRules(rig.Take());
@@ -39,19 +40,19 @@ void CheckRules(const Config& config, ProblemLog* log) {
   log->AddRules(config.hal.Problems(config.sensors,
                                     std::llround(config.loop.acquire_before_ms * 1e6),
                                     config.safety.torque_limit_nm));
-  if (config.csv && log->Clear({"sensors"})) log->AddRules(config.csv->Problems(config.sensors));
+  if (config.csv && log->Clear({"sensors"})) log->AddRules(ProblemsOf(*config.csv, config.sensors));
   CheckCrossRules(config, log);
 }
 
-Config ReadConfig(const std::string& name, toml::table document,
-                  const std::vector<std::string>& overrides) {
+RigConfig ReadConfig(const std::string& name, toml::table document,
+                     const std::vector<std::string>& overrides) {
   ProblemLog log(name, &document);
   ApplyOverrides(overrides, &document, &log);
   TableReader root(&document, "", &log);
   if (root.Has("extends")) {
     root.Refuse("extends", "must stand in a rig's own file: a logged text and --set are complete");
   }
-  Config config{};
+  RigConfig config{};
   ReadRig(root, &config);
   CheckRules(config, &log);
   log.AddUnknown();
@@ -62,19 +63,19 @@ Config ReadConfig(const std::string& name, toml::table document,
 
 }  // namespace
 
-Config LoadConfig(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+RigConfig LoadConfig(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return ReadConfig(file.string(), LoadDocument(file), overrides);
 }
 
-Config ParseConfig(const std::string& text, const std::string& name) {
+RigConfig ParseConfig(const std::string& text, const std::string& name) {
   return ReadConfig(name, ParseToml(text, name), {});
 }
 
-Config WithOverrides(const Config& config, const std::vector<std::string>& overrides) {
+RigConfig WithOverrides(const RigConfig& config, const std::vector<std::string>& overrides) {
   return ReadConfig(config.rig_name, ParseToml(config.text, config.rig_name), overrides);
 }
 
-std::optional<double> NumberAt(const Config& config, const std::string& key) {
+std::optional<double> NumberAt(const RigConfig& config, const std::string& key) {
   const toml::table document = ParseToml(config.text, config.rig_name);
   const toml::node_view<const toml::node> node = document.at_path(key);
   return node.is_number() ? node.value<double>() : std::nullopt;

@@ -23,7 +23,7 @@ bool IsMultiple(double value, double step) {
   return std::abs(steps - std::nearbyint(steps)) <= 1e-9 * std::max(1.0, steps);
 }
 
-void CheckChannelsForFit(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckChannelsForFit(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sensors.strain", "estimator.modes_per_link", "estimator.name"})) return;
   for (int link = 1; link <= 2; ++link) {
     std::vector<double> positions;
@@ -46,7 +46,7 @@ void CheckChannelsForFit(const Config& c, ProblemLog* log, std::vector<Problem>*
 }
 
 // A model knows no mode that nothing measures; differences of what is not measured are none.
-void CheckNominalModel(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckNominalModel(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr const char* kKey = "controller.nominal";
   if (!log->Clear({kKey, "estimator.modes_per_link", "estimator.name", "sensors.encoder"})) return;
   const StateLayout& nominal = c.controller.nominal;
@@ -65,7 +65,7 @@ void CheckNominalModel(const Config& c, ProblemLog* log, std::vector<Problem>* o
   }
 }
 
-void CheckStateWeight(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckStateWeight(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr const char* kKey = "controller.state_weight";
   if (!log->Clear({kKey, "controller.nominal"}) || c.controller.state_weight.empty()) return;
   const auto states = static_cast<std::size_t>(c.controller.nominal.states());
@@ -74,7 +74,7 @@ void CheckStateWeight(const Config& c, ProblemLog* log, std::vector<Problem>* ou
                   "must have one for each state of controller.nominal: " + NumberText(states)});
 }
 
-void CheckPayloadStart(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckPayloadStart(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr const char* kKey = "estimator.payload.start_kg";
   if (!c.estimator.payload || !log->Clear({kKey, "estimator.payload.max_kg"})) return;
   const PayloadEstimatorConfig& payload = *c.estimator.payload;
@@ -85,7 +85,7 @@ void CheckPayloadStart(const Config& c, ProblemLog* log, std::vector<Problem>* o
 }
 
 // The filter's model: two modes a link, rigid joints, gauges behind filters of first order.
-void CheckPayloadEstimator(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"controller.name", "estimator.name", "controller.nominal",
                    "estimator.modes_per_link", "sensors.strain_input"})) {
     return;
@@ -111,7 +111,7 @@ void CheckPayloadEstimator(const Config& c, ProblemLog* log, std::vector<Problem
 
 // A board or bus that could bring its reading is not told of it; without the model's share of the
 // doubt the filter would believe it blindly.
-void CheckTipAccelerometer(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckTipAccelerometer(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr const char* kTable = "sensors.tip_accelerometer";
   if (!c.sensors.tip_accelerometer) return;
   if (log->Clear({kTable, "hal.backend"}) && c.backend == "wired") {
@@ -127,7 +127,7 @@ void CheckTipAccelerometer(const Config& c, ProblemLog* log, std::vector<Problem
 }
 
 // Between two samples a counter moves by less than half its range, or its direction is lost.
-void CheckCounters(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckCounters(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr std::string_view kKey = "estimator.max_joint_rate_rad_s";
   if (!log->Clear({kKey, "loop.period_ms", "sensors.encoder"})) return;
   double slowest = std::numeric_limits<double>::infinity();
@@ -148,7 +148,7 @@ void CheckCounters(const Config& c, ProblemLog* log, std::vector<Problem>* out) 
                       " bits) moves by half its range in a period, and its direction is lost"});
 }
 
-void CheckRates(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckRates(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string limit = At("limits.hub_rate_rad_s", i);
     if (!log->Clear({"estimator.max_joint_rate_rad_s", limit})) continue;
@@ -160,7 +160,7 @@ void CheckRates(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
   }
 }
 
-void CheckAnglesAndTorques(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckAnglesAndTorques(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string angle = At("limits.soft_angle_deg", i);
     const double switch_deg = c.sim.switch_angle_deg[i];
@@ -188,7 +188,7 @@ double FullScaleStrain(const SensorConfig& sensors, const StrainChannelConfig& c
   return counts * sensors.strain_input.volts_per_count() / std::abs(channel.gain_v_per_unit);
 }
 
-void CheckStrainLimits(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckStrainLimits(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sensors.strain", "sensors.strain_input"})) return;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string key = At("limits.strain_limit", i);
@@ -207,7 +207,7 @@ void CheckStrainLimits(const Config& c, ProblemLog* log, std::vector<Problem>* o
   }
 }
 
-void CheckStrainJudgement(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckStrainJudgement(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sensors.strain", "sensors.strain_input"})) return;
   double noise = 0.0;  // largest standard deviation of a channel, quantisation at least
   for (const StrainChannelConfig& s : c.sensors.strain) {
@@ -225,7 +225,7 @@ void CheckStrainJudgement(const Config& c, ProblemLog* log, std::vector<Problem>
   require("estimator.strain_stuck_limit", c.estimator.strain_stuck_limit);
 }
 
-void CheckGrid(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckGrid(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   const auto require = [&](const char* key, double value) {
     if (!log->Clear({key, "sim.step_ms"}) || IsMultiple(value, c.sim.step_ms)) return;
     out->push_back({key, NumberText(value),
@@ -238,7 +238,7 @@ void CheckGrid(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
 
 // A frame is there when its last strain channel has been sampled; the plant's milliseconds are
 // integrated when they are over.
-void CheckSkew(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckSkew(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sim.channel_skew_us", "loop.acquire_before_ms", "sensors.strain"})) return;
   if (c.sim.channel_skew_us <= 0.0) return;
   const double last_ms =
@@ -252,7 +252,7 @@ void CheckSkew(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
 
 // The simulated drive takes a command every millisecond. Buses put a torque out with their
 // exchange.
-void CheckOutput(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
+void CheckOutput(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   const auto require = [&](const char* key, double value) {
     if (!log->Clear({key}) || IsMultiple(value, 1.0)) return;
     out->push_back({key, NumberText(value),
@@ -272,7 +272,7 @@ void CheckOutput(const Config& c, ProblemLog* log, std::vector<Problem>* out) {
 
 }  // namespace
 
-void CheckCrossRules(const Config& config, ProblemLog* log) {
+void CheckCrossRules(const RigConfig& config, ProblemLog* log) {
   std::vector<Problem> problems;
   CheckChannelsForFit(config, log, &problems);
   CheckNominalModel(config, log, &problems);

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "config/table_reader.h"
-#include "hal/hal_config.h"
+#include "hal/wired/hal_config.h"
 
 namespace flexarm {
 

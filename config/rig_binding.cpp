@@ -3,6 +3,7 @@
 #include <string>
 
 #include "config/hal_binding.h"
+#include "controller/types/csv_import_config.h"
 #include "model/units.h"
 
 namespace flexarm {
@@ -282,7 +283,7 @@ CsvImport ReadCsvImport(TableReader csv) {
   return import;
 }
 
-void ReadTiming(TableReader root, Config* config) {
+void ReadTiming(TableReader root, RigConfig* config) {
   TableReader loop = root.Table("loop");
   loop.Read("period_ms", &config->loop.period_ms);
   loop.Read("acquire_before_ms", &config->loop.acquire_before_ms);
@@ -297,7 +298,7 @@ void ReadTiming(TableReader root, Config* config) {
 
 }  // namespace
 
-void ReadRig(TableReader root, Config* config) {
+void ReadRig(TableReader root, RigConfig* config) {
   root.Table("rig").Read("name", &config->rig_name);
   ReadArm(root, &config->arm);
   ReadSensors(root.Table("sensors"), &config->sensors);

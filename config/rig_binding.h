@@ -7,6 +7,6 @@ namespace flexarm {
 
 /// Reads every section of a rig into `config`, all but its text. What cannot be read goes into the
 /// reader's log.
-void ReadRig(TableReader root, Config* config);
+void ReadRig(TableReader root, RigConfig* config);
 
 }  // namespace flexarm

@@ -8,7 +8,7 @@ FractionalHold::FractionalHold(const DiscreteModel& whole_period, const Eigen::M
                                const Eigen::MatrixXd& B, double period_s)
     : hold_{whole_period} {
   for (int digit = 1; digit <= kPeriodDigits; ++digit) {
-    hold_.push_back(ZeroOrderHold(A, B, std::ldexp(period_s, -digit)));
+    hold_.push_back(ZeroOrderHold(A, B, std::ldexp(period_s, -digit)));  // start-up
   }
 }
 

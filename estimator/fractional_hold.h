@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "estimator/torque_pieces.h"
-#include "model/discretize.h"
+#include "model/math/discretize.h"
 
 namespace flexarm {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "hal/sensor_config.h"
-#include "model/linearization.h"
+#include "model/arm/linearization.h"
 
 namespace flexarm {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "estimator/gauge_model.h"
-#include "model/dense_decompositions.h"
-#include "model/discretize.h"
-#include "model/riccati.h"
+#include "model/math/dense_decompositions.h"
+#include "model/math/discretize.h"
+#include "model/math/riccati.h"
 #include "model/units.h"
 
 namespace flexarm {
@@ -107,7 +107,8 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
 
   std::vector<Eigen::Index> present;  // rows of C that the rig measures
   for (Eigen::Index row = 0; row < C_all.rows(); ++row) {
-    if (row >= kCounters || (sensors.counters_present() >> row & 1u) != 0) present.push_back(row);
+    if (row >= kCounters || (sensors.counters_present() >> row & 1u) != 0)
+      present.push_back(row);  // start-up
   }
   const Eigen::MatrixXd C = C_all(present, Eigen::all);
   const Eigen::MatrixXd R = Eigen::VectorXd(R_all(present)).asDiagonal();

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/arm_model.h"
-#include "model/dense_decompositions.h"
+#include "model/arm/arm_model.h"
+#include "model/math/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "estimator/state_layout.h"
-#include "model/arm_parameters.h"
+#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 

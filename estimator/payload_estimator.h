@@ -11,7 +11,7 @@
 #include "estimator/strain_fit.h"
 #include "estimator/torque_pieces.h"
 #include "hal/sensor_config.h"
-#include "model/arm_parameters.h"
+#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 

@@ -8,8 +8,8 @@
 
 #include "estimator/tip_output.h"
 #include "estimator/torque_pieces.h"
-#include "model/rigid_joint_step.h"
-#include "model/rigid_joint_transition.h"
+#include "model/rigid_joint/rigid_joint_step.h"
+#include "model/rigid_joint/rigid_joint_transition.h"
 
 namespace flexarm {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model/dense_decompositions.h"
+#include "model/math/dense_decompositions.h"
 
 namespace flexarm {
 namespace {
@@ -26,7 +26,7 @@ Eigen::MatrixXd PolynomialModalMap(const LinkModes& link, const std::vector<Stra
     for (int term = 0; term < kPolynomialTerms; ++term) {
       const int p = term + 2;
       curvature(i, term) = root_weight(i) * at.half_thickness_m * p * (p - 1) *
-                           std::pow(at.position_m / L, p - 2) / (L * L);
+                           std::pow(at.position_m / L, p - 2) / (L * L);  // start-up
     }
   }
   const Eigen::MatrixXd weights = root_weight.asDiagonal();
@@ -35,7 +35,8 @@ Eigen::MatrixXd PolynomialModalMap(const LinkModes& link, const std::vector<Stra
   Eigen::MatrixXd powers(kPoints, kPolynomialTerms), shapes(kPoints, modes);
   for (Eigen::Index i = 0; i < kPoints; ++i) {
     const double s = static_cast<double>(i) / (kPoints - 1);
-    for (int term = 0; term < kPolynomialTerms; ++term) powers(i, term) = std::pow(s, term + 2);
+    for (int term = 0; term < kPolynomialTerms; ++term)
+      powers(i, term) = std::pow(s, term + 2);  // start-up
     for (int j = 0; j < modes; ++j) {
       shapes(i, j) = link.mode[static_cast<std::size_t>(j)].Value(s * L);
     }

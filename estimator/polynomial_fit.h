@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "model/link_modes.h"
+#include "model/beam/link_modes.h"
 
 namespace flexarm {
 

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "model/arm_parameters.h"
-#include "model/link_modes.h"
+#include "model/beam/link_modes.h"
+#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 

@@ -4,7 +4,7 @@
 
 #include "estimator/polynomial_fit.h"
 #include "estimator/root_strain.h"
-#include "model/link_modes.h"
+#include "model/beam/link_modes.h"
 
 namespace flexarm {
 namespace {
@@ -77,10 +77,10 @@ void StrainFit::FitPolynomials(const ArmParameters& arm, const SensorConfig& sen
     for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
       if (channel_[i].link != static_cast<int>(link)) continue;
       const double x_m = sensors.strain[i].position_m;
-      stations.push_back({.position_m = x_m,
+      stations.push_back({.position_m = x_m,  // start-up
                           .half_thickness_m = HalfThicknessAt(arm.link[link], x_m),
                           .weight = channel_[i].weight});
-      rows.push_back(i);
+      rows.push_back(i);  // start-up
     }
     const Eigen::MatrixXd map = PolynomialModalMap(modes[link], stations, modes_);
     for (std::size_t k = 0; k < rows.size(); ++k) {

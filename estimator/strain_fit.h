@@ -8,8 +8,8 @@
 #include "estimator/estimator_config.h"
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
-#include "model/arm_parameters.h"
-#include "model/link_modes.h"
+#include "model/beam/link_modes.h"
+#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 

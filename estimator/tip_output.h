@@ -3,13 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "model/rigid_joint_step.h"
+#include "model/rigid_joint/rigid_joint_step.h"
 
 namespace flexarm {
 
 /// What the model shows of the tip's acceleration at the end of a sample, and its slopes.
 struct TipOutput {
-  double m_s2;  ///< along the normal of link 2 at its tip: model/tip_acceleration.h
+  double m_s2;  ///< along the normal of link 2 at its tip: model/rigid_joint/tip_acceleration.h
   Eigen::Matrix<double, 2 * RigidJointArm::kDof, 1> by_motion;  ///< of q, q'
   double by_payload;                                            ///< m/s^2 a kg
   std::array<double, 2> by_friction;  ///< m/s^2 an N m, of hub 1 and hub 2

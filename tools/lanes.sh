@@ -184,7 +184,7 @@ lane_build-cost() {  # what the product costs the compiler is within the committ
 
 # Code that parses input, drives a bus or runs in a thread.
 exposed_tests=(tests/hal tests/config tests/tools tests/support
-               tests/controller/{runtime,runlog,safety,commissioning,wired})
+               tests/controller/{exchange,realtime,types,safety,tasks,operator,runlog,commissioning,wired})
 asan_labels='^(unit|loop|hostile)$'
 
 lane_asan() {  # address, undefined behaviour: code that parses, drives a bus or has threads
@@ -208,11 +208,15 @@ lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop
   done
 }
 
+# Queues, executors and the bodies of the threads.
+threaded_tests=(tests/controller/{exchange,realtime,tasks,operator})
+
 lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
-  build tsan tests/controller/runtime/all flexarm flexarmd
+  build tsan "${threaded_tests[@]/%//all}" flexarm flexarmd
   use_environment_of tsan
   test_folder tsan tests/e2e '^threads$'
-  test_folder tsan tests/controller/runtime .
+  local folder
+  for folder in "${threaded_tests[@]}"; do test_folder tsan "$folder" .; done
 }
 
 lane_separate() {  # every source compiles by itself, without batches

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "controller/law/refused.h"
 #include "controller/runlog/csv.h"
+#include "controller/types/refused.h"
 
 namespace flexarm {
 namespace {

@@ -6,7 +6,7 @@
 #include "controller/commissioning/rest_readings.h"
 #include "estimator/calibration.h"
 #include "hal/sensor_config.h"
-#include "model/arm_parameters.h"
+#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "controller/commissioning/calibration_file.h"
-#include "controller/law/refused.h"
 #include "controller/runlog/csv.h"
+#include "controller/types/refused.h"
 #include "hal/line_names.h"
 #include "model/units.h"
 
@@ -76,7 +76,7 @@ struct Commissioner::Job {
   std::vector<TickRecord> run;
 };
 
-Commissioner::Commissioner(const StackConfig& config)
+Commissioner::Commissioner(const RigConfig& config)
     : config_(config),
       file_(std::filesystem::path(config.daemon.log_directory) /
             config.commissioning.calibration_file),

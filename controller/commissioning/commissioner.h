@@ -11,8 +11,8 @@
 
 #include "controller/commissioning/calibrate.h"
 #include "controller/commissioning/pluck.h"
-#include "controller/runtime/planned_run.h"
-#include "controller/runtime/stack_config.h"
+#include "controller/tasks/loaded_experiment.h"
+#include "controller/types/rig_config.h"
 
 namespace flexarm {
 
@@ -33,7 +33,7 @@ class Commissioner {
  public:
   /// Reads the calibration file, if there is one.
   /// @throws InputError if it is not for these sensors
-  explicit Commissioner(const StackConfig& config);
+  explicit Commissioner(const RigConfig& config);
   ~Commissioner();
 
   static bool Knows(const std::string& command);
@@ -75,7 +75,7 @@ class Commissioner {
   /// Saves, and from now on gives, `calibration`.
   void Adopt(const Calibration& calibration);
 
-  StackConfig config_;
+  RigConfig config_;
   std::filesystem::path file_;
   Calibration calibration_{};
   GainCalibration gains_;

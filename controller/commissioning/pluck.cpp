@@ -45,7 +45,7 @@ int Samples(double time_s, double period_s) {
 
 class Judge {
  public:
-  Judge(const StackConfig& config, const std::vector<TickRecord>& run)
+  Judge(const RigConfig& config, const std::vector<TickRecord>& run)
       : config_(config), limits_(config.commissioning), names_(StrainColumns(config.sensors)) {
     const double period_s = config.loop.period_ms * 1e-3;
     const Eigen::Index lead = Samples(kLead_s, period_s);
@@ -341,7 +341,7 @@ class Judge {
     }
   }
 
-  const StackConfig& config_;
+  const RigConfig& config_;
   const CommissioningConfig& limits_;
   std::vector<std::string> names_;
   Eigen::Index pulse_ = 0;
@@ -369,7 +369,7 @@ std::vector<std::array<double, 2>> PluckTorques(const CommissioningConfig& confi
   return torque;
 }
 
-PluckVerdict JudgePluck(const StackConfig& config, const std::vector<TickRecord>& run) {
+PluckVerdict JudgePluck(const RigConfig& config, const std::vector<TickRecord>& run) {
   return Judge(config, run).Run();
 }
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "controller/commissioning/commissioning_config.h"
-#include "controller/runlog/records.h"
-#include "controller/runtime/stack_config.h"
+#include "controller/types/commissioning_config.h"
+#include "controller/types/records.h"
+#include "controller/types/rig_config.h"
 
 namespace flexarm {
 
@@ -38,6 +38,6 @@ struct PluckVerdict {
 };
 
 /// @param run  the samples from the start of the test to its end, or to the trip that ended it
-PluckVerdict JudgePluck(const StackConfig& config, const std::vector<TickRecord>& run);
+PluckVerdict JudgePluck(const RigConfig& config, const std::vector<TickRecord>& run);
 
 }  // namespace flexarm

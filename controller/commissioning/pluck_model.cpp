@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "hal/gauge_filter.h"
-#include "model/arm_model.h"
-#include "model/arm_simulator.h"
+#include "model/arm/arm_model.h"
+#include "model/simulation/arm_simulator.h"
 
 namespace flexarm {
 namespace {
@@ -33,7 +33,7 @@ Eigen::MatrixXd StrainOfCoordinates(const ArmModel& arm, const SensorConfig& sen
 
 }  // namespace
 
-PluckMotion MeasuredMotion(const StackConfig& config, const std::vector<TickRecord>& run) {
+PluckMotion MeasuredMotion(const RigConfig& config, const std::vector<TickRecord>& run) {
   const auto channels = static_cast<Eigen::Index>(config.sensors.strain.size());
   PluckMotion motion(static_cast<Eigen::Index>(run.size()), kCounters + channels);
   for (Eigen::Index k = 0; k < motion.rows(); ++k) {
@@ -52,7 +52,7 @@ PluckMotion MeasuredMotion(const StackConfig& config, const std::vector<TickReco
   return motion;
 }
 
-PluckMotion ExpectedMotion(const StackConfig& config, const std::vector<TickRecord>& run,
+PluckMotion ExpectedMotion(const RigConfig& config, const std::vector<TickRecord>& run,
                            bool exchanged) {
   const ArmModel arm(config.arm, {.link1 = kModes, .link2 = kModes});
   ArmSimulator simulator(arm);

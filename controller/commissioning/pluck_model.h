@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "controller/runlog/records.h"
-#include "controller/runtime/stack_config.h"
+#include "controller/types/records.h"
+#include "controller/types/rig_config.h"
 
 namespace flexarm {
 
@@ -13,12 +13,12 @@ namespace flexarm {
 using PluckMotion = Eigen::MatrixXd;
 
 /// As the sensors say, with the signs, scales and calibration of config and run.
-PluckMotion MeasuredMotion(const StackConfig& config, const std::vector<TickRecord>& run);
+PluckMotion MeasuredMotion(const RigConfig& config, const std::vector<TickRecord>& run);
 
 /// As the model says: the arm of the config, from rest at the elbow angle of the first sample,
 /// under the torques that were really applied.
 /// @param exchanged  the two drives' torques act on each other's joint
-PluckMotion ExpectedMotion(const StackConfig& config, const std::vector<TickRecord>& run,
+PluckMotion ExpectedMotion(const RigConfig& config, const std::vector<TickRecord>& run,
                            bool exchanged);
 
 }  // namespace flexarm

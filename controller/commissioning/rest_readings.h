@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "controller/runlog/records.h"
+#include "controller/types/records.h"
 #include "hal/sensor_frame.h"
 
 namespace flexarm {

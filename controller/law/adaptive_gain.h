@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "controller/law/controller_config.h"
+#include "controller/types/controller_config.h"
 
 namespace flexarm {
 

@@ -5,13 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "controller/law/command_generator.h"
 #include "controller/law/gain_table.h"
 #include "estimator/state_layout.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
 
 namespace flexarm {
-
-struct StackConfig;
 
 /// One check made on a design, with its figure.
 struct DesignCheck {
@@ -60,25 +58,7 @@ struct Design {
   bool sound() const;  ///< every check passed or was waived
 };
 
-/// Designs nominal model, reference model, gains and filter for a rig. Takes tens of milliseconds.
-/// @throws std::runtime_error naming the equation that has no solution
-Design DesignController(const StackConfig& config);
-
-/// The command generator's problem of a design, in the coordinates in which it is solved.
-TrackingProblem TrackingProblemOf(const StackConfig& config, const Design& design);
-
-/// Digest of what a design depends on: arm, sensors, estimator, controller, period. 16 hex digits.
-std::string DesignHash(const StackConfig& config);
-
-/// A design as JSON text, doubles in 17 digits, with the digest of its config.
-std::string DesignToJson(const Design& design, const std::string& config_hash);
-
-/// Reads what DesignToJson wrote, with all that the laws and the estimator of `config` need.
-/// @throws Refused naming what is missing or misshapen, or that it was designed for another config
-Design DesignFromJson(const std::string& text, const StackConfig& config);
-
-/// The design to run with: the one in `controller.gains`, or a new one.
-/// @throws Refused when there is none, or a check of it failed
-Design DesignFor(const StackConfig& config);
+/// The arm that the payload estimator of `design` and its planner compute with.
+RigidJointArm MakeRigidJointArm(const Design& design);
 
 }  // namespace flexarm

@@ -1,19 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
-#include "model/rigid_joint_arm.h"
-
 namespace flexarm {
-
-/// What the gains of a table weigh. The study's values: beyond.md 2.4.
-struct GainWeights {
-  std::array<double, 12> state;  ///< diagonal of Q on [q; q'] of RigidJointArm, 1 by their squares
-  double torque;                 ///< R = rho I, 1/(N m)^2
-  double alpha_per_s;            ///< prescribed degree of stability, >= 0
-};
 
 /// Where a table has its knots: ascending, at least two of each.
 struct GainGrid {
@@ -48,13 +38,5 @@ class GainTable {
   GainGrid grid_;
   std::vector<Gain> knots_;
 };
-
-/// LQR with degree of stability alpha at every knot, of the arm at rest and unbent, sampled.
-///
-/// Takes about a millisecond a knot. Source: beyond.md 2.4; control.md section 4.
-/// @param period_s  > 0
-/// @throws std::invalid_argument as GainTable; std::runtime_error if a knot has no regulator
-GainTable DesignGainTable(const RigidJointArm& arm, const GainGrid& grid,
-                          const GainWeights& weights, double period_s);
 
 }  // namespace flexarm

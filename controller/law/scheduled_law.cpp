@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "controller/law/gain_payload.h"
-#include "model/portable_math.h"
+#include "controller/law/scheduling_payload.h"
+#include "model/math/portable_math.h"
 
 namespace flexarm {
 namespace {

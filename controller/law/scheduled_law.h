@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "controller/law/gain_table.h"
-#include "controller/law/payload_supervisor.h"
-#include "model/quasi_static_map.h"
-#include "model/rigid_joint_arm.h"
+#include "controller/law/payload_monitor.h"
+#include "model/rigid_joint/quasi_static_map.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
 
 namespace flexarm {
 
@@ -32,7 +32,7 @@ class ScheduledLaw {
   /// x_d and u_d in closed form: QuasiStaticOver.
   /// @param path  one period before the instant the torque acts, then, and one after
   QuasiStaticSample ClosedForm(double payload_kg,
-                               const std::array<RigidPathPoint, 3>& path) const noexcept {
+                               const std::array<RigidPoint, 3>& path) const noexcept {
     return QuasiStaticOver(arm_, payload_kg, path, period_s_);
   }
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "controller/law/adaptive_gain.h"
-#include "controller/law/controller_config.h"
 #include "controller/law/design.h"
-#include "controller/law/step_types.h"
+#include "controller/types/controller_config.h"
+#include "controller/types/step_types.h"
 #include "estimator/state_estimator.h"
 
 namespace flexarm {

@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include "controller/law/step_types.h"
+#include "controller/types/step_types.h"
 
 namespace flexarm {
 

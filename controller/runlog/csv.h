@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "controller/law/step_types.h"
+#include "controller/types/step_types.h"
 #include "hal/sensor_config.h"
 
 namespace flexarm {

@@ -125,15 +125,15 @@ class ForeignReader {
 
 }  // namespace
 
-std::vector<Problem> CsvImport::Problems(const SensorConfig& sensors) const {
+std::vector<Problem> ProblemsOf(const CsvImport& import, const SensorConfig& sensors) {
   ProblemList list("csv.");
-  list.Within("decimation", decimation, 1, 10000, "rows a period of the loop");
+  list.Within("decimation", import.decimation, 1, 10000, "rows a period of the loop");
   const std::vector<std::string> needed = NeededTargets(sensors);
   std::string all;
   for (const std::string& target : needed) all += " " + target;
   std::vector<std::string> seen;
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    const CsvColumn& c = column[i];
+  for (std::size_t i = 0; i < import.column.size(); ++i) {
+    const CsvColumn& c = import.column[i];
     const std::string row = ProblemList::Element("column", i);
     list.Require(!c.column.empty(), row + ".column", "\"\"", "must name a column of the header");
     list.Require(c.scale != 0.0 && std::abs(c.scale) <= 1e12, row + ".scale", NumberText(c.scale),
@@ -146,7 +146,7 @@ std::vector<Problem> CsvImport::Problems(const SensorConfig& sensors) const {
   }
   for (const std::string& target : needed) {
     list.Require(std::find(seen.begin(), seen.end(), target) != seen.end(), "column",
-                 NumberText(column.size()) + " rows",
+                 NumberText(import.column.size()) + " rows",
                  "must have a row with target = \"" + target + "\"");
   }
   return list.Take();

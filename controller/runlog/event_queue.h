@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "controller/runlog/records.h"
-#include "controller/runtime/spsc_queue.h"
+#include "controller/exchange/spsc_queue.h"
+#include "controller/types/records.h"
 
 namespace flexarm {
 

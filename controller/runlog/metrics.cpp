@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/link_modes.h"
+#include "model/beam/link_modes.h"
 #include "model/units.h"
 
 namespace flexarm {

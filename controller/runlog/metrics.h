@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "controller/law/experiment.h"
-#include "controller/runlog/records.h"
+#include "controller/types/experiment.h"
+#include "controller/types/records.h"
 #include "estimator/state_layout.h"
-#include "model/arm_parameters.h"
+#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 

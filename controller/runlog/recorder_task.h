@@ -3,10 +3,11 @@
 #include <cstdint>
 #include <deque>
 
+#include "controller/exchange/spsc_queue.h"
+#include "controller/realtime/task.h"
+#include "controller/realtime/timing_record.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/runlog/run_recording.h"
-#include "controller/runtime/spsc_queue.h"
-#include "controller/runtime/task.h"
 
 namespace flexarm {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "controller/realtime/float_environment.h"
 #include "controller/runlog/blob.h"
-#include "controller/runtime/float_environment.h"
 
 namespace flexarm {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <optional>
 
-#include "controller/law/step_types.h"
-#include "controller/runlog/records.h"
 #include "controller/safety/safety_record.h"
+#include "controller/types/records.h"
+#include "controller/types/step_types.h"
 
 namespace flexarm {
 

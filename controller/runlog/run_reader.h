@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "controller/realtime/timing_record.h"
 #include "controller/runlog/errors.h"
 #include "controller/runlog/run_sink.h"
 #include "controller/runlog/sqlite_db.h"

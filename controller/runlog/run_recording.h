@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "controller/realtime/timing_record.h"
 #include "controller/runlog/run_sink.h"
 
 namespace flexarm {

@@ -3,8 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "controller/runlog/records.h"
+#include "controller/realtime/timing_record.h"
 #include "controller/runlog/safety_rows.h"
+#include "controller/types/records.h"
 
 namespace flexarm {
 

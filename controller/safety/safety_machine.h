@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "controller/runtime/messages.h"
-#include "controller/safety/safety_state.h"
-#include "controller/safety/trip_cause.h"
+#include "controller/types/messages.h"
+#include "controller/types/safety_state.h"
+#include "controller/types/trip_cause.h"
 
 namespace flexarm {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "controller/runtime/messages.h"
 #include "controller/safety/safety_machine.h"
+#include "controller/types/messages.h"
 
 namespace flexarm {
 

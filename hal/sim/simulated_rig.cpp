@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "model/tip_acceleration.h"
+#include "model/rigid_joint/tip_acceleration.h"
 
 namespace flexarm {
 

@@ -10,9 +10,9 @@
 #include "hal/sim/sim_config.h"
 #include "hal/sim/simulated_accelerometer.h"
 #include "hal/sim/simulated_sensors.h"
-#include "model/arm_model.h"
-#include "model/arm_simulator.h"
-#include "model/dc_motor.h"
+#include "model/arm/arm_model.h"
+#include "model/arm/dc_motor.h"
+#include "model/simulation/arm_simulator.h"
 
 namespace flexarm {
 

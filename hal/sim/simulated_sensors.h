@@ -7,8 +7,8 @@
 
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
-#include "model/arm_model.h"
-#include "model/arm_simulator.h"
+#include "model/arm/arm_model.h"
+#include "model/simulation/arm_simulator.h"
 
 namespace flexarm {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "model/dense_decompositions.h"
-#include "model/linearization.h"
+#include "model/arm/linearization.h"
+#include "model/math/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "model/arm_model.h"
+#include "model/arm/arm_model.h"
 #include "model/reduction/power_balancing.h"
 #include "model/reduction/spectral_split.h"
 

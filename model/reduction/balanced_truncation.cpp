@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "model/dense_decompositions.h"
+#include "model/math/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "model/dense_decompositions.h"
-#include "model/discretize.h"
-#include "model/matrix_scaling.h"
+#include "model/math/dense_decompositions.h"
+#include "model/math/discretize.h"
+#include "model/math/matrix_scaling.h"
 
 namespace flexarm {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/dense_decompositions.h"
-#include "model/matrix_scaling.h"
+#include "model/math/dense_decompositions.h"
+#include "model/math/matrix_scaling.h"
 
 namespace flexarm {
 namespace {

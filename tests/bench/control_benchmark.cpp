@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "controller/law/control_step.h"
+#include "controller/design/design_controller.h"
+#include "controller/design/run_design.h"
 #include "controller/law/design.h"
+#include "controller/step/control_step.h"
 #include "tests/support/recorded_inputs.h"
 #include "tests/support/step_variants.h"
 
@@ -17,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-Config Rig() { return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"); }
+RigConfig Rig() { return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"); }
 
 double MicrosecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -29,7 +31,7 @@ void Step(benchmark::State& state) {
   const StepVariant variant = StepVariants()[static_cast<std::size_t>(state.range(0))];
   state.SetLabel(variant.name);
   const std::vector<StepInput> inputs = RecordedInputs(Rig());
-  const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
+  const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
   ControlStep step(config, DesignFor(config));
   std::vector<double> taken_us;
   taken_us.reserve(10'000'000);
@@ -54,7 +56,7 @@ BENCHMARK(Step)
     ->MinTime(0.5);
 
 void Design(benchmark::State& state) {
-  const Config config = Rig();
+  const RigConfig config = Rig();
   for (auto _ : state) benchmark::DoNotOptimize(DesignController(config).K.data());
 }
 BENCHMARK(Design)->Unit(benchmark::kMillisecond);
@@ -62,8 +64,8 @@ BENCHMARK(Design)->Unit(benchmark::kMillisecond);
 // All tasks in lock step, design and start-up left out as in realtime_factor, for the plant's modes
 // a link.
 void SimulatedRun(benchmark::State& state) {
-  const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml",
-                                   {"sim.plant_modes=" + std::to_string(state.range(0))});
+  const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml",
+                                      {"sim.plant_modes=" + std::to_string(state.range(0))});
   const Experiment experiment =
       LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/square-30deg.toml");
   std::vector<double> factors;

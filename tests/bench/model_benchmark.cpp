@@ -2,7 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "model/arm_simulator.h"
+#include "model/simulation/arm_simulator.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "controller/law/plan_roll_out.h"
+#include "controller/planner/forward_rollout.h"
 #include "tests/support/study_planner.h"
 
 namespace flexarm {
@@ -13,7 +13,7 @@ namespace {
 constexpr double kPeriod_s = SepticMove::kPeriod_s;
 
 struct Bench {
-  std::vector<RigidPathPoint> path = StudyMove().Ahead(0);
+  std::vector<RigidPoint> path = StudyMove().Ahead(0);
   PlanProblem problem{.first_tick = 0,
                       .x = PlanState::Zero(),
                       .payload_kg = 0.37,

@@ -7,8 +7,8 @@
 #include <exception>
 #include <vector>
 
-#include "controller/law/control_step.h"
-#include "controller/law/design.h"
+#include "controller/design/run_design.h"
+#include "controller/step/control_step.h"
 #include "tests/support/recorded_inputs.h"
 #include "tests/support/step_variants.h"
 
@@ -25,7 +25,7 @@ void Run() {
       RecordedInputs(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"));
   std::int64_t last = 0;
   for (const StepVariant& variant : StepVariants()) {
-    const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
+    const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
     ControlStep step(config, DesignFor(config));
     for (const StepInput& input : inputs) last = CountedStep(step, input).tick;
     std::printf("variant %s at most %d\n", variant.name, variant.most_instructions);

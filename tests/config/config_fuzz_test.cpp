@@ -14,7 +14,7 @@ namespace {
 // the test; a crash is for the sanitizers.
 bool Survives(const std::string& text) {
   try {
-    const Config config = ParseConfig(text, "fuzz");
+    const RigConfig config = ParseConfig(text, "fuzz");
     EXPECT_EQ(ParseConfig(config.text, "log").text, config.text);
     return true;
   } catch (const ConfigError& error) {

@@ -21,7 +21,7 @@ inline std::filesystem::path Shipped(const std::string& name) {
 }
 
 /// The shipped simulated rig with `overrides`.
-inline Config HilWith(const std::vector<std::string>& overrides) {
+inline RigConfig HilWith(const std::vector<std::string>& overrides) {
   return LoadConfig(Shipped("hil.toml"), overrides);
 }
 

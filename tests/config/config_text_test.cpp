@@ -24,7 +24,7 @@ TEST(ConfigText, OfEveryShippedRigReadsBackToTheSameText) {
 
 TEST(ConfigText, KeepsEveryBitOfANumber) {
   std::mt19937_64 bits(20261120);
-  const Config rig = LoadConfig(Shipped("hil.toml"));
+  const RigConfig rig = LoadConfig(Shipped("hil.toml"));
   for (int i = 0; i < 300; ++i) {
     const double number = std::abs(std::bit_cast<double>(bits()));
     if (!std::isfinite(number)) continue;
@@ -32,7 +32,7 @@ TEST(ConfigText, KeepsEveryBitOfANumber) {
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number,
                                    std::chars_format::scientific, 16);
     const std::string value(digits.data(), end.ptr);
-    const Config config = LoadConfig(Shipped("hil.toml"), {"arm.payload_mass_kg=" + value});
+    const RigConfig config = LoadConfig(Shipped("hil.toml"), {"arm.payload_mass_kg=" + value});
     const double back = ParseConfig(config.text, "log").arm.payload_mass_kg;
     EXPECT_EQ(std::bit_cast<std::uint64_t>(config.arm.payload_mass_kg),
               std::bit_cast<std::uint64_t>(number))
@@ -42,22 +42,22 @@ TEST(ConfigText, KeepsEveryBitOfANumber) {
 }
 
 TEST(ConfigText, KeepsMinusZeroAndWholeNumbers) {
-  const Config config = LoadConfig(Shipped("hil.toml"), {"sensors.strain[0].offset_counts=-0.0",
-                                                         "sensors.strain[1].offset_counts=3"});
-  const Config back = ParseConfig(config.text, "log");
+  const RigConfig config = LoadConfig(Shipped("hil.toml"), {"sensors.strain[0].offset_counts=-0.0",
+                                                            "sensors.strain[1].offset_counts=3"});
+  const RigConfig back = ParseConfig(config.text, "log");
   EXPECT_TRUE(std::signbit(back.sensors.strain[0].offset_counts));
   EXPECT_EQ(back.sensors.strain[1].offset_counts, 3.0);
   EXPECT_EQ(back.text, config.text);
 }
 
 TEST(ConfigText, KeepsTheLargestSeed) {
-  const Config config = LoadConfig(Shipped("hil.toml"), {"sim.seed=9223372036854775807"});
+  const RigConfig config = LoadConfig(Shipped("hil.toml"), {"sim.seed=9223372036854775807"});
   EXPECT_EQ(ParseConfig(config.text, "log").sim.seed, 9223372036854775807U);
 }
 
 TEST(ConfigText, KeepsEveryCharacterOfAString) {
   const std::string name = "\"quotes\" 'and' \\ tab\t line\n bell\a del\x7f B\xc3\xa4r";
-  const Config config = LoadConfig(
+  const RigConfig config = LoadConfig(
       Shipped("hil.toml"), {R"(rig.name="\"quotes\" 'and' \\ tab\t line\n bell\u0007 del\u007f B)"
                             "\xc3\xa4r\""});
   EXPECT_EQ(config.rig_name, name);

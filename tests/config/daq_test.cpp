@@ -21,7 +21,7 @@ std::string Complaint(const std::vector<std::string>& overrides) {
 }
 
 TEST(DaqConfig, TheShippedBoardsAreRead) {
-  const Config config = LoadConfig(Shipped("daq-rig.toml"));
+  const RigConfig config = LoadConfig(Shipped("daq-rig.toml"));
   EXPECT_EQ(config.backend, "wired");
   ASSERT_EQ(config.hal.comedi.size(), 2U);
   const ComediBoardConfig& first = config.hal.comedi[0];
@@ -43,7 +43,7 @@ TEST(DaqConfig, TheShippedBoardsAreRead) {
 }
 
 TEST(DaqConfig, TheLoggedTextGivesTheSameBoardsAgain) {
-  const Config config = LoadConfig(Shipped("daq-rig.toml"));
+  const RigConfig config = LoadConfig(Shipped("daq-rig.toml"));
   EXPECT_EQ(ParseConfig(config.text, "log").text, config.text);
 }
 

@@ -25,7 +25,7 @@ TEST(Extends, ChainsAcrossFoldersRelativeToEachFile) {
   const auto top = folder.Write("top.toml",
                                 "extends = \"base/middle.toml\"\n[controller]\nalpha = 1.0\n"
                                 "[limits]\nsoft_angle_deg = [80, 85]\n");
-  const Config config = LoadConfig(top);
+  const RigConfig config = LoadConfig(top);
   EXPECT_EQ(config.controller.alpha, 1.0);
   EXPECT_EQ(config.controller.sigma, 0.5);
   EXPECT_EQ(config.controller.vartheta, 0.35);

@@ -38,7 +38,7 @@ std::string Complaint(const std::string& from, const std::string& to) {
 }
 
 TEST(HalConfig, TheShippedWiringIsRead) {
-  const Config config = LoadConfig(kFile);
+  const RigConfig config = LoadConfig(kFile);
   EXPECT_EQ(config.backend, "wired");
   ASSERT_EQ(config.hal.canopen.size(), 1u);
   EXPECT_EQ(config.hal.canopen[0].node.size(), 6u);
@@ -51,7 +51,7 @@ TEST(HalConfig, TheShippedWiringIsRead) {
 }
 
 TEST(HalConfig, TheLoggedTextGivesTheSameWiringAgain) {
-  const Config config = LoadConfig(kFile);
+  const RigConfig config = LoadConfig(kFile);
   EXPECT_EQ(ParseConfig(config.text, "log").text, config.text);
 }
 

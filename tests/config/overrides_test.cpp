@@ -22,7 +22,7 @@ std::vector<ConfigProblem> ProblemsWith(const std::vector<std::string>& override
 }
 
 TEST(Overrides, SetNumbersWordsAndArrays) {
-  const Config config =
+  const RigConfig config =
       HilWith({"controller.alpha=2", "controller.name=lqr-cgt", "controller.prediction=false",
                "limits.soft_angle_deg = [80, 85.5]", "daemon.socket=/tmp/a.sock",
                "rig.name=\"two words\"", "controller.gains=gains.json"});
@@ -37,8 +37,8 @@ TEST(Overrides, SetNumbersWordsAndArrays) {
 }
 
 TEST(Overrides, ReachRowsAndElementsByNumber) {
-  const Config config = HilWith({"sensors.strain[3].face=-1", "limits.soft_angle_deg[1]=80",
-                                 "link2.section[0].length_m=0.95"});
+  const RigConfig config = HilWith({"sensors.strain[3].face=-1", "limits.soft_angle_deg[1]=80",
+                                    "link2.section[0].length_m=0.95"});
   EXPECT_EQ(config.sensors.strain[3].face, -1);
   EXPECT_EQ(config.sensors.strain[2].face, 1);
   EXPECT_EQ(config.sensors.strain.size(), 20U);
@@ -51,7 +51,7 @@ TEST(Overrides, LastOneWins) {
 }
 
 TEST(Overrides, AreInTheText) {
-  const Config config = HilWith({"controller.alpha=2.5"});
+  const RigConfig config = HilWith({"controller.alpha=2.5"});
   EXPECT_EQ(ParseConfig(config.text, "log").controller.alpha, 2.5);
   EXPECT_NE(config.text, HilWith({}).text);
 }

@@ -62,7 +62,7 @@ TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
 TEST(RigBinding, PutsEveryKeyOfATipAccelerometerInItsField) {
   EXPECT_FALSE(HilWith({}).sensors.tip_accelerometer.has_value());
   EXPECT_FALSE(HilWith({}).estimator.payload->tip_extra_sigma_m_s2.has_value());
-  const Config rig =
+  const RigConfig rig =
       HilWith({"sensors.tip_accelerometer={range_m_s2=40, converter_bits=15, "
                "noise_counts=3, filter_hz=250}",
                "estimator.payload.tip_extra_sigma_m_s2=0.7"});
@@ -80,7 +80,7 @@ TEST(RigBinding, PutsEveryKeyOfATipAccelerometerInItsField) {
 
 TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
   EXPECT_FALSE(HilWith({}).csv.has_value());
-  const Config rig =
+  const RigConfig rig =
       LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[3].offset=0.25", "csv.decimation=5"});
   ASSERT_TRUE(rig.csv.has_value());
   EXPECT_EQ(rig.csv->decimation, 5);
@@ -101,14 +101,14 @@ TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
 
 // What a search over parameters does many times.
 TEST(RigBinding, ANumberIsFoundAndReplacedByItsKey) {
-  const Config rig = HilWith({});
+  const RigConfig rig = HilWith({});
   EXPECT_EQ(NumberAt(rig, "link1.section[0].length_m"), 0.8);
   EXPECT_EQ(NumberAt(rig, "sensors.encoder[3].counter_bits"), 16.0);
   EXPECT_EQ(NumberAt(rig, "limits.soft_angle_deg[1]"), 90.0);
   for (const char* none : {"rig.name", "link1.section", "link3.length_m", "arm.nothing", ""}) {
     EXPECT_FALSE(NumberAt(rig, none).has_value()) << none;
   }
-  const Config other = WithOverrides(rig, {"link1.section[0].length_m=0.83"});
+  const RigConfig other = WithOverrides(rig, {"link1.section[0].length_m=0.83"});
   EXPECT_EQ(other.arm.link[0].section[0].length_m, 0.83);
   EXPECT_EQ(WithOverrides(other, {"link1.section[0].length_m=0.8"}).text, rig.text);
   EXPECT_THROW(WithOverrides(rig, {"link1.section[0].length_m=-1"}), ConfigError);
@@ -156,28 +156,28 @@ TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
 }
 
 TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
-  const Config set = HilWith({"estimator.payload.process_force=[1, 2, 3, 4, 5, 6]",
-                              "estimator.payload.rotor_extra_sigma_rad=[0.01, 0.02]",
-                              "estimator.payload.start_kg=0.3",
-                              "estimator.payload.start_sigma_kg=0.5",
-                              "estimator.payload.max_kg=1.2",
-                              "estimator.payload.move_sigma_kg=0.6",
-                              "estimator.payload.walk_kg=0.004",
-                              "estimator.payload.min_rate_rad_s=0.05",
-                              "estimator.payload.friction_start_sigma_nm=[0.2, 0.3]",
-                              "estimator.payload.friction_max_nm=[2, 3]",
-                              "estimator.payload.friction_walk_nm=[0.4, 0.5]",
-                              "estimator.payload.friction_min_rate_rad_s=0.06",
-                              "estimator.payload.play_threshold_counts=2.5",
-                              "estimator.payload.play_memory=0.9",
-                              "estimator.payload.gate_sigmas=5",
-                              "estimator.payload.detect_delay=false",
-                              "controller.payload.max_kg=0.9",
-                              "controller.payload.reference_kg=0.25",
-                              "controller.payload.gain_payload_kg=[0, 0.5]",
-                              "controller.payload.gain_elbow_deg=[0, 45, 90]",
-                              "estimator.name=ekf-payload",
-                              "controller.name=gain-scheduled"});
+  const RigConfig set = HilWith({"estimator.payload.process_force=[1, 2, 3, 4, 5, 6]",
+                                 "estimator.payload.rotor_extra_sigma_rad=[0.01, 0.02]",
+                                 "estimator.payload.start_kg=0.3",
+                                 "estimator.payload.start_sigma_kg=0.5",
+                                 "estimator.payload.max_kg=1.2",
+                                 "estimator.payload.move_sigma_kg=0.6",
+                                 "estimator.payload.walk_kg=0.004",
+                                 "estimator.payload.min_rate_rad_s=0.05",
+                                 "estimator.payload.friction_start_sigma_nm=[0.2, 0.3]",
+                                 "estimator.payload.friction_max_nm=[2, 3]",
+                                 "estimator.payload.friction_walk_nm=[0.4, 0.5]",
+                                 "estimator.payload.friction_min_rate_rad_s=0.06",
+                                 "estimator.payload.play_threshold_counts=2.5",
+                                 "estimator.payload.play_memory=0.9",
+                                 "estimator.payload.gate_sigmas=5",
+                                 "estimator.payload.detect_delay=false",
+                                 "controller.payload.max_kg=0.9",
+                                 "controller.payload.reference_kg=0.25",
+                                 "controller.payload.gain_payload_kg=[0, 0.5]",
+                                 "controller.payload.gain_elbow_deg=[0, 45, 90]",
+                                 "estimator.name=ekf-payload",
+                                 "controller.name=gain-scheduled"});
   EXPECT_EQ(set.estimator.kind, EstimatorKind::kPayload);
   EXPECT_EQ(set.controller.kind, ControllerKind::kGainScheduled);
   const PayloadEstimatorConfig& e = set.estimator.payload.value();
@@ -263,7 +263,7 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
 }
 
 TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
-  const Config c =
+  const RigConfig c =
       HilWith({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
                "loop.output=at_once", "loop.output_after_ms=14", "loop.actuation_delay_ms=3",
                "daemon.socket=/tmp/s", "log.directory=/tmp/d"});

@@ -92,8 +92,8 @@ TEST(ShippedFiles, PrintedRigDiffersFromTheCorrectedOneInDensityAndModulusOnly) 
 }
 
 TEST(ShippedFiles, HilRigDiffersFromTheThesisRigInItsBackendOnly) {
-  const Config rig = LoadConfig(Shipped("thesis-rig.toml"));
-  const Config hil = LoadConfig(Shipped("hil.toml"));
+  const RigConfig rig = LoadConfig(Shipped("thesis-rig.toml"));
+  const RigConfig hil = LoadConfig(Shipped("hil.toml"));
   EXPECT_EQ(rig.backend, "");
   EXPECT_EQ(hil.backend, "sim");
   EXPECT_EQ(Replaced(hil.text, "\n[hal]\nbackend = \"sim\"\n", ""), rig.text);

@@ -15,7 +15,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-BIN = Path(os.environ.get("FLEXARM_BIN", ROOT / "build/release/tools"))
+BIN = Path(os.environ.get("FLEXARM_BIN", ROOT / "build/release/bin"))
 HIL = ROOT / "config/hil.toml"
 SQUARE = ROOT / "config/experiments/square-30deg.toml"
 

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "estimator/nominal_model.h"
-#include "model/discretize.h"
+#include "model/math/discretize.h"
 #include "tests/estimator/thesis_estimator.h"
-#include "tests/model/golden_data.h"
+#include "tests/support/golden_data.h"
 
 namespace flexarm {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "estimator/state_estimator.h"
-#include "model/dense_decompositions.h"
-#include "model/discretize.h"
+#include "model/math/dense_decompositions.h"
+#include "model/math/discretize.h"
 #include "tests/estimator/thesis_estimator.h"
 
 namespace flexarm {

@@ -10,9 +10,9 @@
 #include <set>
 #include <vector>
 
-#include "model/dense_decompositions.h"
-#include "model/discretize.h"
-#include "tests/model/golden_data.h"
+#include "model/math/dense_decompositions.h"
+#include "model/math/discretize.h"
+#include "tests/support/golden_data.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/thesis_rig.h"
 

@@ -7,11 +7,11 @@
 
 #include <cmath>
 
-#include "model/arm_model.h"
-#include "model/arm_simulator.h"
-#include "model/tip_acceleration.h"
+#include "model/arm/arm_model.h"
+#include "model/rigid_joint/tip_acceleration.h"
+#include "model/simulation/arm_simulator.h"
 #include "tests/hal/thesis_sensors.h"
-#include "tests/model/golden_data.h"
+#include "tests/support/golden_data.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/study_payload.h"
 #include "tests/support/thesis_rig.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "model/dense_decompositions.h"
+#include "model/math/dense_decompositions.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {

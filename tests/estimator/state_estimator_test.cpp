@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "hal/gauge_filter.h"
-#include "model/dense_decompositions.h"
-#include "model/discretize.h"
+#include "model/math/dense_decompositions.h"
+#include "model/math/discretize.h"
 #include "tests/estimator/thesis_estimator.h"
 
 namespace flexarm {

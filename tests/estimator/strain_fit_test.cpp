@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <random>
 
-#include "model/arm_model.h"
-#include "model/dense_decompositions.h"
+#include "model/arm/arm_model.h"
+#include "model/math/dense_decompositions.h"
 #include "tests/estimator/thesis_estimator.h"
 
 namespace flexarm {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "estimator/strain_fit.h"
-#include "model/arm_model.h"
+#include "model/arm/arm_model.h"
 #include "tests/estimator/thesis_estimator.h"
 
 namespace flexarm {

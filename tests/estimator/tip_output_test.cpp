@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "model/dense_decompositions.h"
+#include "model/math/dense_decompositions.h"
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
 

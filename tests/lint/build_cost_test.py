@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT / "tools" / "lint"))
 
 import build_cost  # noqa: E402
 
-MODEL, MAIN = "batches/flexarm_model/model.cpp", "tools/main.cpp"
+MODEL, MAIN = "batches/flexarm_model/model.cpp", "tools/flexarm/main.cpp"
 FIGURES = {"per_thousand_lines": 1.5, "units": {MODEL: 2.0, MAIN: 1.0}}
 LINES = 2.0  # in thousands, so that the figures of the units sum to that of the product
 COMPILER = "/usr/bin/c++"
@@ -34,7 +34,7 @@ class Limits(unittest.TestCase):
     def test_a_unit_fails_at_31_percent_more_and_is_named_with_a_remedy(self):
         found = findings(2.0, 1.31)
         self.assertEqual(len(found), 1, found)
-        self.assertTrue(found[0].startswith("tools/main.cpp takes the compiler 1.31 times the"
+        self.assertTrue(found[0].startswith("tools/flexarm/main.cpp takes the compiler 1.31 times the"
                                             " reference, 31% more than its figure 1.00"), found)
         self.assertIn("--update and say why in the commit", found[0])
         self.assertEqual(len(findings(2.62, 0.7)), 1)
@@ -130,7 +130,7 @@ class Tree(unittest.TestCase):
         (new,) = build_cost.strangers([MODEL, MAIN, "tools/new.cpp"], FIGURES)
         self.assertTrue(new.startswith("tools/new.cpp has no figure: "), new)
         (gone,) = build_cost.strangers([MODEL], FIGURES)
-        self.assertTrue(gone.startswith("tools/main.cpp has a figure and is not compiled"), gone)
+        self.assertTrue(gone.startswith("tools/flexarm/main.cpp has a figure and is not compiled"), gone)
 
     def test_without_figures_the_lane_fails_and_says_what_to_do(self):
         self.commands((MAIN, "tools/CMakeFiles/flexarm.dir/main.cpp.o"))

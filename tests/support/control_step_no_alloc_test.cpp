@@ -6,8 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "controller/law/control_step.h"
+#include "controller/design/run_design.h"
 #include "controller/law/design.h"
+#include "controller/step/control_step.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/recorded_inputs.h"
 #include "tests/support/step_variants.h"
@@ -53,7 +54,7 @@ TEST(ControlStepNoAlloc, HoldsOverTenThousandSamplesInEveryStateAndEveryFault) {
       RecordedInputs(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"));
   for (const StepVariant& variant : StepVariants()) {
     SCOPED_TRACE(variant.name);
-    const Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
+    const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", variant.overrides);
     const Design design = DesignFor(config);
     ControlStep step(config, design);
 

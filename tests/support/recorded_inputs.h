@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "config/config.h"
+#include "controller/host/simulation.h"
 #include "controller/runlog/run_reader.h"
-#include "tools/simulation.h"
 
 namespace flexarm {
 
 /// Every StepInput of a simulated run of the shipped rig, from arm to disarm, in order of tick.
 /// What the control thread gets in a real run, to the byte: sensor noise, reference, states.
-inline std::vector<StepInput> RecordedInputs(const Config& config) {
+inline std::vector<StepInput> RecordedInputs(const RigConfig& config) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() /
                                      ("recorded-inputs-" + std::to_string(getpid()) + ".flexarm");
   const Experiment experiment =

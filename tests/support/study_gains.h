@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "controller/law/gain_table.h"
+#include "controller/design/gain_table_design.h"
 
 namespace flexarm {
 

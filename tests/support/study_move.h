@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "controller/law/motion_profile.h"
-#include "model/quasi_static_map.h"
+#include "controller/types/motion_profile.h"
+#include "model/rigid_joint/quasi_static_map.h"
 
 namespace flexarm {
 
@@ -18,21 +18,25 @@ struct SepticMove {
   int periods;
 
   /// Y, `sample` periods after its start.
-  RigidPathPoint At(int sample) const {
+  RigidPoint At(int sample) const {
     const double T = periods * kPeriod_s;
     const Eigen::Vector2d way = to_rad - from_rad;
     const ProfilePoint p = ProfileAt(MoveProfile::kSeptic, static_cast<double>(sample) / periods);
-    return {.Y = from_rad + way * p.s, .Y_dot = way * p.ds / T, .Y_ddot = way * p.dds / (T * T)};
+    RigidPoint point{};
+    Eigen::Vector2d::Map(point.angle_rad.data()) = from_rad + way * p.s;
+    Eigen::Vector2d::Map(point.rate_rad_s.data()) = way * p.ds / T;
+    Eigen::Vector2d::Map(point.acceleration_rad_s2.data()) = way * p.dds / (T * T);
+    return point;
   }
 
   /// Around a sample: the one before, it, and the next.
-  std::array<RigidPathPoint, 3> Around(int sample) const {
+  std::array<RigidPoint, 3> Around(int sample) const {
     return {At(sample - 1), At(sample), At(sample + 1)};
   }
 
   /// What a plan needs that starts at a sample: from the one before to 20 samples and one after.
-  std::vector<RigidPathPoint> Ahead(int sample) const {
-    std::vector<RigidPathPoint> path;
+  std::vector<RigidPoint> Ahead(int sample) const {
+    std::vector<RigidPoint> path;
     for (int i = sample - 1; i <= periods + 21; ++i) path.push_back(At(i));
     return path;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "controller/law/horizon_planner.h"
+#include "controller/design/gain_table_design.h"
+#include "controller/planner/horizon_planner.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/study_gains.h"
 #include "tests/support/study_move.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/arm_parameters.h"
+#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 

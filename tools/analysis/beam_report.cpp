@@ -6,10 +6,10 @@
 #include <iomanip>
 #include <sstream>
 
-#include "model/lumped_beam.h"
-#include "model/mode_shape_fit.h"
+#include "model/beam_methods/lumped_beam.h"
+#include "model/beam_methods/mode_shape_fit.h"
 #include "model/units.h"
-#include "tools/gnuplot.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {

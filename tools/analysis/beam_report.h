@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/beam_modes.h"
+#include "model/beam/beam_modes.h"
 
 namespace flexarm {
 

@@ -5,9 +5,9 @@
 #include <iomanip>
 #include <sstream>
 
-#include "model/arm_simulator.h"
+#include "model/simulation/arm_simulator.h"
 #include "model/units.h"
-#include "tools/gnuplot.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {

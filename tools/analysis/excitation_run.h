@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "model/arm_model.h"
+#include "model/arm/arm_model.h"
 #include "tools/analysis/parametric_study.h"
 
 namespace flexarm {

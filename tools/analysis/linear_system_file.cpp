@@ -6,7 +6,7 @@
 #include <set>
 
 #include "controller/runlog/errors.h"
-#include "model/dense_decompositions.h"
+#include "model/math/dense_decompositions.h"
 
 namespace flexarm {
 namespace {

@@ -7,9 +7,9 @@
 #include <iomanip>
 #include <sstream>
 
-#include "tools/gnuplot.h"
-#include "tools/run_summary.h"
-#include "tools/text_file.h"
+#include "tools/plot/gnuplot.h"
+#include "tools/runs/run_summary.h"
+#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {

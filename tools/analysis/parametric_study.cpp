@@ -5,10 +5,10 @@
 #include <limits>
 #include <numeric>
 
-#include "model/arm_simulator.h"
-#include "model/linearization.h"
+#include "model/arm/linearization.h"
+#include "model/simulation/arm_simulator.h"
 #include "model/units.h"
-#include "tools/parallel.h"
+#include "tools/support/parallel.h"
 
 namespace flexarm {
 namespace {
@@ -98,7 +98,7 @@ std::vector<SweepPlan> Plans(const ArmParameters& arm) {
           LengthPlan(arm, 1)};
 }
 
-Samples Respond(const Config& config, const ArmModel& model, const Excitation& excitation) {
+Samples Respond(const RigConfig& config, const ArmModel& model, const Excitation& excitation) {
   ArmSimulator simulator(
       model, {.substeps = std::max(
                   1, static_cast<int>(std::ceil(1e3 * kSample_s / config.sim.step_ms - 1e-9)))});
@@ -140,7 +140,7 @@ SignalMeasures Measure(const std::vector<double>& values) {
   return out;
 }
 
-ParametricPoint Run(const Config& config, const SweepPlan& plan, double value,
+ParametricPoint Run(const RigConfig& config, const SweepPlan& plan, double value,
                     const Excitation& excitation) {
   ArmParameters arm = config.arm;
   plan.apply(&arm, value);
@@ -157,7 +157,7 @@ ParametricPoint Run(const Config& config, const SweepPlan& plan, double value,
 
 }  // namespace
 
-std::size_t ParametricRuns(const Config& config) {
+std::size_t ParametricRuns(const RigConfig& config) {
   std::size_t runs = 0;
   for (const SweepPlan& plan : Plans(config.arm)) runs += plan.values.size();
   return runs;
@@ -169,7 +169,7 @@ Excitation Strong(const Excitation& weak) {
   return strong;
 }
 
-ParametricStudy RunParametricStudy(const Config& config, const Excitation& excitation,
+ParametricStudy RunParametricStudy(const RigConfig& config, const Excitation& excitation,
                                    const std::function<void(std::size_t)>& progress) {
   const std::vector<SweepPlan> plans = Plans(config.arm);
   ParametricStudy study{excitation, {}};

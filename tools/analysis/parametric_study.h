@@ -75,10 +75,10 @@ Excitation Strong(const Excitation& weak);
 
 /// Runs every point of every sweep on all cores.
 /// @param progress  as ForAllOnAllCores, with the number of runs done of `ParametricRuns`
-ParametricStudy RunParametricStudy(const Config& config, const Excitation& excitation,
+ParametricStudy RunParametricStudy(const RigConfig& config, const Excitation& excitation,
                                    const std::function<void(std::size_t)>& progress = {});
 
 /// How many runs a study is.
-std::size_t ParametricRuns(const Config& config);
+std::size_t ParametricRuns(const RigConfig& config);
 
 }  // namespace flexarm

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "model/units.h"
-#include "tools/gnuplot.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "model/perturbation.h"
+#include "model/perturbation/perturbation_run.h"
 
 namespace flexarm {
 

@@ -6,8 +6,8 @@
 
 #include "model/units.h"
 #include "tools/analysis/reduction_report.h"
-#include "tools/gnuplot.h"
-#include "tools/text_file.h"
+#include "tools/plot/gnuplot.h"
+#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {

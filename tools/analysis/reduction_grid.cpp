@@ -1,7 +1,7 @@
 #include "tools/analysis/reduction_grid.h"
 
 #include "model/units.h"
-#include "tools/parallel.h"
+#include "tools/support/parallel.h"
 
 namespace flexarm {
 namespace {

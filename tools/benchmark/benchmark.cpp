@@ -7,7 +7,7 @@
 
 #include "controller/runlog/errors.h"
 #include "controller/runlog/metrics.h"
-#include "tools/run_summary.h"
+#include "tools/runs/run_summary.h"
 #include "tools/sweep/random_moves.h"
 
 namespace flexarm {
@@ -53,7 +53,7 @@ nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
 
 }  // namespace
 
-SweepPlan BenchmarkPlan(const Config& config, const BenchmarkSet& set, const std::string& laws,
+SweepPlan BenchmarkPlan(const RigConfig& config, const BenchmarkSet& set, const std::string& laws,
                         const std::string& seeds) {
   SweepPlan plan{.config = config, .experiment = {}, .grid = {}, .scenarios = set.scenarios};
   plan.experiment = plan.scenarios.front().experiment;

@@ -17,8 +17,8 @@ namespace flexarm {
 /// @param laws   names with commas between; empty: the set's
 /// @param seeds  empty: the set's
 /// @throws InputError  no such law, no such seeds
-SweepPlan BenchmarkPlan(const Config& config, const BenchmarkSet& set, const std::string& laws = {},
-                        const std::string& seeds = {});
+SweepPlan BenchmarkPlan(const RigConfig& config, const BenchmarkSet& set,
+                        const std::string& laws = {}, const std::string& seeds = {});
 
 /// What a law did in a scenario.
 struct BenchmarkCell {

@@ -43,7 +43,7 @@ std::vector<std::string> CommandLaws() {
 
 std::vector<std::string> PayloadLaws() { return {"gain-scheduled", "receding-horizon"}; }
 
-BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const Config& config,
+BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const RigConfig& config,
                             const std::filesystem::path& experiments) {
   BenchmarkSet set{.kind = kind, .scenarios = {}, .laws = PayloadLaws(), .seeds = kMoveSeeds};
   switch (kind) {

@@ -31,7 +31,7 @@ struct BenchmarkSet {
 
 /// @param experiments  folder with benchmark-square.toml and the others
 /// @throws ConfigError  one of them is missing or wrong
-BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const Config& config,
+BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const RigConfig& config,
                             const std::filesystem::path& experiments);
 
 /// The laws that take any command.
@@ -41,8 +41,8 @@ std::vector<std::string> PayloadLaws();
 
 std::vector<Scenario> CommandScenarios(const std::filesystem::path& experiments);
 /// The payload ranges and the plants of beyond.md section 4, and finer encoders.
-std::vector<Scenario> MoveScenarios(const Config& config);
-std::vector<Scenario> LimitScenarios(const Config& config);
+std::vector<Scenario> MoveScenarios(const RigConfig& config);
+std::vector<Scenario> LimitScenarios(const RigConfig& config);
 
 /// The set with these scenarios alone, in its own order.
 BenchmarkSet Only(BenchmarkSet set, const std::vector<std::string>& scenarios);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "tools/gnuplot.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {

@@ -31,13 +31,13 @@ Scenario RandomScenario(const Disturbance& d, double up_to_kg = kHeaviest_kg) {
   return scenario;
 }
 
-Disturbance FineTheta1(const Config& config) {
+Disturbance FineTheta1(const RigConfig& config) {
   return {.name = "theta1-x10",
           .what = "encoder of theta1 ten times finer",
           .config = FinerEncoders(config.sensors, kFiner, true)};
 }
 
-Disturbance FineEncoders(const Config& config) {
+Disturbance FineEncoders(const RigConfig& config) {
   return {.name = "encoders-x10",
           .what = "all encoders ten times finer",
           .config = FinerEncoders(config.sensors, kFiner)};
@@ -70,7 +70,7 @@ std::vector<Disturbance> MorePlants() {
 
 }  // namespace
 
-std::vector<Scenario> MoveScenarios(const Config& config) {
+std::vector<Scenario> MoveScenarios(const RigConfig& config) {
   std::vector<Scenario> scenarios = {RandomScenario({.name = "nominal", .what = "0 to 1 kg"}),
                                      RandomScenario({.name = "light", .what = "0 to 0.2 kg"}, 0.2)};
   for (const auto& disturbances : {CommonDisturbances(), MorePlants()}) {
@@ -81,7 +81,7 @@ std::vector<Scenario> MoveScenarios(const Config& config) {
   return scenarios;
 }
 
-std::vector<Scenario> LimitScenarios(const Config& config) {
+std::vector<Scenario> LimitScenarios(const RigConfig& config) {
   const Overrides theta1 = FineTheta1(config).config, encoders = FineEncoders(config).config;
   const std::vector<Disturbance> taken_away = {
       {.name = "nominal", .what = "the rig as it is"},

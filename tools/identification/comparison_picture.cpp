@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "tools/gnuplot.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {

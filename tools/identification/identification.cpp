@@ -7,9 +7,9 @@
 #include <nlopt.hpp>
 
 #include "controller/runlog/errors.h"
-#include "model/dense_decompositions.h"
+#include "model/math/dense_decompositions.h"
 #include "model/problem_list.h"
-#include "tools/parallel.h"
+#include "tools/support/parallel.h"
 
 namespace flexarm {
 namespace {
@@ -36,8 +36,8 @@ double UnitSlope(const FreeParameter& p, double x) {
   return p.logarithmic ? FromUnit(p, x) * std::log(p.high / p.low) : p.high - p.low;
 }
 
-Config With(const Config& config, const std::vector<FreeParameter>& free,
-            const std::vector<double>& x) {
+RigConfig With(const RigConfig& config, const std::vector<FreeParameter>& free,
+               const std::vector<double>& x) {
   std::vector<std::string> overrides;
   for (std::size_t i = 0; i < free.size(); ++i) {
     overrides.push_back(free[i].key + "=" + NumberText(FromUnit(free[i], x[i])));
@@ -56,7 +56,7 @@ Eigen::VectorXd Stacked(const RunComparison& run, const Eigen::MatrixXd& differe
   return Eigen::Map<const Eigen::VectorXd>(by_sample.data(), by_sample.size());
 }
 
-Eigen::MatrixXd Jacobian(const Config& config, const RunComparison& run,
+Eigen::MatrixXd Jacobian(const RigConfig& config, const RunComparison& run,
                          const std::vector<FreeParameter>& free, const std::vector<double>& x) {
   Eigen::MatrixXd J(run.measured().size(), static_cast<Eigen::Index>(free.size()));
   ForAllOnAllCores(free.size(), [&](std::size_t i) {
@@ -72,7 +72,7 @@ Eigen::MatrixXd Jacobian(const Config& config, const RunComparison& run,
 
 // The search as NLopt sees it: a function of numbers between 0 and 1.
 struct Search {
-  const Config& config;
+  const RigConfig& config;
   const RunComparison& run;
   const std::vector<FreeParameter>& free;
   const std::function<void(std::size_t)>& progress;
@@ -129,7 +129,7 @@ Eigen::MatrixXd ScoreCovariance(const Eigen::MatrixXd& J, const Eigen::VectorXd&
   return sum;
 }
 
-Eigen::VectorXd StandardErrors(const Config& config, const RunComparison& run,
+Eigen::VectorXd StandardErrors(const RigConfig& config, const RunComparison& run,
                                const std::vector<FreeParameter>& free,
                                const std::vector<double>& x) {
   const Eigen::MatrixXd J = Jacobian(config, run, free, x);
@@ -150,7 +150,7 @@ Eigen::VectorXd StandardErrors(const Config& config, const RunComparison& run,
 }
 
 // The rest of the config must be able to live with both ends of a range.
-void CheckBound(const Config& config, const std::string& key, double bound) {
+void CheckBound(const RigConfig& config, const std::string& key, double bound) {
   try {
     WithOverrides(config, {key + "=" + NumberText(bound)});
   } catch (const ConfigError& error) {
@@ -171,7 +171,7 @@ double ParsedNumber(const std::string& text, const std::string& whole) {
 
 }  // namespace
 
-FreeParameter ParseFreeParameter(const Config& config, const std::string& text) {
+FreeParameter ParseFreeParameter(const RigConfig& config, const std::string& text) {
   const std::size_t equals = text.find('=');
   FreeParameter free{};
   free.key = text.substr(0, equals);
@@ -212,7 +212,7 @@ double Misfit(const RunComparison& run, const Eigen::MatrixXd& predicted) {
 
 std::size_t MostPredictions(std::size_t free_parameters) { return 300 * (free_parameters + 1); }
 
-Identification Identify(const Config& config, const RunComparison& run,
+Identification Identify(const RigConfig& config, const RunComparison& run,
                         const std::vector<FreeParameter>& free,
                         const std::function<void(std::size_t)>& progress) {
   std::vector<double> x;

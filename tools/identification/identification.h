@@ -21,7 +21,7 @@ struct FreeParameter {
 /// Reads "KEY" (a factor of 10 to both sides of what the config says, by its logarithm) or
 /// "KEY=LOW:HIGH" (between these, evenly).
 /// @throws InputError  also if a bound breaks a rule of the config
-FreeParameter ParseFreeParameter(const Config& config, const std::string& text);
+FreeParameter ParseFreeParameter(const RigConfig& config, const std::string& text);
 
 /// What was found for one of them.
 struct FoundParameter {
@@ -33,7 +33,7 @@ struct FoundParameter {
 
 struct Identification {
   std::vector<FoundParameter> parameter;
-  Config config;                ///< with what was found
+  RigConfig config;             ///< with what was found
   double start_misfit, misfit;  ///< Misfit() before and after, dimensionless
   int predictions;              ///< of the whole run, that the search took
   bool converged;               ///< else it stopped at its limit of predictions
@@ -52,7 +52,7 @@ double Misfit(const RunComparison& run, const Eigen::MatrixXd& predicted);
 /// They know nothing of what the model lacks.
 /// @param progress  called with the number of predictions so far; may be empty
 /// @throws InputError if the arm of the start does not survive its own prediction
-Identification Identify(const Config& config, const RunComparison& run,
+Identification Identify(const RigConfig& config, const RunComparison& run,
                         const std::vector<FreeParameter>& free,
                         const std::function<void(std::size_t)>& progress = {});
 

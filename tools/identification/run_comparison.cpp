@@ -5,14 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/runlog/csv_import.h"
 #include "controller/runlog/errors.h"
 #include "estimator/counter_decoder.h"
 #include "hal/gauge_filter.h"
-#include "model/arm_simulator.h"
-#include "model/dc_motor.h"
-#include "model/dense_decompositions.h"
+#include "model/arm/dc_motor.h"
+#include "model/math/dense_decompositions.h"
 #include "model/problem_list.h"
-#include "tools/run_summary.h"
+#include "model/simulation/arm_simulator.h"
+#include "tools/runs/run_summary.h"
 
 namespace flexarm {
 namespace {
@@ -47,7 +48,7 @@ Eigen::VectorXd Offsets(const SensorConfig& sensors) {
 
 // Row l: the tip deflection of link l + 1 from counts above their offsets. Shapes have psi(L) = 1,
 // so the tip moves by the sum of the modal coordinates.
-Eigen::MatrixXd TipOfCounts(const Config& config) {
+Eigen::MatrixXd TipOfCounts(const RigConfig& config) {
   const int modes = config.estimator.modes_per_link;
   const ArmModel arm(config.arm, {.link1 = modes, .link2 = modes});
   const Eigen::MatrixXd counts = CountsOfCoordinates(arm, config.sensors);
@@ -74,7 +75,7 @@ Eigen::VectorXd UncalibratedCounts(const StepInput& input, const Eigen::VectorXd
 
 }  // namespace
 
-RunComparison::RunComparison(std::filesystem::path file, const Config& config, TimeSpan span)
+RunComparison::RunComparison(std::filesystem::path file, const RigConfig& config, TimeSpan span)
     : file_(std::move(file)),
       span_(span),
       csv_(file_.extension() == ".csv"),
@@ -93,7 +94,7 @@ RunComparison::RunComparison(std::filesystem::path file, const Config& config, T
   FormSpread();
 }
 
-std::vector<StepInput> RunComparison::Inputs(const Config& config) const {
+std::vector<StepInput> RunComparison::Inputs(const RigConfig& config) const {
   if (csv_) {
     return ReadAnyCsv(file_, config.csv ? &*config.csv : nullptr, config.sensors,
                       config.loop.period_ms * 1e-3);
@@ -104,7 +105,7 @@ std::vector<StepInput> RunComparison::Inputs(const Config& config) const {
   return inputs;
 }
 
-void RunComparison::Measure(const Config& config) {
+void RunComparison::Measure(const RigConfig& config) {
   const auto angles = static_cast<Eigen::Index>(counter_.size());
   const double period_s = config.loop.period_ms * 1e-3;
   const auto all = static_cast<Eigen::Index>(input_.size());
@@ -176,7 +177,7 @@ ArmState RunComparison::Start(int dof) const {
   return state;
 }
 
-Eigen::MatrixXd RunComparison::Predict(const Config& candidate) const {
+Eigen::MatrixXd RunComparison::Predict(const RigConfig& candidate) const {
   // Torques of a CSV file go through the candidate's scales and offsets.
   const std::vector<StepInput> own =
       csv_ && candidate.csv != csv_import_ ? Inputs(candidate) : std::vector<StepInput>();

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "config/config.h"
-#include "controller/law/step_types.h"
-#include "model/arm_simulator.h"
+#include "controller/types/csv_import_config.h"
+#include "controller/types/step_types.h"
+#include "model/simulation/arm_simulator.h"
 
 namespace flexarm {
 
@@ -38,7 +39,7 @@ class RunComparison {
   ///                turned into deflections by it, measured and predicted ones alike
   /// @param span    what of the run is used; the arm should be at rest where it begins
   /// @throws InputError, ConfigError
-  RunComparison(std::filesystem::path file, const Config& config, TimeSpan span = {});
+  RunComparison(std::filesystem::path file, const RigConfig& config, TimeSpan span = {});
 
   const std::filesystem::path& file() const { return file_; }
   const std::vector<ComparedSignal>& signal() const { return signal_; }
@@ -50,14 +51,14 @@ class RunComparison {
 
   /// samples x signals; not finite if the simulated arm does not survive it.
   /// @throws ConfigError
-  Eigen::MatrixXd Predict(const Config& candidate) const;
+  Eigen::MatrixXd Predict(const RigConfig& candidate) const;
 
  private:
-  void Measure(const Config& config);
+  void Measure(const RigConfig& config);
   void KeepSpan();
   void FormSpread();
   ArmState Start(int dof) const;
-  std::vector<StepInput> Inputs(const Config& config) const;
+  std::vector<StepInput> Inputs(const RigConfig& config) const;
 
   std::filesystem::path file_;
   TimeSpan span_;

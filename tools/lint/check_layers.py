@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 """Checks the rules of the source tree that no compiler knows. Exit 1 if one is broken.
 
-layers      an include points in the allowed direction only, and is written from the root
-realtime    no I/O, lock, clock or heap by name in files that run on the real-time threads
-libm        Step computes with + - * / and sqrt: libm's sin and exp differ between CPUs
+layers      a folder includes those folders that layers.py names, and is written from the root
+target      each folder is one CMake target, which links the folders that it includes
+realtime    no I/O, lock or clock by name in folders whose code runs on the real-time threads
+heap        no allocation by name in folders whose code Step runs, but at start-up
+libm        Step computes with + - * / and sqrt: libm's sin and exp differ between machines
+picture     docs/images/folders.svg shows the folders and their arrows (--picture writes it)
 file-size   a source file has at most 400 lines, a test 600
 function    a function of more than 60 lines is worth a look (a warning)
 leftover    no to-do notes in the tree
@@ -18,61 +21,16 @@ import re
 import sys
 from pathlib import Path
 
+from folder_picture import draw, levels_of
+from layers import LAYERS, REALTIME, STEP
+
 CODE_FOLDERS = ("model", "hal", "estimator", "controller", "config", "tools", "tests")
 TEXT_SUFFIXES = {".h", ".cpp", ".py", ".sh", ".cmake", ".toml", ".in", ".service", ".txt", ""}
 MAX_FILE_LINES = 400
 MAX_TEST_LINES = 600  # tables of cases are long
 MAX_FUNCTION_LINES = 60
+PICTURE = "docs/images/folders.svg"
 
-# Who may include whom: a room, and the rooms or single files that it may use beside itself. A file
-# belongs to the longest room that it starts with. Plain structs of configuration and of messages
-# are named one by one where they are used against the arrow's direction.
-ROOMS = {
-    "model/": [],
-    "hal/": ["model/problem.h", "model/problem_list.h"],
-    "hal/sim/": ["hal/", "model/"],
-    "hal/rig/": ["hal/", "hal/sim/", "model/"],
-    "estimator/": ["model/", "hal/"],
-    "controller/safety/": ["hal/", "model/problem.h", "model/problem_list.h", "model/units.h",
-                           "controller/runtime/messages.h", "controller/runtime/runtime_config.h"],
-    "controller/law/": ["model/", "hal/", "estimator/",
-                        "controller/safety/safety_config.h", "controller/safety/safety_state.h",
-                        "controller/safety/trip_cause.h",
-                        "controller/runtime/loop_grid.h",
-                        "controller/runtime/stack_config.h",
-                        "controller/runtime/runtime_config.h"],
-    "controller/commissioning/": ["model/", "hal/", "estimator/", "controller/law/",
-                                  "controller/safety/", "controller/runlog/",
-                                  "controller/runtime/planned_run.h",
-                                  "controller/runtime/stack_config.h"],
-    "controller/runlog/": ["model/", "hal/", "estimator/", "controller/law/", "controller/safety/",
-                           "controller/runtime/float_environment.h",
-                           "controller/runtime/loop_grid.h", "controller/runtime/messages.h",
-                           "controller/runtime/runtime_config.h", "controller/runtime/spsc_queue.h",
-                           "controller/runtime/stack_config.h", "controller/runtime/task.h"],
-    "controller/": ["controller/commissioning/",
-                    "model/", "hal/", "hal/sim/", "estimator/", "controller/law/",
-                    "controller/safety/", "controller/runlog/", "controller/runtime/"],
-    "controller/runtime/": ["model/", "hal/", "hal/sim/", "estimator/", "controller/",
-                            "controller/commissioning/",
-                            "controller/law/", "controller/safety/", "controller/runlog/"],
-    "config/": ["model/", "hal/", "hal/sim/", "estimator/", "controller/", "controller/law/",
-                "controller/commissioning/",
-                "controller/safety/", "controller/runlog/", "controller/runtime/"],
-    "tools/": ["*"],
-    "tests/": ["*"],
-}
-
-# Files whose code may run on the safety, control, plant or I/O threads.
-REALTIME = re.compile(
-    r"(model/|estimator/|hal/|controller/(law|safety)/"
-    r"|controller/runtime/(safety_task|control_task|plant_task|simulated_lines|history|latest_value"
-    r"|spsc_queue|messages|frame_packet|homing_goal|loop_grid|task)\.)")
-# Off-line work that lives beside the loop, so that an equation and its use are read together; the
-# rules of config structs; and the simulated devices, which are a program of their own.
-OFFLINE = re.compile(
-    r"controller/law/(design|design_json|command_generator|reference|experiment)\."
-    r"|model/arm_parameters\.|hal/rig/|.*_config\.cpp$")
 REALTIME_HEADERS = re.compile(
     r"#\s*include\s*<(spdlog/|fmt/|iostream|fstream|sstream|ostream|istream|iomanip|print|cstdio"
     r"|stdio\.h|mutex|shared_mutex|condition_variable|semaphore|thread|future|chrono|ctime|time\.h"
@@ -80,16 +38,15 @@ REALTIME_HEADERS = re.compile(
 REALTIME_WORDS = re.compile(
     r"\bspdlog::|\bstd::(cout|cerr|clog|mutex|lock_guard|unique_lock|scoped_lock"
     r"|condition_variable|this_thread|async|chrono)\b|\bprintf\s*\(|\bclock_gettime\s*\("
-    r"|\b(malloc|calloc|realloc)\s*\(|\bnanosleep\s*\(")
-
-# What ControlStep::Step runs.
-STEP = re.compile(
-    r"(estimator/(counter_decoder|payload_estimator|payload_filter|state_estimator|strain_fit)"
-    r"|model/(portable_math|quasi_static_map|rigid_joint_(arm|arm_impl|transition))"
-    r"|controller/law/(control_step|gain_payload|loop_supervisor|move_watch|path_reference"
-    r"|payload_supervisor|rigid_point|scheduled_law|tracking_law)|controller/safety/gate)\.")
+    r"|\bnanosleep\s*\(")
+HEAP = re.compile(
+    r"\bnew\s+[A-Za-z]|\b(malloc|calloc|realloc)\s*\(|\bstd::(function|deque|list|map|set)\b"
+    r"|\bmake_(unique|shared)\b|\bstd::to_string\b|(\.|->)(push_back|emplace_back|resize|reserve"
+    r"|emplace|insert)\s*\(")
+START_UP = re.compile(r"//.*\bstart-up\b")
+# Also as `using std::sin; sin(x)`.
 LIBM = re.compile(
-    r"\bstd::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|expm1|log(?:2|10|1p)?|pow|hypot"
+    r"(?:\bstd::|(?<![\w:.>]))(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|expm1|log(?:2|10|1p)?|pow|hypot"
     r"|cbrt|fmod|remainder|erf|tgamma)\s*\(")
 
 # Tokens of a name that say the unit of a quantity; `_per_` joins any two.
@@ -122,47 +79,46 @@ def without_comments(text):
     return re.sub(pattern, blank, text, flags=re.S)
 
 
-def room_of(path):
-    rooms = [room for room in ROOMS if path.startswith(room)]
-    return max(rooms, key=len) if rooms else None
+def folder_of(path):
+    return path.rpartition("/")[0]
+
+
+def included(text):
+    """Yields (line, path) of the includes of our own files."""
+    for number, line in enumerate(text.splitlines(), 1):
+        match = re.match(r'\s*#\s*include\s*"([^"]+)"', line)
+        if match and not match.group(1).endswith("_generated.h"):
+            yield number, match.group(1)
 
 
 def check_layers(path, text, code, root):
-    room = room_of(path)
-    if room is None:
+    folder = folder_of(path)
+    in_tests = path.startswith("tests/")
+    if folder not in LAYERS and not in_tests:
+        yield Finding(path, 1, "layers", f"tools/lint/layers.py does not know {folder}")
         return
-    allowed = ROOMS[room]
-    for number, line in enumerate(text.splitlines(), 1):
-        match = re.match(r'\s*#\s*include\s*"([^"]+)"', line)
-        if not match or match.group(1).endswith("_generated.h"):
-            continue
-        target = match.group(1)
+    for number, target in included(text):
+        other = folder_of(target)
         if not (root / target).is_file():
             yield Finding(path, number, "layers", f'"{target}" is not a file under the root')
-            continue
-        target_room = room_of(target)
-        if "*" in allowed or target_room == room or target in allowed or target_room in allowed:
-            if target_room == "tests/" and room != "tests/":
-                yield Finding(path, number, "layers", f"{room} must not use the tests' {target}")
-            continue
-        yield Finding(path, number, "layers", f"{room} must not use {target}")
+        elif not in_tests and other != folder and other not in LAYERS[folder]:
+            yield Finding(path, number, "layers", f"{folder} must not use {target}")
 
 
 def check_realtime(path, text, code, root):
-    if path.startswith(("tests/", "tools/")):
-        return
-    if REALTIME.match(path) and not OFFLINE.match(path):
-        for number, line in enumerate(code.splitlines(), 1):
-            for pattern in (REALTIME_HEADERS, REALTIME_WORDS):
-                match = pattern.search(line)
-                if match:
-                    yield Finding(path, number, "realtime",
-                                  f"'{match.group(0).strip()}' in a file of the real-time threads")
-    if STEP.match(path):
-        for number, line in enumerate(code.splitlines(), 1):
-            match = LIBM.search(line)
-            if match:
-                yield Finding(path, number, "libm", f"{match.group(1)}() in a file that Step runs")
+    folder = folder_of(path)
+    rules = []
+    if folder in REALTIME:
+        rules += [("realtime", REALTIME_HEADERS), ("realtime", REALTIME_WORDS)]
+    if folder in STEP:
+        rules += [("heap", HEAP), ("libm", LIBM)]
+    lines = text.splitlines()
+    for number, line in enumerate(code.splitlines(), 1):
+        for rule, pattern in rules:
+            match = pattern.search(line)
+            if match and not (rule in ("heap", "libm") and START_UP.search(lines[number - 1])):
+                yield Finding(path, number, rule,
+                              f"'{match.group(0).strip()}' in a folder of the real-time threads")
 
 
 def check_file_size(path, text, code, root):
@@ -347,9 +303,76 @@ def sources(root):
                 yield path
 
 
+class Graph:
+    """Which folder includes which, as the files say."""
+
+    def __init__(self):
+        self.uses, self.files = {}, {}
+
+    def add(self, path, text):
+        folder = folder_of(path)
+        if folder not in LAYERS:
+            return
+        self.files[path] = {target for _, target in included(text)}
+        others = {folder_of(target) for target in self.files[path]} - {folder}
+        self.uses.setdefault(folder, set()).update(others)
+
+    def top(self):
+        """Of the folders at the root."""
+        uses = {}
+        for folder, others in self.uses.items():
+            root = folder.split("/")[0]
+            uses.setdefault(root, set()).update({o.split("/")[0] for o in others} - {root})
+        return uses
+
+
+def check_graph(root, graph):
+    """No cycle; layers.py is in order, and says no more than is there."""
+    for uses in (graph.top(), graph.uses, graph.files):
+        try:
+            levels_of(uses)
+        except ValueError as cycle:
+            yield Finding("tools/lint/layers.py", 1, "layers", str(cycle))
+    page, seen = "tools/lint/layers.py", set()
+    if not (root / page).is_file():
+        return
+    for folder, uses in LAYERS.items():
+        for other in uses:
+            if other not in seen:
+                yield Finding(page, 1, "layers", f"{folder} uses {other}, which is not above it")
+            elif other not in graph.uses.get(folder, ()):
+                yield Finding(page, 1, "layers", f"{folder} does not include {other}")
+        seen.add(folder)
+
+
+def target_of(folder):
+    return "flexarm_" + folder.replace("/", "_")
+
+
+def check_targets(root, graph):
+    """The targets that a folder's CMakeLists.txt links are the folders that it includes."""
+    targets = {target_of(folder): folder for folder in LAYERS}
+    for folder in LAYERS:
+        path = root / folder / "CMakeLists.txt"
+        if not path.is_file():
+            continue
+        name, text = f"{folder}/CMakeLists.txt", path.read_text(encoding="utf-8")
+        linked = re.search(r"flexarm_(library|program)\((.*?)\)\n", text, re.S)
+        if linked is None:
+            yield Finding(name, 1, "target", "no flexarm_library() or flexarm_program()")
+            continue
+        words = linked.group(2).split()
+        if linked.group(1) == "library" and words[0] != target_of(folder):
+            yield Finding(name, 1, "target", f"{words[0]} must be {target_of(folder)}")
+        links = {targets[word] for word in words[1:] if word in targets}
+        for other in sorted(links ^ graph.uses.get(folder, set())):
+            what = "is linked and not included" if other in links else "is included and not linked"
+            yield Finding(name, 1, "target", f"{other} {what}")
+
+
 def check_tree(root):
-    """All findings in the tree under `root`."""
-    findings = []
+    """All findings in the tree under `root`, and the graph of its folders."""
+    findings, graph = [], Graph()
     for path in sources(root):
         name = path.relative_to(root).as_posix()
         if path.suffix not in TEXT_SUFFIXES:
@@ -360,23 +383,50 @@ def check_tree(root):
             continue
         if path.suffix in (".h", ".cpp"):
             code = without_comments(text)
+            graph.add(name, text)
             for check in CPP_CHECKS:
                 # Includes are literals: they are looked for in the text.
                 findings.extend(check(name, text, code, root))
         else:
             findings.extend(check_leftovers(name, text, text, root))
-    return findings
+    findings.extend(check_graph(root, graph))
+    findings.extend(check_targets(root, graph))
+    findings.extend(check_picture(root, graph))
+    return findings, graph
+
+
+def check_picture(root, graph):
+    path = root / PICTURE
+    if path.is_file() and path.read_text(encoding="utf-8") != draw(graph.uses):
+        yield Finding(PICTURE, 1, "picture", "differs: tools/lint/check_layers.py --picture")
+
+
+def print_graph(graph):
+    for uses in (graph.top(), graph.uses):
+        levels = levels_of(uses)
+        for folder in sorted(levels, key=lambda f: (levels[f], f)):
+            print(f"{levels[folder]:3} {folder} -> {' '.join(sorted(uses.get(folder, ())))}")
+        print(f"{len(levels)} folders, {sum(map(len, uses.values()))} arrows, no cycle\n")
+    print(f"{len(levels_of(graph.files))} files, no cycle")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[2],
                         help="the tree to check (default: this one)")
+    parser.add_argument("--graph", action="store_true",
+                        help="print which folder includes which, by levels: no arrow points up")
+    parser.add_argument("--picture", action="store_true", help=f"write {PICTURE}")
     arguments = parser.parse_args()
     if not any((arguments.root / folder).is_dir() for folder in CODE_FOLDERS):
         print(f"check_layers: {arguments.root} has no source folder", file=sys.stderr)
         return 2
-    findings = check_tree(arguments.root)
+    findings, graph = check_tree(arguments.root)
+    if arguments.graph:
+        print_graph(graph)
+    if arguments.picture:
+        (arguments.root / PICTURE).write_text(draw(graph.uses), encoding="utf-8")
+        findings = [finding for finding in findings if finding.rule != "picture"]
     for finding in findings:
         print(finding)
     errors = [finding for finding in findings if not finding.warning]

@@ -1,8 +1,8 @@
 #include "tools/benchmark/benchmark.h"
 #include "tools/benchmark/limits_picture.h"
-#include "tools/parallel.h"
 #include "tools/report/chapters.h"
 #include "tools/report/study_figures.h"
+#include "tools/support/parallel.h"
 
 namespace flexarm {
 namespace {

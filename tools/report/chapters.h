@@ -10,7 +10,7 @@ namespace flexarm {
 
 /// What the chapters of a report share.
 struct ReportContext {
-  Config config;
+  RigConfig config;
   std::filesystem::path experiments;
   std::filesystem::path folder;
   std::vector<Statement> statements;  ///< of the chapters so far

@@ -1,13 +1,13 @@
 #include <cmath>
 
-#include "tools/analysis/chapter7_statements.h"
-#include "tools/analysis/control_study.h"
-#include "tools/parallel.h"
-#include "tools/plot_data.h"
+#include "controller/host/simulation.h"
+#include "tools/plot/plot_data.h"
 #include "tools/report/chapters.h"
 #include "tools/report/loop_picture.h"
-#include "tools/simulation.h"
+#include "tools/support/parallel.h"
 #include "tools/sweep/better_sensors.h"
+#include "tools/thesis/chapter7_statements.h"
+#include "tools/thesis/control_study.h"
 
 namespace flexarm {
 namespace {
@@ -100,7 +100,7 @@ void AlphaAndVartheta(const ControlStudy& study, const ReportContext& context, H
 
 // Figures 7.4 to 7.12: the thesis's simulations know the state; here the sensors are as good as
 // they can be described, and the sample of delay stays.
-std::vector<std::string> IdealSensors(const Config& config) {
+std::vector<std::string> IdealSensors(const RigConfig& config) {
   constexpr double kFiner = 4000.0;  // 1e7 counts a turn
   std::vector<std::string> overrides = QuietGauges();
   const std::vector<std::string> fine = FinerEncoders(config.sensors, kFiner);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/plot_data.h"
+#include "tools/plot/plot_data.h"
 
 namespace flexarm {
 

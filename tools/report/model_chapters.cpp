@@ -1,13 +1,13 @@
-#include "model/arm_simulator.h"
-#include "model/perturbation.h"
+#include "model/perturbation/perturbation_run.h"
+#include "model/simulation/arm_simulator.h"
 #include "tools/analysis/excitation_run.h"
 #include "tools/analysis/parametric_report.h"
-#include "tools/analysis/parametric_statements.h"
 #include "tools/analysis/perturbation_figures.h"
 #include "tools/analysis/reduction_figures.h"
-#include "tools/analysis/thesis_check.h"
-#include "tools/parallel.h"
 #include "tools/report/chapters.h"
+#include "tools/support/parallel.h"
+#include "tools/thesis/parametric_statements.h"
+#include "tools/thesis/thesis_check.h"
 
 namespace flexarm {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
-#include "tools/parallel.h"
 #include "tools/report/chapters.h"
-#include "tools/text_file.h"
+#include "tools/support/parallel.h"
+#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {

@@ -8,7 +8,7 @@ namespace flexarm {
 
 /// What a report is made of.
 struct ReportRequest {
-  Config config;                      ///< of the rig, with the simulated backend's section
+  RigConfig config;                   ///< of the rig, with the simulated backend's section
   std::filesystem::path experiments;  ///< folder of the benchmark's commands
   std::filesystem::path folder;       ///< new or empty
 };

@@ -11,17 +11,19 @@ namespace {
 constexpr std::array<const char*, 7> kPlantSections = {"arm.",    "link1.",   "link2.", "joint1.",
                                                        "joint2.", "sensors.", "sim."};
 
-std::string Times(const Config& config, const std::string& key, double factor) {
+std::string Times(const RigConfig& config, const std::string& key, double factor) {
   std::array<char, 32> value{};
   std::snprintf(value.data(), value.size(), "%.17g", *NumberAt(config, key) * factor);
   return key + "=" + value.data();
 }
 
-std::vector<std::string> BothJoints(const Config& config, const std::string& key, double factor) {
+std::vector<std::string> BothJoints(const RigConfig& config, const std::string& key,
+                                    double factor) {
   return {Times(config, "joint1." + key, factor), Times(config, "joint2." + key, factor)};
 }
 
-std::vector<std::string> EverySection(const Config& config, const std::string& key, double factor) {
+std::vector<std::string> EverySection(const RigConfig& config, const std::string& key,
+                                      double factor) {
   std::vector<std::string> overrides;
   for (std::size_t link = 0; link < 2; ++link) {
     const std::string name = "link" + std::to_string(link + 1) + ".section[";
@@ -32,7 +34,7 @@ std::vector<std::string> EverySection(const Config& config, const std::string& k
   return overrides;
 }
 
-std::vector<std::string> Together(const Config& config) {
+std::vector<std::string> Together(const RigConfig& config) {
   std::vector<std::string> overrides = {"joint2.backlash_rad=0.0087266462599716477",
                                         "joint2.backlash_model=dead_zone",
                                         "arm.damping=modal",
@@ -63,7 +65,7 @@ const std::vector<PlantVariant>& PlantVariants() {
   return variants;
 }
 
-std::vector<std::string> VariantOverrides(const Config& config, const std::string& name) {
+std::vector<std::string> VariantOverrides(const RigConfig& config, const std::string& name) {
   if (name == "nominal") return {};
   if (name == "backlash") {
     return {"joint2.backlash_rad=0.017453292519943295", "joint2.backlash_model=dead_zone"};
@@ -82,7 +84,7 @@ std::vector<std::string> VariantOverrides(const Config& config, const std::strin
   throw InputError("plant variant \"" + name + "\": expected one of " + known);
 }
 
-Config PlantWith(const Config& config, const std::vector<std::string>& overrides) {
+RigConfig PlantWith(const RigConfig& config, const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) {
     bool of_plant = false;
     for (const char* section : kPlantSections) of_plant |= text.starts_with(section);

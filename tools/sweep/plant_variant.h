@@ -18,11 +18,11 @@ const std::vector<PlantVariant>& PlantVariants();
 
 /// What makes the config's plant that variant, in the form of --set.
 /// @throws InputError  no such variant
-std::vector<std::string> VariantOverrides(const Config& config, const std::string& name);
+std::vector<std::string> VariantOverrides(const RigConfig& config, const std::string& name);
 
 /// The config of the simulated rig alone: `config` with `overrides` in the sections that describe
 /// a plant: arm, link1, link2, joint1, joint2, sensors, sim.
 /// @throws InputError  a key of another section; ConfigError
-Config PlantWith(const Config& config, const std::vector<std::string>& overrides);
+RigConfig PlantWith(const RigConfig& config, const std::vector<std::string>& overrides);
 
 }  // namespace flexarm

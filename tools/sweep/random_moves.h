@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "controller/law/experiment.h"
-#include "model/rigid_joint_arm.h"
+#include "controller/types/experiment.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
 
 namespace flexarm {
 

@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "controller/law/refused.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
-#include "tools/parallel.h"
+#include "controller/types/refused.h"
+#include "tools/support/parallel.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/random_moves.h"
 

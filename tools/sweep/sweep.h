@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "config/config.h"
-#include "tools/simulation.h"
+#include "controller/host/simulation.h"
 #include "tools/sweep/scenario.h"
 #include "tools/sweep/sweep_file.h"
 #include "tools/sweep/sweep_grid.h"
@@ -16,7 +16,7 @@ namespace flexarm {
 
 /// Runs of one experiment over a grid.
 struct SweepPlan {
-  Config config;  ///< of every point, before its axes
+  RigConfig config;  ///< of every point, before its axes
   Experiment experiment;
   SweepGrid grid;
   std::vector<Scenario> scenarios{};  ///< that an axis of kScenario names; each has its experiment

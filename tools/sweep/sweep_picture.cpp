@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "controller/runlog/errors.h"
-#include "tools/gnuplot.h"
+#include "tools/plot/gnuplot.h"
 #include "tools/sweep/sweep_summary.h"
 
 namespace flexarm {

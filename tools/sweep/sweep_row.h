@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "tools/simulation.h"
+#include "controller/host/simulation.h"
 
 namespace flexarm {
 

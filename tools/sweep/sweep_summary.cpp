@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "controller/runlog/errors.h"
-#include "tools/run_summary.h"
-#include "tools/text_file.h"
+#include "tools/runs/run_summary.h"
+#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "controller/law/refused.h"
-#include "model/arm_model.h"
-#include "model/dense_decompositions.h"
+#include "controller/types/refused.h"
+#include "model/arm/arm_model.h"
+#include "model/math/dense_decompositions.h"
 #include "tests/controller/commissioning/rest_ticks.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/message_of.h"
@@ -37,7 +37,7 @@ class CalibrateTest : public testing::Test {
     return counts;
   }
 
-  const Config config_ = ShippedRig();
+  const RigConfig config_ = ShippedRig();
 };
 
 // The mean of 50 samples of one count of noise is good to 0.14 counts; four times that.

@@ -27,7 +27,7 @@ class CalibrationFileTest : public testing::Test {
     return MessageOf<InputError>([this] { ReadCalibration(file_, config_.sensors); });
   }
 
-  const Config config_ = ShippedRig();
+  const RigConfig config_ = ShippedRig();
   const std::filesystem::path folder_ =
       std::filesystem::path(testing::TempDir()) /
       testing::UnitTest::GetInstance()->current_test_info()->name();

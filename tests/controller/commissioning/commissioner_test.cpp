@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "controller/law/refused.h"
-#include "controller/runtime/lockstep_executor.h"
-#include "controller/runtime/simulated_stack.h"
+#include "controller/realtime/lockstep_executor.h"
+#include "controller/tasks/simulated_stack.h"
+#include "controller/types/refused.h"
 #include "tests/controller/commissioning/rest_ticks.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/message_of.h"
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr std::int64_t kLookNs = 20'000'000;
 
-Config CommissionedRig(std::vector<std::string> overrides) {
+RigConfig CommissionedRig(std::vector<std::string> overrides) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string folder = testing::TempDir() + "commissioner_" + test->name();
   std::filesystem::remove_all(folder);
@@ -83,7 +83,7 @@ class Bench {
     return last_.truth.hub_angle_rad[joint] * 180.0 / M_PI;
   }
   Commissioner& commissioner() { return commissioner_; }
-  const Config& config() const { return config_; }
+  const RigConfig& config() const { return config_; }
   void Press(Line line, int level) { stack_.Press({.line = line, .level = level}); }
 
  private:
@@ -93,7 +93,7 @@ class Bench {
     while (stack_.operator_ticks().Pop(&last_)) commissioner_.Take(last_);
   }
 
-  Config config_;
+  RigConfig config_;
   SimulatedStack stack_;
   Commissioner commissioner_;
   LockstepExecutor executor_;

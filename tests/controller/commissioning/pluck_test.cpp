@@ -22,12 +22,12 @@ std::string Told(const PluckVerdict& verdict) {
   return text;
 }
 
-PluckVerdict Judged(const Miswiring& wrong = {}, const Config& config = ShippedRig()) {
+PluckVerdict Judged(const Miswiring& wrong = {}, const RigConfig& config = ShippedRig()) {
   return JudgePluck(config, PluckedRun(wrong, config));
 }
 
 TEST(PluckTorques, PulsesHaveNoAreaAndTheJointsTakeTurns) {
-  const Config config = ShippedRig();
+  const RigConfig config = ShippedRig();
   std::array<double, 2> area{}, largest{};
   for (const std::array<double, 2>& torque : PluckTorques(config.commissioning, 0.02)) {
     EXPECT_EQ(torque[0] * torque[1], 0.0);
@@ -51,7 +51,7 @@ TEST(Pluck, ARigThatIsWiredAsItsConfigSaysPasses) {
 // them.
 TEST(Pluck, PayloadAndFrictionThatTheConfigDoesNotKnowPass) {
   const auto real = [](double payload_kg, double friction) {
-    return Miswiring{.real = [=](Config& c) {
+    return Miswiring{.real = [=](RigConfig& c) {
       c.arm.payload_mass_kg = payload_kg;
       for (JointParameters& joint : c.arm.joint) joint.coulomb_friction_nm *= friction;
     }};
@@ -66,7 +66,7 @@ TEST(Pluck, PayloadAndFrictionThatTheConfigDoesNotKnowPass) {
 
 TEST(Pluck, ManySeedsOfNoisePass) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const PluckVerdict verdict = Judged({.real = [=](Config& c) { c.sim.seed = seed; }});
+    const PluckVerdict verdict = Judged({.real = [=](RigConfig& c) { c.sim.seed = seed; }});
     EXPECT_TRUE(verdict.passed()) << seed << '\n' << Told(verdict);
   }
 }
@@ -83,7 +83,7 @@ std::uint32_t Negated(std::uint32_t count, int bits) {
 }
 
 Miswiring Sensors(std::function<void(SensorConfig&)> change) {
-  return {.real = [change = std::move(change)](Config& c) { change(c.sensors); }};
+  return {.real = [change = std::move(change)](RigConfig& c) { change(c.sensors); }};
 }
 
 Miswiring Exchanged(std::size_t a, std::size_t b) {
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // A fault of the loop ends the test early: what was not plucked is said, and is not passed.
 TEST(Pluck, ATestThatEndsEarlyIsNotPassed) {
-  const Config config = ShippedRig();
+  const RigConfig config = ShippedRig();
   std::vector<TickRecord> run = PluckedRun({}, config);
   run.resize(40);
   const PluckVerdict verdict = JudgePluck(config, run);
@@ -185,7 +185,7 @@ TEST(Pluck, ATestThatEndsEarlyIsNotPassed) {
 
 // An arm of one strain channel a link and no rotor encoders is as good as another.
 TEST(Pluck, ARigWithFewSensorsPassesAndIsJudged) {
-  Config config = ShippedRig();
+  RigConfig config = ShippedRig();
   config.sensors.encoder.resize(2);
   config.sensors.strain = {config.sensors.strain[0], config.sensors.strain[10]};
   config.estimator.modes_per_link = 1;

@@ -6,8 +6,7 @@
 
 #include "config/config.h"
 #include "controller/commissioning/pluck.h"
-#include "controller/law/control_step.h"
-#include "controller/law/design.h"
+#include "controller/step/control_step.h"
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/law/shipped_rig.h"
 
@@ -15,7 +14,8 @@ namespace flexarm {
 
 /// How a rig is wired, where that differs from what its config says.
 struct Miswiring {
-  std::function<void(Config&)> real = [](Config&) {};  ///< what the sensors and the arm really are
+  std::function<void(RigConfig&)> real = [](RigConfig&) {
+  };  ///< what the sensors and the arm really are
   std::function<void(SensorFrame&)> frame = [](SensorFrame&) {};  ///< what arrives of a frame
   std::function<std::array<double, 2>(const std::array<double, 2>&)> torque =
       [](const std::array<double, 2>& t) { return t; };  ///< what the joints get
@@ -23,8 +23,8 @@ struct Miswiring {
 
 /// The pluck test on the simulated arm behind wrong wires: the real step, sample by sample, until
 /// its end or the first fault.
-inline std::vector<TickRecord> PluckedRun(const Miswiring& wrong, const Config& config) {
-  Config real = config;
+inline std::vector<TickRecord> PluckedRun(const Miswiring& wrong, const RigConfig& config) {
+  RigConfig real = config;
   wrong.real(real);
   SimulatedRig rig(real.arm, real.sensors, real.sim);
   ControlStep step(config, ShippedDesign());

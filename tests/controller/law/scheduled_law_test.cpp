@@ -8,11 +8,11 @@
 #include <cmath>
 #include <limits>
 
-#include "controller/law/gain_payload.h"
-#include "controller/law/move_watch.h"
-#include "controller/law/path_reference.h"
-#include "controller/law/reference.h"
-#include "controller/law/refused.h"
+#include "controller/law/scheduling_payload.h"
+#include "controller/reference/path_reference.h"
+#include "controller/reference/reference.h"
+#include "controller/step/motion_state.h"
+#include "controller/types/refused.h"
 #include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"
@@ -43,13 +43,13 @@ ReferenceTable ScheduledTable(const Experiment& experiment,
 }
 
 ScheduledLaw ShippedLaw() {
-  return {ArmOf(ShippedPathDesign()), ShippedPathDesign().scheduled->gains, kPeriod_s};
+  return {MakeRigidJointArm(ShippedPathDesign()), ShippedPathDesign().scheduled->gains, kPeriod_s};
 }
 
 Vector2d AskedOf(const ScheduledLaw::State& x, const PayloadKnowledge& knowledge,
                  const std::array<RigidPoint, 3>& path, double rested_s) {
   const ScheduledLaw law = ShippedLaw();
-  return law.Torque(x, knowledge, law.ClosedForm(knowledge.payload_kg, PathPoints(path)), rested_s);
+  return law.Torque(x, knowledge, law.ClosedForm(knowledge.payload_kg, path), rested_s);
 }
 
 constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
@@ -61,7 +61,7 @@ constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
 TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0), {0.1, -0.2});
   const std::array<double, 2> to_rad = {30 * kRadPerDeg, -20 * kRadPerDeg};
-  const RigidJointArm arm = ArmOf(ShippedPathDesign());
+  const RigidJointArm arm = MakeRigidJointArm(ShippedPathDesign());
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(table.At(0).x_m[i], i == 0 ? 0.1 : -0.2);
     EXPECT_NEAR(table.At(400).x_m[i], to_rad[i], 1e-15);
@@ -69,8 +69,7 @@ TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
   }
   double bent_m = 0.0;
   for (int k = 0; k <= table.periods(); ++k) {
-    const QuasiStaticSample expected =
-        QuasiStaticOver(arm, 0.15, PathPoints(table.PathAround(k)), kPeriod_s);
+    const QuasiStaticSample expected = QuasiStaticOver(arm, 0.15, table.PathAround(k), kPeriod_s);
     for (int i = 0; i < 12; ++i) {
       ASSERT_EQ(table.At(k).x_m[static_cast<std::size_t>(i)], expected.x[i]) << k;
     }
@@ -150,11 +149,11 @@ TEST(ScheduledLaw, AtRestOnItsPathItAsksForNothing) {
 
 TEST(ScheduledLaw, AsksForTheForceOfTheBentArmItsFrictionAndTheGainsOfItsPayload) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0));
-  const RigidJointArm arm = ArmOf(ShippedPathDesign());
+  const RigidJointArm arm = MakeRigidJointArm(ShippedPathDesign());
   const GainTable& gains = ShippedPathDesign().scheduled->gains;
   for (const int k : {30, 60, 90}) {
     const auto path = table.PathAround(k);
-    const QuasiStaticSample desired = QuasiStaticOver(arm, 0.3, PathPoints(path), kPeriod_s);
+    const QuasiStaticSample desired = QuasiStaticOver(arm, 0.3, path, kPeriod_s);
     ScheduledLaw::State x = desired.x;
     const Vector2d expected(desired.torque_nm[0] + 0.16 * std::tanh(desired.x[6] / 0.05),
                             desired.torque_nm[1] + 0.01 * std::tanh(desired.x[7] / 0.05));

@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "config/config.h"
+#include "controller/design/design_controller.h"
 #include "controller/law/design.h"
-#include "controller/law/motion_limits.h"
+#include "controller/reference/motion_limits.h"
 
 namespace flexarm {
 
 /// The rig of config/hil.toml: the one that golden.json speaks of.
-inline Config ShippedRig(const std::vector<std::string>& overrides = {}) {
+inline RigConfig ShippedRig(const std::vector<std::string>& overrides = {}) {
   return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", overrides);
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "model/dense_decompositions.h"
+#include "model/math/dense_decompositions.h"
 #include "tests/controller/law/shipped_rig.h"
 
 namespace flexarm {

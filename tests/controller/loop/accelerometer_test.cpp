@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "controller/runlog/metrics.h"
-#include "model/rigid_joint_arm.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
 #include "tests/controller/loop/stack_run.h"
 #include "tests/support/loop_time.h"
 #include "tools/sweep/plant_variant.h"
@@ -65,8 +65,8 @@ void Add(const StackRun& run, const RandomMoves& moves, Figures* figures) {
 
 Figures Measure(const char* name, const Overrides& plant, bool with_sensor) {
   const Overrides sensor = with_sensor ? kSensor : Overrides{};
-  Config config = ShippedRig(kWideRig + sensor + Overrides{"controller.name=gain-scheduled"});
-  Config rig = ShippedRig(kWideRig + sensor + plant);
+  RigConfig config = ShippedRig(kWideRig + sensor + Overrides{"controller.name=gain-scheduled"});
+  RigConfig rig = ShippedRig(kWideRig + sensor + plant);
   const RigidJointArm arm(config.arm);
   Figures figures;
   for (int i = 0; i < kSensorRuns; ++i) {
@@ -97,7 +97,7 @@ Compared Compare(const char* name, const Overrides& plant) {
 
 class TipAccelerometer : public testing::Test {
  protected:
-  const Config rig_ = ShippedRig();
+  const RigConfig rig_ = ShippedRig();
 };
 
 // What it is for: 0.4 s after the start of the first move the payload is known at least twice as

@@ -13,9 +13,9 @@
 #include <tuple>
 #include <vector>
 
+#include "controller/realtime/float_environment.h"
 #include "controller/runlog/metrics.h"
-#include "controller/runtime/float_environment.h"
-#include "model/rigid_joint_arm.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
 #include "tests/controller/loop/stack_run.h"
 #include "tools/sweep/random_moves.h"
 
@@ -36,8 +36,8 @@ const Undeclared kMore{"OneMore", 1, {"sim.transport_delay_ms=20"}};
 const Undeclared kLess{"OneLess", -1, {"loop.actuation_delay_ms=20"}};
 const Undeclared kTwoMore{"TwoMore", 2, {"sim.transport_delay_ms=40"}};
 
-Config RigWith(const std::vector<std::string>& overrides, const std::string& law,
-               bool detect = true) {
+RigConfig RigWith(const std::vector<std::string>& overrides, const std::string& law,
+                  bool detect = true) {
   std::vector<std::string> all = kWideRig;
   all.insert(all.end(), {"controller.name=" + law, std::string("estimator.payload.detect_delay=") +
                                                        (detect ? "true" : "false")});
@@ -70,7 +70,7 @@ struct DelayOutcome {
 };
 
 DelayOutcome RunOf(const Undeclared& rig, const std::string& law, std::uint64_t seed, bool detect) {
-  Config config = RigWith(rig.config, law, detect);
+  RigConfig config = RigWith(rig.config, law, detect);
   config.sim.seed = seed;
   const RandomMoves moves = MakeRandomMoves(RigidJointArm(config.arm), seed, 1.0);
   StackRun run(config, moves.experiment, moves.payload_kg);

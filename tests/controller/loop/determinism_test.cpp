@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "controller/runtime/float_environment.h"
+#include "controller/design/design_json.h"
+#include "controller/realtime/float_environment.h"
 #include "tests/controller/loop/stack_run.h"
 
 namespace flexarm {

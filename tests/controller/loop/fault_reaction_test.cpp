@@ -32,7 +32,7 @@ Experiment WithEvent(const SimEvent& event) {
 // The shipped experiment with one event, until 5 s after it.
 class EventRun : public StackRun {
  public:
-  EventRun(const Config& config, const SimEvent& event) : StackRun(config, WithEvent(event)) {
+  EventRun(const RigConfig& config, const SimEvent& event) : StackRun(config, WithEvent(event)) {
     while (permit().running_since_ns == INT64_MIN) Run(now_ns() + 20 * kMs);
     event_ns_ = ExperimentStart() + std::llround(event.at_s * 1e9);
     Run(event_ns_ + 5'000 * kMs);

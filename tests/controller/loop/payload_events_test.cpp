@@ -11,11 +11,11 @@
 #include <numbers>
 
 #include "controller/runlog/metrics.h"
-#include "model/rigid_joint_arm.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/controller/loop/stack_run.h"
 #include "tests/support/loop_time.h"
-#include "tools/parallel.h"
+#include "tools/support/parallel.h"
 #include "tools/sweep/random_moves.h"
 
 namespace flexarm {
@@ -67,7 +67,7 @@ class PayloadEvents : public testing::TestWithParam<const char*> {
  private:
   EventOutcome RunOne(const Scene& scene) const;
 
-  Config config_;
+  RigConfig config_;
   RigidJointArm arm_;
 };
 
@@ -81,7 +81,7 @@ bool Finite(const TickRecord& record) {
 
 EventOutcome PayloadEvents::RunOne(const Scene& scene) const {
   constexpr double kAround_s = 15.0;  // to arm and to disarm, or to come to rest after a trip
-  Config config = config_;
+  RigConfig config = config_;
   config.sim.seed = scene.seed;
   StackRun run(config, scene.experiment, scene.payload_kg);
   run.Run(std::llround((scene.experiment.duration_s + kAround_s) * 1e9));

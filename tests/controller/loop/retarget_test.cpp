@@ -7,11 +7,12 @@
 #include <numbers>
 #include <string>
 
+#include "controller/design/design_controller.h"
 #include "controller/law/design.h"
-#include "controller/law/motion_limits.h"
-#include "controller/law/motion_plan.h"
-#include "controller/law/refused.h"
-#include "model/rigid_joint_arm.h"
+#include "controller/reference/motion_limits.h"
+#include "controller/reference/motion_plan.h"
+#include "controller/types/refused.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tools/sweep/random_moves.h"
 
@@ -21,7 +22,7 @@ namespace {
 constexpr int kRetargetRuns = 8;
 constexpr std::uint64_t kFirstSeed = 5001;
 
-Config RigFor(const std::string& law) {
+RigConfig RigFor(const std::string& law) {
   std::vector<std::string> overrides = kWideRig;
   overrides.push_back("controller.name=" + law);
   return ShippedRig(overrides);
@@ -32,7 +33,7 @@ Config RigFor(const std::string& law) {
 // that is refused there, about one in sixty, is drawn again. 1.5 s of rest after each pair.
 class RandomRetargets {
  public:
-  RandomRetargets(const Config& config, const Design& design, std::uint64_t seed)
+  RandomRetargets(const RigConfig& config, const Design& design, std::uint64_t seed)
       : arm_(config.arm), limits_(MotionLimitsOf(config)), design_(design), random_(seed) {}
 
   RandomMoves Make() {
@@ -93,7 +94,7 @@ class RetargetRuns : public testing::TestWithParam<const char*> {};
 
 // The bar of the issue, and the study's figure: settled when the move ends, 8 of 8.
 TEST_P(RetargetRuns, TheTipIsAtRestWhenTheLastMoveEnds) {
-  const Config config = RigFor(GetParam());
+  const RigConfig config = RigFor(GetParam());
   const Design design = DesignController(config);
   Runs runs;
   for (int i = 0; i < kRetargetRuns; ++i) {

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "controller/law/gain_payload.h"
+#include "controller/law/scheduling_payload.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/controller/loop/stack_run.h"
 #include "tools/benchmark/benchmark.h"
@@ -20,7 +20,7 @@ constexpr int kLongSet = 24, kShortSet = 10;
 // delays are as declared: none is found.
 BenchmarkCell RunMoves(const std::string& law, const std::string& scenario, int first_seed,
                        int seeds) {
-  const Config config = ShippedRig();
+  const RigConfig config = ShippedRig();
   const BenchmarkSet set = Only(BenchmarkSetOf(BenchmarkKind::kMoves, config, {}), {scenario});
   const SweepPlan plan = BenchmarkPlan(
       config, set, law, std::to_string(first_seed) + ".." + std::to_string(first_seed + seeds - 1));

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "config/config.h"
-#include "controller/safety/trip_cause.h"
+#include "controller/host/simulation.h"
+#include "controller/types/trip_cause.h"
 #include "tests/controller/law/shipped_rig.h"
-#include "tools/simulation.h"
 
 // Runs of the whole stack (Simulate), and what the bars are held against.
 

@@ -5,11 +5,12 @@
 #include <cstring>
 #include <vector>
 
+#include "controller/design/run_design.h"
 #include "controller/law/design.h"
-#include "controller/runtime/lockstep_executor.h"
-#include "controller/runtime/planned_run.h"
-#include "controller/runtime/simulated_stack.h"
-#include "controller/runtime/unattended_run.h"
+#include "controller/operator/unattended_run.h"
+#include "controller/realtime/lockstep_executor.h"
+#include "controller/tasks/loaded_experiment.h"
+#include "controller/tasks/simulated_stack.h"
 #include "tests/controller/loop/simulated_runs.h"
 
 namespace flexarm {
@@ -17,10 +18,10 @@ namespace flexarm {
 /// The stack in lock step with an operator that a test writes down, and everything it recorded.
 class StackRun {
  public:
-  explicit StackRun(const Config& config, const Experiment& experiment, double payload_kg = 0.1)
+  explicit StackRun(const RigConfig& config, const Experiment& experiment, double payload_kg = 0.1)
       : StackRun(config, config, experiment, payload_kg) {}
   /// @param plant  the simulated rig, where that is not what the loop was designed for
-  StackRun(const Config& config, const Config& plant, const Experiment& experiment,
+  StackRun(const RigConfig& config, const RigConfig& plant, const Experiment& experiment,
            double payload_kg)
       : config_(config),
         design_(DesignFor(config)),
@@ -60,7 +61,7 @@ class StackRun {
   }
 
   Permit permit() { return stack_.operator_permits().Read().Newest().value; }
-  const Config& config() const { return config_; }
+  const RigConfig& config() const { return config_; }
   const Design& design() const { return design_; }
   const LoopGrid& grid() const { return grid_; }
   std::int64_t now_ns() const { return now_ns_; }
@@ -82,7 +83,7 @@ class StackRun {
     while (stack_.answers().Pop(&given)) answer.push_back(given);
   }
 
-  Config config_;
+  RigConfig config_;
   Design design_;
   LoopGrid grid_;
   PlannedExperiment planned_;

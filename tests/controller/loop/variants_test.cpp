@@ -174,7 +174,7 @@ TEST(LoopVariants, QuarterTorqueLimitsLoseNothing) {
 // play the arm rattles under any feedback: it comes to rest because a stop lets it go in the end.
 TEST(LoopVariants, PlantsThatDifferFromTheDesignAreStable) {
   for (const PlantVariant& variant : PlantVariants()) {
-    const Config config = ShippedRig();
+    const RigConfig config = ShippedRig();
     for (const double payload_kg : {0.0, 0.01, 0.1, 0.2}) {
       for (const char* seed : {"1", "2", "3"}) {
         std::vector<std::string> overrides = VariantOverrides(config, variant.name);

@@ -123,7 +123,7 @@ TEST_F(CsvImportTest, MistakesAreNamedWithTheirPlace) {
 }
 
 TEST(CsvImportRules, EverySensorAndTorqueNeedsExactlyOneColumn) {
-  EXPECT_TRUE(Import().Problems(OneGaugeALink()).empty());
+  EXPECT_TRUE(ProblemsOf(Import(), OneGaugeALink()).empty());
   CsvImport import = Import();
   import.decimation = 0;
   import.column[1].scale = 0.0;
@@ -131,7 +131,7 @@ TEST(CsvImportRules, EverySensorAndTorqueNeedsExactlyOneColumn) {
   import.column[4].target = "torque_1";
   import.column[3].column = "";
   std::vector<std::string> keys;
-  for (const Problem& problem : import.Problems(OneGaugeALink())) keys.push_back(problem.key);
+  for (const Problem& problem : ProblemsOf(import, OneGaugeALink())) keys.push_back(problem.key);
   EXPECT_EQ(keys, (std::vector<std::string>{"csv.decimation", "csv.column[1].scale",
                                             "csv.column[2].target", "csv.column[3].column",
                                             "csv.column[4].target", "csv.column", "csv.column"}));

@@ -1,4 +1,4 @@
-#include "controller/safety/trip_cause.h"
+#include "controller/types/trip_cause.h"
 
 #include <gtest/gtest.h>
 

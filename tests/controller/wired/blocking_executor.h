@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "controller/runtime/task.h"
+#include "controller/realtime/task.h"
 
 namespace flexarm {
 

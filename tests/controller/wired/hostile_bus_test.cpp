@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "controller/design/run_design.h"
 #include "controller/runlog/safety_rows.h"
-#include "controller/runtime/wired_stack.h"
+#include "controller/tasks/wired_stack.h"
 #include "hal/modbus/modbus_device.h"
 #include "hal/modbus/modbus_plan.h"
 #include "tests/controller/loop/simulated_runs.h"
@@ -36,8 +37,8 @@ constexpr double kPatience_ms = 100.0;
 const WiredWorld* the_world = nullptr;
 std::int64_t Clock() noexcept { return the_world->monotonic_ns(); }
 
-Config WiredConfig(ModbusTransport transport) {
-  Config config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil-wire.toml", {});
+RigConfig WiredConfig(ModbusTransport transport) {
+  RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil-wire.toml", {});
   for (ModbusDeviceConfig& device : config.hal.modbus.device) {
     device.port = 0;
     device.response_timeout_ms = kPatience_ms;
@@ -178,7 +179,7 @@ class Rig {
     }
   }
 
-  const Config config_;
+  const RigConfig config_;
   const Experiment experiment_ = ShippedExperiment();
   const Design design_ = DesignFor(config_);
   std::vector<std::unique_ptr<BusDevice>> drivers_;

@@ -1,4 +1,4 @@
-#include "controller/runtime/wired_stack.h"
+#include "controller/tasks/wired_stack.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "controller/law/refused.h"
+#include "controller/design/run_design.h"
+#include "controller/operator/unattended_run.h"
+#include "controller/realtime/lockstep_executor.h"
 #include "controller/runlog/metrics.h"
-#include "controller/runtime/lockstep_executor.h"
-#include "controller/runtime/unattended_run.h"
+#include "controller/types/refused.h"
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/support/loop_time.h"
@@ -20,7 +21,7 @@ namespace {
 
 /// The arm behind two buses: encoders and drives on one, gauges on the other.
 struct World {
-  explicit World(const Config& config) : rig(config.arm, config.sensors, config.sim) {}
+  explicit World(const RigConfig& config) : rig(config.arm, config.sensors, config.sim) {}
 
   void AdvanceTo(std::int64_t instant_ns) {
     for (; now_ns < instant_ns; now_ns += rig.step_ns()) rig.Step();
@@ -124,7 +125,7 @@ class WiredStackTest : public testing::Test {
 
   Permit permit() { return stack_.operator_permits().Read().Newest().value; }
 
-  const Config config_ = ShippedRig();
+  const RigConfig config_ = ShippedRig();
   const Experiment experiment_ = ShippedExperiment();
   const Design design_ = DesignFor(config_);
   const PlannedExperiment planned_{experiment_, design_, 0.02, {0.0, 0.0}, MotionLimitsOf(config_)};

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "config/config.h"
-#include "controller/runtime/task.h"
+#include "controller/realtime/task.h"
 #include "hal/canopen/canopen_device.h"
-#include "hal/canopen/memory_bus.h"
-#include "hal/canopen/simulated_node.h"
-#include "hal/rig/simulated_amplifier.h"
+#include "hal/emulation/memory_bus.h"
+#include "hal/emulation/simulated_amplifier.h"
+#include "hal/emulation/simulated_node.h"
 #include "hal/safety_lines.h"
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/wired/blocking_executor.h"
@@ -55,7 +55,7 @@ class WiredWorld final : public Task {
     SensorFrame frame;
   };
 
-  WiredWorld(const Config& config, BlockingExecutor* executor)
+  WiredWorld(const RigConfig& config, BlockingExecutor* executor)
       : executor_(executor), rig_(config.arm, config.sensors, config.sim) {
     for (const CanopenNodeConfig& node : config.hal.canopen[0].node) AddNode(node);
     for (const ModbusDeviceConfig& device : config.hal.modbus.device) {

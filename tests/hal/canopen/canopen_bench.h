@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hal/canopen/canopen_device.h"
-#include "hal/canopen/memory_bus.h"
-#include "hal/canopen/simulated_node.h"
+#include "hal/emulation/memory_bus.h"
+#include "hal/emulation/simulated_node.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {

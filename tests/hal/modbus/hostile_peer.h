@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "hal/rig/modbus_server.h"
+#include "hal/emulation/modbus_server.h"
 #include "tests/hal/modbus/modbus_testing.h"
 
 namespace flexarm {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "controller/runtime/clock.h"
+#include "controller/realtime/clock.h"
 #include "hal/modbus/modbus_device.h"
 #include "tests/hal/modbus/modbus_testing.h"
 #include "tests/support/no_alloc.h"

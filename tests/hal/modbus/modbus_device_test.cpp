@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "controller/runtime/clock.h"
+#include "controller/realtime/clock.h"
 #include "tests/hal/modbus/modbus_testing.h"
 #include "tests/hal/modbus/served_device.h"
 #include "tests/support/message_of.h"
@@ -21,7 +21,7 @@ namespace {
 
 class ModbusDeviceOver : public testing::TestWithParam<ModbusTransport> {
  protected:
-  static ModbusDeviceConfig Config() {
+  static ModbusDeviceConfig DeviceConfig() {
     ModbusDeviceConfig config = Amplifier();
     config.transport = GetParam();
     return config;
@@ -35,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(Wire, ModbusDeviceOver,
                          });
 
 TEST_P(ModbusDeviceOver, ReadsEveryRowOfTheMap) {
-  ServedDevice served(Config());
+  ServedDevice served(DeviceConfig());
   SensorFrame shown{};
   for (std::size_t i = 0; i < 10; ++i) shown.strain[i] = static_cast<std::int32_t>(i) * 1000 - 4000;
   shown.levels = LineBit(Line::kResetButton) | LineBit(Line::kLimit1Low);
@@ -53,7 +53,7 @@ TEST_P(ModbusDeviceOver, ReadsEveryRowOfTheMap) {
 }
 
 TEST_P(ModbusDeviceOver, EachTypeComesThroughTheWire) {
-  ModbusDeviceConfig config = Config();
+  ModbusDeviceConfig config = DeviceConfig();
   config.map = {StrainRow(0, 10, ModbusType::kInt16),
                 StrainRow(1, 11, ModbusType::kUint16),
                 StrainRow(2, 12, ModbusType::kInt32, ModbusWordOrder::kBig),
@@ -77,7 +77,7 @@ TEST_P(ModbusDeviceOver, EachTypeComesThroughTheWire) {
 }
 
 TEST_P(ModbusDeviceOver, AChannelThatIsNoNumberIsNotValidAlone) {
-  ModbusDeviceConfig config = Config();
+  ModbusDeviceConfig config = DeviceConfig();
   config.map = {StrainRow(0, 0, ModbusType::kFloat32), StrainRow(1, 2, ModbusType::kFloat32)};
   ServedDevice served(config);
   const std::vector<std::uint16_t> good = {0x4120, 0x0000, 0x4120, 0x0000};  // 10, 10
@@ -98,7 +98,7 @@ TEST_P(ModbusDeviceOver, AChannelThatIsNoNumberIsNotValidAlone) {
 }
 
 TEST_P(ModbusDeviceOver, StampsTheMiddleOfEachRequest) {
-  ModbusDeviceConfig config = Config();
+  ModbusDeviceConfig config = DeviceConfig();
   config.map = {StrainRow(0, 0), StrainRow(1, 50)};  // two requests
   ServedDevice served(config);
   ModbusDevice device(served.config(), MonotonicNow);
@@ -118,7 +118,7 @@ TEST_P(ModbusDeviceOver, StampsTheMiddleOfEachRequest) {
 }
 
 TEST_P(ModbusDeviceOver, AsksNoMoreThanItsPlan) {
-  ServedDevice served(Config());
+  ServedDevice served(DeviceConfig());
   ModbusDevice device(served.config(), MonotonicNow);
   device.Open();
   const std::uint64_t before = served.server.requests();
@@ -129,7 +129,7 @@ TEST_P(ModbusDeviceOver, AsksNoMoreThanItsPlan) {
 
 TEST_P(ModbusDeviceOver, ExchangeAndReconnectDoNotAllocate) {
   if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizers bring their own allocator";
-  ServedDevice served(Config());
+  ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   ModbusDevice device(config, MonotonicNow);
   device.Open();
@@ -162,7 +162,7 @@ std::string OpenError(const ModbusDeviceConfig& config) {
 }
 
 TEST_P(ModbusDeviceOver, OpenRefusesAnotherDevice) {
-  ServedDevice served(Config());
+  ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   config.identification[1].expected = 8;
   const std::string text = OpenError(config);
@@ -172,7 +172,7 @@ TEST_P(ModbusDeviceOver, OpenRefusesAnotherDevice) {
 }
 
 TEST_P(ModbusDeviceOver, OpenRefusesRegistersThatTheDeviceDoesNotHave) {
-  ServedDevice served(Config());
+  ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   config.map.push_back(StrainRow(10, 300));
   const std::string text = OpenError(config);
@@ -182,7 +182,7 @@ TEST_P(ModbusDeviceOver, OpenRefusesRegistersThatTheDeviceDoesNotHave) {
 }
 
 TEST_P(ModbusDeviceOver, OpenRefusesAnotherUnit) {
-  ServedDevice served(Config());
+  ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   config.unit = 9;
   config.response_timeout_ms = 20.0;  // over RTU nobody answers
@@ -222,7 +222,7 @@ TEST(ModbusDevice, SaysWhatAnExchangeMetWithItsNamePlaceAndUnit) {
 }
 
 TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
-  ModbusDeviceConfig config = Config();
+  ModbusDeviceConfig config = DeviceConfig();
   auto served = std::make_unique<ServedDevice>(config);
   config = served->config();
   ModbusDevice device(config, MonotonicNow);

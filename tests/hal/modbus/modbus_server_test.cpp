@@ -1,4 +1,4 @@
-#include "hal/rig/modbus_server.h"
+#include "hal/emulation/modbus_server.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <thread>
 
-#include "hal/rig/modbus_server.h"
-#include "hal/rig/register_image.h"
+#include "hal/emulation/modbus_server.h"
+#include "hal/emulation/register_image.h"
 #include "tests/hal/modbus/modbus_testing.h"
 
 namespace flexarm {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "controller/design/command_generator.h"
+#include "controller/law/design.h"
+#include "controller/types/control_config.h"
+
+namespace flexarm {
+
+/// Designs nominal model, reference model, gains and filter for a rig. Takes tens of milliseconds.
+/// @throws std::runtime_error naming the equation that has no solution
+Design DesignController(const ControlConfig& config);
+
+/// The command generator's problem of a design, in the coordinates in which it is solved.
+TrackingProblem TrackingProblemOf(const ControlConfig& config, const Design& design);
+
+}  // namespace flexarm

@@ -1,0 +1,326 @@
+#include "controller/design/robustness_analysis.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "controller/law/tracking_law.h"
+#include "controller/types/control_config.h"
+#include "controller/types/loop_grid.h"
+#include "estimator/gauge_model.h"
+#include "model/arm/arm_model.h"
+#include "model/arm/linearization.h"
+#include "model/math/dense_decompositions.h"
+#include "model/math/discretize.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kPlantModes = 4;
+constexpr std::array<double, 3> kElbow_deg = {0.0, 45.0, 90.0};
+constexpr std::array<double, 3> kGains = {1.0, 0.7, 1.4};
+constexpr Index kMaxDelayPeriods = 5;
+
+// The margins that a design must have: the factors that the screen itself tries, and more delay
+// than the motor's lag and the age of a reading that nobody has told the loop about.
+constexpr double kGainUp = 1.4;
+constexpr double kGainDown = 0.7;
+constexpr double kDelay_ms = 4.0;
+
+/// Plant with its gauges' filters: x = [q; q'; filters], y = [th1 th2 th3 th4 modes as fitted].
+struct Plant {
+  MatrixXd A, B, C;
+};
+
+// Strain of every channel for a unit of every modal coordinate, weighted as the fit does.
+MatrixXd StrainShape(const ArmModel& model, const SensorConfig& sensors) {
+  const Index flex = model.dof() - 4;
+  MatrixXd shape(static_cast<Index>(sensors.strain.size()), flex);
+  for (Index j = 0; j < flex; ++j) {
+    const VectorXd q = VectorXd::Unit(model.dof(), 4 + j);
+    for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
+      const StrainChannelConfig& row = sensors.strain[i];
+      shape(static_cast<Index>(i), j) =
+          row.gain_v_per_unit * model.Strain(row.link, row.position_m, q);
+    }
+  }
+  return shape;
+}
+
+// What the fit of few modes makes of the plant's many, in the rows of those that the law knows.
+MatrixXd FitOf(const ArmModel& plant, const ControlConfig& config) {
+  const Index modes = config.estimator.modes_per_link;
+  const Index known = config.controller.nominal.modes_per_link;
+  const ArmModel few(config.arm,
+                     ModeCount{.link1 = static_cast<int>(modes), .link2 = static_cast<int>(modes)});
+  const MatrixXd fitted = StrainShape(few, config.sensors);
+  const MatrixXd normal = fitted.transpose() * fitted;
+  const MatrixXd seen = fitted.transpose() * StrainShape(plant, config.sensors);
+  const MatrixXd fit = normal.llt().solve(seen);
+  MatrixXd used(2 * known, fit.cols());
+  used << fit.topRows(known), fit.middleRows(modes, known);
+  return used;
+}
+
+Plant PlantAt(const ControlConfig& config, double payload_kg, double theta2_deg) {
+  ArmParameters arm = config.arm;
+  arm.payload_mass_kg = payload_kg;
+  const ArmModel model(arm, ModeCount{.link1 = kPlantModes, .link2 = kPlantModes});
+  const Index dof = model.dof(), flex = dof - 4;
+  VectorXd q = VectorXd::Zero(dof);
+  q(1) = q(3) = theta2_deg * std::numbers::pi / 180.0;
+  const LinearModel linear = Linearize(model, q, VectorXd::Zero(dof), Eigen::Vector2d::Zero());
+
+  const Index n = 2 * dof;
+  const LinearModel measured =
+      WithGaugeFilter(linear.A, linear.B, 4, flex, config.sensors.strain_input);
+  Plant plant{.A = measured.A,
+              .B = measured.B,
+              .C = MatrixXd::Zero(config.controller.nominal.outputs(), measured.A.rows())};
+  plant.C.topLeftCorner(4, 4).setIdentity();
+  plant.C.block(4, n, plant.C.rows() - 4, flex) = FitOf(model, config);
+  return plant;
+}
+
+/// The delay that the loop knows of itself, beyond one period: whole periods, -1 for a torque that
+/// is put out at once, and the rest of it.
+struct OwnDelay {
+  Index whole;
+  double rest_s;
+};
+
+OwnDelay OwnDelayOf(const LoopConfig& loop) {
+  const LoopGrid grid(loop);
+  const std::int64_t late_ns = grid.late_ns();
+  const std::int64_t whole = late_ns < 0 ? -1 : late_ns / grid.period_ns;
+  return {.whole = static_cast<Index>(whole),
+          .rest_s = 1e-9 * static_cast<double>(late_ns - whole * grid.period_ns)};
+}
+
+/// The estimator as a linear system: z(k) = A z(k-1) + B [y(k); u; u'],
+/// x_hat(k) = C z(k-1) + D [y(k); u; u'], u and then u' the torques of the last period.
+struct LinearEstimator {
+  MatrixXd A, B, C, D;
+};
+
+LinearEstimator KalmanOf(const Design& design, double first_s, double period_s) {
+  const Index nf = design.filter_A.rows(), outputs = design.filter_C.rows(), n = design.A.rows();
+  const MatrixXd correct = MatrixXd::Identity(nf, nf) - design.filter_L * design.filter_C;
+  MatrixXd drive = MatrixXd::Zero(nf, 4);
+  if (first_s > 0.0) {
+    const DiscreteModel then =
+        ZeroOrderHold(design.filter_A_rate, design.filter_B_rate, period_s - first_s);
+    drive << then.A * ZeroOrderHold(design.filter_A_rate, design.filter_B_rate, first_s).B, then.B;
+  } else {
+    drive.rightCols(2) = design.filter_B;
+  }
+  LinearEstimator out;
+  out.A = correct * design.filter_A;
+  out.B.resize(nf, outputs + 4);
+  out.B << design.filter_L, correct * drive;
+  out.C = out.A.topRows(n);
+  out.D = out.B.topRows(n);
+  return out;
+}
+
+// Backward differences: z is the last measurement of angles and modes.
+LinearEstimator DifferenceOf(const Design& design, double period_s) {
+  const Index dof = design.layout.dof(), outputs = design.layout.outputs();
+  MatrixXd pick = MatrixXd::Zero(dof, outputs + 4);
+  for (int i = 0; i < design.layout.dof(); ++i) pick(i, design.layout.output(i)) = 1.0;
+  LinearEstimator out;
+  out.A = MatrixXd::Zero(dof, dof);
+  out.B = pick;
+  out.C = MatrixXd::Zero(2 * dof, dof);
+  out.C.bottomRows(dof) = -MatrixXd::Identity(dof, dof) / period_s;
+  out.D.resize(2 * dof, outputs + 4);
+  out.D << pick, pick / period_s;
+  return out;
+}
+
+LinearEstimator EstimatorOf(const ControlConfig& config, const Design& design) {
+  const double period_s = config.loop.period_ms * 1e-3;
+  return config.estimator.kind == EstimatorKind::kKalman
+             ? KalmanOf(design, OwnDelayOf(config.loop).rest_s, period_s)
+             : DifferenceOf(design, period_s);
+}
+
+/// The loop around one plant.
+class Loop {
+ public:
+  Loop(const ControlConfig& config, const Design& design, const Plant& plant)
+      : config_(config),
+        design_(design),
+        plant_(plant),
+        estimator_(EstimatorOf(config, design)),
+        K_(FeedbackGain(design, config.controller)),
+        own_(OwnDelayOf(config.loop)),
+        first_u_(plant.A.rows() + estimator_.A.rows()),
+        inputs_(2 * (kMaxDelayPeriods + 2 + std::max(own_.whole, Index{0}))) {}
+
+  // State [x; z; u_0; u_1; ..], u_i the torque computed at step k-1-i. It acts, seen from k Ts, at
+  // (whole - i) Ts + rest with the delay that the loop knows of, and delay_s later in truth.
+  double SpectralRadius(double gain, double delay_s) const {
+    const Index nx = plant_.A.rows(), nz = estimator_.A.rows();
+    MatrixXd loop = MatrixXd::Zero(first_u_ + inputs_, first_u_ + inputs_);
+    const MatrixXd seen = Seen();
+    loop.middleRows(nx, nz) = estimator_.B * seen;
+    loop.block(nx, nx, nz, nz) += estimator_.A;
+    MatrixXd x_hat = estimator_.D * seen;
+    x_hat.middleCols(nx, nz) += estimator_.C;
+    if (config_.controller.prediction) x_hat = Predicted(x_hat);
+    const MatrixXd asked = -gain * K_ * x_hat;
+    loop.middleRows(first_u_, 2) = asked;
+    loop.block(first_u_ + 2, first_u_, inputs_ - 2, inputs_ - 2).setIdentity();
+    AddPlant(own_.rest_s + delay_s, asked, &loop);
+    return loop.eigenvalues().cwiseAbs().maxCoeff();
+  }
+
+ private:
+  // u_i as a function of the state.
+  MatrixXd Torque(Index i) const {
+    MatrixXd row = MatrixXd::Zero(2, first_u_ + inputs_);
+    row.middleCols(first_u_ + 2 * i, 2).setIdentity();
+    return row;
+  }
+
+  // [y; u; u'], y = C x, to rigid joints without [0; u'/K; 0]: the torsion in the rotors' readings.
+  MatrixXd Seen() const {
+    const Index outputs = plant_.C.rows();
+    MatrixXd seen = MatrixXd::Zero(outputs + 4, first_u_ + inputs_);
+    seen.topLeftCorner(outputs, plant_.A.rows()) = plant_.C;
+    const MatrixXd then = Torque(own_.whole + 1);
+    if (!design_.layout.torsion) {
+      seen.row(2) -= then.row(0) / config_.arm.joint[0].stiffness_nm_per_rad;
+      seen.row(3) -= then.row(1) / config_.arm.joint[1].stiffness_nm_per_rad;
+    }
+    seen.bottomRows(4) << Torque(own_.whole + 2), then;
+    return seen;
+  }
+
+  MatrixXd Predicted(MatrixXd x_hat) const {
+    if (own_.rest_s > 0.0) {
+      const DiscreteModel part = ZeroOrderHold(design_.A_rate, design_.B_rate, own_.rest_s);
+      x_hat = part.A * x_hat + part.B * Torque(own_.whole + 1);
+    }
+    for (Index i = own_.whole; i >= 0; --i) x_hat = design_.A * x_hat + design_.B * Torque(i);
+    return x_hat;
+  }
+
+  // The torque of one step takes over from that of the one before within the period.
+  void AddPlant(double late_s, const MatrixXd& asked, MatrixXd* loop) const {
+    const Index nx = plant_.A.rows();
+    const double period_s = config_.loop.period_ms * 1e-3;
+    const Index periods = std::min(static_cast<Index>(late_s / period_s), kMaxDelayPeriods);
+    const Index newest = own_.whole + periods;  // -1: the one that is asked now
+    late_s -= static_cast<double>(periods) * period_s;
+    const DiscreteModel rest = ZeroOrderHold(plant_.A, plant_.B, period_s - late_s);
+    loop->topRows(nx) = rest.B * (newest < 0 ? asked : Torque(newest));
+    if (late_s <= 0.0) {
+      loop->topLeftCorner(nx, nx) += rest.A;
+      return;
+    }
+    const DiscreteModel before = ZeroOrderHold(plant_.A, plant_.B, late_s);
+    loop->topLeftCorner(nx, nx) += rest.A * before.A;
+    loop->topRows(nx) += rest.A * before.B * Torque(newest + 1);
+  }
+
+  const ControlConfig& config_;
+  const Design& design_;
+  const Plant& plant_;
+  LinearEstimator estimator_;
+  MatrixXd K_;
+  OwnDelay own_;
+  Index first_u_;  // of u_0 in the state
+  Index inputs_;
+};
+
+// Where a loop that is stable at `stable` stops being so on the way to `end`, to 1 %: walks, then
+// halves. `end` if it never does.
+template <typename Radius>
+double Edge(double stable, double end, const Radius& radius) {
+  constexpr int kSteps = 40, kHalvings = 8;
+  double inside = stable, outside = end;
+  bool found = false;
+  for (int i = 1; i <= kSteps && !found; ++i) {
+    const double at = stable + (end - stable) * std::pow(static_cast<double>(i) / kSteps, 3.0);
+    found = radius(at) >= 1.0;
+    (found ? outside : inside) = at;
+  }
+  for (int i = 0; found && i < kHalvings; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (radius(middle) >= 1.0 ? outside : inside) = middle;
+  }
+  return outside;
+}
+
+double DelayOf(const Loop& loop) {
+  return Edge(0.0, 0.1, [&loop](double delay_s) { return loop.SpectralRadius(1.0, delay_s); });
+}
+
+LoopMargins MarginsOf(const Loop& loop) {
+  if (loop.SpectralRadius(1.0, 0.0) >= 1.0) return {.gain_up = 1.0, .gain_down = 1.0, .delay_s = 0};
+  const auto with_gain = [&loop](double gain) { return loop.SpectralRadius(gain, 0.0); };
+  return {.gain_up = Edge(1.0, 100.0, with_gain),
+          .gain_down = Edge(1.0, 0.0, with_gain),
+          .delay_s = DelayOf(loop)};
+}
+
+}  // namespace
+
+const ScreenCase& Screen::worst() const {
+  return *std::max_element(cases.begin(), cases.end(), [](const auto& a, const auto& b) {
+    return a.spectral_radius < b.spectral_radius;
+  });
+}
+
+const ScreenCase& Screen::worst_required() const {
+  return *std::max_element(cases.begin(), cases.end(), [](const auto& a, const auto& b) {
+    return (a.required ? a.spectral_radius : 0.0) < (b.required ? b.spectral_radius : 0.0);
+  });
+}
+
+Screen ScreenDesign(const ControlConfig& config, const Design& design,
+                    const std::vector<double>& payload_kg) {
+  Screen screen{};
+  const double own_kg = config.arm.payload_mass_kg;
+  std::set<double> payloads(payload_kg.begin(), payload_kg.end());
+  payloads.insert(own_kg);
+  for (const double payload : payloads) {
+    for (const double theta2_deg : kElbow_deg) {
+      const Plant plant = PlantAt(config, payload, theta2_deg);
+      const Loop loop(config, design, plant);
+      for (const double gain : kGains) {
+        screen.cases.push_back({.payload_kg = payload,
+                                .theta2_deg = theta2_deg,
+                                .gain = gain,
+                                .spectral_radius = loop.SpectralRadius(gain, 0.0),
+                                .required = gain == 1.0 || payload == own_kg});
+      }
+    }
+  }
+  const Plant nominal = PlantAt(config, own_kg, 0.0);
+  screen.margins = MarginsOf(Loop(config, design, nominal));
+  return screen;
+}
+
+double DelayMargin_s(const ControlConfig& config, const Design& design) {
+  const Plant plant = PlantAt(config, config.arm.payload_mass_kg, 0.0);
+  const Loop loop(config, design, plant);
+  return loop.SpectralRadius(1.0, 0.0) < 1.0 ? DelayOf(loop) : 0.0;
+}
+
+std::vector<DesignCheck> ChecksOf(const Screen& screen) {
+  return {{"screen-spectral-radius", screen.worst_required().spectral_radius, 1.0, true},
+          {"gain-margin-up", screen.margins.gain_up, kGainUp, false},
+          {"gain-margin-down", screen.margins.gain_down, kGainDown, true},
+          {"delay-margin-ms", 1e3 * screen.margins.delay_s, kDelay_ms, false}};
+}
+
+}  // namespace flexarm

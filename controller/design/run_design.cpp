@@ -1,0 +1,52 @@
+#include "controller/design/run_design.h"
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "controller/design/design_controller.h"
+#include "controller/design/design_json.h"
+#include "controller/types/refused.h"
+
+namespace flexarm {
+namespace {
+
+Design ReadDesign(const ControlConfig& config) {
+  const std::string& name = config.controller.gains_file;
+  std::ifstream file(name);
+  if (!file) {
+    throw Refused(name + ": cannot be read (controller.gains); write it with `flexarm design`");
+  }
+  std::stringstream text;
+  text << file.rdbuf();
+  try {
+    return DesignFromJson(text.str(), config);
+  } catch (const Refused& error) {
+    throw Refused(name + ": " + error.what());
+  }
+}
+
+Design NewDesign(const ControlConfig& config) {
+  try {
+    return DesignController(config);
+  } catch (const std::runtime_error& error) {
+    throw Refused(std::string("no controller can be designed for this config: ") + error.what());
+  }
+}
+
+}  // namespace
+
+Design DesignFor(const ControlConfig& config) {
+  Design design = config.controller.gains_file.empty() ? NewDesign(config) : ReadDesign(config);
+  for (const DesignCheck& check : design.checks) {
+    if (check.passed() || check.waived) continue;
+    std::ostringstream text;
+    text << "design check '" << check.name << "' failed: " << check.value << " must be "
+         << (check.below ? "below " : "above ") << check.limit;
+    throw Refused(text.str());
+  }
+  return design;
+}
+
+}  // namespace flexarm

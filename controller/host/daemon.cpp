@@ -1,0 +1,217 @@
+#include "controller/host/daemon.h"
+
+#include <cmath>
+#include <csignal>
+#include <ctime>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "controller/design/robustness_analysis.h"
+#include "controller/design/run_design.h"
+#include "controller/host/journal.h"
+#include "controller/host/run_info.h"
+#include "controller/host/service_manager.h"
+#include "controller/law/design.h"
+#include "controller/operator/operator_task.h"
+#include "controller/realtime/clock.h"
+#include "controller/realtime/realtime_executor.h"
+#include "controller/realtime/realtime_setup.h"
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/recorder_task.h"
+#include "controller/tasks/simulated_stack.h"
+#include "controller/tasks/wired_stack.h"
+#include "controller/types/refused.h"
+#include "hal/wired/hardware_rig.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kEpochLeadNs = 100'000'000;  // threads are up before instant 0
+constexpr std::size_t kEventDepth = 256;
+constexpr std::size_t kTimingDepth = 4'000;  // 60 s of the control task
+constexpr int kHighestPriority = SafetyTask::kPriority;
+
+sigset_t BlockEndSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread started later
+  return signals;
+}
+
+/// True if one of `signals` came within the time.
+bool EndSignal(const sigset_t& signals, std::int64_t wait_ns) {
+  const timespec wait{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
+  return sigtimedwait(&signals, nullptr, &wait) > 0;
+}
+
+std::vector<TaskStatistics> Statistics(const RealtimeExecutor& executor) {
+  std::vector<TaskStatistics> all;
+  for (std::size_t i = 0; i < executor.size(); ++i) all.push_back(executor.statistics(i));
+  return all;
+}
+
+nlohmann::json ThreadStatus(const RealtimeExecutor& executor) {
+  nlohmann::json threads = nlohmann::json::array();
+  for (const TaskStatistics& s : Statistics(executor)) {
+    threads.push_back({{"name", s.name},
+                       {"activations", s.activations},
+                       {"missed_deadlines", s.missed_deadlines},
+                       {"skipped_periods", s.skipped_periods},
+                       {"worst_lateness_us", static_cast<double>(s.worst_lateness_ns) * 1e-3},
+                       {"mean_lateness_us", s.mean_lateness_ns * 1e-3},
+                       {"worst_run_us", static_cast<double>(s.worst_run_ns) * 1e-3}});
+  }
+  return threads;
+}
+
+/// What the loop drives: the simulated arm in process, or the devices of a real rig.
+struct Backend {
+  std::unique_ptr<WiredRig> rig;  // outlives the stack
+  std::unique_ptr<LoopStack> stack;
+};
+
+// Opens the devices of a real rig: they are identified, configured and read back here.
+Backend MakeBackend(const DaemonOptions& options, const Design& design) {
+  const RigConfig& config = options.config;
+  Backend backend;
+  if (options.config.backend == "sim") {
+    backend.stack = std::make_unique<SimulatedStack>(config, design, config.arm.payload_mass_kg);
+  } else {
+    backend.rig = std::make_unique<WiredRig>(
+        config.hal, CanClocks{.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
+    backend.stack = std::make_unique<WiredStack>(
+        config, design, RigWires{.buses = backend.rig->buses(), .lines = backend.rig->lines()});
+  }
+  return backend;
+}
+
+/// The daemon's parts, in the order in which they are made.
+class Daemon {
+ public:
+  explicit Daemon(const DaemonOptions& options)
+      : options_(options),
+        design_(DesignFor(options.config)),
+        backend_(MakeBackend(options, design_)),
+        events_(kEventDepth),
+        timing_(kTimingDepth),
+        recording_(
+            MakeRunInfo(options.config, design_, "monotonic", options.config.backend),
+            RunsInDirectory(options.config.daemon.log_directory),
+            [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
+        recorder_({.ticks = &stack().tick_records(),
+                   .safety = &stack().safety_records(),
+                   .timing = &timing_,
+                   .events = &events_},
+                  &recording_),
+        executor_(options.realtime),
+        operator_(Context()) {}
+
+  DaemonResult Run();
+
+ private:
+  LoopStack& stack() { return *backend_.stack; }
+  OperatorContext Context();
+  void PrepareHost();
+  void Wait(const sigset_t& signals);
+  void ReportThreads();
+
+  const DaemonOptions& options_;
+  Journal journal_;
+  ServiceManager service_;
+  Design design_;
+  Backend backend_;
+  EventQueue events_;
+  SpscQueue<TimingRecord> timing_;
+  RunRecording recording_;
+  RecorderTask recorder_;
+  RealtimeExecutor executor_;
+  OperatorTask operator_;
+};
+
+OperatorContext Daemon::Context() {
+  return {
+      .stack = &stack(),
+      .events = &events_,
+      .design = &design_,
+      .config = &options_.config,
+      .grid = LoopGrid(options_.config.loop),
+      .delay_margin_s = DelayMargin_s(options_.config, design_),
+      .limits = MotionLimitsOf(options_.config),
+      .socket = options_.config.daemon.socket,
+      .unattended = options_.experiment,
+      .parse_experiment = options_.parse_experiment,
+      .report = [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
+      .thread_status = [this] { return ThreadStatus(executor_); },
+      .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); }};
+}
+
+void Daemon::PrepareHost() {
+  if (!options_.realtime) {
+    journal_.Error(
+        "--without-realtime: ordinary scheduling, unlocked memory. Deadlines will be missed.");
+    return;
+  }
+  for (const std::string& finding : PrepareRealtime(kHighestPriority)) journal_.Info(finding);
+}
+
+DaemonResult Daemon::Run() {
+  journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " +
+                options_.config.rig_name + ", backend " + options_.config.backend);
+  for (const DesignCheck& check : design_.checks) {
+    std::ostringstream text;
+    text << "design: " << check.name << " = " << check.value << ", must be "
+         << (check.below ? "below " : "above ") << check.limit;
+    journal_.Info(text.str());
+  }
+  const sigset_t signals = BlockEndSignals();
+  PrepareHost();
+  executor_.Add(stack().safety());
+  executor_.Add(stack().control(), &timing_);
+  for (Task* task : stack().drive_tasks()) executor_.Add(*task);
+  for (Task* task : stack().law_tasks()) executor_.Add(*task);
+  executor_.Add(operator_);
+  executor_.Add(recorder_);
+  const std::int64_t epoch_ns = MonotonicNow() + kEpochLeadNs;
+  stack().SetEpoch(epoch_ns);
+  executor_.Start(epoch_ns);
+  service_.Ready();
+  Wait(signals);
+  service_.Stopping();
+  executor_.RequestStop();
+  executor_.Join();
+  recorder_.Finish();
+  ReportThreads();
+  return {.tripped = operator_.trip() != TripCause::kNone,
+          .refused = operator_.refused(),
+          .log_errors = recording_.errors()};
+}
+
+void Daemon::Wait(const sigset_t& signals) {
+  constexpr std::int64_t kLookNs = 50'000'000;
+  const std::int64_t end_ns =
+      options_.run_for_s ? MonotonicNow() + std::llround(*options_.run_for_s * 1e9) : INT64_MAX;
+  while (!operator_.done()) {
+    if (EndSignal(signals, kLookNs) || MonotonicNow() >= end_ns) operator_.RequestShutdown();
+  }
+}
+
+void Daemon::ReportThreads() {
+  for (const TaskStatistics& s : Statistics(executor_)) {
+    journal_.Report(s.missed_deadlines + s.skipped_periods > 0,
+                    std::string(s.name) + ": " + std::to_string(s.activations) + " activations, " +
+                        std::to_string(s.missed_deadlines) + " missed deadlines, " +
+                        std::to_string(s.skipped_periods) + " skipped periods, worst lateness " +
+                        std::to_string(s.worst_lateness_ns / 1'000) + " us, worst run " +
+                        std::to_string(s.worst_run_ns / 1'000) + " us");
+  }
+}
+
+}  // namespace
+
+DaemonResult RunDaemon(const DaemonOptions& options) { return Daemon(options).Run(); }
+
+}  // namespace flexarm

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "controller/types/experiment.h"
+#include "controller/types/records.h"
+#include "controller/types/rig_config.h"
+
+namespace flexarm {
+
+/// What the daemon is started with.
+struct DaemonOptions {
+  RigConfig config;
+  std::optional<Experiment> experiment;  ///< run once, unattended, then end
+  std::optional<double> run_for_s;       ///< end after this long
+  bool realtime = true;                  ///< false: --without-realtime
+  std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
+};
+
+/// How it ended.
+struct DaemonResult {
+  bool tripped = false;
+  bool refused = false;  ///< the unattended run was refused
+  std::int64_t log_errors = 0;
+};
+
+/// Runs the daemon until its experiment or its time is over, or SIGTERM or SIGINT comes: then it
+/// brings the arm to rest, disarms, closes the log and returns. Blocks those signals.
+/// @throws Refused, RealtimeRefused, HalError, std::runtime_error before anything moves
+DaemonResult RunDaemon(const DaemonOptions& options);
+
+}  // namespace flexarm

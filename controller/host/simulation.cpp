@@ -1,0 +1,226 @@
+#include "controller/host/simulation.h"
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "controller/design/run_design.h"
+#include "controller/host/run_info.h"
+#include "controller/law/design.h"
+#include "controller/operator/unattended_run.h"
+#include "controller/realtime/lockstep_executor.h"
+#include "controller/runlog/recorder_task.h"
+#include "controller/tasks/simulated_stack.h"
+#include "controller/types/refused.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kOperatorPeriodNs = 20'000'000;
+constexpr std::int64_t kAfterTripNs = 5'000'000'000;  // the log of a tripped run goes on this long
+constexpr std::int64_t kAfterIdleNs = 200'000'000;    // until the recorder has seen everything
+constexpr std::size_t kQueueDepth = 64;
+
+/// The operator's thread of a simulated run: one plan, then UnattendedRun's requests.
+class UnattendedTask final : public Task {
+ public:
+  explicit UnattendedTask(SimulatedStack* stack) : stack_(stack) {}
+
+  Traits traits() const noexcept override {
+    return {.name = "operator",
+            .period_ns = kOperatorPeriodNs,
+            .phase_ns = 0,
+            .deadline_ns = kOperatorPeriodNs,
+            .priority = 0};
+  }
+
+  void Run(const Activation& activation) noexcept override {
+    RequestAnswer answer{};
+    while (stack_->answers().Pop(&answer)) run_.Answered(answer);
+    const Permit& permit = stack_->operator_permits().Read().At(activation.due_ns - 1).value;
+    const OperatorRequest request = run_.Update(activation.due_ns, permit);
+    if (request.kind != RequestKind::kNone) stack_->requests().Push(request);
+    if (permit.state == SafetyState::kTripped && trip_ == TripCause::kNone) {
+      trip_ = permit.cause;
+      over_ns_ = activation.due_ns + kAfterTripNs;
+    } else if (run_.over() && over_ns_ == INT64_MAX) {
+      over_ns_ = activation.due_ns + kAfterIdleNs;
+    }
+  }
+
+  TripCause trip() const { return trip_; }
+  std::int64_t over_ns() const { return over_ns_; }
+  const UnattendedRun& run() const { return run_; }
+
+ private:
+  SimulatedStack* stack_;
+  UnattendedRun run_;
+  TripCause trip_ = TripCause::kNone;
+  std::int64_t over_ns_ = INT64_MAX;
+};
+
+/// Keeps every tick in memory for the metrics, and passes all on to the log if there is one.
+class MemoryAndLog final : public RunMemory {
+ public:
+  MemoryAndLog(RunContents* contents, std::unique_ptr<RunSink> log)
+      : RunMemory(contents), log_(std::move(log)) {}
+
+  std::string Name() const override { return log_->Name(); }
+  void Tick(const TickRecord& record) override {
+    RunMemory::Tick(record);
+    log_->Tick(record);
+  }
+  void Timing(const TimingRecord& record) override { log_->Timing(record); }
+  void Safety(const SafetyRecord& record) override { log_->Safety(record); }
+  void Event(const RunEvent& event) override { log_->Event(event); }
+  void SetExperiment(const std::string& name, const std::string& text) override {
+    RunMemory::SetExperiment(name, text);
+    log_->SetExperiment(name, text);
+  }
+  void Commit() override { log_->Commit(); }
+  void Close(const std::string& result_json) override { log_->Close(result_json); }
+
+ private:
+  std::unique_ptr<RunSink> log_;
+};
+
+OpenSink SinkFor(const SimulationRequest& request, RunContents* contents) {
+  if (!request.log) return RunInMemory(contents);
+  return
+      [contents, open = RunInFile(*request.log)](const RunInfo& info) -> std::unique_ptr<RunSink> {
+        return std::make_unique<MemoryAndLog>(contents, open(info));
+      };
+}
+
+/// A simulated run's parts, in the order in which they are made.
+class Simulation {
+ public:
+  explicit Simulation(const SimulationRequest& request);
+
+  SimulationResult Run(const std::function<void(double)>& progress);
+
+ private:
+  void Announce();
+  /// Runs the tasks until the operator is done. @returns wall-clock time, s
+  double Loop(const std::function<void(double)>& progress);
+  SimulationResult Result(double wall_s) const;
+
+  const RigConfig& Plant() const { return request_.plant ? *request_.plant : request_.config; }
+
+  const SimulationRequest& request_;
+  LoopGrid grid_;
+  Design design_;
+  double payload_kg_;
+  PlannedExperiment planned_;
+  SimulatedStack stack_;
+  RunContents contents_;
+  std::string log_error_;
+  RunRecording recording_;
+  EventQueue events_;
+  SpscQueue<TimingRecord> timing_;  // a simulated clock has no wall-clock figures
+  RecorderTask recorder_;
+  UnattendedTask operator_;
+  std::int64_t simulated_ns_ = 0;
+};
+
+Simulation::Simulation(const SimulationRequest& request)
+    : request_(request),
+      grid_(request.config.loop),
+      design_(DesignFor(request.config)),
+      payload_kg_(request.payload_kg.value_or(Plant().arm.payload_mass_kg)),
+      planned_(request.experiment, design_, grid_.period_s(), {0.0, 0.0},
+               MotionLimitsOf(request.config)),
+      stack_(request.config, Plant(), design_, payload_kg_),
+      recording_(MakeRunInfo(request.config, design_, "simulated", "sim"),
+                 SinkFor(request, &contents_),
+                 [this](bool is_error, const std::string& text) {
+                   if (is_error && log_error_.empty()) log_error_ = text;
+                 }),
+      events_(kQueueDepth),
+      timing_(kQueueDepth),
+      recorder_({.ticks = &stack_.tick_records(),
+                 .safety = &stack_.safety_records(),
+                 .timing = &timing_,
+                 .events = &events_},
+                &recording_),
+      operator_(&stack_) {
+  stack_.Plan({.experiment = &planned_, .number = 1});
+}
+
+void Simulation::Announce() {
+  events_.Push({.time_ns = 0,
+                .kind = "experiment",
+                .name = planned_.accepted.name,
+                .text = planned_.accepted.text,
+                .value_json = {}});
+  events_.Push({.time_ns = 0,
+                .kind = "simulation",
+                .name = "payload",
+                .text = {},
+                .value_json = "{\"payload_kg\": " + std::to_string(payload_kg_) + "}"});
+}
+
+double Simulation::Loop(const std::function<void(double)>& progress) {
+  constexpr std::int64_t kProgressNs = 100'000'000;
+  LockstepExecutor executor;
+  executor.Add(stack_.safety());
+  executor.Add(stack_.control());
+  for (Task* task : stack_.drive_tasks()) executor.Add(*task);
+  for (Task* task : stack_.law_tasks()) executor.Add(*task);
+  executor.Add(operator_);
+  executor.Add(recorder_);
+  const auto started = std::chrono::steady_clock::now();
+  executor.RunWhile([&](std::int64_t now_ns) {
+    if (progress && now_ns / kProgressNs != simulated_ns_ / kProgressNs) {
+      progress(static_cast<double>(now_ns) * 1e-9);
+    }
+    simulated_ns_ = now_ns;
+    return now_ns < operator_.over_ns();
+  });
+  recorder_.Finish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+}
+
+SimulationResult Simulation::Result(double wall_s) const {
+  SimulationResult result;
+  result.metrics =
+      ComputeMetrics(contents_.tick, planned_.accepted, grid_.period_s(),
+                     TipGeometryOf(request_.config.arm, request_.config.controller.nominal));
+  result.ticks = result.metrics.ticks;
+  result.trip = operator_.trip();
+  result.completed =
+      result.trip == TripCause::kNone && result.ticks == planned_.reference.periods();
+  for (const Move& move : planned_.accepted.move) {
+    result.move_duration_s.push_back(move.duration_s.value());
+  }
+  for (const TickRecord& record : contents_.tick) {
+    const auto samples = int{record.output.delay_found};
+    if (samples != 0) result.delay_found = samples;
+  }
+  result.realtime_factor = static_cast<double>(simulated_ns_) * 1e-9 / wall_s;
+  return result;
+}
+
+SimulationResult Simulation::Run(const std::function<void(double)>& progress) {
+  Announce();
+  const double wall_s = Loop(progress);
+  if (!log_error_.empty()) throw std::runtime_error(log_error_);
+  if (operator_.run().progress() == UnattendedRun::Progress::kRefused) {
+    throw std::runtime_error("the simulated run was refused by the safety machine");
+  }
+  return Result(wall_s);
+}
+
+}  // namespace
+
+SimulationResult Simulate(const SimulationRequest& request,
+                          const std::function<void(double)>& progress) {
+  if (request.log && std::filesystem::exists(*request.log)) {
+    throw Refused(request.log->string() + ": exists already; a run is never overwritten");
+  }
+  return Simulation(request).Run(progress);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "controller/runlog/metrics.h"
+#include "controller/runlog/run_sink.h"
+#include "controller/types/experiment.h"
+#include "controller/types/rig_config.h"
+#include "controller/types/trip_cause.h"
+
+namespace flexarm {
+
+/// One run of the whole stack in lock step: an unattended arm, run, stop and disarm.
+struct SimulationRequest {
+  RigConfig config;
+  Experiment experiment;
+  /// Of the simulated rig where that is not what the controller was designed for; differs from
+  /// `config` in what describes the plant only. A log does not tell of it.
+  std::optional<RigConfig> plant = std::nullopt;
+  std::optional<double> payload_kg;          ///< of the plant; its config's if empty
+  std::optional<std::filesystem::path> log;  ///< must not exist; empty: no log
+};
+
+struct SimulationResult {
+  bool completed = false;  ///< every tick of the experiment ran, and no trip
+  TripCause trip = TripCause::kNone;
+  std::int64_t ticks = 0;  ///< in state Running
+  RunMetrics metrics;
+  std::vector<double> move_duration_s;  ///< of the rows [[move]], as given or as chosen
+  int delay_found = 0;  ///< samples beyond the known delay, the last that was found in the run
+  double realtime_factor = 0.0;  ///< simulated time over wall time of the loop, recorder included
+};
+
+/// @param progress  called now and then with the simulated time, s; may be empty
+/// @throws std::runtime_error when the design, the experiment or the log is refused
+SimulationResult Simulate(const SimulationRequest& request,
+                          const std::function<void(double)>& progress = {});
+
+}  // namespace flexarm

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "controller/types/step_types.h"
+
+namespace flexarm {
+
+/// The delay of the loop as the drive side measured it, from sampling instant to torque, beside
+/// what the loop can bear: what the operator sees.
+class DelayWatch {
+ public:
+  /// @param margin_s  delay beyond the predicted one that makes the loop unstable (screen.h)
+  DelayWatch(std::int64_t period_ns, double margin_s)
+      : period_ns_(period_ns), margin_s_(margin_s) {}
+
+  /// Every step, in order.
+  /// @returns true once a run: a torque acted so late that less than half of the margin was left
+  bool Take(const StepInput& input) noexcept {
+    const bool runs = input.safety_state == SafetyState::kRunning;
+    if (runs && !runs_) warned_ = false;
+    runs_ = runs;
+    const std::int64_t beyond_ns = input.acted_late_ns - planned_late_ns_;
+    planned_late_ns_ = input.acts_late_ns;
+    delay_ns_ = period_ns_ + input.acted_late_ns;
+    longest_ns_ = std::max(longest_ns_, delay_ns_);
+    if (!known_) {  // of the first step nobody planned the torque before
+      known_ = true;
+      return false;
+    }
+    beyond_ns_ = std::max(beyond_ns_, beyond_ns);
+    if (!runs || warned_ || 1e-9 * static_cast<double>(beyond_ns) <= 0.5 * margin_s_) return false;
+    warned_ = true;
+    return true;
+  }
+
+  double delay_ms() const noexcept { return 1e-6 * static_cast<double>(delay_ns_); }
+  double longest_ms() const noexcept { return 1e-6 * static_cast<double>(longest_ns_); }
+  /// What the torque that was latest against its prediction left of the margin.
+  double margin_ms() const noexcept {
+    return 1e3 * margin_s_ - 1e-6 * static_cast<double>(beyond_ns_);
+  }
+
+ private:
+  std::int64_t period_ns_;
+  double margin_s_;
+  std::int64_t delay_ns_ = 0;
+  std::int64_t longest_ns_ = 0;
+  std::int64_t planned_late_ns_ = 0;
+  std::int64_t beyond_ns_ = 0;  // the largest
+  bool known_ = false;
+  bool runs_ = false;
+  bool warned_ = false;
+};
+
+/// A delay that nobody knew of was found: what the operator is told, once a run.
+class DelayFoundWatch {
+ public:
+  /// Every step, in order.
+  /// @returns true once a run: it goes on with another delay than the known one
+  bool Take(const StepInput& input, const StepOutput& output) noexcept {
+    if (input.safety_state != SafetyState::kRunning) {
+      told_ = false;
+      return false;
+    }
+    if (told_ || output.delay_found == 0) return false;
+    told_ = true;
+    return true;
+  }
+
+ private:
+  bool told_ = false;
+};
+
+}  // namespace flexarm

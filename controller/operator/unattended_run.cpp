@@ -1,0 +1,46 @@
+#include "controller/operator/unattended_run.h"
+
+#include <algorithm>
+
+namespace flexarm {
+
+OperatorRequest UnattendedRun::Ask(RequestKind kind, std::int64_t not_before_ns) noexcept {
+  if (asked_ == kind) return {.kind = RequestKind::kNone, .number = 0, .not_before_ns = 0};
+  asked_ = kind;
+  return {.kind = kind, .number = ++number_, .not_before_ns = not_before_ns};
+}
+
+OperatorRequest UnattendedRun::Update(std::int64_t due_ns, const Permit& permit) noexcept {
+  const std::int64_t soon_ns = due_ns + kLeadNs;
+  if (!over()) {
+    switch (permit.state) {
+      case SafetyState::kStarting:
+        break;
+      case SafetyState::kIdle:
+        if (!ran_) return Ask(RequestKind::kArm, std::max(soon_ns, kFirstArmNs));
+        progress_ = Progress::kDone;
+        break;
+      case SafetyState::kArmed:
+        if (!ran_) return Ask(RequestKind::kRun, soon_ns);
+        progress_ = Progress::kDisarming;
+        return Ask(RequestKind::kDisarm, soon_ns);
+      case SafetyState::kRunning:
+      case SafetyState::kStopping:
+        progress_ = Progress::kRunning;
+        ran_ = true;
+        break;
+      case SafetyState::kTripped:
+        progress_ = Progress::kDone;
+        break;
+    }
+  }
+  return {.kind = RequestKind::kNone, .number = 0, .not_before_ns = 0};
+}
+
+void UnattendedRun::Answered(const RequestAnswer& answer) noexcept {
+  if (answer.number == number_ && answer.refusal != Refusal::kNone && !over()) {
+    progress_ = Progress::kRefused;
+  }
+}
+
+}  // namespace flexarm

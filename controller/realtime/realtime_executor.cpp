@@ -1,0 +1,187 @@
+#include "controller/realtime/realtime_executor.h"
+
+#include <sched.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "controller/realtime/clock.h"
+#include "controller/realtime/float_environment.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::size_t kStackBytes = std::size_t{2} << 20;  // a sanitizer keeps 1 MiB for itself
+constexpr std::size_t kPrefaultBytes = std::size_t{256} << 10;
+constexpr std::size_t kPageBytes = 4096;
+
+template <typename T>
+void Increase(std::atomic<T>& counter, T amount) noexcept {
+  // One writer: no read-modify-write needed.
+  counter.store(counter.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
+}
+
+void Raise(std::atomic<std::int64_t>& worst, std::int64_t value) noexcept {
+  if (value > worst.load(std::memory_order_relaxed)) worst.store(value, std::memory_order_relaxed);
+}
+
+// Writes to each page that the task may use later, so that none faults then.
+[[gnu::noinline]] void PrefaultStack() noexcept {
+  std::array<unsigned char, kPrefaultBytes> stack;
+  for (std::size_t i = 0; i < kPrefaultBytes; i += kPageBytes) stack[i] = 0;
+  asm volatile("" : : "r"(stack.data()) : "memory");  // the writes must happen
+}
+
+[[noreturn]] void ThrowRefused(const Task::Traits& traits, bool fifo, int error) {
+  std::string text = std::string("cannot start thread '") + traits.name + "'";
+  if (fifo) text += " with SCHED_FIFO priority " + std::to_string(traits.priority);
+  text += std::string(": ") + std::strerror(error);
+  if (fifo && error == EPERM) {
+    text += "; allow it (LimitRTPRIO=99 in the systemd unit, or root) or give --without-realtime";
+  }
+  throw std::runtime_error(text);
+}
+
+}  // namespace
+
+RealtimeExecutor::RealtimeExecutor(bool fifo) : fifo_(fifo) {}
+
+RealtimeExecutor::~RealtimeExecutor() {
+  RequestStop();
+  Join();
+}
+
+void RealtimeExecutor::Add(Task& task, SpscQueue<TimingRecord>* timing) {
+  const Task::Traits traits = task.traits();
+  if (traits.period_ns < 1 || traits.phase_ns < 0) {
+    throw std::invalid_argument(
+        std::string(traits.name) +
+        ": a task needs a period of at least 1 ns and a phase of 0 or more");
+  }
+  if (traits.priority < 0 || traits.priority > 98) {
+    throw std::invalid_argument(
+        std::string(traits.name) +
+        ": the priority must lie in 0..98 (99 starves the kernel's threads)");
+  }
+  auto thread = std::make_unique<Thread>();
+  thread->executor = this;
+  thread->task = &task;
+  thread->traits = traits;
+  thread->timing = timing;
+  threads_.push_back(std::move(thread));
+}
+
+void RealtimeExecutor::Start(std::int64_t epoch_ns, std::int64_t end_ns) {
+  epoch_ns_ = epoch_ns;
+  end_ns_ = end_ns;
+  try {
+    for (const auto& thread : threads_) StartThread(*thread);
+  } catch (...) {
+    RequestStop();
+    Join();
+    throw;
+  }
+}
+
+void RealtimeExecutor::StartThread(Thread& thread) {
+  const bool fifo = fifo_ && thread.traits.priority > 0;
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, kStackBytes);
+  // Explicit in both cases: never what the starting thread happens to have.
+  pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+  pthread_attr_setschedpolicy(&attributes, fifo ? SCHED_FIFO : SCHED_OTHER);
+  const sched_param parameters{.sched_priority = fifo ? thread.traits.priority : 0};
+  pthread_attr_setschedparam(&attributes, &parameters);
+  const int error = pthread_create(&thread.handle, &attributes, &Main, &thread);
+  pthread_attr_destroy(&attributes);
+  if (error != 0) ThrowRefused(thread.traits, fifo, error);
+  thread.started = true;
+}
+
+void* RealtimeExecutor::Main(void* argument) noexcept {
+  auto& thread = *static_cast<Thread*>(argument);
+  pthread_setname_np(pthread_self(), thread.traits.name);  // fails harmlessly above 15 letters
+  prctl(PR_SET_TIMERSLACK, 1UL);
+  PrefaultStack();
+  const FlushDenormals flush;
+  thread.executor->Loop(thread);
+  return nullptr;
+}
+
+void RealtimeExecutor::Loop(Thread& thread) noexcept {
+  const Task::Traits& traits = thread.traits;
+  Counters& counters = thread.counters;
+  int missed_in_a_row = 0;
+  std::int64_t finished_ns = INT64_MIN;
+  for (std::int64_t due_ns = traits.phase_ns; due_ns < end_ns_; due_ns += traits.period_ns) {
+    SleepUntil(epoch_ns_ + due_ns);
+    if (stop_.load(std::memory_order_relaxed)) return;
+    const std::int64_t woke_ns = MonotonicNow() - epoch_ns_;
+
+    // A task that was still running when it was due again did not wake late.
+    const std::int64_t lateness_ns =
+        std::max<std::int64_t>(woke_ns - std::max(due_ns, finished_ns), 0);
+
+    // Whole periods that have passed are lost; the one under way is run, late.
+    const std::int64_t behind = std::max<std::int64_t>((woke_ns - due_ns) / traits.period_ns, 0);
+    if (behind > 0) {
+      due_ns += behind * traits.period_ns;
+      missed_in_a_row += static_cast<int>(std::min<std::int64_t>(behind, 1'000'000));
+      Increase<std::uint64_t>(counters.skipped_periods, static_cast<std::uint64_t>(behind));
+      if (due_ns >= end_ns_) return;
+    }
+
+    thread.task->Run({.due_ns = due_ns, .missed_in_a_row = missed_in_a_row});
+    finished_ns = MonotonicNow() - epoch_ns_;
+
+    if (finished_ns > due_ns + traits.deadline_ns) {
+      ++missed_in_a_row;
+      Increase<std::uint64_t>(counters.missed_deadlines, 1);
+    } else {
+      missed_in_a_row = 0;
+    }
+    Increase<std::int64_t>(counters.total_lateness_ns, lateness_ns);
+    Raise(counters.worst_lateness_ns, lateness_ns);
+    Raise(counters.worst_run_ns, finished_ns - woke_ns);
+    Increase<std::uint64_t>(counters.activations, 1);
+    if (thread.timing != nullptr) {
+      thread.timing->Push({.tick = (due_ns - traits.phase_ns) / traits.period_ns,
+                           .due_ns = due_ns,
+                           .woke_ns = woke_ns,
+                           .finished_ns = finished_ns});
+    }
+  }
+}
+
+void RealtimeExecutor::RequestStop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+
+void RealtimeExecutor::Join() {
+  for (const auto& thread : threads_) {
+    if (!thread->started) continue;
+    pthread_join(thread->handle, nullptr);
+    thread->started = false;
+  }
+}
+
+TaskStatistics RealtimeExecutor::statistics(std::size_t index) const noexcept {
+  const Thread& thread = *threads_[index];
+  const Counters& counters = thread.counters;
+  const std::uint64_t activations = counters.activations.load(std::memory_order_relaxed);
+  const auto total =
+      static_cast<double>(counters.total_lateness_ns.load(std::memory_order_relaxed));
+  return {.name = thread.traits.name,
+          .activations = activations,
+          .missed_deadlines = counters.missed_deadlines.load(std::memory_order_relaxed),
+          .skipped_periods = counters.skipped_periods.load(std::memory_order_relaxed),
+          .worst_lateness_ns = counters.worst_lateness_ns.load(std::memory_order_relaxed),
+          .mean_lateness_ns = activations > 0 ? total / static_cast<double>(activations) : 0.0,
+          .worst_run_ns = counters.worst_run_ns.load(std::memory_order_relaxed)};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,186 @@
+#include "controller/reference/motion_plan.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "controller/reference/sampling_grid.h"
+#include "controller/reference/shortest_move.h"
+#include "controller/types/refused.h"
+#include "controller/types/rounded_text.h"
+#include "model/problem_list.h"
+#include "model/units.h"
+
+namespace flexarm {
+namespace {
+
+std::string RowOf(const PlannedMove& move) { return ProblemList::Element("move", move.row); }
+
+std::string DegText(const std::array<double, 2>& angle_rad) {
+  std::string text = "[";
+  text += RoundedText(angle_rad[0] / kRadPerDeg, 1, true);
+  text += ", ";
+  text += RoundedText(angle_rad[1] / kRadPerDeg, 1, true);
+  return text + "] deg";
+}
+
+bool Within(const std::array<double, 2>& angle_rad, const MotionLimits& limits) {
+  return std::fabs(angle_rad[0]) <= limits.soft_angle_rad[0] &&
+         std::fabs(angle_rad[1]) <= limits.soft_angle_rad[1];
+}
+
+std::array<double, 2> AnglesOfTip(const Move& move, const std::string& row,
+                                  const MotionLimits& limits) {
+  const auto& length_m = limits.link_length_m;
+  const std::string key = row + ".to_tip_m = [" + NumberText((*move.to_tip_m)[0]) + ", " +
+                          NumberText((*move.to_tip_m)[1]) + "]";
+  const auto left = StraightArmAngles(length_m, *move.to_tip_m, ElbowSide::kLeft);
+  const auto right = StraightArmAngles(length_m, *move.to_tip_m, ElbowSide::kRight);
+  if (!left || !right) {
+    throw Refused(key + " is out of reach: " +
+                  RoundedText(std::hypot((*move.to_tip_m)[0], (*move.to_tip_m)[1]), 4) +
+                  " m from the shoulder, it must be " +
+                  RoundedText(std::fabs(length_m[0] - length_m[1]), 4) + " to " +
+                  RoundedText(length_m[0] + length_m[1], 4) + " m");
+  }
+  if (move.elbow) return *move.elbow == ElbowSide::kLeft ? *left : *right;
+  const bool left_fits = Within(*left, limits), right_fits = Within(*right, limits);
+  const std::string both = "elbow left " + DegText(*left) + ", right " + DegText(*right);
+  if (!left_fits && !right_fits) {
+    throw Refused(key + ": no angles within limits.soft_angle_deg reach it: " + both);
+  }
+  if (left_fits && right_fits && *left != *right) {
+    throw Refused(key + " is reached by two poses: say elbow = \"left\" or \"right\": " + both);
+  }
+  return left_fits ? *left : *right;
+}
+
+std::array<double, 2> GoalOf(const Move& move, const std::string& row, const MotionLimits& limits) {
+  if (move.to_tip_m) return AnglesOfTip(move, row, limits);
+  const Eigen::Vector2d goal =
+      Eigen::Vector2d(move.to_deg[0], move.to_deg[1]) * std::numbers::pi / 180.0;
+  return {goal(0), goal(1)};
+}
+
+// Where it begins, for a message that goes on with "to".
+std::string BeginText(const PlannedMove& move) {
+  if (!move.takes_over) return "the move goes from " + DegText(move.from.angle_rad);
+  return "the move takes over at " + DegText(move.from.angle_rad) + " and " +
+         DegText(move.from.rate_rad_s) + " a second, and goes";
+}
+
+// The last of `moves`, which is all but its periods, and those before it.
+int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Design& design,
+              double period_s, const MotionLimits& limits) {
+  const PlannedMove& planned = moves.back();
+  const std::string key = RowOf(planned) + ".duration_s";
+  if (move.duration_s) {
+    const int periods = OnGrid(*move.duration_s, period_s, key);
+    if (periods >= kFewestPeriods) return periods;
+    throw Refused(key + " = " + NumberText(*move.duration_s) + " s must be at least " +
+                  NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
+  }
+  const auto periods = ShortestPeriods(moves, design, period_s, limits, limits.plan_fraction);
+  if (periods) return *periods;
+  throw Refused(key + ": none up to " + NumberText(kLongestChosen_s) +
+                " s keeps limits.plan_fraction of the limits: " + BeginText(planned) + " to " +
+                DegText(planned.to_rad));
+}
+
+void RequireTakeOver(const PlannedMove& planned, const PlannedMove& above, const Design& design,
+                     double period_s) {
+  if (design.scheduled) return;
+  throw Refused(RowOf(planned) + ".start_s = " + NumberText(InSeconds(planned.first, period_s)) +
+                " s: must not begin before the move above it ends, at " +
+                NumberText(InSeconds(above.first + above.periods, period_s)) +
+                " s; only a law that follows a path takes over a move that lasts: "
+                "controller.name = \"gain-scheduled\" or \"receding-horizon\"");
+}
+
+// The last of `moves` lasts when a move begins at sample `first`.
+bool TakesOver(const std::vector<PlannedMove>& moves, int first) {
+  return !moves.empty() && first < moves.back().first + moves.back().periods;
+}
+
+}  // namespace
+
+std::array<double, 2> PlaceBefore(const Experiment& experiment,
+                                  const std::vector<PlannedMove>& moves,
+                                  const std::array<double, 2>& start_rad, double start_s) {
+  Eigen::Vector2d place(start_rad[0], start_rad[1]);
+  double since_s = -std::numeric_limits<double>::infinity();
+  for (const PlannedMove& move : moves) {
+    if (experiment.move[move.row].start_s >= start_s) break;
+    since_s = experiment.move[move.row].start_s;
+    place << move.to_rad[0], move.to_rad[1];
+  }
+  if (experiment.csv && experiment.csv->start_s < start_s && experiment.csv->start_s > since_s) {
+    since_s = experiment.csv->start_s;
+    const auto& end_rad = experiment.csv->point.back().angle_rad;
+    place << end_rad[0], end_rad[1];
+  }
+  for (const Doublet& d : experiment.doublet) {
+    if (d.start_s <= since_s || d.start_s > start_s) continue;
+    place += Eigen::Vector2d(d.move_deg[0], d.move_deg[1]) * std::numbers::pi / 180.0;
+  }
+  return {place(0), place(1)};
+}
+
+std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& design,
+                                   double period_s, const std::array<double, 2>& start_rad,
+                                   const MotionLimits& limits) {
+  std::vector<PlannedMove> moves;
+  for (std::size_t row = 0; row < experiment.move.size(); ++row) {
+    const Move& move = experiment.move[row];
+    const std::string name = ProblemList::Element("move", row);
+    PlannedMove planned{.row = row,
+                        .first = OnGrid(move.start_s, period_s, name + ".start_s"),
+                        .periods = 0,
+                        .takes_over = false,
+                        .from = {},
+                        .to_rad = GoalOf(move, name, limits),
+                        .profile = move.profile};
+    if (TakesOver(moves, planned.first)) {
+      RequireTakeOver(planned, moves.back(), design, period_s);
+      planned.takes_over = true;
+      planned.from = moves.back().At(planned.first, period_s);
+    } else {
+      planned.from.angle_rad = PlaceBefore(experiment, moves, start_rad, move.start_s);
+    }
+    moves.push_back(planned);
+    moves.back().periods = PeriodsOf(move, moves, design, period_s, limits);
+  }
+  return moves;
+}
+
+std::vector<Stretch> StretchesOf(const std::vector<PlannedMove>& moves) {
+  std::vector<Stretch> stretches;
+  for (const PlannedMove& move : moves) {
+    const int end = move.first + move.periods;
+    if (stretches.empty() || move.first >= stretches.back().end) {
+      stretches.push_back({.first = move.first, .end = end});
+    } else {
+      stretches.back().end = end;
+    }
+  }
+  return stretches;
+}
+
+Experiment WithChosenDurations(const Experiment& experiment, const std::vector<PlannedMove>& moves,
+                               double period_s) {
+  Experiment chosen = experiment;
+  for (const PlannedMove& planned : moves) {
+    Move& move = chosen.move[planned.row];
+    if (move.duration_s) continue;
+    move.duration_s = InSeconds(planned.periods, period_s);
+    chosen.text += "\n[[planned_move]]\nrow = " + NumberText(planned.row) +
+                   "\nduration_s = " + NumberText(*move.duration_s) + "\n";
+  }
+  const std::vector<Problem> problems = chosen.Problems();
+  if (problems.empty()) return chosen;
+  throw Refused(problems[0].key + " = " + problems[0].value + ": " + problems[0].rule +
+                " (the durations of moves without duration_s were chosen)");
+}
+
+}  // namespace flexarm

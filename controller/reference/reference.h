@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "controller/law/design.h"
+#include "controller/reference/motion_limits.h"
+#include "controller/reference/motion_plan.h"
+#include "controller/reference/path_reference.h"
+#include "controller/types/experiment.h"
+#include "controller/types/step_types.h"
+
+namespace flexarm {
+
+/// The reference of one experiment, computed when it is accepted and never changed after.
+///
+/// Sample k holds at k Ts after the experiment's start; there is one more than the experiment has
+/// periods, with u_m = 0: what comes after the end.
+class ReferenceTable {
+ public:
+  /// Runs the reference model over the experiment's rows, from rest at `start_rad`.
+  ///
+  /// Each row is a command u_m; all but a PRBS are M_r times angular accelerations of the rigid
+  /// arm:
+  ///  - a doublet's amplitude is a = M_r dtheta / d, d the displacement of a unit inertia under its
+  ///    sampled shape (T^2/4 for a square, thesis 7.5); its area is zero
+  ///  - a move's are M_r (to - from) times ProfileAccelerations, a chirp's and a CSV trajectory's
+  ///    HeldAccelerations of their angles
+  /// so the reference model, a double integrator, ends at rest. A design with a shaper convolves
+  /// all that with its weights: every row then ends as much later as the shaper is long.
+  /// A design for a law that knows the payload has QuasiStaticReference instead, for the payload of
+  /// its reference; limits are judged by PathCheck, and all rows must be moves, which may take
+  /// each other over.
+  /// @throws Refused naming the row and key whose times do not lie on the grid of `period_s`, the
+  ///         row, joint, instant and limit that the reference would break (FirstBrokenLimit), or
+  ///         that the shaped rows would end after the experiment
+  ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
+                 const std::array<double, 2>& start_rad, const MotionLimits& limits);
+
+  /// Torques without a reference model, for LoopMode::kOpenLoop.
+  /// @param torque_nm  sample by sample, not empty; zero follows
+  explicit ReferenceTable(const std::vector<std::array<double, 2>>& torque_nm);
+
+  int periods() const noexcept { return static_cast<int>(samples_.size()) - 1; }
+
+  /// The moves as data, in order of time; the path is that of the last that has begun.
+  const std::vector<PlannedMove>& moves() const noexcept { return moves_; }
+
+  /// Where the moves begin and end, in order of time. Real-time: safe.
+  const std::vector<Stretch>& stretches() const noexcept { return stretches_; }
+
+  /// Sample k; before 0 the rest at the start, after the end the last one. Real-time: safe.
+  const ReferenceSample& At(int k) const noexcept;
+
+  /// The rigid coordinate at k - 1, k and k + 1, as the moves lead it whatever the law; other rows
+  /// are not in it. Zero if there is no move and no law that follows a path. Real-time: safe.
+  std::array<RigidPoint, 3> PathAround(int k) const noexcept {
+    return path_ ? path_->Around(k) : std::array<RigidPoint, 3>{};
+  }
+
+ private:
+  void Shape(const Eigen::RowVectorXd& shaper, double period_s);
+
+  void CheckLimits(const Experiment& planned, const Design& design, double period_s,
+                   const MotionLimits& limits) const;
+
+  void FollowModel(const Experiment& planned, const Design& design, double period_s,
+                   const std::array<double, 2>& start_rad);
+  void FollowPath(const Experiment& planned, const Design& design, double period_s);
+
+  ReferenceSample rest_{};
+  std::optional<RigidPath> path_;
+  std::vector<PlannedMove> moves_;
+  std::vector<Stretch> stretches_;
+  std::vector<ReferenceSample> samples_;
+};
+
+}  // namespace flexarm

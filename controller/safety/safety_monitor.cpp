@@ -1,0 +1,139 @@
+#include "controller/safety/safety_monitor.h"
+
+#include <array>
+#include <cmath>
+
+#include "controller/safety/torque_gate.h"
+#include "controller/types/runtime_config.h"
+#include "controller/types/safety_config.h"
+
+namespace flexarm {
+namespace {
+
+struct Switch {
+  Line line;
+  TripCause cause;
+  std::uint32_t joint;
+};
+
+constexpr std::array<Switch, 5> kSwitches{{
+    {Line::kLimit1Low, TripCause::kLimitSwitch1Low, 1},
+    {Line::kLimit1High, TripCause::kLimitSwitch1High, 1},
+    {Line::kLimit2Low, TripCause::kLimitSwitch2Low, 2},
+    {Line::kLimit2High, TripCause::kLimitSwitch2High, 2},
+    {Line::kEmergencyStop, TripCause::kEmergencyStop, 0},
+}};
+
+constexpr LineLevels kLimitLines = LineBit(Line::kLimit1Low) | LineBit(Line::kLimit1High) |
+                                   LineBit(Line::kLimit2Low) | LineBit(Line::kLimit2High);
+
+constexpr std::uint8_t Flag(bool set) noexcept { return set ? 1 : 0; }
+
+constexpr double Seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
+
+bool ControlReported(const SafetyInputs& in) noexcept { return in.control.tick >= 0; }
+bool DriveReported(const SafetyInputs& in) noexcept { return in.drive.due_ns != INT64_MIN; }
+
+}  // namespace
+
+SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConfig& loop) {
+  return {.heartbeat_timeout_ns = std::llround(2e6 * loop.period_ms),
+          .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
+          .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,
+          .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s)};
+}
+
+bool Supervisor::HomingContact(const SafetyInputs& in) noexcept {
+  const bool runs = in.state == SafetyState::kRunning;
+  if (!runs || (~in.levels & in.may_open) == 0) {
+    contact_since_ns_ = INT64_MAX;
+    return false;
+  }
+  if (contact_since_ns_ == INT64_MAX) contact_since_ns_ = in.due_ns;
+  return in.due_ns - contact_since_ns_ <= limits_.homing_contact_ns;
+}
+
+SafetyFacts Supervisor::Judge(const SafetyInputs& in) noexcept {
+  SafetyFacts facts{};
+  const auto add = [&facts](TripCause cause) { facts.present |= CauseBit(cause); };
+
+  const LineLevels excused = HomingContact(in) ? in.may_open & kLimitLines : 0;
+  for (const Switch& s : kSwitches) {
+    if (((in.levels | excused) & LineBit(s.line)) == 0) add(s.cause);  // normally closed
+  }
+
+  const bool control_alive =
+      ControlReported(in) && AgeNs(in.due_ns, in.control_alive_ns) <= limits_.heartbeat_timeout_ns;
+  if (control_alive) {
+    facts.present |= in.control.faults;
+    if (in.control.missed_in_a_row >= limits_.missed_deadlines_to_trip) {
+      add(TripCause::kMissedDeadlines);
+    }
+  } else if (ControlReported(in)) {
+    add(TripCause::kControlHeartbeatLost);
+  }
+
+  if (DriveReported(in)) {
+    if (AgeNs(in.due_ns, in.drive_alive_ns) > limits_.heartbeat_timeout_ns) {
+      add(TripCause::kStaleFrame);
+    }
+    if (!in.drive.bus_ok) add(TripCause::kBusLost);
+    if (!in.drive.drive_ok) add(TripCause::kDriveFault);
+  }
+
+  all_reported_ = all_reported_ || (ControlReported(in) && DriveReported(in));
+  facts.all_reported = Flag(all_reported_);
+  // Stopping must not end on the word of a step that did not know of the run.
+  const bool heard_here =
+      in.state != SafetyState::kStopping || in.control.due_ns > in.state_since_ns;
+  facts.at_rest = Flag(control_alive && in.control.at_rest && heard_here);
+  facts.experiment_done =
+      Flag(control_alive && in.control.experiment_done && in.state == SafetyState::kRunning &&
+           in.control.due_ns > in.running_since_ns);
+  facts.stop_expired = Flag(in.state == SafetyState::kStopping &&
+                            AgeNs(in.due_ns, in.state_since_ns) > limits_.stop_timeout_ns);
+
+  const bool button_down = (in.levels & LineBit(Line::kResetButton)) != 0;
+  const bool pressed_now = button_down && !button_was_down_;
+  button_was_down_ = button_down;
+  reset_pressed_ = in.state == SafetyState::kTripped && (reset_pressed_ || pressed_now);
+  facts.reset_pressed = Flag(reset_pressed_);
+
+  facts.request = in.request;
+  return facts;
+}
+
+Evidence Supervisor::EvidenceOf(TripCause cause, const SafetyInputs& in) const noexcept {
+  const auto evidence = [](double value, double limit, std::uint32_t channel) {
+    return Evidence{.value = value, .limit = limit, .channel = channel, .detail = 0};
+  };
+  const auto of_bus = [](double value, double limit, const DriveTroubles::Trouble& trouble) {
+    return Evidence{
+        .value = value, .limit = limit, .channel = trouble.bus, .detail = ToBits(trouble.fault)};
+  };
+  for (const Switch& s : kSwitches) {
+    if (s.cause == cause && (in.levels & LineBit(s.line)) == 0) return evidence(0.0, 1.0, s.joint);
+  }
+  if (in.control.faults != 0 && LowestCause(in.control.faults) == cause) return in.control.evidence;
+  if (cause == TripCause::kStaleFrame) {
+    return of_bus(Seconds(AgeNs(in.due_ns, in.drive_alive_ns)),
+                  Seconds(limits_.heartbeat_timeout_ns),
+                  {in.troubles.oldest_bus, {.kind = kBusHangs}});
+  }
+  if (cause == TripCause::kBusLost) return of_bus(0.0, 1.0, in.troubles.lost);
+  if (cause == TripCause::kDriveFault) return of_bus(0.0, 1.0, in.troubles.drive);
+  if (cause == TripCause::kMissedDeadlines) {
+    return evidence(in.control.missed_in_a_row, limits_.missed_deadlines_to_trip, 0);
+  }
+  if (cause == TripCause::kControlHeartbeatLost) {
+    return evidence(Seconds(AgeNs(in.due_ns, in.control_alive_ns)),
+                    Seconds(limits_.heartbeat_timeout_ns), 0);
+  }
+  if (cause == TripCause::kStopTimeout) {
+    return evidence(Seconds(AgeNs(in.due_ns, in.state_since_ns)), Seconds(limits_.stop_timeout_ns),
+                    0);
+  }
+  return evidence(0.0, 0.0, 0);
+}
+
+}  // namespace flexarm

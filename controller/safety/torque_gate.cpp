@@ -1,0 +1,44 @@
+#include "controller/safety/torque_gate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexarm {
+namespace {
+
+bool Young(std::int64_t age_ns, std::int64_t timeout_ns) noexcept {
+  return age_ns >= 0 && age_ns <= timeout_ns;
+}
+
+bool Finite(const std::array<double, 2>& values) noexcept {
+  return std::isfinite(values[0]) && std::isfinite(values[1]);
+}
+
+}  // namespace
+
+GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
+  std::uint32_t why = 0;
+  if (!Young(in.asked_age_ns, limits.command_timeout_ns)) why |= kGateCommandOld;
+  if (!Young(in.permit_age_ns, limits.permit_timeout_ns)) why |= kGatePermitOld;
+  if (!TorqueAllowed(in.permit)) why |= kGateNotAllowed;
+  const bool finite = Finite(in.asked_nm) && Finite(in.previous_nm) && std::isfinite(in.dt_s) &&
+                      Finite(limits.torque_nm) && Finite(limits.slew_nm_per_s);
+  if (!finite) why |= kGateNotFinite;
+  if (why != 0) return {.torque_nm = {0.0, 0.0}, .why = why};
+
+  GateResult result{.torque_nm = {0.0, 0.0}, .why = 0};
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    const double limit = std::max(limits.torque_nm[joint], 0.0);
+    const double step = std::max(limits.slew_nm_per_s[joint] * in.dt_s, 0.0);
+    const double within = std::clamp(in.asked_nm[joint], -limit, limit);
+    if (within != in.asked_nm[joint]) result.why |= joint == 0 ? kGateTorque1 : kGateTorque2;
+    const double reached =
+        std::clamp(within, in.previous_nm[joint] - step, in.previous_nm[joint] + step);
+    if (reached != within) result.why |= joint == 0 ? kGateSlew1 : kGateSlew2;
+    // The torque limit has the last word: `previous` may lie outside it.
+    result.torque_nm[joint] = std::clamp(reached, -limit, limit);
+  }
+  return result;
+}
+
+}  // namespace flexarm

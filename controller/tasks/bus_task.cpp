@@ -1,0 +1,93 @@
+#include "controller/tasks/bus_task.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "controller/types/rig_config.h"
+
+namespace flexarm {
+
+BusTask::BusTask(const RigConfig& config, BusDevice* device, BusChannels channels)
+    : device_(device),
+      grid_(config.loop),
+      limits_{.torque_nm = config.safety.torque_limit_nm,
+              .slew_nm_per_s = config.safety.slew_limit_nm_per_s,
+              .command_timeout_ns = 2 * grid_.period_ns,
+              .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
+      channels_(channels) {}
+
+Task::Traits BusTask::traits() const noexcept {
+  return {.name = device_->name(),
+          .period_ns = grid_.period_ns,
+          .phase_ns = 0,
+          .deadline_ns = grid_.phase_ns,
+          .priority = kPriority};
+}
+
+void BusTask::Run(const Activation& activation) noexcept {
+  const BusCommand command = Command(activation.due_ns);
+  SensorFrame part{};
+  const bool may_reconnect = failures_ > 0 && !command.enabled;
+  status_ = may_reconnect ? device_->Reconnect() : device_->Exchange(command, &part);
+  if (status_ == BusStatus::kOk) {
+    if (failures_ >= kFailuresToLose) ++taken_back_;
+    failures_ = 0;
+  } else {
+    failures_ = std::min(failures_ + 1, kFailuresToLose);
+    ++failed_;
+  }
+  Publish(activation.due_ns, part);
+}
+
+// The last act before the drive. A bus that has just failed is told the same as a healthy one: what
+// it missed is gone, and the next command is the newest.
+BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
+  const CommandHistory::Entry& command = channels_.commands->Read().At(due_ns);
+  const Permit& permit = channels_.permits->Read().Newest().value;
+  applied_tick_ = command.value.tick;
+  const GateResult gated =
+      Gate({.asked_nm = command.value.torque_nm,
+            .asked_age_ns = AgeNs(due_ns, command.from_ns),
+            .permit = permit.state,
+            .permit_age_ns = std::max<std::int64_t>(AgeNs(due_ns, permit.renewed_ns), 0),
+            .previous_nm = applied_nm_,
+            .dt_s = grid_.period_s()},
+           limits_);
+  for (std::size_t i = 0; i < 2; ++i) {
+    applied_nm_[i] = (device_->drives() >> i & 1u) != 0 ? gated.torque_nm[i] : 0.0;
+  }
+  const bool powered = permit.state == SafetyState::kArmed || TorqueAllowed(permit.state);
+  return {.torque_nm = applied_nm_, .enabled = powered && (gated.why & kGatePermitOld) == 0};
+}
+
+void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
+  FramePacket packet{};
+  packet.frame.sampled_at_ns = due_ns;  // of a failed exchange: nothing is valid
+  if (status_ == BusStatus::kOk) {
+    packet.frame = part;
+    packet.frame.sampled_at_ns -= epoch_ns_;
+    levels_ = (part.levels & device_->lines()) | (kHealthyLevels & ~device_->lines());
+  }
+  packet.applied_torque_nm =
+      applied_.Between(due_ns - grid_.period_ns, due_ns, grid_.period_ns).mean_nm();
+  // Of a bus with drives the frame's instant is also when they took the torque: the SYNC of
+  // CANopen, the end of the analogue outputs of a board.
+  const bool stamped = status_ == BusStatus::kOk && device_->drives() != 0;
+  packet.acted_ns = (stamped ? packet.frame.sampled_at_ns : due_ns) + grid_.actuation_ns;
+  if (stamped) packet.output_tick = applied_tick_;
+  applied_.Push(packet.acted_ns, applied_nm_);
+  frames_.Push(due_ns, packet);
+  channels_.frames->Publish(frames_);
+  reports_.Push(due_ns,
+                {.due_ns = due_ns,
+                 .bus_ok = failures_ < kFailuresToLose,
+                 .drive_ok = status_ != BusStatus::kDriveFault,
+                 .fault = status_ == BusStatus::kOk ? BusFault{} : device_->FaultOf(status_),
+                 .failed = failed_,
+                 .taken_back = taken_back_,
+                 .levels = levels_});
+  channels_.reports->Publish(reports_);
+  channels_.health->Publish(reports_);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "controller/realtime/task.h"
+#include "controller/safety/torque_gate.h"
+#include "controller/step/actuation_queue.h"
+#include "controller/types/frame_packet.h"
+#include "controller/types/loop_grid.h"
+#include "controller/types/messages.h"
+#include "hal/bus_device.h"
+
+namespace flexarm {
+
+struct RigConfig;
+
+/// Everything that a bus task touches. All of it outlives the task.
+struct BusChannels {
+  CommandChannel* commands;     ///< read
+  PermitChannel* permits;       ///< read
+  FrameChannel* frames;         ///< written: this bus's part of the readings
+  DriveReportChannel* reports;  ///< written: for the safety task
+  DriveReportChannel* health;   ///< written: the same, for the operator
+};
+
+/// The thread of one bus of a real rig: on the control grid, the gate, then the drive, then the
+/// readings. It may block in its device for as long as that declares.
+///
+/// Due at every sampling instant k Ts, so that the readings are there `acquire_before` later, when
+/// the step is. The command is the one that acts at k Ts, the permit the newest there is. A bus
+/// that fails twice in a row is lost; it is taken back only while the arm is disarmed. Real-time:
+/// as far as its device is; it allocates nothing itself.
+class BusTask final : public Task {
+ public:
+  static constexpr int kPriority = 70;
+  static constexpr int kFailuresToLose = 2;
+
+  /// @param device  opened; outlives the task
+  BusTask(const RigConfig& config, BusDevice* device, BusChannels channels);
+
+  /// Instant 0 of the loop in CLOCK_MONOTONIC: devices stamp their readings in that. Before Run.
+  void SetEpoch(std::int64_t epoch_ns) noexcept { epoch_ns_ = epoch_ns; }
+
+  Traits traits() const noexcept override;
+  void Run(const Activation& activation) noexcept override;
+
+ private:
+  BusCommand Command(std::int64_t due_ns) noexcept;
+  void Publish(std::int64_t due_ns, const SensorFrame& part) noexcept;
+
+  BusDevice* device_;
+  LoopGrid grid_;
+  GateLimits limits_;
+  BusChannels channels_;
+  std::int64_t epoch_ns_ = 0;
+  std::array<double, 2> applied_nm_{};  // set at the last exchange
+  std::int64_t applied_tick_ = -1;      // of the command that was
+  TorqueTimeline applied_;              // when each acted
+  BusStatus status_ = BusStatus::kOk;
+  int failures_ = 0;  // in a row
+  std::uint32_t failed_ = 0;
+  std::uint32_t taken_back_ = 0;
+  LineLevels levels_ = kHealthyLevels;
+  FrameHistory frames_{kNoFrame};
+  DriveReportHistory reports_{kNoDriveReport};
+};
+
+}  // namespace flexarm

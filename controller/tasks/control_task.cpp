@@ -1,0 +1,196 @@
+#include "controller/tasks/control_task.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flexarm {
+namespace {
+
+bool Powered(SafetyState state) noexcept {
+  return state == SafetyState::kArmed || TorqueAllowed(state);
+}
+
+}  // namespace
+
+ControlTask::ControlTask(const LoopConfig& loop, ControlStep* step, ControlChannels channels)
+    : grid_(loop), step_(step), channels_(std::move(channels)) {}
+
+Task::Traits ControlTask::traits() const noexcept {
+  return {.name = "control",
+          .period_ns = grid_.period_ns,
+          .phase_ns = grid_.phase_ns,
+          .deadline_ns = grid_.deadline_ns,
+          .priority = kPriority};
+}
+
+void ControlTask::Run(const Activation& activation) noexcept {
+  if (activation.due_ns >= frozen_from_ns_) return;
+  // What was published at the due instant itself may or may not be there yet.
+  FollowState(channels_.permits->Read().At(activation.due_ns - 1).value);
+  const std::int64_t sampled_ns = grid_.SamplingInstant(grid_.Tick(activation.due_ns));
+  const FramePacket packet = ReadFrames(sampled_ns);
+
+  TickRecord record{};
+  record.input = Gather(activation, packet, state_);
+  record.output = step_->Step(record.input);
+  record.truth = packet.truth;
+  counts_ = record.output.counts;
+  delay_found_ = int{record.output.delay_found};
+  hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
+  Publish(activation, record.input, record.output);
+  if (PlansAhead(record.input)) {
+    channels_.planner->Ask(sample_ + delay_found_, activation.due_ns, plan_.experiment->reference,
+                           record.output);
+  }
+  channels_.records->Push(record);
+  channels_.operator_ticks->Push(record);
+}
+
+FramePacket ControlTask::ReadFrames(std::int64_t sampled_ns) noexcept {
+  FramePacket packet = channels_.frames.front()->Read().At(sampled_ns).value;
+  for (std::size_t i = 1; i < channels_.frames.size(); ++i) {
+    Join(channels_.frames[i]->Read().At(sampled_ns).value, &packet);
+  }
+  return packet;
+}
+
+void ControlTask::FollowState(const Permit& permit) noexcept {
+  reset_ = reset_ || (Powered(permit.state) && !Powered(state_));
+  if (permit.state == SafetyState::kRunning) {
+    if (state_ != SafetyState::kRunning) StartRun(permit.running_since_ns);
+    ++sample_;
+  }
+  state_ = permit.state;
+  levels_ = permit.levels;
+  if (!TorqueAllowed(state_)) TakeCalibration();
+}
+
+void ControlTask::TakeCalibration() noexcept {
+  const Calibration& newest = channels_.calibrations->Read();
+  if (newest == calibration_) return;
+  calibration_ = newest;
+  reset_ = true;
+}
+
+void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
+  const PlannedRun& planned = channels_.plans->Read();
+  const bool used_up = planned.number == plan_.number;
+  plan_ = planned;
+  if (used_up) plan_.experiment = nullptr;  // a plan is good for one run
+  released_.store(plan_.number, std::memory_order_release);
+  sample_ = -1;
+  if (channels_.planner != nullptr) channels_.planner->Start(plan_.number);
+  if (plan_.experiment == nullptr) return;
+  if (plan_.experiment->mode == LoopMode::kRegulate) {
+    homing_.Start(plan_.experiment->homing, hub_angle_rad_);
+  }
+  for (const SimEvent& event : plan_.experiment->sim_events) {
+    if (event.freeze != FreezeTarget::kControl) continue;
+    frozen_from_ns_ = grid_.ExperimentStart(running_since_ns) + std::llround(event.at_s * 1e9);
+    break;
+  }
+}
+
+StepInput ControlTask::Gather(const Activation& activation, const FramePacket& packet,
+                              SafetyState state) noexcept {
+  StepInput input{};
+  input.tick = grid_.Tick(activation.due_ns);
+  input.now_ns = activation.due_ns;
+  input.sampling_instant_ns = grid_.SamplingInstant(input.tick);
+  input.frame = packet.frame;
+  input.applied_torque_nm = packet.applied_torque_nm;
+  const bool measured = packet.output_tick >= 0 && packet.output_tick == input.tick - 1;
+  const std::int64_t late_ns = grid_.late_ns();
+  input.acted_late_ns = measured ? std::clamp(packet.acted_ns - input.sampling_instant_ns, late_ns,
+                                              late_ns + grid_.period_ns)
+                                 : late_ns;
+  input.acts_late_ns = input.acted_late_ns;
+  input.frame.levels = levels_;
+  input.counts_before = counts_;
+  input.calibration = calibration_;
+  input.safety_state = state;
+  input.reset = reset_ ? 1 : 0;
+  if (reset_) delay_found_ = 0;
+  reset_ = false;
+  if (TorqueAllowed(state)) FollowReference(state, &input);
+  return input;
+}
+
+void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept {
+  if (plan_.experiment == nullptr) {  // nothing to follow: end at once, where the hubs are
+    input->reference_now.x_m[0] = input->reference_next.x_m[0] = hub_angle_rad_[0];
+    input->reference_now.x_m[1] = input->reference_next.x_m[1] = hub_angle_rad_[1];
+    input->reference_ended = 1;
+    return;
+  }
+  input->mode = plan_.experiment->mode;
+  if (input->mode == LoopMode::kRegulate) {
+    input->reference_next = homing_.Next(levels_, hub_angle_rad_);
+    input->reference_ended = homing_.ended() ? 1 : 0;
+    return;
+  }
+  const ReferenceTable& reference = plan_.experiment->reference;
+  const int last = reference.periods() - 1;
+  if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
+  input->reference_now = ReferenceAtSample(reference);
+  // A torque of an open loop is handed on as it is, none left out and none twice.
+  const int acts = input->mode == LoopMode::kFollow ? sample_ + delay_found_ : sample_;
+  input->reference_next = reference.At(acts);
+  input->path = reference.PathAround(acts);
+  input->reference_ended = sample_ >= last ? 1 : 0;
+  if (PlansAhead(*input)) FollowPlan(input);
+}
+
+bool ControlTask::PlansAhead(const StepInput& input) const noexcept {
+  return channels_.planner != nullptr && plan_.experiment != nullptr &&
+         input.safety_state == SafetyState::kRunning && input.mode == LoopMode::kFollow;
+}
+
+void ControlTask::FollowPlan(StepInput* input) noexcept {
+  const std::optional<PlanSample> plan =
+      channels_.planner->At(sample_ + delay_found_, input->now_ns);
+  if (!plan) return;
+  input->plan = *plan;
+  input->planned = 1;
+}
+
+// At k Ts, which lies between samples of the reference unless the torques act at sampling instants:
+// on the line between the two.
+ReferenceSample ControlTask::ReferenceAtSample(const ReferenceTable& reference) const noexcept {
+  const std::int64_t late_ns = grid_.late_ns();
+  std::int64_t back = 1 + late_ns / grid_.period_ns;  // whole periods, rounded up
+  if (late_ns % grid_.period_ns > 0) ++back;
+  const std::int64_t beyond_ns = (back - 1) * grid_.period_ns - late_ns;
+  const int k = sample_ - static_cast<int>(back);
+  ReferenceSample now = reference.At(k);
+  if (beyond_ns == 0) return now;
+  const double share = static_cast<double>(beyond_ns) / static_cast<double>(grid_.period_ns);
+  const ReferenceSample& after = reference.At(k + 1);
+  for (std::size_t i = 0; i < now.x_m.size(); ++i)
+    now.x_m[i] += share * (after.x_m[i] - now.x_m[i]);
+  return now;
+}
+
+void ControlTask::Publish(const Activation& activation, const StepInput& input,
+                          const StepOutput& output) noexcept {
+  const std::int64_t published_ns = activation.due_ns + grid_.deadline_ns;
+  const std::int64_t put_out_ns =
+      input.sampling_instant_ns + grid_.period_ns + grid_.output_late_ns;
+  commands_.Push(output.faults != 0 ? published_ns : put_out_ns,
+                 {.torque_nm = output.torque_nm, .tick = output.tick});
+  for (CommandChannel* channel : channels_.commands) channel->Publish(commands_);
+  reports_.Push(published_ns, {.tick = output.tick,
+                               .due_ns = activation.due_ns,
+                               .faults = output.faults,
+                               .evidence = {.value = output.fault_value,
+                                            .limit = output.fault_limit,
+                                            .channel = output.fault_channel,
+                                            .detail = 0},
+                               .at_rest = output.at_rest != 0,
+                               .experiment_done = output.experiment_done != 0,
+                               .missed_in_a_row = activation.missed_in_a_row});
+  channels_.reports->Publish(reports_);
+}
+
+}  // namespace flexarm

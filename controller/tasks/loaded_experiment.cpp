@@ -1,0 +1,32 @@
+#include "controller/tasks/loaded_experiment.h"
+
+#include <algorithm>
+
+#include "controller/types/refused.h"
+
+namespace flexarm {
+
+PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design& design,
+                                     double period_s, const std::array<double, 2>& start_rad,
+                                     const MotionLimits& limits)
+    : reference(experiment, design, period_s, start_rad, limits),
+      accepted(WithChosenDurations(experiment, reference.moves(), period_s)),
+      sim_events(experiment.sim_event) {
+  std::stable_sort(sim_events.begin(), sim_events.end(),
+                   [](const SimEvent& a, const SimEvent& b) { return a.at_s < b.at_s; });
+}
+
+void RefuseSimEvents(const Experiment& experiment) {
+  if (experiment.sim_event.empty()) return;
+  throw Refused(
+      "sim_event[0]: this rig is real, and its switches, threads and payload are not ours to "
+      "change; take the [[sim_event]] rows out, or use the simulated backend");
+}
+
+PlannedExperiment::PlannedExperiment(const std::vector<std::array<double, 2>>& torque_nm)
+    : reference(torque_nm), mode(LoopMode::kOpenLoop) {}
+
+PlannedExperiment::PlannedExperiment(const HomingPlan& plan)
+    : reference(std::vector<std::array<double, 2>>(1)), mode(LoopMode::kRegulate), homing(plan) {}
+
+}  // namespace flexarm

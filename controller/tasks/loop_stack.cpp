@@ -1,0 +1,64 @@
+#include "controller/tasks/loop_stack.h"
+
+namespace flexarm {
+namespace {
+
+// At least 60 s deep: a recorder that is stuck that long loses nothing.
+constexpr std::size_t kTickDepth = 4'000;
+constexpr std::size_t kSafetyDepth = 60'000;
+constexpr std::size_t kOperatorDepth = 64;
+constexpr std::size_t kOperatorTickDepth = 500;  // 10 s of steps: commissioning misses none
+
+std::vector<PermitChannel*> Joined(std::vector<PermitChannel*> first,
+                                   const std::vector<PermitChannel*>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+std::unique_ptr<PlannerTask> PlannerOf(const RigConfig& config, const Design& design) {
+  if (!PlansAhead(config.controller.kind)) return nullptr;
+  return std::make_unique<PlannerTask>(config, design);
+}
+
+std::unique_ptr<PlanFollower> FollowerOf(const RigConfig& config, PlannerTask* planner) {
+  if (planner == nullptr) return nullptr;
+  return std::make_unique<PlanFollower>(PlanScheduleOf(config), &planner->requests(),
+                                        &planner->plans());
+}
+
+}  // namespace
+
+LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWiring& wiring)
+    : requests_(kOperatorDepth),
+      answers_(kOperatorDepth),
+      tick_records_(kTickDepth),
+      operator_ticks_(kOperatorTickDepth),
+      safety_records_(kSafetyDepth),
+      step_(config, design),
+      planner_(PlannerOf(config, design)),
+      follower_(FollowerOf(config, planner_.get())),
+      safety_(MakeSupervisorLimits(config.safety, config.loop),
+              {.lines = wiring.lines,
+               .control = &control_reports_,
+               .drives = wiring.drives,
+               .requests = &requests_,
+               .permits = Joined({&control_permits_, &operator_permits_}, wiring.permits),
+               .answers = &answers_,
+               .records = &safety_records_}),
+      control_(config.loop, &step_,
+               {.frames = wiring.frames,
+                .permits = &control_permits_,
+                .plans = &plans_,
+                .calibrations = &calibrations_,
+                .commands = wiring.commands,
+                .reports = &control_reports_,
+                .records = &tick_records_,
+                .operator_ticks = &operator_ticks_,
+                .planner = follower_.get()}) {}
+
+std::vector<Task*> LoopStack::law_tasks() {
+  if (planner_ == nullptr) return {};
+  return {planner_.get()};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "controller/law/design.h"
+#include "controller/step/control_step.h"
+#include "controller/tasks/bus_health.h"
+#include "controller/tasks/control_task.h"
+#include "controller/tasks/planner_task.h"
+#include "controller/tasks/safety_task.h"
+#include "controller/types/rig_config.h"
+
+namespace flexarm {
+
+/// A simulated switch pressed by the operator: `flexarm sim LINE LEVEL`.
+struct LinePress {
+  Line line;
+  int level;
+};
+
+/// The drive side of a backend, as safety and control see it. All of it outlives the stack.
+struct LoopWiring {
+  SafetyLines* lines;
+  std::vector<FrameChannel*> frames;        ///< each holds its own part of the readings
+  std::vector<CommandChannel*> commands;    ///< one a drive bus
+  std::vector<PermitChannel*> permits;      ///< one a drive bus
+  std::vector<DriveReportChannel*> drives;  ///< one a bus
+};
+
+/// The safety and control tasks of the daemon, whatever they drive, and the outside's ends:
+/// requests and plans in, permits, answers and records out. Construction allocates; running does
+/// not.
+class LoopStack {
+ public:
+  LoopStack(const RigConfig& config, const Design& design, const LoopWiring& wiring);
+  virtual ~LoopStack() = default;
+  LoopStack(const LoopStack&) = delete;
+  LoopStack& operator=(const LoopStack&) = delete;
+
+  SafetyTask& safety() { return safety_; }
+  ControlTask& control() { return control_; }
+  /// Of the law; none if it does not plan ahead.
+  std::vector<Task*> law_tasks();
+  /// Of the backend, in order of priority.
+  virtual std::vector<Task*> drive_tasks() = 0;
+
+  /// Instant 0 of the loop in CLOCK_MONOTONIC, for devices that stamp in that. Before any task
+  /// runs.
+  virtual void SetEpoch(std::int64_t /*epoch_ns*/) noexcept {}
+
+  // Operator's ends: one thread.
+  SpscQueue<OperatorRequest>& requests() { return requests_; }
+  SpscQueue<RequestAnswer>& answers() { return answers_; }
+  PermitChannel& operator_permits() { return operator_permits_; }
+  /// Every step, for status and commissioning.
+  SpscQueue<TickRecord>& operator_ticks() { return operator_ticks_; }
+  /// Taken over by the loop as soon as no torque is allowed.
+  void Calibrate(const Calibration& calibration) noexcept { calibrations_.Publish(calibration); }
+  /// The experiment of the next run; see PlannedRun for how long it must live.
+  virtual void Plan(const PlannedRun& plan) noexcept { plans_.Publish(plan); }
+  /// Plans with a lower number than this are no longer used.
+  virtual std::uint32_t released_plans() const noexcept { return control_.released(); }
+  /// How the buses do. Empty: this backend has none.
+  virtual std::vector<BusHealth> buses() { return {}; }
+  /// Which bus, device and node a trip is of, and what it met; empty: no bus's.
+  virtual std::string BusText(TripCause /*cause*/, const Evidence& /*evidence*/) const {
+    return {};
+  }
+  /// Whether [[sim_event]] rows can happen: a real rig refuses an experiment that has some.
+  virtual bool simulated() const noexcept { return false; }
+  /// False: this backend has no simulated switches.
+  virtual bool Press(const LinePress& /*press*/) noexcept { return false; }
+
+  // Recorder's ends: one thread.
+  SpscQueue<TickRecord>& tick_records() { return tick_records_; }
+  SpscQueue<SafetyRecord>& safety_records() { return safety_records_; }
+
+ private:
+  PermitChannel control_permits_{PermitHistory(kNoPermit)};
+  PermitChannel operator_permits_{PermitHistory(kNoPermit)};
+  ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
+  PlanChannel plans_{PlannedRun{}};
+  CalibrationChannel calibrations_{Calibration{}};
+  SpscQueue<OperatorRequest> requests_;
+  SpscQueue<RequestAnswer> answers_;
+  SpscQueue<TickRecord> tick_records_;
+  SpscQueue<TickRecord> operator_ticks_;
+  SpscQueue<SafetyRecord> safety_records_;
+  ControlStep step_;
+  std::unique_ptr<PlannerTask> planner_;    // of the law that plans ahead, or nullptr
+  std::unique_ptr<PlanFollower> follower_;  // the same
+  SafetyTask safety_;
+  ControlTask control_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "controller/exchange/spsc_queue.h"
+#include "controller/realtime/task.h"
+#include "controller/safety/torque_gate.h"
+#include "controller/tasks/loaded_experiment.h"
+#include "controller/tasks/loop_stack.h"
+#include "controller/tasks/simulated_lines.h"
+#include "controller/types/frame_packet.h"
+#include "controller/types/loop_grid.h"
+#include "controller/types/messages.h"
+#include "hal/sim/frame_loss.h"
+#include "hal/sim/simulated_rig.h"
+
+namespace flexarm {
+
+struct RigConfig;
+
+/// Everything that the plant task touches. All of it outlives the task.
+struct PlantChannels {
+  CommandChannel* commands;       ///< read
+  PermitChannel* permits;         ///< read
+  OutputChannel* outputs;         ///< read: relay and charge pump
+  PlanChannel* plans;             ///< read: for the experiment's sim_events
+  SpscQueue<LinePress>* presses;  ///< read
+  FrameChannel* frames;           ///< written
+  LevelChannel* levels;           ///< written
+  DriveReportChannel* reports;    ///< written
+};
+
+/// The simulated backend's thread: 1 kHz, integrates the plant up to its due instant.
+///
+/// Each millisecond of the plant, s to s + 1 ms, is driven by what holds at s: the command that
+/// acts, through the gate on the permit of s, and nothing if the relay is open or the charge pump
+/// has not toggled for 5 ms. The slice is integrated when it is over, so everybody had a
+/// millisecond to publish what holds at its start. Frames are taken at exactly k Ts; a lost one
+/// holds no reading, as after an exchange of a bus that failed, and the drive goes on. What it
+/// reports of torques is what a bus knows: through the same gate, after the delay that is declared
+/// (`loop.actuation_delay_ms`), whatever `sim.transport_delay_ms` is. A late thread catches up: the
+/// simulated world does not lose time. Real-time: safe after construction.
+class PlantTask final : public Task {
+ public:
+  static constexpr std::int64_t kPeriodNs = 1'000'000;
+  static constexpr std::int64_t kPumpTimeoutNs = 5'000'000;
+  static constexpr int kPriority = 60;
+
+  /// @param payload_kg  what the plant really carries, whatever the config's arm says
+  PlantTask(const RigConfig& config, double payload_kg, PlantChannels channels);
+
+  Traits traits() const noexcept override;
+  void Run(const Activation& activation) noexcept override;
+
+  /// Any thread. Plans with a lower number than this are no longer used.
+  std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
+
+ private:
+  // A drive that commands reach after a delay.
+  struct Drive {
+    std::int64_t delay_ns;
+    std::array<double, 2> torque_nm{};
+    std::int64_t command_acts_ns = INT64_MIN;  // of the command that the gate saw last
+  };
+
+  void AdvanceSlice(std::int64_t start_ns) noexcept;
+  void LetThrough(std::int64_t start_ns, bool enabled, Drive* drive) noexcept;
+  bool Enabled(std::int64_t start_ns) noexcept;
+  void HandleEvents(std::int64_t now_ns) noexcept;
+  void StartFrame(std::int64_t now_ns) noexcept;
+  void PublishFrame() noexcept;
+
+  SimulatedRig rig_;
+  FrameLoss loss_;
+  LoopGrid grid_;
+  GateLimits limits_;
+  Drive drive_;      // what moves the plant
+  Drive reported_;   // what it would be with the delay that is declared
+  PlannedRun plan_;  // of the run that began at run_since_ns_
+  std::int64_t run_since_ns_ = INT64_MIN;
+  std::size_t next_event_ = 0;
+  std::atomic<std::uint32_t> released_{0};
+  PlantChannels channels_;
+
+  std::int64_t now_ns_ = 0;  // the plant has been integrated up to here
+  bool frozen_ = false;
+  std::array<double, 2> applied_sum_nm_{};  // as reported
+  int applied_slices_ = 0;
+  FramePacket packet_{};  // of the last sampling instant, until its readings are there
+  std::int64_t packet_ns_ = 0;
+  bool packet_lost_ = false;
+  bool pump_level_ = false;
+  std::int64_t pump_toggled_ns_ = INT64_MIN;
+  FrameHistory frames_{kNoFrame};
+  LevelHistory levels_{kHealthyLevels};
+  DriveReportHistory reports_{kNoDriveReport};
+};
+
+}  // namespace flexarm

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+#include "controller/exchange/history.h"
+#include "controller/exchange/latest_value.h"
+#include "hal/safety_lines.h"
+
+namespace flexarm {
+
+using LevelHistory = History<LineLevels, 24>;
+using LevelChannel = LatestValue<LevelHistory>;
+using OutputHistory = History<SafetyLines::Outputs, 24>;
+using OutputChannel = LatestValue<OutputHistory>;
+
+/// The safety chain of the simulated rig: wires to the plant task, which holds the switches and
+/// obeys relay and charge pump.
+class SimulatedLines final : public SafetyLines {
+ public:
+  SimulatedLines(LevelChannel* levels, OutputChannel* outputs)
+      : levels_(levels), channel_(outputs) {}
+
+  // A level published at this very instant may or may not be there yet: take what held before it.
+  LineLevels Read(std::int64_t now_ns) noexcept override {
+    return levels_->Read().At(now_ns - 1).value;
+  }
+
+  void Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+    history_.Push(now_ns, outputs);
+    channel_->Publish(history_);
+  }
+
+ private:
+  LevelChannel* levels_;
+  OutputChannel* channel_;
+  OutputHistory history_{Outputs{.relay_closed = false, .pump_level = false}};
+};
+
+}  // namespace flexarm

@@ -1,0 +1,34 @@
+#include "controller/tasks/simulated_stack.h"
+
+#include <algorithm>
+
+namespace flexarm {
+
+SimulatedStack::SimulatedStack(const RigConfig& config, const RigConfig& plant,
+                               const Design& design, double payload_kg)
+    : LoopStack(config, design,
+                {.lines = &lines,
+                 .frames = {&frames},
+                 .commands = {&commands},
+                 .permits = {&permits},
+                 .drives = {&drive_reports}}),
+      plant_(plant, payload_kg,
+             {.commands = &commands,
+              .permits = &permits,
+              .outputs = &outputs,
+              .plans = &plans,
+              .presses = &presses,
+              .frames = &frames,
+              .levels = &levels,
+              .reports = &drive_reports}) {}
+
+void SimulatedStack::Plan(const PlannedRun& plan) noexcept {
+  LoopStack::Plan(plan);
+  plans.Publish(plan);
+}
+
+std::uint32_t SimulatedStack::released_plans() const noexcept {
+  return std::min(LoopStack::released_plans(), plant_.released());
+}
+
+}  // namespace flexarm

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "controller/tasks/loop_stack.h"
+#include "controller/tasks/plant_task.h"
+#include "controller/tasks/simulated_lines.h"
+
+namespace flexarm {
+
+/// The channels between the loop and the plant task. A base of SimulatedStack, so that they are
+/// there before the tasks that use them.
+struct SimulatedWires {
+  FrameChannel frames{FrameHistory(kNoFrame)};
+  CommandChannel commands{CommandHistory(kNoCommand)};
+  PermitChannel permits{PermitHistory(kNoPermit)};
+  OutputChannel outputs{OutputHistory({.relay_closed = false, .pump_level = false})};
+  LevelChannel levels{LevelHistory(kHealthyLevels)};
+  DriveReportChannel drive_reports{DriveReportHistory(kNoDriveReport)};
+  PlanChannel plans{PlannedRun{}};
+  SpscQueue<LinePress> presses{64};
+  SimulatedLines lines{&levels, &outputs};
+};
+
+/// The daemon's real-time tasks on the simulated rig in process. Either executor runs them.
+class SimulatedStack final : private SimulatedWires, public LoopStack {
+ public:
+  /// @param payload_kg  that the plant carries; the design keeps the config's
+  SimulatedStack(const RigConfig& config, const Design& design, double payload_kg)
+      : SimulatedStack(config, config, design, payload_kg) {}
+  /// @param plant  what the simulated rig is, where that is not what the loop was designed for
+  SimulatedStack(const RigConfig& config, const RigConfig& plant, const Design& design,
+                 double payload_kg);
+
+  PlantTask& plant() { return plant_; }
+  std::vector<Task*> drive_tasks() override { return {&plant_}; }
+
+  void Plan(const PlannedRun& plan) noexcept override;
+  std::uint32_t released_plans() const noexcept override;
+  bool simulated() const noexcept override { return true; }
+  bool Press(const LinePress& press) noexcept override { return presses.Push(press); }
+
+ private:
+  PlantTask plant_;
+};
+
+}  // namespace flexarm

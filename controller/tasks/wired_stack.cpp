@@ -1,0 +1,63 @@
+#include "controller/tasks/wired_stack.h"
+
+namespace flexarm {
+
+LoopWiring BusWires::Wiring(SafetyLines* lines) {
+  LoopWiring wiring{.lines = lines, .frames = {}, .commands = {}, .permits = {}, .drives = {}};
+  for (Bus& bus : wires) {
+    wiring.frames.push_back(&bus.frames);
+    wiring.commands.push_back(&bus.commands);
+    wiring.permits.push_back(&bus.permits);
+    wiring.drives.push_back(&bus.reports);
+  }
+  return wiring;
+}
+
+WiredStack::WiredStack(const RigConfig& config, const Design& design, const RigWires& rig)
+    : BusWires(rig), LoopStack(config, design, Wiring(rig.lines)), devices_(rig.buses) {
+  for (std::size_t i = 0; i < wires.size(); ++i) {
+    tasks_.emplace_back(config, rig.buses[i],
+                        BusChannels{.commands = &wires[i].commands,
+                                    .permits = &wires[i].permits,
+                                    .frames = &wires[i].frames,
+                                    .reports = &wires[i].reports,
+                                    .health = &wires[i].health});
+  }
+}
+
+std::vector<Task*> WiredStack::drive_tasks() {
+  std::vector<Task*> tasks;
+  for (BusTask& task : tasks_) tasks.push_back(&task);
+  return tasks;
+}
+
+void WiredStack::SetEpoch(std::int64_t epoch_ns) noexcept {
+  for (BusTask& task : tasks_) task.SetEpoch(epoch_ns);
+}
+
+std::vector<BusHealth> WiredStack::buses() {
+  std::vector<BusHealth> all;
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    const DriveReport& report = wires[i].health.Read().Newest().value;
+    const bool well = report.fault == BusFault{};
+    all.push_back({.name = devices_[i]->name(),
+                   .ok = report.bus_ok || report.due_ns == INT64_MIN,  // it has not run yet
+                   .fault = well ? std::string() : devices_[i]->FaultText(report.fault),
+                   .failed = report.failed,
+                   .taken_back = report.taken_back});
+  }
+  return all;
+}
+
+std::string WiredStack::BusText(TripCause cause, const Evidence& evidence) const {
+  const bool of_bus = cause == TripCause::kBusLost || cause == TripCause::kDriveFault ||
+                      cause == TripCause::kStaleFrame;
+  if (!of_bus || evidence.detail == 0) return {};
+  if (evidence.channel < 1 || evidence.channel > devices_.size()) return {};
+  const BusDevice& device = *devices_[evidence.channel - 1];
+  const BusFault fault = FaultFromBits(evidence.detail);
+  if (fault.kind == kBusHangs) return std::string(device.name()) + ": its exchange does not end";
+  return device.FaultText(fault);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,93 @@
+#include "controller/types/controller_config.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "model/problem_list.h"
+
+namespace flexarm {
+
+namespace {
+
+constexpr const char* kDriftsAway =
+    "without weight the joint's double integrator is not controlled";
+
+constexpr std::size_t kMostKnots = 32;  // each takes a millisecond of the start
+
+void CheckGrid(const std::string& key, const std::vector<double>& grid, double last,
+               ProblemList* list) {
+  const bool ascending = std::adjacent_find(grid.begin(), grid.end(), std::greater_equal<>()) ==
+                         grid.end();  // a NaN is caught by the range
+  list->Require(grid.size() >= 2 && grid.size() <= kMostKnots && ascending, key,
+                NumberText(grid.size()) + " numbers",
+                "must be 2 to " + NumberText(kMostKnots) + " numbers, ascending");
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    list->Within(ProblemList::Element(key, i), grid[i], 0.0, i == 0 ? 0.0 : last,
+                 "a knot of the gain table; the first is 0");
+  }
+}
+
+void CheckPayload(const PayloadLawConfig& p, ProblemList* list) {
+  list->Positive("payload.max_kg", p.max_kg, 100.0, "moves are planned for this payload");
+  list->Within("payload.reference_kg", p.reference_kg, 0.0, 100.0,
+               "the reference is the way of an arm with this payload");
+  CheckGrid("payload.gain_payload_kg", p.gain_payload_kg, 100.0, list);
+  CheckGrid("payload.gain_elbow_deg", p.gain_elbow_deg, 180.0, list);
+}
+
+void CheckPlan(const PlanAheadConfig& p, ProblemList* list) {
+  list->EachWithin("plan.moving_weight", p.moving_weight, 0.0, 1e9, "a weight, never negative");
+  list->EachWithin("plan.resting_weight", p.resting_weight, 0.0, 1e9, "a weight, never negative");
+  list->EachPositive("plan.torque_weight", p.torque_weight, 1e6,
+                     "without it a plan asks for any torque");
+  list->Positive("plan.light_kg", p.light_kg, 100.0, "the weights of a move fall beyond it");
+  list->Positive("plan.torque_share", p.torque_share, 1.0,
+                 "of the torque limits; the rest is left to the feedback");
+  list->Within("plan.start_alpha", p.start_alpha, 0.0, 10.0, "1/s; as controller.alpha");
+  list->Within("plan.every_periods", p.every_periods, 1, 100, "how often a plan is made");
+  list->Within("plan.ready_periods", p.ready_periods, 2, kMostReadyPeriods,
+               "a plan is made between two steps and holds from a later one on");
+  list->Within("plan.rest_periods", p.rest_periods, 1, 100, "planned after the move's end");
+  list->Positive("plan.roughness", p.roughness, 10.0, "change of torque from sample to sample");
+  list->Positive("plan.payload_change_kg", p.payload_change_kg, 100.0,
+                 "a plan for another payload is no start for the next");
+  list->Within("plan.payload_change_share", p.payload_change_share, 0.0, 1.0,
+               "or this share of the plan's payload");
+}
+
+}  // namespace
+
+std::vector<Problem> ControllerConfig::Problems() const {
+  ProblemList list("controller.");
+  list.Within("alpha", alpha, 0.0, 10.0,
+              "1/s; beyond this the prescribed stability asks more than the samples can give");
+  list.Within("vartheta", vartheta, 0.0, 1.0, "a weight between two feedforwards");
+  list.Within("sigma", sigma, 0.0, 1.0, "the share of the adapted gain that leaks a sample");
+  list.EachPositive("hub_angle_weight", hub_angle_weight, 1e6, kDriftsAway);
+  list.EachWithin("hub_rate_weight", hub_rate_weight, 0.0, 1e6, "a weight, never negative");
+  for (std::size_t i = 0; i < state_weight.size(); ++i) {
+    const std::string element = ProblemList::Element("state_weight", i);
+    if (i < 2) {
+      list.Positive(element, state_weight[i], 1e6, kDriftsAway);
+    } else {
+      list.Within(element, state_weight[i], 0.0, 1e6, "a weight, never negative");
+    }
+  }
+  list.Positive("torque_weight", torque_weight, 1e6, "the Riccati equation divides by it");
+  list.Positive("passivity_margin", passivity_margin, 1e4,
+                "G = J + margin I must exceed J, or the adaptive loop is not passive");
+  list.EachPositive("pd_stiffness_nm_per_rad", pd_stiffness_nm_per_rad, 1e4,
+                    "a hub without stiffness goes where it likes");
+  list.EachWithin("pd_damping_nms_per_rad", pd_damping_nms_per_rad, 0.0, 1e3,
+                  "a negative one feeds the vibration");
+  list.Within("adaptation_gain", adaptation_gain, 0.0, 100.0, "0 adapts nothing");
+  list.Within("adaptation_dead_zone_nm", adaptation_dead_zone_nm, 0.0, 100.0,
+              "a smaller y_e = C_p (x_m - x) does not adapt; 0: every one does");
+  list.Positive("adaptation_bound", adaptation_bound, 1e6,
+                "the gains stay within this distance of those they start with");
+  if (payload) CheckPayload(*payload, &list);
+  if (plan) CheckPlan(*plan, &list);
+  return list.Take();
+}
+
+}  // namespace flexarm

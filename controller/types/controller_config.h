@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/state_layout.h"
+#include "model/problem.h"
+
+namespace flexarm {
+
+/// The law by its name in the config; controller/law/tracking_law.h has the equations.
+enum class ControllerKind : std::uint8_t {
+  kSobel,            ///< "sobel": modified Sobel model-reference adaptive control
+  kSobelOriginal,    ///< "sobel-original": as Sobel published it, alpha = 0 and vartheta = 0
+  kLqrCgt,           ///< "lqr-cgt": LQR around the command generator's trajectory, T = Tbar = 0
+  kLqrUm,            ///< "lqr-um": LQR towards the reference model, its command fed forward
+  kLqg,              ///< "lqg": LQR with alpha = 0 towards the reference's joints, links at rest
+  kPd,               ///< "pd": proportional and derivative of each hub alone
+  kPdZv,             ///< "pd-zv": the same, the reference shaped to leave no vibration
+  kPdZvd,            ///< "pd-zvd": with a second derivative zero, robust to the frequency
+  kGainScheduled,    ///< "gain-scheduled": for the payload that is found while it runs
+  kRecedingHorizon,  ///< "receding-horizon": the same along a plan that is made while it runs
+};
+
+/// Whether the law follows planned moves with the payload that `ekf-payload` finds, the estimator
+/// that it brings along: controller/law/scheduled_law.h.
+constexpr bool IsScheduled(ControllerKind kind) {
+  return kind == ControllerKind::kGainScheduled || kind == ControllerKind::kRecedingHorizon;
+}
+
+/// Whether the law plans ahead: controller/planner/horizon_planner.h.
+constexpr bool PlansAhead(ControllerKind kind) { return kind == ControllerKind::kRecedingHorizon; }
+
+/// Whether the law corrects its gains while it runs.
+constexpr bool IsAdaptive(ControllerKind kind) {
+  return kind == ControllerKind::kSobel || kind == ControllerKind::kSobelOriginal;
+}
+
+/// Whether the law is a PD of the hubs.
+constexpr bool IsPd(ControllerKind kind) {
+  return kind == ControllerKind::kPd || kind == ControllerKind::kPdZv ||
+         kind == ControllerKind::kPdZvd;
+}
+
+enum class FeedforwardSign : std::uint8_t {
+  kPrinted,    ///< (7.25) as printed: u_f = (B'B)^-1 B' (-(A_m - A) x_m + B_m u_m)
+  kCorrected,  ///< the sign that follows from the derivation
+};
+
+/// Table [controller.payload]: of the laws that know the payload.
+struct PayloadLawConfig {
+  double max_kg;                        ///< heaviest payload that moves are planned for
+  double reference_kg;                  ///< the reference is the way of an arm with this payload
+  std::vector<double> gain_payload_kg;  ///< grid of the gain table, ascending from 0
+  std::vector<double> gain_elbow_deg;   ///< |theta2|, ascending from 0
+};
+
+inline constexpr int kMostReadyPeriods = 20;  ///< 0.4 s: as long as the study's shortest move
+
+/// Table [controller.plan]: how the rest of a move is planned while it lasts; plan_targets.h has
+/// the cost.
+struct PlanAheadConfig {
+  std::array<double, 12> moving_weight;   ///< diagonal of Q while the path moves, of an empty hand
+  std::array<double, 12> resting_weight;  ///< from the move's end on
+  std::array<double, 2> torque_weight;    ///< diagonal of R
+  double light_kg;                        ///< Q while moving falls as 1 / (1 + (payload / this)^2)
+  double torque_share;                    ///< a plan keeps within this share of the limits
+  double start_alpha;  ///< degree of stability of the gains of a first guess, 1/s
+  int every_periods;   ///< a plan is made this often
+  int ready_periods;   ///< and holds this much later
+  int rest_periods;    ///< it goes on for so long after the move's end
+  double roughness;    ///< see HorizonPlannerConfig, as the next two
+  double payload_change_kg;
+  double payload_change_share;
+};
+
+/// Section [controller]. Symbols as in the thesis, chapter 7.
+struct ControllerConfig {
+  ControllerKind kind;  ///< key `name`
+  StateLayout nominal;  ///< the model that law and filter are designed on, by its name: "R12"
+  double alpha;         ///< prescribed degree of stability, 1/s, 0..10; see design_alpha
+  double vartheta;      ///< weight of (7.24) against the CGT feedforward, 0..1
+  double sigma;         ///< leak of the adaptive gains a sample, 0..1
+  FeedforwardSign feedforward_sign;
+  std::array<double, 2> hub_angle_weight;  ///< Q on th1 th2
+  std::array<double, 2> hub_rate_weight;   ///< Q on their rates
+  /// Key `state_weight`, optional: the diagonal of Q, one number a state, in place of the two
+  /// above.
+  std::vector<double> state_weight;
+  double torque_weight;                           ///< R = rho I
+  double passivity_margin;                        ///< G = J + margin I, > 0
+  double adaptation_gain;                         ///< T = Tbar = gain I_16, >= 0
+  double adaptation_dead_zone_nm;                 ///< |y_e| below this teaches nothing, >= 0
+  double adaptation_bound;                        ///< largest |K_I - K_I(0)|, Frobenius, > 0
+  std::array<double, 2> pd_stiffness_nm_per_rad;  ///< of the PD laws, on th1 th2
+  std::array<double, 2> pd_damping_nms_per_rad;   ///< on their rates
+  bool prediction;                                ///< one-sample open-loop prediction
+  bool adaptation;  ///< false: u = u* + y_e, the same feedforward and feedback
+
+  /// The alpha that the law is designed with: 0 for sobel-original and lqg.
+  double design_alpha() const {
+    return kind == ControllerKind::kSobelOriginal || kind == ControllerKind::kLqg ? 0.0 : alpha;
+  }
+
+  std::optional<PayloadLawConfig> payload{};  ///< needed by the laws that know it only
+  std::optional<PlanAheadConfig> plan{};      ///< needed by `receding-horizon` only
+
+  std::string
+      gains_file;  ///< key `gains`, optional: written by `flexarm design`; empty: design at start
+
+  std::vector<Problem> Problems() const;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controller/types/motion_profile.h"
+#include "hal/sensor_frame.h"
+#include "model/arm/straight_arm.h"
+#include "model/problem.h"
+
+namespace flexarm {
+
+enum class DoubletShape : std::uint8_t { kSquare, kSine };
+
+/// One torque doublet of zero area, [[doublet]]: it moves the joints and leaves them at rest.
+struct Doublet {
+  double start_s;
+  double duration_s;               ///< T: +a for T/2, -a for T/2
+  DoubletShape shape;              ///< "square" or "sine"
+  std::array<double, 2> move_deg;  ///< of th1, th2 in the reference model
+};
+
+/// A smooth move of both joints to a set-point, [[move]]: at rest when it ends, and when it begins
+/// unless the move before it still lasts (PlannedMove).
+struct Move {
+  double start_s;
+  std::optional<double> duration_s{};  ///< none: the shortest that the limits allow, see PlanMoves
+  std::array<double, 2> to_deg{};      ///< th1 and th2 at the end, whatever they were before
+  std::optional<std::array<double, 2>> to_tip_m{};  ///< x, y of the tip instead, base frame
+  std::optional<ElbowSide> elbow{};                 ///< with to_tip_m, when both would do
+  MoveProfile profile = MoveProfile::kQuintic;
+};
+
+/// A sine sweep of the joints' angles, [[chirp]], tapered: from rest to rest at the same place.
+struct Chirp {
+  double start_s;
+  double duration_s;
+  double from_hz;
+  double to_hz;
+  std::array<double, 2> amplitude_deg;  ///< of th1, th2 in the reference model
+};
+
+/// A pseudo-random binary torque, [[prbs]]: from rest to rest at the same place.
+struct Prbs {
+  double start_s;
+  double hold_s;                    ///< how long the torque keeps its sign at least
+  int bits;                         ///< of the shift register: 2^bits - 1 pulses
+  int seed;                         ///< its start, 1 .. 2^bits - 1
+  std::array<double, 2> torque_nm;  ///< amplitudes
+
+  int pulses() const { return (1 << std::clamp(bits, 0, 30)) - 1; }
+  double duration_s() const { return 4.0 * hold_s * pulses(); }
+};
+
+/// One row of a CSV trajectory.
+struct TrajectoryPoint {
+  double time_s;
+  std::array<double, 2> angle_rad;  ///< th1, th2
+};
+
+/// A trajectory of both joints from a CSV file, table [csv].
+struct CsvTrajectory {
+  double start_s;
+  std::string file;                    ///< for messages
+  std::vector<TrajectoryPoint> point;  ///< at least two, times ascending from 0
+
+  double duration_s() const { return point.empty() ? 0.0 : point.back().time_s; }
+};
+
+enum class FreezeTarget : std::uint8_t { kNone, kPlant, kControl };
+
+/// A thing that happens to the simulated rig, [[sim_event]]. Real backends refuse it.
+struct SimEvent {
+  double at_s;                         ///< after the start of the experiment
+  std::optional<Line> line;            ///< with `level`
+  int level;                           ///< 0 or 1, as in LineLevels
+  FreezeTarget freeze;                 ///< that task stops running
+  bool kill;                           ///< the process kills itself with SIGKILL
+  std::optional<double> payload_kg{};  ///< the plant carries this from then on
+};
+
+/// When a row acts: doublet, move, chirp, prbs or csv. A move that the next one takes over acts
+/// until that begins, whatever its duration.
+struct Motion {
+  std::string row;  ///< its name in messages: "move[2]"
+  double start_s;
+  double duration_s;  ///< 0 for a move whose duration is not chosen yet
+};
+
+/// What one run does, config/experiments/*.toml.
+struct Experiment {
+  std::string name;
+  std::string text;  ///< the file as it was read, and what was attached to it: for the log
+  double duration_s;
+  std::vector<Doublet> doublet;  ///< the rows of a kind in order of time; only moves overlap
+  std::vector<SimEvent> sim_event;
+  std::vector<Move> move{};
+  std::vector<Chirp> chirp{};
+  std::vector<Prbs> prbs{};
+  std::optional<CsvTrajectory> csv{};
+
+  std::vector<Problem> Problems() const;
+  std::vector<Motion> Motions() const;  ///< all rows but sim_event, in order of time
+};
+
+}  // namespace flexarm

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "controller/types/step_types.h"
+
+namespace flexarm {
+
+/// What the simulated arm really did at a sampling instant. A rig does not know it.
+struct PlantTruth {
+  std::array<double, 2> hub_angle_rad;     ///< th1, th2
+  std::array<double, 2> tip_m;             ///< x, y in the base frame
+  std::array<double, 2> tip_deflection_m;  ///< w1(L1), w2(L2)
+  bool known;
+};
+
+/// One sample as the control task hands it to the recorder.
+struct TickRecord {
+  StepInput input;
+  StepOutput output;
+  PlantTruth truth;
+};
+
+/// Something that happened: a trip, a refusal, an operator's command, a gap in the log.
+struct RunEvent {
+  std::int64_t time_ns = 0;  ///< in the clock of the loop
+  std::string kind;          ///< "command", "refusal", "trip", "gap", "experiment", ...
+  std::string name;          ///< short machine name within the kind
+  std::string text;          ///< for people
+  std::string value_json;    ///< one JSON object, or empty
+};
+
+/// What a run was made with: everything that replay needs besides the records.
+struct RunInfo {
+  std::string start_utc;      ///< ISO 8601, set by the writer if empty
+  std::int64_t start_ns = 0;  ///< time 0 of the log, in the clock of the loop
+  std::string version;        ///< of the program, and
+  std::string build_id;       ///< its build: set by the writer if empty
+  std::string rig_name;
+  std::string clock;  ///< "monotonic" or "simulated"
+  std::string backend;
+  std::uint64_t seed = 0;
+  std::string config_text;      ///< whole
+  std::string experiment_name;  ///< empty: none was run
+  std::string experiment_text;
+  std::string gains_json;   ///< full precision
+  std::string result_json;  ///< empty until the run was closed
+};
+
+}  // namespace flexarm

@@ -1,0 +1,66 @@
+#include "controller/types/safety_config.h"
+
+#include <cstddef>
+
+#include "model/problem_list.h"
+#include "model/units.h"
+
+namespace flexarm {
+namespace {
+
+void CheckLimits(const SafetyConfig& c, ProblemList* list) {
+  list->EachPositive("limits.torque_limit_nm", c.torque_limit_nm, 1000.0,
+                     "the gate clips at +-this, at the gearbox output");
+  list->EachPositive("limits.slew_limit_nm_per_s", c.slew_limit_nm_per_s, 1e6,
+                     "the gate lets the torque change no faster");
+  list->EachPositive("limits.soft_angle_deg", c.soft_angle_deg, 360.0,
+                     "a hub angle beyond +-this trips");
+  list->EachPositive("limits.hub_rate_rad_s", c.hub_rate_rad_s, 100.0,
+                     "an estimated hub rate beyond this trips");
+  list->EachPositive("limits.strain_limit", c.strain_limit, 0.01,
+                     "unit strain; no metal link survives 1 %");
+  list->Positive("limits.plan_fraction", c.plan_fraction, 1.0,
+                 "a move without duration_s is planned within this share of every limit");
+}
+
+void CheckSafety(const SafetyConfig& c, ProblemList* list) {
+  list->Positive("safety.rest_hub_rate_rad_s", c.rest_hub_rate_rad_s, 10.0,
+                 "at rest both hub rates are below this");
+  list->Positive("safety.rest_strain_rate_per_s", c.rest_strain_rate_per_s, 1.0,
+                 "at rest both root strain rates are below this");
+  list->Within("safety.rest_time_s", c.rest_time_s, 0.05, 10.0,
+               "how long the arm must be still; a swing pauses at its turning point");
+  list->Within("safety.stop_timeout_s", c.stop_timeout_s, 0.1, 60.0,
+               "Stopping for longer than this trips");
+  list->Within("safety.permit_timeout_ms", c.permit_timeout_ms, 2.0, 20.0,
+               "the permit is renewed every 1 ms; an older one means zero torque");
+  list->Within("safety.missed_deadlines_to_trip", c.missed_deadlines_to_trip, 1, 10,
+               "consecutive deadlines of the control task");
+  list->Within("safety.homing_contact_s", c.homing_contact_s, 0.1, 10.0,
+               "how long a homing run may stand on the switch that it looks for");
+}
+
+}  // namespace
+
+std::vector<Problem> SafetyConfig::Problems() const {
+  ProblemList list("");
+  CheckLimits(*this, &list);
+  CheckSafety(*this, &list);
+  if (!list.empty()) return list.Take();  // rules between values need sound values
+  for (std::size_t i = 0; i < hub_rate_rad_s.size(); ++i) {
+    list.Require(rest_hub_rate_rad_s < hub_rate_rad_s[i], "safety.rest_hub_rate_rad_s",
+                 NumberText(rest_hub_rate_rad_s),
+                 "must be below limits.hub_rate_rad_s[" + NumberText(i) +
+                     "] = " + NumberText(hub_rate_rad_s[i]) + ", or an arm at rest could trip");
+  }
+  list.Require(
+      stop_timeout_s > rest_time_s, "safety.stop_timeout_s", NumberText(stop_timeout_s),
+      "must be above safety.rest_time_s = " + NumberText(rest_time_s) + ", or every stop trips");
+  return list.Take();
+}
+
+std::array<double, 2> SoftAngleRad(const SafetyConfig& safety) noexcept {
+  return {safety.soft_angle_deg[0] * kRadPerDeg, safety.soft_angle_deg[1] * kRadPerDeg};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,100 @@
+#include "hal/emulation/emulated_rig.h"
+
+#include "hal/bus_device.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kSliceNs = 1'000'000;
+constexpr std::int64_t kPumpTimeoutNs = 5'000'000;
+
+const GpiodConfig& LinesOf(const HalConfig& hal) {
+  if (!hal.gpiod) throw HalError("no safety chain is wired: [hal.gpiod] is missing");
+  return *hal.gpiod;
+}
+
+}  // namespace
+
+WireRig::WireRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
+                 const HalConfig& hal, const CanClocks& clocks)
+    : rig_(arm, sensors, sim), lines_(LinesOf(hal)), gpio_(lines_.chip) {
+  for (const CanopenConfig& bus : hal.canopen) AddNodes(bus, clocks);
+  for (const ModbusDeviceConfig& device : hal.modbus.device) {
+    amplifiers_.push_back(std::make_unique<SimulatedAmplifier>(device, sensors));
+  }
+}
+
+void WireRig::AddNodes(const CanopenConfig& bus, const CanClocks& clocks) {
+  for (const CanopenNodeConfig& config : bus.node) {
+    Node node{.config = config,
+              .bus = std::make_unique<SocketCanBus>(bus.interface, clocks),
+              .node = nullptr};
+    node.node = std::make_unique<SimulatedNode>(node.bus.get(), SimulatedNodeOf(config));
+    node.node->Start();
+    nodes_.push_back(std::move(node));
+  }
+}
+
+SimulatedNode* WireRig::FindNode(std::string_view role) noexcept {
+  for (const Node& node : nodes_) {
+    if (role == CanopenRoleName(node.config.role)) return node.node.get();
+  }
+  return nullptr;
+}
+
+SimulatedAmplifier* WireRig::FindAmplifier(std::string_view name) noexcept {
+  for (const auto& amplifier : amplifiers_) {
+    if (amplifier->name() == name) return amplifier.get();
+  }
+  return nullptr;
+}
+
+void WireRig::Step(std::int64_t now_ns) noexcept {
+  for (Node& node : nodes_) node.node->Run();
+  DriveArm(PowerOn(now_ns));
+  for (std::int64_t t = 0; t < kSliceNs; t += rig_.step_ns()) rig_.Step();
+  Show(now_ns);
+}
+
+bool WireRig::PowerOn(std::int64_t now_ns) noexcept {
+  const bool pump = gpio_.Value(lines_.pump);
+  if (pump != pump_level_) {
+    pump_level_ = pump;
+    pump_toggled_ns_ = now_ns;
+  }
+  observed_.relay_closed = gpio_.Value(lines_.relay);
+  observed_.pump_alive =
+      pump_toggled_ns_ != INT64_MIN && now_ns - pump_toggled_ns_ <= kPumpTimeoutNs;
+  return observed_.relay_closed && observed_.pump_alive;
+}
+
+void WireRig::DriveArm(bool power) noexcept {
+  std::array<double, 2> torque_nm{};
+  bool active = false;
+  for (const Node& node : nodes_) {
+    if (!IsDrive(node.config.role)) continue;
+    active = active || node.node->torque_per_mille() != 0;
+    if (!power) continue;
+    torque_nm[static_cast<std::size_t>(node.config.role)] =
+        node.config.sign * node.node->torque_per_mille() * node.config.torque_per_mille_nm;
+  }
+  if (active) ++observed_.active_slices;
+  rig_.SetTorque(torque_nm);
+  observed_.torque_nm = torque_nm;
+  if (torque_nm[0] != 0.0 || torque_nm[1] != 0.0) ++observed_.powered_slices;
+}
+
+void WireRig::Show(std::int64_t now_ns) noexcept {
+  const SensorFrame frame = rig_.Sample(now_ns);
+  for (Node& node : nodes_) {
+    const int counter = node.config.counter();
+    if (counter >= 0) node.node->SetPosition(frame.counter[static_cast<std::size_t>(counter)]);
+  }
+  for (const auto& amplifier : amplifiers_) amplifier->Show(frame);
+  for (int i = 0; i < kLines; ++i) {
+    const bool level = (frame.levels & LineBit(static_cast<Line>(i))) != 0;
+    gpio_.Pull(lines_.input[static_cast<std::size_t>(i)], level);
+  }
+}
+
+}  // namespace flexarm

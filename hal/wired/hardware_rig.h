@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hal/bus_device.h"
+#include "hal/canopen/socketcan_bus.h"
+#include "hal/safety_lines.h"
+#include "hal/wired/hal_config.h"
+
+namespace flexarm {
+
+/// The devices of a real rig, made from its config.
+class WiredRig {
+ public:
+  /// Opens the safety chain first, then every bus: identified, configured, read back.
+  /// @throws HalError of the first that refuses; what was opened is closed
+  WiredRig(const HalConfig& config, const CanClocks& clocks);
+  ~WiredRig();  ///< closes the buses, torque off, then lets the lines go
+  WiredRig(const WiredRig&) = delete;
+  WiredRig& operator=(const WiredRig&) = delete;
+
+  std::vector<BusDevice*> buses() const;
+  SafetyLines* lines() const { return lines_.get(); }
+
+ private:
+  std::unique_ptr<SafetyLines> lines_;
+  std::vector<std::unique_ptr<BusDevice>> buses_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "model/beam/beam_modes.h"
+
+namespace flexarm {
+
+/// A mode shape fitted to samples of it.
+struct ModeShapeFit {
+  BeamMode mode;        ///< a shape per section, not forced to be continuous
+  double rms_residual;  ///< of the samples, in their unit
+  double max_residual;
+
+  /// C_1..C_4 of (3.7) in one section: sin, sinh, cos, cosh of beta (x - the section's root end).
+  std::array<double, 4> Coefficients(std::size_t section) const;
+};
+
+/// Least squares of (3.7) to samples w(x) of a mode of known frequency, each section by itself with
+/// its own beta = (omega^2 rho A/(EI))^(1/4).
+///
+/// The thesis fits one beta to the whole link, which only a uniform one has. Samples at a step
+/// count for both sections. Solved in the basis of beam_basis.h, which keeps its digits where sinh
+/// and cosh agree; Coefficients() has the thesis's form.
+/// @param x_m, w  samples, ascending from 0 to L
+/// @throws std::invalid_argument if a section has fewer than four samples or the sizes differ.
+ModeShapeFit FitModeShape(const std::vector<BeamSection>& section, double frequency_rad_s,
+                          const std::vector<double>& x_m, const std::vector<double>& w);
+
+}  // namespace flexarm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "model/rigid_joint/rigid_joint_arm.h"
+#include "model/rigid_joint/rigid_point.h"
+
+namespace flexarm {
+
+/// Deflection, hubs and torque with which an arm that follows Y is bent without vibrating.
+struct QuasiStaticPose {
+  RigidJointArm::Vector q;    ///< as RigidJointArm's, rad and m
+  Eigen::Vector2d torque_nm;  ///< on hubs 1 and 2, without friction
+};
+
+/// Closed form, with g the forces at q = (Y, 0), v = (Y', 0), a = (Y'', 0):
+///   f = -K_ff^-1 g_f,  theta = Y - M_tt^-1 M_tf f,  u = g_t.
+///
+/// The links' deflection balances the inertial forces of the straight arm at once. Left out: the
+/// inertia of f itself, and the geometry of the bent arm. A second pass with them gained nothing.
+/// Source: beyond.md 2.2. Real-time: safe.
+QuasiStaticPose QuasiStaticAt(const RigidJointArm& arm, const OutboardBody& body,
+                              const RigidPoint& point) noexcept;
+
+/// State and torque of a sample.
+struct QuasiStaticSample {
+  Eigen::Matrix<double, 12, 1> x;  ///< [q; q'], rad and m, and per second
+  Eigen::Vector2d torque_nm;       ///< mean of this instant and the next, for the sample between
+};
+
+/// Rates are central differences over the neighbours, all with the same payload.
+/// Source: beyond.md 2.2. Real-time: safe.
+/// @param previous_now_next  the path, one period apart
+/// @param period_s           > 0
+QuasiStaticSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,
+                                  const std::array<RigidPoint, 3>& previous_now_next,
+                                  double period_s) noexcept;
+
+}  // namespace flexarm

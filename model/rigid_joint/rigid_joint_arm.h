@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "model/math/portable_math.h"
+#include "model/parameters/arm_parameters.h"
+
+namespace flexarm {
+
+/// All that turns with hub 2, as the end of link 1 feels it; moments about the elbow. Affine in the
+/// payload.
+struct OutboardBody {
+  double m;            ///< mass, kg
+  double Sx;           ///< first moment along link 2, kg m
+  double I2;           ///< second moment with rotor 2, undeformed, without I_p, kg m^2
+  Eigen::Vector2d k2;  ///< int lam2 psi2 + m_p psi2(L2), kg
+  Eigen::Vector2d a2;  ///< int lam2 u psi2 + m_p L2 psi2(L2), kg m
+  Eigen::Matrix2d N2;  ///< int lam2 psi2 psi2 + m_p psi2(L2) psi2(L2), kg
+};
+
+/// The arm with rigid joints and two modes a link, small enough for the loop:
+///   M(q; m_p) q'' + bias(q, q'; m_p) + D q' + K q = [tau1 tau2 0 0 0 0]' + friction.
+///
+/// q = [th1 th2 phi1_1 phi1_2 phi2_1 phi2_2], rad and m: ArmModel with th3 = th1, th4 = th2, so
+/// M = T_r' M T_r and bias = T_r' bias. Mode shapes are those of the nominal payload whatever the
+/// payload is, so mass and bias are affine in it. Not modelled: foreshortening, play, torsion.
+/// Source: beyond.md section 2; control.md section 2.
+/// Real-time: all but the constructor is safe.
+class RigidJointArm {
+ public:
+  static constexpr int kDof = 6;
+  using Vector = Eigen::Matrix<double, kDof, 1>;
+  using Matrix = Eigen::Matrix<double, kDof, kDof>;
+
+  /// What At computes.
+  struct Inertia {
+    Matrix M;     ///< mass matrix, symmetric up to round-off
+    Vector bias;  ///< Coriolis and centrifugal forces
+  };
+
+  /// The payload in `parameters` is not used but for its inertia: Outboard sets it.
+  /// @throws std::invalid_argument if the parameters have Problems().
+  explicit RigidJointArm(const ArmParameters& parameters);
+
+  /// All that the constructor computed, as numbers: another processor's libm may compute others in
+  /// the last digit, and a run must replay to the bit.
+  std::vector<double> Constants() const;
+  /// @throws std::invalid_argument if they are not as many as Constants() gives
+  explicit RigidJointArm(std::span<const double> constants);
+
+  OutboardBody Outboard(double payload_kg) const noexcept;
+
+  /// Mass matrix and bias at (q, v). Math: PortableMath in the loop, LibraryMath off line.
+  template <typename Math = PortableMath>
+  Inertia At(const OutboardBody& body, const Vector& q, const Vector& v) const noexcept;
+
+  /// Of the tip, along the normal of link 2 there, m/s^2: tip_acceleration.h.
+  double TipAcceleration(const Vector& q, const Vector& v, const Vector& a) const noexcept;
+
+  const Matrix& stiffness() const noexcept { return stiffness_; }  ///< K; zero for the hubs
+  const Matrix& damping() const noexcept { return damping_; }      ///< D
+
+ private:
+  template <typename Arm, typename Visit>
+  static void ForEachConstant(Arm& arm, Visit visit);
+
+  // Inboard of the elbow: hub 1 with rotor 1, link 1, and motor 2's stator at its end.
+  double L1_, I1_, Ir2_, Ip_;
+  Eigen::Vector2d a1_, p1_, s1_;  // int lam u psi1, psi1(L1), psi1'(L1)
+  Eigen::Matrix2d N1_;
+  Eigen::Vector2d s2_;  // psi2'(L2)
+  OutboardBody empty_, per_kg_;
+  Matrix stiffness_, damping_;
+};
+
+}  // namespace flexarm
+
+#include "model/rigid_joint/rigid_joint_arm_impl.h"

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "model/rigid_joint/rigid_joint_arm.h"
+
+namespace flexarm {
+
+/// Motion of the arm with rigid joints and of the analogue filters of its strain gauges.
+struct GaugedState {
+  RigidJointArm::Vector q, v;  ///< as RigidJointArm's, rad and m, and their rates
+  Eigen::Vector4d phi_f;       ///< filtered modal coordinates, phi_f' = w_f (phi - phi_f), m
+};
+
+/// What is constant during a sample.
+struct SampleInputs {
+  Eigen::Vector2d torque_nm;
+  double payload_kg;
+  std::array<double, 2> friction_nm;  ///< Coulomb levels of the hubs, >= 0
+};
+
+/// One sample of the arm with exact Coulomb stiction: a few implicit midpoint steps of kPasses
+/// fixed-point passes each.
+///
+/// As ArmSimulator (hubs by BoxFriction at the midpoint velocity), in long steps, and for a payload
+/// that may differ from sample to sample. A step's passes start from zero acceleration. The
+/// gauges' filters see the modal coordinates of the middle of each step.
+/// Source: beyond.md 2.3 (1).
+/// Real-time: Advance is safe.
+class RigidJointStepper {
+ public:
+  static constexpr int kSteps = 8;  ///< the filter's
+  static constexpr int kPasses = 2;
+
+  /// @param period_s         one sample, > 0
+  /// @param gauge_filter_hz  corner of the gauges' first-order filter, > 0
+  /// @param steps            a power of two, for TransitionOver's doublings
+  RigidJointStepper(RigidJointArm arm, double period_s, double gauge_filter_hz, int steps = kSteps);
+
+  /// As RigidJointArm's, with those of the sample.
+  std::vector<double> Constants() const;
+  /// @throws std::invalid_argument if they are not as many as Constants() gives
+  explicit RigidJointStepper(std::span<const double> constants);
+
+  /// One sample.
+  GaugedState Advance(const GaugedState& start, const SampleInputs& inputs) const noexcept {
+    return Advance(start, inputs, steps_);
+  }
+  /// @param steps  of step_s() each
+  GaugedState Advance(const GaugedState& start, const SampleInputs& inputs,
+                      int steps) const noexcept;
+
+  /// Accelerations at this very state. A hub that friction can stop within a step is being stopped:
+  /// one at rest stays so. rad/s^2, m/s^2
+  RigidJointArm::Vector AccelerationAt(const GaugedState& x,
+                                       const SampleInputs& inputs) const noexcept;
+
+  const RigidJointArm& arm() const noexcept { return arm_; }
+  int steps() const noexcept { return steps_; }
+  double period_s() const noexcept { return steps_ * h_; }
+  double step_s() const noexcept { return h_; }
+  /// Share of its error that a gauge's filter takes away in one step.
+  double gauge_share() const noexcept { return gauge_share_; }
+
+ private:
+  using Vector = RigidJointArm::Vector;
+
+  Vector Solve(const RigidJointArm::Matrix& A, const Vector& r, const Vector& v,
+               const std::array<double, 2>& friction_nm) const noexcept;
+  Vector Acceleration(const OutboardBody& body, const GaugedState& start, const Vector& applied,
+                      const std::array<double, 2>& friction_nm) const noexcept;
+
+  static RigidJointArm::Matrix Implicit(const RigidJointArm& arm, double h) {
+    return 0.5 * h * arm.damping() + 0.25 * h * h * arm.stiffness();
+  }
+
+  RigidJointArm arm_;
+  int steps_;
+  double h_;
+  double gauge_share_;
+  RigidJointArm::Matrix implicit_;  // h/2 D + h^2/4 K
+};
+
+}  // namespace flexarm

@@ -1,0 +1,43 @@
+#include "model/simulation/arm_simulator.h"
+
+#include <stdexcept>
+
+#include "model/simulation/step_kernel.h"
+
+namespace flexarm {
+namespace {
+
+// ArmVector has no room for more, and in a release build does not say so.
+ArmVector RestingVector(int dof) {
+  if (dof > kMaxSteppedDof) throw std::invalid_argument("ArmState: too many modes to be stepped");
+  return ArmVector::Zero(dof);
+}
+
+}  // namespace
+
+ArmState::ArmState(int dof) : q(RestingVector(dof)), v(q), a(q) {}
+
+ArmSimulator::ArmSimulator(const ArmModel& model, const SimulatorOptions& options)
+    : dof_(model.dof()), options_(options) {
+  if (options.passes < 1 || options.substeps < 1) {
+    throw std::invalid_argument("SimulatorOptions: passes and substeps must be at least 1");
+  }
+  kernel_ = MakeStepKernel(model.constants(), options.coulomb_friction);
+}
+
+ArmSimulator::~ArmSimulator() = default;
+ArmSimulator::ArmSimulator(ArmSimulator&&) noexcept = default;
+ArmSimulator& ArmSimulator::operator=(ArmSimulator&&) noexcept = default;
+
+void ArmSimulator::Step(ArmState& state, const Eigen::Vector2d& torque_nm, double h_s) noexcept {
+  const double h = h_s / options_.substeps;
+  for (int i = 0; i < options_.substeps; ++i) {
+    kernel_->Step(&state, torque_nm, h, options_.passes);
+  }
+}
+
+void ArmSimulator::CarryPayloadOf(const ArmModel& model) noexcept {
+  kernel_->CarryPayload(model.constants());
+}
+
+}  // namespace flexarm

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "model/arm/arm_model.h"
+
+namespace flexarm {
+
+class StepKernel;
+
+/// A vector of up to kMaxSteppedDof entries that lives without the heap.
+using ArmVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSteppedDof, 1>;
+
+/// State of the simulated arm. q and v as ArmModel's.
+struct ArmState {
+  /// At rest at zero.
+  /// @throws std::invalid_argument if dof is above kMaxSteppedDof.
+  explicit ArmState(int dof);
+
+  ArmVector q;  ///< rad and m
+  ArmVector v;  ///< rad/s and m/s
+  ArmVector a;  ///< accelerations of the last step, rad/s^2 and m/s^2: only where the next one
+                ///< starts its iteration; zero is always allowed
+};
+
+/// How ArmSimulator spends its time.
+struct SimulatorOptions {
+  int passes = 3;    ///< fixed-point passes a step, >= 1
+  int substeps = 1;  ///< equal midpoint steps that one Step is made of, >= 1
+  bool coulomb_friction = true;
+};
+
+/// Steps the arm: implicit midpoint with exact Coulomb stiction. The project's default integrator.
+///
+/// Solves M(q_m) a + bias(q_m, v_m) + D v_m + K q_m = force + friction at the middle of the step,
+/// with (M + h/2 D + h^2/4 K) on the left, by fixed-point passes; friction torques on th1 and th2
+/// (hub against its base) make a 2-contact box problem that is solved exactly in each pass
+/// (box_friction.h). A hub that comes to rest inside a step ends it with exactly zero velocity, by
+/// an impulse that can only take energy. Second order in h, stable for any h.
+///
+/// The linear system is solved by structure (articulated bodies), not by a factorisation of M:
+/// each link touches the rest through three constant vectors only, so that a pass costs two
+/// products with constant inverses and a 2x2 system.
+/// Source: study of the control law, section 2; thesis (3.12), (3.21)-(3.22).
+/// Real-time: Step is safe (no allocation, no exception); construction is start-up only.
+/// Thread: one at a time; a change of h recomputes cached inverses.
+class ArmSimulator {
+ public:
+  static constexpr double kDefaultStep_s = 5e-4;
+
+  /// @throws std::invalid_argument if an option is below its bound, or the model has a link
+  /// with more than kMaxSteppedModes modes.
+  explicit ArmSimulator(const ArmModel& model, const SimulatorOptions& options = {});
+  ~ArmSimulator();
+  ArmSimulator(ArmSimulator&&) noexcept;
+  ArmSimulator& operator=(ArmSimulator&&) noexcept;
+
+  int dof() const noexcept { return dof_; }
+
+  /// Advances `state` by h_s with the motor torques held.
+  /// @param state      of size dof(); updated in place
+  /// @param torque_nm  on th3 and th4, at the gearbox output, N m
+  /// @param h_s        > 0; 1e-5 and less to 1e-3 make sense
+  void Step(ArmState& state, const Eigen::Vector2d& torque_nm, double h_s) noexcept;
+
+  /// From now on steps this model: the one it was made with, but for its payload. The state of
+  /// before is the state now (ArmModel::CarryPayload). Real-time: safe, costs about a Step.
+  void CarryPayloadOf(const ArmModel& model) noexcept;
+
+ private:
+  int dof_;
+  SimulatorOptions options_;
+  std::unique_ptr<StepKernel> kernel_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <array>
+
+#include "model/arm/backlash.h"
+#include "model/math/dense_kernels.h"
+#include "model/simulation/articulated_arm.h"
+#include "model/simulation/step_kernel.h"
+
+namespace flexarm {
+
+/// One implicit midpoint step for links of Arm::kModes modes, padded if they have fewer.
+///
+/// Arm solves one linear system of it: ArticulatedArm, or ForeshortenedArm with its interface.
+/// Inside of step_kernel.cpp and foreshortened_kernel.cpp. Real-time: Step is safe.
+template <typename Arm>
+class FixedKernel final : public StepKernel {
+  static constexpr int kModes = Arm::kModes;
+
+ public:
+  FixedKernel(const ArmConstants& c, bool coulomb_friction)
+      : m1_(c.m1),
+        m2_(c.m2),
+        friction_{coulomb_friction ? c.friction_nm[0] : 0.0,
+                  coulomb_friction ? c.friction_nm[1] : 0.0},
+        has_friction_(friction_[0] > 0.0 || friction_[1] > 0.0),
+        backlash_(c.backlash),
+        c_(c),
+        mass_(c_, 0.0),
+        k_(c_, ArmSimulator::kDefaultStep_s) {}
+
+  void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h,
+            int passes) noexcept override {
+    if (h != k_.h) k_ = StepConstants<kModes>(c_, h);
+    const Coordinates q = Load(state->q), v = Load(state->v);
+    Coordinates a = Load(state->a);
+    const double spring1 = c_.K1 * (q.th[2] - q.th[0] + 0.5 * h * (v.th[2] - v.th[0]));
+    AppliedForces<kModes> r = Applied(q, v, torque_nm, spring1);
+    Arm arm(c_, k_);
+    FrictionSolution hubs{};
+    for (int pass = 0; pass < passes; ++pass) {
+      const Coordinates v_m = Advanced(v, a, 0.5 * h);
+      const Coordinates q_m = Advanced(q, v_m, 0.5 * h);
+      if (backlash_.active()) ApplyJoint2(q_m, v_m, a, torque_nm[1], &r);
+      arm.Reduce(q_m, v_m, r);
+      hubs = has_friction_ ? arm.hubs().Solve({v.th[0], v.th[1]}, friction_, h)
+                           : arm.hubs().SolveFree();
+      arm.Expand(hubs.acceleration, &a);
+      a.th[2] = (torque_nm[0] - spring1 + k_.K1h * a.th[0]) / (c_.J1 + k_.K1h);
+    }
+    const Coordinates v_m = Advanced(v, a, 0.5 * h);
+    const Coordinates q_end = Advanced(q, v_m, h);
+    Coordinates v_end = Advanced(v, a, h);
+    Settle(hubs, q_end, &v_end);
+    Store(q_end, &state->q);
+    Store(v_end, &state->v);
+    Store(a, &state->a);
+  }
+
+  void CarryPayload(const ArmConstants& c) noexcept override {
+    backlash_ = c.backlash;
+    c_ = typename Arm::Constants(c);
+    mass_ = StepConstants<kModes>(c_, 0.0);
+    k_ = StepConstants<kModes>(c_, k_.h);
+  }
+
+ private:
+  using Coordinates = ArmCoordinates<kModes>;
+
+  static Coordinates Advanced(const Coordinates& x, const Coordinates& rate, double t) noexcept {
+    Coordinates y;
+    for (std::size_t i = 0; i < 4; ++i) y.th[i] = x.th[i] + t * rate.th[i];
+    y.f1 = x.f1 + t * rate.f1;
+    y.f2 = x.f2 + t * rate.f2;
+    return y;
+  }
+
+  Coordinates Load(const ArmVector& x) const noexcept {
+    Coordinates y;
+    for (int i = 0; i < 4; ++i) y.th[static_cast<std::size_t>(i)] = x[i];
+    for (int i = 0; i < kModes; ++i) y.f1[i] = i < m1_ ? x[kPhi1 + i] : 0.0;
+    for (int i = 0; i < kModes; ++i) y.f2[i] = i < m2_ ? x[kPhi1 + m1_ + i] : 0.0;
+    return y;
+  }
+
+  void Store(const Coordinates& y, ArmVector* x) const noexcept {
+    for (int i = 0; i < 4; ++i) (*x)[i] = y.th[static_cast<std::size_t>(i)];
+    for (int i = 0; i < m1_; ++i) (*x)[kPhi1 + i] = y.f1[i];
+    for (int i = 0; i < m2_; ++i) (*x)[kPhi1 + m1_ + i] = y.f2[i];
+  }
+
+  // Forces that do not change between passes: torques, springs at q + h/2 v, damping at v. th3 is
+  // eliminated: J1 th3'' + K1h (th3'' - th1'') = tau1 - spring1.
+  AppliedForces<kModes> Applied(const Coordinates& q, const Coordinates& v,
+                                const Eigen::Vector2d& torque, double spring1) const noexcept {
+    const double h = k_.h;
+    const double spring2 = c_.K2 * (q.th[3] - q.th[1] + 0.5 * h * (v.th[3] - v.th[1]));
+    AppliedForces<kModes> r;
+    r.th1 = spring1 + k_.rotor1 * (torque[0] - spring1) - c_.b1 * v.th[0];
+    r.th2 = spring2 - c_.b2 * v.th[1];
+    r.th4 = torque[1] - spring2;
+    r.f1.noalias() = -(c_.G1 * q.f1);
+    r.f1.noalias() -= k_.DhG1 * v.f1;
+    r.f2.noalias() = -(c_.G2 * q.f2);
+    r.f2.noalias() -= k_.DhG2 * v.f2;
+    r.K2h = k_.K2h;
+    r.drag4 = 0.0;
+    return r;
+  }
+
+  // Joint 2 with play, as Newton sees it about the middle of the step that accelerations `a` give:
+  // its slopes go to the left side. A drag that falls with speed is left on the right.
+  void ApplyJoint2(const Coordinates& q_m, const Coordinates& v_m, const Coordinates& a,
+                   double torque2, AppliedForces<kModes>* r) const noexcept {
+    const double h = k_.h;
+    const Joint2Torque joint =
+        backlash_.At(q_m.th[3] - q_m.th[1], v_m.th[3] - v_m.th[1], v_m.th[3]);
+    r->K2h = 0.25 * h * h * joint.stiffness_nm_per_rad + 0.5 * h * joint.damping_nms_per_rad;
+    r->drag4 = joint.drag_slope_nms > 0.0 ? 0.5 * h * joint.drag_slope_nms : 0.0;
+    const double spring = joint.spring_nm - r->K2h * (a.th[3] - a.th[1]);
+    r->th2 = spring - c_.b2 * (v_m.th[1] - 0.5 * h * a.th[1]);
+    r->th4 = torque2 - spring - joint.drag_nm + r->drag4 * a.th[3];
+  }
+
+  // A hub that stuck in this step stands still at its end. If it moved at the start, midpoint alone
+  // would leave it with the opposite velocity; an impulse at the hub takes that away.
+  void Settle(const FrictionSolution& hubs, const Coordinates& q, Coordinates* v) const noexcept {
+    const bool stop1 = has_friction_ && hubs.contact[0] == Contact::kStuck;
+    const bool stop2 = has_friction_ && hubs.contact[1] == Contact::kStuck;
+    if (!(stop1 && v->th[0] != 0.0) && !(stop2 && v->th[1] != 0.0)) return;
+    AppliedForces<kModes> none;
+    none.th1 = none.th2 = none.th4 = none.K2h = none.drag4 = 0.0;
+    none.f1.setZero();
+    none.f2.setZero();
+    Coordinates rest;
+    rest.th.fill(0.0);
+    rest.f1.setZero();
+    rest.f2.setZero();
+    Arm arm(c_, mass_);
+    arm.Reduce(q, rest, none);
+    double jump1 = stop1 ? -v->th[0] : 0.0, jump2 = stop2 ? -v->th[1] : 0.0;
+    if (!stop1) jump1 = -arm.z12() * jump2 / arm.z11();
+    if (!stop2) jump2 = -arm.z12() * jump1 / arm.z22();
+    Coordinates jump = rest;
+    arm.Expand({jump1, jump2}, &jump);
+    *v = Advanced(*v, jump, 1.0);
+    if (stop1) v->th[0] = 0.0;
+    if (stop2) v->th[1] = 0.0;
+  }
+
+  int m1_, m2_;
+  std::array<double, 2> friction_;
+  bool has_friction_;
+  Backlash backlash_;
+  typename Arm::Constants c_;
+  StepConstants<kModes> mass_;
+  StepConstants<kModes> k_;
+};
+
+}  // namespace flexarm

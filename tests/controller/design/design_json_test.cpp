@@ -1,0 +1,329 @@
+#include "controller/design/design_json.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "controller/design/design_controller.h"
+#include "controller/design/run_design.h"
+#include "controller/types/refused.h"
+#include "tests/controller/law/shipped_rig.h"
+#include "tests/support/message_of.h"
+
+namespace flexarm {
+namespace {
+
+using testing::HasSubstr;
+
+bool SameBits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+  return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+// What the loop and the checks use, all of it.
+void ExpectSameBits(const Design& a, const Design& b) {
+  EXPECT_TRUE(SameBits(a.A, b.A) && SameBits(a.B, b.B));
+  EXPECT_TRUE(SameBits(a.Am, b.Am) && SameBits(a.Bm, b.Bm));
+  EXPECT_TRUE(SameBits(a.K, b.K) && SameBits(a.K_stop, b.K_stop) && SameBits(a.P, b.P));
+  EXPECT_TRUE(SameBits(a.J, b.J) && SameBits(a.G, b.G));
+  EXPECT_TRUE(SameBits(a.S11, b.S11) && SameBits(a.S12, b.S12));
+  EXPECT_TRUE(SameBits(a.S21, b.S21) && SameBits(a.S22, b.S22));
+  EXPECT_TRUE(SameBits(a.Ufx, b.Ufx) && SameBits(a.Ufu, b.Ufu));
+  EXPECT_TRUE(SameBits(a.filter_A, b.filter_A) && SameBits(a.filter_B, b.filter_B));
+  EXPECT_TRUE(SameBits(a.filter_C, b.filter_C) && SameBits(a.filter_L, b.filter_L));
+  EXPECT_TRUE(SameBits(a.rigid_inertia_kgm2, b.rigid_inertia_kgm2));
+}
+
+std::string JsonOf(const Design& design, const RigConfig& config) {
+  return DesignToJson(design, DesignHash(config));
+}
+
+std::string RefusalOf(const std::string& text, const RigConfig& config) {
+  return MessageOf<Refused>([&] { DesignFromJson(text, config); });
+}
+
+std::string RefusalOf(const std::string& text) {
+  static const RigConfig shipped = ShippedRig();
+  return RefusalOf(text, shipped);
+}
+
+nlohmann::json ShippedJson() {
+  return nlohmann::json::parse(JsonOf(ShippedDesign(), ShippedRig()));
+}
+
+TEST(DesignJson, ComesBackBitForBit) {
+  const Design back = DesignFromJson(ShippedJson().dump(), ShippedRig());
+  ExpectSameBits(back, ShippedDesign());
+  ASSERT_EQ(back.checks.size(), ShippedDesign().checks.size());
+  for (std::size_t i = 0; i < back.checks.size(); ++i) {
+    EXPECT_EQ(back.checks[i].name, ShippedDesign().checks[i].name);
+    EXPECT_EQ(back.checks[i].value, ShippedDesign().checks[i].value);
+    EXPECT_EQ(back.checks[i].limit, ShippedDesign().checks[i].limit);
+    EXPECT_EQ(back.checks[i].below, ShippedDesign().checks[i].below);
+  }
+}
+
+TEST(DesignJson, TheGainsOfALawThatPlansComeBackToo) {
+  const RigConfig config = ShippedRig({"controller.name=receding-horizon"});
+  const Design design = DesignController(config);
+  const Design back = DesignFromJson(JsonOf(design, config), config);
+  ASSERT_TRUE(back.scheduled && back.scheduled->start_gains);
+  const auto& gains = design.scheduled->gains.knots();
+  const auto& start = design.scheduled->start_gains->knots();
+  EXPECT_EQ(back.payload_model, design.payload_model);
+  EXPECT_EQ(back.scheduled->gains.knots(), gains);
+  EXPECT_EQ(back.scheduled->start_gains->knots(), start);
+  EXPECT_EQ(back.scheduled->max_kg, design.scheduled->max_kg);
+  EXPECT_EQ(back.scheduled->reference_kg, design.scheduled->reference_kg);
+  EXPECT_GT((gains[0] - start[0]).norm(), 1.0) << "of another alpha";
+}
+
+// Members of 'payload' that a law or its estimator cannot do without.
+TEST(DesignJson, WhatALawNeedsForThePayloadIsAskedForByName) {
+  struct Case {
+    const char* law;
+    std::vector<std::string> needs;
+  };
+  const std::vector<std::string> scheduled = {"model", "gain_payload_kg", "gain_theta2_rad",
+                                              "gain",  "max_kg",          "reference_kg"};
+  std::vector<std::string> planned = scheduled;
+  planned.emplace_back("start_gain");
+  for (const auto& [law, needs] : {Case{"sobel", {"model"}}, Case{"gain-scheduled", scheduled},
+                                   Case{"receding-horizon", planned}}) {
+    const RigConfig config =
+        ShippedRig({std::string("controller.name=") + law, "estimator.name=ekf-payload"});
+    const nlohmann::json json = nlohmann::json::parse(JsonOf(DesignController(config), config));
+    ASSERT_EQ(RefusalOf(json.dump(), config), "") << law;
+    for (const std::string& key : needs) {
+      const std::string name = std::string("'payload.") + key + "'";
+      nlohmann::json without = json;
+      ASSERT_EQ(without["payload"].erase(key), 1u) << key;
+      EXPECT_THAT(RefusalOf(without.dump(), config),
+                  AllOf(HasSubstr(name + " is missing"), HasSubstr("flexarm design")))
+          << law;
+      nlohmann::json of_another_type = json;
+      of_another_type["payload"][key] = "heavy";
+      EXPECT_THAT(RefusalOf(of_another_type.dump(), config), HasSubstr("'payload")) << key;
+    }
+    nlohmann::json without = json;
+    without.erase("payload");
+    EXPECT_THAT(RefusalOf(without.dump(), config), HasSubstr("'payload.model' is missing")) << law;
+  }
+}
+
+TEST(DesignJson, ATableWithAKnotTooFewIsRefused) {
+  const RigConfig config = ShippedRig({"controller.name=receding-horizon"});
+  nlohmann::json json = nlohmann::json::parse(JsonOf(DesignController(config), config));
+  json["payload"]["start_gain"].erase(0);
+  EXPECT_THAT(RefusalOf(json.dump(), config), HasSubstr("'payload'"));
+}
+
+// Gains of the payload in the file of a law that does not take them must not make it another law.
+TEST(DesignJson, WhatAConfigDoesNotNeedIsLeftInTheFile) {
+  const RigConfig path = ShippedRig({"controller.name=receding-horizon"});
+  const nlohmann::json of_path = nlohmann::json::parse(JsonOf(DesignController(path), path));
+  nlohmann::json json = ShippedJson();
+  json["payload"] = of_path["payload"];
+  const Design plain = DesignFromJson(json.dump(), ShippedRig());
+  EXPECT_TRUE(plain.payload_model.empty());
+  EXPECT_FALSE(plain.scheduled);
+  const RigConfig estimated = ShippedRig({"estimator.name=ekf-payload"});
+  json["config_hash"] = DesignHash(estimated);
+  const Design read = DesignFromJson(json.dump(), estimated);
+  EXPECT_FALSE(read.payload_model.empty());
+  EXPECT_FALSE(read.scheduled);
+}
+
+TEST(DesignJson, AnotherConfigsGainsAreRefusedWithBothHashes) {
+  EXPECT_THAT(RefusalOf(DesignToJson(ShippedDesign(), "aaaa")),
+              AllOf(HasSubstr("another config"), HasSubstr("aaaa"),
+                    HasSubstr(DesignHash(ShippedRig())), HasSubstr("flexarm design")));
+}
+
+TEST(DesignJson, EachMissingMatrixIsNamed) {
+  for (const char* name : {"A", "Am", "K", "K_stop", "P", "G", "S11", "S22", "Ufx", "filter_L",
+                           "rigid_inertia_kgm2"}) {
+    nlohmann::json json = ShippedJson();
+    json.erase(name);
+    EXPECT_THAT(RefusalOf(json.dump()), HasSubstr(std::string(name) + "' is missing"));
+  }
+}
+
+TEST(DesignJson, AWrongShapeIsNamedWithWhatWasExpected) {
+  nlohmann::json json = ShippedJson();
+  json["B"].erase(json["B"].end() - 1);
+  EXPECT_THAT(RefusalOf(json.dump()),
+              AllOf(HasSubstr("'B'"), HasSubstr("11 x 2"), HasSubstr("expected 12 x 2")));
+  json = ShippedJson();
+  json["rigid_inertia_kgm2"] = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("rigid_inertia"), HasSubstr("2 x 2")));
+}
+
+TEST(DesignJson, TheNominalModelIsReadAndItsShapesAreAskedFor) {
+  nlohmann::json json = ShippedJson();
+  json["nominal"] = "T16";
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("12 x 12"), HasSubstr("expected 16 x 16")));
+  json["nominal"] = "R13";
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'nominal'"), HasSubstr("R13")));
+  json.erase("nominal");
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'nominal'"), HasSubstr("missing")));
+}
+
+// A gauge filter of second order has two states a mode: its gains come back as they went.
+TEST(DesignJson, GainsBehindASecondOrderFilterAreReadBack) {
+  const RigConfig config = ShippedRig({"sensors.strain_input.filter_damping=0.9"});
+  const Design design = DesignController(config);
+  const Design read = DesignFromJson(JsonOf(design, config), config);
+  EXPECT_EQ(read.filter_A, design.filter_A);
+  EXPECT_EQ(read.layout, design.layout);
+}
+
+TEST(DesignJson, ABrokenMatrixIsNamed) {
+  nlohmann::json json = ShippedJson();
+  json["K"][1].erase(json["K"][1].end() - 1);
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'K'"), HasSubstr("different length")));
+  json = ShippedJson();
+  json["S11"][2][3] = "twelve";
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'S11'"), HasSubstr("not a number")));
+  json = ShippedJson();
+  json["J"][0][0] = nullptr;  // how JSON writes NaN
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'J'"), HasSubstr("not a number")));
+  json = ShippedJson();
+  json["G"] = 5;
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'G'"), HasSubstr("not a matrix")));
+  json = ShippedJson();
+  json["P"] = nlohmann::json::array({1.0, 2.0});
+  EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'P'"), HasSubstr("not a matrix")));
+}
+
+// Every one of these is a file that somebody may hand in by mistake: one clear refusal, no other
+// exception.
+TEST(DesignJson, WhatIsNoGainsFileIsRefusedAsSuch) {
+  for (const char* text : {"", "hello", "[1, 2]", "{}", "{\"format\": \"other\"}",
+                           "{\"format\": 5}", "{\"A\": [[1", "null"}) {
+    EXPECT_THAT(RefusalOf(text), HasSubstr("not a gains file")) << text;
+  }
+}
+
+TEST(DesignJson, FieldsOfTheWrongTypeAreRefusedNotCrashedOn) {
+  nlohmann::json json = ShippedJson();
+  json["config_hash"] = 12;
+  EXPECT_NE(RefusalOf(json.dump()), "");
+  json = ShippedJson();
+  json["checks"] = 5;
+  EXPECT_NE(RefusalOf(json.dump()), "");
+  json = ShippedJson();
+  json["checks"][0]["value"] = "high";
+  EXPECT_NE(RefusalOf(json.dump()), "");
+}
+
+class GainsFile : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+  void Write(const std::string& text) const { std::ofstream(path_) << text; }
+  RigConfig RigWithGains(const std::vector<std::string>& overrides = {}) const {
+    RigConfig config = ShippedRig(overrides);
+    config.controller.gains_file = path_;
+    return config;
+  }
+
+  const std::string path_ = testing::TempDir() + "flexarm_gains_" +
+                            testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+};
+
+TEST_F(GainsFile, IsUsedWhenTheConfigNamesIt) {
+  Design marked = ShippedDesign();
+  marked.G(0, 0) += 0.25;  // no design would give this: it must come from the file
+  Write(JsonOf(marked, ShippedRig()));
+  ExpectSameBits(DesignFor(RigWithGains()), marked);
+}
+
+TEST_F(GainsFile, OfAnotherAlphaIsRefused) {
+  const RigConfig other = ShippedRig({"controller.alpha=2.5"});
+  Write(JsonOf(DesignController(other), other));
+  EXPECT_THROW(DesignFor(RigWithGains()), Refused);
+}
+
+TEST_F(GainsFile, ThatIsNotThereIsRefusedByName) {
+  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains()); }),
+              AllOf(HasSubstr(path_), HasSubstr("flexarm design")));
+}
+
+TEST_F(GainsFile, WithoutWhatItsLawNeedsIsRefusedByFileAndKey) {
+  const std::vector<std::string> plans = {"controller.name=receding-horizon"};
+  Design design = DesignController(ShippedRig(plans));
+  design.scheduled->start_gains.reset();
+  Write(JsonOf(design, ShippedRig(plans)));
+  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains(plans)); }),
+              AllOf(HasSubstr(path_), HasSubstr("'payload.start_gain' is missing")));
+}
+
+TEST_F(GainsFile, WithAFailedCheckIsRefusedByItsName) {
+  Design bad = ShippedDesign();
+  bad.checks[0].value = 2.0 * bad.checks[0].limit;
+  Write(JsonOf(bad, ShippedRig()));
+  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains()); }),
+              HasSubstr(bad.checks[0].name));
+}
+
+TEST_F(GainsFile, WithAFailedCheckThatWasWaivedIsUsed) {
+  Design bad = ShippedDesign();
+  bad.checks[0].value = 2.0 * bad.checks[0].limit;
+  bad.checks[0].waived = true;
+  Write(JsonOf(bad, ShippedRig()));
+  const Design read = DesignFor(RigWithGains());
+  EXPECT_TRUE(read.checks[0].waived);
+  EXPECT_FALSE(read.checks[0].passed());
+  EXPECT_FALSE(read.checks[1].waived);
+}
+
+// The hash covers what a design depends on, and nothing else.
+TEST(DesignHash, ChangesWithWhatADesignDependsOn) {
+  const std::string shipped = DesignHash(ShippedRig());
+  for (const char* changed : {"controller.alpha=2.9",
+                              "controller.torque_weight=2.1",
+                              "controller.passivity_margin=4.0",
+                              "controller.hub_angle_weight=[100.0, 21.0]",
+                              "controller.hub_rate_weight=[5.0, 1.1]",
+                              "arm.payload_mass_kg=0.11",
+                              "link1.damping_ratio=0.031",
+                              "joint2.rotor_inertia_kgm2=0.01",
+                              "sensors.strain_input.filter_hz=21.0",
+                              "sensors.strain_input.filter_damping=0.9",
+                              "joint1.viscous_friction_nm_s_per_rad=0.1",
+                              "sensors.encoder[0].counts_per_turn=2000.0",
+                              "estimator.process_force=[0.3, 0.05, 5.0, 5.0, 1.5, 1.6]",
+                              "controller.nominal=R8",
+                              "controller.nominal=T12",
+                              "controller.state_weight=[100, 20, 0, 0, 0, 0, 5, 1, 0, 0, 0, 0]",
+                              "estimator.modal_sigma_m=[2e-4, 1e-4, 2e-4, 2e-4]",
+                              "arm.damping=modal",
+                              "arm.link1_tip_inertia=motor",
+                              "loop.period_ms=10.0",
+                              "controller.name=sobel-original",
+                              "controller.name=lqg",
+                              "controller.name=pd",
+                              "controller.name=pd-zv"}) {
+    RigConfig config;
+    try {
+      config = ShippedRig({changed});
+    } catch (const ConfigError&) {
+      continue;  // breaks another rule of the config: cannot be run at all
+    }
+    EXPECT_NE(DesignHash(config), shipped) << changed;
+  }
+  for (const char* same :
+       {"sim.seed=2", "controller.vartheta=0.5", "controller.name=lqr-cgt",
+        "controller.name=lqr-um", "safety.rest_time_s=0.6", "controller.adaptation_gain=0.001"}) {
+    EXPECT_EQ(DesignHash(ShippedRig({same})), shipped) << same;
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

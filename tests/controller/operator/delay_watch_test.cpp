@@ -1,0 +1,69 @@
+#include "controller/operator/delay_watch.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+StepInput Acted(std::int64_t acted_late_ns, std::int64_t acts_late_ns,
+                SafetyState state = SafetyState::kRunning) {
+  StepInput input{};
+  input.acted_late_ns = acted_late_ns;
+  input.acts_late_ns = acts_late_ns;
+  input.safety_state = state;
+  return input;
+}
+
+TEST(DelayWatch, TellsTheDelayOfTheLastTorqueAndTheLongest) {
+  DelayWatch watch(20 * kMs, 0.009);
+  watch.Take(Acted(0, 0));
+  watch.Take(Acted(2 * kMs, 2 * kMs));
+  watch.Take(Acted(kMs, kMs));
+  EXPECT_DOUBLE_EQ(watch.delay_ms(), 21.0);
+  EXPECT_DOUBLE_EQ(watch.longest_ms(), 22.0);
+  EXPECT_DOUBLE_EQ(watch.margin_ms(), 7.0) << "2 ms later than predicted, then earlier";
+}
+
+// The margin counts from the delay that is predicted: a long one that was known takes none of it.
+TEST(DelayWatch, AKnownDelayTakesNothingOfTheMargin) {
+  DelayWatch watch(20 * kMs, 0.009);
+  for (int k = 0; k < 5; ++k) EXPECT_FALSE(watch.Take(Acted(30 * kMs, 30 * kMs)));
+  EXPECT_DOUBLE_EQ(watch.delay_ms(), 50.0);
+  EXPECT_DOUBLE_EQ(watch.margin_ms(), 9.0);
+}
+
+TEST(DelayWatch, WarnsOnceARunWhenLessThanHalfOfTheMarginIsLeft) {
+  DelayWatch watch(20 * kMs, 0.008);
+  EXPECT_FALSE(watch.Take(Acted(0, 0)));
+  EXPECT_FALSE(watch.Take(Acted(4 * kMs, 0))) << "just half of it";
+  EXPECT_TRUE(watch.Take(Acted(4 * kMs + 1, 0)));
+  EXPECT_FALSE(watch.Take(Acted(5 * kMs, 0))) << "said already";
+  EXPECT_FALSE(watch.Take(Acted(5 * kMs, 0, SafetyState::kArmed)));
+  EXPECT_TRUE(watch.Take(Acted(5 * kMs, 0))) << "the next run";
+}
+
+TEST(DelayFoundWatch, TellsOnceARunThatADelayWasFound) {
+  DelayFoundWatch watch;
+  const auto take = [&watch](int found, SafetyState state = SafetyState::kRunning) {
+    StepOutput output{};
+    output.delay_found = static_cast<std::int8_t>(found);
+    return watch.Take(Acted(0, 0, state), output);
+  };
+  EXPECT_FALSE(take(1, SafetyState::kArmed));
+  EXPECT_FALSE(take(0));
+  EXPECT_TRUE(take(-1));
+  EXPECT_FALSE(take(-1)) << "said already";
+  EXPECT_FALSE(take(1)) << "said already";
+  EXPECT_FALSE(take(1, SafetyState::kStopping));
+  EXPECT_TRUE(take(1)) << "the next run";
+}
+
+TEST(DelayWatch, SaysNothingWhileNothingRuns) {
+  DelayWatch watch(20 * kMs, 0.008);
+  for (int k = 0; k < 5; ++k) EXPECT_FALSE(watch.Take(Acted(9 * kMs, 0, SafetyState::kArmed)));
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,327 @@
+#include "controller/safety/safety_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include "controller/types/runtime_config.h"
+#include "controller/types/safety_config.h"
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+using enum SafetyState;
+
+constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
+                                   .stop_timeout_ns = 3000 * kMs,
+                                   .missed_deadlines_to_trip = 3,
+                                   .homing_contact_ns = 500 * kMs};
+
+// Running for a second, all well.
+SafetyInputs Fine() {
+  const std::int64_t due_ns = 10'000 * kMs;
+  ControlReport control = kNoControlReport;
+  control.tick = 499;
+  control.due_ns = due_ns - 20 * kMs;
+  DriveReport drive{.due_ns = due_ns - 1 * kMs, .bus_ok = true, .drive_ok = true};
+  return {.due_ns = due_ns,
+          .levels = kHealthyLevels,
+          .control = control,
+          .control_alive_ns = control.due_ns,
+          .drive = drive,
+          .drive_alive_ns = drive.due_ns,
+          .request = RequestKind::kNone,
+          .state = kRunning,
+          .state_since_ns = due_ns - 1000 * kMs,
+          .running_since_ns = due_ns - 1000 * kMs,
+          .may_open = 0};
+}
+
+TripCauses PresentIn(const SafetyInputs& in) {
+  Supervisor supervisor(kLimits);
+  return supervisor.Judge(in).present;
+}
+
+void ExpectEvidence(TripCause cause, const SafetyInputs& in, double value, double limit,
+                    std::uint32_t channel) {
+  const Evidence evidence = Supervisor(kLimits).EvidenceOf(cause, in);
+  EXPECT_DOUBLE_EQ(evidence.value, value);
+  EXPECT_DOUBLE_EQ(evidence.limit, limit);
+  EXPECT_EQ(evidence.channel, channel);
+}
+
+TEST(Supervisor, SeesNothingWrongWhenAllIsWell) {
+  Supervisor supervisor(kLimits);
+  const SafetyFacts facts = supervisor.Judge(Fine());
+  EXPECT_EQ(facts.present, 0u);
+  EXPECT_EQ(facts.all_reported, 1);
+  EXPECT_EQ(facts.at_rest, 0);
+  EXPECT_EQ(facts.experiment_done, 0);
+  EXPECT_EQ(facts.stop_expired, 0);
+  EXPECT_EQ(facts.reset_pressed, 0);
+}
+
+TEST(Supervisor, NamesEachOpenSwitchAndTheEmergencyStop) {
+  const struct {
+    Line line;
+    TripCause cause;
+    std::uint32_t joint;
+  } cases[] = {{Line::kLimit1Low, TripCause::kLimitSwitch1Low, 1},
+               {Line::kLimit1High, TripCause::kLimitSwitch1High, 1},
+               {Line::kLimit2Low, TripCause::kLimitSwitch2Low, 2},
+               {Line::kLimit2High, TripCause::kLimitSwitch2High, 2},
+               {Line::kEmergencyStop, TripCause::kEmergencyStop, 0}};
+  for (const auto& c : cases) {
+    SafetyInputs in = Fine();
+    in.levels &= ~LineBit(c.line);
+    EXPECT_EQ(PresentIn(in), CauseBit(c.cause)) << Name(c.cause);
+    ExpectEvidence(c.cause, in, 0.0, 1.0, c.joint);
+  }
+  SafetyInputs in = Fine();
+  in.levels = 0;  // the cable of the whole chain is cut
+  EXPECT_EQ(PresentIn(in), 0b111110u);
+}
+
+TEST(Supervisor, ControlHeartbeatIsLostAfterTwoPeriodsAndNotBefore) {
+  SafetyInputs in = Fine();
+  in.control_alive_ns = in.due_ns - 40 * kMs;
+  EXPECT_EQ(PresentIn(in), 0u);
+  in.control_alive_ns = in.due_ns - 41 * kMs;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kControlHeartbeatLost));
+  ExpectEvidence(TripCause::kControlHeartbeatLost, in, 0.041, 0.040, 0);
+}
+
+TEST(Supervisor, AStepThatHasRunButDoesNotHoldYetKeepsTheHeartbeat) {
+  SafetyInputs in = Fine();
+  in.control.due_ns = in.due_ns - 41 * kMs;  // one period was skipped
+  in.control_alive_ns = in.due_ns - 1 * kMs;
+  EXPECT_EQ(PresentIn(in), 0u);
+}
+
+TEST(Supervisor, StaleDriveSideIsAStaleFrame) {
+  SafetyInputs in = Fine();
+  in.drive_alive_ns = in.due_ns - 40 * kMs;
+  EXPECT_EQ(PresentIn(in), 0u);
+  in.drive_alive_ns = in.due_ns - 41 * kMs;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kStaleFrame));
+  ExpectEvidence(TripCause::kStaleFrame, in, 0.041, 0.040, 0);
+}
+
+TEST(Supervisor, BusAndDriveAreTakenAtTheirWord) {
+  SafetyInputs in = Fine();
+  in.drive.bus_ok = false;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kBusLost));
+  ExpectEvidence(TripCause::kBusLost, in, 0.0, 1.0, 0);
+  in.drive = {.due_ns = in.due_ns, .bus_ok = true, .drive_ok = false};
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kDriveFault));
+}
+
+TEST(Supervisor, TheEvidenceOfABusSaysWhichAndWhatItMet) {
+  SafetyInputs in = Fine();
+  in.drive.bus_ok = in.drive.drive_ok = false;
+  in.troubles = {.lost = {.bus = 3, .fault = {.kind = 1, .node = 2, .code = 7}},
+                 .drive = {.bus = 1, .fault = {.kind = 5, .node = 0, .code = 0x2310}},
+                 .oldest_bus = 2};
+  const Supervisor supervisor(kLimits);
+  const Evidence lost = supervisor.EvidenceOf(TripCause::kBusLost, in);
+  EXPECT_EQ(lost.channel, 3u);
+  EXPECT_EQ(FaultFromBits(lost.detail), in.troubles.lost.fault);
+  const Evidence drive = supervisor.EvidenceOf(TripCause::kDriveFault, in);
+  EXPECT_EQ(drive.channel, 1u);
+  EXPECT_EQ(FaultFromBits(drive.detail), in.troubles.drive.fault);
+  const Evidence stale = supervisor.EvidenceOf(TripCause::kStaleFrame, in);
+  EXPECT_EQ(stale.channel, 2u);
+  EXPECT_EQ(FaultFromBits(stale.detail).kind, kBusHangs);
+}
+
+TEST(Supervisor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
+  SafetyInputs in = Fine();
+  in.control.missed_in_a_row = 2;
+  EXPECT_EQ(PresentIn(in), 0u);
+  in.control.missed_in_a_row = 3;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kMissedDeadlines));
+  ExpectEvidence(TripCause::kMissedDeadlines, in, 3.0, 3.0, 0);
+}
+
+TEST(Supervisor, FaultsOfTheLoopCountWhileItLives) {
+  SafetyInputs in = Fine();
+  in.control.faults = CauseBit(TripCause::kHubRate2) | CauseBit(TripCause::kEstimatorResidual);
+  in.control.evidence = {.value = 10.5, .limit = 10.0, .channel = 2, .detail = 0};
+  EXPECT_EQ(PresentIn(in), in.control.faults);
+  ExpectEvidence(TripCause::kHubRate2, in, 10.5, 10.0, 2);
+  in.control_alive_ns = in.due_ns - 41 * kMs;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kControlHeartbeatLost))
+      << "old word is no word: only the silence counts";
+}
+
+TEST(Supervisor, NothingIsSaidOfATaskThatHasNotReportedYet) {
+  Supervisor supervisor(kLimits);
+  SafetyInputs in = Fine();
+  in.state = kStarting;
+  in.control = kNoControlReport;
+  in.control_alive_ns = INT64_MIN;
+  in.drive = kNoDriveReport;
+  in.drive_alive_ns = INT64_MIN;
+  SafetyFacts facts = supervisor.Judge(in);
+  EXPECT_EQ(facts.present, 0u);
+  EXPECT_EQ(facts.all_reported, 0);
+
+  in.drive = Fine().drive;
+  in.drive_alive_ns = Fine().drive_alive_ns;
+  facts = supervisor.Judge(in);
+  EXPECT_EQ(facts.present, 0u);
+  EXPECT_EQ(facts.all_reported, 0) << "the control task is still missing";
+
+  in.levels &= ~LineBit(Line::kEmergencyStop);
+  EXPECT_EQ(supervisor.Judge(in).present, CauseBit(TripCause::kEmergencyStop))
+      << "the lines speak from the first tick on";
+
+  facts = supervisor.Judge(Fine());
+  EXPECT_EQ(facts.all_reported, 1);
+}
+
+TEST(Supervisor, RestCountsOnlyFromALivingLoop) {
+  Supervisor supervisor(kLimits);
+  SafetyInputs in = Fine();
+  in.control.at_rest = true;
+  EXPECT_EQ(supervisor.Judge(in).at_rest, 1);
+  in.control_alive_ns = in.due_ns - 41 * kMs;
+  EXPECT_EQ(supervisor.Judge(in).at_rest, 0);
+}
+
+TEST(Supervisor, StoppingDoesNotEndOnTheWordOfAStepBeforeIt) {
+  Supervisor supervisor(kLimits);
+  SafetyInputs in = Fine();
+  in.state = kStopping;
+  in.control.at_rest = true;
+  in.state_since_ns = in.control.due_ns;
+  EXPECT_EQ(supervisor.Judge(in).at_rest, 0);
+  in.state_since_ns = in.control.due_ns - 1;
+  EXPECT_EQ(supervisor.Judge(in).at_rest, 1);
+}
+
+TEST(Supervisor, TheEndOfTheLastExperimentDoesNotEndTheNext) {
+  Supervisor supervisor(kLimits);
+  SafetyInputs in = Fine();
+  in.control.experiment_done = true;
+  EXPECT_EQ(supervisor.Judge(in).experiment_done, 1);
+  in.running_since_ns = in.control.due_ns;  // the step may not have known of the run
+  EXPECT_EQ(supervisor.Judge(in).experiment_done, 0);
+  in.running_since_ns = INT64_MIN;
+  in.state = kArmed;
+  EXPECT_EQ(supervisor.Judge(in).experiment_done, 0);
+}
+
+TEST(Supervisor, StopExpiresAfterItsTimeInStoppingOnly) {
+  Supervisor supervisor(kLimits);
+  SafetyInputs in = Fine();
+  in.state = kStopping;
+  in.state_since_ns = in.due_ns - 3000 * kMs;
+  EXPECT_EQ(supervisor.Judge(in).stop_expired, 0);
+  in.state_since_ns = in.due_ns - 3001 * kMs;
+  EXPECT_EQ(supervisor.Judge(in).stop_expired, 1);
+  ExpectEvidence(TripCause::kStopTimeout, in, 3.001, 3.0, 0);
+  in.state = kRunning;
+  EXPECT_EQ(supervisor.Judge(in).stop_expired, 0);
+}
+
+TEST(Supervisor, TheResetButtonCountsWhenItGoesDownAfterTheTrip) {
+  Supervisor supervisor(kLimits);
+  SafetyInputs up = Fine();
+  SafetyInputs down = Fine();
+  down.levels |= LineBit(Line::kResetButton);
+
+  EXPECT_EQ(supervisor.Judge(down).reset_pressed, 0) << "down from the start, and no trip";
+  supervisor.Judge(up);
+  EXPECT_EQ(supervisor.Judge(down).reset_pressed, 0) << "pressed before the trip";
+  up.state = down.state = kTripped;
+  EXPECT_EQ(supervisor.Judge(down).reset_pressed, 0) << "still held from before the trip";
+  EXPECT_EQ(supervisor.Judge(up).reset_pressed, 0);
+  EXPECT_EQ(supervisor.Judge(down).reset_pressed, 1);
+  EXPECT_EQ(supervisor.Judge(up).reset_pressed, 1) << "it may be released before the operator asks";
+
+  up.state = kIdle;
+  EXPECT_EQ(supervisor.Judge(up).reset_pressed, 0);
+  up.state = kTripped;
+  EXPECT_EQ(supervisor.Judge(up).reset_pressed, 0) << "the next trip wants its own press";
+}
+
+TEST(Supervisor, AButtonThatIsStuckFromTheStartNeverCounts) {
+  Supervisor supervisor(kLimits);
+  SafetyInputs in = Fine();
+  in.state = kTripped;
+  in.levels |= LineBit(Line::kResetButton);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(supervisor.Judge(in).reset_pressed, 0);
+}
+
+TEST(Supervisor, TakesItsLimitsFromTheConfiguration) {
+  SafetyConfig safety{};
+  safety.stop_timeout_s = 3.0;
+  safety.missed_deadlines_to_trip = 5;
+  const SupervisorLimits limits = MakeSupervisorLimits(safety, {.period_ms = 20.0,
+                                                                .acquire_before_ms = 5.0,
+                                                                .step_deadline_ms = 5.0,
+                                                                .output = OutputTiming::kNextTick,
+                                                                .output_after_ms = 15.0,
+                                                                .actuation_delay_ms = 0.0});
+  EXPECT_EQ(limits.heartbeat_timeout_ns, 40 * kMs);
+  EXPECT_EQ(limits.stop_timeout_ns, 3000 * kMs);
+  EXPECT_EQ(limits.missed_deadlines_to_trip, 5);
+}
+
+// A homing run looks for one limit switch: that one may open while it runs, and not for long.
+class HomingContact : public testing::Test {
+ protected:
+  SafetyInputs OnSwitch(std::int64_t after_ms = 0) const {
+    SafetyInputs in = Fine();
+    in.due_ns += after_ms * kMs;
+    in.control_alive_ns = in.control.due_ns = in.due_ns - 20 * kMs;
+    in.drive_alive_ns = in.drive.due_ns = in.due_ns - kMs;
+    in.may_open = LineBit(Line::kLimit2High);
+    in.levels &= ~LineBit(Line::kLimit2High);
+    return in;
+  }
+
+  Supervisor supervisor_{kLimits};
+};
+
+TEST_F(HomingContact, TheSwitchThatIsLookedForDoesNotTripAtOnce) {
+  EXPECT_EQ(supervisor_.Judge(OnSwitch()).present, 0u);
+  EXPECT_EQ(supervisor_.Judge(OnSwitch(500)).present, 0u);
+}
+
+TEST_F(HomingContact, StandingOnItForTooLongTrips) {
+  supervisor_.Judge(OnSwitch());
+  EXPECT_EQ(supervisor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
+}
+
+TEST_F(HomingContact, TheClockStartsAgainWhenTheSwitchHasClosed) {
+  supervisor_.Judge(OnSwitch());
+  SafetyInputs off = OnSwitch(400);
+  off.levels = kHealthyLevels;
+  supervisor_.Judge(off);
+  EXPECT_EQ(supervisor_.Judge(OnSwitch(600)).present, 0u);
+}
+
+TEST_F(HomingContact, EveryOtherSwitchTripsAsEver) {
+  SafetyInputs in = OnSwitch();
+  in.levels &= ~LineBit(Line::kLimit2Low);
+  EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2Low));
+}
+
+TEST_F(HomingContact, TheEmergencyStopCanNeverBeExcused) {
+  SafetyInputs in = OnSwitch();
+  in.may_open |= LineBit(Line::kEmergencyStop);
+  in.levels &= ~LineBit(Line::kEmergencyStop);
+  EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kEmergencyStop));
+}
+
+TEST_F(HomingContact, OnlyARunningArmIsExcused) {
+  for (const SafetyState state : {kIdle, kArmed, kStopping, kTripped}) {
+    SafetyInputs in = OnSwitch();
+    in.state = state;
+    EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High)) << Name(state);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm

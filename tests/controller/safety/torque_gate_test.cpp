@@ -1,0 +1,198 @@
+#include "controller/safety/torque_gate.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+constexpr GateLimits kGateLimits{.torque_nm = {30.0, 6.0},
+                                 .slew_nm_per_s = {500.0, 150.0},
+                                 .command_timeout_ns = 40 * kMs,
+                                 .permit_timeout_ns = 5 * kMs};
+
+constexpr GateInput FineInput() {
+  return {.asked_nm = {2.0, -1.0},
+          .asked_age_ns = 3 * kMs,
+          .permit = SafetyState::kRunning,
+          .permit_age_ns = 1 * kMs,
+          .previous_nm = {1.9, -0.9},
+          .dt_s = 1e-3};
+}
+
+void ExpectZeroed(const GateInput& in, std::uint32_t why) {
+  const GateResult result = Gate(in, kGateLimits);
+  EXPECT_EQ(result.torque_nm[0], 0.0);
+  EXPECT_EQ(result.torque_nm[1], 0.0);
+  EXPECT_EQ(result.why, why);
+}
+
+TEST(Gate, LetsAnAdmissibleTorqueThroughUnchanged) {
+  const GateResult result = Gate(FineInput(), kGateLimits);
+  EXPECT_EQ(result.torque_nm[0], 2.0);
+  EXPECT_EQ(result.torque_nm[1], -1.0);
+  EXPECT_EQ(result.why, 0u);
+}
+
+TEST(Gate, AnOldCommandIsZeroAtOnce) {
+  GateInput in = FineInput();
+  in.previous_nm = {25.0, 5.0};  // far from zero: no slew on the way down
+  in.asked_age_ns = 40 * kMs;
+  EXPECT_EQ(Gate(in, kGateLimits).why & kGateZeroed, 0u) << "exactly two periods is still young";
+  in.asked_age_ns = 40 * kMs + 1;
+  ExpectZeroed(in, kGateCommandOld);
+  in.asked_age_ns = AgeNs(0, INT64_MIN);  // there never was one
+  ExpectZeroed(in, kGateCommandOld);
+  in.asked_age_ns = -1;  // a clock gone wrong
+  ExpectZeroed(in, kGateCommandOld);
+}
+
+TEST(Gate, AnOldPermitIsZeroAtOnce) {
+  GateInput in = FineInput();
+  in.previous_nm = {25.0, 5.0};
+  in.permit_age_ns = 5 * kMs;
+  EXPECT_EQ(Gate(in, kGateLimits).why & kGateZeroed, 0u);
+  in.permit_age_ns = 5 * kMs + 1;
+  ExpectZeroed(in, kGatePermitOld);
+  in.permit_age_ns = -1;
+  ExpectZeroed(in, kGatePermitOld);
+}
+
+TEST(Gate, OnlyRunningAndStoppingLetTorqueThrough) {
+  for (int state = 0; state < 256; ++state) {
+    GateInput in = FineInput();
+    in.permit = static_cast<SafetyState>(state);
+    if (in.permit == SafetyState::kRunning || in.permit == SafetyState::kStopping) {
+      EXPECT_EQ(Gate(in, kGateLimits).why, 0u) << state;
+    } else {
+      SCOPED_TRACE(state);
+      ExpectZeroed(in, kGateNotAllowed);
+    }
+  }
+}
+
+TEST(Gate, WhatIsNotFiniteIsZeroOnBothJoints) {
+  for (const double bad : {kNan, kInf, -kInf}) {
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      GateInput in = FineInput();
+      in.asked_nm[joint] = bad;
+      ExpectZeroed(in, kGateNotFinite);
+      in = FineInput();
+      in.previous_nm[joint] = bad;
+      ExpectZeroed(in, kGateNotFinite);
+      GateLimits limits = kGateLimits;
+      limits.torque_nm[joint] = bad;
+      EXPECT_EQ(Gate(FineInput(), limits).why, kGateNotFinite);
+      limits = kGateLimits;
+      limits.slew_nm_per_s[joint] = bad;
+      EXPECT_EQ(Gate(FineInput(), limits).why, kGateNotFinite);
+    }
+    GateInput in = FineInput();
+    in.dt_s = bad;
+    ExpectZeroed(in, kGateNotFinite);
+  }
+}
+
+TEST(Gate, LimitsTorqueAndSaysOnWhichJoint) {
+  GateInput in = FineInput();
+  in.asked_nm = {1e300, -6.1};
+  in.previous_nm = {30.0, -6.0};
+  const GateResult result = Gate(in, kGateLimits);
+  EXPECT_EQ(result.torque_nm[0], 30.0);
+  EXPECT_EQ(result.torque_nm[1], -6.0);
+  EXPECT_EQ(result.why, kGateTorque1 | kGateTorque2);
+}
+
+TEST(Gate, LimitsSlewInBothDirectionsAndSaysOnWhichJoint) {
+  GateInput in = FineInput();
+  in.asked_nm = {10.0, -5.0};
+  in.previous_nm = {0.0, 0.0};
+  const GateResult up = Gate(in, kGateLimits);
+  EXPECT_DOUBLE_EQ(up.torque_nm[0], 0.5);    // 500 N m/s for 1 ms
+  EXPECT_DOUBLE_EQ(up.torque_nm[1], -0.15);  // 150 N m/s for 1 ms
+  EXPECT_EQ(up.why, kGateSlew1 | kGateSlew2);
+  in.asked_nm = {0.0, -1.0};
+  in.previous_nm = {10.0, -1.0};
+  const GateResult down = Gate(in, kGateLimits);
+  EXPECT_DOUBLE_EQ(down.torque_nm[0], 9.5);
+  EXPECT_EQ(down.why, kGateSlew1);
+}
+
+TEST(Gate, TorqueLimitHasTheLastWordOverSlew) {
+  GateInput in = FineInput();
+  in.asked_nm = {29.0, 0.0};
+  in.previous_nm = {40.0, 0.0};
+  EXPECT_EQ(Gate(in, kGateLimits).torque_nm[0], 30.0);
+}
+
+TEST(Gate, NoTimePassedMeansNoChange) {
+  GateInput in = FineInput();
+  for (const double dt : {0.0, -1.0}) {
+    in.dt_s = dt;
+    EXPECT_EQ(Gate(in, kGateLimits).torque_nm, in.previous_nm);
+  }
+}
+
+static_assert(noexcept(Gate(GateInput{}, GateLimits{})));
+
+TEST(Gate, NeverExceedsItsLimitsWhateverComesIn) {
+  setenv("RC_PARAMS", "seed=20261120 max_success=20000", 0);  // repeatable
+  long passed = 0;
+  long zeroed = 0;
+  const bool held = rc::check("|out| <= limit, |out - previous| <= slew dt", [&] {
+    const auto value = [](double scale) {
+      const int pick = *rc::gen::inRange(0, 64);
+      if (pick == 0) return kNan;
+      if (pick == 1) return kInf;
+      if (pick == 2) return -kInf;
+      if (pick == 3) return 1e308;
+      return *rc::gen::inRange(-1000, 1001) * 1e-3 * scale;
+    };
+    GateInput in{.asked_nm = {value(60.0), value(12.0)},
+                 .asked_age_ns = *rc::gen::inRange<std::int64_t>(-kMs, 60 * kMs),
+                 .permit = static_cast<SafetyState>(*rc::gen::inRange(0, 8)),
+                 .permit_age_ns = *rc::gen::inRange<std::int64_t>(-kMs / 10, 7 * kMs),
+                 .previous_nm = {},
+                 .dt_s = *rc::gen::inRange(0, 21) * 1e-3};
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      in.previous_nm[joint] = *rc::gen::inRange(-1000, 1001) * 1e-3 * kGateLimits.torque_nm[joint];
+    }
+    const GateResult out = Gate(in, kGateLimits);
+    const bool allowed = in.permit == SafetyState::kRunning || in.permit == SafetyState::kStopping;
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      const double torque = out.torque_nm[joint];
+      RC_ASSERT(std::abs(torque) <= kGateLimits.torque_nm[joint]);  // false for NaN too
+      if ((out.why & kGateZeroed) != 0) {
+        RC_ASSERT(torque == 0.0);
+      } else {
+        // previous +- step is rounded once: half an ulp of at most 40 N m, 4e-15. A slew limit that
+        // is wrong by 0.1 % would be off by 1e-4.
+        const double step = kGateLimits.slew_nm_per_s[joint] * in.dt_s;
+        RC_ASSERT(std::abs(torque - in.previous_nm[joint]) <= step + 1e-14);
+      }
+      if (torque != 0.0) {
+        RC_ASSERT(allowed);
+        RC_ASSERT(in.asked_age_ns >= 0 && in.asked_age_ns <= 40 * kMs);
+        RC_ASSERT(in.permit_age_ns >= 0 && in.permit_age_ns <= 5 * kMs);
+      }
+      if (out.why == 0) RC_ASSERT(torque == in.asked_nm[joint]);
+    }
+    passed += (out.why & kGateZeroed) == 0;
+    zeroed += (out.why & kGateZeroed) != 0;
+  });
+  EXPECT_TRUE(held);
+  EXPECT_GT(passed, 500) << "the cases must reach what they are to test";
+  EXPECT_GT(zeroed, 500);
+}
+
+}  // namespace
+}  // namespace flexarm

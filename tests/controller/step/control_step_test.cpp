@@ -1,0 +1,390 @@
+#include "controller/step/control_step.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "controller/design/design_controller.h"
+#include "controller/types/trip_cause.h"
+#include "model/math/discretize.h"
+#include "tests/controller/law/shipped_rig.h"
+#include "tests/controller/step/step_at_rest.h"
+
+namespace flexarm {
+namespace {
+
+static_assert(noexcept(std::declval<ControlStep&>().Step(std::declval<const StepInput&>())));
+
+// A reference half a degree away, so that there is something to ask torque for.
+StepInput Moving(std::int64_t tick, SafetyState state = SafetyState::kRunning) {
+  StepInput input = AtRest(tick, state);
+  input.reference_now.x_m[0] = input.reference_next.x_m[0] = 0.01;
+  input.reference_now.x_m[1] = input.reference_next.x_m[1] = -0.01;
+  return input;
+}
+
+// Plausible inputs of a run: counts, strains and torques that change from tick to tick.
+std::vector<StepInput> ARun() {
+  std::vector<StepInput> inputs;
+  for (int k = 0; k < 60; ++k) {
+    StepInput input = Moving(k, k < 40 ? SafetyState::kRunning : SafetyState::kStopping);
+    const double angle = 30.0 * std::sin(0.05 * k);  // counts
+    const auto counts = static_cast<std::int32_t>(std::lround(angle));
+    for (std::size_t i = 0; i < 3; ++i) {
+      input.frame.counter[i] = static_cast<std::uint32_t>(counts) & 0xFFu;
+    }
+    input.frame.counter[3] =
+        static_cast<std::uint32_t>(std::lround(angle * 24480.0 / 2540.0)) & 0xFFFFu;
+    input.applied_torque_nm = {std::sin(0.3 * k), 0.1 * std::cos(0.2 * k)};
+    inputs.push_back(input);
+  }
+  inputs.front().reset = 1;
+  return inputs;
+}
+
+class ControlStepTest : public testing::Test {
+ protected:
+  const RigConfig config_ = ShippedRig();
+  ControlStep step_{config_, ShippedDesign()};
+};
+
+bool SameBytes(const StepOutput& a, const StepOutput& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+// Whatever was before: after a reset the same inputs give the same bytes.
+TEST_F(ControlStepTest, AfterAResetTheSameInputsGiveTheSameBytes) {
+  const std::vector<StepInput> run = ARun();
+  std::vector<StepOutput> first;
+  for (const StepInput& input : run) first.push_back(step_.Step(input));
+  StepInput poison = AtRest(100, SafetyState::kRunning);
+  poison.applied_torque_nm[0] = std::numeric_limits<double>::quiet_NaN();
+  step_.Step(poison);
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    ASSERT_TRUE(SameBytes(step_.Step(run[k]), first[k])) << "tick " << k;
+  }
+  ControlStep other(config_, ShippedDesign());
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    ASSERT_TRUE(SameBytes(other.Step(run[k]), first[k])) << "tick " << k;
+  }
+  EXPECT_NE(first[10].torque_nm[0], 0.0);
+}
+
+TEST_F(ControlStepTest, AResetGoesOnFromTheCountsBefore) {
+  StepInput input = AtRest(0, SafetyState::kArmed);
+  input.reset = 1;
+  input.counts_before = {1000, -300, 1000, 100'000};
+  input.frame.counter = {1003 & 0xFF, static_cast<std::uint32_t>(-305) & 0xFF, 1003 & 0xFF,
+                         100'010 & 0xFFFF};
+  const StepOutput out = step_.Step(input);
+  EXPECT_EQ(out.counts, (std::array<std::int64_t, 4>{1003, -305, 1003, 100'010}));
+  EXPECT_NEAR(out.x_hat[0], 1003 * 2.0 * M_PI / 2540.0, 1e-12);
+}
+
+TEST_F(ControlStepTest, TorqueIsZeroInEveryStateButRunningAndStopping) {
+  for (int state = 0; state <= 6; ++state) {
+    ControlStep step(config_, ShippedDesign());
+    StepOutput out{};
+    for (int k = 0; k < 3; ++k) {
+      StepInput input = Moving(k, static_cast<SafetyState>(state));
+      input.reference_ended = 1;  // Stopping starts where the reference ended: away from the arm
+      out = step.Step(input);
+    }
+    const bool torque = out.torque_nm[0] != 0.0 || out.torque_nm[1] != 0.0;
+    EXPECT_EQ(torque, state == 3 || state == 4) << state;
+  }
+}
+
+// control.md: y_e = K (x_m - x), and at zero with a pure angle reference all else is feedforward of
+// a resting reference, S21's first two columns, which are zero. So u = K x_m but for the adaptive
+// part, of the order of r^2 T = 1e-2 of it.
+TEST_F(ControlStepTest, TorqueActsTowardsTheReference) {
+  const StepOutput out = step_.Step(Moving(0));
+  const Eigen::Vector2d expected = ShippedDesign().K.leftCols<2>() * Eigen::Vector2d(0.01, -0.01);
+  EXPECT_NEAR(out.torque_nm[0], expected(0), 0.1 * std::abs(expected(0)));
+  EXPECT_GT(out.torque_nm[0], 0.0);
+}
+
+// The torque of the last step acts in the next one: x_next = A x_hat + B u_before.
+TEST_F(ControlStepTest, PredictsToTheInstantAtWhichTheTorqueActs) {
+  step_.Step(Moving(0));
+  const StepOutput before = step_.Step(Moving(1));
+  const StepOutput out = step_.Step(Moving(2));
+  const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out.x_hat.data(), 12);
+  const Eigen::VectorXd expected =
+      ShippedDesign().A * x +
+      ShippedDesign().B * Eigen::Vector2d(before.torque_nm[0], before.torque_nm[1]);
+  const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out.x_next.data(), 12);
+  EXPECT_LT((predicted - expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(out.limits & kPredictionOff, 0u);
+}
+
+// Moves [x; rates] over `ms` under a torque: the hold of just that duration, made in one piece.
+Eigen::VectorXd Held(const Eigen::VectorXd& x, double ms, const std::array<double, 2>& torque_nm) {
+  const Design& d = ShippedDesign();
+  const DiscreteModel hold = ZeroOrderHold(d.A_rate, d.B_rate, 1e-3 * ms);
+  return hold.A * x + hold.B * Eigen::Vector2d(torque_nm[0], torque_nm[1]);
+}
+
+// Torque k acts 15, 26 or 54 ms after k Ts; until then those before it act, each in its turn.
+// Borders are rounded to 0.3 us: at rates of 1 rad/s and 100 rad/s^2 that is 3e-7 rad and 3e-5
+// rad/s; a prediction of one whole period instead is off by a thousand times that.
+TEST_F(ControlStepTest, PredictsThroughTheTorquesOnTheirWay) {
+  for (const std::int64_t late_ms : {-5, 6, 34}) {
+    ControlStep step(config_, ShippedDesign());
+    std::vector<StepOutput> out;
+    for (StepInput input : ARun()) {
+      input.acted_late_ns = input.acts_late_ns = late_ms * 1'000'000;
+      out.push_back(step.Step(input));
+    }
+    const std::size_t k = 30;
+    const auto asked = [&out](std::size_t i) { return out[i].torque_nm; };
+    Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out[k].x_hat.data(), 12);
+    if (late_ms == -5) {
+      x = Held(x, 15, asked(k - 1));
+    } else if (late_ms == 6) {
+      x = Held(Held(x, 6, asked(k - 2)), 20, asked(k - 1));
+    } else {
+      x = Held(Held(Held(x, 14, asked(k - 3)), 20, asked(k - 2)), 20, asked(k - 1));
+    }
+    const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out[k].x_next.data(), 12);
+    EXPECT_LT((predicted - x).head(6).cwiseAbs().maxCoeff(), 3e-7) << late_ms;
+    EXPECT_LT((predicted - x).tail(6).cwiseAbs().maxCoeff(), 3e-5) << late_ms;
+    EXPECT_NE(asked(k - 1), asked(k - 2)) << "the same torque: the order says nothing";
+  }
+}
+
+// What the drive side measured counts for the torque that it is about, the plan for the new one.
+TEST_F(ControlStepTest, ACommandThatActedLateIsPredictedLate) {
+  step_.Step(Moving(0));
+  const StepOutput before = step_.Step(Moving(1));
+  StepInput input = Moving(2);
+  input.acted_late_ns = 3'000'000;
+  input.acts_late_ns = 1'000'000;
+  const StepOutput out = step_.Step(input);
+  ControlStep other(config_, ShippedDesign());
+  const StepOutput first = other.Step(Moving(0));
+  Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out.x_hat.data(), 12);
+  x = Held(Held(x, 3, first.torque_nm), 18, before.torque_nm);
+  const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out.x_next.data(), 12);
+  EXPECT_LT((predicted - x).cwiseAbs().maxCoeff(), 3e-5);
+}
+
+TEST_F(ControlStepTest, WithoutPredictionTheStateIsTakenAsItIsAndFlagged) {
+  ControlStep step(ShippedRig({"controller.prediction=false"}), ShippedDesign());
+  step.Step(Moving(0));
+  const StepOutput out = step.Step(Moving(1));
+  EXPECT_EQ(out.x_next, out.x_hat);
+  EXPECT_NE(out.limits & kPredictionOff, 0u);
+}
+
+// The goal of a stop is the arm where it is, joints untwisted: standing there costs no torque. With
+// a goal that forgot the rotors of a torsional model it would cost K_stop times their angle.
+TEST(ControlStepOfATorsionalModel, StoppingAtRestAsksNoTorque) {
+  const RigConfig config = ShippedRig({"controller.nominal=T16"});
+  ControlStep step(config, DesignController(config));
+  StepOutput out{};
+  for (int k = 0; k < 3; ++k) {
+    StepInput input = AtRest(k, SafetyState::kStopping);
+    input.reset = k == 0 ? 1 : 0;
+    input.counts_before = {127, 127, 127, 1224};  // 18 degrees on all four, exactly
+    input.frame.counter = {127, 127, 127, 1224};
+    out = step.Step(input);
+  }
+  EXPECT_EQ(out.faults, 0u);
+  EXPECT_NEAR(out.x_hat[0], 0.314159, 1e-6);
+  EXPECT_NEAR(out.x_hat[2], out.x_hat[0], 1e-9);
+  EXPECT_NEAR(out.torque_nm[0], 0.0, 1e-6);
+  EXPECT_NEAR(out.torque_nm[1], 0.0, 1e-6);
+}
+
+// One late frame is coasted over, on prediction; beyond two periods it is a fault.
+TEST_F(ControlStepTest, AFrameOfAnotherTickIsIgnored) {
+  step_.Step(AtRest(0, SafetyState::kRunning));
+  StepInput late = AtRest(1, SafetyState::kRunning);
+  late.frame.sampled_at_ns = 0;
+  late.frame.counter[0] = 20;  // what it says must not matter
+  const StepOutput out = step_.Step(late);
+  EXPECT_EQ(out.counters_used, 0u);
+  EXPECT_EQ(out.strain_used, 0u);
+  EXPECT_EQ(out.counts[0], 0);
+  EXPECT_EQ(out.faults, 0u);
+  EXPECT_NE(out.limits & kAdaptationHeld, 0u);
+  const StepOutput next = step_.Step(AtRest(2, SafetyState::kRunning));
+  EXPECT_EQ(next.counters_used, 0b1111u);
+  EXPECT_EQ(next.faults, 0u);
+}
+
+TEST_F(ControlStepTest, AStaleFrameIsAFaultAndTakesTheTorque) {
+  StepOutput out{};
+  for (int k = 0; k <= 3; ++k) {
+    StepInput input = Moving(k);
+    input.frame.sampled_at_ns = 0;
+    out = step_.Step(input);
+  }
+  EXPECT_NE(out.faults & CauseBit(TripCause::kStaleFrame), 0u);
+  EXPECT_NE(out.faults & CauseBit(TripCause::kNoCounterReading), 0u);
+  EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0}));
+}
+
+TEST_F(ControlStepTest, ATorqueThatIsNotANumberIsAFaultAndTakesTheTorque) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    ControlStep step(config_, ShippedDesign());
+    step.Step(Moving(0));
+    StepInput poisoned = Moving(1);
+    poisoned.applied_torque_nm[1] = bad;
+    const StepOutput out = step.Step(poisoned);
+    EXPECT_NE(out.faults & CauseBit(TripCause::kStateNotFinite), 0u);
+    EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0}));
+  }
+}
+
+// Clipping alone would turn a NaN into full torque: fmax and fmin pass over it.
+TEST_F(ControlStepTest, AReferenceThatIsNotANumberIsAFaultAndTakesTheTorque) {
+  step_.Step(AtRest(0, SafetyState::kArmed));
+  StepInput input = Moving(1);
+  input.reference_next.x_m[0] = std::numeric_limits<double>::quiet_NaN();
+  const StepOutput output = step_.Step(input);
+  EXPECT_EQ(output.faults, CauseBit(TripCause::kStateNotFinite));
+  EXPECT_EQ(output.torque_nm, (std::array<double, 2>{0.0, 0.0}));
+  EXPECT_EQ(step_.Step(Moving(2)).faults, 0u) << "the adaptive gains must not have taken it in";
+}
+
+// A trip is left only when its cause has gone, and the step is reset only when the arm is armed
+// again: so a state that went bad must mend by itself, or the daemon can never be reset.
+TEST_F(ControlStepTest, AStateThatWasNotFiniteMendsWhenTheInputsDo) {
+  step_.Step(Moving(0));
+  StepInput poisoned = Moving(1);
+  poisoned.applied_torque_nm[0] = std::numeric_limits<double>::quiet_NaN();
+  step_.Step(poisoned);
+  StepOutput out{};
+  for (int k = 2; k < 40; ++k) out = step_.Step(AtRest(k, SafetyState::kTripped));
+  EXPECT_EQ(out.faults, 0u);
+  EXPECT_TRUE(out.at_rest);
+}
+
+// Gains that a first run has taught must not greet the second with a step: an arm that rests on its
+// reference, away from zero, is asked for no torque. Only round-off is left, of K_I (x_m - x).
+TEST_F(ControlStepTest, ASecondRunBeginsWithoutAStep) {
+  const auto at_rest_on_reference = [](int k, SafetyState state) {
+    StepInput input = AtRest(k, state);
+    for (std::size_t i = 0; i < 3; ++i) input.frame.counter[i] = 127;
+    input.frame.counter[3] = 1224;  // 18 degrees, exact on both kinds of encoder
+    const double angle_rad = 127.0 * 2.0 * M_PI / 2540.0;
+    for (ReferenceSample* sample : {&input.reference_now, &input.reference_next}) {
+      sample->x_m[0] = sample->x_m[1] = angle_rad;
+    }
+    return input;
+  };
+  StepInput first = at_rest_on_reference(0, SafetyState::kArmed);
+  first.reset = 1;
+  first.counts_before = {127, 127, 127, 1224};
+  step_.Step(first);
+  for (int k = 1; k < 30; ++k) {
+    StepInput input = at_rest_on_reference(k, SafetyState::kRunning);
+    input.reference_next.x_m[0] += 0.05;  // an error that teaches
+    step_.Step(input);
+  }
+  const StepOutput taught = step_.Step(at_rest_on_reference(30, SafetyState::kArmed));
+  ASSERT_GT(taught.adaptive_gain_change, 1e-3) << "nothing learnt: the test says nothing";
+  StepOutput out{};
+  for (int k = 31; k < 200; ++k) out = step_.Step(at_rest_on_reference(k, SafetyState::kArmed));
+  EXPECT_EQ(out.adaptive_gain_change, taught.adaptive_gain_change) << "not held while Armed";
+  out = step_.Step(at_rest_on_reference(200, SafetyState::kRunning));
+  EXPECT_NEAR(out.torque_nm[0], 0.0, 1e-6);
+  EXPECT_NEAR(out.torque_nm[1], 0.0, 1e-6);
+}
+
+// From Running to Stopping the torque goes on where it was, and what is left of it fades by a fifth
+// a sample (0.1 s at 50 Hz) towards what the regulator asks.
+TEST_F(ControlStepTest, StoppingTakesOverWithoutAStep) {
+  StepOutput running{};
+  for (int k = 0; k < 3; ++k) running = step_.Step(Moving(k));
+  ASSERT_GT(running.torque_nm[0], 0.3);
+  const StepOutput first = step_.Step(Moving(3, SafetyState::kStopping));
+  EXPECT_NEAR(first.torque_nm[0], running.torque_nm[0], 1e-12);
+  EXPECT_NEAR(first.torque_nm[1], running.torque_nm[1], 1e-12);
+  StepOutput out{};
+  for (int k = 4; k < 100; ++k) out = step_.Step(Moving(k, SafetyState::kStopping));
+  EXPECT_LT(std::abs(out.torque_nm[0]), 0.1 * running.torque_nm[0]);
+}
+
+// The limits of the shipped rig are 30 and 6 N m: references 2 and 8 rad away saturate both joints.
+TEST_F(ControlStepTest, CountsTheTimeAtTheTorqueLimits) {
+  StepOutput out{};
+  for (int k = 0; k < 5; ++k) {
+    StepInput input = Moving(k);
+    input.reference_next.x_m[0] = 2.0;
+    input.reference_next.x_m[1] = 8.0;
+    out = step_.Step(input);
+  }
+  EXPECT_NEAR(out.saturated_s[0], 0.1, 1e-12);
+  EXPECT_NEAR(out.saturated_s[1], 0.1, 1e-12);
+  StepInput again = Moving(5);
+  again.reset = 1;
+  EXPECT_EQ(step_.Step(again).saturated_s, (std::array<double, 2>{0.0, 0.0}));
+}
+
+TEST_F(ControlStepTest, EchoesItsTickAndTheEndOfTheReference) {
+  StepInput input = Moving(17);
+  EXPECT_EQ(step_.Step(input).tick, 17);
+  EXPECT_EQ(step_.Step(input).experiment_done, 0);
+  input.reference_ended = 1;
+  EXPECT_EQ(step_.Step(input).experiment_done, 1);
+}
+
+TEST_F(ControlStepTest, InOpenLoopTheTorqueIsTheReferencesWhateverTheSensorsSay) {
+  StepInput input = Moving(0);
+  input.mode = LoopMode::kOpenLoop;
+  input.reference_next.u_m_nm = {1.5, -0.25};
+  EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{1.5, -0.25}));
+  input.reference_next.u_m_nm = {1000.0, -1000.0};
+  EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{30.0, -6.0})) << "the limits";
+}
+
+TEST_F(ControlStepTest, InOpenLoopStoppingAsksForNothing) {
+  StepInput input = Moving(0, SafetyState::kStopping);
+  input.mode = LoopMode::kOpenLoop;
+  input.reference_next.u_m_nm = {1.5, -0.25};
+  EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{0.0, 0.0}));
+}
+
+TEST_F(ControlStepTest, RegulatingPullsTheHubsToTheirGoal) {
+  StepInput input = Moving(0);
+  input.mode = LoopMode::kRegulate;
+  const StepOutput out = step_.Step(input);
+  EXPECT_GT(out.torque_nm[0], 0.0);
+  EXPECT_LT(out.torque_nm[1], 0.0);
+  EXPECT_NE(out.limits & kAdaptationHeld, 0u);
+}
+
+// Homing looks for a switch that lies outside the soft limits, with an angle that is in doubt.
+TEST_F(ControlStepTest, SoftLimitsHoldInEveryModeButHoming) {
+  for (const LoopMode mode : {LoopMode::kFollow, LoopMode::kOpenLoop, LoopMode::kRegulate}) {
+    StepInput input = Moving(0);
+    input.reset = 1;
+    input.mode = mode;
+    input.counts_before = {800, 0, 800, 0};  // 113 degrees
+    input.frame.counter[0] = input.frame.counter[2] = 800 & 0xFF;
+    const bool soft = (step_.Step(input).faults & CauseBit(TripCause::kSoftLimit1)) != 0;
+    EXPECT_EQ(soft, mode != LoopMode::kRegulate) << static_cast<int>(mode);
+  }
+}
+
+TEST_F(ControlStepTest, ACalibrationCountsFromTheResetOn) {
+  StepInput input = AtRest(0, SafetyState::kArmed);
+  input.calibration.counter_zero = {-254, 0, 0, 0};
+  EXPECT_EQ(step_.Step(input).angle_rad[0], 0.0);
+  input.tick = 1;
+  input.reset = 1;
+  EXPECT_NEAR(step_.Step(input).angle_rad[0], 0.2 * M_PI, 1e-12) << "a tenth of 2540 counts";
+}
+
+}  // namespace
+}  // namespace flexarm

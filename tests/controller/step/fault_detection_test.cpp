@@ -1,0 +1,315 @@
+// Every cause that only the loop can see, raised by its fact: after how many ticks, with what
+// value, limit and channel.
+
+#include "controller/step/fault_detection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "model/units.h"
+#include "tests/controller/law/shipped_rig.h"
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+// Facts of a healthy arm at rest at zero.
+struct Facts {
+  DecodedCounters counters{};
+  FittedModes modes{};
+  StateEstimator::Estimate estimate{};
+  std::array<double, 2> torque_nm{};
+  double frame_age_s = 0.0;
+  LoopMode mode = LoopMode::kFollow;
+
+  Facts() {
+    counters.good = 0b1111;
+    modes.valid = {true, true};
+    modes.used = 0xFFFFF;
+    estimate.x = StateVector::Zero(12);
+  }
+  LoopFacts Now() const {
+    return {.counters = &counters,
+            .modes = &modes,
+            .estimate = &estimate,
+            .applied_torque_nm = torque_nm,
+            .frame_age_s = frame_age_s,
+            .mode = mode};
+  }
+};
+
+class LoopSupervisorTest : public testing::Test {
+ protected:
+  // Shows `facts` and expects `cause` alone from the `ticks`-th sample on, with its evidence; and
+  // silence again when the fact has gone.
+  void Expect(TripCause cause, int ticks, const Facts& facts, double value, double limit,
+              std::uint16_t channel) {
+    SCOPED_TRACE(Name(cause));
+    supervisor_.Reset();
+    for (int k = 1; k < ticks; ++k) {
+      EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u) << "after " << k;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const auto verdict = supervisor_.Judge(facts.Now());
+      EXPECT_EQ(verdict.faults, CauseBit(cause));
+      EXPECT_DOUBLE_EQ(verdict.value, value);
+      EXPECT_DOUBLE_EQ(verdict.limit, limit);
+      EXPECT_EQ(verdict.channel, channel);
+    }
+    EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u) << "the fact has gone";
+  }
+
+  const RigConfig config_ = ShippedRig();
+  LoopSupervisor supervisor_{
+      config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96}};
+};
+
+TEST_F(LoopSupervisorTest, AHealthyArmRaisesNothing) {
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u);
+}
+
+TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSampleThatShowsThem) {
+  for (const double sign : {1.0, -1.0}) {
+    Facts facts;
+    facts.counters.angle_rad = {sign * 90.1 * kRadPerDeg, 0, sign * 90.1 * kRadPerDeg, 0};
+    Expect(TripCause::kSoftLimit1, 1, facts, 90.1 * kRadPerDeg, 90.0 * kRadPerDeg, 1);
+    facts.counters.angle_rad = {0, sign * 90.1 * kRadPerDeg, 0, sign * 90.1 * kRadPerDeg};
+    Expect(TripCause::kSoftLimit2, 1, facts, 90.1 * kRadPerDeg, 90.0 * kRadPerDeg, 2);
+    facts.counters.angle_rad = {sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg,
+                                sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg};
+    EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  }
+}
+
+TEST_F(LoopSupervisorTest, HubRatesTripOnTheSecondSample) {
+  Facts facts;
+  facts.estimate.x(6) = -8.1;
+  Expect(TripCause::kHubRate1, 2, facts, 8.1, 8.0, 1);
+  facts = {};
+  facts.estimate.x(7) = 10.1;
+  Expect(TripCause::kHubRate2, 2, facts, 10.1, 10.0, 2);
+}
+
+TEST_F(LoopSupervisorTest, AHubRateOfEverySecondSampleDoesNotTrip) {
+  Facts fast;
+  fast.estimate.x(6) = 9.0;
+  for (int k = 0; k < 20; ++k) {
+    EXPECT_EQ(supervisor_.Judge(fast.Now()).faults, 0u);
+    EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u);
+  }
+}
+
+TEST_F(LoopSupervisorTest, BendingStrainTripsInTheSampleThatShowsIt) {
+  Facts facts;
+  facts.modes.root_strain = {-1.95e-3, 0.0};
+  Expect(TripCause::kBendingStrain1, 1, facts, 1.95e-3, 1.9e-3, 1);
+  facts.modes.root_strain = {0.0, 1.95e-3};
+  Expect(TripCause::kBendingStrain2, 1, facts, 1.95e-3, 1.9e-3, 2);
+}
+
+TEST_F(LoopSupervisorTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
+  Facts facts;
+  facts.counters.jumped = 0b0100;
+  const auto verdict = supervisor_.Judge(facts.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kEncoderJump));
+  EXPECT_EQ(verdict.channel, 3);
+  EXPECT_DOUBLE_EQ(verdict.limit, 14.0);
+}
+
+// "No good counter reading for two periods."
+TEST_F(LoopSupervisorTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
+  Facts facts;
+  facts.counters.good = 0b1101;
+  facts.counters.missing_ticks = {0, 1, 0, 0};
+  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  facts.counters.missing_ticks = {0, 2, 0, 0};
+  Expect(TripCause::kNoCounterReading, 1, facts, 2.0, 2.0, 2);
+}
+
+TEST_F(LoopSupervisorTest, AnEncoderThatTheRigDoesNotHaveIsNotMissed) {
+  LoopSupervisor hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {761.59, 497.96});
+  Facts facts;
+  facts.counters.good = 0b0011;
+  facts.counters.missing_ticks = {0, 0, 500, 500};
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(hubs_only.Judge(facts.Now()).faults, 0u);
+}
+
+// 0.1 rad beyond what the torque twists the spring by.
+TEST_F(LoopSupervisorTest, HubAgainstRotorTripsBeyondTheTorsionThatTheTorqueExplains) {
+  Facts facts;
+  facts.counters.angle_rad = {0.2, 0.0, 0.2 + 0.11, 0.0};
+  Expect(TripCause::kHubAgainstRotor, 3, facts, 0.2 + 0.11 - 0.2, 0.1, 1);
+  facts.counters.angle_rad = {0.0, 0.1, 0.0, 0.0};
+  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  // 761.59 N m twist joint 1 by one radian: nothing is wrong then.
+  facts = {};
+  facts.torque_nm = {761.59, 0.0};
+  facts.counters.angle_rad = {0.0, 0.0, 1.0, 0.0};
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  facts.torque_nm = {-761.59, 0.0};
+  for (int k = 0; k < 3; ++k) supervisor_.Judge(facts.Now());
+  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, CauseBit(TripCause::kHubAgainstRotor));
+}
+
+TEST_F(LoopSupervisorTest, HubAgainstRotorIsNotJudgedWithoutBothReadings) {
+  Facts facts;
+  facts.counters.angle_rad = {0.0, 0.0, 0.5, 0.0};
+  facts.counters.good = 0b1011;
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+}
+
+TEST_F(LoopSupervisorTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
+  Facts facts;
+  facts.modes.stuck = 1u << 4;
+  Expect(TripCause::kStrainStuck, 3, facts, 0.0, 1e-4, 5);
+  facts = {};
+  facts.modes.saturated = 1u << 19;
+  Expect(TripCause::kStrainSaturated, 3, facts, 0.0, 0.0, 20);
+  facts = {};
+  facts.modes.outlier = 1u << 0;
+  facts.modes.worst_outlier = 7e-4;
+  Expect(TripCause::kStrainOutOfFamily, 3, facts, 7e-4, 4e-4, 1);
+}
+
+TEST_F(LoopSupervisorTest, AStrainFaultThatComesAndGoesDoesNotTrip) {
+  Facts bad;
+  bad.modes.outlier = 1;
+  for (int k = 0; k < 10; ++k) {
+    EXPECT_EQ(supervisor_.Judge(bad.Now()).faults, 0u);
+    EXPECT_EQ(supervisor_.Judge(bad.Now()).faults, 0u);
+    EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u);
+  }
+}
+
+TEST_F(LoopSupervisorTest, AStaleFrameTripsBeyondTwoPeriods) {
+  Facts facts;
+  facts.frame_age_s = 0.04;
+  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  facts.frame_age_s = 0.041;
+  Expect(TripCause::kStaleFrame, 1, facts, 0.041, 0.04, 0);
+}
+
+TEST_F(LoopSupervisorTest, AStateThatIsNotFiniteTripsAtOnce) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (Eigen::Index i = 0; i < 12; ++i) {
+      Facts facts;
+      facts.estimate.x(i) = bad;
+      supervisor_.Reset();
+      const auto faults = supervisor_.Judge(facts.Now()).faults;
+      EXPECT_TRUE((faults & CauseBit(TripCause::kStateNotFinite)) != 0) << i;
+    }
+  }
+}
+
+TEST_F(LoopSupervisorTest, EstimatorResidualTripsAfterThreeSamplesAndNamesTheJoint) {
+  Facts facts;
+  facts.estimate.innovation[0] = -0.36;
+  Expect(TripCause::kEstimatorResidual, 3, facts, 0.36, 0.35, 1);
+  facts.estimate.innovation[1] = 0.4;
+  Expect(TripCause::kEstimatorResidual, 3, facts, 0.4, 0.35, 2);
+}
+
+// Three causes in one sample: all are raised, the evidence is that of the lowest number.
+TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
+  Facts facts;
+  facts.frame_age_s = 0.1;
+  facts.counters.jumped = 0b1000;
+  facts.counters.angle_rad[1] = facts.counters.angle_rad[3] = 2.0;
+  const auto verdict = supervisor_.Judge(facts.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kSoftLimit2) | CauseBit(TripCause::kEncoderJump) |
+                                CauseBit(TripCause::kStaleFrame));
+  EXPECT_DOUBLE_EQ(verdict.value, 2.0);
+  EXPECT_DOUBLE_EQ(verdict.limit, 90.0 * kRadPerDeg);
+  EXPECT_EQ(verdict.channel, 2);
+}
+
+TEST_F(LoopSupervisorTest, ResetForgetsSamplesInARow) {
+  Facts facts;
+  facts.modes.stuck = 1;
+  supervisor_.Judge(facts.Now());
+  supervisor_.Judge(facts.Now());
+  supervisor_.Reset();
+  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+}
+
+// Symptom: the log of a second run, armed away from zero, did not replay: a loop that had run
+// before saw rest five samples earlier than the one that began with the log.
+TEST_F(LoopSupervisorTest, ResetForgetsWhereTheArmWas) {
+  Facts elsewhere;
+  elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
+  elsewhere.modes.root_strain = {2e-4, 1e-4};
+  LoopSupervisor fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  for (int k = 0; k < 38; ++k) supervisor_.Judge(elsewhere.Now());  // 38: not a full ring
+  supervisor_.Reset();
+  for (int k = 1; k <= 60; ++k) {
+    // Moves from sample 30 to 33, so that the order in the ring shows.
+    if (k >= 30 && k <= 33) elsewhere.counters.angle_rad[0] += 0.002;
+    const bool at_rest = supervisor_.Judge(elsewhere.Now()).at_rest;
+    EXPECT_EQ(at_rest, fresh.Judge(elsewhere.Now()).at_rest) << k;
+    if (k < 30) {
+      EXPECT_EQ(at_rest, k >= 25) << "half a second, wherever it stands: " << k;
+    }
+  }
+}
+
+// safety.rest_time_s may be shorter than the window over which hub rates are measured.
+TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestHoweverShortTheRest) {
+  SafetyConfig safety = config_.safety;
+  safety.rest_time_s = 0.05;
+  LoopSupervisor hasty(safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  Facts moving;
+  for (int k = 0; k < 20; ++k) {
+    moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
+    EXPECT_FALSE(hasty.Judge(moving.Now()).at_rest) << k;
+  }
+}
+
+// At rest: half a second, 25 samples, of slow hubs and slow strain.
+TEST_F(LoopSupervisorTest, RestIsSeenAfterHalfASecondOfIt) {
+  for (int k = 1; k < 25; ++k) EXPECT_FALSE(supervisor_.Judge(Facts().Now()).at_rest) << k;
+  EXPECT_TRUE(supervisor_.Judge(Facts().Now()).at_rest);
+}
+
+TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestAndACountOfItIs) {
+  Facts moving;
+  for (int k = 0; k < 60; ++k) {  // 0.06 rad/s, the bound being 0.05
+    moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
+    EXPECT_FALSE(supervisor_.Judge(moving.Now()).at_rest);
+  }
+  supervisor_.Reset();
+  Facts flicker;  // one count of 2540 to and fro: 0.12 rad/s from sample to sample
+  bool at_rest = false;
+  for (int k = 0; k < 60; ++k) {
+    flicker.counters.angle_rad[0] = k % 2 == 0 ? 0.0 : 2.0 * std::numbers::pi / 2540.0;
+    at_rest = supervisor_.Judge(flicker.Now()).at_rest;
+  }
+  EXPECT_TRUE(at_rest);
+}
+
+// 1.2e-4 of strain a sample is 6e-3 1/s, the bound being 5e-3.
+TEST_F(LoopSupervisorTest, ABendingLinkIsNotAtRest) {
+  Facts bending;
+  for (int k = 0; k < 60; ++k) {
+    bending.modes.root_strain[1] = (k % 2 == 0 ? 1.0 : -1.0) * 0.6e-4;
+    EXPECT_FALSE(supervisor_.Judge(bending.Now()).at_rest);
+  }
+}
+
+TEST_F(LoopSupervisorTest, OneMovementStartsTheHalfSecondAnew) {
+  for (int k = 0; k < 40; ++k) supervisor_.Judge(Facts().Now());
+  ASSERT_TRUE(supervisor_.Judge(Facts().Now()).at_rest);
+  Facts moved;
+  moved.counters.angle_rad[0] = moved.counters.angle_rad[2] = 0.05;
+  EXPECT_FALSE(supervisor_.Judge(moved.Now()).at_rest);
+  int samples = 0;
+  while (!supervisor_.Judge(moved.Now()).at_rest && samples < 100) ++samples;
+  EXPECT_GE(samples, 24);
+  EXPECT_LE(samples, 30) << "the window of five samples may delay it, no more";
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,66 @@
+#include "controller/tasks/bus_health.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+struct Journal {
+  void Follow(std::int64_t now_ns, const std::vector<BusHealth>& buses) {
+    journal.Follow(now_ns, buses, [this](bool is_error, const std::string& text) {
+      lines.push_back((is_error ? "error: " : "") + text);
+    });
+  }
+  BusJournal journal;
+  std::vector<std::string> lines;
+};
+
+BusHealth Bus(bool ok, const char* fault, std::uint32_t failed) {
+  return {.name = "can0", .ok = ok, .fault = fault, .failed = failed, .taken_back = 0};
+}
+
+TEST(BusJournal, SaysWhenABusIsLostAndWhenItIsBack) {
+  Journal told;
+  told.Follow(0, {Bus(true, "", 0)});
+  told.Follow(20 * kMs, {Bus(false, "can0: node 2 (drive2): answers no SYNC", 2)});
+  told.Follow(40 * kMs, {Bus(false, "can0: node 2 (drive2): answers no SYNC", 3)});
+  told.Follow(60 * kMs, {Bus(true, "", 8)});
+  told.Follow(80 * kMs, {Bus(true, "", 8)});
+  EXPECT_EQ(told.lines, (std::vector<std::string>{
+                            "error: lost: can0: node 2 (drive2): answers no SYNC",
+                            "can0: back, after 6 failed exchanges and attempts to reconnect"}));
+}
+
+// A bus that fails now and then and is never lost: counted, and told, but not fifty times a second.
+TEST(BusJournal, TellsOfSurvivedFailuresOnceASecondAtMost) {
+  Journal told;
+  for (std::uint32_t k = 0; k < 150; ++k) {
+    told.Follow(std::int64_t{k} * 20 * kMs,
+                {Bus(true, k % 2 == 0 ? "" : "can0: no answer in time", (k + 1) / 2)});
+  }
+  EXPECT_EQ(told.lines.size(), 3U);
+  EXPECT_EQ(told.lines[0],
+            "error: can0: 1 failed exchanges, survived; the last: can0: no answer in time");
+}
+
+TEST(BusJournal, KeepsTheBusesApart) {
+  Journal told;
+  BusHealth other = Bus(true, "", 0);
+  other.name = "amplifier";
+  told.Follow(0, {Bus(true, "", 0), other});
+  told.Follow(20 * kMs, {Bus(true, "", 0),
+                         {.name = "amplifier",
+                          .ok = false,
+                          .fault = "amplifier: connection lost",
+                          .failed = 2,
+                          .taken_back = 0}});
+  EXPECT_EQ(told.lines, std::vector<std::string>{"error: lost: amplifier: connection lost"});
+}
+
+}  // namespace
+}  // namespace flexarm

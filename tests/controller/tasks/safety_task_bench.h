@@ -1,0 +1,187 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "controller/realtime/lockstep_executor.h"
+#include "controller/safety/torque_gate.h"
+#include "controller/tasks/safety_task.h"
+#include "tests/support/loop_time.h"
+
+// The safety task between a control and a drive side that can be stopped, on the lock-step clock.
+
+namespace flexarm {
+
+inline constexpr std::int64_t kPhaseNs = 5 * kMs;
+inline constexpr std::int64_t kDeadlineNs = 10 * kMs;
+inline constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
+                                          .stop_timeout_ns = 3000 * kMs,
+                                          .missed_deadlines_to_trip = 3,
+                                          .homing_contact_ns = 500 * kMs};
+
+struct FakeLines final : SafetyLines {
+  struct Written {
+    std::int64_t now_ns;
+    Outputs outputs;
+  };
+
+  LineLevels Read(std::int64_t) noexcept override { return levels; }
+  void Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+    written.push_back({now_ns, outputs});
+  }
+  bool relay_closed() const { return written.back().outputs.relay_closed; }
+
+  LineLevels levels = kHealthyLevels;
+  std::vector<Written> written;
+};
+
+struct FakeControl final : Task {
+  explicit FakeControl(ControlReportChannel* out) : out_(out) {}
+  Traits traits() const noexcept override {
+    return {.name = "control",
+            .period_ns = kPeriodNs,
+            .phase_ns = kPhaseNs,
+            .deadline_ns = kDeadlineNs,
+            .priority = 80};
+  }
+  void Run(const Activation& activation) noexcept override {
+    if (stopped) return;
+    report.tick = (activation.due_ns - kPhaseNs) / kPeriodNs;
+    report.due_ns = activation.due_ns;
+    history_.Push(activation.due_ns + kDeadlineNs, report);
+    out_->Publish(history_);
+  }
+
+  bool stopped = false;
+  ControlReport report = [] {
+    ControlReport initial = kNoControlReport;
+    initial.at_rest = true;
+    return initial;
+  }();
+
+ private:
+  ControlReportHistory history_{kNoControlReport};
+  ControlReportChannel* out_;
+};
+
+// Writes the torque that the gate lets through, like the plant task.
+struct FakeDrive final : Task {
+  FakeDrive(PermitChannel* permits, DriveReportChannel* out) : permits_(permits), out_(out) {}
+  Traits traits() const noexcept override {
+    return {.name = "drive", .period_ns = kMs, .phase_ns = 0, .deadline_ns = kMs, .priority = 60};
+  }
+  void Run(const Activation& activation) noexcept override {
+    if (stopped) return;
+    const Permit& permit = permits_->Read().At(activation.due_ns - 1).value;
+    const GateLimits limits{.torque_nm = {30.0, 6.0},
+                            .slew_nm_per_s = {500.0, 150.0},
+                            .command_timeout_ns = 2 * kPeriodNs,
+                            .permit_timeout_ns = 5 * kMs};
+    const GateResult result = Gate({.asked_nm = {1.0, 1.0},
+                                    .asked_age_ns = 0,  // commands never age: the permit alone acts
+                                    .permit = permit.state,
+                                    .permit_age_ns = AgeNs(activation.due_ns, permit.renewed_ns),
+                                    .previous_nm = torque_nm,
+                                    .dt_s = 1e-3},
+                                   limits);
+    torque_nm = result.torque_nm;
+    report.due_ns = activation.due_ns;
+    history_.Push(activation.due_ns + kMs, report);
+    out_->Publish(history_);
+  }
+
+  bool stopped = false;
+  std::array<double, 2> torque_nm{};
+  DriveReport report{.due_ns = INT64_MIN, .bus_ok = true, .drive_ok = true};
+
+ private:
+  DriveReportHistory history_{kNoDriveReport};
+  PermitChannel* permits_;
+  DriveReportChannel* out_;
+};
+
+class SafetyTaskTest : public testing::Test {
+ protected:
+  SafetyTaskTest() {
+    executor_.Add(drive_);
+    executor_.Add(control_);
+    executor_.Add(safety_);
+  }
+
+  void RunFor(std::int64_t duration_ns) { executor_.RunUntil(executor_.next_ns() + duration_ns); }
+
+  std::uint32_t Ask(RequestKind kind, std::int64_t not_before_ns = INT64_MIN) {
+    EXPECT_TRUE(
+        requests_.Push({.kind = kind, .number = ++number_, .not_before_ns = not_before_ns}));
+    return number_;
+  }
+
+  // Asks, runs one tick, and gives the answer.
+  Refusal Now(RequestKind kind) {
+    const std::uint32_t number = Ask(kind);
+    RunFor(kMs);
+    RequestAnswer answer{};
+    while (answers_.Pop(&answer)) {
+      if (answer.number == number) return answer.refusal;
+    }
+    ADD_FAILURE() << "no answer to " << Name(kind);
+    return Refusal::kNone;
+  }
+
+  void GoTo(SafetyState state) {
+    RunFor(100 * kMs);
+    ASSERT_EQ(safety_.status().state, SafetyState::kIdle);
+    if (state == SafetyState::kIdle) return;
+    ASSERT_EQ(Now(RequestKind::kArm), Refusal::kNone);
+    if (state == SafetyState::kArmed) return;
+    ASSERT_EQ(Now(RequestKind::kRun), Refusal::kNone);
+    control_.report.at_rest = false;
+    RunFor(200 * kMs);
+    ASSERT_EQ(safety_.status().state, SafetyState::kRunning);
+    ASSERT_EQ(drive_.torque_nm[0], 1.0);
+  }
+
+  // Runs till the trip; gives its instant.
+  std::int64_t RunUntilTripped(std::int64_t at_most_ns) {
+    const std::int64_t end_ns = executor_.next_ns() + at_most_ns;
+    while (safety_.status().state != SafetyState::kTripped && executor_.next_ns() < end_ns)
+      RunFor(kMs);
+    EXPECT_EQ(safety_.status().state, SafetyState::kTripped);
+    return executor_.next_ns() - kMs;
+  }
+
+  std::vector<SafetyRecord> Records() {
+    SafetyRecord record{};
+    while (records_.Pop(&record)) all_records_.push_back(record);
+    return all_records_;
+  }
+
+  const Permit& permit() { return operator_permits_.Read().Newest().value; }
+
+  FakeLines lines_;
+  ControlReportChannel reports_{ControlReportHistory(kNoControlReport)};
+  DriveReportChannel drive_reports_{DriveReportHistory(kNoDriveReport)};
+  PermitChannel drive_permits_{PermitHistory(kNoPermit)};
+  PermitChannel operator_permits_{PermitHistory(kNoPermit)};
+  SpscQueue<OperatorRequest> requests_{100};
+  SpscQueue<RequestAnswer> answers_{100};
+  SpscQueue<SafetyRecord> records_{10'000};
+  SafetyTask safety_{kLimits,
+                     {.lines = &lines_,
+                      .control = &reports_,
+                      .drives = {&drive_reports_},
+                      .requests = &requests_,
+                      .permits = {&drive_permits_, &operator_permits_},
+                      .answers = &answers_,
+                      .records = &records_}};
+  FakeControl control_{&reports_};
+  FakeDrive drive_{&drive_permits_, &drive_reports_};
+  LockstepExecutor executor_;
+  std::uint32_t number_ = 0;
+  std::vector<SafetyRecord> all_records_;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include "controller/tasks/safety_task.h"
+#include "tests/controller/tasks/safety_task_bench.h"
+
+// The operator's requests, and how a run ends.
+
+namespace flexarm {
+namespace {
+
+using enum SafetyState;
+
+TEST_F(SafetyTaskTest, TheEndOfTheExperimentStopsDampsAndArms) {
+  GoTo(kRunning);
+  control_.report.experiment_done = true;
+  RunFor(40 * kMs);
+  EXPECT_EQ(safety_.status().state, kStopping);
+  EXPECT_EQ(drive_.torque_nm[0], 1.0) << "the controller damps the arm";
+  control_.report.at_rest = true;
+  RunFor(40 * kMs);
+  EXPECT_EQ(safety_.status().state, kArmed);
+  EXPECT_EQ(drive_.torque_nm[0], 0.0);
+  EXPECT_TRUE(lines_.relay_closed());
+
+  ASSERT_EQ(Now(RequestKind::kRun), Refusal::kNone);
+  control_.report.experiment_done = false;
+  control_.report.at_rest = false;
+  RunFor(100 * kMs);
+  EXPECT_EQ(safety_.status().state, kRunning) << "the end of the last run does not end this one";
+}
+
+TEST_F(SafetyTaskTest, PlannedRequestsAreJudgedAtTheirTickInOrder) {
+  Ask(RequestKind::kArm, 100 * kMs);
+  Ask(RequestKind::kRun, 200 * kMs + 1);  // not on the grid: the next tick
+  executor_.RunUntil(100 * kMs);
+  EXPECT_EQ(safety_.status().state, kIdle);
+  executor_.RunUntil(100 * kMs + 1);
+  EXPECT_EQ(safety_.status().state, kArmed);
+  executor_.RunUntil(201 * kMs);
+  EXPECT_EQ(safety_.status().state, kArmed);
+  executor_.RunUntil(201 * kMs + 1);
+  EXPECT_EQ(safety_.status().state, kRunning);
+  EXPECT_EQ(permit().running_since_ns, 201 * kMs);
+
+  RequestAnswer answer{};
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.kind, RequestKind::kArm);
+  EXPECT_EQ(answer.number, 1u);
+  EXPECT_EQ(answer.state, kIdle) << "the state in which it was judged";
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.kind, RequestKind::kRun);
+  EXPECT_FALSE(answers_.Pop(&answer));
+}
+
+TEST_F(SafetyTaskTest, RequestsThatArriveTogetherAreJudgedOneATickInOrder) {
+  RunFor(100 * kMs);
+  Ask(RequestKind::kArm);
+  Ask(RequestKind::kRun);
+  RunFor(kMs);
+  EXPECT_EQ(safety_.status().state, kArmed);
+  RunFor(kMs);
+  EXPECT_EQ(safety_.status().state, kRunning);
+}
+
+TEST_F(SafetyTaskTest, AStopOvertakesPlannedRequestsAndCancelsThePlannedRun) {
+  GoTo(kRunning);
+  const std::uint32_t planned_run = Ask(RequestKind::kRun, executor_.next_ns() + 500 * kMs);
+  Ask(RequestKind::kDisarm, executor_.next_ns() + 1000 * kMs);
+  RunFor(kMs);
+  Ask(RequestKind::kStop);
+  const std::uint32_t later_run = Ask(RequestKind::kRun, executor_.next_ns() + 5000 * kMs);
+  RunFor(kMs);
+  EXPECT_EQ(safety_.status().state, kStopping);
+  RequestAnswer answer{};
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.kind, RequestKind::kStop);
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.number, planned_run);
+  EXPECT_EQ(answer.refusal, Refusal::kCancelled);
+  EXPECT_FALSE(answers_.Pop(&answer)) << "the planned disarm stays, and what came after the stop";
+  control_.report.at_rest = true;
+  RunFor(1000 * kMs);
+  EXPECT_EQ(safety_.status().state, kIdle) << "armed at rest, then disarmed as planned";
+  lines_.levels = 0;
+  RunFor(kMs);
+  while (answers_.Pop(&answer)) {
+  }
+  EXPECT_EQ(answer.number, later_run);
+  EXPECT_EQ(answer.refusal, Refusal::kCancelled) << "a trip cancels all";
+}
+
+}  // namespace
+}  // namespace flexarm

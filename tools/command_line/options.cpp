@@ -1,0 +1,68 @@
+#include "tools/command_line/options.h"
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "controller/runlog/errors.h"
+
+namespace flexarm {
+
+void ConfigOptions::AddTo(CLI::App* verb, bool required) {
+  verb->add_option("-c,--config", file, "RigConfig of the rig, a TOML file")
+      ->required(required)
+      ->type_name("FILE");
+  verb->add_option("--set", overrides,
+                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);  // one value each: what follows may be a run
+}
+
+RigConfig ConfigOptions::Load() const {
+  if (!given()) throw InputError("--set needs --config FILE");
+  return LoadConfig(file, overrides);
+}
+
+void GridOptions::AddTo(CLI::App* verb) {
+  verb->add_option("--shard", shard,
+                   "Only the I-th of N parts, 1 <= I <= N; `flexarm sweep merge` joins them")
+      ->type_name("I/N");
+  verb->add_option("--jobs", jobs, "Runs at a time (default: one a core)")
+      ->type_name("J")
+      ->check(NumberWithin(1, 1024));
+}
+
+std::filesystem::path ExperimentFile(const std::filesystem::path& given,
+                                     const std::filesystem::path& config) {
+  if (!given.empty()) return given;
+  const std::filesystem::path name = "experiments/square-30deg.toml";
+  const std::filesystem::path beside = config.parent_path() / name;
+  return std::filesystem::exists(beside) ? beside : "config" / name;
+}
+
+std::function<std::string(const std::string&)> NumberWithin(double low, double high) {
+  return [low, high](const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high)
+      return std::string();
+    std::ostringstream told;
+    told << "found " << text << ", expected a number from " << low << " to " << high;
+    return told.str();
+  };
+}
+
+void AddJson(CLI::App* verb, bool* json) {
+  verb->add_flag("--json", *json, "Print one JSON object instead of text");
+}
+
+void CheckPicture(const std::filesystem::path& output) {
+  const auto extension = output.extension();
+  if (extension == ".png" || extension == ".svg") return;
+  throw InputError(output.string() + ": found extension \"" + extension.string() +
+                   "\", expected .png or .svg");
+}
+
+void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what) {
+  verb->add_option("-o,--output", *file, what)->required()->type_name("FILE");
+}
+
+}  // namespace flexarm

@@ -1,0 +1,85 @@
+#include "tools/command_line/program.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+
+#include "config/config.h"
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/errors.h"
+#include "controller/types/refused.h"
+#include "tools/command_line/verbs.h"
+
+namespace flexarm {
+namespace {
+
+void Complain(const std::string& text) { std::cerr << "flexarm: " << text << '\n'; }
+
+// CLI11 knows the message; what is missing is our name before it and where to read on.
+int BadUsage(const CLI::App& app, const CLI::ParseError& error) {
+  Complain(error.what());
+  const CLI::App* verb = &app;
+  std::string name = "flexarm";
+  while (!verb->get_subcommands().empty()) {
+    verb = verb->get_subcommands().front();
+    name += " " + verb->get_name();
+  }
+  std::cerr << "Try: " << name << " --help\n";
+  return Exit::kBadInput;
+}
+
+int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
+  Exit exit;
+  CLI::App app("Controller of a two-link flexible arm: design, simulate, replay, judge, operate.",
+               "flexarm");
+  app.set_version_flag("--version", "flexarm " + ThisBuild().version + " (" + BuildId() + ")");
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  app.footer(
+      "First steps:\n"
+      "  flexarm config check config/hil.toml      is this rig described well?\n"
+      "  flexarm simulate -c config/hil.toml       one run of the simulated arm\n"
+      "  flexarm info RUN.flexarm                  what happened in this run?\n"
+      "  flexarm plot RUN.flexarm -o run.png       a picture of it\n"
+      "  flexarm replay RUN.flexarm                does it compute the same again?\n"
+      "Exit codes: 0 done; 1 a run, replay or check failed; 2 bad usage, config or input.");
+  register_verbs(app, exit);
+  const auto is_first = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty()) {
+    Complain("unknown verb \"" + std::string(argv[1]) + "\"; flexarm --help names them all");
+    return Exit::kBadInput;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return BadUsage(app, error);
+  } catch (const ConfigError& error) {
+    Complain(error.what());
+    return Exit::kBadInput;
+  } catch (const Refused& error) {
+    Complain(error.what());
+    return Exit::kBadInput;
+  } catch (const InputError& error) {
+    Complain(error.what());
+    return Exit::kBadInput;
+  } catch (const std::exception& error) {
+    Complain(error.what());
+    return Exit::kFailed;
+  }
+  return exit.code;
+}
+
+}  // namespace
+
+int RunProgram(int argc, char** argv, RegisterVerbs* register_verbs) noexcept {
+  try {
+    return Run(argc, argv, register_verbs);
+  } catch (...) {  // what even the message could not be made for
+    return Exit::kFailed;
+  }
+}
+
+}  // namespace flexarm

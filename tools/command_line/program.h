@@ -1,0 +1,14 @@
+#pragma once
+
+#include "tools/command_line/verbs.h"
+
+namespace flexarm {
+
+/// Adds verbs to the program; they set `exit.code` when they run.
+using RegisterVerbs = void(CLI::App& app, Exit& exit);
+
+/// Runs the verb that the arguments name: the main function of flexarm and of flexarm-study, which
+/// differ in their verbs. Says what was wrong on stderr. Returns what the process ends with.
+int RunProgram(int argc, char** argv, RegisterVerbs* register_verbs) noexcept;
+
+}  // namespace flexarm

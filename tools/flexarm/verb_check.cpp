@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/runs/conformance.h"
+
+namespace flexarm {
+namespace {
+
+struct CheckOptions {
+  std::filesystem::path run;
+  bool json = false;
+};
+
+void PrintJson(const std::vector<ConformanceCheck>& checks, bool passed) {
+  nlohmann::ordered_json json;
+  json["passed"] = passed;
+  json["checks"] = nlohmann::ordered_json::array();
+  for (const ConformanceCheck& check : checks) {
+    json["checks"].push_back(
+        {{"name", check.name}, {"passed", check.passed}, {"detail", check.detail}});
+  }
+  std::cout << json.dump(2) << '\n';
+}
+
+int Check(const CheckOptions& options) {
+  const std::vector<ConformanceCheck> checks = CheckConformance(LoadRun(options.run));
+  const bool passed = std::all_of(checks.begin(), checks.end(),
+                                  [](const ConformanceCheck& check) { return check.passed; });
+  if (options.json) {
+    PrintJson(checks, passed);
+  } else {
+    for (const ConformanceCheck& check : checks) {
+      std::cout << (check.passed ? "ok      " : "FAILED  ") << std::left << std::setw(28)
+                << check.name << check.detail << '\n';
+    }
+  }
+  return passed ? Exit::kDone : Exit::kFailed;
+}
+
+}  // namespace
+
+void RegisterCheck(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App* verb = app.add_subcommand("check", "Does a run obey the rules that every run obeys?");
+  verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
+  AddJson(verb, &options->json);
+  verb->footer(
+      "Gaps, time, torque and slew limits, torque only where allowed, safety transitions.\n"
+      "Exit code 1 if a rule was broken.\n"
+      "Example: flexarm check runs/today.flexarm");
+  verb->callback([options, &exit] { exit.code = Check(*options); });
+}
+
+}  // namespace flexarm

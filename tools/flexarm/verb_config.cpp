@@ -1,0 +1,173 @@
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "model/arm/arm_model.h"
+#include "model/arm/linearization.h"
+#include "model/units.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/flexarm/bus_timing_report.h"
+
+namespace flexarm {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr std::array<const char*, kCounters> kCounterNames = {"hub1", "hub2", "rotor1", "rotor2"};
+
+struct ConfigCheckOptions {
+  std::filesystem::path file;
+  std::vector<std::string> overrides;
+  bool json = false;
+};
+
+OrderedJson ArmJson(const RigConfig& config) {
+  const ArmParameters& arm = config.arm;
+  const ArmModel model(arm, {2, 2});
+  OrderedJson json;
+  json["link_length_m"] = {arm.link[0].length_m(), arm.link[1].length_m()};
+  json["link_mass_kg"] = {arm.link[0].mass_kg(), arm.link[1].mass_kg()};
+  for (const bool held : {false, true}) {
+    const Eigen::VectorXd hz =
+        held ? HeldMotorFrequenciesHz(model, 0) : FreeMotorFrequenciesHz(model, 0);
+    const Eigen::Index lowest = std::min<Eigen::Index>(4, hz.size());
+    json[held ? "motors_held_frequency_hz" : "motors_free_frequency_hz"] =
+        std::vector<double>(hz.begin(), hz.begin() + lowest);
+  }
+  return json;
+}
+
+// A counter unwraps without doubt while it moves by less than half its range between two readings;
+// one reading may be lost.
+OrderedJson EncoderJson(const EncoderConfig& encoder, double period_s) {
+  const double rad_per_count = kTwoPi / encoder.counts_per_turn;
+  const double half_range = std::ldexp(1.0, encoder.counter_bits - 1);
+  return {{"joint", kCounterNames[static_cast<std::size_t>(encoder.counter)]},
+          {"resolution_deg", 360 / encoder.counts_per_turn},
+          {"unwraps_below_rad_s", half_range * rad_per_count / (2 * period_s)}};
+}
+
+OrderedJson StrainJson(const SensorConfig& sensors) {
+  OrderedJson json;
+  for (const int link : {1, 2}) {
+    int channels = 0;
+    for (const StrainChannelConfig& channel : sensors.strain)
+      channels += channel.link == link ? 1 : 0;
+    json["channels"].push_back(channels);
+  }
+  if (sensors.strain.empty()) return json;
+  const double gain = std::abs(sensors.strain.front().gain_v_per_unit);
+  json["resolution_microstrain"] = 1e6 * sensors.strain_input.volts_per_count() / gain;
+  json["full_scale_microstrain"] = 1e6 * sensors.strain_input.range_v / gain;
+  return json;
+}
+
+OrderedJson Derived(const RigConfig& config) {
+  const double period_s = config.loop.period_ms * 1e-3;
+  OrderedJson json;
+  json["valid"] = true;
+  json["rig"] = config.rig_name;
+  json["backend"] = config.backend.empty() ? OrderedJson(nullptr) : OrderedJson(config.backend);
+  json["rate_hz"] = 1 / period_s;
+  json["arm"] = ArmJson(config);
+  for (const EncoderConfig& encoder : config.sensors.encoder) {
+    json["encoders"].push_back(EncoderJson(encoder, period_s));
+  }
+  json["strain"] = StrainJson(config.sensors);
+  AddWiring(config, &json);
+  return json;
+}
+
+OrderedJson ProblemsJson(const ConfigError& error) {
+  OrderedJson json;
+  json["valid"] = false;
+  for (const ConfigProblem& problem : error.problems()) {
+    json["problems"].push_back({{"file", problem.file},
+                                {"line", problem.line},
+                                {"key", problem.key},
+                                {"value", problem.value},
+                                {"rule", problem.rule}});
+  }
+  return json;
+}
+
+std::string Number(const OrderedJson& value) {
+  std::ostringstream text;
+  text << std::setprecision(4) << value.get<double>();
+  return text.str();
+}
+
+std::string List(const OrderedJson& values) {
+  std::string text;
+  for (const OrderedJson& value : values) text += (text.empty() ? "" : ", ") + Number(value);
+  return text;
+}
+
+void PrintText(const ConfigCheckOptions& options, const OrderedJson& json) {
+  const auto line = [](const std::string& name, const std::string& value) {
+    std::cout << "  " << std::left << std::setw(26) << name << value << '\n';
+  };
+  std::cout << options.file.string() << ": valid\n";
+  line("rig", json["rig"]);
+  line("backend", json["backend"].is_null() ? "none: [hal] is missing" : json["backend"]);
+  line("rate", Number(json["rate_hz"]) + " Hz");
+  const OrderedJson& arm = json["arm"];
+  line("link lengths", List(arm["link_length_m"]) + " m");
+  line("link masses", List(arm["link_mass_kg"]) + " kg");
+  line("frequencies, motors free", List(arm["motors_free_frequency_hz"]) + " Hz");
+  line("frequencies, motors held", List(arm["motors_held_frequency_hz"]) + " Hz");
+  for (const OrderedJson& encoder : json["encoders"]) {
+    line("encoder " + encoder["joint"].get<std::string>(),
+         Number(encoder["resolution_deg"]) + " deg a count, unwraps below " +
+             Number(encoder["unwraps_below_rad_s"]) + " rad/s");
+  }
+  const OrderedJson& strain = json["strain"];
+  line("strain channels", List(strain["channels"]));
+  if (strain.contains("resolution_microstrain")) {
+    line("strain resolution", Number(strain["resolution_microstrain"]) + " microstrain of +-" +
+                                  Number(strain["full_scale_microstrain"]));
+  }
+  PrintWiring(json);
+}
+
+void Check(const ConfigCheckOptions& options) {
+  try {
+    const OrderedJson json = Derived(LoadConfig(options.file, options.overrides));
+    if (options.json) {
+      std::cout << json.dump(2) << '\n';
+    } else {
+      PrintText(options, json);
+    }
+  } catch (const ConfigError& error) {
+    if (options.json) std::cout << ProblemsJson(error).dump(2) << '\n';
+    throw;
+  }
+}
+
+}  // namespace
+
+void RegisterConfig(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<ConfigCheckOptions>();
+  CLI::App* verb = app.add_subcommand("config", "Look at configs");
+  verb->require_subcommand(1);
+  CLI::App* check = verb->add_subcommand(
+      "check",
+      "Validate a config: every problem with its line, or what follows from the numbers; of a "
+      "wired rig also what every channel costs, and how torques become volts");
+  check->add_option("file", options->file, "RigConfig of the rig, a TOML file")
+      ->required()
+      ->type_name("FILE");
+  check->add_option("--set", options->overrides, "Replace a value, as in the other verbs")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  AddJson(check, &options->json);
+  check->footer("Example: flexarm config check config/thesis-rig.toml");
+  check->callback([options] { Check(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,193 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "controller/design/design_controller.h"
+#include "controller/design/design_json.h"
+#include "controller/design/robustness_analysis.h"
+#include "controller/law/design.h"
+#include "controller/types/refused.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/support/text_file.h"
+
+namespace flexarm {
+namespace {
+
+struct DesignOptions {
+  ConfigOptions config;
+  std::filesystem::path output;
+  std::vector<double> payload_kg = {0.0, 0.01, 0.1, 0.2, 0.5, 1.0};
+  bool force = false;
+  bool json = false;
+};
+
+/// Condition of the command generator's equation, as the model stands (psi(L) = 1) and in the
+/// coordinates in which it is solved.
+struct Conditioning {
+  double unscaled, scaled;
+};
+
+Conditioning ConditioningOf(const RigConfig& config, const Design& design) {
+  TrackingProblem problem = TrackingProblemOf(config, design);
+  const double scaled = SteinCondition(problem);
+  problem.scale.setOnes();
+  return {.unscaled = SteinCondition(problem), .scaled = scaled};
+}
+
+nlohmann::ordered_json ToJson(const Screen& screen) {
+  nlohmann::ordered_json json;
+  for (const ScreenCase& c : screen.cases) {
+    json["cases"].push_back({{"payload_kg", c.payload_kg},
+                             {"theta2_deg", c.theta2_deg},
+                             {"gain", c.gain},
+                             {"required", c.required},
+                             {"spectral_radius", c.spectral_radius}});
+  }
+  json["gain_margin_up"] = screen.margins.gain_up;
+  json["gain_margin_down"] = screen.margins.gain_down;
+  json["delay_margin_ms"] = 1e3 * screen.margins.delay_s;
+  return json;
+}
+
+nlohmann::ordered_json ToJson(const Design& design, const Screen& screen,
+                              const Conditioning& conditioning, const DesignOptions& options,
+                              const std::string& hash) {
+  nlohmann::ordered_json json;
+  json["nominal"] = NameOf(design.layout);
+  json["states"] = design.A.rows();
+  json["cgt_stein_condition_unscaled"] = conditioning.unscaled;
+  json["cgt_stein_condition"] = conditioning.scaled;
+  json["config_hash"] = hash;
+  json["sound"] = design.sound();
+  for (const DesignCheck& check : design.checks) {
+    json["checks"].push_back({{"name", check.name},
+                              {"value", check.value},
+                              {"limit", check.limit},
+                              {"must_be", check.below ? "below" : "above"},
+                              {"passed", check.passed()},
+                              {"waived", check.waived}});
+  }
+  json["screen"] = ToJson(screen);
+  for (Eigen::Index i = 0; i < design.K.rows(); ++i) {
+    json["k"].push_back(std::vector<double>());
+    for (Eigen::Index j = 0; j < design.K.cols(); ++j) json["k"].back().push_back(design.K(i, j));
+  }
+  json["gains"] = design.sound() ? nlohmann::ordered_json(options.output.string())
+                                 : nlohmann::ordered_json(nullptr);
+  return json;
+}
+
+void PrintScreen(const Screen& screen) {
+  std::printf(
+      "\nscreen: largest |eigenvalue| of the loop around the arm with 4 modes a link, below 1 is\n"
+      "stable (!: it must be, ?: both payload and gains are off); gains as they are, x 0.7, x "
+      "1.4\n%-12s %12s %10s %10s %10s\n",
+      "payload, kg", "elbow, deg", "x 1", "x 0.7", "x 1.4");
+  for (std::size_t i = 0; i + 2 < screen.cases.size(); i += 3) {
+    std::printf("%-12g %12g", screen.cases[i].payload_kg, screen.cases[i].theta2_deg);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double radius = screen.cases[i + j].spectral_radius;
+      std::printf(" %9.5f%s", radius,
+                  radius < 1.0                   ? " "
+                  : screen.cases[i + j].required ? "!"
+                                                 : "?");
+    }
+    std::printf("\n");
+  }
+}
+
+void PrintText(const Design& design, const Screen& screen, const Conditioning& conditioning,
+               const std::filesystem::path& file) {
+  const std::string nominal(NameOf(design.layout));
+  const auto states = static_cast<int>(design.A.rows());
+  std::printf(
+      "nominal model %s: %d states; equation of the command generator (%d unknowns): condition\n"
+      "%.1e as the model stands, %.1e as it is scaled and solved\n\n",
+      nominal.c_str(), states, states * states, conditioning.unscaled, conditioning.scaled);
+  std::printf("%-34s %12s  %s\n", "check", "value", "must be");
+  for (const DesignCheck& check : design.checks) {
+    const char* verdict = check.passed() ? "" : check.waived ? "   FAILED, waived" : "   FAILED";
+    std::printf("%-34s %12.4g  %s %.4g%s\n", check.name.c_str(), check.value,
+                check.below ? "below" : "above", check.limit, verdict);
+  }
+  PrintScreen(screen);
+  std::printf("\nK (N m per rad, per m, per rad/s, per m/s):\n");
+  for (Eigen::Index i = 0; i < design.K.rows(); ++i) {
+    for (Eigen::Index j = 0; j < design.K.cols(); ++j) std::printf(" %9.4g", design.K(i, j));
+    std::printf("\n");
+  }
+  if (design.sound()) std::printf("\ngains written to %s\n", file.c_str());
+}
+
+// Where the loop is unstable, if it is.
+std::string Where(const Screen& screen) {
+  const ScreenCase& worst = screen.worst_required();
+  if (worst.spectral_radius < 1.0) return "";
+  std::ostringstream text;
+  text << "; the loop is unstable with " << worst.payload_kg << " kg, elbow at " << worst.theta2_deg
+       << " deg, gains x " << worst.gain;
+  return text.str();
+}
+
+int Run(const DesignOptions& options) {
+  RigConfig config = options.config.Load();
+  config.controller.gains_file.clear();  // a new design, whatever the config runs with
+  Design design = DesignController(config);
+  const Screen screen = ScreenDesign(config, design, options.payload_kg);
+  for (const DesignCheck& check : ChecksOf(screen)) design.checks.push_back(check);
+  std::string failed;
+  for (DesignCheck& check : design.checks) {
+    if (check.passed()) continue;
+    failed += (failed.empty() ? "" : ", ") + check.name;
+    check.waived = options.force;
+  }
+  const std::string hash = DesignHash(config);
+  const Conditioning conditioning = ConditioningOf(config, design);
+  if (design.sound()) WriteText(options.output, DesignToJson(design, hash) + '\n');
+  if (options.json) {
+    std::cout << ToJson(design, screen, conditioning, options, hash).dump(2) << '\n';
+  } else {
+    PrintText(design, screen, conditioning, options.output);
+  }
+  if (!design.sound()) {
+    std::cerr << "flexarm: no gains were written: failed: " << failed << Where(screen)
+              << "; --force writes them all the same, and says so in the file\n";
+    return Exit::kFailed;
+  }
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void RegisterDesign(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<DesignOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "design", "Design reference model, gains and filter for a rig, check them, write them down");
+  options->config.AddTo(verb, true);
+  AddOutput(verb, &options->output, "Gains file to write (JSON)");
+  verb->add_option("--payload-kg", options->payload_kg,
+                   "Payloads that the gains have to hold (default: 0 0.01 0.1 0.2 0.5 1)")
+      ->check(CLI::Range(0.0, 100.0))
+      ->expected(1, -1);
+  verb->add_flag("--force", options->force,
+                 "Write gains that fail a check too; the file and every run's log say so");
+  AddJson(verb, &options->json);
+  verb->footer(
+      "The nominal model is controller.nominal: R8, R12, T12 or T16.\n"
+      "Every check is printed with its figure; gains that fail one are not written. Beside the\n"
+      "equations, the loop is closed around the arm with four modes a link, at three elbow "
+      "angles,\n"
+      "with every payload and with the gains x 0.7 and x 1.4; its gain and delay margins count "
+      "too.\n"
+      "Run with them by [controller] gains = \"FILE\"; without that, the daemon designs at start.\n"
+      "Example: flexarm design -c config/thesis-rig.toml -o gains.json");
+  verb->callback([options, &exit] { exit.code = Run(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "controller/commissioning/calibration_file.h"
+#include "controller/runlog/csv.h"
+#include "controller/runlog/errors.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/runs/run_summary.h"
+
+namespace flexarm {
+namespace {
+
+struct ExportOptions {
+  std::filesystem::path run, output;
+};
+
+void Export(const ExportOptions& options) {
+  RunReader reader(options.run);
+  const RigConfig config = ConfigOf(reader);
+  std::ofstream file(options.output, std::ios::binary);
+  CsvWriter writer(&file, config.sensors, reader.info().start_ns);
+  std::int64_t rows = 0;
+  Calibration calibration{};
+  reader.ForEachTick([&](const TickRecord& record) {
+    writer.Row(record.input);
+    calibration = record.input.calibration;
+    ++rows;
+  });
+  file.close();
+  if (!file) throw RunLogError(options.output.string() + ": cannot be written");
+  std::cerr << "wrote " << rows << " samples to " << options.output.string() << '\n';
+  if (calibration == Calibration{}) return;
+  std::filesystem::path beside = options.output;
+  beside.replace_extension(".calibration.json");
+  WriteCalibration(beside, config.sensors, calibration);
+  std::cerr << "the counts are raw, and this rig was calibrated: replay them with --calibration "
+            << beside.string() << '\n';
+}
+
+}  // namespace
+
+void RegisterExport(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<ExportOptions>();
+  CLI::App* verb = app.add_subcommand("export", "Write a run as CSV, which replay reads again");
+  verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
+  AddOutput(verb, &options->output, "CSV file to write");
+  verb->footer(
+      "Columns: time_s, counter_1..4 and strain_<link>_<number> as raw counts, valid (1, 0 or a\n"
+      "mask), torque_1_nm and torque_2_nm as applied. The calibration of the run, if it had one, "
+      "is\n"
+      "written beside it, as NAME.calibration.json.\n"
+      "Example: flexarm export runs/today.flexarm -o today.csv");
+  verb->callback([options] { Export(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,188 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "controller/safety/safety_machine.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/runs/run_summary.h"
+
+namespace flexarm {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::filesystem::path run;
+  bool json = false;
+};
+
+OrderedJson TripJson(const LoadedRun& run) {
+  const std::optional<SafetyRecord> trip = TripOf(run.contents.safety);
+  if (!trip) return nullptr;
+  return {{"name", Name(trip->after.cause)},
+          {"time_s", static_cast<double>(trip->due_ns - run.contents.info.start_ns) * 1e-9},
+          {"value", NumberOrNull(trip->evidence.value)},
+          {"limit", NumberOrNull(trip->evidence.limit)},
+          {"channel", trip->evidence.channel},
+          {"text", OperatorText(trip->after.cause)}};
+}
+
+OrderedJson TimingJson(const std::vector<TimingRecord>& records) {
+  if (records.empty()) return nullptr;
+  std::vector<double> late_us, took_us;
+  for (const TimingRecord& record : records) {
+    late_us.push_back(static_cast<double>(record.woke_ns - record.due_ns) * 1e-3);
+    took_us.push_back(static_cast<double>(record.finished_ns - record.woke_ns) * 1e-3);
+  }
+  std::sort(late_us.begin(), late_us.end());
+  std::sort(took_us.begin(), took_us.end());
+  return {{"late_median_us", late_us[late_us.size() / 2]},
+          {"late_max_us", late_us.back()},
+          {"took_median_us", took_us[took_us.size() / 2]},
+          {"took_max_us", took_us.back()}};
+}
+
+std::int64_t MissingTicks(const std::vector<TickRecord>& ticks) {
+  if (ticks.empty()) return 0;
+  return ticks.back().input.tick - ticks.front().input.tick + 1 -
+         static_cast<std::int64_t>(ticks.size());
+}
+
+// From sampling instant to torque, as the drive side measured it; the longest of the run.
+OrderedJson DelayJson(const LoadedRun& run) {
+  if (run.contents.tick.empty()) return nullptr;
+  const auto latest = std::max_element(
+      run.contents.tick.begin(), run.contents.tick.end(),
+      [](const auto& a, const auto& b) { return a.input.acted_late_ns < b.input.acted_late_ns; });
+  return 1e3 * run.period_s() + 1e-6 * static_cast<double>(latest->input.acted_late_ns);
+}
+
+OrderedJson Info(const LoadedRun& run) {
+  const RunInfo& info = run.contents.info;
+  const auto& ticks = run.contents.tick;
+  OrderedJson json;
+  json["run"] = run.file.string();
+  json["start_utc"] = info.start_utc;
+  json["rig"] = info.rig_name;
+  json["backend"] = info.backend;
+  json["clock"] = info.clock;
+  json["seed"] = info.seed;
+  json["experiment"] =
+      info.experiment_name.empty() ? OrderedJson(nullptr) : OrderedJson(info.experiment_name);
+  json["version"] = info.version;
+  json["build_id"] = info.build_id;
+  json["closed"] = run.closed;
+  json["ticks"] = ticks.size();
+  json["missing_ticks"] = MissingTicks(ticks);
+  json["duration_s"] =
+      ticks.empty()
+          ? 0.0
+          : static_cast<double>(ticks.back().input.now_ns - ticks.front().input.now_ns) * 1e-9;
+  json["delay_max_ms"] = DelayJson(run);
+  json["final_state"] = run.contents.safety.empty()
+                            ? OrderedJson(nullptr)
+                            : OrderedJson(Name(run.contents.safety.back().after.state));
+  json["trip"] = TripJson(run);
+  json["result"] = OrderedJson::parse(info.result_json, nullptr, false);
+  if (json["result"].is_discarded()) json["result"] = nullptr;
+  const std::optional<RunMetrics> metrics = MetricsOf(run);
+  json["metrics"] = metrics ? ToJson(*metrics) : OrderedJson(nullptr);
+  json["timing"] = TimingJson(run.contents.timing);
+  return json;
+}
+
+std::string Text(const OrderedJson& value) {
+  if (value.is_null()) return "-";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  std::ostringstream text;
+  text << std::setprecision(4);
+  if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) text << (i > 0 ? ", " : "") << Text(value[i]);
+  } else if (value.is_number_float()) {
+    text << value.get<double>();
+  } else {
+    text << value;
+  }
+  return text.str();
+}
+
+void PrintLine(const std::string& name, const OrderedJson& value, const std::string& unit = "") {
+  std::cout << "  " << std::left << std::setw(24) << name << Text(value)
+            << (unit.empty() || value.is_null() ? "" : " " + unit) << '\n';
+}
+
+void PrintMetrics(const OrderedJson& metrics) {
+  std::cout << (metrics["truth"].get<bool>() ? "Figures, from the plant's true motion\n"
+                                             : "Figures, from the estimate\n");
+  PrintLine("joint error, rms", metrics["joint_rms_error_deg"], "deg");
+  PrintLine("joint error, final", metrics["joint_final_error_deg"], "deg");
+  PrintLine("tip settling time", metrics["tip_settling_time_s"], "s");
+  PrintLine("tip residual, rms", metrics["tip_residual_rms_mm"], "mm");
+  PrintLine("peak torque", metrics["peak_torque_nm"], "N m");
+  PrintLine("torque, rms", metrics["torque_rms_nm"], "N m");
+  PrintLine("peak bending", metrics["peak_bending_mm"], "mm");
+}
+
+void PrintSafety(const RunContents& run) {
+  std::cout << "Safety\n" << std::fixed << std::setprecision(3);
+  for (const SafetyRecord& record : run.safety) {
+    if (record.before == record.after) continue;
+    std::cout << std::right << std::setw(10)
+              << static_cast<double>(record.due_ns - run.info.start_ns) * 1e-9 << " s  "
+              << Name(record.before.state) << " -> " << Name(record.after.state);
+    if (record.after.cause != TripCause::kNone) std::cout << ": " << Name(record.after.cause);
+    if (record.facts.request != RequestKind::kNone) {
+      std::cout << " (" << Name(record.facts.request) << ")";
+    }
+    std::cout << '\n';
+  }
+  std::cout << std::defaultfloat;
+}
+
+void PrintText(const OrderedJson& json, const RunContents& run) {
+  std::cout << json["run"].get<std::string>() << '\n';
+  for (const char* key : {"start_utc", "rig", "backend", "clock", "seed", "experiment", "version",
+                          "build_id", "closed", "ticks", "missing_ticks"}) {
+    PrintLine(key, json[key]);
+  }
+  PrintLine("duration", json["duration_s"], "s");
+  PrintLine("delay, longest", json["delay_max_ms"], "ms");
+  PrintLine("final state", json["final_state"]);
+  if (!json["trip"].is_null()) {
+    PrintLine("TRIPPED", json["trip"]["name"]);
+    PrintLine("", json["trip"]["text"]);
+  }
+  if (!json["metrics"].is_null()) PrintMetrics(json["metrics"]);
+  if (!json["timing"].is_null()) {
+    std::cout << "Timing of the loop\n";
+    PrintLine("woke late, worst", json["timing"]["late_max_us"], "us");
+    PrintLine("step took, worst", json["timing"]["took_max_us"], "us");
+  }
+  if (!run.safety.empty()) PrintSafety(run);
+}
+
+}  // namespace
+
+void RegisterInfo(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* verb = app.add_subcommand("info", "What happened in a run: a summary and its figures");
+  verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
+  AddJson(verb, &options->json);
+  verb->footer("Example: flexarm info runs/today.flexarm");
+  verb->callback([options] {
+    const LoadedRun run = LoadRun(options->run);
+    const OrderedJson json = Info(run);
+    if (options->json) {
+      std::cout << json.dump(2) << '\n';
+    } else {
+      PrintText(json, run.contents);
+    }
+  });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,47 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "controller/runlog/errors.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/plot/gnuplot.h"
+#include "tools/plot/plot_script.h"
+
+namespace flexarm {
+namespace {
+
+struct PlotOptions {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path output;
+};
+
+void Plot(const PlotOptions& options) {
+  CheckPicture(options.output);
+  std::vector<PlotRun> runs;
+  for (const auto& file : options.runs) {
+    runs.push_back(PlotDataOf(LoadRun(file)));
+    if (runs.back().sample.empty()) {
+      throw InputError(file.string() + ": has no ticks; expected a run with at least one");
+    }
+  }
+  RunGnuplot(PlotScript(runs, options.output));
+  std::cerr << "wrote " << options.output.string() << '\n';
+}
+
+}  // namespace
+
+void RegisterPlot(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<PlotOptions>();
+  CLI::App* verb =
+      app.add_subcommand("plot", "A picture of one run, or of several over each other");
+  verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");
+  AddOutput(verb, &options->output, "Picture to write, .png or .svg");
+  verb->footer(
+      "Angles against their references, torques asked and applied, tip deflections, the tip's\n"
+      "distance from where it comes to rest, the safety state, and the arm from above.\n"
+      "Example: flexarm plot runs/today.flexarm runs/yesterday.flexarm -o compare.png");
+  verb->callback([options] { Plot(*options); });
+}
+
+}  // namespace flexarm

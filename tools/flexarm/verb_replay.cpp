@@ -1,0 +1,177 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "controller/commissioning/calibration_file.h"
+#include "controller/design/design_json.h"
+#include "controller/design/run_design.h"
+#include "controller/law/design.h"
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/csv_import.h"
+#include "controller/runlog/errors.h"
+#include "controller/runlog/replay.h"
+#include "controller/step/control_step.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/runs/run_summary.h"
+
+namespace flexarm {
+namespace {
+
+struct ReplayOptions {
+  std::filesystem::path source;
+  ConfigOptions config;
+  std::filesystem::path calibration;  // empty: none
+  bool json = false;
+};
+
+struct Outcome {
+  ReplayResult result;
+  std::string other_build;  // the recorded build id, if it is not this one's
+};
+
+StepFunction Fresh(const RigConfig& config, const Design& design) {
+  const auto step = std::make_shared<ControlStep>(config, design);
+  return [step](const StepInput& input) { return step->Step(input); };
+}
+
+Design GainsOf(const RunReader& reader, const RigConfig& config) {
+  try {
+    return DesignFromJson(reader.info().gains_json, config);
+  } catch (const std::runtime_error& error) {
+    throw InputError(reader.file().string() + ": its gains cannot be used: " + error.what());
+  }
+}
+
+Outcome ReplayRun(const ReplayOptions& options) {
+  if (!options.calibration.empty()) {
+    throw InputError("--calibration: a run log brings its own; it is for CSV files");
+  }
+  RunReader reader(options.source);
+  const RigConfig own = ConfigOf(reader);
+  const bool asks_for_other = options.config.given() || !options.config.overrides.empty();
+  const RigConfig config = asks_for_other ? options.config.Load() : own;
+  const bool other_config = config.text != own.text;
+  const Design design = other_config ? DesignFor(config) : GainsOf(reader, config);
+  Replay replay(Fresh(config, design), other_config);
+  reader.ForEachTick([&](const TickRecord& record) { replay.Tick(record); });
+  reader.ForEachSafety([&](const SafetyRecord& record) { replay.Safety(record); });
+  const std::string& build = reader.info().build_id;
+  return {.result = replay.Result(), .other_build = build == BuildId() ? "" : build};
+}
+
+// A CSV file has no outputs of its own. What was applied up to a row was asked one row before.
+Outcome ReplayCsv(const ReplayOptions& options) {
+  if (!options.config.given()) {
+    throw InputError(options.source.string() +
+                     ": a CSV file needs the config of its rig: add -c FILE");
+  }
+  const RigConfig config = options.config.Load();
+  const auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr,
+                                 config.sensors, config.loop.period_ms * 1e-3);
+  Calibration calibration{};
+  if (!options.calibration.empty()) {
+    const auto read = ReadCalibration(options.calibration, config.sensors);
+    if (!read) throw InputError(options.calibration.string() + ": there is no such file");
+    calibration = *read;
+  }
+  Replay replay(Fresh(config, DesignFor(config)), true);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    TickRecord record{};
+    record.input = inputs[i];
+    record.input.calibration = calibration;
+    record.output.torque_nm = inputs[std::min(i + 1, inputs.size() - 1)].applied_torque_nm;
+    replay.Tick(record);
+  }
+  return {.result = replay.Result(), .other_build = ""};
+}
+
+template <typename T>
+nlohmann::ordered_json OrNull(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json ToJson(const Outcome& outcome) {
+  const ReplayResult& result = outcome.result;
+  nlohmann::ordered_json json;
+  json["ticks"] = result.ticks;
+  json["bit_exact"] = OrNull(result.bit_exact);
+  json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
+                                      NumberOrNull(result.max_torque_difference_nm[1])};
+  json["hub_innovation_rms_rad"] = {NumberOrNull(result.hub_innovation_rms_rad[0]),
+                                    NumberOrNull(result.hub_innovation_rms_rad[1])};
+  json["faulty_ticks"] = result.faulty_ticks;
+  json["safety_exact"] = OrNull(result.safety_exact);
+  json["first_gap_tick"] = OrNull(result.first_gap_tick);
+  json["first_different_tick"] = OrNull(result.first_different_tick);
+  json["safety_records"] = result.safety_records;
+  json["same_build"] = outcome.other_build.empty();
+  return json;
+}
+
+const char* Word(const std::optional<bool>& exact) {
+  if (!exact) return "not compared";
+  return *exact ? "yes" : "NO";
+}
+
+void PrintText(const Outcome& outcome) {
+  const ReplayResult& result = outcome.result;
+  std::cout << "ticks                     " << result.ticks << '\n'
+            << "bit exact                 " << Word(result.bit_exact) << '\n'
+            << "max torque difference     " << result.max_torque_difference_nm[0] << ", "
+            << result.max_torque_difference_nm[1] << " N m\n"
+            << "hub innovations, rms      " << result.hub_innovation_rms_rad[0] << ", "
+            << result.hub_innovation_rms_rad[1] << " rad\n"
+            << "ticks with a fault        " << result.faulty_ticks << '\n'
+            << "safety exact              " << Word(result.safety_exact) << " ("
+            << result.safety_records << " records)\n";
+  if (result.first_gap_tick)
+    std::cout << "first missing tick        " << *result.first_gap_tick << '\n';
+  if (result.bit_exact && result.first_different_tick) {
+    std::cout << "first different tick      " << *result.first_different_tick << '\n';
+  }
+}
+
+int Run(const ReplayOptions& options) {
+  const bool is_run = options.source.extension() != ".csv";
+  const Outcome outcome = is_run ? ReplayRun(options) : ReplayCsv(options);
+  if (!outcome.other_build.empty()) {
+    std::cerr << "flexarm: another build recorded this run: " << outcome.other_build
+              << "; this one is " << BuildId() << '\n';
+  }
+  if (options.json) {
+    std::cout << ToJson(outcome).dump(2) << '\n';
+  } else {
+    PrintText(outcome);
+  }
+  const bool differs =
+      !outcome.result.bit_exact.value_or(true) || !outcome.result.safety_exact.value_or(true);
+  return differs ? Exit::kFailed : Exit::kDone;
+}
+
+}  // namespace
+
+void RegisterReplay(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<ReplayOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "replay", "Run recorded inputs through the loop again and compare what it asks for");
+  verb->add_option("source", options->source, "Run log, or CSV file (*.csv)")
+      ->required()
+      ->type_name("RUN_OR_CSV");
+  options->config.AddTo(verb, false);
+  verb->add_option("--calibration", options->calibration,
+                   "Of the rig that a CSV file was recorded on: what export wrote beside it")
+      ->type_name("FILE");
+  AddJson(verb, &options->json);
+  verb->footer(
+      "A run log brings its own config and gains, and must give the same bytes: exit code 1 if "
+      "not.\n"
+      "With -c the loop is built from another config, and the difference is reported.\n"
+      "A CSV file is one that export wrote, or one that the table [csv] of the config describes.\n"
+      "Examples: flexarm replay runs/today.flexarm\n"
+      "          flexarm replay today.csv -c config/thesis-rig.toml");
+  verb->callback([options, &exit] { exit.code = Run(*options); });
+}
+
+}  // namespace flexarm

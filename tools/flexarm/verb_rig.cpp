@@ -1,0 +1,144 @@
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "controller/realtime/clock.h"
+#include "controller/types/refused.h"
+#include "hal/emulation/emulated_rig.h"
+#include "hal/emulation/rig_commands.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kSliceNs = 1'000'000;
+
+struct RigOptions {
+  ConfigOptions config;
+  std::optional<double> payload_kg;
+  std::optional<double> run_for_s;
+  bool json = false;
+};
+
+volatile std::sig_atomic_t end_asked = 0;
+
+void AskEnd(int /*signal*/) { end_asked = 1; }
+
+/// Reads whole lines from stdin without waiting.
+class Commands {
+ public:
+  bool Next(std::string* line) {
+    pollfd ready{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    while (open_ && poll(&ready, 1, 0) > 0) {
+      std::array<char, 256> chunk;
+      const ssize_t count = read(STDIN_FILENO, chunk.data(), chunk.size());
+      if (count <= 0) open_ = false;
+      if (count > 0) pending_.append(chunk.data(), static_cast<std::size_t>(count));
+    }
+    const std::size_t end = pending_.find('\n');
+    if (end == std::string::npos) return false;
+    *line = pending_.substr(0, end);
+    pending_.erase(0, end + 1);
+    return true;
+  }
+
+ private:
+  std::string pending_;
+  bool open_ = true;
+};
+
+void Report(const WireRig& rig, bool json) {
+  const WireRig::Observed& seen = rig.observed();
+  if (json) {
+    nlohmann::ordered_json out;
+    out["torque_nm"] = {seen.torque_nm[0], seen.torque_nm[1]};
+    out["relay_closed"] = seen.relay_closed;
+    out["pump_alive"] = seen.pump_alive;
+    out["powered_ms"] = seen.powered_slices;
+    out["drives_active_ms"] = seen.active_slices;
+    std::cout << out.dump() << std::endl;
+    return;
+  }
+  std::printf("torque %.3f, %.3f N m; relay %s; charge pump %s; %lld ms under power\n",
+              seen.torque_nm[0], seen.torque_nm[1], seen.relay_closed ? "closed" : "open",
+              seen.pump_alive ? "alive" : "dead", static_cast<long long>(seen.powered_slices));
+  std::fflush(stdout);
+}
+
+int Run(const RigOptions& options) {
+  const RigConfig config = options.config.Load();
+  if (config.hal.empty()) {
+    throw Refused(options.config.file.string() +
+                  ": has no wires to play; expected [[hal.canopen]], [[hal.modbus]] and "
+                  "[hal.gpiod], as config/hil-wire.toml");
+  }
+  ArmParameters arm = config.arm;
+  if (options.payload_kg) arm.payload_mass_kg = *options.payload_kg;
+  WireRig rig(arm, config.sensors, config.sim, config.hal,
+              {.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
+  std::signal(SIGTERM, AskEnd);
+  std::signal(SIGINT, AskEnd);
+  std::cerr << "flexarm rig: playing " << config.rig_name << "; commands on stdin\n";
+
+  Commands commands;
+  std::string line;
+  const std::int64_t start_ns = MonotonicNow();
+  const std::int64_t end_ns =
+      options.run_for_s ? start_ns + std::llround(*options.run_for_s * 1e9) : INT64_MAX;
+  // A late slice is made up for: the arm's time is the wall's.
+  for (std::int64_t due_ns = start_ns; end_asked == 0 && due_ns < end_ns; due_ns += kSliceNs) {
+    SleepUntil(due_ns);
+    rig.Step(due_ns);
+    while (commands.Next(&line)) {
+      if (line == "report") {
+        Report(rig, options.json);
+      } else {
+        const std::string complaint = ObeyRig(line, &rig);
+        if (!complaint.empty()) std::cerr << "flexarm rig: " << line << ": " << complaint << '\n';
+      }
+    }
+  }
+  Report(rig, options.json);
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void RegisterRig(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<RigOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "rig", "Play the devices of a wired rig, with the simulated arm behind them");
+  options->config.AddTo(verb, true);
+  verb->add_option("--payload-kg", options->payload_kg,
+                   "Payload of the plant, instead of the config's")
+      ->check(CLI::Range(0.0, 100.0));
+  verb->add_option("--run-for", options->run_for_s, "End after this long")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+  AddJson(verb, &options->json);
+  verb->footer(
+      std::string(
+          "Serves Modbus, CANopen nodes and gpio-sim lines as the config wires them; then start\n"
+          "flexarmd with the same config. An amplifier with transport = \"rtu\" is served on a\n"
+          "pseudo-terminal, to which the rig puts a link at the configured `device`: any path "
+          "that\n"
+          "is free, as /tmp/strain-amplifier-1; the daemon opens that.\n"
+          "At the end it prints what the hardware saw.\n\n") +
+      kRigCommands +
+      "\nExamples: flexarm rig -c config/hil-wire.toml\n"
+      "          mkfifo rig.in; flexarm rig -c config/hil-wire.toml <rig.in & exec 3>rig.in\n"
+      "          echo amplifier strain-amplifier-1 late 30 >&3");
+  verb->callback([options, &exit] { exit.code = Run(*options); });
+}
+
+}  // namespace flexarm

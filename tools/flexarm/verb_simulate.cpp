@@ -1,0 +1,152 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "controller/host/simulation.h"
+#include "controller/runlog/errors.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/runs/run_summary.h"
+
+namespace flexarm {
+namespace {
+
+struct SimulateOptions {
+  ConfigOptions config;
+  std::filesystem::path experiment;
+  std::string controller, estimator;
+  std::optional<double> payload_kg;
+  std::optional<int> plant_modes;
+  std::optional<std::uint64_t> seed;
+  bool without_prediction = false;
+  bool without_adaptation = false;
+  std::filesystem::path output;
+  bool json = false;
+};
+
+// The short options are words for config keys: the log's config then says what was run.
+RigConfig LoadWithOptions(const SimulateOptions& options) {
+  ConfigOptions config = options.config;
+  const auto set = [&config](const char* key, const std::string& value) {
+    config.overrides.push_back(std::string(key) + "=" + value);
+  };
+  if (!options.controller.empty()) set("controller.name", options.controller);
+  if (!options.estimator.empty()) set("estimator.name", options.estimator);
+  if (options.plant_modes) set("sim.plant_modes", std::to_string(*options.plant_modes));
+  if (options.seed) set("sim.seed", std::to_string(*options.seed));
+  if (options.without_prediction) set("controller.prediction", "false");
+  if (options.without_adaptation) set("controller.adaptation", "false");
+  return config.Load();
+}
+
+void ShowProgress(double simulated_s) {
+  std::fprintf(stderr, "\rsimulated %.1f s", simulated_s);
+  std::fflush(stderr);
+}
+
+nlohmann::ordered_json ToJson(const SimulationResult& result, const std::filesystem::path& run) {
+  nlohmann::ordered_json json;
+  json["completed"] = result.completed;
+  json["trip"] = result.trip == TripCause::kNone ? nlohmann::ordered_json(nullptr)
+                                                 : nlohmann::ordered_json(Name(result.trip));
+  json["ticks"] = result.ticks;
+  json.update(ToJson(result.metrics));
+  json["move_duration_s"] = result.move_duration_s;
+  json["delay_found"] = result.delay_found;
+  json["realtime_factor"] = NumberOrNull(result.realtime_factor);
+  json["run"] =
+      run.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(run.string());
+  return json;
+}
+
+void PrintText(const SimulationResult& result, const std::filesystem::path& run) {
+  const RunMetrics& m = result.metrics;
+  std::printf("completed                 %s\n", result.completed ? "yes" : "NO");
+  if (result.trip != TripCause::kNone) {
+    std::printf("trip                      %s: %s\n", Name(result.trip), OperatorText(result.trip));
+  }
+  std::printf("ticks                     %lld\n", static_cast<long long>(result.ticks));
+  std::printf("joint rms error           %.2f, %.2f deg\n", m.joint_rms_error_deg[0],
+              m.joint_rms_error_deg[1]);
+  std::printf("joint final error         %.2f, %.2f deg\n", m.joint_final_error_deg[0],
+              m.joint_final_error_deg[1]);
+  if (m.tip_settling_time_s) {
+    std::printf("tip settling time         %.2f s\n", *m.tip_settling_time_s);
+  } else {
+    std::printf("tip settling time         never within a rest\n");
+  }
+  std::printf("tip residual rms          %.1f mm\n", m.tip_residual_rms_mm);
+  std::printf("peak torque               %.2f, %.2f N m\n", m.peak_torque_nm[0],
+              m.peak_torque_nm[1]);
+  std::printf("peak bending              %.0f, %.0f mm\n", m.peak_bending_mm[0],
+              m.peak_bending_mm[1]);
+  std::printf("torque rms                %.2f, %.2f N m\n", m.torque_rms_nm[0], m.torque_rms_nm[1]);
+  for (std::size_t i = 0; i < result.move_duration_s.size(); ++i) {
+    std::printf("move[%zu] takes             %.2f s\n", i, result.move_duration_s[i]);
+  }
+  if (result.delay_found != 0) {
+    std::printf("delay found               %+d samples beyond the known one\n", result.delay_found);
+  }
+  std::printf("real-time factor          %.0f\n", result.realtime_factor);
+  if (!run.empty()) std::printf("run                       %s\n", run.c_str());
+}
+
+int Run(const SimulateOptions& options) {
+  SimulationRequest request;
+  request.config = LoadWithOptions(options);
+  request.experiment = LoadExperiment(ExperimentFile(options.experiment, options.config.file));
+  request.payload_kg = options.payload_kg;
+  if (!options.output.empty()) request.log = options.output;
+  const bool show = isatty(STDERR_FILENO) == 1 && !options.json;
+  const SimulationResult result =
+      Simulate(request, show ? std::function<void(double)>(ShowProgress) : nullptr);
+  if (show) std::fprintf(stderr, "\r\033[K");
+  if (options.json) {
+    std::cout << ToJson(result, options.output).dump(2) << '\n';
+  } else {
+    PrintText(result, options.output);
+  }
+  return result.completed ? Exit::kDone : Exit::kFailed;
+}
+
+}  // namespace
+
+void RegisterSimulate(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<SimulateOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "simulate", "Run an experiment with the whole stack against the simulated arm, in lock step");
+  options->config.AddTo(verb, true);
+  verb->add_option(
+          "--experiment", options->experiment,
+          "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config)")
+      ->type_name("FILE");
+  verb->add_option("--controller", options->controller,
+                   "controller.name: sobel, sobel-original, lqr-cgt, lqr-um, lqg, pd, pd-zv, "
+                   "pd-zvd, gain-scheduled, receding-horizon");
+  verb->add_option("--estimator", options->estimator,
+                   "estimator.name: kalman, difference, polynomial, ekf-payload");
+  verb->add_option("--payload-kg", options->payload_kg,
+                   "Payload that the plant carries; the design keeps the config's")
+      ->check(CLI::Range(0.0, 100.0));
+  verb->add_option("--plant-modes", options->plant_modes, "sim.plant_modes: bending modes a link");
+  verb->add_option("--seed", options->seed, "sim.seed: of the measurement noise");
+  verb->add_flag("--without-prediction", options->without_prediction,
+                 "controller.prediction = false: the delay is not compensated");
+  verb->add_flag("--without-adaptation", options->without_adaptation,
+                 "controller.adaptation = false: same feedforward and feedback, fixed");
+  verb->add_option("-o,--output", options->output, "Write the run log here (must not exist)")
+      ->type_name("RUN");
+  AddJson(verb, &options->json);
+  verb->footer(
+      "The same config and seed give the same run, tick for tick. Exit code 1 if it tripped.\n"
+      "Examples: flexarm simulate -c config/hil.toml\n"
+      "          flexarm simulate -c config/hil.toml --payload-kg 0.2 --seed 7 -o heavy.flexarm\n"
+      "          flexarm simulate -c config/hil.toml --set controller.alpha=2 --json");
+  verb->callback([options, &exit] { exit.code = Run(*options); });
+}
+
+}  // namespace flexarm

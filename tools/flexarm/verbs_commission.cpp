@@ -1,0 +1,152 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/command_line/verbs.h"
+#include "tools/flexarm/daemon_client.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kLongest_s = 120.0;  // a search for a switch over 180 deg at 5 deg/s, and to rest
+
+struct CommissionOptions {
+  DaemonClient daemon;
+  std::vector<double> angle_deg;
+  int link = 1;
+  double force_n = 0.0;
+  double at_m = 0.0;
+  int joint = 1;
+  std::string side;
+};
+
+void PrintStrain(const Json& answer) {
+  std::printf("%-14s %12s %12s %10s\n", "channel", "zero", "gain error", "noise");
+  for (const Json& row : answer.value("strain", Json::array())) {
+    std::printf("%-14s %8.2f cts %10.2f %% %6.2f cts\n", row.value("channel", "").c_str(),
+                row.value("zero_counts", 0.0), 100.0 * row.value("gain_error", 0.0),
+                row.value("sigma_counts", 0.0));
+  }
+}
+
+void PrintEncoders(const Json& answer) {
+  for (const Json& row : answer.value("encoder", Json::array())) {
+    std::printf("%-8s zero at %lld counts\n", row.value("joint", "").c_str(),
+                static_cast<long long>(row.value("zero_counts", std::int64_t{0})));
+  }
+}
+
+void PrintPluck(const Json& answer) {
+  std::printf("%-14s %10s %10s\n", "channel", "gain", "explained");
+  for (const Json& row : answer.value("answer", Json::array())) {
+    std::printf("%-14s %10.3f %8.1f %%%s\n", row.value("channel", "").c_str(),
+                row.value("gain", 0.0), 100.0 * row.value("match", 0.0),
+                row.value("provable", true) ? "" : "   moves too little to tell");
+  }
+}
+
+int Run(const CommissionOptions& options, const Json& command) {
+  const Json answer = options.daemon.Ask(command, kLongest_s);
+  if (!options.daemon.json) {
+    if (answer.contains("strain")) PrintStrain(answer);
+    if (answer.contains("encoder")) PrintEncoders(answer);
+    if (answer.contains("answer")) PrintPluck(answer);
+  }
+  return options.daemon.Conclude(answer);
+}
+
+void AddTare(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<CommissionOptions>();
+  CLI::App* verb = options->daemon.AddVerb(app, "tare", "Take the strain channels' zeros");
+  verb->footer(
+      "Only in Idle, at rest, with nothing touching the links: nothing bends them then. A channel\n"
+      "that is unsteady, missing or far from its zero is named, and nothing is changed.\n"
+      "Example: flexarm tare");
+  verb->callback([options, &exit] { exit.code = Run(*options, {{"command", "tare"}}); });
+}
+
+void AddZero(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<CommissionOptions>();
+  CLI::App* verb = options->daemon.AddVerb(app, "zero", "Say at which angles the joints stand now");
+  verb->add_option("--angle-deg", options->angle_deg,
+                   "Hub angles of joint 1 and 2, counter-clockwise positive (default 0 0)")
+      ->expected(2)
+      ->type_name("A B");
+  verb->footer(
+      "Only in Idle, at rest. Examples: flexarm zero                     both at zero\n"
+      "                                 flexarm zero --angle-deg 0 90    on a jig");
+  verb->callback([options, &exit] {
+    Json command{{"command", "zero"}};
+    if (!options->angle_deg.empty()) command["angle_deg"] = options->angle_deg;
+    exit.code = Run(*options, command);
+  });
+}
+
+void AddCalibrate(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<CommissionOptions>();
+  CLI::App* verb =
+      options->daemon.AddVerb(app, "calibrate", "Take a link's strain gains from a known load");
+  verb->add_option("--link", options->link, "1 or 2")->required()->check(CLI::Range(1, 2));
+  verb->add_option("--force-n", options->force_n,
+                   "Force square to the link; counter-clockwise about its joint is positive")
+      ->required();
+  verb->add_option("--at-m", options->at_m, "Where it pulls, from the root of the link")
+      ->required();
+  verb->footer(
+      "First `flexarm tare`. Then hold the joint, hang a known mass over a pulley at the end of "
+      "the\n"
+      "link (force = mass times 9.81), and call this; more loads refine the gains. Only in Idle.\n"
+      "Example: 0.5 kg at the end of link 1: flexarm calibrate --link 1 --force-n 4.905 --at-m "
+      "0.8");
+  verb->callback([options, &exit] {
+    exit.code = Run(*options, {{"command", "calibrate"},
+                               {"link", options->link},
+                               {"force_n", options->force_n},
+                               {"at_m", options->at_m}});
+  });
+}
+
+void AddPluck(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<CommissionOptions>();
+  CLI::App* verb = options->daemon.AddVerb(
+      app, "pluck", "Prove the wiring: a small torque on each joint, held against the model");
+  verb->footer(
+      "Only from Armed; moves each joint by a few degrees, in open loop. Every drive, encoder and\n"
+      "gauge whose sign, scale or place is wrong is named. Exit 0 if all is right.\n"
+      "Example: flexarm arm && flexarm pluck");
+  verb->callback([options, &exit] { exit.code = Run(*options, {{"command", "pluck"}}); });
+}
+
+void AddHome(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<CommissionOptions>();
+  CLI::App* verb =
+      options->daemon.AddVerb(app, "home", "Find a limit switch, and so the joint's angle");
+  verb->add_option("joint", options->joint, "1 or 2")->required()->check(CLI::Range(1, 2));
+  verb->add_option("side", options->side, "low or high: which of its switches")
+      ->required()
+      ->check(CLI::IsMember({"low", "high"}));
+  verb->footer(
+      "Only from Armed, with the joint put near its switch by hand. It moves slowly, over\n"
+      "commissioning.home_travel_deg at most, until the switch opens, then back off it. The other\n"
+      "switches trip as ever, and so does this one if the arm stays on it.\n"
+      "Example: flexarm home 1 low");
+  verb->callback([options, &exit] {
+    exit.code =
+        Run(*options, {{"command", "home"}, {"joint", options->joint}, {"side", options->side}});
+  });
+}
+
+}  // namespace
+
+void RegisterCommission(CLI::App& app, Exit& exit) {
+  AddTare(app, exit);
+  AddZero(app, exit);
+  AddCalibrate(app, exit);
+  AddPluck(app, exit);
+  AddHome(app, exit);
+}
+
+}  // namespace flexarm

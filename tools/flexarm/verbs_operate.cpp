@@ -1,0 +1,157 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "controller/runlog/errors.h"
+#include "tools/command_line/verbs.h"
+#include "tools/flexarm/daemon_client.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct OperateOptions {
+  DaemonClient daemon;
+  std::filesystem::path experiment;
+  std::string line;
+  int level = 0;
+  bool watch = false;
+};
+
+void PrintStatus(const Json& s) {
+  std::printf("state          %s\n", s.value("state", "-").c_str());
+  if (s.contains("trip") && s["trip"].is_object()) {
+    std::printf("trip           %s: %s\n", s["trip"].value("name", "").c_str(),
+                s["trip"].value("text", "").c_str());
+    if (s["trip"].contains("bus") && s["trip"]["bus"].is_string()) {
+      std::printf("               %s\n", s["trip"]["bus"].get<std::string>().c_str());
+    }
+  }
+  std::printf("time           %.2f s (tick %lld)\n", s.value("time_s", 0.0),
+              static_cast<long long>(s.value("tick", std::int64_t{0})));
+  const auto pair = [&s](const char* key) { return s.value(key, std::vector<double>{0.0, 0.0}); };
+  std::printf("joint angle    %.2f, %.2f deg\n", pair("joint_angle_deg")[0],
+              pair("joint_angle_deg")[1]);
+  std::printf("torque asked   %.3f, %.3f N m\n", pair("torque_nm")[0], pair("torque_nm")[1]);
+  std::printf("at rest        %s\n", s.value("at_rest", false) ? "yes" : "no");
+  std::printf("delay          %.2f ms, longest %.2f ms; %.1f ms of margin left\n",
+              s.value("delay_ms", 0.0), s.value("delay_max_ms", 0.0),
+              s.value("delay_margin_ms", 0.0));
+  if (s.contains("payload") && s["payload"].is_object()) {
+    const Json& payload = s["payload"];
+    std::printf("payload        %.3f kg, standard deviation %.3f kg", payload.value("kg", 0.0),
+                payload.value("sigma_kg", 0.0));
+    if (const int samples = payload.value("delay_found", 0); samples != 0) {
+      std::printf("; delay found: %+d samples beyond the known one", samples);
+    }
+    for (const Json& doubt : payload.value("doubts", Json::array())) {
+      std::printf("; %s", doubt.get<std::string>().c_str());
+    }
+    std::printf("\n");
+  }
+  for (const Json& bus : s.value("buses", Json::array())) {
+    std::printf("%-14s %s, %u failed, %u times taken back%s%s\n", bus.value("name", "").c_str(),
+                bus.value("ok", false) ? "ok" : "lost", bus.value("failed", 0U),
+                bus.value("taken_back", 0U), bus["fault"].is_string() ? "; " : "",
+                bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
+  }
+  for (const Json& thread : s.value("threads", Json::array())) {
+    std::printf("%-14s %llu runs, %llu missed, %llu skipped, worst lateness %.0f us\n",
+                thread.value("name", "").c_str(),
+                static_cast<unsigned long long>(thread.value("activations", std::uint64_t{0})),
+                static_cast<unsigned long long>(thread.value("missed_deadlines", std::uint64_t{0})),
+                static_cast<unsigned long long>(thread.value("skipped_periods", std::uint64_t{0})),
+                thread.value("worst_lateness_us", 0.0));
+  }
+}
+
+int Status(const OperateOptions& options) {
+  for (;;) {
+    const Json answer = options.daemon.Ask({{"command", "status"}});
+    if (options.daemon.json) {
+      std::cout << answer.dump(2) << '\n';
+    } else {
+      if (options.watch) std::printf("\033[H\033[2J");
+      PrintStatus(answer);
+    }
+    std::cout.flush();
+    std::fflush(stdout);
+    if (!options.watch) return Exit::kDone;
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+}
+
+int RunExperiment(const OperateOptions& options) {
+  const Experiment experiment = LoadExperiment(options.experiment);  // complains with file and line
+  return options.daemon.Conclude(
+      options.daemon.Ask({{"command", "run"},
+                          {"name", options.experiment.filename().string()},
+                          {"experiment", experiment.text}}));
+}
+
+void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
+  const auto options = std::make_shared<OperateOptions>();
+  CLI::App* verb = options->daemon.AddVerb(app, name, what);
+  verb->footer(footer);
+  verb->callback([options, &exit, name] {
+    exit.code = options->daemon.Conclude(options->daemon.Ask({{"command", name}}));
+  });
+}
+
+}  // namespace
+
+void RegisterOperate(CLI::App& app, Exit& exit) {
+  const auto status = std::make_shared<OperateOptions>();
+  CLI::App* verb = status->daemon.AddVerb(app, "status", "What the running daemon is doing");
+  verb->add_flag("--watch", status->watch, "Again and again, until interrupted");
+  verb->footer("Example: flexarm status --watch");
+  verb->callback([status, &exit] { exit.code = Status(*status); });
+
+  AddCommand(app, exit, "arm", "Close the relay: zero torque, ready to run",
+             "Only from Idle, at rest, with no fault present. Example: flexarm arm");
+
+  const auto run = std::make_shared<OperateOptions>();
+  verb = run->daemon.AddVerb(app, "run", "Run an experiment on the armed arm");
+  verb->add_option("experiment", run->experiment, "Experiment, a TOML file")
+      ->required()
+      ->type_name("EXPERIMENT");
+  verb->footer(
+      "Only from Armed. Its reference is first compared with the limits of the rig: a refusal\n"
+      "names the row, the joint, the value and the limit (docs/experiments.md).\n"
+      "Example: flexarm run config/experiments/square-30deg.toml");
+  verb->callback([run, &exit] { exit.code = RunExperiment(*run); });
+
+  AddCommand(app, exit, "stop", "Bring the running arm to rest, under control",
+             "The controller damps the arm, at most 3 s, then it is Armed. Example: flexarm stop");
+  AddCommand(app, exit, "disarm", "Open the relay",
+             "Only from Armed; stop first. Example: flexarm disarm");
+  AddCommand(app, exit, "reset", "Leave Tripped for Idle",
+             "Only after the reset button was pressed, at rest, with the cause gone.\n"
+             "Example: flexarm reset");
+
+  const auto sim = std::make_shared<OperateOptions>();
+  verb = sim->daemon.AddVerb(app, "sim", "Press a switch of the simulated rig");
+  verb->add_option(
+          "line", sim->line,
+          "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop, reset-button")
+      ->required()
+      ->type_name("LINE");
+  verb->add_option("level", sim->level, "0 or 1; switches are closed (1) when healthy")
+      ->required()
+      ->check(CLI::Range(0, 1))
+      ->type_name("LEVEL");
+  verb->footer(
+      "Examples: flexarm sim emergency-stop 0    somebody hits it\n"
+      "          flexarm sim reset-button 1      and 0 again: pressed and released");
+  verb->callback([sim, &exit] {
+    exit.code = sim->daemon.Conclude(
+        sim->daemon.Ask({{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));
+  });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,21 @@
+#include "tools/command_line/program.h"
+#include "tools/command_line/verbs.h"
+
+namespace flexarm {
+namespace {
+
+void RegisterStudies(CLI::App& app, Exit& exit) {
+  RegisterModes(app, exit);
+  RegisterAnalyze(app, exit);
+  RegisterSweep(app, exit);
+  RegisterBenchmark(app, exit);
+  RegisterReport(app, exit);
+  RegisterIdentify(app, exit);
+}
+
+}  // namespace
+}  // namespace flexarm
+
+int main(int argc, char** argv) {
+  return flexarm::RunProgram(argc, argv, flexarm::RegisterStudies);
+}

@@ -1,0 +1,18 @@
+#include <CLI/CLI.hpp>
+
+#include "tools/command_line/studies.h"
+#include "tools/command_line/verbs.h"
+
+namespace flexarm {
+
+void RegisterAnalyze(CLI::App& app, Exit& exit) {
+  CLI::App* verb = AddStudy(app, "analyze");
+  verb->require_subcommand(1);
+  RegisterAnalyzeCheck(*verb, exit);
+  RegisterAnalyzeExcite(*verb, exit);
+  RegisterAnalyzeLinearize(*verb, exit);
+  RegisterAnalyzeParametric(*verb, exit);
+  RegisterAnalyzeReduce(*verb, exit);
+}
+
+}  // namespace flexarm

@@ -1,0 +1,212 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "controller/runlog/errors.h"
+#include "model/arm/linearization.h"
+#include "model/math/dense_decompositions.h"
+#include "model/perturbation/perturbation_run.h"
+#include "model/simulation/arm_simulator.h"
+#include "model/units.h"
+#include "tools/analysis/perturbation_figures.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+
+namespace flexarm {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+
+struct LinearizeOptions {
+  ConfigOptions config;
+  int modes = 4;
+  double theta2_deg = 0.0, theta1_rate_rad_s = 0.0, theta2_rate_rad_s = 0.0;
+  std::array<double, 2> torque_nm = {0.0, 0.0};
+  double friction_gain_s_per_rad = 0.0;
+  std::array<double, 2> delta_nm = {0.05, 0.0125};
+  double duration_s = 2.0;
+  bool json = false;
+  std::filesystem::path output;
+};
+
+struct State {
+  VectorXd q, v;
+};
+
+// Links unbent, rotors with their hubs.
+State StateOf(const LinearizeOptions& options, const ArmModel& model) {
+  State x{VectorXd::Zero(model.dof()), VectorXd::Zero(model.dof())};
+  x.q[kTheta2] = x.q[kTheta4] = options.theta2_deg * kRadPerDeg;
+  x.v[kTheta1] = x.v[kTheta3] = options.theta1_rate_rad_s;
+  x.v[kTheta2] = x.v[kTheta4] = options.theta2_rate_rad_s;
+  return x;
+}
+
+nlohmann::ordered_json MatrixJson(const Eigen::MatrixXd& matrix) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    const VectorXd row = matrix.row(i);
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+// One entry a root, a pair of conjugates once; by distance from zero.
+nlohmann::ordered_json RootsJson(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXcd values = A.eigenvalues();
+  std::vector<std::complex<double>> roots(values.begin(), values.end());
+  std::erase_if(roots, [](const auto& root) { return root.imag() < 0.0; });
+  std::sort(roots.begin(), roots.end(),
+            [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const auto& root : roots) {
+    json.push_back({{"real_1_s", root.real()},
+                    {"imaginary_rad_s", root.imag()},
+                    {"frequency_hz", std::abs(root) / kTwoPi},
+                    {"damping_ratio", std::abs(root) > 0.0 ? -root.real() / std::abs(root) : 0.0}});
+  }
+  return json;
+}
+
+// Figures 6.1 and 6.2: the deltas as a square wave of 1 s period, one period long.
+PerturbationRun PerturbationOf(const LinearizeOptions& options, const ArmModel& model,
+                               const State& x) {
+  Vector2d torque(options.torque_nm[0], options.torque_nm[1]);
+  const Vector2d delta(options.delta_nm[0], options.delta_nm[1]);
+  const auto wave = [delta](double t) {
+    const double sign = t < 0.5 ? 1.0 : t < 1.0 ? -1.0 : 0.0;
+    return Vector2d(sign * delta);
+  };
+  return Perturb(
+      model, x.q, x.v, [torque](double) { return torque; }, wave, options.duration_s,
+      ArmSimulator::kDefaultStep_s);
+}
+
+nlohmann::ordered_json PerturbationJson(const LinearizeOptions& options, const ArmModel& model,
+                                        const PerturbationRun& run) {
+  nlohmann::ordered_json json;
+  json["delta_torque_nm"] = options.delta_nm;
+  json["duration_s"] = options.duration_s;
+  json["relative_error"] = {{"theta1", run.RelativeError(kTheta1)},
+                            {"theta2", run.RelativeError(kTheta2)},
+                            {"phi_11", run.RelativeError(kPhi1)},
+                            {"phi_21", run.RelativeError(model.constants().phi2())}};
+  return json;
+}
+
+nlohmann::ordered_json LinearJson(const LinearizeOptions& options, const ArmModel& model,
+                                  const State& x) {
+  const LinearModel linear =
+      Linearize(model, x.q, x.v, Vector2d(options.torque_nm[0], options.torque_nm[1]),
+                options.friction_gain_s_per_rad);
+  nlohmann::ordered_json json;
+  json["state"] = {{"theta2_deg", options.theta2_deg},
+                   {"theta1_rate_rad_s", options.theta1_rate_rad_s},
+                   {"theta2_rate_rad_s", options.theta2_rate_rad_s},
+                   {"torque_nm", options.torque_nm}};
+  json["modes"] = options.modes;
+  json["foreshortening"] = model.constants().foreshortening;
+  json["friction_gain_s_per_rad"] = options.friction_gain_s_per_rad;
+  json["roots"] = RootsJson(linear.A);
+  json["largest_real_part_1_s"] = linear.A.eigenvalues().real().maxCoeff();
+  json["A"] = MatrixJson(linear.A);
+  json["B"] = MatrixJson(linear.B);
+  return json;
+}
+
+void PrintLinearization(const nlohmann::ordered_json& json) {
+  std::cout << "roots of the linearised arm\n"
+            << std::setprecision(5) << std::setw(14) << "real, 1/s" << std::setw(14)
+            << "imag, rad/s" << std::setw(12) << "Hz" << std::setw(12) << "damping" << '\n';
+  for (const auto& root : json["roots"]) {
+    std::cout << std::setw(14) << root["real_1_s"].get<double>() << std::setw(14)
+              << root["imaginary_rad_s"].get<double>() << std::setw(12)
+              << root["frequency_hz"].get<double>() << std::setw(12)
+              << root["damping_ratio"].get<double>() << '\n';
+  }
+  std::cout << "perturbed by a square wave, linear against nonlinear: largest error over largest "
+               "deviation\n";
+  for (const auto& [name, error] : json["perturbation"]["relative_error"].items()) {
+    std::cout << "  " << std::left << std::setw(18) << name << std::right << error.get<double>()
+              << '\n';
+  }
+}
+
+void Run(const LinearizeOptions& options) {
+  if (!options.output.empty()) CheckPicture(options.output);
+  const ArmModel model(options.config.Load().arm, {options.modes, options.modes});
+  const State x = StateOf(options, model);
+  nlohmann::ordered_json json = LinearJson(options, model, x);
+  const PerturbationRun run = PerturbationOf(options, model, x);
+  json["perturbation"] = PerturbationJson(options, model, run);
+  if (!options.output.empty()) {
+    DrawPerturbation(model, run, options.output);
+    std::cerr << "wrote " << options.output.string() << '\n';
+  }
+  if (options.json) {
+    std::cout << json.dump(2) << '\n';
+  } else {
+    PrintLinearization(json);
+  }
+}
+
+void AddState(CLI::App* verb, LinearizeOptions* options) {
+  verb->add_option("--modes", options->modes, "Bending modes a link")
+      ->check(CLI::Range(1, kMaxSteppedModes))
+      ->capture_default_str();
+  verb->add_option("--theta2-deg", options->theta2_deg, "Elbow angle")
+      ->check(NumberWithin(-180.0, 180.0))
+      ->capture_default_str();
+  verb->add_option("--theta1-rate", options->theta1_rate_rad_s, "Rate of joint 1, rad/s")
+      ->check(NumberWithin(-100.0, 100.0))
+      ->capture_default_str();
+  verb->add_option("--theta2-rate", options->theta2_rate_rad_s, "Rate of joint 2, rad/s")
+      ->check(NumberWithin(-100.0, 100.0))
+      ->capture_default_str();
+  verb->add_option("--torque-nm", options->torque_nm, "Motor torques")
+      ->check(NumberWithin(-1e4, 1e4))
+      ->type_name("TAU1 TAU2");
+  verb->add_option("--friction-gain", options->friction_gain_s_per_rad,
+                   "Friction smoothed to K_F tanh(gain * rate), s/rad; 0: left out")
+      ->check(NumberWithin(0.0, 1e6))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void RegisterAnalyzeLinearize(CLI::App& analyze, Exit&) {
+  const auto options = std::make_shared<LinearizeOptions>();
+  CLI::App* verb = analyze.add_subcommand(
+      "linearize", "The linear model at a state, its roots, and how far it can be trusted");
+  options->config.AddTo(verb, true);
+  AddState(verb, options.get());
+  verb->add_option("--delta-nm", options->delta_nm, "Torques of the perturbation test")
+      ->check(NumberWithin(-1e4, 1e4))
+      ->type_name("TAU1 TAU2")
+      ->capture_default_str();
+  verb->add_option("--duration-s", options->duration_s, "Length of the perturbation test")
+      ->check(NumberWithin(0.01, 60.0))
+      ->capture_default_str();
+  AddJson(verb, &options->json);
+  verb->add_option("-o,--output", options->output,
+                   "Picture of the perturbation test, .png or .svg (thesis's figures 6.1 and 6.2)")
+      ->type_name("FILE");
+  verb->footer(
+      "States: links unbent, rotors with their hubs. The perturbation test runs the arm from "
+      "there\n"
+      "without friction: with the given torques, with a small square wave on top of them, and the\n"
+      "linear model along that motion with the wave alone.\n"
+      "Example: flexarm analyze linearize -c config/thesis-rig.toml --theta2-deg 45 "
+      "--theta1-rate 1");
+  verb->callback([options] { Run(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,64 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "tools/analysis/parametric_report.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/verbs.h"
+#include "tools/support/parallel.h"
+#include "tools/thesis/parametric_statements.h"
+
+namespace flexarm {
+namespace {
+
+struct ParametricOptions {
+  ConfigOptions config;
+  Excitation excitation;
+  bool json = false;
+  std::filesystem::path output;
+};
+
+void Analyze(const ParametricOptions& options) {
+  const RigConfig config = options.config.Load();
+  const std::size_t runs = ParametricRuns(config);
+  const ParametricStudy study =
+      RunParametricStudy(config, options.excitation, ProgressBar("runs", runs));
+  const std::vector<Statement> statements =
+      ParametricStatements(study, RunParametricStudy(config, Strong(options.excitation),
+                                                     ProgressBar("runs, more torque", runs)));
+  if (!options.output.empty()) {
+    for (const auto& file : WriteParametricFolder(study, statements, options.output)) {
+      std::cerr << "wrote " << file.string() << '\n';
+    }
+  }
+  if (options.json) {
+    std::cout << ParametricJson(study, statements).dump(2) << '\n';
+  } else {
+    PrintStatements(statements);
+  }
+}
+
+}  // namespace
+
+void RegisterAnalyzeParametric(CLI::App& analyze, Exit&) {
+  const auto options = std::make_shared<ParametricOptions>();
+  CLI::App* verb = analyze.add_subcommand(
+      "parametric", "What payload, stiffness, friction, backlash and lengths do to the vibrations");
+  options->config.AddTo(verb, true);
+  verb->add_option(
+          "--torque-nm", options->excitation.torque_nm,
+          "Square wave of 1 s on both motors, N m; the statements are also tried with five "
+          "times as much")
+      ->type_name("T1 T2")
+      ->check(NumberWithin(1e-6, 1e3))
+      ->default_str("0.4 0.1");
+  AddJson(verb, &options->json);
+  verb->add_option(
+          "-o,--output", options->output,
+          "Folder for pictures like figures 5.1 to 5.5, every figure as CSV, and the table")
+      ->type_name("DIR");
+  verb->footer("Example: flexarm analyze parametric -c config/thesis-rig.toml -o parametric");
+  verb->callback([options] { Analyze(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,79 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/benchmark/benchmark.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/studies.h"
+#include "tools/command_line/verbs.h"
+#include "tools/support/parallel.h"
+#include "tools/support/text_file.h"
+
+namespace flexarm {
+namespace {
+
+struct BenchmarkOptions {
+  ConfigOptions config;
+  GridOptions grid;
+  std::string table = Name(BenchmarkKind::kCommands), laws, seeds;
+  std::filesystem::path output, page;
+  bool json = false;
+};
+
+void Run(const BenchmarkOptions& options) {
+  const RigConfig config = options.config.Load();
+  const BenchmarkSet set = BenchmarkSetOf(BenchmarkKindNamed(options.table), config,
+                                          ExperimentFile({}, options.config.file).parent_path());
+  const SweepPlan plan = BenchmarkPlan(config, set, options.laws, options.seeds);
+  SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
+  const std::vector<std::size_t> points = PointsToRun(&file, ParseShard(options.grid.shard));
+  RunSweep(plan, points, &file, options.grid.jobs, ProgressBar("runs", points.size()));
+  const std::size_t missing = PointsToRun(&file, {}).size();
+  const BenchmarkTable table = TableOf(set.kind, plan, file.Rows());
+  if (!options.page.empty()) {
+    WriteText(options.page, BenchmarkMarkdown(table));
+    std::cerr << "wrote " << options.page.string() << '\n';
+  }
+  if (options.json) {
+    nlohmann::ordered_json json = BenchmarkJson(table);
+    json["missing"] = missing;
+    json["results"] = options.output.string();
+    std::cout << json.dump(2) << '\n';
+  } else {
+    std::cout << BenchmarkMarkdown(table);
+    if (missing > 0) std::cout << "\n" << missing << " runs are of other shards\n";
+  }
+}
+
+}  // namespace
+
+void RegisterBenchmark(CLI::App& app, Exit&) {
+  const auto options = std::make_shared<BenchmarkOptions>();
+  CLI::App* verb = AddStudy(app, "benchmark");
+  options->config.AddTo(verb, true);
+  verb->add_option("--table", options->table,
+                   "commands (default): the commands of config/experiments\n"
+                   "moves: random smooth moves with payloads of 0 to 1 kg, for the laws that find "
+                   "the payload as well\n"
+                   "limits: the same moves for those laws, with encoders, gauges and friction "
+                   "made ideal")
+      ->type_name("NAME");
+  verb->add_option("--laws", options->laws, "Only these, by name, with commas between")
+      ->type_name("NAMES");
+  verb->add_option("--seeds", options->seeds,
+                   "Seeds of the noise and of random moves (default: 1..3, or 4001..4010 on moves)")
+      ->type_name("VALUES");
+  options->grid.AddTo(verb);
+  verb->add_option("--page", options->page, "Write the tables here too, in Markdown")
+      ->type_name("FILE");
+  AddOutput(verb, &options->output, "Results, a SQLite file; what is in it is not run again");
+  AddJson(verb, &options->json);
+  verb->footer(
+      "A law's score is the share of the rests, in percent, in which the tip is really at rest,\n"
+      "mean over all situations; a run that trips scores 0. docs/benchmark.md has the rules.\n"
+      "Example: flexarm benchmark -c config/hil.toml -o benchmark.sqlite");
+  verb->callback([options] { Run(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,132 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "config/config.h"
+#include "controller/host/daemon.h"
+#include "controller/realtime/realtime_setup.h"
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/errors.h"
+#include "controller/types/refused.h"
+#include "hal/bus_device.h"
+
+namespace flexarm {
+namespace {
+
+constexpr int kDone = 0, kFailed = 1, kBadInput = 2;
+
+struct Options {
+  std::filesystem::path config;
+  std::filesystem::path experiment;
+  std::optional<double> run_for_s;
+  std::vector<std::string> overrides;
+  std::string log_directory;
+  std::string socket;
+  bool without_realtime = false;
+};
+
+void AddOptions(CLI::App* app, Options* options) {
+  app->add_option("--config", options->config, "RigConfig of the rig, a TOML file")
+      ->required()
+      ->type_name("FILE");
+  app->add_option("--experiment", options->experiment,
+                  "Arm, run this once, disarm and end; simulated backend only")
+      ->type_name("FILE");
+  app->add_option("--run-for", options->run_for_s, "End safely after this long")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+  app->add_flag("--without-realtime", options->without_realtime,
+                "Run although SCHED_FIFO or locked memory is not permitted");
+  app->add_option("--set", options->overrides, "Replace a value of the config; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app->add_option("--log-dir", options->log_directory, "log.directory of the config")
+      ->type_name("DIR");
+  app->add_option("--socket", options->socket, "daemon.socket of the config")->type_name("PATH");
+}
+
+RigConfig Load(const Options& options) {
+  std::vector<std::string> overrides = options.overrides;
+  const auto quoted = [](const std::string& text) { return "'" + text + "'"; };
+  if (!options.log_directory.empty()) {
+    overrides.push_back("log.directory=" + quoted(options.log_directory));
+  }
+  if (!options.socket.empty()) overrides.push_back("daemon.socket=" + quoted(options.socket));
+  return LoadConfig(options.config, overrides);
+}
+
+// Only a simulated arm may be moved without a person who asked for it.
+void RequireBackend(const RigConfig& config, const Options& options) {
+  if (config.backend.empty()) {
+    throw Refused(options.config.string() +
+                  ": has no [hal] section, so there is nothing to drive; use a config with "
+                  "hal.backend, as config/hil.toml");
+  }
+  if (config.backend == "sim" || options.experiment.empty()) return;
+  throw Refused("--experiment moves the arm without a person, and backend '" + config.backend +
+                "' drives a real one: start the daemon without it, then use `flexarm arm` and "
+                "`flexarm run`");
+}
+
+int Serve(const Options& options) {
+  const RigConfig config = Load(options);
+  RequireBackend(config, options);
+  DaemonOptions daemon{.config = config,
+                       .experiment = std::nullopt,
+                       .run_for_s = options.run_for_s,
+                       .realtime = !options.without_realtime,
+                       .parse_experiment = ParseExperiment};
+  if (!options.experiment.empty()) daemon.experiment = LoadExperiment(options.experiment);
+  const DaemonResult result = RunDaemon(daemon);
+  return result.tripped || result.refused || result.log_errors > 0 ? kFailed : kDone;
+}
+
+int Complain(const std::string& text, int code) {
+  std::cerr << "flexarmd: " << text << '\n';
+  return code;
+}
+
+int Main(int argc, char** argv) {
+  Options options;
+  CLI::App app("The controller daemon of a two-link flexible arm. Operated with `flexarm`.",
+               "flexarmd");
+  app.set_version_flag("--version", "flexarmd " + ThisBuild().version + " (" + BuildId() + ")");
+  AddOptions(&app, &options);
+  app.footer(
+      "As a service: systemctl start flexarmd.\n"
+      "Hardware in the loop: flexarmd --config config/hil.toml\n"
+      "                      --experiment config/experiments/square-30deg.toml\n"
+      "SIGTERM brings the arm to rest, disarms it, closes the log and ends.\n"
+      "Exit codes: 0 done; 1 tripped, refused, or a log could not be written; 2 bad input.");
+  try {
+    app.parse(argc, argv);
+    return Serve(options);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return Complain(std::string(error.what()) + "\nTry: flexarmd --help", kBadInput);
+  } catch (const RealtimeRefused& error) {
+    return Complain(std::string("real time is refused.\n") + error.what(), kFailed);
+  } catch (const HalError& error) {
+    return Complain(std::string("a device cannot be used: ") + error.what(), kFailed);
+  } catch (const ConfigError& error) {
+    return Complain(error.what(), kBadInput);
+  } catch (const Refused& error) {
+    return Complain(error.what(), kBadInput);
+  } catch (const InputError& error) {
+    return Complain(error.what(), kBadInput);
+  } catch (const std::exception& error) {
+    return Complain(error.what(), kFailed);
+  }
+}
+
+}  // namespace
+}  // namespace flexarm
+
+int main(int argc, char** argv) {
+  try {
+    return flexarm::Main(argc, argv);
+  } catch (...) {  // what even the message could not be made for
+    return 1;
+  }
+}

@@ -1,0 +1,102 @@
+"""The folders of the source tree, the lowest first, and the folders that each may include.
+
+A folder may name only folders that stand above it here: so there is no cycle. check_layers.py
+checks that the code includes no more than this, and no less.
+"""
+
+LAYERS = {
+    "model": "",
+    "model/math": "",
+    "model/parameters": "model",
+    "model/beam": "model model/math model/parameters",
+    "model/beam_methods": "model/math model/beam",
+    "model/arm": "model model/math model/parameters model/beam",
+    "model/simulation": "model/math model/arm",
+    "model/perturbation": "model/math model/arm model/simulation",
+    "model/reduction": "model/math model/arm",
+    "model/rigid_joint": "model/math model/parameters model/arm model/simulation",
+    "hal": "model",
+    "hal/sim": "model model/arm model/simulation model/rigid_joint hal",
+    "hal/canopen": "model hal",
+    "hal/modbus": "model hal",
+    "hal/comedi": "model hal",
+    "hal/gpiod": "model hal",
+    "hal/wired": "model hal hal/canopen hal/modbus hal/comedi hal/gpiod",
+    "hal/emulation": "hal hal/sim hal/canopen hal/modbus hal/wired",
+    "estimator": "model model/math model/parameters model/beam model/arm model/rigid_joint hal",
+    "controller/exchange": "",
+    "controller/realtime": "hal controller/exchange",
+    "controller/types": "model model/parameters model/arm model/rigid_joint hal hal/sim hal/wired "
+                        "estimator controller/exchange",
+    "controller/safety": "hal controller/types",
+    "controller/law": "model/math model/rigid_joint estimator controller/types",
+    "controller/reference": "model model/beam model/rigid_joint estimator controller/types "
+                            "controller/law",
+    "controller/planner": "model/math model/rigid_joint controller/types controller/law",
+    "controller/design": "model model/math model/arm model/rigid_joint estimator controller/types "
+                         "controller/law",
+    "controller/step": "model model/rigid_joint estimator controller/types controller/law "
+                       "controller/reference",
+    "controller/runlog": "model model/parameters model/beam hal estimator controller/exchange "
+                         "controller/realtime controller/types controller/safety",
+    "controller/tasks": "hal hal/sim controller/exchange controller/realtime controller/types "
+                        "controller/safety controller/law controller/reference "
+                        "controller/planner controller/step",
+    "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
+                                "controller/types controller/runlog controller/tasks",
+    "controller/operator": "model hal controller/realtime controller/types "
+                           "controller/runlog controller/tasks controller/commissioning",
+    "controller/host": "hal/wired controller/realtime controller/types "
+                       "controller/law controller/design controller/runlog controller/tasks "
+                       "controller/operator",
+    "config": "model hal hal/wired estimator controller/types controller/runlog",
+    "tools/support": "controller/runlog",
+    "tools/runs": "controller/runlog config",
+    "tools/plot": "model model/beam tools/runs",
+    "tools/command_line": "controller/types controller/runlog config",
+    "tools/analysis": "model model/math model/beam model/beam_methods model/arm model/simulation "
+                      "model/perturbation model/reduction controller/runlog config tools/support "
+                      "tools/runs tools/plot",
+    "tools/sweep": "model/rigid_joint hal controller/types controller/runlog controller/host "
+                   "config tools/support tools/runs tools/plot",
+    "tools/benchmark": "controller/runlog config tools/runs tools/plot tools/sweep",
+    "tools/identification": "model model/math model/arm model/simulation hal estimator "
+                            "controller/types controller/runlog config tools/support tools/runs "
+                            "tools/plot",
+    "tools/thesis": "model model/math model/beam_methods model/arm model/simulation "
+                    "model/perturbation model/reduction controller/types controller/law "
+                    "controller/design controller/host config tools/support tools/analysis "
+                    "tools/sweep",
+    "tools/report": "model/simulation model/perturbation controller/runlog controller/host config "
+                    "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
+                    "tools/thesis",
+    "tools/flexarm": "model model/arm hal/wired hal/emulation controller/realtime "
+                     "controller/types controller/safety controller/law controller/design "
+                     "controller/step controller/runlog controller/commissioning "
+                     "controller/operator controller/host config tools/support tools/runs "
+                     "tools/plot tools/command_line",
+    "tools/flexarm_study": "model model/math model/beam model/arm model/simulation "
+                           "model/perturbation controller/runlog tools/support tools/runs "
+                           "tools/command_line tools/analysis tools/sweep tools/benchmark "
+                           "tools/identification tools/thesis tools/report",
+    "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
+                      "config",
+}
+LAYERS = {folder: uses.split() for folder, uses in LAYERS.items()}
+
+# Code that runs on the safety, control, bus and plant threads: no I/O, lock, clock or log by name.
+# Drivers call their bus through its library, on threads of their own.
+REALTIME = {
+    "model", "model/math", "model/beam", "model/arm", "model/simulation",
+    "model/rigid_joint", "hal", "hal/sim", "hal/canopen", "hal/modbus", "hal/comedi", "hal/gpiod",
+    "estimator", "controller/exchange", "controller/types", "controller/safety", "controller/law",
+    "controller/reference", "controller/planner", "controller/step", "controller/tasks",
+}
+
+# What ControlStep::Step, the planner and the safety machine run, too: no heap, and + - * / and sqrt
+# in place of libm, whose sin and exp differ between machines. A line of start-up code says so:
+# `// start-up`.
+STEP = {
+    "model/rigid_joint", "estimator", "controller/exchange", "controller/safety", "controller/law",
+    "controller/planner", "controller/step",
+}

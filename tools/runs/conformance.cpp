@@ -1,0 +1,146 @@
+#include "tools/runs/conformance.h"
+
+#include <cmath>
+#include <functional>
+
+#include "controller/runlog/replay.h"
+
+namespace flexarm {
+namespace {
+
+// Torques come from sums over a period: a limit may be missed by round-off.
+constexpr double kRoundOff_nm = 1e-9;
+
+std::string Number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string At(const TickRecord& record) { return "tick " + std::to_string(record.input.tick); }
+
+// Says what is wrong with a tick, given the one before it; empty if nothing.
+using TickRule = std::function<std::string(const TickRecord* before, const TickRecord& now)>;
+
+ConformanceCheck ForEveryTick(const std::string& name, const std::vector<TickRecord>& ticks,
+                              const TickRule& rule) {
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const std::string wrong = rule(i > 0 ? &ticks[i - 1] : nullptr, ticks[i]);
+    if (!wrong.empty()) return {name, false, At(ticks[i]) + ": " + wrong};
+  }
+  return {name, true, ""};
+}
+
+std::string Follows(const TickRecord* before, const TickRecord& now) {
+  if (before == nullptr || now.input.tick == before->input.tick + 1) return "";
+  return "follows tick " + std::to_string(before->input.tick);
+}
+
+std::string TimeRunsForward(const TickRecord* before, const TickRecord& now) {
+  if (before == nullptr || now.input.now_ns > before->input.now_ns) return "";
+  return "is at " + std::to_string(now.input.now_ns) + " ns, the one before at " +
+         std::to_string(before->input.now_ns) + " ns";
+}
+
+std::string BeginsWithReset(const TickRecord* before, const TickRecord& now) {
+  if (before != nullptr || now.input.reset != 0) return "";
+  return "is the first and does not reset the loop: the log does not replay on its own";
+}
+
+std::string OutputBelongsToInput(const TickRecord*, const TickRecord& now) {
+  if (now.output.tick == now.input.tick) return "";
+  return "has the output of tick " + std::to_string(now.output.tick);
+}
+
+std::string TorqueIsFinite(const TickRecord*, const TickRecord& now) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    if (!std::isfinite(now.output.torque_nm[joint]) ||
+        !std::isfinite(now.input.applied_torque_nm[joint])) {
+      return "a torque is not finite";
+    }
+  }
+  return "";
+}
+
+TickRule TorqueLimit(const SafetyConfig& limits) {
+  return [limits](const TickRecord*, const TickRecord& now) -> std::string {
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      const double torque = now.input.applied_torque_nm[joint];
+      if (std::abs(torque) > limits.torque_limit_nm[joint] + kRoundOff_nm) {
+        return Number(torque) + " N m on joint " + std::to_string(joint + 1) + ", limit " +
+               Number(limits.torque_limit_nm[joint]);
+      }
+    }
+    return "";
+  };
+}
+
+// Means over neighbouring periods cannot differ by more than the slew over one period.
+TickRule SlewLimit(const SafetyConfig& limits, double period_s) {
+  return [limits, period_s](const TickRecord* before, const TickRecord& now) -> std::string {
+    const bool neighbours = before != nullptr && now.input.tick == before->input.tick + 1;
+    // A trip may take the torque away at once.
+    if (!neighbours || !TorqueAllowed(now.input.safety_state)) return "";
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      const double step =
+          now.input.applied_torque_nm[joint] - before->input.applied_torque_nm[joint];
+      const double limit = limits.slew_limit_nm_per_s[joint] * period_s;
+      if (std::abs(step) > limit + kRoundOff_nm) {
+        return "torque " + std::to_string(joint + 1) + " changes by " + Number(step) +
+               " N m, limit " + Number(limit);
+      }
+    }
+    return "";
+  };
+}
+
+// What was applied belongs to the period before, so it may outlive the state by one tick.
+std::string NoTorqueWhereNoneIsAllowed(const TickRecord* before, const TickRecord& now) {
+  if (TorqueAllowed(now.input.safety_state)) return "";
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    if (now.output.torque_nm[joint] != 0)
+      return "torque asked in " + std::string(Name(now.input.safety_state));
+    const bool was_allowed = before == nullptr || TorqueAllowed(before->input.safety_state);
+    if (!was_allowed && now.input.applied_torque_nm[joint] != 0) {
+      return "torque applied in " + std::string(Name(now.input.safety_state));
+    }
+  }
+  return "";
+}
+
+ConformanceCheck SafetyReplays(const RunContents& run) {
+  Replay replay([](const StepInput&) { return StepOutput{}; }, true);
+  for (const SafetyRecord& record : run.safety) replay.Safety(record);
+  const ReplayResult result = replay.Result();
+  if (!result.safety_exact) return {"safety-replay", false, "there are no safety records"};
+  if (*result.safety_exact) return {"safety-replay", true, ""};
+  return {"safety-replay", false,
+          "the record at " + std::to_string(result.first_different_safety_ns.value_or(0)) +
+              " ns is not what its facts demand"};
+}
+
+ConformanceCheck IsClosed(const LoadedRun& run) {
+  const bool closed = run.closed && !run.contents.info.result_json.empty();
+  return {"closed", closed,
+          closed ? "" : "the run was not closed: still open, or its process died"};
+}
+
+}  // namespace
+
+std::vector<ConformanceCheck> CheckConformance(const LoadedRun& run) {
+  const auto& ticks = run.contents.tick;
+  const SafetyConfig& limits = run.config.safety;
+  return {ConformanceCheck{"has-ticks", !ticks.empty(), ticks.empty() ? "there are none" : ""},
+          ForEveryTick("no-gap", ticks, Follows),
+          ForEveryTick("time-runs-forward", ticks, TimeRunsForward),
+          ForEveryTick("begins-with-reset", ticks, BeginsWithReset),
+          ForEveryTick("output-belongs-to-input", ticks, OutputBelongsToInput),
+          ForEveryTick("torque-finite", ticks, TorqueIsFinite),
+          ForEveryTick("torque-limit", ticks, TorqueLimit(limits)),
+          ForEveryTick("slew-limit", ticks, SlewLimit(limits, run.period_s())),
+          ForEveryTick("torque-only-where-allowed", ticks, NoTorqueWhereNoneIsAllowed),
+          SafetyReplays(run.contents),
+          IsClosed(run)};
+}
+
+}  // namespace flexarm

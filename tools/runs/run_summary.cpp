@@ -1,0 +1,73 @@
+#include "tools/runs/run_summary.h"
+
+#include <cmath>
+
+#include "controller/runlog/errors.h"
+
+namespace flexarm {
+namespace {
+
+nlohmann::ordered_json Pair(const std::array<double, 2>& pair) {
+  return nlohmann::ordered_json::array({NumberOrNull(pair[0]), NumberOrNull(pair[1])});
+}
+
+}  // namespace
+
+nlohmann::ordered_json NumberOrNull(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+RigConfig ConfigOf(const RunReader& reader) {
+  const std::string name = reader.file().string() + " (its config)";
+  if (reader.info().config_text.empty()) {
+    throw InputError(reader.file().string() + ": holds no config; expected the whole config text");
+  }
+  return ParseConfig(reader.info().config_text, name);
+}
+
+LoadedRun LoadRun(const std::filesystem::path& file) {
+  RunReader reader(file);
+  LoadedRun run{.file = file,
+                .closed = reader.closed(),
+                .contents = reader.ReadAll(),
+                .config = ConfigOf(reader),
+                .experiment = std::nullopt};
+  const RunInfo& info = run.contents.info;
+  if (!info.experiment_text.empty()) {
+    run.experiment = ParseExperiment(info.experiment_text, file.string() + " (its experiment)");
+  }
+  return run;
+}
+
+std::optional<RunMetrics> MetricsOf(const LoadedRun& run) {
+  if (!run.experiment) return std::nullopt;
+  return ComputeMetrics(run.contents.tick, *run.experiment, run.period_s(),
+                        TipGeometryOf(run.config.arm, run.config.controller.nominal));
+}
+
+nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
+  nlohmann::ordered_json json;
+  json["ticks"] = metrics.ticks;
+  json["joint_rms_error_deg"] = Pair(metrics.joint_rms_error_deg);
+  json["joint_final_error_deg"] = Pair(metrics.joint_final_error_deg);
+  json["tip_settling_time_s"] =
+      metrics.tip_settling_time_s ? NumberOrNull(*metrics.tip_settling_time_s) : nullptr;
+  json["tip_residual_rms_mm"] = NumberOrNull(metrics.tip_residual_rms_mm);
+  json["tip_motion_rms_mm"] = NumberOrNull(metrics.tip_motion_rms_mm);
+  json["peak_torque_nm"] = Pair(metrics.peak_torque_nm);
+  json["torque_rms_nm"] = Pair(metrics.torque_rms_nm);
+  json["peak_bending_mm"] = Pair(metrics.peak_bending_mm);
+  json["truth"] = metrics.truth;
+  return json;
+}
+
+std::optional<SafetyRecord> TripOf(const std::vector<SafetyRecord>& records) {
+  for (const SafetyRecord& record : records) {
+    const bool trips =
+        record.after.state == SafetyState::kTripped && record.before.state != SafetyState::kTripped;
+    if (trips) return record;
+  }
+  return std::nullopt;
+}
+
+}  // namespace flexarm

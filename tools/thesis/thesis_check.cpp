@@ -1,0 +1,61 @@
+#include "tools/thesis/thesis_check.h"
+
+#include <algorithm>
+
+#include "tools/thesis/chapter7_statements.h"
+#include "tools/thesis/parametric_statements.h"
+
+namespace flexarm {
+namespace {
+
+std::vector<Statement> Chapter5Statements(const RigConfig& config) {
+  const Excitation weak;
+  return ParametricStatements(RunParametricStudy(config, weak),
+                              RunParametricStudy(config, Strong(weak)));
+}
+
+std::vector<Statement> ControlStatements(const RigConfig& config) {
+  return Chapter7Statements(ControlStudy(config));
+}
+
+}  // namespace
+
+std::vector<Statement> ThesisStatements(const RigConfig& config,
+                                        const std::function<void(std::size_t)>& progress) {
+  std::vector<Statement> all;
+  std::size_t done = 0;
+  for (auto* chapter : {Chapter3Statements, Chapter4Statements, Chapter5Statements,
+                        Chapter6Statements, ControlStatements}) {
+    for (Statement& statement : chapter(config)) all.push_back(std::move(statement));
+    if (progress) progress(++done);
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Statement& a, const Statement& b) { return a.section < b.section; });
+  return all;
+}
+
+std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement>& statements) {
+  const Excitation weak;
+  return "# What the thesis says, and what the model says\n\n"
+         "Statements of chapters 3 to 7, in our words, against the model of this project with the "
+         "config `" +
+         config.rig_name +
+         "`. Written by `flexarm analyze check -c FILE -o docs/thesis-check.md`: every number in "
+         "the third column is computed, every verdict follows from numbers by a rule, and a test "
+         "writes the page again and compares. The model is checked by other means elsewhere "
+         "(`tests/model/`).\n\n"
+         "Chapter 5 does not say how strongly the arm was excited. Here: one period of a square "
+         "wave of " +
+         Figure(Excitation::kPeriod_s, 1) + " s, " + Figure(weak.torque_nm[0], 1) + " and " +
+         Figure(weak.torque_nm[1], 1) + " N m, elbow straight, and again with " +
+         Figure(kStrongExcitation, 1) +
+         " times as much. Bending is the deflection of a link's tip, twist the deflection of a "
+         "joint's spring; \"largest\" is over the whole run, \"after the excitation\" the free "
+         "vibration.\n\nChapter 7 is the loop of `config/hil.toml`, sensors, noise and delay "
+         "included: " +
+         "30 degrees out by a square doublet of 1 s, and 2 s later back; medians over " +
+         std::to_string(ControlStudy::kSeeds) + " seeds.\n\n" + StatementTable(statements) + "\n" +
+         Counted(statements) + ".\n";
+}
+
+}  // namespace flexarm
