@@ -23,8 +23,9 @@ using TorqueByDelay = std::array<std::optional<TorquePieces>, kDelays>;
 /// up, J <- kMemory J + min(NIS, kMost); a delay that is better by more than kBetter takes over,
 /// and all begin again at zero. Where torques do not change, as at rest, all delays predict the
 /// same and none gains. A sample that no delay explains, as when a load is dropped, says nothing.
-/// Source: beyond.md 2.3 (6), which looks at the four angles one by one and a sample ahead from the
-/// same state, with 0.97 and 40. What these numbers find, and when: docs/timing.md.
+/// Source: docs/theory/payload.md 2.7. The design study looks at the four angles one by one and a
+/// sample ahead from the same state, with 0.97 and 40. What these numbers find, and when:
+/// docs/timing.md.
 /// Real-time: safe; fixed size.
 class DelayDetector {
  public:

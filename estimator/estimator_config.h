@@ -10,7 +10,7 @@
 namespace flexarm {
 
 enum class EstimatorKind : std::uint8_t {
-  kKalman,      ///< "kalman": steady-state filter, gauge filter in its model (control.md section 4)
+  kKalman,      ///< "kalman": steady state, models the gauge filter; docs/theory/control-law.md 7.3
   kDifference,  ///< "difference": rates are backward differences, as in the thesis
   kPolynomial,  ///< "polynomial": the same, on the thesis's polynomial fit (polynomial_fit.h)
   kPayload,     ///< "ekf-payload": finds payload and friction as well (payload_filter.h)

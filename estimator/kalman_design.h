@@ -16,7 +16,7 @@ namespace flexarm {
 /// the rotors show their hubs, as th3 - u1/K1 and th4 - u2/K2, u the torque applied during the last
 /// interval. The gain column of an encoder that the rig does not have is zero.
 ///   x(k|k) = x(k|k-1) + L (y - C x(k|k-1)),  x(k+1|k) = A x(k|k) + B u(k)
-/// Source: control.md section 4, "Kalman filter".
+/// Source: docs/theory/control-law.md 7.3.
 struct KalmanDesign {
   Eigen::MatrixXd A, B, C, L;
   Eigen::MatrixXd A_rate, B_rate;  ///< the same system continuous: x' = A_rate x + B_rate u, 1/s

@@ -11,9 +11,9 @@ namespace flexarm {
 ///
 /// Straight arm, no friction: M q'' + D q' + K q = E u, u = tau1 tau2 (N m) on the rotors, with M,
 /// D, K reduced from the nonlinear arm by T_r. With rigid joints the rotors turn with their hubs:
-/// the free ends are so light that the torsion modes leave the band of a 50 Hz loop (control.md
-/// section 2). The thesis's own models have torsional joints: T12 with one mode a link, T16 with
-/// two.
+/// the free ends are so light that the torsion modes leave the band of a 50 Hz loop
+/// (docs/theory/control-law.md 1.2). The thesis's own models have torsional joints: T12 with one
+/// mode a link, T16 with two.
 struct NominalModel {
   StateLayout layout;
   Eigen::MatrixXd M, D, K;            ///< n/2 x n/2
@@ -27,8 +27,9 @@ struct NominalModel {
 /// Reduces the arm at theta2 = 0, rest.
 NominalModel MakeNominalModel(const ArmParameters& arm, const StateLayout& layout);
 
-/// The reference model (control.md section 3): the same M and K, structural damping c_l G_l with
-/// c_l = 2 / w_l ("coupled" critical damping), w_l the l-th torque mode. Joints are undamped.
+/// The reference model (docs/theory/control-law.md 2.1): the same M and K, structural damping c_l
+/// G_l with c_l = 2 / w_l ("coupled" critical damping), w_l the l-th torque mode. Joints are
+/// undamped.
 NominalModel MakeReferenceModel(const NominalModel& nominal);
 
 }  // namespace flexarm

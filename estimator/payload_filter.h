@@ -13,7 +13,7 @@
 
 namespace flexarm {
 
-/// What PayloadFilter has to be told. No defaults: the values of the study are in beyond.md 2.3.
+/// What PayloadFilter has to be told. The design study's values: docs/theory/payload.md 2.
 struct PayloadFilterConfig {
   std::array<double, 2> joint_stiffness_nm_per_rad;  ///< K1, K2: rotor angles are freed of u/K
   /// Standard deviations of the generalised process forces on th1 th2 (N m) and the modal
@@ -59,7 +59,7 @@ struct PayloadFilterConfig {
 ///      gain is not the optimal one, so the covariance follows by Joseph's form;
 ///   5. if the tip's acceleration was read, it updates what (4) found, gated and in the same form.
 ///      It is no part of NIS and innovation.
-/// Source: beyond.md 2.3. Real-time: all but the constructor is safe; no loop without a
+/// Source: docs/theory/payload.md 2. Real-time: all but the constructor is safe; no loop without a
 /// bound.
 class PayloadFilter {
  public:

@@ -13,7 +13,7 @@ struct TrackingProblem {
 
 /// Command generator tracker: the plant trajectory on which the outputs agree exactly.
 ///   x* = S11 x_m + S12 u_m,  u* = S21 x_m + S22 u_m
-/// Source: thesis 7.3 and control.md section 4, point 5.
+/// Source: thesis 7.3 and docs/theory/control-law.md 4.
 struct CommandGenerator {
   Eigen::MatrixXd S11, S12, S21, S22;
   double condition;  ///< of the matrix [A - I, B; C_p, 0], scaled

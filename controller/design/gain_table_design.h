@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// What the gains of a table weigh. The study's values: beyond.md 2.4.
+/// What the gains of a table weigh. The design study's values: docs/theory/payload.md 4.2.
 struct GainWeights {
   std::array<double, 12> state;  ///< diagonal of Q on [q; q'] of RigidJointArm, 1 by their squares
   double torque;                 ///< R = rho I, 1/(N m)^2
@@ -16,7 +16,7 @@ struct GainWeights {
 
 /// LQR with degree of stability alpha at every knot, of the arm at rest and unbent, sampled.
 ///
-/// Takes about a millisecond a knot. Source: beyond.md 2.4; control.md section 4.
+/// Takes about a millisecond a knot. Source: docs/theory/payload.md 4.2, control-law.md 3.1.
 /// @param period_s  > 0
 /// @throws std::invalid_argument as GainTable; std::runtime_error if a knot has no regulator
 GainTable DesignGainTable(const RigidJointArm& arm, const GainGrid& grid,

@@ -40,7 +40,7 @@ struct Screen {
 ///
 /// Linear: no friction, quantisation or limits; of an adaptive law the gains at the start, which
 /// adaptation can raise by 1 + 1/G at most. Positive realness says nothing about the modes that the
-/// nominal model leaves out: this does (control.md section 7, pitfall 1).
+/// nominal model leaves out: this does (docs/theory/control-law.md 10).
 ///
 /// A design has to hold every payload with its gains, and its own payload with the gains x 0.7 and
 /// x 1.4. Both at once are reported only: no design with alpha >= 1 holds 0 kg at 90 degrees with

@@ -33,7 +33,7 @@ struct ScheduledDesign {
 
 /// Everything that the loop needs and that is computed before it runs. SI, psi(L) = 1.
 ///
-/// Names as in control.md section 4 and thesis chapter 7. n states, 2 inputs.
+/// Names as in docs/theory/control-law.md 3 to 6 and thesis chapter 7. n states, 2 inputs.
 struct Design {
   StateLayout layout{};            ///< of the nominal model, and so of x, x_m and all gains
   Eigen::MatrixXd A, B;            ///< nominal model, discrete

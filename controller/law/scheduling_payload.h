@@ -22,7 +22,7 @@ inline constexpr bool ContradictsModel(double mean_nis) noexcept {
 ///   - the estimate is uncertain: weight (sigma / kPayloadUncertain_kg)^2, at most 1;
 ///   - the filter's model is wrong: weight from 0 at a mean NIS of 20 to 1 at kModelWrongNis;
 ///   - the arm has rested for more than 0.5 s, when a payload may be handed over unseen.
-/// Source: beyond.md 2.4. Real-time: safe.
+/// Source: docs/theory/payload.md 4.3. Real-time: safe.
 /// @param payload_sigma_kg  standard deviation of the estimate, >= 0
 /// @param mean_nis          as PayloadFilter's
 /// @param rested_s          since the last move's end; 0 or less while one is under way

@@ -29,7 +29,7 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 /// | lqg            | 0, of x_m only the joints' angles and rates     | LQR with alpha = 0      |
 /// | pd, pd-zv(d)   | u_m                                             | stiffness, damping a hub |
 ///
-/// u_f is (7.25). The adaptive laws (thesis 7.2 to 7.4, control.md section 4) give instead
+/// u_f is (7.25). The adaptive laws (thesis 7.2 to 7.4, docs/theory/control-law.md 6) give instead
 ///
 ///   x* = S11 x_m + S12 u_m,  e = x* - x,  y_e = C_p (x_m - x) = C_p e
 ///   r  = [y_e; x_m; u_m],  rho = r' Tbar r

@@ -18,7 +18,7 @@ struct PlanPolicy {
 /// sample by TransitionOver, without its gauges; the cost as it is, a quadratic.
 ///
 /// R > 0 and Q >= 0 make every step's Hessian positive definite: nothing is regularised.
-/// Source: beyond.md 2.5 (B). Real-time: safe.
+/// Source: docs/theory/payload.md 5.2. Real-time: safe.
 /// @param track  a motion of the model, targets.stages() long
 void SweepBackward(const RigidJointStepper& stepper, double payload_kg, const PlanTargets& targets,
                    const PlanTrack& track, PlanPolicy* policy) noexcept;

@@ -94,9 +94,10 @@ bool HorizonPlanner::Improve(double payload_kg) noexcept {
   return false;
 }
 
-// The document's rule "rejected if it raises sum |u - u_prev| / u_max above .5 and above the old
-// plan's" is read as the largest change from sample to sample, joints added. A sum over the horizon
-// would be above .5 in every healthy move, and would refuse each plan for a payload found heavier.
+// The design study's rule "rejected if it raises sum |u - u_prev| / u_max above .5 and above the
+// old plan's" is read as the largest change from sample to sample, joints added. A sum over the
+// horizon would be above .5 in every healthy move, and would refuse each plan for a payload found
+// heavier.
 bool HorizonPlanner::IsSmooth(const PlanProblem& problem,
                               const HorizonPlan* previous) const noexcept {
   const auto change = [this](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {

@@ -11,7 +11,7 @@
 
 namespace flexarm {
 
-/// What HorizonPlanner has to be told. The study's values: beyond.md 2.5.
+/// What HorizonPlanner has to be told. The design study's values: docs/theory/payload.md 5.
 struct HorizonPlannerConfig {
   PlanWeights weights;
   std::array<double, 2> torque_limit_nm;  ///< a plan keeps within +-these
@@ -28,9 +28,10 @@ struct HorizonPlannerConfig {
 /// gains, or from the quasi-static motion under the gains of a table. Then a backward sweep and
 /// rollouts with a share of its step, 1, 0.4, 0.1, until one costs less; none: the start is kept.
 /// Two such rounds after a cold start, one after a warm one. Rollouts take 4 steps a sample, as the
-/// study's do; the sweep linearises with RigidJointStepper::kSteps.
-/// Source: beyond.md 2.5 (B). Real-time: all but the constructor is safe, every loop has a bound;
-/// a cold plan of 109 stages takes some milliseconds, so it has a task of its own. Half a megabyte.
+/// design study's do; the sweep linearises with RigidJointStepper::kSteps.
+/// Source: docs/theory/payload.md 5. Real-time: all but the constructor is safe, every loop has a
+/// bound; a cold plan of 109 stages takes some milliseconds, so it has a task of its own. Half a
+/// megabyte.
 class HorizonPlanner {
  public:
   /// Of the last plan.
@@ -39,7 +40,7 @@ class HorizonPlanner {
     double start_cost, cost;  ///< of the start and of what came out, see PlanTargets
   };
 
-  /// @param start_gains  for cold starts; the study's have alpha = 1.5
+  /// @param start_gains  for cold starts; the design study's have alpha = 1.5
   HorizonPlanner(const RigidJointArm& arm, double period_s, GainTable start_gains,
                  const HorizonPlannerConfig& config);
 

@@ -20,12 +20,13 @@ struct PlanProblem {
   double payload_kg;                 ///< as estimated now
   Eigen::Vector2d torque_before_nm;  ///< issued for the sample before first_tick, without friction
   /// The rigid coordinate, sample by sample from first_tick - 1: its size is that of the horizon
-  /// and 3 more. beyond.md 2.5: to 20 samples after the move's end.
+  /// and 3 more. docs/theory/payload.md 5.1: to 20 samples after the move's end.
   std::span<const RigidPoint> path;
   std::size_t move_samples;  ///< from first_tick to the end of the move
 };
 
-/// Weights of a plan's cost, 1 by the squares of SI units. The study's values: beyond.md 2.5.
+/// Weights of a plan's cost, 1 by the squares of SI units. The design study's values:
+/// docs/theory/payload.md 5.1.
 struct PlanWeights {
   std::array<double, 12> moving;   ///< Q of a deviation from the reference, of an empty hand
   std::array<double, 12> resting;  ///< Q from the move's end on, whatever the payload
@@ -47,8 +48,9 @@ struct PlanTrack {
 ///
 /// r has the hubs of the reference payload and straight links; x_ps, u_ps are those of
 /// QuasiStaticAt with the present payload, u_ps at the instant of the sample. The weight at the end
-/// and u_ps of the instant are not in the document: with them the study's plan is reproduced.
-/// Source: beyond.md 2.5 (B). Real-time: safe.
+/// and u_ps of the instant are this program's: with them the plan of the design study is
+/// reproduced.
+/// Source: docs/theory/payload.md 5.1. Real-time: safe.
 class PlanTargets {
  public:
   /// A path longer than HorizonPlan::kMaxStages is planned that far only; one too short for a stage

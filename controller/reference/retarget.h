@@ -16,7 +16,7 @@ namespace flexarm {
 /// where the c are the first Taylor coefficients of (Y - to) (1 - x)^-4 = (Y - to) (1 + 4 x + 10
 /// x^2 + 20 x^3 + ..) at 0. From rest it is the septic profile (motion_profile.h). It may leave
 /// the way between both ends: an arm that moves away has to turn round.
-/// Source: beyond.md 2.1. Real-time: safe.
+/// Source: docs/theory/payload.md 3.2. Real-time: safe.
 /// @param duration_s  T, > 0
 /// @param time_s      t; beyond 0 .. T it is `from`, or rest at the end
 RigidPoint SepticToRest(const RigidPoint& from, const std::array<double, 2>& to_rad,

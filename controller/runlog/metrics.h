@@ -22,7 +22,7 @@ struct RunMetrics {
   std::optional<double> tip_settling_time_s;
   double tip_residual_rms_mm = 0;  ///< largest over the rests: rms about that mean
   /// Mean over the rests: the tip's rms about its mean from 0.3 s after the move's end to the end
-  /// of the rest (the residual of beyond.md section 4), so slow swings count too.
+  /// of the rest (the motion of docs/theory/payload.md 6.1), so slow swings count too.
   double tip_motion_rms_mm = 0;
   std::array<double, 2> peak_torque_nm{};   ///< after the gate
   std::array<double, 2> torque_rms_nm{};    ///< after the gate, all ticks

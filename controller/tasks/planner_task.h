@@ -25,8 +25,8 @@ PlanSchedule PlanScheduleOf(const RigConfig& config);
 /// It has PlanSchedule::ready periods for it; the control task waits for nothing. A plan that is
 /// refused (HorizonPlanner) leaves the one before it in force, unless that was made for quite
 /// another payload: then the closed form takes over.
-/// Source: beyond.md 2.5 (B). Real-time: safe after construction; no lock, no allocation, and every
-/// loop has a bound. Large: 2 MB.
+/// Source: docs/theory/payload.md 5.4. Real-time: safe after construction; no lock, no allocation,
+/// and every loop has a bound. Large: 2 MB.
 class PlannerTask final : public Task {
  public:
   static constexpr int kPriority = 50;

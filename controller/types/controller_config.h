@@ -58,7 +58,7 @@ struct PayloadLawConfig {
   std::vector<double> gain_elbow_deg;   ///< |theta2|, ascending from 0
 };
 
-inline constexpr int kMostReadyPeriods = 20;  ///< 0.4 s: as long as the study's shortest move
+inline constexpr int kMostReadyPeriods = 20;  ///< 0.4 s: shortest move, docs/theory/payload.md 3.1
 
 /// Table [controller.plan]: how the rest of a move is planned while it lasts; plan_targets.h has
 /// the cost.

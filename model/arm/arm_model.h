@@ -15,8 +15,8 @@ namespace flexarm {
 /// tip deflection. Off-line form in dynamic-size matrices; ArmSimulator steps the same equations
 /// fast. Options: foreshortening (foreshortening.h; the thesis has none) and play between the gears
 /// of joint 2 (backlash.h). Not modelled: gravity; friction is a generalised force, see
-/// ArmSimulator. Source: thesis chapter 3, (3.15)-(3.22), with the errata. Real-time: all but
-/// CarryPayload start-up only (allocates).
+/// ArmSimulator. Source: thesis chapter 3, (3.15)-(3.22), corrected by docs/theory/thesis.md 2.
+/// Real-time: all but CarryPayload start-up only (allocates).
 class ArmModel {
  public:
   /// @throws std::invalid_argument if the parameters have Problems() or a count is outside its

@@ -30,7 +30,7 @@ struct Joint2Torque {
 /// it is the Rayleigh form of a function of degree 4 to 5, so takes 2 to 2.5 times Delta E / Delta
 /// t; (e) zeta is in s/m, th4' in rad/s; (f) the appendix has the wrong sign in B_4 and lacks the
 /// 1/2. I_1 and I_2 are not defined: read here as J_2 and all that turns with hub 2, undeformed.
-/// Source: thesis 3.4, Appendix A's B_X, errata. Real-time: safe.
+/// Source: thesis 3.4, Appendix A's B_X; docs/theory/plant.md 4.3. Real-time: safe.
 class Backlash {
  public:
   /// @param load_inertia_kgm2  of all that turns with hub 2, about the elbow

@@ -28,7 +28,7 @@ enum class LumpInertia : std::uint8_t {
 /// {-V, M, theta, w} passes a part by the field matrix (3.2) and a mass by the point matrix (3.4)
 /// with the sign of I_m mended. A solver apart from ClampedModes', which it checks: its
 /// frequencies converge to the exact ones as N^-2. Solutions are made orthonormal at every station,
-/// so that long beams keep their digits. Source: thesis 3.2, errata.
+/// so that long beams keep their digits. Source: thesis 3.2, docs/theory/thesis.md 2.1.
 /// Real-time: start-up only.
 class LumpedBeam {
  public:

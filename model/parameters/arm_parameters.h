@@ -22,7 +22,8 @@ struct BeamSection {
   double bending_stiffness_nm2() const { return youngs_modulus_pa * second_moment_m4; }
 };
 
-/// What the structural damping of a link means (docs/thesis notes: the thesis's (3.8) lacks rho).
+/// What the structural damping of a link means (docs/theory/plant.md 5: the thesis's (3.8) lacks
+/// rho).
 enum class DampingReading : std::uint8_t {
   kNone,                ///< no structural damping
   kCurvatureRho,        ///< "ca_rho": C_a = xi L^2 sqrt(rho A E / I): (3.8) with its units mended

@@ -19,7 +19,7 @@ struct QuasiStaticPose {
 ///
 /// The links' deflection balances the inertial forces of the straight arm at once. Left out: the
 /// inertia of f itself, and the geometry of the bent arm. A second pass with them gained nothing.
-/// Source: beyond.md 2.2. Real-time: safe.
+/// Source: docs/theory/payload.md 3.3. Real-time: safe.
 QuasiStaticPose QuasiStaticAt(const RigidJointArm& arm, const OutboardBody& body,
                               const RigidPoint& point) noexcept;
 
@@ -30,7 +30,7 @@ struct QuasiStaticSample {
 };
 
 /// Rates are central differences over the neighbours, all with the same payload.
-/// Source: beyond.md 2.2. Real-time: safe.
+/// Source: docs/theory/payload.md 3.3. Real-time: safe.
 /// @param previous_now_next  the path, one period apart
 /// @param period_s           > 0
 QuasiStaticSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,

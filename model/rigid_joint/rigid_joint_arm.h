@@ -26,7 +26,7 @@ struct OutboardBody {
 /// q = [th1 th2 phi1_1 phi1_2 phi2_1 phi2_2], rad and m: ArmModel with th3 = th1, th4 = th2, so
 /// M = T_r' M T_r and bias = T_r' bias. Mode shapes are those of the nominal payload whatever the
 /// payload is, so mass and bias are affine in it. Not modelled: foreshortening, play, torsion.
-/// Source: beyond.md section 2; control.md section 2.
+/// Source: docs/theory/payload.md 1; docs/theory/plant.md 3.4.
 /// Real-time: all but the constructor is safe.
 class RigidJointArm {
  public:

@@ -26,7 +26,7 @@ struct SampleInputs {
 /// As ArmSimulator (hubs by BoxFriction at the midpoint velocity), in long steps, and for a payload
 /// that may differ from sample to sample. A step's passes start from zero acceleration. The
 /// gauges' filters see the modal coordinates of the middle of each step.
-/// Source: beyond.md 2.3 (1).
+/// Source: docs/theory/payload.md 1.
 /// Real-time: Advance is safe.
 class RigidJointStepper {
  public:

@@ -19,7 +19,7 @@ struct Transition {
 /// One midpoint step of M a + (D + dg/dv) v + (K + dg/dq) q = F with g = M(q) a + bias(q, v), then
 /// doublings to the whole sample. dg by forward differences of 1e-6, 11 evaluations: th1 turns the
 /// whole arm and changes nothing. Friction is a constant force here.
-/// Source: beyond.md 2.3 (2). Real-time: safe.
+/// Source: docs/theory/payload.md 2.2. Real-time: safe.
 /// @param q, v  at the middle of the sample
 /// @param a     mean acceleration of the sample
 Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg,

@@ -42,7 +42,7 @@ struct SimulatorOptions {
 /// The linear system is solved by structure (articulated bodies), not by a factorisation of M:
 /// each link touches the rest through three constant vectors only, so that a pass costs two
 /// products with constant inverses and a 2x2 system.
-/// Source: study of the control law, section 2; thesis (3.12), (3.21)-(3.22).
+/// Source: docs/theory/plant.md 7; thesis (3.12), (3.21)-(3.22).
 /// Real-time: Step is safe (no allocation, no exception); construction is start-up only.
 /// Thread: one at a time; a change of h recomputes cached inverses.
 class ArmSimulator {

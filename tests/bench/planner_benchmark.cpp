@@ -1,4 +1,5 @@
-// What the rest of a move costs to plan: 109 stages, as in beyond.md 5, and what it is made of.
+// What the rest of a move costs to plan: 109 stages, as in docs/theory/payload.md 5.5, and what it
+// is made of.
 
 #include <benchmark/benchmark.h>
 

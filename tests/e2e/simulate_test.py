@@ -15,7 +15,7 @@ class Simulate(ProgramTest):
         self.assertIs(result["completed"], True)
         self.assertIsNone(result["trip"])
         self.assertEqual(result["ticks"], 300)
-        # control.md section 8, payload 0.1 kg.
+        # docs/theory/control-law.md 12.7, payload 0.1 kg.
         self.assertLessEqual(result["joint_rms_error_deg"][0], 0.90)
         self.assertLessEqual(result["joint_rms_error_deg"][1], 1.35)
         self.assertLess(max(result["joint_final_error_deg"]), 1.3 * 0.35)

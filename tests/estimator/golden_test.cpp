@@ -1,5 +1,5 @@
 // The linear model and the filter against golden.json, which another program computed. Compared as
-// max |X - G| / max |G|; bars of the control study: 1e-8, gains 1e-6.
+// max |X - G| / max |G|; bars of the design study: 1e-8, gains 1e-6.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,8 @@ TEST_F(EstimatorGolden, DiscreteNominalModelAgrees) {
   EXPECT_LT(RelativeError(discrete.B, AsMatrix(golden_["R12_B"])), 1e-8);
 }
 
-// control.md section 2 prints the two lowest torque modes: 42.0 and 55.6 rad/s (6.69 and 8.85 Hz).
+// docs/theory/control-law.md 1.2 has the two lowest torque modes: 42.0 and 55.6 rad/s (6.69 and
+// 8.85 Hz).
 TEST_F(EstimatorGolden, TorqueModesAreThoseOfTheStudy) {
   ASSERT_EQ(nominal_.torque_mode_rad_s.size(), 4);
   EXPECT_NEAR(nominal_.torque_mode_rad_s(0), 42.0450, 5e-5);

@@ -1,4 +1,4 @@
-// The nominal models by name, against golden.json and the tables of the control study (section 2).
+// The nominal models by name, against golden.json and docs/theory/control-law.md 1.2.
 
 #include "estimator/nominal_model.h"
 
@@ -65,7 +65,7 @@ TEST_P(Layout, GivesEveryStateOneMeaning) {
 }
 
 TEST_P(Layout, HasTheSameRigidInertiaAsAnyOther) {
-  // control.md section 3: M_r = [[2.864, 0.308], [0.308, 0.1529]] kg m^2 (four digits).
+  // docs/theory/control-law.md 2.2: M_r = [[2.864, 0.308], [0.308, 0.1529]] kg m^2 (four digits).
   const Eigen::Matrix2d M_r = MakeNominalModel(ThesisRig(), GetParam().layout).RigidInertia_kgm2();
   EXPECT_NEAR(M_r(0, 0), 2.864, 5e-4);
   EXPECT_NEAR(M_r(0, 1), 0.308, 5e-4);
@@ -88,7 +88,8 @@ TEST(TorsionalModels, WithStiffJointsAreTheRigidOnes) {
   }
 }
 
-// control.md section 2, table of torque-mode frequencies (damping ratio), three digits each.
+// docs/theory/control-law.md 1.2, table of torque-mode frequencies (damping ratio), three digits
+// each.
 TEST(NominalModels, HaveTheFrequenciesAndDampingsOfTheStudy) {
   const auto t12 = ModesOf(MakeNominalModel(ThesisRig(), kT12));
   ASSERT_EQ(t12.size(), 4u);

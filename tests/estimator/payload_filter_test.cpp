@@ -29,8 +29,8 @@ TorquePieces Held(const Vector2d& torque_nm) {
   return TorquePieces::WholePeriod({torque_nm[0], torque_nm[1]});
 }
 
-// A reading of the tip's acceleration behind 200 Hz, which the study does not have; without one the
-// two numbers change nothing.
+// A reading of the tip's acceleration behind 200 Hz, which the design study does not have; without
+// one the two numbers change nothing.
 PayloadFilterConfig WithTheTipRead() {
   PayloadFilterConfig config = StudyPayload();
   config.tip_sigma_m_s2 = 0.3;
@@ -91,9 +91,9 @@ Vector2d MoveTorque(int k) {
   return {3.0 * s, 0.6 * s};
 }
 
-// 5e-8 of the state measured, 4e-7 of the NIS: both programs difference by 1e-6. The study does not
-// print the start's standard deviations of the motion: those of PayloadFilterFor are the only
-// decades (in halves) that reproduce the first sample of its trace, and they do to 1e-9.
+// 5e-8 of the state measured, 4e-7 of the NIS: both programs difference by 1e-6. The design study
+// does not print the start's standard deviations of the motion: those of PayloadFilterFor are the
+// only decades (in halves) that reproduce the first sample of its trace, and they do to 1e-9.
 TEST(PayloadFilter, AgreesWithTheGoldenRun) {
   const auto golden = GoldenFile("beyond-golden.json");
   PayloadFilter filter = StudyFilter();
@@ -199,7 +199,7 @@ TEST(PayloadFilter, GivesWayToARivalWithItsMotionAndLearnsAgain) {
   EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.03) << "and learns again";
 }
 
-// beyond.md 2.3: within 0.03 kg at the end of a run.
+// docs/theory/payload.md 6.2: within 0.03 kg at the end of a run.
 TEST(PayloadFilter, FindsThePayloadOfTheSimulatedArm) {
   for (const double payload_kg : {0.0, 0.1, 0.3, 0.6, 1.0}) {
     Plant plant(RigWith(payload_kg));

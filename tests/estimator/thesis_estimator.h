@@ -14,7 +14,7 @@ namespace flexarm {
 /// Of the joints of the simulated rig, N m/rad.
 inline constexpr std::array<double, 2> kStiffness = {761.59, 497.96};
 
-/// The estimator of the simulated rig (study of the control law, section 4).
+/// The estimator of the simulated rig (docs/theory/control-law.md 7.3).
 inline EstimatorConfig ThesisEstimator(EstimatorKind kind = EstimatorKind::kKalman) {
   return {.kind = kind,
           .modes_per_link = 2,

@@ -42,8 +42,8 @@ struct SepticMove {
   }
 };
 
-/// The move of beyond-golden.json: 30/30 deg from rest at 0, 1.78 s, the shortest that the study's
-/// rule allows with 1 kg.
+/// The move of beyond-golden.json: 30/30 deg from rest at 0, 1.78 s, the shortest that the design
+/// study's rule allows with 1 kg.
 inline SepticMove StudyMove() {
   return {.from_rad = Eigen::Vector2d::Zero(),
           .to_rad = Eigen::Vector2d::Constant(std::numbers::pi / 6.0),

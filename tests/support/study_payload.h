@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// The numbers of beyond.md 2.3.
+/// The numbers of docs/theory/payload.md 2.
 inline EstimatorConfig StudyEstimator() {
   EstimatorConfig config = ThesisEstimator(EstimatorKind::kPayload);
   config.payload = {.process_force = {0.1, 0.02, 0.7, 0.7, 0.2, 0.2},
@@ -29,7 +29,7 @@ inline EstimatorConfig StudyEstimator() {
   return config;
 }
 
-/// The filter of the study on its rig.
+/// The filter of the design study on its rig.
 inline PayloadFilterConfig StudyPayload() {
   return PayloadFilterFor(ThesisRig(), ThesisSensors(), StudyEstimator());
 }

@@ -4,7 +4,8 @@
 
 namespace flexarm {
 
-/// The thesis's Table 2 with its misprints corrected (E and rho, see the errata), payload 0.1 kg.
+/// The thesis's Table 2 with its misprints corrected (E and rho, docs/theory/thesis.md 2.2),
+/// payload 0.1 kg.
 ///
 /// The digits that golden.json was made with, so that golden tests compare like with like.
 inline ArmParameters ThesisRig() {

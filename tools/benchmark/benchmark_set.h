@@ -40,7 +40,7 @@ std::vector<std::string> CommandLaws();
 std::vector<std::string> PayloadLaws();
 
 std::vector<Scenario> CommandScenarios(const std::filesystem::path& experiments);
-/// The payload ranges and the plants of beyond.md section 4, and finer encoders.
+/// The payload ranges and the plants of docs/theory/payload.md 6.2 and 6.3, and finer encoders.
 std::vector<Scenario> MoveScenarios(const RigConfig& config);
 std::vector<Scenario> LimitScenarios(const RigConfig& config);
 

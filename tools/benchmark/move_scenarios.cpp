@@ -47,7 +47,7 @@ Disturbance NoFriction() {
   return {.name = "no-friction", .what = "no Coulomb friction", .plant = kNoFriction};
 }
 
-// Of the study, beside those that are common to all tables.
+// Of the design study, beside those that are common to all tables.
 std::vector<Disturbance> MorePlants() {
   return {
       NoFriction(),

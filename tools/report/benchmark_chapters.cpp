@@ -49,7 +49,7 @@ void PayloadChapter(ReportContext* context, HtmlPage* page) {
       "asks for, with rests of 1.5 s. The same moves and the same noise for every law. Settled in "
       "time: within 15 mm of the resting place 0.3 s after every move of the run. Residual: the "
       "tip's rms in the last 0.3 s of the worst rest of a run; motion: from 0.3 s after the move "
-      "on, mean over the rests of a run, which is what the study calls residual.");
+      "on, mean over the rests of a run, which is what the design study calls residual.");
   const BenchmarkSet moves =
       BenchmarkSetOf(BenchmarkKind::kMoves, context->config, context->experiments);
   Tell(Run(*context, Only(moves, {"nominal", "light"}), kMoveSeeds, "moves", "runs of the moves"),
@@ -58,9 +58,9 @@ void PayloadChapter(ReportContext* context, HtmlPage* page) {
   BenchmarkSet plants = moves;
   plants.laws = PayloadLaws();
   page->Paragraph(
-      "The study that these laws come from, and what they do here, on plants that they do not "
+      "The design study behind these laws, and what they do here, on plants that they do not "
       "know. Reached: as many runs settle in time, and neither the mean motion nor the rms of "
-      "the joints is more than 20 % above the study's.");
+      "the joints is more than 20 % above the design study's.");
   const TextTable study =
       StudyComparison(Run(*context, plants, kMoveSeeds, "plants", "runs of the plants"));
   page->Table(study.head, study.rows);

@@ -27,7 +27,7 @@ void Chapter5(ReportContext* context, HtmlPage* page);   ///< parameters, figure
 void Chapter6(ReportContext* context, HtmlPage* page);   ///< order reduction, figures 6.1 to 6.9
 void Chapter7(ReportContext* context, HtmlPage* page);   ///< control, figures 7.1 to 7.34
 void Baselines(ReportContext* context, HtmlPage* page);  ///< the benchmark of the laws
-/// The laws that find the payload, beside the others and the study, and what limits them.
+/// The laws that find the payload, beside the others and the design study, and what limits them.
 void PayloadChapter(ReportContext* context, HtmlPage* page);
 
 }  // namespace flexarm

@@ -9,24 +9,24 @@
 namespace flexarm {
 namespace {
 
-// "No more than 20 % above the study's": what other moves and another simulation may change.
+// "No more than 20 % above the design study's": what other moves and another simulation may change.
 constexpr double kReached = 1.2;
 
-// Why the tip moves more than in the study, wherever nothing else is known: the scenario
-// no-friction and the study of limits show it.
+// Why the tip moves more than in the design study, wherever nothing else is known: the scenario
+// no-friction and the table of limits show it.
 constexpr const char* kStiction =
     "stiction holds the hubs, the shoulder above all, against the torque that would damp the "
     "arm's slow swing; without friction the motion is a quarter";
 
-/// Of a law in a scenario, as the study gives them.
+/// Of a law in a scenario, as the design study gives them.
 struct Measured {
   int settled_percent;  ///< runs
   double latest_s;
   double motion_mean_mm, motion_max_mm;
-  std::optional<std::array<double, 2>> rms_deg = std::nullopt;  ///< where the study has it
+  std::optional<std::array<double, 2>> rms_deg = std::nullopt;  ///< where the design study has it
 };
 
-/// The study's version A and version B in a scenario of the benchmark.
+/// The design study's version A and version B in a scenario of the benchmark.
 struct StudyRow {
   const char* scenario;
   std::optional<Measured> gain_scheduled, receding_horizon;
@@ -40,8 +40,8 @@ std::vector<StudyRow> Study() {
       {"light",
        {{100, 0.0, 1.6, 3.5, Rms{0.09, 0.14}}},
        {{100, 0.0, 1.3, 3.5, Rms{0.09, 0.09}}},
-       "the reference is that of 0.15 kg, which a lighter arm need not follow: the study's own "
-       "table of payloads has 0.41 to 0.48 deg of the elbow from 0 to 0.05 kg"},
+       "the reference is that of 0.15 kg, which a lighter arm need not follow: the design "
+       "study's own table of payloads has 0.41 to 0.48 deg of the elbow from 0 to 0.05 kg"},
       {"backlash-0.2", {{100, 0.0, 1.3, 3.1}}, {{100, 0.0, 1.1, 4.1}}},
       {"backlash", {{100, 0.04, 1.5, 4.9}}, {{100, 0.0, 1.4, 5.8}}},
       {"friction-x3", {{90, 0.86, 2.7, 7.4}}, {{100, 0.0, 2.1, 4.7}}},
@@ -80,7 +80,7 @@ std::string Cell(const std::string& settled, const Measured& m) {
          Rms(m.rms_deg);
 }
 
-// What the benchmark measured, rms only where the study has it too.
+// What the benchmark measured, rms only where the design study has it too.
 Measured Here(const BenchmarkCell& cell, const Measured& study) {
   const RestFigures& r = cell.rests;
   Measured here{.settled_percent = static_cast<int>(100 * r.settled_in_time / cell.group.runs),

@@ -7,9 +7,10 @@
 
 namespace flexarm {
 
-/// What the study of the laws that find the payload measured, beside what the benchmark measures
-/// here: a row a scenario and law that both have. What is out of the study's reach has its cause.
-/// Source: beyond.md section 4.
+/// What the design study measured, beside what the benchmark measures
+/// here: a row a scenario and law that both have. What is out of the design study's reach has its
+/// cause.
+/// Source: docs/theory/payload.md 6.2 and 6.3.
 TextTable StudyComparison(const BenchmarkTable& moves);
 
 }  // namespace flexarm

@@ -76,7 +76,7 @@ std::vector<std::string> VariantOverrides(const RigConfig& config, const std::st
   if (name == "modal-damping") {
     return {"arm.damping=modal", "link1.damping_ratio=0.03", "link2.damping_ratio=0.03"};
   }
-  if (name == "together") return Together(config);  // beyond.md section 4
+  if (name == "together") return Together(config);  // docs/theory/payload.md 6.3
   std::string known;
   for (const PlantVariant& variant : PlantVariants()) {
     known += std::string(known.empty() ? "" : ", ") + variant.name;

@@ -34,8 +34,8 @@ double OnMoveGrid(double time_s);
 
 inline constexpr double kRandomMovesRest_s = 1.5;  ///< after each of MakeRandomMoves
 
-/// The study's shortest duration of a septic move, s: for 9 and 3.8 N m and 4 and 6 rad/s, with
-/// `heaviest_kg` at the tip. Source: beyond.md 2.1.
+/// The design study's shortest duration of a septic move, s: for 9 and 3.8 N m and 4 and 6 rad/s,
+/// with `heaviest_kg` at the tip. Source: docs/theory/payload.md 3.1.
 /// @param from_rad,to_rad  both joints, in the rigid coordinate
 double RuleDuration_s(const RigidJointArm& arm, double heaviest_kg, const Eigen::Vector2d& from_rad,
                       const Eigen::Vector2d& to_rad);
@@ -46,9 +46,9 @@ struct RandomMoves {
   double payload_kg;
 };
 
-/// A run of the study's recipe: moves to anywhere in +-60, +-90 deg, each 1 to 1.5 times the
+/// A run of the design study's recipe: moves to anywhere in +-60, +-90 deg, each 1 to 1.5 times the
 /// rule for 1 kg, with 1.5 s of rest after each; and the payload, anything from 0 to
-/// `heaviest_kg`. Source: beyond.md section 4, where a run has four moves.
+/// `heaviest_kg`. Source: docs/theory/payload.md 6.1, where a run has four moves.
 RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed, double heaviest_kg,
                             int moves = 4);
 

@@ -7,7 +7,8 @@
 
 namespace flexarm {
 
-/// What chapter 7 says of the closed loop, against the loops of the study and the design's poles.
+/// What chapter 7 says of the closed loop, against the loops of ControlStudy and the design's
+/// poles.
 std::vector<Statement> Chapter7Statements(const ControlStudy& study);
 
 }  // namespace flexarm

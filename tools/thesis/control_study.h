@@ -57,7 +57,7 @@ class ControlStudy {
 
   const RigConfig& config() const { return config_; }
 
-  /// @throws std::out_of_range  the study has no such case
+  /// @throws std::out_of_range  ControlStudy has no such case
   const ControlFigures& Of(const ControlCase& of) const { return figures_.at(of); }
 
  private:
@@ -65,7 +65,7 @@ class ControlStudy {
   std::map<ControlCase, ControlFigures> figures_;
 };
 
-// Cases by what is changed in them. The study has those of the grids below.
+// Cases by what is changed in them. ControlStudy has those of the grids below.
 ControlCase ChangedCase(const std::vector<std::string>& overrides, double payload_kg);
 ControlCase SineCase(double payload_kg);
 ControlCase AlphaCase(double alpha, double payload_kg);

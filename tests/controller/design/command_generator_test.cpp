@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// Unit modal mass, rates against 42 rad/s: control.md section 4, point 5, asks for such a scaling.
+// Unit modal mass, rates against 42 rad/s: docs/theory/control-law.md 4.3 asks for such a scaling.
 Eigen::VectorXd Scale() {
   const NominalModel nominal = MakeNominalModel(ThesisRig(), kR12);
   Eigen::VectorXd scale(12);

@@ -1,5 +1,5 @@
 // The design against golden.json (another program's), and against the lemma that it rests on.
-// Compared as max |X - G| / max |G|; bars of the control study: 1e-8, gains 1e-6.
+// Compared as max |X - G| / max |G|; bars of the design study: 1e-8, gains 1e-6.
 
 #include "controller/law/design.h"
 
@@ -58,7 +58,7 @@ TEST_F(DesignTest, ReferenceAndFeedforwardAgreeToTheGoldenReferencesRounding) {
                1e-6);
 }
 
-// control.md section 3: M_r = [[2.864, 0.308], [0.308, 0.1529]] kg m^2 (four digits).
+// docs/theory/control-law.md 2.2: M_r = [[2.864, 0.308], [0.308, 0.1529]] kg m^2 (four digits).
 TEST_F(DesignTest, RigidInertiaIsThatOfTheStudy) {
   EXPECT_NEAR(design_.rigid_inertia_kgm2(0, 0), 2.864, 5e-4);
   EXPECT_NEAR(design_.rigid_inertia_kgm2(0, 1), 0.308, 5e-4);
@@ -76,8 +76,8 @@ TEST_F(DesignTest, TheLemmaHoldsWithTheClosedFormOfP) {
   EXPECT_LT(RelativeError(design_.J, 0.5 * design_.B.transpose() * design_.P * design_.B), 1e-12);
 }
 
-// Smallest eigenvalue of S + S*, S = J + K (zI - A_c)^-1 B, on the circle: 1.8 in the study. Looked
-// at on another grid than the design's own check, which must say the same.
+// Smallest eigenvalue of S + S*, S = J + K (zI - A_c)^-1 B, on the circle: 1.8 in the design study.
+// Looked at on another grid than the design's own check, which must say the same.
 TEST_F(DesignTest, TheClosedLoopIsPositiveReal) {
   const MatrixXcd A_c = (design_.A - design_.B * design_.K).cast<std::complex<double>>();
   double smallest = 1e9;
@@ -99,8 +99,9 @@ TEST_F(DesignTest, TheClosedLoopIsPositiveReal) {
   EXPECT_NEAR(check->value, smallest, 0.01);
 }
 
-// Invariant zeros of (A, B, K): eigenvalues of A - B (KB)^-1 K A but for two at 0. The study: up to
-// |z| = 2.3 outside the circle, and 0.048 away from 1, where the CGT would have no solution.
+// Invariant zeros of (A, B, K): eigenvalues of A - B (KB)^-1 K A but for two at 0. The design
+// study: up to |z| = 2.3 outside the circle, and 0.048 away from 1, where the CGT would have no
+// solution.
 TEST_F(DesignTest, DiscreteZerosLieWhereTheStudyFoundThem) {
   const MatrixXd KB = design_.K * design_.B;
   const MatrixXd zero_dynamics = design_.A - design_.B * KB.inverse() * design_.K * design_.A;
@@ -124,7 +125,7 @@ TEST_F(DesignTest, ThePrescribedDegreeOfStabilityIsReached) {
   }
 }
 
-// For alpha 0 the study gives J = diag 1.2 and 2.0 (two digits).
+// For alpha 0 the design study gives J = diag 1.2 and 2.0 (two digits).
 TEST_F(DesignTest, JGrowsWithAlpha) {
   const Design design = DesignController(ShippedRig({"controller.alpha=0.0"}));
   EXPECT_NEAR(design.J(0, 0), 1.2, 0.05);

@@ -73,8 +73,8 @@ TEST(GainTable, IsConstantBeyondItsBorders) {
   EXPECT_EQ(StudyTable().At(0.3, 3.0), StudyTable().At(0.3, 150.0 * kRadPerDeg));
 }
 
-// beyond.md 2.4: max |z| on the 4-mode plant is .885-.894, on and off the grid. These are far from
-// every knot.
+// docs/theory/payload.md 4.2: max |z| on the 4-mode plant is .885-.894, on and off the grid. These
+// are far from every knot.
 TEST(GainTable, HoldsTheArmWithFourModesBetweenItsKnots) {
   for (const double payload_kg : {0.02, 0.14, 0.28, 0.43, 0.62, 0.9}) {
     for (const double theta2_deg : {10.0, 50.0, 90.0, 135.0}) {
@@ -85,7 +85,7 @@ TEST(GainTable, HoldsTheArmWithFourModesBetweenItsKnots) {
   }
 }
 
-// The reason for GainPayload, beyond.md 2.4.
+// The reason for GainPayload, docs/theory/payload.md 4.3.
 TEST(GainTable, GainsOf150GramsHoldEveryPayloadThoseOfAKilogramDoNot) {
   for (const double theta2_deg : {0.0, 60.0, 120.0}) {
     const double theta2_rad = theta2_deg * kRadPerDeg;

@@ -1,5 +1,5 @@
-// Designs on the thesis's nominal models, against golden.json and the figures of the control study
-// (control.md, sections 1, 4 and 6).
+// Designs on the thesis's nominal models, against golden.json and the figures of the design study
+// (docs/theory/control-law.md 1.3, 4.3 and 12.2).
 
 #include <gtest/gtest.h>
 
@@ -55,8 +55,8 @@ TEST(T16, AnswersARigidTurnAsR12Does) {
   }
 }
 
-// control.md finding 2, T12*: the weights that a search found. Its reference model has rounded
-// torque modes, so that what follows from it agrees to 1e-6 only.
+// docs/theory/control-law.md 12.2, T12*: the weights that a search found. Its reference model has
+// rounded torque modes, so that what follows from it agrees to 1e-6 only.
 TEST(T12WithSearchedWeights, AgreesWithTheGoldenDesign) {
   const Design design = DesignController(
       ShippedRig({"controller.nominal=T12", "controller.torque_weight=4.5",
@@ -68,7 +68,7 @@ TEST(T12WithSearchedWeights, AgreesWithTheGoldenDesign) {
                1e-5);
 }
 
-// z of x = scale .* z with the study's scaling: second modes by 1/50, rates by 1/40.
+// z of x = scale .* z with the design study's scaling: second modes by 1/50, rates by 1/40.
 VectorXd StudyScale(const StateLayout& layout) {
   VectorXd scale = VectorXd::Ones(layout.states());
   for (int link = 0; link < 2 && layout.modes_per_link == 2; ++link) {
@@ -78,9 +78,9 @@ VectorXd StudyScale(const StateLayout& layout) {
   return scale;
 }
 
-// control.md section 4, point 5: the Kronecker matrix has cond 1e9 (T12), 1e14 (R12), 1.7e16 (T16),
-// with the study's scaling 2e6, 2e6, 6e9. One digit each, so half of it either way; 1.7e16 is
-// beyond what doubles can tell from a singular matrix.
+// docs/theory/control-law.md 4.3: the Kronecker matrix has cond 1e9 (T12), 1e14 (R12), 1.7e16
+// (T16), with the design study's scaling 2e6, 2e6, 6e9. One digit each, so half of it either way;
+// 1.7e16 is beyond what doubles can tell from a singular matrix.
 TEST(CommandGeneratorEquation, IsConditionedAsInTheStudy) {
   struct Figures {
     const char* nominal;
@@ -154,9 +154,9 @@ double KnownStateRadius(const std::string& nominal, double alpha) {
   return loop.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-// control.md section 6: T12 linear |z| .934 at alpha 3, .957 at 3.2, 1.04 at 4. The study does not
-// say which loop it closed: this one is within 0.03 of its figures (.909, .938, 1.035), with one of
-// them just as unstable.
+// docs/theory/control-law.md 12.2: T12 linear |z| .934 at alpha 3, .957 at 3.2, 1.04 at 4. The
+// design study does not say which loop it closed: this one is within 0.03 of its figures (.909,
+// .938, 1.035), with one of them just as unstable.
 TEST(KnownState, T12LosesStabilityWithAlphaAsInTheStudy) {
   EXPECT_NEAR(KnownStateRadius("T12", 3.0), 0.934, 0.03);
   EXPECT_NEAR(KnownStateRadius("T12", 3.2), 0.957, 0.03);

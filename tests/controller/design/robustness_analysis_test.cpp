@@ -174,8 +174,8 @@ TEST(Screen, TheShippedGainsHoldWhatTheyHaveTo) {
   EXPECT_NEAR(screen.worst().spectral_radius, 1.020, 0.001);
 }
 
-// The study's runs of the real pipeline: without prediction 0.01 kg diverges, with alpha = 3 and
-// differences behind the gauge filter every run does.
+// The design study's runs of the real pipeline: without prediction 0.01 kg diverges, with alpha = 3
+// and differences behind the gauge filter every run does.
 TEST(Screen, WhatTheStudySawDivergeIsFoundUnstable) {
   for (const char* change : {"controller.prediction=false", "estimator.name=difference"}) {
     const RigConfig config = ShippedRig({change});

@@ -1,4 +1,4 @@
-// The bars that the control study set for this rig: base command, alpha 3, full sensor chain, one
+// The bars that the design study set for this rig: base command, alpha 3, full sensor chain, one
 // sample of delay. A bar is met by the median over seeds 1 to 11 with no seed over 1.3 times it:
 // single runs stray (stiction, noise), a real change moves the median.
 //
@@ -102,7 +102,8 @@ struct StableBars {
 
 class FarPayload : public testing::TestWithParam<std::tuple<StableBars, bool>> {};
 
-// Five and ten times the design's payload, and none: stable, and no worse than the study's bars.
+// Five and ten times the design's payload, and none: stable, and no worse than the design study's
+// bars.
 TEST_P(FarPayload, IsCarriedToTheEndWithoutATrip) {
   const auto& [bars, foreshortening] = GetParam();
   const Runs runs = RunsOf(bars.payload_kg, foreshortening);

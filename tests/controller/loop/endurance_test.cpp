@@ -28,10 +28,10 @@ Experiment Cycling() {
   return cycling;
 }
 
-// The base command ten times over. The study's bars: |K_I - K_I(0)| < 0.3 (here after every cycle:
-// in the midst of a move its own trace goes beyond that), and the rms error of the last cycle
-// within 10 % of the first's. Measured: 0.05 at most after a cycle, 0.55 within one; rms 0.753 and
-// 0.748, 1.104 and 1.103 deg.
+// The base command ten times over. The design study's bars: |K_I - K_I(0)| < 0.3 (here after every
+// cycle: in the midst of a move its own trace goes beyond that), and the rms error of the last
+// cycle within 10 % of the first's. Measured: 0.05 at most after a cycle, 0.55 within one; rms
+// 0.753 and 0.748, 1.104 and 1.103 deg.
 TEST(Endurance, AMinuteOfMovesLeavesTheGainsAndTheErrorsAsTheyWere) {
   StackRun run(ShippedRig(), Cycling());
   run.Run(static_cast<std::int64_t>((kCycles * kCycle_s + 10.0) * 1e9));

@@ -1,4 +1,4 @@
-// What the control study reports not to work must not work here either: a loop that survives these
+// What the design study reports not to work must not work here either: a loop that survives these
 // is another loop than the one that was studied.
 
 #include <gtest/gtest.h>
@@ -37,8 +37,8 @@ TEST(NegativeResults, WithoutPredictionTheNominalArmIsStable) {
   }
 }
 
-// The thesis's differences behind the thesis's 20 Hz gauge filter: unstable at alpha 3 (study: 0 of
-// 8 survive). Here every run trips on the bending of link 1.
+// The thesis's differences behind the thesis's 20 Hz gauge filter: unstable at alpha 3 (design
+// study: 0 of 8 survive). Here every run trips on the bending of link 1.
 TEST(NegativeResults, DifferencesBehindTheGaugeFilterTripAtEveryPayload) {
   for (const double payload_kg : {0.01, 0.1, 0.2}) {
     const Runs runs = RunSeeds(payload_kg, {"estimator.name=difference"}, 3);
@@ -46,8 +46,8 @@ TEST(NegativeResults, DifferencesBehindTheGaugeFilterTripAtEveryPayload) {
   }
 }
 
-// Without the filter they work at alpha 2: study, rms 1.0 to 1.6 and 1.2 to 2.9 deg. The bars are
-// those figures with a third of room. Measured: 1.53 1.09, 0.99 1.59, 1.15 2.79.
+// Without the filter they work at alpha 2: design study, rms 1.0 to 1.6 and 1.2 to 2.9 deg. The
+// bars are those figures with a third of room. Measured: 1.53 1.09, 0.99 1.59, 1.15 2.79.
 TEST(NegativeResults, DifferencesWithoutTheGaugeFilterWorkAtAlphaTwo) {
   struct Bar {
     double payload_kg, rms1_deg, rms2_deg;

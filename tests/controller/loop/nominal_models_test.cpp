@@ -25,8 +25,8 @@ Runs RunsWith(const std::string& nominal, double payload_kg,
   return runs;
 }
 
-// control.md finding 2: R12 and T16 perform alike, there rms 1.00/1.34 against 1.37/1.44 deg. Here
-// 0.75/1.10 against 0.79/0.78 at the design's payload: a third apart at most, as there.
+// docs/theory/control-law.md 12.2: R12 and T16 perform alike, there rms 1.00/1.34 against 1.37/1.44
+// deg. Here 0.75/1.10 against 0.79/0.78 at the design's payload: a third apart at most, as there.
 TEST(T16, PerformsLikeR12) {
   for (const double payload_kg : {0.1, 0.2}) {
     const Runs r12 = RunsWith("R12", payload_kg), t16 = RunsWith("T16", payload_kg);
@@ -67,8 +67,8 @@ TEST(T12WithSearchedWeights, NeedsAFilterThatTrustsItsModel) {
   trusting.push_back("estimator.process_force=[0.1, 0.015, 0.05, 0.05, 0.015, 0.015]");
   const Runs runs = RunsWith("T12", 0.01, trusting);
   EXPECT_EQ(runs.tripped, 0);
-  EXPECT_LT(Median(runs.rms1_deg), 1.1) << "the study's figure";
-  EXPECT_LT(Median(runs.rms2_deg), 3.0) << "the study's figure";
+  EXPECT_LT(Median(runs.rms1_deg), 1.1) << "the design study's figure";
+  EXPECT_LT(Median(runs.rms2_deg), 3.0) << "the design study's figure";
 }
 
 // One mode a link without springs: fewer states, and worse where the payload is not the design's.

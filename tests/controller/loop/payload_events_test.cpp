@@ -1,6 +1,7 @@
 // A load picked up or dropped, at rest and in mid-move, and moves without a pause: under the laws
-// that find the payload, on moves, payloads and seeds that nothing was tuned on (beyond.md 4).
-// The numbers in the comments are gain-scheduled's, unless they say otherwise.
+// that find the payload, on moves, payloads and seeds that nothing was tuned on
+// (docs/theory/payload.md 6.1). The numbers in the comments are gain-scheduled's, unless they say
+// otherwise.
 
 #include <gtest/gtest.h>
 

@@ -92,7 +92,7 @@ class RandomRetargets {
 
 class RetargetRuns : public testing::TestWithParam<const char*> {};
 
-// The bar of the issue, and the study's figure: settled when the move ends, 8 of 8.
+// The bar of the issue, and the design study's figure: settled when the move ends, 8 of 8.
 TEST_P(RetargetRuns, TheTipIsAtRestWhenTheLastMoveEnds) {
   const RigConfig config = RigFor(GetParam());
   const Design design = DesignController(config);

@@ -58,15 +58,16 @@ TEST_P(FindsThePayload, TheTipIsAtRestWhenTheMoveEnds) {
   EXPECT_LE(cell.rests.residual_mean_mm, 1.5);
 }
 
-// They settle in time in 4 and 1 of 24 runs (the study: 4 % and 8 %).
+// They settle in time in 4 and 1 of 24 runs (the design study: 4 % and 8 %).
 TEST(TheLawsOfTheThesis, AreNotAtRestByThenOnTheSameMoves) {
   for (const char* law : {"sobel", "lqr-cgt"}) {
     EXPECT_LT(RunMoves(law, "nominal", 1001, kLongSet).rests.settled_in_time, 12U) << law;
   }
 }
 
-// The elbow's bar is 0.15 deg, and the study's version without a plan meets it on its moves (0.14)
-// but not by its own table of payloads: 0.48 deg at 0 kg, 0.41 at 0.05, 0.11 at 0.15. Here 0.26.
+// The elbow's bar is 0.15 deg, and the design study's version without a plan meets it on its moves
+// (0.14) but not by its own table of payloads: 0.48 deg at 0 kg, 0.41 at 0.05, 0.11 at 0.15. Here
+// 0.26.
 TEST_P(FindsThePayload, LightPayloadsStayOnTheReference) {
   const BenchmarkCell cell = RunMoves(GetParam(), "light", 2001, kLongSet);
   EXPECT_EQ(cell.group.completed, 24U);
@@ -75,7 +76,7 @@ TEST_P(FindsThePayload, LightPayloadsStayOnTheReference) {
   EXPECT_LE(cell.rests.rms_mean_deg[1], GetParam() == "gain-scheduled" ? 0.30 : 0.15);
 }
 
-// The 15 variants of the study.
+// The 15 plants of docs/theory/payload.md 6.3.
 TEST_P(FindsThePayload, OnPlantsThatItDoesNotKnow) {
   std::size_t settled = 0, all = 0;
   for (const char* scenario :

@@ -18,8 +18,8 @@ void Print(const char* what, const Runs& runs) {
       Median(runs.final2_deg), Median(runs.settling_s), Median(runs.residual_mm), runs.tripped);
 }
 
-// The study: 0.76 against 1.12 deg; measured 0.75 against 1.05. What is compared is the feedforward
-// (7.24)-(7.25): the adaptation adds nothing at this payload.
+// The design study: 0.76 against 1.12 deg; measured 0.75 against 1.05. What is compared is the
+// feedforward (7.24)-(7.25): the adaptation adds nothing at this payload.
 TEST(LoopVariants, SobelTracksJointOneAQuarterBetterThanLqrWithCgt) {
   const Runs sobel = RunSeeds(0.1), lqr = RunSeeds(0.1, {"controller.name=lqr-cgt"});
   Print("sobel", sobel);
@@ -43,7 +43,7 @@ TEST(LoopVariants, EveryLawRunsThroughTheSameLoop) {
 }
 
 // The thesis's estimator, without the gauge filter that makes its differences unstable (alpha 2, as
-// in the study's table): the polynomial's way to the modes costs 3 % of the rms, measured.
+// in the design study's table): the polynomial's way to the modes costs 3 % of the rms, measured.
 TEST(LoopVariants, ThePolynomialFitTracksAsTheDirectOneDoes) {
   const auto runs = [](const char* estimator) {
     return RunSeeds(0.1, {std::string("estimator.name=") + estimator,
@@ -79,9 +79,10 @@ TEST(LoopVariants, ShapingTheReferenceKeepsAPdFromShakingTheLinks) {
   EXPECT_LT(zvd, zv);
 }
 
-// The study's bar: stable, rms 25 % up at most. Every tenth frame holds no reading; the estimator
-// goes on with its model. Measured, rms th1 and th2 with all frames and without a tenth: 1.08 0.71
-// and 1.21 0.83 at 0.01 kg, 0.75 1.09 and 0.76 1.10 at 0.1 kg, 0.94 2.66 and 0.96 2.78 at 0.2 kg.
+// The design study's bar: stable, rms 25 % up at most. Every tenth frame holds no reading; the
+// estimator goes on with its model. Measured, rms th1 and th2 with all frames and without a tenth:
+// 1.08 0.71 and 1.21 0.83 at 0.01 kg, 0.75 1.09 and 0.76 1.10 at 0.1 kg, 0.94 2.66 and 0.96 2.78 at
+// 0.2 kg.
 TEST(LoopVariants, OneFrameInTenMayBeLost) {
   for (const double payload_kg : {0.01, 0.1, 0.2}) {
     const Runs all = RunSeeds(payload_kg),
@@ -96,10 +97,10 @@ TEST(LoopVariants, OneFrameInTenMayBeLost) {
   }
 }
 
-// No bar: the study found no benefit of the adaptation at 0 to 0.2 kg. Both must run, and must not
-// be the same run. Measured, rms th1 and th2 with and without: 1.08 0.70 and 1.06 0.89 at 0.01 kg,
-// 0.75 1.10 and 0.83 1.07 at 0.1 kg, 0.94 2.66 and 0.99 2.91 at 0.2 kg, 2.43 10.8 and 2.35 12.2 at
-// 1 kg; final error of joint 2 at 1 kg 3.4 and 5.7 deg.
+// No bar: the design study found no benefit of the adaptation at 0 to 0.2 kg. Both must run, and
+// must not be the same run. Measured, rms th1 and th2 with and without: 1.08 0.70 and 1.06 0.89 at
+// 0.01 kg, 0.75 1.10 and 0.83 1.07 at 0.1 kg, 0.94 2.66 and 0.99 2.91 at 0.2 kg, 2.43 10.8 and 2.35
+// 12.2 at 1 kg; final error of joint 2 at 1 kg 3.4 and 5.7 deg.
 TEST(LoopVariants, AdaptationOffStillRunsAndIsReportedSideBySide) {
   for (const double payload_kg : {0.01, 0.1, 0.2, 1.0}) {
     const Runs with = RunSeeds(payload_kg, {}, 3),
@@ -114,7 +115,7 @@ TEST(LoopVariants, AdaptationOffStillRunsAndIsReportedSideBySide) {
 }
 
 // A controller that knows two modes a link must not mind what the plant has: rms within 5 % (the
-// study's bar) of the four-mode plant. Measured: within 0.6 %.
+// design study's bar) of the four-mode plant. Measured: within 0.6 %.
 TEST(LoopVariants, RmsDoesNotDependOnThePlantsModes) {
   const Runs four = RunSeeds(0.1);
   Print("4 modes", four);
@@ -140,9 +141,9 @@ TEST(LoopVariants, TheOtherShippedExperimentsComplete) {
   }
 }
 
-// No bar of the study: a smooth move is easier than the base command's square, so its bars must
-// hold. Measured at 0.01, 0.1, 0.2 kg: rms 0.43 0.32, 0.40 0.56, 0.46 1.36 deg, final at most 0.16
-// deg, residual at most 4.0 mm.
+// No bar of the design study: a smooth move is easier than the base command's square, so its bars
+// must hold. Measured at 0.01, 0.1, 0.2 kg: rms 0.43 0.32, 0.40 0.56, 0.46 1.36 deg, final at most
+// 0.16 deg, residual at most 4.0 mm.
 TEST(LoopVariants, TheWayPointsAreReachedAndTheArmRestsThere) {
   for (const double payload_kg : {0.01, 0.1, 0.2}) {
     const Runs runs = RunSeeds(payload_kg, {}, 3, "waypoints");
@@ -156,8 +157,8 @@ TEST(LoopVariants, TheWayPointsAreReachedAndTheArmRestsThere) {
   }
 }
 
-// The study: 7.5 and 1.5 N m lose nothing. The rms bars at 0.1 kg hold as they are, and the limits
-// are really reached. Measured: rms 0.77 and 1.10 deg.
+// The design study: 7.5 and 1.5 N m lose nothing. The rms bars at 0.1 kg hold as they are, and the
+// limits are really reached. Measured: rms 0.77 and 1.10 deg.
 TEST(LoopVariants, QuarterTorqueLimitsLoseNothing) {
   const Runs runs = RunSeeds(0.1, {"limits.torque_limit_nm=[7.5, 1.5]"});
   Print("7.5 and 1.5 N m", runs);
@@ -169,9 +170,10 @@ TEST(LoopVariants, QuarterTorqueLimitsLoseNothing) {
   EXPECT_GT(Largest(runs.peak1_nm), 7.4) << "the limit was never reached: the test says nothing";
 }
 
-// Section 5 of the study: one degree of play, friction x 3, joint springs -30 %, Young's modulus
-// -10 %, 3 % modal damping, which the controller does not know. Stable, and at rest after it. With
-// play the arm rattles under any feedback: it comes to rest because a stop lets it go in the end.
+// docs/theory/control-law.md 12.6: one degree of play, friction x 3, joint springs -30 %, Young's
+// modulus -10 %, 3 % modal damping, which the controller does not know. Stable, and at rest after
+// it. With play the arm rattles under any feedback: it comes to rest because a stop lets it go in
+// the end.
 TEST(LoopVariants, PlantsThatDifferFromTheDesignAreStable) {
   for (const PlantVariant& variant : PlantVariants()) {
     const RigConfig config = ShippedRig();
@@ -192,7 +194,7 @@ TEST(LoopVariants, PlantsThatDifferFromTheDesignAreStable) {
 }
 
 // The prescribed degree of stability is what removes the final error. Measured: 0.45 against 0.04
-// deg (study: 1.2 against 0.15).
+// deg (design study: 1.2 against 0.15).
 TEST(LoopVariants, WithoutPrescribedStabilityTheFinalErrorIsFourTimesLarger) {
   const std::vector<std::string> corrected = {"controller.feedforward_sign=corrected",
                                               "controller.vartheta=0.5"};

@@ -42,7 +42,7 @@ PlanProblem ProblemAt(const std::vector<RigidPoint>& path, int sample, int perio
 
 PlanEntry EntryAt(const HorizonPlan& plan, std::int64_t tick) { return plan.At(tick).value(); }
 
-// The heavy swing: elbow from one side to the other. 2.6 s is the study's rule for 1 kg.
+// The heavy swing: elbow from one side to the other. 2.6 s is the design study's rule for 1 kg.
 const SepticMove kWideSwing{.from_rad = {0.0, -60.0 * kRadPerDeg},
                             .to_rad = {40.0 * kRadPerDeg, 85.0 * kRadPerDeg},
                             .periods = 130};
@@ -54,11 +54,11 @@ class Planner : public testing::Test {
                                next_ = std::make_unique<HorizonPlan>();
 };
 
-// The document alone does not give this plan. These readings do, and each of the others is off by
-// 1e-7 or more, most by 1e-4: no friction in the model; rollouts in 4 steps a sample, the sweep
-// with 8; torques of the quasi-static map at the instants; the start's gains at the elbow angles of
-// the path; the horizon's end weighted as the samples before it; the rates of the first sample
-// one-sided, which a mirrored point before the path gives here.
+// The description of the design study alone does not give this plan. These readings do, and each of
+// the others is off by 1e-7 or more, most by 1e-4: no friction in the model; rollouts in 4 steps a
+// sample, the sweep with 8; torques of the quasi-static map at the instants; the start's gains at
+// the elbow angles of the path; the horizon's end weighted as the samples before it; the rates of
+// the first sample one-sided, which a mirrored point before the path gives here.
 // Measured: x 4e-9, u 4e-10, K 2e-9.
 TEST_F(Planner, AgreesWithTheGoldenPlan) {
   const auto golden = GoldenFile("beyond-golden.json");
@@ -83,8 +83,8 @@ TEST_F(Planner, AgreesWithTheGoldenPlan) {
   EXPECT_LT(RelativeError(EntryAt(*plan_, 1000).K, AsMatrix(golden["plan_K0"])), 1e-6);
 }
 
-// beyond.md 3: the tip's error at the end of the plan is below 1 mm whenever the move is as long as
-// the rule asks. 0.15 mm measured, the largest from the end of the move on.
+// docs/theory/payload.md 3.4: the tip's error at the end of the plan is below 1 mm whenever the
+// move is as long as the rule asks. 0.15 mm measured, the largest from the end of the move on.
 TEST_F(Planner, BringsTheTipToRestWhenTheMoveEnds) {
   const ArmModel kinematics(ThesisRig(), {2, 2});
   const auto tip = [&](const PlanState& x) -> Vector2d {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "controller/realtime/clock.h"
 #include "controller/exchange/history.h"
 #include "controller/exchange/latest_value.h"
+#include "controller/realtime/clock.h"
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/realtime/realtime_setup.h"
 #include "tests/support/loop_time.h"

@@ -100,9 +100,9 @@ TEST_F(ControlStepTest, TorqueIsZeroInEveryStateButRunningAndStopping) {
   }
 }
 
-// control.md: y_e = K (x_m - x), and at zero with a pure angle reference all else is feedforward of
-// a resting reference, S21's first two columns, which are zero. So u = K x_m but for the adaptive
-// part, of the order of r^2 T = 1e-2 of it.
+// docs/theory/control-law.md 6.1: y_e = K (x_m - x), and at zero with a pure angle reference all
+// else is feedforward of a resting reference, S21's first two columns, which are zero. So u = K x_m
+// but for the adaptive part, of the order of r^2 T = 1e-2 of it.
 TEST_F(ControlStepTest, TorqueActsTowardsTheReference) {
   const StepOutput out = step_.Step(Moving(0));
   const Eigen::Vector2d expected = ShippedDesign().K.leftCols<2>() * Eigen::Vector2d(0.01, -0.01);

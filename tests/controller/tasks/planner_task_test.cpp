@@ -120,7 +120,8 @@ TEST_F(PlannerTaskTest, ThePlanHoldsFromTheBeginningOfTheMoveAndEndsAtRestAtItsG
   EXPECT_FALSE(planner_->figures().warm);
 }
 
-// Each number of the config in its place: the plan is that of a planner which was told the study's.
+// Each number of the config in its place: the plan is that of a planner which was told the design
+// study's.
 TEST_F(PlannerTaskTest, PlansWithTheWeightsAndLimitsOfTheConfig) {
   for (const double torque_share : {0.93, 0.05}) {
     Make({"controller.plan.torque_share=" + std::to_string(torque_share),

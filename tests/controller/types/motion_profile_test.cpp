@@ -48,7 +48,8 @@ TEST(MotionProfile, LeavesAndArrivesAtRest) {
 }
 
 // Peaks: the derivative of s'' is 0 at x = 1/2 -+ 1/sqrt(12) (quintic), -+ 1/sqrt(20) (septic);
-// beyond.md rounds them to 5.77 and 1.875, 7.51 and 2.19. A grid of 1e-4 misses the top by 1e-6.
+// the design study rounds them to 5.77 and 1.875, 7.51 and 2.19. A grid of 1e-4 misses the top by
+// 1e-6.
 TEST(MotionProfile, PeaksAreThoseOfTheClosedForm) {
   const auto peaks = [](MoveProfile profile) {
     std::pair<double, double> peak{};

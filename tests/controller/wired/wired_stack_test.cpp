@@ -148,7 +148,7 @@ TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend
   const RunMetrics metrics = ComputeMetrics(ticks_, experiment_, 0.02,
                                             TipGeometryOf(config_.arm, config_.controller.nominal));
   EXPECT_EQ(metrics.ticks, 300);
-  EXPECT_LE(metrics.joint_rms_error_deg[0], 0.90);  // control.md section 8, payload 0.1 kg
+  EXPECT_LE(metrics.joint_rms_error_deg[0], 0.90);  // docs/theory/control-law.md 12.7
   EXPECT_LE(metrics.joint_rms_error_deg[1], 1.35);
 }
 

@@ -27,8 +27,8 @@ ArmParameters RigCarrying(double payload) {
   return p;
 }
 
-// The oracle itself: exact dynamic stiffness of the whole arm (plant.md); it says that 40 elements
-// agree to 4e-6.
+// The oracle itself: exact dynamic stiffness of the whole arm (docs/theory/plant.md 6.2); it says
+// that 40 elements agree to 4e-6.
 TEST(FeArm, HasTheExactFrequenciesOfTheReference) {
   const double exact[] = {6.620644715, 8.758385487, 16.67434804, 17.35428850};
   const VectorXd fe = FeArm(RigCarrying(0.1), 0.0, kElements).FreeFrequenciesHz();
@@ -53,7 +53,7 @@ TEST(FeArm, SixModesGiveTheFirstSixFrequencies) {
 
 // Which shapes link 1 bends in: those for a tip mass alone have psi''(L) = 0, cannot carry the
 // moment of motor 2's inertia, and are 2.9 % off in f2 with two modes and converge like 1/M; those
-// for the inertia too are off by 0.106 % (plant.md, to its digits).
+// for the inertia too are off by 0.106 % (docs/theory/plant.md 6.3, to its digits).
 TEST(FeArm, ShapesForATipMassAloneConvergeSlowly) {
   const ArmParameters p = RigCarrying(0.1);
   const FeArm fe(p, 0.0, kElements);

@@ -120,9 +120,9 @@ double Growth(const ArmParameters& p, double rate, double theta2) {
   return Linearize(arm, q, v, Vector2d::Zero()).A.eigenvalues().real().maxCoeff();
 }
 
-// Where the thesis's kinematics turn unstable (plant.md: th1' = 5.228 rad/s), the stiffened arm
-// does not, at that rate or any other up to 60 rad/s. Bars: round-off of the double zero roots on
-// one side, 1.57 1/s on the other.
+// Where the thesis's kinematics turn unstable (docs/theory/plant.md 6.4: th1' = 5.228 rad/s), the
+// stiffened arm does not, at that rate or any other up to 60 rad/s. Bars: round-off of the double
+// zero roots on one side, 1.57 1/s on the other.
 TEST(Foreshortening, StraightArmStaysStableAtAnySpeed) {
   ArmParameters thesis = Shortening();
   thesis.foreshortening = false;

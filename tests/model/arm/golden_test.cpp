@@ -73,7 +73,8 @@ TEST_F(Golden, ZeroOrderHoldOfTheReducedModelAgrees) {
   EXPECT_LT(RelativeError(hold.B, AsMatrix(golden_["R12_B"])), kGolden);
 }
 
-// P' = a^2 P with P the solution for (aA, aB, Q/rho, I), a = e^(alpha Ts) (control law, 4.3).
+// P' = a^2 P with P the solution for (aA, aB, Q/rho, I), a = e^(alpha Ts)
+// (docs/theory/control-law.md 6.3).
 TEST_F(Golden, RiccatiSolutionAndGainAgree) {
   const double a = std::exp(3.0 * 0.02);
   const MatrixXd A = AsMatrix(golden_["R12_A"]), B = AsMatrix(golden_["R12_B"]);

@@ -84,8 +84,8 @@ struct WholeArmRow {
   double hz[4];
 };
 
-// Exact dynamic stiffness of the whole arm (plant.md; a 40-element FE model agrees to 4e-6) with
-// the stated errors of assumed modes: M = 2: .019 .106 .490 .048 %, M = 4: <= .001 %.
+// Exact dynamic stiffness of the whole arm (docs/theory/plant.md 6.2; a 40-element FE model agrees
+// to 4e-6) with the stated errors of assumed modes: M = 2: .019 .106 .490 .048 %, M = 4: <= .001 %.
 TEST(Frequencies, FreeMotorsConvergeToTheExactArm) {
   const WholeArmRow rows[] = {{0.0, 0.0, {7.919741415, 8.758506393, 16.68020545, 21.31146624}},
                               {0.1, 0.0, {6.620644715, 8.758385487, 16.67434804, 17.35428850}},
@@ -110,8 +110,8 @@ TEST(Frequencies, FreeMotorsConvergeToTheExactArm) {
   }
 }
 
-// plant.md: error of f1..f4 of the assumed modes against the exact arm, in percent as printed: M =
-// 1 and M = 2 to the digits given, M = 3 and 4 by their bounds.
+// docs/theory/plant.md 6.3: error of f1..f4 of the assumed modes against the exact arm, in percent
+// as printed: M = 1 and M = 2 to the digits given, M = 3 and 4 by their bounds.
 TEST(Frequencies, AssumedModesConvergeAsTheReferenceSays) {
   ArmParameters p = ThesisRig();
   p.link1_tip_inertia = Link1TipInertia::kMotor;
@@ -129,8 +129,8 @@ TEST(Frequencies, AssumedModesConvergeAsTheReferenceSays) {
   }
 }
 
-// plant.md: shapes for a tip mass alone have psi''(L) = 0 and cannot carry the moment of motor 2's
-// inertia; those for the inertia can.
+// docs/theory/plant.md 2.2: shapes for a tip mass alone have psi''(L) = 0 and cannot carry the
+// moment of motor 2's inertia; those for the inertia can.
 TEST(Frequencies, ShapesForATipMassAloneCarryNoMoment) {
   ArmParameters p = ThesisRig();
   p.link1_tip_inertia = Link1TipInertia::kMotor;
@@ -141,7 +141,7 @@ TEST(Frequencies, ShapesForATipMassAloneCarryNoMoment) {
   EXPECT_GT(std::fabs(own.mode[1].Curvature(0.8)), 1.0);
 }
 
-// Locked rotors, 0.1 kg (plant.md, printed to 4 digits).
+// Locked rotors, 0.1 kg (docs/theory/plant.md 6.2, printed to 4 digits).
 TEST(Frequencies, HeldMotorsMatchTheReference) {
   const ArmModel arm(ThesisRig(), {4, 4});
   const VectorXd straight = HeldMotorFrequenciesHz(arm, 0.0);
@@ -153,8 +153,9 @@ TEST(Frequencies, HeldMotorsMatchTheReference) {
   }
 }
 
-// Without foreshortening the model softens with speed: plant.md finds the linearised arm unstable
-// from th1' = 5.228 rad/s on (th2 = 0). A documented limit of the thesis's kinematics.
+// Without foreshortening the model softens with speed: docs/theory/plant.md 6.4 finds the
+// linearised arm unstable from th1' = 5.228 rad/s on (th2 = 0). A documented limit of the thesis's
+// kinematics.
 TEST(Linearize, ArmTurnsUnstableWhereTheReferenceSays) {
   ArmParameters p = ThesisRig();
   p.damping = DampingReading::kNone;

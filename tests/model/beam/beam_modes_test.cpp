@@ -24,8 +24,8 @@ std::vector<BeamSection> CutInto(const BeamSection& whole, const std::vector<dou
   return out;
 }
 
-// Roots of 1 + cos z cosh z = 0 to 16 digits (plant.md). The search stops at round-off of w, and z
-// goes as its square root: 1e-12 leaves three digits of room.
+// Roots of 1 + cos z cosh z = 0 to 16 digits (docs/theory/plant.md 2.5). The search stops at
+// round-off of w, and z goes as its square root: 1e-12 leaves three digits of room.
 TEST(BeamModes, BareCantileverHasTheRootsOfTheClosedForm) {
   const auto mode = ClampedModes({Strip(0.9)}, {0.0, 0.0}, 3);
   EXPECT_NEAR(mode[0].beta_length(), 1.875104068711961, 1e-12);
@@ -35,12 +35,12 @@ TEST(BeamModes, BareCantileverHasTheRootsOfTheClosedForm) {
 
 struct TableRow {
   int link;
-  double tip_inertia;  // kg m^2; plant.md prints 10 to 13 digits
+  double tip_inertia;  // kg m^2; docs/theory/plant.md 2.5 has 10 to 13 digits
   double beta1, beta2;
   double hz[3];
 };
 
-// The table of link modes in plant.md. Its printed digits are the tolerance.
+// The table of link modes in docs/theory/plant.md 2.5. Its printed digits are the tolerance.
 TEST(BeamModes, RigLinksMatchTheReferenceTable) {
   const ArmParameters p = ThesisRig();
   const double carried = 3.03 + 0.24 + p.link[1].mass_kg() + 0.1;
@@ -128,7 +128,8 @@ TEST(BeamModes, HeavyTipMassRecoversTheMasslessSpring) {
   EXPECT_NEAR(ClampedModes({s}, {100.0 * mass, 0.0}, 1)[0].frequency_rad_s() / expected, 1.0, 1e-6);
 }
 
-// Pinned-free roots of tan z = tanh z (plant.md), after the rigid-body root, to the digits given.
+// Pinned-free roots of tan z = tanh z (docs/theory/plant.md 2.5), after the rigid-body root, to the
+// digits given.
 TEST(BeamModes, PinnedBeamHasTheRootsOfTheClosedForm) {
   const BeamSection s = Strip(0.9);
   const auto beta_length = [&](int order) {
@@ -175,7 +176,8 @@ TEST(BeamModes, RootSpringGoesFromPinnedToClamped) {
   EXPECT_LT(soft[0].frequency_rad_s(), 1e-3) << "nearly a rigid body on a soft spring";
 }
 
-// The example of plant.md, its digits being the tolerance: link 1 with I_r2 at its tip, 0.16 N m.
+// The example of docs/theory/plant.md 2.4, its digits being the tolerance: link 1 with I_r2 at its
+// tip, 0.16 N m.
 TEST(FrictionRootMode, RigExampleSlipsAtFiveMillimetresAndSticksAtOne) {
   const ArmParameters p = ThesisRig();
   const BeamTip tip{3.03 + 0.24 + p.link[1].mass_kg() + 0.1, 1.15e-2};
@@ -244,8 +246,8 @@ TEST(LinkModes, DampingReadingsGiveTheirStatedRatios) {
     const double w = link.mode[static_cast<std::size_t>(i)].frequency_rad_s();
     return 0.5 * link.D(i, i) * w / link.G(i, i);
   };
-  // zeta = xi (beta L)^2 / 2 for the reading with rho: 0.0318, 0.256 (errata); sqrt(rho) = 52 times
-  // less as printed; xi itself when modal.
+  // zeta = xi (beta L)^2 / 2 for the reading with rho: 0.0318, 0.256 (docs/theory/plant.md 5);
+  // sqrt(rho) = 52 times less as printed; xi itself when modal.
   EXPECT_NEAR(ratio(DampingReading::kCurvatureRho, 0), 0.015 * std::pow(1.4551580656, 2), 1e-8);
   EXPECT_NEAR(ratio(DampingReading::kCurvatureRho, 1), 0.015 * std::pow(4.1328908838, 2), 1e-8);
   EXPECT_NEAR(ratio(DampingReading::kCurvatureAsPrinted, 0),
@@ -254,8 +256,8 @@ TEST(LinkModes, DampingReadingsGiveTheirStatedRatios) {
   EXPECT_EQ(ratio(DampingReading::kNone, 0), 0.0);
 }
 
-// plant.md: zeta_k = xi (beta_k L)^2 / 2; link 1 (I_r2 at its tip) 0.008, 0.119, link 2 0.032,
-// 0.256.
+// docs/theory/plant.md 5: zeta_k = xi (beta_k L)^2 / 2; link 1 (I_r2 at its tip) 0.008, 0.119, link
+// 2 0.032, 0.256.
 TEST(LinkModes, DampingOfTheRigIsThatOfTheReference) {
   ArmParameters p = ThesisRig();
   p.link1_tip_inertia = Link1TipInertia::kMotor;

@@ -38,7 +38,7 @@ double ErrorPercent(int parts, int order, LumpInertia inertia = LumpInertia::kNo
   return 100.0 * (beam.Modes(order).back().frequency_rad_s / exact - 1.0);
 }
 
-// plant.md, "Link modes": bare link 2. Half of the last digit printed.
+// docs/theory/plant.md 2.3: bare link 2. Half of the last digit printed.
 TEST(LumpedBeam, ErrorsOfBareLinkTwoAreThoseOfTheReference) {
   const double ten[] = {-0.457, -1.564, -2.550, -3.565}, fifty[] = {-0.018, -0.064, -0.105, -0.147};
   for (int order = 1; order <= 4; ++order) {
@@ -47,7 +47,8 @@ TEST(LumpedBeam, ErrorsOfBareLinkTwoAreThoseOfTheReference) {
   }
 }
 
-// The thesis's "less than 0.05 %" needs N >= 31 for one mode and N >= 86 for four (plant.md).
+// The thesis's "less than 0.05 %" needs N >= 31 for one mode and N >= 86 for four
+// (docs/theory/plant.md 2.3).
 TEST(LumpedBeam, ClaimOfTheThesisNeedsTheStatedNumberOfParts) {
   EXPECT_GT(std::fabs(ErrorPercent(30, 1)), 0.05);
   EXPECT_LT(std::fabs(ErrorPercent(31, 1)), 0.05);

@@ -177,7 +177,7 @@ TEST(PowerBalancing, WhatCannotBeBalancedIsRefused) {
 
 ArmModel ReferenceArm() {
   ArmParameters p = ThesisRig();
-  p.link1_tip_inertia = Link1TipInertia::kMotor;  // the basis of plant.md's table
+  p.link1_tip_inertia = Link1TipInertia::kMotor;  // the basis of docs/theory/plant.md 8.2
   return ArmModel(p, {10, 10});
 }
 
@@ -191,7 +191,7 @@ struct TableRow {
   double link1[2], link2[2];  // eps_1, eps_2, percent
 };
 
-// plant.md, section power balancing, M = 10: printed with two decimals.
+// docs/theory/plant.md 8.2, M = 10: printed with two decimals.
 TEST(ArmReduction, ContributionsAreThoseOfTheReference) {
   const TableRow rows[] = {
       {Motion(0, 0, 0), ModalScaling::kMass, {99.50, 99.99}, {99.23, 99.99}},
@@ -215,7 +215,7 @@ TEST(ArmReduction, ContributionsAreThoseOfTheReference) {
 }
 
 // At rest: two zeros. In motion the elbow's becomes a small positive root that would take 93 % of
-// the sum of rho (plant.md). Beyond 90 degrees it turns negative.
+// the sum of rho (docs/theory/plant.md 8.1). Beyond 90 degrees it turns negative.
 TEST(ArmReduction, RigidBodyRootsAreFoundAndMarked) {
   const ArmModel arm = ReferenceArm();
   const auto at = [&](const NominalMotion& motion) {
@@ -249,10 +249,10 @@ TEST(ArmReduction, BothConditionsAgreeOnTheArmAtRest) {
   for (Index i = 0; i < 24; ++i) EXPECT_NEAR(relaxed.mu[i] / symmetric.mu[i], 1.0, 1e-6) << i;
 }
 
-// plant.md: 60 s of the impulse response give the same mu to 0.07 %. Measured: 0.0750 % for link
-// 2's second mode (roots at 16.7 and 17.4 Hz beat slowly), 0.023 % at most for the others; a step
-// of 2e-5 s changes nothing. The rigid motions grow in the angles only, so the modal coordinates
-// can be compared as they are.
+// docs/theory/plant.md 8.2: 60 s of the impulse response give the same mu to 0.07 %. Measured:
+// 0.0750 % for link 2's second mode (roots at 16.7 and 17.4 Hz beat slowly), 0.023 % at most for
+// the others; a step of 2e-5 s changes nothing. The rigid motions grow in the angles only, so the
+// modal coordinates can be compared as they are.
 TEST(ArmReduction, SixtySecondsOfImpulseResponseGiveTheSamePowerElements) {
   const ArmModel arm = ReferenceArm();
   const UndampedSystem system = UndampedArm(arm, Motion(0, 0, 0));

@@ -28,11 +28,11 @@ ArmParameters Frictionless() {
 ArmParameters Conservative() {
   ArmParameters p = Frictionless();
   p.damping = DampingReading::kNone;
-  p.link1_tip_inertia = Link1TipInertia::kMotor;  // the basis of plant.md's energy figure
+  p.link1_tip_inertia = Link1TipInertia::kMotor;  // the basis of docs/theory/plant.md 7.5
   return p;
 }
 
-// Elbow at 60 deg, rates 1 and -2 rad/s, tips bent by 10 and 20 mm (plant.md).
+// Elbow at 60 deg, rates 1 and -2 rad/s, tips bent by 10 and 20 mm (docs/theory/plant.md 7.5).
 ArmState EnergyTestStart(const ArmModel& model) {
   ArmState x(model.dof());
   x.q[kTheta2] = x.q[kTheta4] = M_PI / 3.0;
@@ -93,9 +93,10 @@ TEST_P(AnyArm, StepSolvesTheMidpointEquationsForAnyModeCount) {
   }
 }
 
-// plant.md: E0 = 1.2124174220779 J. Midpoint keeps energy to 1.5e-6 with two modes and to 2.5e-4
-// with four, whose undamped 570 Hz has 3.5 steps a period (measured; second order in h). The bar
-// for the default integrator is 2e-5 with two modes. Leaving out a Coriolis term gives 1e-2.
+// docs/theory/plant.md 7.5: E0 = 1.2124174220779 J. Midpoint keeps energy to 1.5e-6 with two modes
+// and to 2.5e-4 with four, whose undamped 570 Hz has 3.5 steps a period (measured; second order in
+// h). The bar for the default integrator is 2e-5 with two modes. Leaving out a Coriolis term gives
+// 1e-2.
 TEST(ArmSimulator, KeepsEnergyForTenSecondsWithoutDissipation) {
   for (const auto& [modes, bar] : {std::pair{2, 4e-6}, std::pair{4, 4e-4}}) {
     const ArmModel model(Conservative(), {modes, modes});

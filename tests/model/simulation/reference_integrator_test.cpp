@@ -67,10 +67,10 @@ INSTANTIATE_TEST_SUITE_P(Modes, EnergyDrift,
                                          Drift{.modes = 4, .columns = 6, .h = 2.5e-4}),
                          [](const auto& shown) { return std::to_string(shown.param.modes); });
 
-// plant.md: an 8th-order integrator keeps E0 = 1.2124174220779 J to 8e-13 over 10 s. Ours keeps it
-// to 2e-10 (two modes) and 3e-10 (four, whose fastest rings three times as fast), under the bar of
-// 1e-9, which a slip in the equations' energy breaks at once. Shapes of modes 3 and 4 start at
-// rest, so E0 is the same.
+// docs/theory/plant.md 7.5: an 8th-order integrator keeps E0 = 1.2124174220779 J to 8e-13 over 10
+// s. Ours keeps it to 2e-10 (two modes) and 3e-10 (four, whose fastest rings three times as fast),
+// under the bar of 1e-9, which a slip in the equations' energy breaks at once. Shapes of modes 3
+// and 4 start at rest, so E0 is the same.
 TEST_P(EnergyDrift, StaysBelowOneInABillionForTenSeconds) {
   const auto [modes, columns, h] = GetParam();
   const ArmModel arm(Conservative(), {modes, modes});
@@ -87,8 +87,8 @@ TEST_P(EnergyDrift, StaysBelowOneInABillionForTenSeconds) {
   EXPECT_LT(worst, 1e-9);
 }
 
-// plant.md: the fastest undamped frequencies, 1207 rad/s at M = 2 and 3584 at M = 4, to their
-// digits.
+// docs/theory/plant.md 7.1: the fastest undamped frequencies, 1207 rad/s at M = 2 and 3584 at M =
+// 4, to their digits.
 TEST(ReferenceIntegrator, FastestFrequenciesAreThoseOfTheReference) {
   for (const auto& [modes, expected] : {std::pair{2, 1207.0}, std::pair{4, 3584.0}}) {
     const VectorXd hz =
@@ -97,7 +97,8 @@ TEST(ReferenceIntegrator, FastestFrequenciesAreThoseOfTheReference) {
   }
 }
 
-// plant.md: classical Runge-Kutta at 0.25 ms keeps the energy to 4e-5 over the same 10 s.
+// docs/theory/plant.md 7.5: classical Runge-Kutta at 0.25 ms keeps the energy to 4e-5 over the same
+// 10 s.
 TEST(ReferenceIntegrator, RungeKuttaDriftsAsTheReferenceSays) {
   const ArmModel arm(Conservative(), {2, 2});
   Motion x = EnergyTestStart(2);
@@ -143,8 +144,8 @@ Chapter4 SquareWave(int modes, double h) {
   return out;
 }
 
-// Tip at 3 s and peak deflections from plant.md, printed to 1e-9 m and 0.01 mm. Its peaks are those
-// of samples 10 ms apart: link 2 really reaches 15.06 mm between two of them.
+// Tip at 3 s and peak deflections from docs/theory/plant.md 7.5, printed to 1e-9 m and 0.01 mm. Its
+// peaks are those of samples 10 ms apart: link 2 really reaches 15.06 mm between two of them.
 TEST(ReferenceIntegrator, Chapter4SquareWaveMatchesTheReferenceWithTwoModes) {
   const Chapter4 two = SquareWave(2, 5e-4);
   EXPECT_NEAR(two.tip.x(), 1.690807100, 2e-9);

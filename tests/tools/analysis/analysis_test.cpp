@@ -121,7 +121,7 @@ const Statement& About(const std::vector<Statement>& statements, const std::stri
   throw std::out_of_range(words);
 }
 
-// plant.md's list for chapter 5: what comes out of a correct model, and what does not.
+// docs/theory/plant.md 9 on chapter 5: what comes out of a correct model, and what does not.
 TEST(ParametricStatements, AgreeWithTheReferenceList) {
   const std::vector<Statement> s = ParametricStatements(WeakStudy(), WeakStudy());
   for (const char* words : {"payload lowers", "oscillates dramatically less",

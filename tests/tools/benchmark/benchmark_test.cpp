@@ -326,14 +326,15 @@ TEST(BenchmarkJson, HasTheFiguresOfTheRests) {
   EXPECT_EQ(nominal["rms_mean_deg"], nlohmann::ordered_json({1.5, 3.0}));
 }
 
-// The study: nominal 100 %, motion 1.1 mm, rms 0.89 2.14 deg, of which 20 % more still count.
+// The design study: nominal 100 %, motion 1.1 mm, rms 0.89 2.14 deg, of which 20 % more still
+// count.
 TEST(StudyComparison, SaysWhatIsReachedAndWhatIsNot) {
   const SweepPlan plan = Plan("gain-scheduled,sobel", "1..5", BenchmarkKind::kMoves);
   BenchmarkTable table = Table(plan, {}, BenchmarkKind::kMoves);
   BenchmarkCell& cell = table.cell[0][0];
   cell.group.runs = 5;
   cell.rests = {.settled_in_time = 5, .motion_mean_mm = 1.31, .rms_mean_deg = {1.0, 2.5}};
-  table.cell[1][0] = cell;  // of a law that the study did not make
+  table.cell[1][0] = cell;  // of a law that the design study did not make
   const auto verdict = [&table] {
     const TextTable text = StudyComparison(table);
     EXPECT_EQ(text.rows.size(), 1U) << "scenarios without runs have no row";

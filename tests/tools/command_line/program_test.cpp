@@ -144,7 +144,8 @@ TEST_F(ProgramTest, ConfigCheckPrintsWhatFollowsFromTheNumbers) {
   EXPECT_EQ(json["valid"], true);
   EXPECT_NEAR(json["arm"]["link_length_m"][0].get<double>(), 0.8, 1e-12);
   EXPECT_NEAR(json["encoders"][0]["resolution_deg"].get<double>(), 0.1417, 1e-4);
-  // control.md: an 8-bit counter of 2540 counts a turn unwraps below 7.85 rad/s over two periods.
+  // docs/theory/control-law.md 7.1: an 8-bit counter of 2540 counts a turn unwraps below 7.85 rad/s
+  // over two periods.
   EXPECT_NEAR(json["encoders"][0]["unwraps_below_rad_s"].get<double>(), 7.9, 0.1);
   EXPECT_EQ(json["strain"]["channels"], Json({10, 10}));
 }
@@ -201,7 +202,8 @@ TEST_F(ProgramTest, ConfigCheckRefusesInJsonToo) {
 }
 
 TEST_F(ProgramTest, ModesHaveTheKeysOfTheContract) {
-  // control.md section 2: clamped and torque-mode frequencies of the nominal rig.
+  // docs/theory/plant.md 2.5 and docs/theory/control-law.md 1.2: clamped and torque-mode
+  // frequencies of the nominal rig.
   const Json json = RunJson("modes -c '" + kRig + "' --modes 2");
   EXPECT_EQ(json["links"][0]["link"], 1);
   EXPECT_EQ(json["links"][0]["base"], "clamped");

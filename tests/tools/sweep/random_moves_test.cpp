@@ -1,4 +1,4 @@
-// The recipe of the study's random moves, beyond.md section 4.
+// The recipe of the design study's random moves, docs/theory/payload.md 6.1.
 
 #include "tools/sweep/random_moves.h"
 
