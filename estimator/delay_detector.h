@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "estimator/torque_pieces.h"
+#include "estimator/piecewise_torque.h"
 
 namespace flexarm {
 
@@ -14,17 +14,17 @@ inline constexpr std::size_t kDelays = 4;
 inline constexpr std::size_t kDelayAsKnown = 1;
 
 /// The torque over a sample under each of them; nothing where that delay is out of the question.
-using TorqueByDelay = std::array<std::optional<TorquePieces>, kDelays>;
+using TorqueByDelay = std::array<std::optional<PiecewiseTorque>, kDelays>;
 
 /// Finds a delay of whole samples that nobody knows of: that whose torques explain the readings
 /// best.
 ///
-/// Each delay has a filter of its own (PayloadFilter::Rival). The squares of its innovations add
-/// up, J <- kMemory J + min(NIS, kMost); a delay that is better by more than kBetter takes over,
-/// and all begin again at zero. Where torques do not change, as at rest, all delays predict the
-/// same and none gains. A sample that no delay explains, as when a load is dropped, says nothing.
-/// Source: docs/theory/payload.md 2.7. The design study looks at the four angles one by one and a
-/// sample ahead from the same state, with 0.97 and 40. What these numbers find, and when:
+/// Each delay has a filter of its own (PayloadFilter::Hypothesis). The squares of its innovations
+/// add up, J <- kMemory J + min(NIS, kMost); a delay that is better by more than kBetter takes
+/// over, and all begin again at zero. Where torques do not change, as at rest, all delays predict
+/// the same and none gains. A sample that no delay explains, as when a load is dropped, says
+/// nothing. Source: docs/theory/payload.md 2.7. The design study looks at the four angles one by
+/// one and a sample ahead from the same state, with 0.97 and 40. What these numbers find, and when:
 /// docs/timing.md.
 /// Real-time: safe; fixed size.
 class DelayDetector {

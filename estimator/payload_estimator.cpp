@@ -94,7 +94,7 @@ PayloadEstimator::PayloadEstimator(std::span<const double> model, const PayloadF
 
 const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& counters,
                                                         const FittedModes& modes,
-                                                        const TorquePieces& applied,
+                                                        const PiecewiseTorque& applied,
                                                         std::optional<double> tip_m_s2) noexcept {
   if (!started_) StartAt(counters);
   return filter_.Update(applied, ReadingOf(counters, modes, tip_m_s2));
@@ -106,17 +106,18 @@ const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& c
                                                         std::optional<double> tip_m_s2) noexcept {
   if (!started_) StartAt(counters);
   const PayloadFilter::Reading reading = ReadingOf(counters, modes, tip_m_s2);
-  for (std::size_t d = 0; d < kDelays; ++d) rivals_[d].torque = applied[d].value_or(TorquePieces());
+  for (std::size_t d = 0; d < kDelays; ++d)
+    hypotheses_[d].torque = applied[d].value_or(PiecewiseTorque());
   const PayloadFilter::Estimate& estimate =
-      filter_.Update(rivals_[delay_.index()].torque, reading, rivals_);
+      filter_.Update(hypotheses_[delay_.index()].torque, reading, hypotheses_);
   if (reading.good == 0) return estimate;
   DelayDetector::Misfit misfit;
   for (std::size_t d = 0; d < kDelays; ++d) {
-    if (applied[d]) misfit[d] = rivals_[d].nis;
+    if (applied[d]) misfit[d] = hypotheses_[d].nis;
   }
   if (delay_.Take(misfit)) {
-    filter_.GiveWayTo(rivals_[delay_.index()]);
-    for (PayloadFilter::Rival& rival : rivals_) rival.apart.setZero();
+    filter_.SwitchTo(hypotheses_[delay_.index()]);
+    for (PayloadFilter::Hypothesis& hypothesis : hypotheses_) hypothesis.apart.setZero();
   }
   return estimate;
 }
@@ -125,7 +126,7 @@ void PayloadEstimator::StartAt(const DecodedCounters& counters) noexcept {
   RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
   q.head<2>() << counters.angle_rad[0], counters.angle_rad[1];
   filter_.Reset(q);
-  for (PayloadFilter::Rival& rival : rivals_) rival.apart.setZero();
+  for (PayloadFilter::Hypothesis& hypothesis : hypotheses_) hypothesis.apart.setZero();
   started_ = true;
 }
 

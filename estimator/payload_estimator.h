@@ -8,8 +8,8 @@
 #include "estimator/delay_detector.h"
 #include "estimator/estimator_config.h"
 #include "estimator/payload_filter.h"
+#include "estimator/piecewise_torque.h"
 #include "estimator/strain_fit.h"
-#include "estimator/torque_pieces.h"
 #include "hal/sensor_config.h"
 #include "model/parameters/arm_parameters.h"
 
@@ -44,7 +44,7 @@ class PayloadEstimator {
 
   /// @param tip_m_s2  of the accelerometer at the tip (TipReading), if there is a reading
   const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
-                                        const TorquePieces& applied,
+                                        const PiecewiseTorque& applied,
                                         std::optional<double> tip_m_s2 = std::nullopt) noexcept;
 
   /// The same with the torque of the delay that was found, and a look at whether another explains
@@ -60,7 +60,7 @@ class PayloadEstimator {
   /// A move starts: the payload may be another than before.
   void BeginMove() noexcept { filter_.BeginMove(); }
   /// The model has been contradicted.
-  void TakeLoadForDropped() noexcept { filter_.TakeLoadForDropped(rivals_); }
+  void AssumePayloadLost() noexcept { filter_.AssumePayloadLost(hypotheses_); }
   /// The arm has come to rest after a move.
   void EndMove() noexcept { filter_.EndMove(); }
 
@@ -68,7 +68,9 @@ class PayloadEstimator {
   std::array<double, 4> ModalRates() const noexcept;
 
   State Now() const noexcept { return StateOf(filter_.estimate().state); }
-  State After(const TorquePieces& torque) const noexcept { return StateOf(filter_.After(torque)); }
+  State After(const PiecewiseTorque& torque) const noexcept {
+    return StateOf(filter_.After(torque));
+  }
 
   const PayloadFilter::Estimate& estimate() const noexcept { return filter_.estimate(); }
   double mean_nis() const noexcept { return filter_.mean_nis(); }
@@ -85,7 +87,8 @@ class PayloadEstimator {
 
   PayloadFilter filter_;
   DelayDetector delay_;
-  std::array<PayloadFilter::Rival, kDelays> rivals_;  // by delay; that which holds is the filter
+  std::array<PayloadFilter::Hypothesis, kDelays>
+      hypotheses_;  // by delay; that which holds is the filter
   bool started_ = false;
 };
 

@@ -84,8 +84,8 @@ void PayloadFilter::ForgetAllButMotion() noexcept {
   }
 }
 
-void PayloadFilter::GiveWayTo(const Rival& rival) noexcept {
-  Add(rival.apart);
+void PayloadFilter::SwitchTo(const Hypothesis& hypothesis) noexcept {
+  Add(hypothesis.apart);
   ForgetAllButMotion();
 }
 
@@ -96,9 +96,9 @@ void PayloadFilter::BeginMove() noexcept {
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
 }
 
-void PayloadFilter::TakeLoadForDropped(std::span<Rival> rivals) noexcept {
+void PayloadFilter::AssumePayloadLost(std::span<Hypothesis> hypotheses) noexcept {
   if (!learns_) return;
-  for (Rival& rival : rivals) rival.apart[kPayload] = 0.0;
+  for (Hypothesis& hypothesis : hypotheses) hypothesis.apart[kPayload] = 0.0;
   P_.row(kPayload).setZero();
   P_.col(kPayload).setZero();
   P_(kPayload, kPayload) = Square(kDroppedPayload_kg);
@@ -111,10 +111,10 @@ void PayloadFilter::TakeLoadForDropped(std::span<Rival> rivals) noexcept {
   mean_nis_ = kOutputs;
 }
 
-const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
+const PayloadFilter::Estimate& PayloadFilter::Update(const PiecewiseTorque& torque,
                                                      const Reading& reading,
-                                                     std::span<Rival> rivals) noexcept {
-  Predict(torque, rivals);
+                                                     std::span<Hypothesis> hypotheses) noexcept {
+  Predict(torque, hypotheses);
   estimate_.nis = 0.0;
   estimate_.innovation.setZero();
   if (reading.good != 0) {
@@ -141,36 +141,37 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const TorquePieces& torque,
     estimate_.nis = e.dot(weighted);
     estimate_.innovation = e;
     mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
-    for (Rival& rival : rivals) {
-      rival.innovation = e;
+    for (Hypothesis& hypothesis : hypotheses) {
+      hypothesis.innovation = e;
       for (int i = 0; i < kOutputs; ++i) {
         if ((reading.good >> i & 1u) == 0) continue;
-        rival.innovation[i] -= rival.apart[kSeen[static_cast<std::size_t>(i)]];
-        if (i == 2 || i == 3) rival.innovation[i] -= Torsion(rival.torque)[i - 2] - torsion[i - 2];
+        hypothesis.innovation[i] -= hypothesis.apart[kSeen[static_cast<std::size_t>(i)]];
+        if (i == 2 || i == 3)
+          hypothesis.innovation[i] -= Torsion(hypothesis.torque)[i - 2] - torsion[i - 2];
       }
-      const Outputs rival_weighted = S_llt.solve(rival.innovation);
-      rival.nis = rival.innovation.dot(rival_weighted);
+      const Outputs rival_weighted = S_llt.solve(hypothesis.innovation);
+      hypothesis.nis = hypothesis.innovation.dot(rival_weighted);
     }
-    Correct(K, e, R, rivals);
+    Correct(K, e, R, hypotheses);
   }
   estimate_.tip_innovation_m_s2 = 0.0;
-  if (reading.tip_m_s2) CorrectByTip(*reading.tip_m_s2, torque, rivals);
+  if (reading.tip_m_s2) CorrectByTip(*reading.tip_m_s2, torque, hypotheses);
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
   return estimate_;
 }
 
 // What the torque at the end of the sample twists the joints by, rad.
-Eigen::Vector2d PayloadFilter::Torsion(const TorquePieces& torque) const noexcept {
+Eigen::Vector2d PayloadFilter::Torsion(const PiecewiseTorque& torque) const noexcept {
   const std::array<double, 2> torque_nm = torque.last_nm();
   return {torque_nm[0] / config_.joint_stiffness_nm_per_rad[0],
           torque_nm[1] / config_.joint_stiffness_nm_per_rad[1]};
 }
 
-GaugedState PayloadFilter::After(const TorquePieces& torque) const noexcept {
+GaugedState PayloadFilter::After(const PiecewiseTorque& torque) const noexcept {
   return Through(torque, estimate_.payload_kg, estimate_.friction_nm);
 }
 
-GaugedState PayloadFilter::Through(const TorquePieces& torque, double payload_kg,
+GaugedState PayloadFilter::Through(const PiecewiseTorque& torque, double payload_kg,
                                    const std::array<double, 2>& friction_nm) const noexcept {
   const std::int64_t step_ticks = kPeriodTicks / stepper_.steps();
   GaugedState x = estimate_.state;
@@ -188,7 +189,8 @@ GaugedState PayloadFilter::Through(const TorquePieces& torque, double payload_kg
   return x;
 }
 
-void PayloadFilter::Predict(const TorquePieces& torque, std::span<Rival> rivals) noexcept {
+void PayloadFilter::Predict(const PiecewiseTorque& torque,
+                            std::span<Hypothesis> hypotheses) noexcept {
   const double payload_kg = estimate_.payload_kg;
   std::array<double, 2> friction_nm = estimate_.friction_nm;
   const GaugedState start = estimate_.state;
@@ -215,12 +217,12 @@ void PayloadFilter::Predict(const TorquePieces& torque, std::span<Rival> rivals)
   AddProcessNoise(transition);
 
   const std::array<double, 2> mean_nm = torque.mean_nm();
-  for (Rival& rival : rivals) {
-    const std::array<double, 2> other_nm = rival.torque.mean_nm();
+  for (Hypothesis& hypothesis : hypotheses) {
+    const std::array<double, 2> other_nm = hypothesis.torque.mean_nm();
     const Eigen::Vector2d more(other_nm[0] - mean_nm[0], other_nm[1] - mean_nm[1]);
-    const Vector apart = F.lazyProduct(rival.apart);
-    rival.apart = apart;
-    rival.apart.head<kMotion>() += transition.G.leftCols<2>().lazyProduct(more);
+    const Vector apart = F.lazyProduct(hypothesis.apart);
+    hypothesis.apart = apart;
+    hypothesis.apart.head<kMotion>() += transition.G.leftCols<2>().lazyProduct(more);
   }
 }
 
@@ -265,11 +267,12 @@ PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Out
 }
 
 void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance,
-                            std::span<Rival> rivals) noexcept {
+                            std::span<Hypothesis> hypotheses) noexcept {
   Gain K = optimal;
   if (!learns_payload()) K.row(kPayload).setZero();
   if (!learns_) K.bottomRows<2>().setZero();
-  for (Rival& rival : rivals) rival.apart += K.lazyProduct(rival.innovation - innovation);
+  for (Hypothesis& hypothesis : hypotheses)
+    hypothesis.apart += K.lazyProduct(hypothesis.innovation - innovation);
   Add(K.lazyProduct(innovation));
   // P <- (I - K H) P (I - K H)' + K R K', right for any K.
   Matrix J = Matrix::Identity();
@@ -281,8 +284,8 @@ void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation, cons
   P_(kPayload, kPayload) = std::min(P_(kPayload, kPayload), Square(config_.payload_max_sigma_kg));
 }
 
-void PayloadFilter::CorrectByTip(double reading_m_s2, const TorquePieces& torque,
-                                 std::span<Rival> rivals) noexcept {
+void PayloadFilter::CorrectByTip(double reading_m_s2, const PiecewiseTorque& torque,
+                                 std::span<Hypothesis> hypotheses) noexcept {
   const std::array<double, 2> torque_nm = torque.last_nm();
   const TipOutput shown = TipOutputAt(stepper_, config_.tip_lag_s, estimate_.state,
                                       {.torque_nm = {torque_nm[0], torque_nm[1]},
@@ -304,13 +307,13 @@ void PayloadFilter::CorrectByTip(double reading_m_s2, const TorquePieces& torque
   if (!learns_payload()) K[kPayload] = 0.0;
   if (!learns_) K.tail<2>().setZero();
   estimate_.tip_innovation_m_s2 = e;
-  for (Rival& rival : rivals) {
-    const std::array<double, 2> other_nm = rival.torque.last_nm();
-    double shown_apart = H.dot(rival.apart);
+  for (Hypothesis& hypothesis : hypotheses) {
+    const std::array<double, 2> other_nm = hypothesis.torque.last_nm();
+    double shown_apart = H.dot(hypothesis.apart);
     for (std::size_t i = 0; i < 2; ++i) {
       shown_apart += shown.by_torque[i] * (other_nm[i] - torque_nm[i]);
     }
-    rival.apart -= K * shown_apart;
+    hypothesis.apart -= K * shown_apart;
   }
   Add(K * e);
   // Joseph's form, as in Correct.

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "estimator/piecewise_torque.h"
 #include "estimator/tip_output.h"
-#include "estimator/torque_pieces.h"
 #include "model/rigid_joint/rigid_joint_step.h"
 #include "model/rigid_joint/rigid_joint_transition.h"
 
@@ -87,8 +87,8 @@ class PayloadFilter {
 
   /// A filter beside this one, with the same gains and readings but another torque, to first order:
   /// the two differ by what the other torques did since they were one.
-  struct Rival {
-    TorquePieces torque;                      ///< during the sample
+  struct Hypothesis {
+    PiecewiseTorque torque;                   ///< during the sample
     Eigen::Matrix<double, kStates, 1> apart;  ///< its state minus this filter's
     Outputs innovation;                       ///< of the last reading
     double nis;  ///< the same squared, by the covariance of this filter
@@ -105,7 +105,7 @@ class PayloadFilter {
   /// The model has been contradicted: the load is taken for dropped, and found anew from nothing.
   /// It is the likely cause, and the safe one: what moves an empty arm does little to a heavy one.
   /// @param rivals  take it for dropped as well
-  void TakeLoadForDropped(std::span<Rival> rivals = {}) noexcept;
+  void AssumePayloadLost(std::span<Hypothesis> hypotheses = {}) noexcept;
 
   /// The arm has come to rest: payload and friction are learnt no more until the next move. Counts
   /// that flicker look like motion to a filter that has grown unsure, and would drag both.
@@ -113,18 +113,18 @@ class PayloadFilter {
 
   /// The rival's torques were the right ones: its motion is taken over. What was learnt came from
   /// the wrong ones: payload, friction and all doubt are as at a start.
-  void GiveWayTo(const Rival& rival) noexcept;
+  void SwitchTo(const Hypothesis& hypothesis) noexcept;
 
   /// @param torque  really applied during the sample that ends with the reading
   /// @param rivals  go on as well
-  const Estimate& Update(const TorquePieces& torque, const Reading& reading,
-                         std::span<Rival> rivals = {}) noexcept;
+  const Estimate& Update(const PiecewiseTorque& torque, const Reading& reading,
+                         std::span<Hypothesis> hypotheses = {}) noexcept;
 
   const Estimate& estimate() const noexcept { return estimate_; }
 
   /// The state after `torque`, with the payload and the friction found so far. Borders between
   /// pieces, and the end, count to the nearest step_s().
-  GaugedState After(const TorquePieces& torque) const noexcept;
+  GaugedState After(const PiecewiseTorque& torque) const noexcept;
 
   const RigidJointStepper& stepper() const noexcept { return stepper_; }
   /// NIS, smoothed: 8 for a right model.
@@ -137,16 +137,16 @@ class PayloadFilter {
 
   void ForgetAllButMotion() noexcept;
   void Add(const Vector& dx) noexcept;
-  Eigen::Vector2d Torsion(const TorquePieces& torque) const noexcept;
-  void Predict(const TorquePieces& torque, std::span<Rival> rivals) noexcept;
+  Eigen::Vector2d Torsion(const PiecewiseTorque& torque) const noexcept;
+  void Predict(const PiecewiseTorque& torque, std::span<Hypothesis> hypotheses) noexcept;
   void AddProcessNoise(const Transition& transition) noexcept;
-  GaugedState Through(const TorquePieces& torque, double payload_kg,
+  GaugedState Through(const PiecewiseTorque& torque, double payload_kg,
                       const std::array<double, 2>& friction_nm) const noexcept;
   Outputs OutputVariance(const Outputs& y, const Outputs& innovation, std::uint32_t good) noexcept;
   void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance,
-               std::span<Rival> rivals) noexcept;
-  void CorrectByTip(double reading_m_s2, const TorquePieces& torque,
-                    std::span<Rival> rivals) noexcept;
+               std::span<Hypothesis> hypotheses) noexcept;
+  void CorrectByTip(double reading_m_s2, const PiecewiseTorque& torque,
+                    std::span<Hypothesis> hypotheses) noexcept;
   bool learns_payload() const noexcept;
 
   RigidJointStepper stepper_;

@@ -45,7 +45,7 @@ StateEstimator::OutputVector StateEstimator::Measure(const DecodedCounters& coun
   return y;
 }
 
-std::array<double, 4> StateEstimator::ModalRates(const TorquePieces& applied) const noexcept {
+std::array<double, 4> StateEstimator::ModalRates(const PiecewiseTorque& applied) const noexcept {
   const auto modes = static_cast<std::size_t>(layout_.modes_per_link);
   const Eigen::Index flex = Eigen::Index{2} * layout_.modes_per_link;
   OutputVector rate = OutputVector::Zero(flex);
@@ -70,7 +70,7 @@ std::array<double, 4> StateEstimator::ModalRates(const TorquePieces& applied) co
 
 StateEstimator::Estimate StateEstimator::Update(const DecodedCounters& counters,
                                                 const FittedModes& modes,
-                                                const TorquePieces& applied) noexcept {
+                                                const PiecewiseTorque& applied) noexcept {
   std::uint32_t good = 0;
   const OutputVector y = Measure(counters, modes, applied.last_nm(), &good);
   if (!started_) {
@@ -95,7 +95,7 @@ void StateEstimator::StartAtRest(const OutputVector& y) noexcept {
 }
 
 StateEstimator::Estimate StateEstimator::UpdateKalman(const OutputVector& y, std::uint32_t good,
-                                                      const TorquePieces& applied) noexcept {
+                                                      const PiecewiseTorque& applied) noexcept {
   // x(k|k-1) = A x(k-1|k-1) + B u(k-1), in as many pieces as u has
   FilterVector x = x_;
   hold_.Advance(applied, &x);

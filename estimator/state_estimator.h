@@ -6,10 +6,10 @@
 
 #include "estimator/counter_decoder.h"
 #include "estimator/estimator_config.h"
-#include "estimator/fractional_hold.h"
+#include "estimator/fractional_zero_order_hold.h"
+#include "estimator/piecewise_torque.h"
 #include "estimator/state_layout.h"
 #include "estimator/strain_fit.h"
-#include "estimator/torque_pieces.h"
 
 namespace flexarm {
 
@@ -45,15 +45,15 @@ class StateEstimator {
 
   /// How fast the gauges' modal coordinates are expected to change at the next Update's sample,
   /// m/s: f11 f12 f21 f22 behind their filters. Of `difference` the rates of the last Update.
-  std::array<double, 4> ModalRates(const TorquePieces& applied) const noexcept;
+  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept;
 
   /// @param applied  the torque over the last period, in constant pieces
   Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
-                  const TorquePieces& applied) noexcept;
+                  const PiecewiseTorque& applied) noexcept;
   /// The same torque over the whole period.
   Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
                   const std::array<double, 2>& applied_torque_nm) noexcept {
-    return Update(counters, modes, TorquePieces::WholePeriod(applied_torque_nm));
+    return Update(counters, modes, PiecewiseTorque::WholePeriod(applied_torque_nm));
   }
 
  private:
@@ -65,14 +65,14 @@ class StateEstimator {
                        const std::array<double, 2>& torque_nm, std::uint32_t* good) const noexcept;
   void StartAtRest(const OutputVector& y) noexcept;
   Estimate UpdateKalman(const OutputVector& y, std::uint32_t good,
-                        const TorquePieces& applied) noexcept;
+                        const PiecewiseTorque& applied) noexcept;
   Estimate UpdateDifference(const OutputVector& y, std::uint32_t good) noexcept;
 
   EstimatorKind kind_;
   StateLayout layout_;
   double period_s_;
   std::array<double, 2> joint_stiffness_;
-  FractionalHold hold_;
+  FractionalZeroOrderHold hold_;
   FilterMatrix C_, L_;
   FilterMatrix modal_rate_x_, modal_rate_u_;  // rates of the last outputs, from state and torque
   FilterVector x_;                            // kalman: x(k|k) with the gauge filter's states

@@ -36,7 +36,7 @@ inline constexpr LineLevels kHealthyLevels =
     LineBit(Line::kLimit2High) | LineBit(Line::kEmergencyStop);
 
 /// Two readings of the same lines: a switch is open, and the button pressed, when either says so.
-constexpr LineLevels Either(LineLevels a, LineLevels b) {
+constexpr LineLevels MergeRedundantLevels(LineLevels a, LineLevels b) {
   return (a & b & kHealthyLevels) | ((a | b) & ~kHealthyLevels);
 }
 

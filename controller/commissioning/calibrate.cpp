@@ -8,7 +8,7 @@
 #include <string>
 
 #include "controller/runlog/csv.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
@@ -28,7 +28,7 @@ class Findings {
     text_ += "\n  " + channel + ": " + problem;
   }
   void RefuseIfAny() const {
-    if (!text_.empty()) throw Refused(what_ + text_);
+    if (!text_.empty()) throw RejectedError(what_ + text_);
   }
 
  private:
@@ -145,8 +145,8 @@ Calibration GainCalibration::Add(const StaticLoad& load, const RestReadings& rea
   }
   findings.RefuseIfAny();
   if (!learned) {
-    throw Refused("this load strains no channel of link " + std::to_string(load.link) +
-                  " by 20 counts: use a larger one, or further out");
+    throw RejectedError("this load strains no channel of link " + std::to_string(load.link) +
+                        " by 20 counts: use a larger one, or further out");
   }
   sums_ = sums;
   return before;

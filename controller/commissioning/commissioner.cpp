@@ -6,7 +6,7 @@
 
 #include "controller/commissioning/calibration_file.h"
 #include "controller/runlog/csv.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "hal/line_names.h"
 #include "model/units.h"
 
@@ -17,27 +17,27 @@ using Json = nlohmann::json;
 
 void RequireIdle(const std::string& command, SafetyState state) {
   if (state == SafetyState::kIdle) return;
-  throw Refused(command + " needs the arm in Idle, and it is " + Name(state) +
-                ": `flexarm disarm`, or `flexarm reset` after a trip");
+  throw RejectedError(command + " needs the arm in Idle, and it is " + Name(state) +
+                      ": `flexarm disarm`, or `flexarm reset` after a trip");
 }
 
 void RequireArmed(const std::string& command, SafetyState state) {
   if (state == SafetyState::kArmed) return;
-  throw Refused(command + " moves the arm, so it needs Armed, and it is " + Name(state) +
-                ": `flexarm arm`");
+  throw RejectedError(command + " moves the arm, so it needs Armed, and it is " + Name(state) +
+                      ": `flexarm arm`");
 }
 
 double Number(const Json& command, const char* key) {
   const auto found = command.find(key);
   if (found == command.end() || !found->is_number()) {
-    throw Refused(std::string("expected a number in '") + key + "'");
+    throw RejectedError(std::string("expected a number in '") + key + "'");
   }
   return found->get<double>();
 }
 
 int OneOrTwo(const Json& command, const char* key) {
   const double value = Number(command, key);
-  if (value != 1.0 && value != 2.0) throw Refused(std::string(key) + " must be 1 or 2");
+  if (value != 1.0 && value != 2.0) throw RejectedError(std::string(key) + " must be 1 or 2");
   return static_cast<int>(value);
 }
 
@@ -111,7 +111,8 @@ std::string Commissioner::WhyNoRun() const {
 }
 
 CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) {
-  if (busy()) throw Refused("busy with " + job_->command + ": wait for its end, or `flexarm stop`");
+  if (busy())
+    throw RejectedError("busy with " + job_->command + ": wait for its end, or `flexarm stop`");
   const std::string name = command.value("command", "");
   if (name == "pluck") return StartPluck(state);
   if (name == "home") return StartHome(command, state);
@@ -144,7 +145,7 @@ void Commissioner::StartZero(const Json& command, SafetyState state) {
   if (const auto found = command.find("angle_deg"); found != command.end()) {
     if (!found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
         !(*found)[1].is_number()) {
-      throw Refused("angle_deg must be two numbers");
+      throw RejectedError("angle_deg must be two numbers");
     }
     for (std::size_t i = 0; i < 2; ++i) hub_rad[i] = (*found)[i].get<double>() * kRadPerDeg;
   }
@@ -165,10 +166,10 @@ void Commissioner::StartCalibrate(const Json& command, SafetyState state) {
     length_m += section.length_m;
   }
   if (!(load.at_m > 0.0) || load.at_m > length_m) {
-    throw Refused("at_m must lie on link " + std::to_string(load.link) + ", above 0 and at most " +
-                  std::to_string(length_m) + " m");
+    throw RejectedError("at_m must lie on link " + std::to_string(load.link) +
+                        ", above 0 and at most " + std::to_string(length_m) + " m");
   }
-  if (load.force_n == 0.0) throw Refused("force_n must not be zero");
+  if (load.force_n == 0.0) throw RejectedError("force_n must not be zero");
   StartRest("calibrate", state, [this, load](const RestReadings& readings) {
     Adopt(gains_.Add(load, readings, calibration_));
     return Json{{"strain", StrainJson(config_.sensors, calibration_, readings)}};
@@ -189,11 +190,12 @@ CommissioningMotion Commissioner::StartPluck(SafetyState state) {
 CommissioningMotion Commissioner::StartHome(const Json& command, SafetyState state) {
   RequireArmed("home", state);
   if (config_.commissioning.prove_before_run && !proven_) {
-    throw Refused("homing is a controlled motion, and the wiring is not proven: `flexarm pluck`");
+    throw RejectedError(
+        "homing is a controlled motion, and the wiring is not proven: `flexarm pluck`");
   }
   const auto joint = static_cast<std::size_t>(OneOrTwo(command, "joint") - 1);
   const std::string side = command.value("side", "");
-  if (side != "low" && side != "high") throw Refused("side must be low or high");
+  if (side != "low" && side != "high") throw RejectedError("side must be low or high");
   const std::size_t number = 2 * joint + (side == "high" ? 1 : 0);
   const auto line = static_cast<Line>(number);  // limit 1 low, 1 high, 2 low, 2 high
   const CommissioningConfig& c = config_.commissioning;
@@ -249,9 +251,9 @@ Json Commissioner::Home(const std::vector<TickRecord>& run, std::size_t joint, L
             {"contact_before_deg", tick.output.angle_rad[joint] / kRadPerDeg},
             {"contact_deg", switch_deg}};
   }
-  throw Refused(std::string(Name(line)) + " did not open: put the joint within " +
-                std::to_string(config_.commissioning.home_travel_deg) +
-                " deg of it by hand, and see that the switch works");
+  throw RejectedError(std::string(Name(line)) + " did not open: put the joint within " +
+                      std::to_string(config_.commissioning.home_travel_deg) +
+                      " deg of it by hand, and see that the switch works");
 }
 
 void Commissioner::Take(const TickRecord& tick) {
@@ -262,7 +264,7 @@ void Commissioner::Take(const TickRecord& tick) {
   try {
     if (job_->from_rest) {
       if (state != SafetyState::kIdle) {
-        throw Refused("the arm left Idle while it was measured; ask again");
+        throw RejectedError("the arm left Idle while it was measured; ask again");
       }
       if (!job_->rest.Take(tick)) return;
       answer = job_->from_rest(job_->rest.Result());

@@ -12,7 +12,7 @@
 #include "controller/design/input_shaper.h"
 #include "controller/law/tracking_law.h"
 #include "controller/types/control_config.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "estimator/kalman_design.h"
 #include "estimator/nominal_model.h"
 #include "estimator/payload_estimator.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "controller/types/control_config.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/rigid_joint/rigid_joint_step.h"
 
 namespace flexarm {
@@ -105,17 +105,17 @@ nlohmann::ordered_json MatrixToJson(const M& matrix) {
 template <typename M>
 void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name, M* matrix) {
   if (!rows.is_array() || rows.empty() || !rows[0].is_array()) {
-    throw Refused("gains file: '" + name + "' is not a matrix (an array of rows)");
+    throw RejectedError("gains file: '" + name + "' is not a matrix (an array of rows)");
   }
   Eigen::MatrixXd read(static_cast<Eigen::Index>(rows.size()),
                        static_cast<Eigen::Index>(rows[0].size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].size() != rows[0].size()) {
-      throw Refused("gains file: '" + name + "' has rows of different length");
+      throw RejectedError("gains file: '" + name + "' has rows of different length");
     }
     for (std::size_t j = 0; j < rows[i].size(); ++j) {
       if (!rows[i][j].is_number()) {
-        throw Refused("gains file: '" + name + "' holds something that is not a number");
+        throw RejectedError("gains file: '" + name + "' holds something that is not a number");
       }
       read(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j].get<double>();
     }
@@ -129,7 +129,7 @@ void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name,
   Eigen::MatrixXd read;
   MatrixFromJson(rows, name, &read);
   if (read.rows() != 1 || read.cols() == 0) {
-    throw Refused("gains file: '" + name + "' must be one row");
+    throw RejectedError("gains file: '" + name + "' must be one row");
   }
   *matrix = read;
 }
@@ -140,7 +140,7 @@ void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name,
   Eigen::MatrixXd read;
   MatrixFromJson(rows, name, &read);
   if (read.rows() != 2 || read.cols() != 2) {
-    throw Refused("gains file: '" + name + "' must be 2 x 2");
+    throw RejectedError("gains file: '" + name + "' must be 2 x 2");
   }
   *matrix = read;
 }
@@ -159,7 +159,7 @@ std::vector<GainTable::Gain> KnotsFromJson(const nlohmann::ordered_json& in,
     Eigen::MatrixXd gain;
     MatrixFromJson(knot, name, &gain);
     if (gain.rows() != 2 || gain.cols() != 12) {
-      throw Refused("gains file: '" + name + "' holds a matrix that is not 2 x 12");
+      throw RejectedError("gains file: '" + name + "' holds a matrix that is not 2 x 12");
     }
     knots.emplace_back(gain);
   }
@@ -184,9 +184,10 @@ nlohmann::ordered_json PayloadToJson(const Design& design) {
 // What is at `key` of the table 'payload'.
 const nlohmann::ordered_json& NeededAt(const nlohmann::ordered_json& payload, const char* key) {
   if (payload.contains(key)) return payload.at(key);
-  throw Refused(std::string("gains file: 'payload.") + key +
-                "' is missing, which the law or the estimator of this config needs; run `flexarm "
-                "design` again");
+  throw RejectedError(
+      std::string("gains file: 'payload.") + key +
+      "' is missing, which the law or the estimator of this config needs; run `flexarm "
+      "design` again");
 }
 
 std::vector<double> NumbersAt(const nlohmann::ordered_json& payload, const char* key) {
@@ -212,9 +213,9 @@ void PayloadFromJson(const nlohmann::ordered_json& in, const ControlConfig& conf
     if (!PlansAhead(config.controller.kind)) return;
     design->scheduled->start_gains = table("start_gain");
   } catch (const nlohmann::ordered_json::exception&) {
-    throw Refused("gains file: a member of 'payload' is not numbers");
+    throw RejectedError("gains file: a member of 'payload' is not numbers");
   } catch (const std::invalid_argument& error) {
-    throw Refused(std::string("gains file: 'payload': ") + error.what());
+    throw RejectedError(std::string("gains file: 'payload': ") + error.what());
   }
 }
 
@@ -230,14 +231,14 @@ DesignCheck CheckFromJson(const nlohmann::ordered_json& in) {
     return {in.at("name").get<std::string>(), in.at("value").get<double>(),
             in.at("limit").get<double>(), in.at("below").get<bool>(), in.value("waived", false)};
   } catch (const nlohmann::ordered_json::exception&) {
-    throw Refused("gains file: a row of 'checks' lacks its name, value, limit or below");
+    throw RejectedError("gains file: a row of 'checks' lacks its name, value, limit or below");
   }
 }
 
 StateLayout LayoutFromJson(const nlohmann::ordered_json& in) {
   const std::string name = TextAt(in, "nominal", "missing");
   const std::optional<StateLayout> layout = LayoutNamed(name);
-  if (!layout) throw Refused("gains file: 'nominal' names no model: " + name);
+  if (!layout) throw RejectedError("gains file: 'nominal' names no model: " + name);
   return *layout;
 }
 
@@ -248,9 +249,9 @@ void RequireShapes(const Design& d) {
   const auto require = [](const char* name, const Eigen::MatrixXd& m, Eigen::Index rows,
                           Eigen::Index cols) {
     if (m.rows() == rows && m.cols() == cols) return;
-    throw Refused(std::string("gains file: '") + name + "' is " + std::to_string(m.rows()) + " x " +
-                  std::to_string(m.cols()) + ", expected " + std::to_string(rows) + " x " +
-                  std::to_string(cols));
+    throw RejectedError(std::string("gains file: '") + name + "' is " + std::to_string(m.rows()) +
+                        " x " + std::to_string(m.cols()) + ", expected " + std::to_string(rows) +
+                        " x " + std::to_string(cols));
   };
   require("A", d.A, n, n);
   require("B", d.B, n, 2);
@@ -327,19 +328,20 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
 Design DesignFromJson(const std::string& text, const ControlConfig& config) {
   const nlohmann::ordered_json in = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!in.is_object() || TextAt(in, "format", "") != kFormat) {
-    throw Refused(std::string("not a gains file: expected JSON with \"format\": \"") + kFormat +
-                  "\", as `flexarm design` writes it");
+    throw RejectedError(std::string("not a gains file: expected JSON with \"format\": \"") +
+                        kFormat + "\", as `flexarm design` writes it");
   }
   const std::string expected_hash = DesignHash(config);
   if (TextAt(in, "config_hash", "") != expected_hash) {
-    throw Refused("gains file: designed for another config (hash " +
-                  TextAt(in, "config_hash", "missing") + ", this config has " + expected_hash +
-                  "); run `flexarm design` again");
+    throw RejectedError("gains file: designed for another config (hash " +
+                        TextAt(in, "config_hash", "missing") + ", this config has " +
+                        expected_hash + "); run `flexarm design` again");
   }
   Design design;
   design.layout = LayoutFromJson(in);
   ForEachMatrix(design, [&in](const char* name, auto& m) {
-    if (!in.contains(name)) throw Refused(std::string("gains file: '") + name + "' is missing");
+    if (!in.contains(name))
+      throw RejectedError(std::string("gains file: '") + name + "' is missing");
     MatrixFromJson(in.at(name), name, &m);
   });
   RequireShapes(design);
@@ -347,7 +349,7 @@ Design DesignFromJson(const std::string& text, const ControlConfig& config) {
     PayloadFromJson(in.value("payload", nlohmann::ordered_json::object()), config, &design);
   }
   if (!in.contains("checks") || !in.at("checks").is_array()) {
-    throw Refused("gains file: 'checks' is missing or not an array");
+    throw RejectedError("gains file: 'checks' is missing or not an array");
   }
   for (const nlohmann::ordered_json& check : in.at("checks"))
     design.checks.push_back(CheckFromJson(check));

@@ -27,7 +27,7 @@ constexpr std::array<double, 3> kElbow_deg = {0.0, 45.0, 90.0};
 constexpr std::array<double, 3> kGains = {1.0, 0.7, 1.4};
 constexpr Index kMaxDelayPeriods = 5;
 
-// The margins that a design must have: the factors that the screen itself tries, and more delay
+// The margins that a design must have: the factors that the robustness itself tries, and more delay
 // than the motor's lag and the age of a reading that nobody has told the loop about.
 constexpr double kGainUp = 1.4;
 constexpr double kGainDown = 0.7;
@@ -274,21 +274,21 @@ LoopMargins MarginsOf(const Loop& loop) {
 
 }  // namespace
 
-const ScreenCase& Screen::worst() const {
+const RobustnessCase& RobustnessAnalysis::worst() const {
   return *std::max_element(cases.begin(), cases.end(), [](const auto& a, const auto& b) {
     return a.spectral_radius < b.spectral_radius;
   });
 }
 
-const ScreenCase& Screen::worst_required() const {
+const RobustnessCase& RobustnessAnalysis::worst_required() const {
   return *std::max_element(cases.begin(), cases.end(), [](const auto& a, const auto& b) {
     return (a.required ? a.spectral_radius : 0.0) < (b.required ? b.spectral_radius : 0.0);
   });
 }
 
-Screen ScreenDesign(const ControlConfig& config, const Design& design,
-                    const std::vector<double>& payload_kg) {
-  Screen screen{};
+RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& design,
+                                     const std::vector<double>& payload_kg) {
+  RobustnessAnalysis robustness{};
   const double own_kg = config.arm.payload_mass_kg;
   std::set<double> payloads(payload_kg.begin(), payload_kg.end());
   payloads.insert(own_kg);
@@ -297,17 +297,17 @@ Screen ScreenDesign(const ControlConfig& config, const Design& design,
       const Plant plant = PlantAt(config, payload, theta2_deg);
       const Loop loop(config, design, plant);
       for (const double gain : kGains) {
-        screen.cases.push_back({.payload_kg = payload,
-                                .theta2_deg = theta2_deg,
-                                .gain = gain,
-                                .spectral_radius = loop.SpectralRadius(gain, 0.0),
-                                .required = gain == 1.0 || payload == own_kg});
+        robustness.cases.push_back({.payload_kg = payload,
+                                    .theta2_deg = theta2_deg,
+                                    .gain = gain,
+                                    .spectral_radius = loop.SpectralRadius(gain, 0.0),
+                                    .required = gain == 1.0 || payload == own_kg});
       }
     }
   }
   const Plant nominal = PlantAt(config, own_kg, 0.0);
-  screen.margins = MarginsOf(Loop(config, design, nominal));
-  return screen;
+  robustness.margins = MarginsOf(Loop(config, design, nominal));
+  return robustness;
 }
 
 double DelayMargin_s(const ControlConfig& config, const Design& design) {
@@ -316,11 +316,11 @@ double DelayMargin_s(const ControlConfig& config, const Design& design) {
   return loop.SpectralRadius(1.0, 0.0) < 1.0 ? DelayOf(loop) : 0.0;
 }
 
-std::vector<DesignCheck> ChecksOf(const Screen& screen) {
-  return {{"screen-spectral-radius", screen.worst_required().spectral_radius, 1.0, true},
-          {"gain-margin-up", screen.margins.gain_up, kGainUp, false},
-          {"gain-margin-down", screen.margins.gain_down, kGainDown, true},
-          {"delay-margin-ms", 1e3 * screen.margins.delay_s, kDelay_ms, false}};
+std::vector<DesignCheck> ChecksOf(const RobustnessAnalysis& robustness) {
+  return {{"robustness-spectral-radius", robustness.worst_required().spectral_radius, 1.0, true},
+          {"gain-margin-up", robustness.margins.gain_up, kGainUp, false},
+          {"gain-margin-down", robustness.margins.gain_down, kGainDown, true},
+          {"delay-margin-ms", 1e3 * robustness.margins.delay_s, kDelay_ms, false}};
 }
 
 }  // namespace flexarm

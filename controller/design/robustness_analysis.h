@@ -10,7 +10,7 @@ namespace flexarm {
 struct ControlConfig;
 
 /// The whole loop, linear and without friction, in one situation.
-struct ScreenCase {
+struct RobustnessCase {
   double payload_kg;
   double theta2_deg;       ///< elbow angle that the plant is linearised at
   double gain;             ///< factor on the law's feedback
@@ -25,12 +25,12 @@ struct LoopMargins {
   double delay_s;    ///< least delay beyond the loop's own that makes it unstable; 0.1: none found
 };
 
-struct Screen {
-  std::vector<ScreenCase> cases;
+struct RobustnessAnalysis {
+  std::vector<RobustnessCase> cases;
   LoopMargins margins;
 
-  const ScreenCase& worst() const;           ///< of all cases, the largest spectral radius
-  const ScreenCase& worst_required() const;  ///< of those that a design has to hold
+  const RobustnessCase& worst() const;           ///< of all cases, the largest spectral radius
+  const RobustnessCase& worst_required() const;  ///< of those that a design has to hold
 };
 
 /// Closes the loop around plants that the design does not know, at rest: the arm with four modes a
@@ -48,15 +48,15 @@ struct Screen {
 /// friction, left out here, bounds).
 /// @param payload_kg  payloads of interest, each >= 0; the design's own is added
 /// @throws std::runtime_error if the arm has no linear model
-Screen ScreenDesign(const ControlConfig& config, const Design& design,
-                    const std::vector<double>& payload_kg);
+RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& design,
+                                     const std::vector<double>& payload_kg);
 
 /// LoopMargins::delay_s alone, 0 if the loop is unstable without any.
 /// @throws std::runtime_error if the arm has no linear model
 double DelayMargin_s(const ControlConfig& config, const Design& design);
 
-/// The screen as checks of the design: "screen-spectral-radius", "gain-margin-up",
+/// The robustness as checks of the design: "robustness-spectral-radius", "gain-margin-up",
 /// "gain-margin-down", "delay-margin-ms".
-std::vector<DesignCheck> ChecksOf(const Screen& screen);
+std::vector<DesignCheck> ChecksOf(const RobustnessAnalysis& robustness);
 
 }  // namespace flexarm

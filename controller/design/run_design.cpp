@@ -7,7 +7,7 @@
 
 #include "controller/design/design_controller.h"
 #include "controller/design/design_json.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
@@ -16,14 +16,15 @@ Design ReadDesign(const ControlConfig& config) {
   const std::string& name = config.controller.gains_file;
   std::ifstream file(name);
   if (!file) {
-    throw Refused(name + ": cannot be read (controller.gains); write it with `flexarm design`");
+    throw RejectedError(name +
+                        ": cannot be read (controller.gains); write it with `flexarm design`");
   }
   std::stringstream text;
   text << file.rdbuf();
   try {
     return DesignFromJson(text.str(), config);
-  } catch (const Refused& error) {
-    throw Refused(name + ": " + error.what());
+  } catch (const RejectedError& error) {
+    throw RejectedError(name + ": " + error.what());
   }
 }
 
@@ -31,7 +32,8 @@ Design NewDesign(const ControlConfig& config) {
   try {
     return DesignController(config);
   } catch (const std::runtime_error& error) {
-    throw Refused(std::string("no controller can be designed for this config: ") + error.what());
+    throw RejectedError(std::string("no controller can be designed for this config: ") +
+                        error.what());
   }
 }
 
@@ -44,7 +46,7 @@ Design DesignFor(const ControlConfig& config) {
     std::ostringstream text;
     text << "design check '" << check.name << "' failed: " << check.value << " must be "
          << (check.below ? "below " : "above ") << check.limit;
-    throw Refused(text.str());
+    throw RejectedError(text.str());
   }
   return design;
 }

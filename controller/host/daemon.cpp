@@ -22,7 +22,7 @@
 #include "controller/runlog/recorder_task.h"
 #include "controller/tasks/simulated_stack.h"
 #include "controller/tasks/wired_stack.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "hal/wired/hardware_rig.h"
 
 namespace flexarm {
@@ -70,7 +70,7 @@ nlohmann::json ThreadStatus(const RealtimeExecutor& executor) {
 
 /// What the loop drives: the simulated arm in process, or the devices of a real rig.
 struct Backend {
-  std::unique_ptr<WiredRig> rig;  // outlives the stack
+  std::unique_ptr<HardwareRig> rig;  // outlives the stack
   std::unique_ptr<LoopStack> stack;
 };
 
@@ -81,7 +81,7 @@ Backend MakeBackend(const DaemonOptions& options, const Design& design) {
   if (options.config.backend == "sim") {
     backend.stack = std::make_unique<SimulatedStack>(config, design, config.arm.payload_mass_kg);
   } else {
-    backend.rig = std::make_unique<WiredRig>(
+    backend.rig = std::make_unique<HardwareRig>(
         config.hal, CanClocks{.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
     backend.stack = std::make_unique<WiredStack>(
         config, design, RigWires{.buses = backend.rig->buses(), .lines = backend.rig->lines()});

@@ -28,7 +28,7 @@ struct DaemonResult {
 
 /// Runs the daemon until its experiment or its time is over, or SIGTERM or SIGINT comes: then it
 /// brings the arm to rest, disarms, closes the log and returns. Blocks those signals.
-/// @throws Refused, RealtimeRefused, HalError, std::runtime_error before anything moves
+/// @throws Refused, RealtimeRejectedError, HalError, std::runtime_error before anything moves
 DaemonResult RunDaemon(const DaemonOptions& options);
 
 }  // namespace flexarm

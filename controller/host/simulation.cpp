@@ -13,7 +13,7 @@
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/runlog/recorder_task.h"
 #include "controller/tasks/simulated_stack.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
@@ -218,7 +218,7 @@ SimulationResult Simulation::Run(const std::function<void(double)>& progress) {
 SimulationResult Simulate(const SimulationRequest& request,
                           const std::function<void(double)>& progress) {
   if (request.log && std::filesystem::exists(*request.log)) {
-    throw Refused(request.log->string() + ": exists already; a run is never overwritten");
+    throw RejectedError(request.log->string() + ": exists already; a run is never overwritten");
   }
   return Simulation(request).Run(progress);
 }

@@ -16,16 +16,15 @@ namespace flexarm {
 /// once, when it ends, and holds until the next one begins: a payload that is as good as unknown
 /// then (kPayloadUncertain_kg). At rest the standard deviation only grows, by the payload's walk,
 /// and says nothing about the move. Real-time: safe.
-class PayloadSupervisor {
+class PayloadMonitor {
  public:
-  explicit PayloadSupervisor(const PayloadEstimatorConfig& config) noexcept
-      : max_kg_(config.max_kg) {}
+  explicit PayloadMonitor(const PayloadEstimatorConfig& config) noexcept : max_kg_(config.max_kg) {}
 
   void Reset() noexcept { moving_ = not_found_ = false; }
 
   /// Every sample, in order.
   /// @param mean_nis  as PayloadFilter's
-  /// @param moving    whether the path does: MoveWatch
+  /// @param moving    whether the path does: MotionState
   PayloadKnowledge Judge(const PayloadFilter::Estimate& found, double mean_nis,
                          bool moving) noexcept {
     if (moving) {
@@ -34,15 +33,15 @@ class PayloadSupervisor {
       not_found_ = found.payload_sigma_kg >= kPayloadUncertain_kg;
     }
     moving_ = moving;
-    std::uint32_t doubts = 0;
-    if (found.payload_kg >= max_kg_) doubts |= kPayloadAtBound;
-    if (ContradictsModel(mean_nis)) doubts |= kPayloadModelMismatch;
-    if (not_found_) doubts |= kPayloadNotFound;
+    std::uint32_t warnings = 0;
+    if (found.payload_kg >= max_kg_) warnings |= kPayloadAtBound;
+    if (ContradictsModel(mean_nis)) warnings |= kPayloadModelMismatch;
+    if (not_found_) warnings |= kPayloadNotObservable;
     return {.payload_kg = found.payload_kg,
             .payload_sigma_kg = found.payload_sigma_kg,
             .friction_nm = found.friction_nm,
             .mean_nis = mean_nis,
-            .doubts = doubts};
+            .warnings = warnings};
   }
 
  private:

@@ -30,11 +30,11 @@ Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& kno
     u[i] += knowledge.friction_nm[static_cast<std::size_t>(i)] *
             PortableMath::Tanh(rate_rad_s / kFrictionRate_rad_s);
   }
-  const bool at_bound = (knowledge.doubts & kPayloadAtBound) != 0;
+  const bool at_bound = (knowledge.warnings & kPayloadAtBound) != 0;
   const double sigma_kg =
       at_bound ? std::numeric_limits<double>::infinity() : knowledge.payload_sigma_kg;
   const double gain_payload_kg =
-      GainPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s);
+      SchedulingPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s);
   const Eigen::Vector2d feedback_nm = gains_.At(gain_payload_kg, x[1]).lazyProduct(desired.x - x);
   u += feedback_nm;
   const double help = rested_s > 0.0 ? std::max(0.0, 1.0 - rested_s / kHelped_s) : 0.0;

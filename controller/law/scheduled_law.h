@@ -19,9 +19,9 @@ namespace flexarm {
 /// h helps u_K over the joints' friction in the two seconds after a move, 0.7 F tanh(u_K / 0.5 F)
 /// less and less; it is not in the design study, and takes a fifth to a quarter of the tip's motion
 /// then. x_d and u_d: in closed form for the payload found, the way on which the arm bends without
-/// vibrating; or of a plan (horizon_plan.h). K from the gain table at GainPayload, for which a
-/// payload at its bound is wholly uncertain: it may be heavier.
-/// Source: docs/theory/payload.md 4.1 and 5. Real-time: all but the constructor is safe.
+/// vibrating; or of a plan (horizon_plan.h). K from the gain table at SchedulingPayload, for which
+/// a payload at its bound is wholly uncertain: it may be heavier. Source:
+/// docs/theory/payload.md 4.1 and 5. Real-time: all but the constructor is safe.
 class ScheduledLaw {
  public:
   using State = Eigen::Matrix<double, 12, 1>;

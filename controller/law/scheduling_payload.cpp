@@ -11,8 +11,8 @@ constexpr double kNisDoubtful = 20.0;  // 8 expected
 
 }  // namespace
 
-double GainPayload(double payload_kg, double payload_sigma_kg, double mean_nis,
-                   double rested_s) noexcept {
+double SchedulingPayload(double payload_kg, double payload_sigma_kg, double mean_nis,
+                         double rested_s) noexcept {
   const double robust_kg = std::min(payload_kg, kStableForAll_kg);
   if (rested_s > kRested_s) return robust_kg;
   const double sigmas = payload_sigma_kg / kPayloadUncertain_kg;

@@ -26,7 +26,7 @@ inline constexpr bool ContradictsModel(double mean_nis) noexcept {
 /// @param payload_sigma_kg  standard deviation of the estimate, >= 0
 /// @param mean_nis          as PayloadFilter's
 /// @param rested_s          since the last move's end; 0 or less while one is under way
-double GainPayload(double payload_kg, double payload_sigma_kg, double mean_nis,
-                   double rested_s) noexcept;
+double SchedulingPayload(double payload_kg, double payload_sigma_kg, double mean_nis,
+                         double rested_s) noexcept;
 
 }  // namespace flexarm

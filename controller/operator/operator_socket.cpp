@@ -12,7 +12,7 @@
 #include <cstring>
 #include <utility>
 
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
@@ -21,8 +21,8 @@ sockaddr_un AddressOf(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof(address.sun_path)) {
-    throw Refused("daemon.socket = " + path + ": must be a path of 1 to " +
-                  std::to_string(sizeof(address.sun_path) - 1) + " characters");
+    throw RejectedError("daemon.socket = " + path + ": must be a path of 1 to " +
+                        std::to_string(sizeof(address.sun_path) - 1) + " characters");
   }
   std::copy(path.begin(), path.end(), std::begin(address.sun_path));
   return address;
@@ -46,9 +46,9 @@ std::string Cause() { return std::strerror(errno); }
 OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
   const sockaddr_un address = AddressOf(path_);
   if (SomebodyListens(address)) {
-    throw Refused(path_ +
-                  ": a daemon is listening there already; stop it first, or set "
-                  "daemon.socket to another path");
+    throw RejectedError(path_ +
+                        ": a daemon is listening there already; stop it first, or set "
+                        "daemon.socket to another path");
   }
   struct stat there {};
   if (lstat(path_.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) unlink(path_.c_str());
@@ -60,8 +60,8 @@ OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
   umask(old_mask);
   if (bound) return;
   if (listener_ >= 0) close(listener_);
-  throw Refused(path_ + ": cannot listen (" + cause +
-                "); set daemon.socket to a path in a folder that exists and is writable");
+  throw RejectedError(path_ + ": cannot listen (" + cause +
+                      "); set daemon.socket to a path in a folder that exists and is writable");
 }
 
 OperatorSocket::~OperatorSocket() {
@@ -136,7 +136,7 @@ std::string AskDaemon(const std::string& path, const std::string& line, double t
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const auto fail = [&](const std::string& what) {
     close(fd);
-    throw Refused(path + ": " + what);
+    throw RejectedError(path + ": " + what);
   };
   if (connect(fd, Generic(address), sizeof(address)) != 0) {
     if (errno == EACCES) {

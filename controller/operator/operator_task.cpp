@@ -6,7 +6,7 @@
 
 #include "controller/operator/trip_channel.h"
 #include "controller/runlog/run_recording.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "hal/line_names.h"
 #include "model/units.h"
 
@@ -31,7 +31,7 @@ Json BusStatusOf(const std::vector<BusHealth>& buses) {
                    {"ok", bus.ok},
                    {"fault", bus.fault.empty() ? Json(nullptr) : Json(bus.fault)},
                    {"failed", bus.failed},
-                   {"taken_back", bus.taken_back}});
+                   {"recovered", bus.recovered}});
   }
   return all;
 }
@@ -39,9 +39,9 @@ Json BusStatusOf(const std::vector<BusHealth>& buses) {
 // Null where no estimator finds it.
 Json PayloadJson(const StepInput& in, const StepOutput& out) {
   if (std::isnan(out.payload_kg)) return nullptr;
-  Json doubts = Json::array();
-  for (const PayloadWarning& warning : kPayloadWarnings) {
-    if ((out.payload_doubts & warning.doubt) != 0) doubts.push_back(warning.name);
+  Json warnings = Json::array();
+  for (const PayloadWarningText& warning : kPayloadWarnings) {
+    if ((out.payload_warnings & warning.bit) != 0) warnings.push_back(warning.name);
   }
   return {{"kg", out.payload_kg},
           {"sigma_kg", out.payload_sigma_kg},
@@ -49,7 +49,7 @@ Json PayloadJson(const StepInput& in, const StepOutput& out) {
           {"mean_nis", out.mean_nis},
           {"delay_found", out.delay_found},
           {"planned", in.planned != 0},
-          {"doubts", doubts}};
+          {"warnings", warnings}};
 }
 
 std::optional<RequestKind> RequestByName(const std::string& name) {
@@ -91,7 +91,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     if (socket_) Serve();
     FollowUnattended();
     FollowShutdown();
-    while (!plans_.empty() && plans_.front().number < context_.stack->released_plans()) {
+    while (!plans_.empty() && plans_.front().number < context_.stack->released_experiments()) {
       plans_.pop_front();
     }
     const bool alive =
@@ -142,10 +142,10 @@ void OperatorTask::TakeTicks() {
   }
 }
 
-void OperatorTask::WarnOfPayload(std::uint32_t doubts) {
+void OperatorTask::WarnOfPayload(std::uint32_t warnings) {
   const StepOutput& out = telemetry_.output;
-  for (const PayloadWarning& warning : kPayloadWarnings) {
-    if ((doubts & warning.doubt) == 0) continue;
+  for (const PayloadWarningText& warning : kPayloadWarnings) {
+    if ((warnings & warning.bit) == 0) continue;
     const Json figures = PayloadJson(telemetry_.input, out);
     Warn(warning.name, warning.text + (": " + figures.dump()), figures);
   }

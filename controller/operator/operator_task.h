@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "controller/commissioning/commissioner.h"
-#include "controller/operator/delay_watch.h"
+#include "controller/operator/delay_monitor.h"
 #include "controller/operator/operator_socket.h"
-#include "controller/operator/payload_watch.h"
+#include "controller/operator/payload_warnings.h"
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/task.h"
 #include "controller/runlog/event_queue.h"
@@ -88,7 +88,7 @@ class OperatorTask final : public Task {
   void WarnOfDelayFound();
   /// An event of the log and a line for the operator.
   void Warn(const std::string& name, const std::string& text, const nlohmann::json& figures);
-  void WarnOfPayload(std::uint32_t doubts);
+  void WarnOfPayload(std::uint32_t warnings);
   void FinishCommissioning(nlohmann::json answer);
   /// Plans `experiment` from where the hubs are. @throws Refused
   void PlanExperiment(const Experiment& experiment, const std::array<double, 2>& start_rad);
@@ -102,9 +102,9 @@ class OperatorTask final : public Task {
   std::unique_ptr<OperatorSocket> socket_;
   UnattendedRun unattended_;
   BusJournal bus_journal_;
-  DelayWatch delay_;
-  DelayFoundWatch delay_found_;
-  PayloadWatch payload_;
+  DelayMonitor delay_;
+  FoundDelayMonitor delay_found_;
+  PayloadWarnings payload_;
   Commissioner commissioner_;
   int commissioning_client_ = -1;            // -1: nobody waits
   std::uint32_t commissioning_request_ = 0;  // of its run; 0: none

@@ -20,7 +20,7 @@ struct PlanPolicy {
 /// R > 0 and Q >= 0 make every step's Hessian positive definite: nothing is regularised.
 /// Source: docs/theory/payload.md 5.2. Real-time: safe.
 /// @param track  a motion of the model, targets.stages() long
-void SweepBackward(const RigidJointStepper& stepper, double payload_kg, const PlanTargets& targets,
-                   const PlanTrack& track, PlanPolicy* policy) noexcept;
+void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const PlanCost& targets,
+                  const PlanTrack& track, PlanPolicy* policy) noexcept;
 
 }  // namespace flexarm

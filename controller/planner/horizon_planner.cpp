@@ -35,7 +35,7 @@ bool HorizonPlanner::Plan(const PlanProblem& problem, const HorizonPlan* previou
 
   const int rounds = figures_.warm ? kWarmRounds : kColdRounds;
   for (int i = 0; i < rounds; ++i) {
-    SweepBackward(linear_, problem.payload_kg, targets_, track_, &policy_);
+    BackwardPass(linear_, problem.payload_kg, targets_, track_, &policy_);
     if (!Improve(problem.payload_kg)) break;
   }
   if (!IsSmooth(problem, previous)) return false;

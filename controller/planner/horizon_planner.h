@@ -37,7 +37,7 @@ class HorizonPlanner {
   /// Of the last plan.
   struct Figures {
     bool warm;                ///< started from the previous plan
-    double start_cost, cost;  ///< of the start and of what came out, see PlanTargets
+    double start_cost, cost;  ///< of the start and of what came out, see PlanCost
   };
 
   /// @param start_gains  for cold starts; the design study's have alpha = 1.5
@@ -68,7 +68,7 @@ class HorizonPlanner {
   HorizonPlannerConfig config_;
   Eigen::Vector2d torque_limit_nm_;
   Figures figures_{};
-  PlanTargets targets_;
+  PlanCost targets_;
   PlanPolicy policy_;
   PlanTrack track_, trial_;
 };

@@ -9,8 +9,8 @@ constexpr std::size_t kPathBeyondStages = 3;  // before the first, and two after
 
 }  // namespace
 
-void PlanTargets::Set(const RigidJointArm& arm, double period_s, const PlanWeights& weights,
-                      const PlanProblem& problem) noexcept {
+void PlanCost::Set(const RigidJointArm& arm, double period_s, const PlanWeights& weights,
+                   const PlanProblem& problem) noexcept {
   const std::size_t points = problem.path.size();
   stages_ = points < kPathBeyondStages
                 ? 0
@@ -43,7 +43,7 @@ void PlanTargets::Set(const RigidJointArm& arm, double period_s, const PlanWeigh
   }
 }
 
-double PlanTargets::Cost(const PlanTrack& track) const noexcept {
+double PlanCost::Cost(const PlanTrack& track) const noexcept {
   double cost = 0.0;
   for (std::size_t k = 0; k <= stages_; ++k) {
     const PlanState dx = track.x[k] - reference_[k];

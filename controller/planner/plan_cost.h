@@ -51,7 +51,7 @@ struct PlanTrack {
 /// and u_ps of the instant are this program's: with them the plan of the design study is
 /// reproduced.
 /// Source: docs/theory/payload.md 5.1. Real-time: safe.
-class PlanTargets {
+class PlanCost {
  public:
   /// A path longer than HorizonPlan::kMaxStages is planned that far only; one too short for a stage
   /// gives none.

@@ -118,7 +118,7 @@ std::vector<std::string> PrepareRealtime(int fifo_priority) {
     std::string text;
     for (const std::string& refusal : refusals)
       text.append(text.empty() ? "" : "\n").append(refusal);
-    throw RealtimeRefused(text);
+    throw RealtimeRejectedError(text);
   }
   return RealtimeFindings(host);
 }

@@ -21,7 +21,7 @@ struct RealtimeHost {
 };
 
 /// The host does not permit real time; what() says each cause and its remedy, one a line.
-class RealtimeRefused : public std::runtime_error {
+class RealtimeRejectedError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -36,7 +36,8 @@ std::vector<std::string> RealtimeFindings(const RealtimeHost& host);
 /// checks SCHED_FIFO up to `fifo_priority`, locks all memory present and future, and keeps malloc
 /// from giving memory back.
 /// @returns RealtimeFindings of this host
-/// @throws RealtimeRefused  if anything is not permitted. Nothing is done then but memory locked.
+/// @throws RealtimeRejectedError  if anything is not permitted. Nothing is done then but memory
+/// locked.
 std::vector<std::string> PrepareRealtime(int fifo_priority);
 
 }  // namespace flexarm

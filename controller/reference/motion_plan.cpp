@@ -7,7 +7,7 @@
 
 #include "controller/reference/sampling_grid.h"
 #include "controller/reference/shortest_move.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "controller/types/rounded_text.h"
 #include "model/problem_list.h"
 #include "model/units.h"
@@ -38,20 +38,21 @@ std::array<double, 2> AnglesOfTip(const Move& move, const std::string& row,
   const auto left = StraightArmAngles(length_m, *move.to_tip_m, ElbowSide::kLeft);
   const auto right = StraightArmAngles(length_m, *move.to_tip_m, ElbowSide::kRight);
   if (!left || !right) {
-    throw Refused(key + " is out of reach: " +
-                  RoundedText(std::hypot((*move.to_tip_m)[0], (*move.to_tip_m)[1]), 4) +
-                  " m from the shoulder, it must be " +
-                  RoundedText(std::fabs(length_m[0] - length_m[1]), 4) + " to " +
-                  RoundedText(length_m[0] + length_m[1], 4) + " m");
+    throw RejectedError(key + " is out of reach: " +
+                        RoundedText(std::hypot((*move.to_tip_m)[0], (*move.to_tip_m)[1]), 4) +
+                        " m from the shoulder, it must be " +
+                        RoundedText(std::fabs(length_m[0] - length_m[1]), 4) + " to " +
+                        RoundedText(length_m[0] + length_m[1], 4) + " m");
   }
   if (move.elbow) return *move.elbow == ElbowSide::kLeft ? *left : *right;
   const bool left_fits = Within(*left, limits), right_fits = Within(*right, limits);
   const std::string both = "elbow left " + DegText(*left) + ", right " + DegText(*right);
   if (!left_fits && !right_fits) {
-    throw Refused(key + ": no angles within limits.soft_angle_deg reach it: " + both);
+    throw RejectedError(key + ": no angles within limits.soft_angle_deg reach it: " + both);
   }
   if (left_fits && right_fits && *left != *right) {
-    throw Refused(key + " is reached by two poses: say elbow = \"left\" or \"right\": " + both);
+    throw RejectedError(key +
+                        " is reached by two poses: say elbow = \"left\" or \"right\": " + both);
   }
   return left_fits ? *left : *right;
 }
@@ -78,24 +79,25 @@ int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Des
   if (move.duration_s) {
     const int periods = OnGrid(*move.duration_s, period_s, key);
     if (periods >= kFewestPeriods) return periods;
-    throw Refused(key + " = " + NumberText(*move.duration_s) + " s must be at least " +
-                  NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
+    throw RejectedError(key + " = " + NumberText(*move.duration_s) + " s must be at least " +
+                        NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
   }
   const auto periods = ShortestPeriods(moves, design, period_s, limits, limits.plan_fraction);
   if (periods) return *periods;
-  throw Refused(key + ": none up to " + NumberText(kLongestChosen_s) +
-                " s keeps limits.plan_fraction of the limits: " + BeginText(planned) + " to " +
-                DegText(planned.to_rad));
+  throw RejectedError(key + ": none up to " + NumberText(kLongestChosen_s) +
+                      " s keeps limits.plan_fraction of the limits: " + BeginText(planned) +
+                      " to " + DegText(planned.to_rad));
 }
 
 void RequireTakeOver(const PlannedMove& planned, const PlannedMove& above, const Design& design,
                      double period_s) {
   if (design.scheduled) return;
-  throw Refused(RowOf(planned) + ".start_s = " + NumberText(InSeconds(planned.first, period_s)) +
-                " s: must not begin before the move above it ends, at " +
-                NumberText(InSeconds(above.first + above.periods, period_s)) +
-                " s; only a law that follows a path takes over a move that lasts: "
-                "controller.name = \"gain-scheduled\" or \"receding-horizon\"");
+  throw RejectedError(RowOf(planned) +
+                      ".start_s = " + NumberText(InSeconds(planned.first, period_s)) +
+                      " s: must not begin before the move above it ends, at " +
+                      NumberText(InSeconds(above.first + above.periods, period_s)) +
+                      " s; only a law that follows a path takes over a move that lasts: "
+                      "controller.name = \"gain-scheduled\" or \"receding-horizon\"");
 }
 
 // The last of `moves` lasts when a move begins at sample `first`.
@@ -154,17 +156,17 @@ std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& d
   return moves;
 }
 
-std::vector<Stretch> StretchesOf(const std::vector<PlannedMove>& moves) {
-  std::vector<Stretch> stretches;
+std::vector<MotionSegment> MotionSegmentsOf(const std::vector<PlannedMove>& moves) {
+  std::vector<MotionSegment> segments;
   for (const PlannedMove& move : moves) {
     const int end = move.first + move.periods;
-    if (stretches.empty() || move.first >= stretches.back().end) {
-      stretches.push_back({.first = move.first, .end = end});
+    if (segments.empty() || move.first >= segments.back().end) {
+      segments.push_back({.first = move.first, .end = end});
     } else {
-      stretches.back().end = end;
+      segments.back().end = end;
     }
   }
-  return stretches;
+  return segments;
 }
 
 Experiment WithChosenDurations(const Experiment& experiment, const std::vector<PlannedMove>& moves,
@@ -179,8 +181,8 @@ Experiment WithChosenDurations(const Experiment& experiment, const std::vector<P
   }
   const std::vector<Problem> problems = chosen.Problems();
   if (problems.empty()) return chosen;
-  throw Refused(problems[0].key + " = " + problems[0].value + ": " + problems[0].rule +
-                " (the durations of moves without duration_s were chosen)");
+  throw RejectedError(problems[0].key + " = " + problems[0].value + ": " + problems[0].rule +
+                      " (the durations of moves without duration_s were chosen)");
 }
 
 }  // namespace flexarm

@@ -11,13 +11,13 @@
 namespace flexarm {
 
 /// Samples between two rests of a path: one move, or several that took over from each other.
-struct Stretch {
+struct MotionSegment {
   int first;  ///< sample at which it begins
   int end;    ///< at which it rests again
 };
 
 /// @param moves  in order of time
-std::vector<Stretch> StretchesOf(const std::vector<PlannedMove>& moves);
+std::vector<MotionSegment> MotionSegmentsOf(const std::vector<PlannedMove>& moves);
 
 /// Decides the moves of an experiment that starts from rest at `start_rad`.
 ///

@@ -14,7 +14,7 @@
 #include "controller/reference/shortest_move.h"
 #include "controller/reference/trajectory.h"
 #include "controller/types/motion_profile.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/problem_list.h"
 
 namespace flexarm {
@@ -56,9 +56,9 @@ class RowWriter {
     const int first = OnGrid(doublet.start_s, period_s_, row + ".start_s");
     const int count = OnGrid(doublet.duration_s, period_s_, row + ".duration_s");
     if (count < 2 || count % 2 != 0) {
-      throw Refused(row + ".duration_s = " + NumberText(doublet.duration_s) +
-                    " s must be an even number of periods of " + NumberText(period_s_) +
-                    " s, so that its two halves cancel");
+      throw RejectedError(row + ".duration_s = " + NumberText(doublet.duration_s) +
+                          " s must be an even number of periods of " + NumberText(period_s_) +
+                          " s, so that its two halves cancel");
     }
     const std::vector<double> shape = Shape(doublet.shape, count);
     const Eigen::Vector2d amplitude =
@@ -77,10 +77,10 @@ class RowWriter {
     const double highest_hz = kHighestShareOfSampling / period_s_;
     for (const double hz : {chirp.from_hz, chirp.to_hz}) {
       if (hz <= highest_hz) continue;
-      throw Refused(row + " sweeps to " + NumberText(hz) + " Hz: at most " +
-                    NumberText(highest_hz) + " Hz, a quarter of the sampling rate");
+      throw RejectedError(row + " sweeps to " + NumberText(hz) + " Hz: at most " +
+                          NumberText(highest_hz) + " Hz, a quarter of the sampling rate");
     }
-    if (count < 2) throw Refused(row + ".duration_s must be at least two periods");
+    if (count < 2) throw RejectedError(row + ".duration_s must be at least two periods");
     AddTorques(design_.rigid_inertia_kgm2 * Radians(chirp.amplitude_deg),
                HeldAccelerations(ChirpAngles(chirp, count, period_s_), period_s_), first, samples_);
   }
@@ -100,9 +100,9 @@ class RowWriter {
     const auto angle_rad = TrajectoryOnGrid(csv, from_rad, period_s_);
     const std::size_t end = static_cast<std::size_t>(first) + angle_rad[0].size();
     if (end >= samples_->size()) {
-      throw Refused(csv.file + ": ends one period after its last row, at " +
-                    NumberText(static_cast<double>(end) * period_s_) +
-                    " s: the experiment must last that long");
+      throw RejectedError(csv.file + ": ends one period after its last row, at " +
+                          NumberText(static_cast<double>(end) * period_s_) +
+                          " s: the experiment must last that long");
     }
     for (Eigen::Index i = 0; i < 2; ++i) {
       AddTorques(design_.rigid_inertia_kgm2.col(i),
@@ -154,7 +154,7 @@ std::string Remedy(std::span<const PlannedMove> moves, const Design& design, dou
 ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
                                const std::array<double, 2>& start_rad, const MotionLimits& limits)
     : moves_(PlanMoves(experiment, design, period_s, start_rad, limits)),
-      stretches_(StretchesOf(moves_)) {
+      segments_(MotionSegmentsOf(moves_)) {
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
   samples_.resize(static_cast<std::size_t>(periods) + 1);
@@ -186,9 +186,10 @@ void ReferenceTable::FollowModel(const Experiment& planned, const Design& design
 void ReferenceTable::FollowPath(const Experiment& planned, const Design& design, double period_s) {
   for (const Motion& motion : planned.Motions()) {
     if (motion.row.starts_with("move[")) continue;
-    throw Refused(motion.row +
-                  ": a law that finds the payload follows [[move]] rows only, whose acceleration "
-                  "is continuous; use another controller.name, or moves");
+    throw RejectedError(
+        motion.row +
+        ": a law that finds the payload follows [[move]] rows only, whose acceleration "
+        "is continuous; use another controller.name, or moves");
   }
   samples_ = QuasiStaticReference(*path_, MakeRigidJointArm(design), design.scheduled->reference_kg,
                                   period_s, 0, periods());
@@ -207,7 +208,7 @@ void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design
     if (row != ProblemList::Element("move", moves_[i].row)) continue;
     remedy = Remedy(std::span(moves_).first(i + 1), design, period_s, limits);
   }
-  throw Refused(row + ": " + broken->text + remedy);
+  throw RejectedError(row + ": " + broken->text + remedy);
 }
 
 // Weights that sum to one and are not negative: the shaped reference stays between the extremes of
@@ -219,11 +220,11 @@ void ReferenceTable::Shape(const Eigen::RowVectorXd& shaper, double period_s) {
   const auto last_move = samples_.rend() - moving;
   const Eigen::Index end = last_move + shaper.size() - 1;
   if (end > periods()) {
-    throw Refused("duration_s: the shaped reference takes " +
-                  std::to_string(static_cast<double>(shaper.size() - 1) * period_s) +
-                  " s longer than the moves and ends after " +
-                  std::to_string(static_cast<double>(end) * period_s) +
-                  " s: the experiment must last that long");
+    throw RejectedError("duration_s: the shaped reference takes " +
+                        std::to_string(static_cast<double>(shaper.size() - 1) * period_s) +
+                        " s longer than the moves and ends after " +
+                        std::to_string(static_cast<double>(end) * period_s) +
+                        " s: the experiment must last that long");
   }
   const std::vector<ReferenceSample> plain = samples_;
   const auto plain_at = [&](Eigen::Index k) -> const ReferenceSample& {

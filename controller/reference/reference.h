@@ -48,7 +48,7 @@ class ReferenceTable {
   const std::vector<PlannedMove>& moves() const noexcept { return moves_; }
 
   /// Where the moves begin and end, in order of time. Real-time: safe.
-  const std::vector<Stretch>& stretches() const noexcept { return stretches_; }
+  const std::vector<MotionSegment>& segments() const noexcept { return segments_; }
 
   /// Sample k; before 0 the rest at the start, after the end the last one. Real-time: safe.
   const ReferenceSample& At(int k) const noexcept;
@@ -72,7 +72,7 @@ class ReferenceTable {
   ReferenceSample rest_{};
   std::optional<RigidPath> path_;
   std::vector<PlannedMove> moves_;
-  std::vector<Stretch> stretches_;
+  std::vector<MotionSegment> segments_;
   std::vector<ReferenceSample> samples_;
 };
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/problem_list.h"
 
 namespace flexarm {
@@ -15,9 +15,9 @@ constexpr double kGridTolerance = 1e-6;  // of a period: decimal times added in 
 int OnGrid(double time_s, double period_s, const std::string& what) {
   const double periods = time_s / period_s;
   if (std::fabs(periods - std::round(periods)) > kGridTolerance) {
-    throw Refused(what + " = " + NumberText(time_s) +
-                  " s does not lie on the sampling grid: it must be a multiple of " +
-                  NumberText(period_s) + " s");
+    throw RejectedError(what + " = " + NumberText(time_s) +
+                        " s does not lie on the sampling grid: it must be a multiple of " +
+                        NumberText(period_s) + " s");
   }
   return static_cast<int>(std::lround(periods));
 }

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "controller/reference/sampling_grid.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/problem_list.h"
 #include "model/units.h"
 
@@ -60,10 +60,10 @@ std::array<std::vector<double>, 2> TrajectoryOnGrid(const CsvTrajectory& csv,
   for (std::size_t i = 0; i < 2; ++i) {
     const double offset = from_rad[i] - csv.point.front().angle_rad[i];
     if (std::fabs(offset) > kStartTolerance_rad) {
-      throw Refused(csv.file + ": the first row puts joint " + NumberText(i + 1) + " at " +
-                    NumberText(csv.point.front().angle_rad[i] * kDegPerRad) +
-                    " deg, but the joint rests at " + NumberText(from_rad[i] * kDegPerRad) +
-                    " deg then: they must agree within 1 deg");
+      throw RejectedError(csv.file + ": the first row puts joint " + NumberText(i + 1) + " at " +
+                          NumberText(csv.point.front().angle_rad[i] * kDegPerRad) +
+                          " deg, but the joint rests at " + NumberText(from_rad[i] * kDegPerRad) +
+                          " deg then: they must agree within 1 deg");
     }
     Spline spline(csv.point, i);
     for (int k = 0; k <= periods; ++k) {

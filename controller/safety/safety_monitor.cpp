@@ -43,7 +43,7 @@ SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConf
           .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s)};
 }
 
-bool Supervisor::HomingContact(const SafetyInputs& in) noexcept {
+bool SafetyMonitor::HomingContact(const SafetyInputs& in) noexcept {
   const bool runs = in.state == SafetyState::kRunning;
   if (!runs || (~in.levels & in.may_open) == 0) {
     contact_since_ns_ = INT64_MAX;
@@ -53,7 +53,7 @@ bool Supervisor::HomingContact(const SafetyInputs& in) noexcept {
   return in.due_ns - contact_since_ns_ <= limits_.homing_contact_ns;
 }
 
-SafetyFacts Supervisor::Judge(const SafetyInputs& in) noexcept {
+SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
   SafetyFacts facts{};
   const auto add = [&facts](TripCause cause) { facts.present |= CauseBit(cause); };
 
@@ -103,7 +103,7 @@ SafetyFacts Supervisor::Judge(const SafetyInputs& in) noexcept {
   return facts;
 }
 
-Evidence Supervisor::EvidenceOf(TripCause cause, const SafetyInputs& in) const noexcept {
+Evidence SafetyMonitor::EvidenceOf(TripCause cause, const SafetyInputs& in) const noexcept {
   const auto evidence = [](double value, double limit, std::uint32_t channel) {
     return Evidence{.value = value, .limit = limit, .channel = channel, .detail = 0};
   };

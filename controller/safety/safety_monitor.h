@@ -57,9 +57,9 @@ struct SafetyInputs {
 /// due after the machine came to its state, so the last run cannot end the next one. The switch
 /// that a homing run looks for may open while it runs, for a bounded time; the others trip as ever.
 /// Real-time: safe.  Thread: safety.
-class Supervisor {
+class SafetyMonitor {
  public:
-  explicit Supervisor(const SupervisorLimits& limits) noexcept : limits_(limits) {}
+  explicit SafetyMonitor(const SupervisorLimits& limits) noexcept : limits_(limits) {}
 
   /// Once a tick, in order of time.
   SafetyFacts Judge(const SafetyInputs& in) noexcept;

@@ -9,7 +9,7 @@ constexpr std::int64_t kMostPeriods = 6;
 
 }  // namespace
 
-void TorqueTimeline::Push(std::int64_t from_ns, const std::array<double, 2>& torque_nm) noexcept {
+void ActuationQueue::Push(std::int64_t from_ns, const std::array<double, 2>& torque_nm) noexcept {
   if (size_ == kEntries) {
     std::move(entry_.begin() + 1, entry_.end(), entry_.begin());
     --size_;
@@ -18,18 +18,18 @@ void TorqueTimeline::Push(std::int64_t from_ns, const std::array<double, 2>& tor
   entry_[size_++] = {.from_ns = from_ns, .torque_nm = torque_nm};
 }
 
-void TorqueTimeline::CorrectNewest(std::int64_t from_ns) noexcept {
+void ActuationQueue::CorrectNewest(std::int64_t from_ns) noexcept {
   if (size_ == 0) return;
   entry_[size_ - 1].from_ns = size_ > 1 ? std::max(from_ns, entry_[size_ - 2].from_ns) : from_ns;
 }
 
-TorquePieces TorqueTimeline::Between(std::int64_t start_ns, std::int64_t end_ns,
-                                     std::int64_t period_ns) const noexcept {
+PiecewiseTorque ActuationQueue::Between(std::int64_t start_ns, std::int64_t end_ns,
+                                        std::int64_t period_ns) const noexcept {
   end_ns = std::min(end_ns, start_ns + kMostPeriods * period_ns);
   const auto ticks = [start_ns, period_ns](std::int64_t at_ns) {
     return ((at_ns - start_ns) * kPeriodTicks + period_ns / 2) / period_ns;
   };
-  TorquePieces pieces;
+  PiecewiseTorque pieces;
   std::array<double, 2> torque_nm{};
   std::int64_t done = 0;
   for (std::size_t i = 0; i < size_; ++i) {

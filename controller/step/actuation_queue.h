@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "estimator/torque_pieces.h"
+#include "estimator/piecewise_torque.h"
 
 namespace flexarm {
 
@@ -12,7 +12,7 @@ namespace flexarm {
 /// way. Before the first one, no torque. Remembers eight: more than five periods of delay need.
 ///
 /// Real-time: safe.
-class TorqueTimeline {
+class ActuationQueue {
  public:
   void Clear() noexcept { size_ = 0; }
 
@@ -24,15 +24,15 @@ class TorqueTimeline {
 
   /// The torque from `start_ns` to `end_ns`, at most six periods later. Borders are rounded to
   /// ticks from the start, so that errors do not add up.
-  TorquePieces Between(std::int64_t start_ns, std::int64_t end_ns,
-                       std::int64_t period_ns) const noexcept;
+  PiecewiseTorque Between(std::int64_t start_ns, std::int64_t end_ns,
+                          std::int64_t period_ns) const noexcept;
 
  private:
   struct Entry {
     std::int64_t from_ns;
     std::array<double, 2> torque_nm;
   };
-  static constexpr std::size_t kEntries = TorquePieces::kMost;
+  static constexpr std::size_t kEntries = PiecewiseTorque::kMost;
 
   std::array<Entry, kEntries> entry_{};  // in order of time
   std::size_t size_ = 0;

@@ -15,7 +15,7 @@
 #include "controller/step/motion_state.h"
 #include "controller/types/control_config.h"
 #include "estimator/counter_decoder.h"
-#include "estimator/fractional_hold.h"
+#include "estimator/fractional_zero_order_hold.h"
 #include "estimator/payload_estimator.h"
 #include "estimator/reading_age.h"
 #include "estimator/state_estimator.h"
@@ -46,7 +46,7 @@ constexpr PayloadKnowledge kNoPayloadSought = {.payload_kg = kNotSought,
                                                .payload_sigma_kg = kNotSought,
                                                .friction_nm = {kNotSought, kNotSought},
                                                .mean_nis = kNotSought,
-                                               .doubts = 0};
+                                               .warnings = 0};
 
 std::array<double, 2> JointStiffness(const ArmParameters& arm) {
   return {arm.joint[0].stiffness_nm_per_rad, arm.joint[1].stiffness_nm_per_rad};
@@ -61,7 +61,7 @@ void Store(const PayloadKnowledge& known, StepOutput* out) noexcept {
   out->payload_sigma_kg = known.payload_sigma_kg;
   out->friction_nm = known.friction_nm;
   out->mean_nis = known.mean_nis;
-  out->payload_doubts = known.doubts;
+  out->payload_warnings = known.warnings;
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ struct ControlStep::Stages {
     if (design.payload_model.empty()) return;
     payload.emplace(design.payload_model,  // start-up
                     PayloadFilterFor(config.arm, config.sensors, config.estimator));
-    payload_supervisor.emplace(*config.estimator.payload);  // start-up
+    payload_monitor.emplace(*config.estimator.payload);  // start-up
     detect_delay = config.estimator.payload->detect_delay;
     // No torque acts before it is put out.
     delay_may_be_less = config.loop.actuation_delay_ms >= config.loop.period_ms;
@@ -109,7 +109,7 @@ struct ControlStep::Stages {
     supervisor.Reset();
     law.Reset();
     move.Reset();
-    if (payload_supervisor) payload_supervisor->Reset();
+    if (payload_monitor) payload_monitor->Reset();
     asked.Clear();
     reported_nm = {};
     pending_nm = {};
@@ -123,7 +123,7 @@ struct ControlStep::Stages {
   }
 
   // Over [k-1, k] Ts: changes when the commands did, and has the mean that the drive side knows.
-  TorquePieces Applied(const StepInput& input) noexcept {
+  PiecewiseTorque Applied(const StepInput& input) noexcept {
     asked.CorrectNewest(input.sampling_instant_ns + input.acted_late_ns);
     std::copy_backward(reported_nm.begin(), reported_nm.end() - 1, reported_nm.end());
     reported_nm[0] = input.applied_torque_nm;
@@ -132,9 +132,9 @@ struct ControlStep::Stages {
 
   // The same if torques act that many samples later than known: then what the drive side believes
   // of a sample is true of the one so much later. Of the next sample it knows nothing yet.
-  TorquePieces AppliedWith(int delay, const StepInput& input) const noexcept {
+  PiecewiseTorque AppliedWith(int delay, const StepInput& input) const noexcept {
     const std::int64_t end_ns = input.sampling_instant_ns - delay * period_ns;
-    const TorquePieces pieces = asked.Between(end_ns - period_ns, end_ns, period_ns);
+    const PiecewiseTorque pieces = asked.Between(end_ns - period_ns, end_ns, period_ns);
     return delay < 0 ? pieces : pieces.WithMean(reported_nm[static_cast<std::size_t>(delay)]);
   }
 
@@ -150,14 +150,14 @@ struct ControlStep::Stages {
   int delay_found() const noexcept { return payload ? payload->delay_found() : 0; }
 
   FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
-                  const TorquePieces& applied) noexcept {
+                  const PiecewiseTorque& applied) noexcept {
     if (StrainsAreOf(frame, instant_ns)) return fit.Fit(frame, instant_ns, {});
     return fit.Fit(frame, instant_ns,
                    payload ? payload->ModalRates() : estimator.ModalRates(applied));
   }
 
   StateEstimator::Estimate Estimate(const DecodedCounters& counters, const FittedModes& modes,
-                                    const TorquePieces& applied, const SensorFrame& frame,
+                                    const PiecewiseTorque& applied, const SensorFrame& frame,
                                     const StepInput& input) noexcept {
     if (!payload) return estimator.Update(counters, modes, applied);
     const std::optional<double> tip_m_s2 =
@@ -166,8 +166,8 @@ struct ControlStep::Stages {
         detect_delay ? payload->Update(counters, modes, AppliedByDelay(input), tip_m_s2)
                      : payload->Update(counters, modes, applied, tip_m_s2);
     const double mean_nis = payload->mean_nis();
-    if (ContradictsModel(mean_nis)) payload->TakeLoadForDropped();
-    known = payload_supervisor->Judge(found, mean_nis, move.moving());
+    if (ContradictsModel(mean_nis)) payload->AssumePayloadLost();
+    known = payload_monitor->Judge(found, mean_nis, move.moving());
     StateEstimator::Estimate out{.x = payload->Now(), .innovation = {}};
     std::copy_n(found.innovation.data(), found.innovation.size(), out.innovation.begin());
     return out;
@@ -188,7 +188,7 @@ struct ControlStep::Stages {
   // From k Ts to the instant at which the torque computed now will act, under those on their way:
   // all as much later as was found.
   StateVector Predict(const StateVector& x, const StepInput& input) const noexcept {
-    const TorquePieces pending = asked.Between(
+    const PiecewiseTorque pending = asked.Between(
         input.sampling_instant_ns - delay_found() * period_ns, ActsFrom(input), period_ns);
     if (payload) return payload->After(pending);
     StateVector next = x;
@@ -269,17 +269,17 @@ struct ControlStep::Stages {
   StrainFit fit;
   StateEstimator estimator;
   const StateLayout layout;
-  LoopSupervisor supervisor;
+  FaultDetection supervisor;
   TrackingLaw law;
-  FractionalHold nominal;
+  FractionalZeroOrderHold nominal;
   const std::optional<TipAccelerometerConfig> tip_accelerometer;
   std::optional<PayloadEstimator> payload;
   std::optional<ScheduledLaw> scheduled;
-  std::optional<PayloadSupervisor> payload_supervisor;
+  std::optional<PayloadMonitor> payload_monitor;
   PayloadKnowledge known = kNoPayloadSought;
   bool detect_delay = false, delay_may_be_less = false;
-  MoveWatch move;
-  TorqueTimeline asked;
+  MotionState move;
+  ActuationQueue asked;
   // By the drive side, of this sample and of those before it.
   std::array<std::array<double, 2>, kDelays - kDelayAsKnown> reported_nm{};
   std::array<double, 2> pending_nm{};  // the newest of those asked
@@ -306,11 +306,11 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
       WithoutStaleReadings(input.frame, input.sampling_instant_ns, s.max_reading_age_ns);
 
   const DecodedCounters counters = s.decoder.Decode(frame);
-  const TorquePieces applied = s.Applied(input);
+  const PiecewiseTorque applied = s.Applied(input);
   const FittedModes modes = s.Fit(frame, input.sampling_instant_ns, applied);
   s.WatchMoves(input);
   const StateEstimator::Estimate estimate = s.Estimate(counters, modes, applied, frame, input);
-  const LoopSupervisor::Verdict verdict =
+  const FaultDetection::Verdict verdict =
       s.supervisor.Judge({.counters = &counters,
                           .modes = &modes,
                           .estimate = &estimate,

@@ -23,7 +23,7 @@ constexpr TripCause PerJoint(TripCause joint1, std::size_t i) noexcept {
 
 }  // namespace
 
-LoopSupervisor::LoopSupervisor(const SafetyConfig& safety, const EstimatorConfig& estimator,
+FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator,
                                double period_s, std::uint32_t counters_present,
                                const std::array<double, 2>& joint_stiffness_nm_per_rad)
     : safety_(safety),
@@ -35,14 +35,14 @@ LoopSupervisor::LoopSupervisor(const SafetyConfig& safety, const EstimatorConfig
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
                                   static_cast<int>(kRestWindow) + 1)) {}
 
-void LoopSupervisor::Reset() noexcept {
+void FaultDetection::Reset() noexcept {
   in_a_row_ = {};
   rest_ticks_ = 0;
   ring_ = 0;
   started_ = false;
 }
 
-void LoopSupervisor::Raise(TripCause cause, bool present, int ticks, double value, double limit,
+void FaultDetection::Raise(TripCause cause, bool present, int ticks, double value, double limit,
                            std::size_t channel) noexcept {
   int& in_a_row = in_a_row_[static_cast<std::size_t>(cause)];
   in_a_row = present ? in_a_row + 1 : 0;
@@ -56,7 +56,7 @@ void LoopSupervisor::Raise(TripCause cause, bool present, int ticks, double valu
   in_a_row = ticks;  // no overflow however long it lasts
 }
 
-LoopSupervisor::Verdict LoopSupervisor::Judge(const LoopFacts& facts) noexcept {
+FaultDetection::Verdict FaultDetection::Judge(const LoopFacts& facts) noexcept {
   verdict_ = {};
   Raise(TripCause::kStaleFrame, facts.frame_age_s > kStalePeriods * period_s_, 1, facts.frame_age_s,
         kStalePeriods * period_s_, 0);
@@ -68,7 +68,7 @@ LoopSupervisor::Verdict LoopSupervisor::Judge(const LoopFacts& facts) noexcept {
   return verdict_;
 }
 
-void LoopSupervisor::JudgeJoints(const LoopFacts& facts) noexcept {
+void FaultDetection::JudgeJoints(const LoopFacts& facts) noexcept {
   const Eigen::Index dof = facts.estimate->x.size() / 2;
   for (std::size_t i = 0; i < 2; ++i) {
     const double angle = std::fabs(facts.counters->angle_rad[i]);
@@ -84,7 +84,7 @@ void LoopSupervisor::JudgeJoints(const LoopFacts& facts) noexcept {
   }
 }
 
-void LoopSupervisor::JudgeCounters(const LoopFacts& facts) noexcept {
+void FaultDetection::JudgeCounters(const LoopFacts& facts) noexcept {
   const DecodedCounters& counters = *facts.counters;
   Raise(TripCause::kEncoderJump, counters.jumped != 0, 1, 0.0, estimator_.max_joint_rate_rad_s,
         FirstChannel(counters.jumped));
@@ -114,7 +114,7 @@ void LoopSupervisor::JudgeCounters(const LoopFacts& facts) noexcept {
         estimator_.fault_ticks, worst, estimator_.hub_rotor_limit_rad, joint);
 }
 
-void LoopSupervisor::JudgeStrain(const LoopFacts& facts) noexcept {
+void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
   const FittedModes& modes = *facts.modes;
   const int ticks = estimator_.fault_ticks;
   const bool judged = facts.mode != LoopMode::kOpenLoop;
@@ -126,7 +126,7 @@ void LoopSupervisor::JudgeStrain(const LoopFacts& facts) noexcept {
         estimator_.strain_family_limit, FirstChannel(modes.outlier));
 }
 
-void LoopSupervisor::JudgeEstimate(const LoopFacts& facts) noexcept {
+void FaultDetection::JudgeEstimate(const LoopFacts& facts) noexcept {
   const StateEstimator::Estimate& estimate = *facts.estimate;
   Raise(TripCause::kStateNotFinite, !estimate.x.allFinite(), 1, 0.0, 0.0, 0);
   const double hub1 = std::fabs(estimate.innovation[0]), hub2 = std::fabs(estimate.innovation[1]);
@@ -136,7 +136,7 @@ void LoopSupervisor::JudgeEstimate(const LoopFacts& facts) noexcept {
         estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2);
 }
 
-bool LoopSupervisor::JudgeRest(const LoopFacts& facts) noexcept {
+bool FaultDetection::JudgeRest(const LoopFacts& facts) noexcept {
   if (!started_) {  // as if the arm had always stood where it is
     started_ = true;
     hub_before_.fill({facts.counters->angle_rad[0], facts.counters->angle_rad[1]});

@@ -31,7 +31,7 @@ struct LoopFacts {
 /// doubt. The pluck test (kOpenLoop) does not judge sensors against each other: that is what it is
 /// for, and its torque does not depend on them.
 /// Real-time: safe.
-class LoopSupervisor {
+class FaultDetection {
  public:
   struct Verdict {
     TripCauses faults;
@@ -40,7 +40,7 @@ class LoopSupervisor {
     bool at_rest;           ///< hub and strain rates within their bounds for rest_time
   };
 
-  LoopSupervisor(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
+  FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
                  std::uint32_t counters_present,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 

@@ -7,9 +7,9 @@
 namespace flexarm {
 
 /// Whether the path moves, and since when it rests. Real-time: safe.
-class MoveWatch {
+class MotionState {
  public:
-  void Reset() noexcept { *this = MoveWatch(); }
+  void Reset() noexcept { *this = MotionState(); }
 
   /// Every sample, in order.
   /// @returns true when a move begins

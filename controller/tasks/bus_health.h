@@ -14,9 +14,9 @@ namespace flexarm {
 struct BusHealth {
   std::string name;
   bool ok;
-  std::string fault;         ///< what its last exchange met, with device and node; empty: nothing
-  std::uint32_t failed;      ///< exchanges that failed, and attempts to reconnect
-  std::uint32_t taken_back;  ///< how often it was lost and came back
+  std::string fault;        ///< what its last exchange met, with device and node; empty: nothing
+  std::uint32_t failed;     ///< exchanges that failed, and attempts to reconnect
+  std::uint32_t recovered;  ///< how often it was lost and came back
 };
 
 /// Tells the journal when a bus is lost or back, and, once a second at most, of exchanges that

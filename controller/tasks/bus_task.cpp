@@ -30,7 +30,7 @@ void BusTask::Run(const Activation& activation) noexcept {
   const bool may_reconnect = failures_ > 0 && !command.enabled;
   status_ = may_reconnect ? device_->Reconnect() : device_->Exchange(command, &part);
   if (status_ == BusStatus::kOk) {
-    if (failures_ >= kFailuresToLose) ++taken_back_;
+    if (failures_ >= kFailuresToLose) ++recovered_;
     failures_ = 0;
   } else {
     failures_ = std::min(failures_ + 1, kFailuresToLose);
@@ -84,7 +84,7 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
                  .drive_ok = status_ != BusStatus::kDriveFault,
                  .fault = status_ == BusStatus::kOk ? BusFault{} : device_->FaultOf(status_),
                  .failed = failed_,
-                 .taken_back = taken_back_,
+                 .recovered = recovered_,
                  .levels = levels_});
   channels_.reports->Publish(reports_);
   channels_.health->Publish(reports_);

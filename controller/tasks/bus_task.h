@@ -56,11 +56,11 @@ class BusTask final : public Task {
   std::int64_t epoch_ns_ = 0;
   std::array<double, 2> applied_nm_{};  // set at the last exchange
   std::int64_t applied_tick_ = -1;      // of the command that was
-  TorqueTimeline applied_;              // when each acted
+  ActuationQueue applied_;              // when each acted
   BusStatus status_ = BusStatus::kOk;
   int failures_ = 0;  // in a row
   std::uint32_t failed_ = 0;
-  std::uint32_t taken_back_ = 0;
+  std::uint32_t recovered_ = 0;
   LineLevels levels_ = kHealthyLevels;
   FrameHistory frames_{kNoFrame};
   DriveReportHistory reports_{kNoDriveReport};

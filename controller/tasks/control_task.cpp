@@ -74,7 +74,7 @@ void ControlTask::TakeCalibration() noexcept {
 }
 
 void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
-  const PlannedRun& planned = channels_.plans->Read();
+  const LoadedExperiment& planned = channels_.plans->Read();
   const bool used_up = planned.number == plan_.number;
   plan_ = planned;
   if (used_up) plan_.experiment = nullptr;  // a plan is good for one run

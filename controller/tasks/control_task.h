@@ -21,7 +21,7 @@ namespace flexarm {
 struct ControlChannels {
   std::vector<FrameChannel*> frames;      ///< read: each holds its own part of the readings
   PermitChannel* permits;                 ///< read
-  PlanChannel* plans;                     ///< read
+  ExperimentChannel* plans;               ///< read
   CalibrationChannel* calibrations;       ///< read
   std::vector<CommandChannel*> commands;  ///< written: one a drive bus
   ControlReportChannel* reports;          ///< written
@@ -68,9 +68,9 @@ class ControlTask final : public Task {
   LoopGrid grid_;
   ControlStep* step_;
   ControlChannels channels_;
-  PlannedRun plan_;
+  LoadedExperiment plan_;
   std::atomic<std::uint32_t> released_{0};
-  HomingGoal homing_;
+  HomingReference homing_;
   Calibration calibration_{};
   SafetyState state_ = SafetyState::kStarting;
   LineLevels levels_ = kHealthyLevels;  // as the safety task read them last

@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-void HomingGoal::Start(const HomingPlan& plan, const std::array<double, 2>& hub_rad) noexcept {
+void HomingReference::Start(const HomingPlan& plan, const std::array<double, 2>& hub_rad) noexcept {
   plan_ = plan;
   goal_rad_ = hub_rad;
   left_rad_ = plan.travel_rad;
@@ -12,7 +12,8 @@ void HomingGoal::Start(const HomingPlan& plan, const std::array<double, 2>& hub_
   ended_ = false;
 }
 
-ReferenceSample HomingGoal::Next(LineLevels levels, const std::array<double, 2>& hub_rad) noexcept {
+ReferenceSample HomingReference::Next(LineLevels levels,
+                                      const std::array<double, 2>& hub_rad) noexcept {
   const bool open = (levels & LineBit(plan_.line)) == 0;
   if (open && !found_) {
     found_ = true;

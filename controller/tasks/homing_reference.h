@@ -20,7 +20,7 @@ struct HomingPlan {
 /// The goal of a homing run, sample by sample: towards the switch until it opens, then back off it
 /// by `back_rad` of where it opened, then done. A switch that does not open within `travel_rad`
 /// ends the search where it is. Real-time: safe.
-class HomingGoal {
+class HomingReference {
  public:
   /// @param hub_rad  where the hubs are
   void Start(const HomingPlan& plan, const std::array<double, 2>& hub_rad) noexcept;

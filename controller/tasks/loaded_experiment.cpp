@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 
@@ -18,7 +18,7 @@ PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design&
 
 void RefuseSimEvents(const Experiment& experiment) {
   if (experiment.sim_event.empty()) return;
-  throw Refused(
+  throw RejectedError(
       "sim_event[0]: this rig is real, and its switches, threads and payload are not ours to "
       "change; take the [[sim_event]] rows out, or use the simulated backend");
 }

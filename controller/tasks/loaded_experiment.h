@@ -35,11 +35,11 @@ void RefuseSimEvents(const Experiment& experiment);
 
 /// The experiment that the next run follows. The operator's side keeps it alive until every reader
 /// has released its number.
-struct PlannedRun {
+struct LoadedExperiment {
   const PlannedExperiment* experiment = nullptr;  ///< nullptr: none planned, a run ends where it is
   std::uint32_t number = 0;                       ///< ascending
 };
-using PlanChannel = LatestValue<PlannedRun>;
+using ExperimentChannel = LatestValue<LoadedExperiment>;
 using CalibrationChannel = LatestValue<Calibration>;
 
 }  // namespace flexarm

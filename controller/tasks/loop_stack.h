@@ -59,10 +59,10 @@ class LoopStack {
   SpscQueue<TickRecord>& operator_ticks() { return operator_ticks_; }
   /// Taken over by the loop as soon as no torque is allowed.
   void Calibrate(const Calibration& calibration) noexcept { calibrations_.Publish(calibration); }
-  /// The experiment of the next run; see PlannedRun for how long it must live.
-  virtual void Plan(const PlannedRun& plan) noexcept { plans_.Publish(plan); }
+  /// The experiment of the next run; see LoadedExperiment for how long it must live.
+  virtual void Plan(const LoadedExperiment& plan) noexcept { plans_.Publish(plan); }
   /// Plans with a lower number than this are no longer used.
-  virtual std::uint32_t released_plans() const noexcept { return control_.released(); }
+  virtual std::uint32_t released_experiments() const noexcept { return control_.released(); }
   /// How the buses do. Empty: this backend has none.
   virtual std::vector<BusHealth> buses() { return {}; }
   /// Which bus, device and node a trip is of, and what it met; empty: no bus's.
@@ -82,7 +82,7 @@ class LoopStack {
   PermitChannel control_permits_{PermitHistory(kNoPermit)};
   PermitChannel operator_permits_{PermitHistory(kNoPermit)};
   ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
-  PlanChannel plans_{PlannedRun{}};
+  ExperimentChannel plans_{LoadedExperiment{}};
   CalibrationChannel calibrations_{Calibration{}};
   SpscQueue<OperatorRequest> requests_;
   SpscQueue<RequestAnswer> answers_;

@@ -9,7 +9,7 @@ namespace flexarm {
 
 void PlanFollower::Start(std::uint32_t run) noexcept {
   request_.run = run;
-  request_.stretch = -1;
+  request_.segment = -1;
 }
 
 std::optional<PlanSample> PlanFollower::At(int sample, std::int64_t due_ns) noexcept {
@@ -26,38 +26,38 @@ std::optional<PlanSample> PlanFollower::At(int sample, std::int64_t due_ns) noex
 void PlanFollower::Ask(int sample, std::int64_t due_ns, const ReferenceTable& reference,
                        const StepOutput& output) noexcept {
   const int first = sample + schedule_.ready;
-  if ((output.payload_doubts & kPayloadModelMismatch) != 0) {
+  if ((output.payload_warnings & kPayloadModelMismatch) != 0) {
     request_.valid_from = request_.number + 1;
     next_ask_ = first;
   }
-  const std::vector<Stretch>& all = reference.stretches();
+  const std::vector<MotionSegment>& all = reference.segments();
   // The motion that is on at `first`, or was on last.
   const auto next = std::upper_bound(all.begin(), all.end(), first,
-                                     [](int k, const Stretch& s) { return k < s.first; });
+                                     [](int k, const MotionSegment& s) { return k < s.first; });
   if (next == all.begin()) return;
-  const Stretch& stretch = *std::prev(next);
-  if (first > stretch.end - schedule_.ready) return;
-  if (stretch.first == request_.stretch && first < next_ask_) return;
+  const MotionSegment& segment = *std::prev(next);
+  if (first > segment.end - schedule_.ready) return;
+  if (segment.first == request_.segment && first < next_ask_) return;
   const int rest_until = next == all.end() ? std::numeric_limits<int>::max() : next->first;
-  Send(sample, due_ns, stretch, std::min(stretch.end + schedule_.rest, rest_until), reference,
+  Send(sample, due_ns, segment, std::min(segment.end + schedule_.rest, rest_until), reference,
        output);
   next_ask_ = first + schedule_.every;
 }
 
-void PlanFollower::Send(int sample, std::int64_t due_ns, const Stretch& stretch, int last,
+void PlanFollower::Send(int sample, std::int64_t due_ns, const MotionSegment& segment, int last,
                         const ReferenceTable& reference, const StepOutput& output) noexcept {
   ++request_.number;
-  request_.stretch = stretch.first;
+  request_.segment = segment.first;
   request_.sample = sample;
   request_.first = sample + schedule_.ready;
-  request_.end = stretch.end;
+  request_.end = segment.end;
   request_.needed_ns = due_ns + schedule_.ready * schedule_.period_ns;
   std::copy_n(output.x_next.begin(), request_.x.size(), request_.x.begin());
   request_.known = {.payload_kg = output.payload_kg,
                     .payload_sigma_kg = output.payload_sigma_kg,
                     .friction_nm = output.friction_nm,
                     .mean_nis = output.mean_nis,
-                    .doubts = output.payload_doubts};
+                    .warnings = output.payload_warnings};
   const int points = last + 1 - (sample - 1) + 1;
   request_.points = static_cast<std::uint32_t>(
       std::min(static_cast<std::size_t>(points), PlanRequest::kMostPoints));

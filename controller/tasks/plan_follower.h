@@ -38,14 +38,14 @@ class PlanFollower {
            const StepOutput& output) noexcept;
 
  private:
-  void Send(int sample, std::int64_t due_ns, const Stretch& stretch, int last,
+  void Send(int sample, std::int64_t due_ns, const MotionSegment& segment, int last,
             const ReferenceTable& reference, const StepOutput& output) noexcept;
 
   PlanSchedule schedule_;
   PlanRequestChannel* requests_;
   MotionPlanChannel* plans_;
   PlanRequest request_{};
-  int next_ask_ = 0;  // first sample of the next plan of this stretch
+  int next_ask_ = 0;  // first sample of the next plan of this segment
 };
 
 }  // namespace flexarm

@@ -63,7 +63,7 @@ void PlannerTask::Run(const Activation& /*activation*/) noexcept {
 
   const int periods = request.first - request.sample;
   const Start start = Predict(request, periods);
-  const bool continues = newest_.run == request.run && stretch_ == request.stretch;
+  const bool continues = newest_.run == request.run && segment_ == request.segment;
   const std::size_t points = request.points - static_cast<std::uint32_t>(periods);
   const PlanProblem problem{
       .first_tick = request.first,
@@ -81,7 +81,7 @@ void PlannerTask::Run(const Activation& /*activation*/) noexcept {
   }
   newest_.run = request.run;
   newest_.number = request.number;
-  stretch_ = request.stretch;
+  segment_ = request.segment;
   Publish(request.needed_ns);
 }
 

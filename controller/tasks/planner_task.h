@@ -65,7 +65,7 @@ class PlannerTask final : public Task {
   MotionPlanHistory history_{MotionPlan{}};
   MotionPlan newest_{};  // what control was told last
   HorizonPlan made_;
-  int stretch_ = -1;  // that the newest is of
+  int segment_ = -1;  // that the newest is of
   std::uint32_t answered_ = 0;
 };
 

@@ -57,8 +57,8 @@ void PlantTask::Run(const Activation& activation) noexcept {
 
 void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
   const bool enabled = Enabled(start_ns);
-  LetThrough(start_ns, enabled, &drive_);
-  LetThrough(start_ns, enabled, &reported_);
+  ApplyGate(start_ns, enabled, &drive_);
+  ApplyGate(start_ns, enabled, &reported_);
   rig_.SetTorque(drive_.torque_nm);
   for (std::int64_t t = 0; t < kPeriodNs; t += rig_.step_ns()) rig_.Step();
   for (std::size_t i = 0; i < 2; ++i) applied_sum_nm_[i] += reported_.torque_nm[i];
@@ -67,7 +67,7 @@ void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
 
 // The slew limit counts from command to command: between two commands the drive holds its
 // set-point.
-void PlantTask::LetThrough(std::int64_t start_ns, bool enabled, Drive* drive) noexcept {
+void PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept {
   const std::int64_t acting_ns = start_ns - drive->delay_ns;
   const CommandHistory::Entry& command = channels_.commands->Read().At(acting_ns);
   const Permit& permit = channels_.permits->Read().At(start_ns).value;

@@ -25,7 +25,7 @@ struct PlantChannels {
   CommandChannel* commands;       ///< read
   PermitChannel* permits;         ///< read
   OutputChannel* outputs;         ///< read: relay and charge pump
-  PlanChannel* plans;             ///< read: for the experiment's sim_events
+  ExperimentChannel* plans;       ///< read: for the experiment's sim_events
   SpscQueue<LinePress>* presses;  ///< read
   FrameChannel* frames;           ///< written
   LevelChannel* levels;           ///< written
@@ -66,7 +66,7 @@ class PlantTask final : public Task {
   };
 
   void AdvanceSlice(std::int64_t start_ns) noexcept;
-  void LetThrough(std::int64_t start_ns, bool enabled, Drive* drive) noexcept;
+  void ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept;
   bool Enabled(std::int64_t start_ns) noexcept;
   void HandleEvents(std::int64_t now_ns) noexcept;
   void StartFrame(std::int64_t now_ns) noexcept;
@@ -76,9 +76,9 @@ class PlantTask final : public Task {
   FrameLoss loss_;
   LoopGrid grid_;
   GateLimits limits_;
-  Drive drive_;      // what moves the plant
-  Drive reported_;   // what it would be with the delay that is declared
-  PlannedRun plan_;  // of the run that began at run_since_ns_
+  Drive drive_;            // what moves the plant
+  Drive reported_;         // what it would be with the delay that is declared
+  LoadedExperiment plan_;  // of the run that began at run_since_ns_
   std::int64_t run_since_ns_ = INT64_MIN;
   std::size_t next_event_ = 0;
   std::atomic<std::uint32_t> released_{0};

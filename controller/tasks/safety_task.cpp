@@ -24,7 +24,7 @@ bool RaisesEnergy(RequestKind kind) noexcept {
 }  // namespace
 
 SafetyTask::SafetyTask(const SupervisorLimits& limits, SafetyChannels channels)
-    : channels_(std::move(channels)), supervisor_(limits) {}
+    : channels_(std::move(channels)), monitor_(limits) {}
 
 Task::Traits SafetyTask::traits() const noexcept {
   return {.name = "safety",
@@ -38,7 +38,8 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const std::int64_t due_ns = activation.due_ns;
   const ControlReportHistory& control = channels_.control->Read();
   const DriveSide drive = ReadDrives(due_ns);
-  const LineLevels levels = Either(channels_.lines->Read(due_ns), drive.report.levels);
+  const LineLevels levels =
+      MergeRedundantLevels(channels_.lines->Read(due_ns), drive.report.levels);
   const auto [requested, request, earlier] = TakeRequest(due_ns);
 
   const SafetyInputs in{.due_ns = due_ns,
@@ -53,7 +54,7 @@ void SafetyTask::Run(const Activation& activation) noexcept {
                         .state_since_ns = state_since_ns_,
                         .running_since_ns = running_since_ns_,
                         .may_open = may_open_};
-  const SafetyFacts facts = supervisor_.Judge(in);
+  const SafetyFacts facts = monitor_.Judge(in);
   const SafetyStatus before = status_;
   const SafetyDecision decision = NextSafetyState(before, facts);
   Enter(decision.status, in);
@@ -104,7 +105,7 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
     if (side.report.drive_ok && !report.drive_ok) side.troubles.drive = {bus, report.fault};
     side.report.bus_ok = side.report.bus_ok && report.bus_ok;
     side.report.drive_ok = side.report.drive_ok && report.drive_ok;
-    side.report.levels = Either(side.report.levels, report.levels);
+    side.report.levels = MergeRedundantLevels(side.report.levels, report.levels);
     const std::int64_t alive_ns = history.Newest().value.due_ns;
     if (alive_ns < side.alive_ns) side.troubles.oldest_bus = bus;
     side.alive_ns = std::min(side.alive_ns, alive_ns);
@@ -150,7 +151,7 @@ void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in) noexcep
     if (next.state == SafetyState::kRunning) running_since_ns_ = in.due_ns;
   }
   evidence_ =
-      next.state == SafetyState::kTripped ? supervisor_.EvidenceOf(next.cause, in) : Evidence{};
+      next.state == SafetyState::kTripped ? monitor_.EvidenceOf(next.cause, in) : Evidence{};
   status_ = next;
 }
 

@@ -72,7 +72,7 @@ class SafetyTask final : public Task {
   void Publish(std::int64_t due_ns, LineLevels levels) noexcept;
 
   SafetyChannels channels_;
-  Supervisor supervisor_;
+  SafetyMonitor monitor_;
   SafetyStatus status_{SafetyState::kStarting, TripCause::kNone};
   SafetyFacts last_facts_{};
   Evidence evidence_{};

@@ -22,13 +22,13 @@ SimulatedStack::SimulatedStack(const RigConfig& config, const RigConfig& plant,
               .levels = &levels,
               .reports = &drive_reports}) {}
 
-void SimulatedStack::Plan(const PlannedRun& plan) noexcept {
+void SimulatedStack::Plan(const LoadedExperiment& plan) noexcept {
   LoopStack::Plan(plan);
   plans.Publish(plan);
 }
 
-std::uint32_t SimulatedStack::released_plans() const noexcept {
-  return std::min(LoopStack::released_plans(), plant_.released());
+std::uint32_t SimulatedStack::released_experiments() const noexcept {
+  return std::min(LoopStack::released_experiments(), plant_.released());
 }
 
 }  // namespace flexarm

@@ -18,7 +18,7 @@ struct SimulatedWires {
   OutputChannel outputs{OutputHistory({.relay_closed = false, .pump_level = false})};
   LevelChannel levels{LevelHistory(kHealthyLevels)};
   DriveReportChannel drive_reports{DriveReportHistory(kNoDriveReport)};
-  PlanChannel plans{PlannedRun{}};
+  ExperimentChannel plans{LoadedExperiment{}};
   SpscQueue<LinePress> presses{64};
   SimulatedLines lines{&levels, &outputs};
 };
@@ -36,8 +36,8 @@ class SimulatedStack final : private SimulatedWires, public LoopStack {
   PlantTask& plant() { return plant_; }
   std::vector<Task*> drive_tasks() override { return {&plant_}; }
 
-  void Plan(const PlannedRun& plan) noexcept override;
-  std::uint32_t released_plans() const noexcept override;
+  void Plan(const LoadedExperiment& plan) noexcept override;
+  std::uint32_t released_experiments() const noexcept override;
   bool simulated() const noexcept override { return true; }
   bool Press(const LinePress& press) noexcept override { return presses.Push(press); }
 

@@ -44,7 +44,7 @@ std::vector<BusHealth> WiredStack::buses() {
                    .ok = report.bus_ok || report.due_ns == INT64_MIN,  // it has not run yet
                    .fault = well ? std::string() : devices_[i]->FaultText(report.fault),
                    .failed = report.failed,
-                   .taken_back = report.taken_back});
+                   .recovered = report.recovered});
   }
   return all;
 }

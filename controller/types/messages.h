@@ -58,7 +58,7 @@ struct DriveReport {
   bool drive_ok;
   BusFault fault{};                    ///< of the last exchange; none if it went well
   std::uint32_t failed = 0;            ///< exchanges that failed, and attempts to reconnect
-  std::uint32_t taken_back = 0;        ///< how often the bus was lost and came back
+  std::uint32_t recovered = 0;         ///< how often the bus was lost and came back
   LineLevels levels = kHealthyLevels;  ///< as the buses read them last; healthy where they do not
 };
 

@@ -9,8 +9,8 @@ namespace flexarm {
 struct PayloadKnowledge {
   double payload_kg, payload_sigma_kg;
   std::array<double, 2> friction_nm;
-  double mean_nis;       ///< 8 for a right model
-  std::uint32_t doubts;  ///< PayloadDoubt
+  double mean_nis;         ///< 8 for a right model
+  std::uint32_t warnings;  ///< PayloadWarningBit
 };
 
 }  // namespace flexarm

@@ -22,9 +22,9 @@ struct PlanRequest {
   static constexpr std::size_t kMostPoints = kMostReadyPeriods + HorizonPlan::kMaxStages + 3;
 
   std::uint32_t number;      ///< ascending; 0: none yet
-  std::uint32_t run;         ///< PlannedRun::number
+  std::uint32_t run;         ///< LoadedExperiment::number
   std::uint32_t valid_from;  ///< plans of requests before this one are void: of another load
-  int stretch;               ///< first sample of the motion: plans of another one are no start
+  int segment;               ///< first sample of the motion: plans of another one are no start
   int sample;                ///< of `x`
   int first;                 ///< sample from which the plan is to hold
   int end;                   ///< of the motion: the path rests from then on

@@ -71,11 +71,11 @@ enum LimitBit : std::uint32_t {
   kPredictionOff = 8,
 };
 
-/// What is wrong with the payload that the estimator finds. Bits of StepOutput::payload_doubts.
-enum PayloadDoubt : std::uint32_t {
+/// What is wrong with the payload estimate. Bits of StepOutput::payload_warnings.
+enum PayloadWarningBit : std::uint32_t {
   kPayloadAtBound = 1,        ///< as heavy as it may be, or heavier
   kPayloadModelMismatch = 2,  ///< the innovations are far larger than model and noise explain
-  kPayloadNotFound = 4,       ///< a move has ended, and as little is known as when it began
+  kPayloadNotObservable = 4,  ///< a move has ended, and as little is known as when it began
 };
 
 /// What one Step decided, and what it knew. No padding.
@@ -108,9 +108,9 @@ struct StepOutput {
   std::uint16_t
       fault_channel;     ///< and its channel (joint, counter or strain row; 1-based; 0: none)
   std::uint8_t at_rest;  ///< hub and strain rates within their bounds for rest_time
-  std::uint8_t experiment_done;  ///< the reference has ended
-  std::uint32_t payload_doubts;  ///< PayloadDoubt
-  std::int8_t delay_found;       ///< samples by which torques act later than known, as found
+  std::uint8_t experiment_done;    ///< the reference has ended
+  std::uint32_t payload_warnings;  ///< PayloadWarningBit
+  std::int8_t delay_found;         ///< samples by which torques act later than known, as found
   std::array<std::uint8_t, 3> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);

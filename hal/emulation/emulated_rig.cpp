@@ -15,8 +15,8 @@ const GpiodConfig& LinesOf(const HalConfig& hal) {
 
 }  // namespace
 
-WireRig::WireRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
-                 const HalConfig& hal, const CanClocks& clocks)
+EmulatedRig::EmulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
+                         const SimConfig& sim, const HalConfig& hal, const CanClocks& clocks)
     : rig_(arm, sensors, sim), lines_(LinesOf(hal)), gpio_(lines_.chip) {
   for (const CanopenConfig& bus : hal.canopen) AddNodes(bus, clocks);
   for (const ModbusDeviceConfig& device : hal.modbus.device) {
@@ -24,7 +24,7 @@ WireRig::WireRig(const ArmParameters& arm, const SensorConfig& sensors, const Si
   }
 }
 
-void WireRig::AddNodes(const CanopenConfig& bus, const CanClocks& clocks) {
+void EmulatedRig::AddNodes(const CanopenConfig& bus, const CanClocks& clocks) {
   for (const CanopenNodeConfig& config : bus.node) {
     Node node{.config = config,
               .bus = std::make_unique<SocketCanBus>(bus.interface, clocks),
@@ -35,28 +35,28 @@ void WireRig::AddNodes(const CanopenConfig& bus, const CanClocks& clocks) {
   }
 }
 
-SimulatedNode* WireRig::FindNode(std::string_view role) noexcept {
+SimulatedNode* EmulatedRig::FindNode(std::string_view role) noexcept {
   for (const Node& node : nodes_) {
     if (role == CanopenRoleName(node.config.role)) return node.node.get();
   }
   return nullptr;
 }
 
-SimulatedAmplifier* WireRig::FindAmplifier(std::string_view name) noexcept {
+SimulatedAmplifier* EmulatedRig::FindAmplifier(std::string_view name) noexcept {
   for (const auto& amplifier : amplifiers_) {
     if (amplifier->name() == name) return amplifier.get();
   }
   return nullptr;
 }
 
-void WireRig::Step(std::int64_t now_ns) noexcept {
+void EmulatedRig::Step(std::int64_t now_ns) noexcept {
   for (Node& node : nodes_) node.node->Run();
   DriveArm(PowerOn(now_ns));
   for (std::int64_t t = 0; t < kSliceNs; t += rig_.step_ns()) rig_.Step();
   Show(now_ns);
 }
 
-bool WireRig::PowerOn(std::int64_t now_ns) noexcept {
+bool EmulatedRig::PowerOn(std::int64_t now_ns) noexcept {
   const bool pump = gpio_.Value(lines_.pump);
   if (pump != pump_level_) {
     pump_level_ = pump;
@@ -68,7 +68,7 @@ bool WireRig::PowerOn(std::int64_t now_ns) noexcept {
   return observed_.relay_closed && observed_.pump_alive;
 }
 
-void WireRig::DriveArm(bool power) noexcept {
+void EmulatedRig::DriveArm(bool power) noexcept {
   std::array<double, 2> torque_nm{};
   bool active = false;
   for (const Node& node : nodes_) {
@@ -84,7 +84,7 @@ void WireRig::DriveArm(bool power) noexcept {
   if (torque_nm[0] != 0.0 || torque_nm[1] != 0.0) ++observed_.powered_slices;
 }
 
-void WireRig::Show(std::int64_t now_ns) noexcept {
+void EmulatedRig::Show(std::int64_t now_ns) noexcept {
   const SensorFrame frame = rig_.Sample(now_ns);
   for (Node& node : nodes_) {
     const int counter = node.config.counter();

@@ -24,7 +24,7 @@ namespace flexarm {
 /// Its hardware is what a test looks at afterwards: a drive makes torque only while its own state
 /// machine is in operation, the relay is closed, and the charge pump has toggled within 5 ms.
 /// Thread: one, but for the Modbus servers', which it starts.
-class WireRig {
+class EmulatedRig {
  public:
   struct Observed {                   ///< what the hardware saw, since the start
     std::array<double, 2> torque_nm;  ///< now
@@ -36,8 +36,8 @@ class WireRig {
 
   /// @param arm  with the payload that the plant really carries
   /// @throws HalError
-  WireRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
-          const HalConfig& hal, const CanClocks& clocks);
+  EmulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
+              const HalConfig& hal, const CanClocks& clocks);
 
   /// One millisecond of the rig, up to `now_ns` of CLOCK_MONOTONIC.
   void Step(std::int64_t now_ns) noexcept;

@@ -131,7 +131,7 @@ std::string ObeyNode(std::istringstream& words, SimulatedNode* node) {
   return "";
 }
 
-std::string ObeyRig(const std::string& line, WireRig* rig) {
+std::string ExecuteRigCommand(const std::string& line, EmulatedRig* rig) {
   std::istringstream words(line);
   std::string command, name;
   if (!(words >> command)) return "";

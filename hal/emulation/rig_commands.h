@@ -13,7 +13,7 @@ namespace flexarm {
 extern const char* const kRigCommands;
 
 /// Does what a line says. @returns what is wrong with it, for people; empty if it was done
-std::string ObeyRig(const std::string& line, WireRig* rig);
+std::string ExecuteRigCommand(const std::string& line, EmulatedRig* rig);
 
 /// The same for what follows "amplifier NAME" and "node ROLE".
 std::string ObeyAmplifier(std::istringstream& words, SimulatedAmplifier* amplifier);

@@ -34,15 +34,15 @@ void SimulatedRig::Step() noexcept {
   const ArmVector before(filter_.output());
   const ArmState start = state_;
   simulator_.Step(state_, torque, static_cast<double>(step_ns_) * 1e-9);
-  if (accelerometer_) Feel(start);
+  if (accelerometer_) SampleAccelerometer(start);
   filter_.Step(state_.q.tail(filter_.output().size()));
   if (!frame_) return;
-  Scan(frame_age_ns_ + step_ns_, before);
+  SampleChannels(frame_age_ns_ + step_ns_, before);
   frame_age_ns_ += step_ns_;
 }
 
 // The step's mean acceleration: with the impulse of a hub that comes to rest within it.
-void SimulatedRig::Feel(const ArmState& before) noexcept {
+void SimulatedRig::SampleAccelerometer(const ArmState& before) noexcept {
   const double h = static_cast<double>(step_ns_) * 1e-9;
   accelerometer_->Step(TipAcceleration(arm_, ArmVector(0.5 * (before.q + state_.q)),
                                        ArmVector(0.5 * (before.v + state_.v)),
@@ -54,7 +54,7 @@ void SimulatedRig::StartFrame(std::int64_t now_ns) noexcept {
   if (accelerometer_) accelerometer_->Sample(&*frame_);
   next_channel_ = 0;
   frame_age_ns_ = 0;
-  Scan(0, ArmVector(filter_.output()));
+  SampleChannels(0, ArmVector(filter_.output()));
 }
 
 std::optional<SensorFrame> SimulatedRig::TakeFrame() noexcept {
@@ -62,7 +62,7 @@ std::optional<SensorFrame> SimulatedRig::TakeFrame() noexcept {
   return std::exchange(frame_, std::nullopt);
 }
 
-void SimulatedRig::Scan(std::int64_t until_ns, const ArmVector& before) noexcept {
+void SimulatedRig::SampleChannels(std::int64_t until_ns, const ArmVector& before) noexcept {
   const ArmVector after(filter_.output());
   for (; next_channel_ < sensors_.strain_channels(); ++next_channel_) {
     const std::int64_t offset_ns = static_cast<std::int64_t>(next_channel_) * skew_ns_;

@@ -68,9 +68,9 @@ class SimulatedRig {
 
  private:
   // One step of the arm, as the accelerometer feels it.
-  void Feel(const ArmState& before) noexcept;
+  void SampleAccelerometer(const ArmState& before) noexcept;
   // Samples the channels whose turn comes until `until_ns` after the frame's begin.
-  void Scan(std::int64_t until_ns, const ArmVector& before) noexcept;
+  void SampleChannels(std::int64_t until_ns, const ArmVector& before) noexcept;
 
   ArmModel arm_;
   ArmSimulator simulator_;

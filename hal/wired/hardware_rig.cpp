@@ -8,7 +8,7 @@
 #include "hal/modbus/modbus_device.h"
 
 namespace flexarm {
-WiredRig::WiredRig(const HalConfig& config, const CanClocks& clocks) {
+HardwareRig::HardwareRig(const HalConfig& config, const CanClocks& clocks) {
   if (!config.gpiod) throw HalError("no safety chain is wired: [hal.gpiod] is missing");
   lines_ = std::make_unique<GpiodLines>(*config.gpiod);
   for (const CanopenConfig& bus : config.canopen) {
@@ -25,11 +25,11 @@ WiredRig::WiredRig(const HalConfig& config, const CanClocks& clocks) {
   for (const auto& bus : buses_) bus->Open();
 }
 
-WiredRig::~WiredRig() {
+HardwareRig::~HardwareRig() {
   for (const auto& bus : buses_) bus->Close();
 }
 
-std::vector<BusDevice*> WiredRig::buses() const {
+std::vector<BusDevice*> HardwareRig::buses() const {
   std::vector<BusDevice*> all;
   for (const auto& bus : buses_) all.push_back(bus.get());
   return all;

@@ -11,14 +11,14 @@
 namespace flexarm {
 
 /// The devices of a real rig, made from its config.
-class WiredRig {
+class HardwareRig {
  public:
   /// Opens the safety chain first, then every bus: identified, configured, read back.
   /// @throws HalError of the first that refuses; what was opened is closed
-  WiredRig(const HalConfig& config, const CanClocks& clocks);
-  ~WiredRig();  ///< closes the buses, torque off, then lets the lines go
-  WiredRig(const WiredRig&) = delete;
-  WiredRig& operator=(const WiredRig&) = delete;
+  HardwareRig(const HalConfig& config, const CanClocks& clocks);
+  ~HardwareRig();  ///< closes the buses, torque off, then lets the lines go
+  HardwareRig(const HardwareRig&) = delete;
+  HardwareRig& operator=(const HardwareRig&) = delete;
 
   std::vector<BusDevice*> buses() const;
   SafetyLines* lines() const { return lines_.get(); }

@@ -70,7 +70,7 @@ inline RigidJointArm::Vector RigidJointStepper::Solve(
   const Eigen::Vector4d r_f = r.tail<4>(), y = flexible.Solve(r_f);
   const Eigen::Matrix2d Z = A.topLeftCorner<2, 2>() - A.topRightCorner<2, 4>().lazyProduct(X);
   const Eigen::Vector2d r_hub = r.head<2>() - A.topRightCorner<2, 4>().lazyProduct(y);
-  const FrictionSolution hubs = BoxFriction(Z(0, 0), Z(1, 0), Z(1, 1), r_hub[0], r_hub[1])
+  const FrictionSolution hubs = CoulombFrictionLcp(Z(0, 0), Z(1, 0), Z(1, 1), r_hub[0], r_hub[1])
                                     .Solve({v[0], v[1]}, friction_nm, h_);
   Vector a;
   a.head<2>() << hubs.acceleration[0], hubs.acceleration[1];

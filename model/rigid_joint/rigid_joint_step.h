@@ -23,8 +23,8 @@ struct SampleInputs {
 /// One sample of the arm with exact Coulomb stiction: a few implicit midpoint steps of kPasses
 /// fixed-point passes each.
 ///
-/// As ArmSimulator (hubs by BoxFriction at the midpoint velocity), in long steps, and for a payload
-/// that may differ from sample to sample. A step's passes start from zero acceleration. The
+/// As ArmSimulator (hubs by CoulombFrictionLcp at the midpoint velocity), in long steps, and for a
+/// payload that may differ from sample to sample. A step's passes start from zero acceleration. The
 /// gauges' filters see the modal coordinates of the middle of each step.
 /// Source: docs/theory/payload.md 1.
 /// Real-time: Advance is safe.

@@ -83,7 +83,7 @@ class ArticulatedArm {
   void Reduce(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v,
               const AppliedForces<M>& r) noexcept;
   /// The 2x2 system in th1, th2.
-  BoxFriction hubs() const noexcept { return {z11_, z12_, z22_, r1_, r2_}; }
+  CoulombFrictionLcp hubs() const noexcept { return {z11_, z12_, z22_, r1_, r2_}; }
   double z11() const noexcept { return z11_; }
   double z12() const noexcept { return z12_; }
   double z22() const noexcept { return z22_; }

@@ -22,9 +22,9 @@ struct FrictionSolution {
 /// stuck/forward/backward are tried, the likely one first. A stuck hub gets a = -2 v / h: exactly
 /// zero midpoint velocity, and exactly zero acceleration if it was at rest.
 /// Real-time: safe.
-class BoxFriction {
+class CoulombFrictionLcp {
  public:
-  BoxFriction(double z11, double z12, double z22, double r1, double r2) noexcept
+  CoulombFrictionLcp(double z11, double z12, double z22, double r1, double r2) noexcept
       : z11_(z11), z12_(z12), z22_(z22), r1_(r1), r2_(r2) {}
 
   /// Without friction: Z a = r.

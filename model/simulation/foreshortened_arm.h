@@ -34,7 +34,7 @@ class ForeshortenedArm {
 
   void Reduce(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v,
               const AppliedForces<M>& r) noexcept;
-  BoxFriction hubs() const noexcept { return {Z_(0, 0), Z_(1, 0), Z_(1, 1), y_[0], y_[1]}; }
+  CoulombFrictionLcp hubs() const noexcept { return {Z_(0, 0), Z_(1, 0), Z_(1, 1), y_[0], y_[1]}; }
   double z11() const noexcept { return Z_(0, 0); }
   double z12() const noexcept { return Z_(1, 0); }
   double z22() const noexcept { return Z_(1, 1); }

@@ -23,7 +23,7 @@ struct Bench {
                       .move_samples = static_cast<std::size_t>(StudyMove().periods)};
   RigidJointStepper linear{RigidJointArm(ThesisRig()), kPeriod_s, 1.0};
   RigidJointStepper rolling{RigidJointArm(ThesisRig()), kPeriod_s, 1.0, 4};
-  PlanTargets targets;
+  PlanCost targets;
   PlanTrack track;
   PlanPolicy policy;
 };
@@ -43,7 +43,7 @@ void BackwardSweep(benchmark::State& state) {
   bench->targets.Set(bench->linear.arm(), kPeriod_s, StudyPlannerConfig().weights, bench->problem);
   const PlanTrack& track = bench->targets.quasi_static();
   for (auto _ : state) {
-    SweepBackward(bench->linear, 0.37, bench->targets, track, &bench->policy);
+    BackwardPass(bench->linear, 0.37, bench->targets, track, &bench->policy);
     benchmark::DoNotOptimize(bench->policy.K.data());
   }
 }

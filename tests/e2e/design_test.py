@@ -17,9 +17,9 @@ class Design(ProgramTest):
         gains, result = self.design()
         self.assertIs(result["sound"], True)
         self.assertTrue(all(check["passed"] for check in result["checks"]))
-        self.assertEqual(len(result["screen"]["cases"]), 54)
-        self.assertGreater(result["screen"]["gain_margin_up"], 1.4)
-        self.assertGreater(result["screen"]["delay_margin_ms"], 4)
+        self.assertEqual(len(result["robustness"]["cases"]), 54)
+        self.assertGreater(result["robustness"]["gain_margin_up"], 1.4)
+        self.assertGreater(result["robustness"]["delay_margin_ms"], 4)
         designed, _ = self.simulate("designed.flexarm")
         read, _ = self.simulate("read.flexarm", "--set", f'controller.gains="{gains}"')
         self.assertIs(self.flexarm_json("diff", designed, read)["identical"], True)
@@ -31,13 +31,13 @@ class Design(ProgramTest):
         self.assertIsNone(result["gains"])
         self.assertFalse(gains.exists())
         told = self.flexarm("design", "-c", HIL, "-o", gains, *bad, expect=1).stderr
-        for text in ("screen-spectral-radius", "unstable with", "--force"):
+        for text in ("robustness-spectral-radius", "unstable with", "--force"):
             self.assertIn(text, told)
         gains, result = self.design(*bad, "--force")
         self.assertEqual(result["gains"], str(gains))
         waived = [check["name"] for check in json.loads(gains.read_text())["checks"]
                   if check["waived"]]
-        self.assertIn("screen-spectral-radius", waived)
+        self.assertIn("robustness-spectral-radius", waived)
 
     def test_bad_options_are_refused(self):
         nowhere = self.folder / "nowhere" / "gains.json"

@@ -33,7 +33,7 @@ FittedModes BendWith(const std::array<double, 4>& modal, bool valid = true) {
   return modes;
 }
 
-TorquePieces Held(double u1, double u2) { return TorquePieces::WholePeriod({u1, u2}); }
+PiecewiseTorque Held(double u1, double u2) { return PiecewiseTorque::WholePeriod({u1, u2}); }
 
 TEST(PayloadEstimator, StartsAtRestWhereTheHubsAre) {
   PayloadEstimator estimator = Estimator();
@@ -77,7 +77,7 @@ TEST(PayloadEstimator, ALostFrameIsPredicted) {
 TEST(PayloadEstimator, PiecesOfTorqueActOneAfterTheOther) {
   PayloadEstimator estimator = Estimator();
   estimator.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
-  TorquePieces halves, mixed, quarter;
+  PiecewiseTorque halves, mixed, quarter;
   halves.Add({.torque_nm = {2.0, 0.4}, .ticks = kPeriodTicks / 2});
   halves.Add({.torque_nm = {2.0, 0.4}, .ticks = kPeriodTicks / 2});
   EXPECT_EQ(estimator.After(halves), estimator.After(Held(2.0, 0.4)));
@@ -107,7 +107,7 @@ class LateArm {
   /// @returns the delay found by then
   int Run(int samples, PayloadEstimator* estimator) {
     for (int k = next_; k < next_ + samples; ++k) {
-      const TorquePieces acting = Torque(k - late_);
+      const PiecewiseTorque acting = Torque(k - late_);
       x_ =
           estimator->stepper().Advance(x_, {.torque_nm = {acting.last_nm()[0], acting.last_nm()[1]},
                                             .payload_kg = 0.2,
@@ -121,7 +121,7 @@ class LateArm {
   }
 
  private:
-  static TorquePieces Torque(int k) {
+  static PiecewiseTorque Torque(int k) {
     const double s = k < 0 ? 0.0 : std::sin(2.0 * M_PI * k / 50.0);
     return Held(4.0 * s, 0.6 * s);
   }
@@ -163,7 +163,7 @@ TEST(PayloadEstimator, WithADelayFoundWhatWasLearntIsForgotten) {
 TEST(PayloadEstimator, TakesTheTorqueOfTheDelayThatHolds) {
   PayloadEstimator estimator = Estimator(), alone = Estimator();
   for (int k = 0; k < 5; ++k) {
-    const TorquePieces torque = Held(1.0 + k, 0.2);
+    const PiecewiseTorque torque = Held(1.0 + k, 0.2);
     estimator.Update(Angles(0.0, 0.0), BendWith({}),
                      TorqueByDelay{std::nullopt, torque, Held(9.0, 2.0), std::nullopt});
     alone.Update(Angles(0.0, 0.0), BendWith({}), torque);

@@ -25,8 +25,8 @@ using Outputs = PayloadFilter::Outputs;
 
 constexpr double kCount_rad = 2.0 * M_PI / 2540.0, kFineCount_rad = 2.0 * M_PI / 24480.0;
 
-TorquePieces Held(const Vector2d& torque_nm) {
-  return TorquePieces::WholePeriod({torque_nm[0], torque_nm[1]});
+PiecewiseTorque Held(const Vector2d& torque_nm) {
+  return PiecewiseTorque::WholePeriod({torque_nm[0], torque_nm[1]});
 }
 
 // A reading of the tip's acceleration behind 200 Hz, which the design study does not have; without
@@ -147,8 +147,8 @@ TEST(PayloadFilter, ARivalIsTheFilterWithAnotherTorque) {
     SCOPED_TRACE(tip_is_read);
     PayloadFilter filter = {StudyStepper(), config}, other = filter;
     GaugedState x = filter.estimate().state;
-    std::array<PayloadFilter::Rival, 2> rivals;
-    for (auto& rival : rivals) rival.apart.setZero();
+    std::array<PayloadFilter::Hypothesis, 2> hypotheses;
+    for (auto& hypothesis : hypotheses) hypothesis.apart.setZero();
     for (int k = 0; k < 40; ++k) {
       const Vector2d torque = MoveTorque(k);
       const Vector2d more = torque + 0.02 * Vector2d(std::sin(0.3 * k), 0.2);
@@ -156,18 +156,18 @@ TEST(PayloadFilter, ARivalIsTheFilterWithAnotherTorque) {
           x, {.torque_nm = torque, .payload_kg = payload_kg, .friction_nm = {}});
       PayloadFilter::Reading reading = ShownBy(x, torque, payload_kg, tip_is_read);
       if (k % 3 == 0) reading.good = 0b11110110u;
-      rivals[0].torque = Held(torque);
-      rivals[1].torque = Held(more);
-      const auto& e = filter.Update(Held(torque), reading, rivals);
+      hypotheses[0].torque = Held(torque);
+      hypotheses[1].torque = Held(more);
+      const auto& e = filter.Update(Held(torque), reading, hypotheses);
       const auto& o = other.Update(Held(more), reading);
-      EXPECT_EQ(rivals[0].innovation, e.innovation) << k;
-      EXPECT_EQ(rivals[0].nis, e.nis) << k;
-      EXPECT_EQ(rivals[0].apart.norm(), 0.0) << k;
+      EXPECT_EQ(hypotheses[0].innovation, e.innovation) << k;
+      EXPECT_EQ(hypotheses[0].nis, e.nis) << k;
+      EXPECT_EQ(hypotheses[0].apart.norm(), 0.0) << k;
       VectorXd expected(12);
       expected << o.state.q - e.state.q, o.state.v - e.state.v;
-      EXPECT_LT(RelativeError(rivals[1].apart.head<12>(), expected), 0.1) << k;
-      EXPECT_LT((rivals[1].innovation - o.innovation).norm(), 0.02 * o.innovation.norm()) << k;
-      EXPECT_NEAR(rivals[1].nis, o.nis, 0.04 * o.nis) << k;
+      EXPECT_LT(RelativeError(hypotheses[1].apart.head<12>(), expected), 0.1) << k;
+      EXPECT_LT((hypotheses[1].innovation - o.innovation).norm(), 0.02 * o.innovation.norm()) << k;
+      EXPECT_NEAR(hypotheses[1].nis, o.nis, 0.04 * o.nis) << k;
     }
   }
 }
@@ -182,13 +182,14 @@ TEST(PayloadFilter, GivesWayToARivalWithItsMotionAndLearnsAgain) {
   const PayloadFilter::Estimate before = filter.estimate();
   ASSERT_GT(before.payload_kg, 0.4);
   ASSERT_NE(before.friction_nm, StudyPayload().friction_start_nm);
-  PayloadFilter::Rival rival;
-  for (int i = 0; i < PayloadFilter::kStates; ++i) rival.apart[i] = 1e-4 * (i + 1);
-  filter.GiveWayTo(rival);
+  PayloadFilter::Hypothesis hypothesis;
+  for (int i = 0; i < PayloadFilter::kStates; ++i) hypothesis.apart[i] = 1e-4 * (i + 1);
+  filter.SwitchTo(hypothesis);
   const PayloadFilter::Estimate& after = filter.estimate();
-  EXPECT_LT((after.state.q - before.state.q - rival.apart.head<6>()).norm(), 1e-15);
-  EXPECT_LT((after.state.v - before.state.v - rival.apart.segment<6>(6)).norm(), 1e-15);
-  EXPECT_LT((after.state.phi_f - before.state.phi_f - rival.apart.segment<4>(12)).norm(), 1e-15);
+  EXPECT_LT((after.state.q - before.state.q - hypothesis.apart.head<6>()).norm(), 1e-15);
+  EXPECT_LT((after.state.v - before.state.v - hypothesis.apart.segment<6>(6)).norm(), 1e-15);
+  EXPECT_LT((after.state.phi_f - before.state.phi_f - hypothesis.apart.segment<4>(12)).norm(),
+            1e-15);
   EXPECT_EQ(after.payload_kg, 0.2);
   EXPECT_EQ(after.payload_sigma_kg, 0.4);
   EXPECT_EQ(after.friction_nm, StudyPayload().friction_start_nm);
@@ -414,7 +415,7 @@ TEST(PayloadFilter, ALoadTakenForDroppedIsFoundAgainFromNothing) {
   for (int k = 0; k < 140; ++k) sample(k);
   ASSERT_NEAR(filter.estimate().payload_kg, 0.6, 0.05);
   const PayloadFilter::Estimate before = filter.estimate();
-  filter.TakeLoadForDropped();
+  filter.AssumePayloadLost();
   EXPECT_EQ(filter.estimate().payload_kg, 0.0);
   EXPECT_EQ(filter.estimate().payload_sigma_kg, 0.1);
   EXPECT_EQ(filter.estimate().state.q, before.state.q);
@@ -424,7 +425,7 @@ TEST(PayloadFilter, ALoadTakenForDroppedIsFoundAgainFromNothing) {
   EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.05);
 
   filter.EndMove();
-  filter.TakeLoadForDropped();
+  filter.AssumePayloadLost();
   EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.05) << "at rest somebody leans on the arm";
 }
 

@@ -205,7 +205,7 @@ TEST(KalmanFilter, ATorqueThatChangesWithinThePeriodIsFollowed) {
   const KalmanDesign design = ThesisFilter();
   StateEstimator estimator = Kalman(design), by_mean = Kalman(design);
   const std::array<double, 2> before = {2.0, -0.3}, after = {0.0, 0.3};
-  TorquePieces pieces;
+  PiecewiseTorque pieces;
   pieces.Add({.torque_nm = before, .ticks = kPeriodTicks * 3 / 10});
   pieces.Add({.torque_nm = after, .ticks = kPeriodTicks - kPeriodTicks * 3 / 10});
   DecodedCounters none{};
@@ -327,10 +327,10 @@ TEST(DifferenceEstimator, ALostAngleGoesOnAtItsLastRate) {
 TEST(KalmanFilter, KnowsTheRatesOfItsPredictedModes) {
   const KalmanDesign design = ThesisFilter();
   StateEstimator estimator = Kalman(design);
-  EXPECT_EQ(estimator.ModalRates(TorquePieces()), (std::array<double, 4>{}));
+  EXPECT_EQ(estimator.ModalRates(PiecewiseTorque()), (std::array<double, 4>{}));
   estimator.Update(Angles(0.1, 0.2, 0.1, 0.2), Bend({0.03, 1e-3, 0.01, 1e-3}), {0.0, 0.0});
   const std::array<double, 2> torque = {2.0, -0.3};
-  const std::array<double, 4> rates = estimator.ModalRates(TorquePieces::WholePeriod(torque));
+  const std::array<double, 4> rates = estimator.ModalRates(PiecewiseTorque::WholePeriod(torque));
   Eigen::VectorXd x(16);
   x << 0.1, 0.2, 0.03, 1e-3, 0.01, 1e-3, 0, 0, 0, 0, 0, 0, 0.03, 1e-3, 0.01, 1e-3;
   const auto modes_at = [&](double t_s) -> Eigen::VectorXd {

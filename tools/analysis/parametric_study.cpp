@@ -8,7 +8,7 @@
 #include "model/arm/linearization.h"
 #include "model/simulation/arm_simulator.h"
 #include "model/units.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 
 namespace flexarm {
 namespace {
@@ -179,7 +179,7 @@ ParametricStudy RunParametricStudy(const RigConfig& config, const Excitation& ex
     study.sweep.push_back(
         {plan.name, plan.label, plan.nominal, std::vector<ParametricPoint>(plan.values.size())});
   }
-  ForAllOnAllCores(
+  ParallelFor(
       runs.size(),
       [&](std::size_t run) {
         const auto [sweep, i] = runs[run];

@@ -74,7 +74,7 @@ constexpr double kShown_hz = 25.0;         ///< spectra are kept up to here
 Excitation Strong(const Excitation& weak);
 
 /// Runs every point of every sweep on all cores.
-/// @param progress  as ForAllOnAllCores, with the number of runs done of `ParametricRuns`
+/// @param progress  as ParallelFor, with the number of runs done of `ParametricRuns`
 ParametricStudy RunParametricStudy(const RigConfig& config, const Excitation& excitation,
                                    const std::function<void(std::size_t)>& progress = {});
 

@@ -1,7 +1,7 @@
 #include "tools/analysis/reduction_grid.h"
 
 #include "model/units.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 
 namespace flexarm {
 namespace {
@@ -45,7 +45,7 @@ std::vector<ReductionCell> ReduceCells(const ArmModel& model,
                                        const ReductionOptions& options,
                                        const std::function<void(std::size_t)>& progress) {
   std::vector<ReductionCell> cells(motions.size());
-  ForAllOnAllCores(
+  ParallelFor(
       motions.size(), [&](std::size_t i) { cells[i] = ReduceCell(model, motions[i], options); },
       progress);
   return cells;

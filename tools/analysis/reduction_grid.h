@@ -41,7 +41,7 @@ ReductionCell ReduceCell(const ArmModel& model, const NominalMotion& motion,
                          const ReductionOptions& options = {});
 
 /// All motions, on all cores, in their order.
-/// @param progress  as ForAllOnAllCores
+/// @param progress  as ParallelFor
 std::vector<ReductionCell> ReduceCells(const ArmModel& model,
                                        const std::vector<NominalMotion>& motions,
                                        const ReductionOptions& options,

@@ -8,17 +8,17 @@
 #include "config/config.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "tools/command_line/verbs.h"
 
 namespace flexarm {
 namespace {
 
-void Complain(const std::string& text) { std::cerr << "flexarm: " << text << '\n'; }
+void PrintError(const std::string& text) { std::cerr << "flexarm: " << text << '\n'; }
 
 // CLI11 knows the message; what is missing is our name before it and where to read on.
 int BadUsage(const CLI::App& app, const CLI::ParseError& error) {
-  Complain(error.what());
+  PrintError(error.what());
   const CLI::App* verb = &app;
   std::string name = "flexarm";
   while (!verb->get_subcommands().empty()) {
@@ -47,7 +47,7 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
   register_verbs(app, exit);
   const auto is_first = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty()) {
-    Complain("unknown verb \"" + std::string(argv[1]) + "\"; flexarm --help names them all");
+    PrintError("unknown verb \"" + std::string(argv[1]) + "\"; flexarm --help names them all");
     return Exit::kBadInput;
   }
   try {
@@ -57,16 +57,16 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
   } catch (const CLI::ParseError& error) {
     return BadUsage(app, error);
   } catch (const ConfigError& error) {
-    Complain(error.what());
+    PrintError(error.what());
     return Exit::kBadInput;
-  } catch (const Refused& error) {
-    Complain(error.what());
+  } catch (const RejectedError& error) {
+    PrintError(error.what());
     return Exit::kBadInput;
   } catch (const InputError& error) {
-    Complain(error.what());
+    PrintError(error.what());
     return Exit::kBadInput;
   } catch (const std::exception& error) {
-    Complain(error.what());
+    PrintError(error.what());
     return Exit::kFailed;
   }
   return exit.code;

@@ -11,7 +11,7 @@
 #include "controller/design/design_json.h"
 #include "controller/design/robustness_analysis.h"
 #include "controller/law/design.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/support/text_file.h"
@@ -40,22 +40,22 @@ Conditioning ConditioningOf(const RigConfig& config, const Design& design) {
   return {.unscaled = SteinCondition(problem), .scaled = scaled};
 }
 
-nlohmann::ordered_json ToJson(const Screen& screen) {
+nlohmann::ordered_json ToJson(const RobustnessAnalysis& robustness) {
   nlohmann::ordered_json json;
-  for (const ScreenCase& c : screen.cases) {
+  for (const RobustnessCase& c : robustness.cases) {
     json["cases"].push_back({{"payload_kg", c.payload_kg},
                              {"theta2_deg", c.theta2_deg},
                              {"gain", c.gain},
                              {"required", c.required},
                              {"spectral_radius", c.spectral_radius}});
   }
-  json["gain_margin_up"] = screen.margins.gain_up;
-  json["gain_margin_down"] = screen.margins.gain_down;
-  json["delay_margin_ms"] = 1e3 * screen.margins.delay_s;
+  json["gain_margin_up"] = robustness.margins.gain_up;
+  json["gain_margin_down"] = robustness.margins.gain_down;
+  json["delay_margin_ms"] = 1e3 * robustness.margins.delay_s;
   return json;
 }
 
-nlohmann::ordered_json ToJson(const Design& design, const Screen& screen,
+nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& robustness,
                               const Conditioning& conditioning, const DesignOptions& options,
                               const std::string& hash) {
   nlohmann::ordered_json json;
@@ -73,7 +73,7 @@ nlohmann::ordered_json ToJson(const Design& design, const Screen& screen,
                               {"passed", check.passed()},
                               {"waived", check.waived}});
   }
-  json["screen"] = ToJson(screen);
+  json["robustness"] = ToJson(robustness);
   for (Eigen::Index i = 0; i < design.K.rows(); ++i) {
     json["k"].push_back(std::vector<double>());
     for (Eigen::Index j = 0; j < design.K.cols(); ++j) json["k"].back().push_back(design.K(i, j));
@@ -83,27 +83,28 @@ nlohmann::ordered_json ToJson(const Design& design, const Screen& screen,
   return json;
 }
 
-void PrintScreen(const Screen& screen) {
+void PrintRobustness(const RobustnessAnalysis& robustness) {
   std::printf(
-      "\nscreen: largest |eigenvalue| of the loop around the arm with 4 modes a link, below 1 is\n"
+      "\nrobustness: largest |eigenvalue| of the loop around the arm with 4 modes a link, below 1 "
+      "is\n"
       "stable (!: it must be, ?: both payload and gains are off); gains as they are, x 0.7, x "
       "1.4\n%-12s %12s %10s %10s %10s\n",
       "payload, kg", "elbow, deg", "x 1", "x 0.7", "x 1.4");
-  for (std::size_t i = 0; i + 2 < screen.cases.size(); i += 3) {
-    std::printf("%-12g %12g", screen.cases[i].payload_kg, screen.cases[i].theta2_deg);
+  for (std::size_t i = 0; i + 2 < robustness.cases.size(); i += 3) {
+    std::printf("%-12g %12g", robustness.cases[i].payload_kg, robustness.cases[i].theta2_deg);
     for (std::size_t j = 0; j < 3; ++j) {
-      const double radius = screen.cases[i + j].spectral_radius;
+      const double radius = robustness.cases[i + j].spectral_radius;
       std::printf(" %9.5f%s", radius,
-                  radius < 1.0                   ? " "
-                  : screen.cases[i + j].required ? "!"
-                                                 : "?");
+                  radius < 1.0                       ? " "
+                  : robustness.cases[i + j].required ? "!"
+                                                     : "?");
     }
     std::printf("\n");
   }
 }
 
-void PrintText(const Design& design, const Screen& screen, const Conditioning& conditioning,
-               const std::filesystem::path& file) {
+void PrintText(const Design& design, const RobustnessAnalysis& robustness,
+               const Conditioning& conditioning, const std::filesystem::path& file) {
   const std::string nominal(NameOf(design.layout));
   const auto states = static_cast<int>(design.A.rows());
   std::printf(
@@ -116,7 +117,7 @@ void PrintText(const Design& design, const Screen& screen, const Conditioning& c
     std::printf("%-34s %12.4g  %s %.4g%s\n", check.name.c_str(), check.value,
                 check.below ? "below" : "above", check.limit, verdict);
   }
-  PrintScreen(screen);
+  PrintRobustness(robustness);
   std::printf("\nK (N m per rad, per m, per rad/s, per m/s):\n");
   for (Eigen::Index i = 0; i < design.K.rows(); ++i) {
     for (Eigen::Index j = 0; j < design.K.cols(); ++j) std::printf(" %9.4g", design.K(i, j));
@@ -126,8 +127,8 @@ void PrintText(const Design& design, const Screen& screen, const Conditioning& c
 }
 
 // Where the loop is unstable, if it is.
-std::string Where(const Screen& screen) {
-  const ScreenCase& worst = screen.worst_required();
+std::string Where(const RobustnessAnalysis& robustness) {
+  const RobustnessCase& worst = robustness.worst_required();
   if (worst.spectral_radius < 1.0) return "";
   std::ostringstream text;
   text << "; the loop is unstable with " << worst.payload_kg << " kg, elbow at " << worst.theta2_deg
@@ -139,8 +140,8 @@ int Run(const DesignOptions& options) {
   RigConfig config = options.config.Load();
   config.controller.gains_file.clear();  // a new design, whatever the config runs with
   Design design = DesignController(config);
-  const Screen screen = ScreenDesign(config, design, options.payload_kg);
-  for (const DesignCheck& check : ChecksOf(screen)) design.checks.push_back(check);
+  const RobustnessAnalysis robustness = AnalyzeRobustness(config, design, options.payload_kg);
+  for (const DesignCheck& check : ChecksOf(robustness)) design.checks.push_back(check);
   std::string failed;
   for (DesignCheck& check : design.checks) {
     if (check.passed()) continue;
@@ -151,12 +152,12 @@ int Run(const DesignOptions& options) {
   const Conditioning conditioning = ConditioningOf(config, design);
   if (design.sound()) WriteText(options.output, DesignToJson(design, hash) + '\n');
   if (options.json) {
-    std::cout << ToJson(design, screen, conditioning, options, hash).dump(2) << '\n';
+    std::cout << ToJson(design, robustness, conditioning, options, hash).dump(2) << '\n';
   } else {
-    PrintText(design, screen, conditioning, options.output);
+    PrintText(design, robustness, conditioning, options.output);
   }
   if (!design.sound()) {
-    std::cerr << "flexarm: no gains were written: failed: " << failed << Where(screen)
+    std::cerr << "flexarm: no gains were written: failed: " << failed << Where(robustness)
               << "; --force writes them all the same, and says so in the file\n";
     return Exit::kFailed;
   }

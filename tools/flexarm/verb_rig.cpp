@@ -12,7 +12,7 @@
 #include <string>
 
 #include "controller/realtime/clock.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "hal/emulation/emulated_rig.h"
 #include "hal/emulation/rig_commands.h"
 #include "tools/command_line/options.h"
@@ -57,8 +57,8 @@ class Commands {
   bool open_ = true;
 };
 
-void Report(const WireRig& rig, bool json) {
-  const WireRig::Observed& seen = rig.observed();
+void Report(const EmulatedRig& rig, bool json) {
+  const EmulatedRig::Observed& seen = rig.observed();
   if (json) {
     nlohmann::ordered_json out;
     out["torque_nm"] = {seen.torque_nm[0], seen.torque_nm[1]};
@@ -78,14 +78,14 @@ void Report(const WireRig& rig, bool json) {
 int Run(const RigOptions& options) {
   const RigConfig config = options.config.Load();
   if (config.hal.empty()) {
-    throw Refused(options.config.file.string() +
-                  ": has no wires to play; expected [[hal.canopen]], [[hal.modbus]] and "
-                  "[hal.gpiod], as config/hil-wire.toml");
+    throw RejectedError(options.config.file.string() +
+                        ": has no wires to play; expected [[hal.canopen]], [[hal.modbus]] and "
+                        "[hal.gpiod], as config/hil-wire.toml");
   }
   ArmParameters arm = config.arm;
   if (options.payload_kg) arm.payload_mass_kg = *options.payload_kg;
-  WireRig rig(arm, config.sensors, config.sim, config.hal,
-              {.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
+  EmulatedRig rig(arm, config.sensors, config.sim, config.hal,
+                  {.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
   std::signal(SIGTERM, AskEnd);
   std::signal(SIGINT, AskEnd);
   std::cerr << "flexarm rig: playing " << config.rig_name << "; commands on stdin\n";
@@ -103,7 +103,7 @@ int Run(const RigOptions& options) {
       if (line == "report") {
         Report(rig, options.json);
       } else {
-        const std::string complaint = ObeyRig(line, &rig);
+        const std::string complaint = ExecuteRigCommand(line, &rig);
         if (!complaint.empty()) std::cerr << "flexarm rig: " << line << ": " << complaint << '\n';
       }
     }

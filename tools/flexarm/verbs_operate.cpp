@@ -49,15 +49,15 @@ void PrintStatus(const Json& s) {
     if (const int samples = payload.value("delay_found", 0); samples != 0) {
       std::printf("; delay found: %+d samples beyond the known one", samples);
     }
-    for (const Json& doubt : payload.value("doubts", Json::array())) {
-      std::printf("; %s", doubt.get<std::string>().c_str());
+    for (const Json& warning : payload.value("warnings", Json::array())) {
+      std::printf("; %s", warning.get<std::string>().c_str());
     }
     std::printf("\n");
   }
   for (const Json& bus : s.value("buses", Json::array())) {
-    std::printf("%-14s %s, %u failed, %u times taken back%s%s\n", bus.value("name", "").c_str(),
+    std::printf("%-14s %s, %u failed, %u times recovered%s%s\n", bus.value("name", "").c_str(),
                 bus.value("ok", false) ? "ok" : "lost", bus.value("failed", 0U),
-                bus.value("taken_back", 0U), bus["fault"].is_string() ? "; " : "",
+                bus.value("recovered", 0U), bus["fault"].is_string() ? "; " : "",
                 bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
   }
   for (const Json& thread : s.value("threads", Json::array())) {

@@ -5,7 +5,7 @@
 #include "tools/analysis/parametric_report.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/thesis/parametric_statements.h"
 
 namespace flexarm {

@@ -9,7 +9,7 @@
 #include "tools/analysis/reduction_report.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 
 namespace flexarm {
 namespace {

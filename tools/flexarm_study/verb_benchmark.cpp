@@ -7,7 +7,7 @@
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/support/text_file.h"
 
 namespace flexarm {

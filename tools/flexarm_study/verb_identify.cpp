@@ -11,7 +11,7 @@
 #include "tools/identification/comparison_picture.h"
 #include "tools/identification/identification.h"
 #include "tools/runs/run_summary.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/support/text_file.h"
 
 namespace flexarm {

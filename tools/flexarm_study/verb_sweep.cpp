@@ -8,7 +8,7 @@
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/sweep.h"
 #include "tools/sweep/sweep_summary.h"

@@ -7,7 +7,7 @@
 #include "controller/realtime/realtime_setup.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "hal/bus_device.h"
 
 namespace flexarm {
@@ -58,14 +58,15 @@ RigConfig Load(const Options& options) {
 // Only a simulated arm may be moved without a person who asked for it.
 void RequireBackend(const RigConfig& config, const Options& options) {
   if (config.backend.empty()) {
-    throw Refused(options.config.string() +
-                  ": has no [hal] section, so there is nothing to drive; use a config with "
-                  "hal.backend, as config/hil.toml");
+    throw RejectedError(options.config.string() +
+                        ": has no [hal] section, so there is nothing to drive; use a config with "
+                        "hal.backend, as config/hil.toml");
   }
   if (config.backend == "sim" || options.experiment.empty()) return;
-  throw Refused("--experiment moves the arm without a person, and backend '" + config.backend +
-                "' drives a real one: start the daemon without it, then use `flexarm arm` and "
-                "`flexarm run`");
+  throw RejectedError(
+      "--experiment moves the arm without a person, and backend '" + config.backend +
+      "' drives a real one: start the daemon without it, then use `flexarm arm` and "
+      "`flexarm run`");
 }
 
 int Serve(const Options& options) {
@@ -81,7 +82,7 @@ int Serve(const Options& options) {
   return result.tripped || result.refused || result.log_errors > 0 ? kFailed : kDone;
 }
 
-int Complain(const std::string& text, int code) {
+int PrintError(const std::string& text, int code) {
   std::cerr << "flexarmd: " << text << '\n';
   return code;
 }
@@ -104,19 +105,19 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return Complain(std::string(error.what()) + "\nTry: flexarmd --help", kBadInput);
-  } catch (const RealtimeRefused& error) {
-    return Complain(std::string("real time is refused.\n") + error.what(), kFailed);
+    return PrintError(std::string(error.what()) + "\nTry: flexarmd --help", kBadInput);
+  } catch (const RealtimeRejectedError& error) {
+    return PrintError(std::string("real time is refused.\n") + error.what(), kFailed);
   } catch (const HalError& error) {
-    return Complain(std::string("a device cannot be used: ") + error.what(), kFailed);
+    return PrintError(std::string("a device cannot be used: ") + error.what(), kFailed);
   } catch (const ConfigError& error) {
-    return Complain(error.what(), kBadInput);
-  } catch (const Refused& error) {
-    return Complain(error.what(), kBadInput);
+    return PrintError(error.what(), kBadInput);
+  } catch (const RejectedError& error) {
+    return PrintError(error.what(), kBadInput);
   } catch (const InputError& error) {
-    return Complain(error.what(), kBadInput);
+    return PrintError(error.what(), kBadInput);
   } catch (const std::exception& error) {
-    return Complain(error.what(), kFailed);
+    return PrintError(error.what(), kFailed);
   }
 }
 

@@ -9,7 +9,7 @@
 #include "controller/runlog/errors.h"
 #include "model/math/dense_decompositions.h"
 #include "model/problem_list.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 
 namespace flexarm {
 namespace {
@@ -59,7 +59,7 @@ Eigen::VectorXd Stacked(const RunComparison& run, const Eigen::MatrixXd& differe
 Eigen::MatrixXd Jacobian(const RigConfig& config, const RunComparison& run,
                          const std::vector<FreeParameter>& free, const std::vector<double>& x) {
   Eigen::MatrixXd J(run.measured().size(), static_cast<Eigen::Index>(free.size()));
-  ForAllOnAllCores(free.size(), [&](std::size_t i) {
+  ParallelFor(free.size(), [&](std::size_t i) {
     std::vector<double> above = x, below = x;
     above[i] = std::min(1.0, x[i] + kDifference);
     below[i] = std::max(0.0, x[i] - kDifference);

@@ -69,19 +69,19 @@ void FillDistanceFromRest(const std::vector<Rest>& rests, std::vector<PlotRun::S
   }
 }
 
-std::vector<PlotRun::Stretch> StretchesOf(const LoadedRun& run, std::int64_t zero_ns) {
-  std::vector<PlotRun::Stretch> stretches;
+std::vector<PlotRun::StateSpan> StateSpansOf(const LoadedRun& run, std::int64_t zero_ns) {
+  std::vector<PlotRun::StateSpan> spans;
   const double period_s = run.period_s();
   for (const TickRecord& record : run.contents.tick) {
     const double time_s = static_cast<double>(record.input.sampling_instant_ns - zero_ns) * 1e-9;
     const SafetyState state = record.input.safety_state;
-    if (!stretches.empty() && stretches.back().state == state) {
-      stretches.back().until_s = time_s + period_s;
+    if (!spans.empty() && spans.back().state == state) {
+      spans.back().until_s = time_s + period_s;
     } else {
-      stretches.push_back({.from_s = time_s, .until_s = time_s + period_s, .state = state});
+      spans.push_back({.from_s = time_s, .until_s = time_s + period_s, .state = state});
     }
   }
-  return stretches;
+  return spans;
 }
 
 // Draws the arm from the estimated hub angles and modal coordinates.
@@ -165,7 +165,7 @@ PlotRun PlotDataOf(const LoadedRun& run) {
                .truth = truth,
                .trip = trip ? Name(trip->after.cause) : "",
                .sample = {},
-               .stretch = StretchesOf(run, zero_ns),
+               .span = StateSpansOf(run, zero_ns),
                .pose = PosesOf(run, zero_ns),
                .act = {},
                .metrics = MetricsOf(run)};

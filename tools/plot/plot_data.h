@@ -19,7 +19,7 @@ struct PlotRun {
     double from_rest_mm;  ///< of the tip from where it comes to rest; NaN without an experiment
     std::array<double, 2> tip_m;
   };
-  struct Stretch {
+  struct StateSpan {
     double from_s, until_s;
     SafetyState state;
   };
@@ -39,7 +39,7 @@ struct PlotRun {
   bool truth;        ///< angles, tip and deflections are the plant's own
   std::string trip;  ///< machine name; empty: none
   std::vector<Sample> sample;
-  std::vector<Stretch> stretch;
+  std::vector<StateSpan> span;
   std::vector<Pose> pose;
   std::vector<Act> act;  ///< at least one
   std::optional<RunMetrics> metrics;

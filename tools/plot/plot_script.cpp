@@ -200,7 +200,7 @@ class Script {
     int object = 1;
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       const double low = rows - 1 - static_cast<double>(run);
-      for (const PlotRun::Stretch& stretch : runs_[run].stretch) State(stretch, low, &object);
+      for (const PlotRun::StateSpan& span : runs_[run].span) State(span, low, &object);
     }
     text_ << "plot 0 with lines lc rgb '#808080' notitle\n";
     while (--object > 0)
@@ -208,15 +208,14 @@ class Script {
     text_ << "set ytics auto\nset grid ls 100\n";
   }
 
-  void State(const PlotRun::Stretch& stretch, double low, int* object) {
-    text_ << "set object " << *object << " rectangle from " << stretch.from_s << ',' << low + 0.04
-          << " to " << stretch.until_s << ',' << low + 0.96 << " fs solid noborder fc rgb '"
-          << StateColour(stretch.state) << "' back\n";
-    const bool wide = (stretch.until_s - stretch.from_s) > 0.09 * (until_s_ - from_s_);
+  void State(const PlotRun::StateSpan& span, double low, int* object) {
+    text_ << "set object " << *object << " rectangle from " << span.from_s << ',' << low + 0.04
+          << " to " << span.until_s << ',' << low + 0.96 << " fs solid noborder fc rgb '"
+          << StateColour(span.state) << "' back\n";
+    const bool wide = (span.until_s - span.from_s) > 0.09 * (until_s_ - from_s_);
     if (wide) {
-      text_ << "set label " << 100 + *object << " '" << Name(stretch.state) << "' at "
-            << (stretch.from_s + stretch.until_s) / 2 << ',' << low + 0.5
-            << " center font ',11' front\n";
+      text_ << "set label " << 100 + *object << " '" << Name(span.state) << "' at "
+            << (span.from_s + span.until_s) / 2 << ',' << low + 0.5 << " center font ',11' front\n";
     }
     ++*object;
   }

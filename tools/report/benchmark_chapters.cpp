@@ -2,7 +2,7 @@
 #include "tools/benchmark/limits_picture.h"
 #include "tools/report/chapters.h"
 #include "tools/report/study_figures.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 
 namespace flexarm {
 namespace {

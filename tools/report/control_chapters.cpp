@@ -4,7 +4,7 @@
 #include "tools/plot/plot_data.h"
 #include "tools/report/chapters.h"
 #include "tools/report/loop_picture.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/sweep/better_sensors.h"
 #include "tools/thesis/chapter7_statements.h"
 #include "tools/thesis/control_study.h"
@@ -32,7 +32,7 @@ struct NamedRun {
 
 std::vector<PlotRun> RunAll(const ReportContext& context, const std::vector<NamedRun>& runs) {
   std::vector<PlotRun> plots(runs.size());
-  ForAllOnAllCores(runs.size(), [&](std::size_t i) {
+  ParallelFor(runs.size(), [&](std::size_t i) {
     const NamedRun& run = runs[i];
     const std::filesystem::path log = context.folder / "runs" / (run.file + ".flexarm");
     Simulate({.config = WithOverrides(context.config, run.overrides),

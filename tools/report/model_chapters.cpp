@@ -5,7 +5,7 @@
 #include "tools/analysis/perturbation_figures.h"
 #include "tools/analysis/reduction_figures.h"
 #include "tools/report/chapters.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/thesis/parametric_statements.h"
 #include "tools/thesis/thesis_check.h"
 

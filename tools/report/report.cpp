@@ -5,7 +5,7 @@
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
 #include "tools/report/chapters.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/support/text_file.h"
 
 namespace flexarm {

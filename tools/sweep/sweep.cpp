@@ -10,8 +10,8 @@
 
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
-#include "controller/types/refused.h"
-#include "tools/support/parallel.h"
+#include "controller/types/rejected_error.h"
+#include "tools/support/parallel_for.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/random_moves.h"
 
@@ -131,7 +131,7 @@ SweepRow RunPoint(const SweepPlan& plan, std::size_t point) {
   SweepRow row;
   try {
     row = RowOf(point, Simulate(RequestAt(plan, point)));
-  } catch (const Refused& error) {
+  } catch (const RejectedError& error) {
     row = RefusedRow(point, error.what());
   } catch (const ConfigError& error) {  // values that are right one by one, and wrong together
     row = RefusedRow(point, error.what());
@@ -153,7 +153,7 @@ std::vector<std::size_t> PointsToRun(SweepFile* file, const Shard& shard) {
 void RunSweep(const SweepPlan& plan, const std::vector<std::size_t>& points, SweepFile* file,
               std::size_t jobs, const std::function<void(std::size_t)>& progress) {
   std::mutex mutex;  // of the file
-  ForAllOnAllCores(
+  ParallelFor(
       points.size(),
       [&](std::size_t i) {
         const SweepRow row = RunPoint(plan, points[i]);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "controller/host/simulation.h"
-#include "controller/types/refused.h"
-#include "tools/support/parallel.h"
+#include "controller/types/rejected_error.h"
+#include "tools/support/parallel_for.h"
 #include "tools/sweep/sweep_summary.h"
 
 namespace flexarm {
@@ -75,7 +75,7 @@ SimulationResult RunOf(const RigConfig& config, const ControlCase& of, int seed)
                      .experiment = ControlCommand(of.shape),
                      .payload_kg = of.payload_kg,
                      .log = {}});
-  } catch (const Refused&) {
+  } catch (const RejectedError&) {
     return {};
   }
 }
@@ -139,7 +139,7 @@ ControlStudy::ControlStudy(const RigConfig& config,
   const std::vector<ControlCase> cases = Cases();
   std::vector<std::vector<SimulationResult>> results(cases.size(),
                                                      std::vector<SimulationResult>(kSeeds));
-  ForAllOnAllCores(
+  ParallelFor(
       cases.size() * kSeeds,
       [&](std::size_t i) {
         const std::size_t of = i / kSeeds, seed = i % kSeeds;

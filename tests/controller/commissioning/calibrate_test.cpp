@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/arm/arm_model.h"
 #include "model/math/dense_decompositions.h"
 #include "tests/controller/commissioning/rest_ticks.h"
@@ -58,7 +58,7 @@ TEST_F(CalibrateTest, TareNamesEveryChannelThatCannotBeRightAndNoOther) {
   readings.strain_missing[2] = 3;
   readings.strain_sigma[7] = 40.0;    // a loose contact
   readings.strain_mean[15] = 1900.0;  // bytes in the wrong order, or a broken bridge
-  const std::string told = MessageOf<Refused>([&] { Tare(config_.sensors, readings, {}); });
+  const std::string told = MessageOf<RejectedError>([&] { Tare(config_.sensors, readings, {}); });
   EXPECT_THAT(told, HasSubstr("strain_1_03: 3 of 50 readings are missing"));
   EXPECT_THAT(told, HasSubstr("strain_1_08: varies by 40.0"));
   EXPECT_THAT(told, HasSubstr("strain_2_06: stands 1900"));
@@ -76,7 +76,8 @@ TEST_F(CalibrateTest, ZeroRefusesAnEncoderThatMovesOrIsNotRead) {
   RestReadings readings = StillArm(config_.sensors, Flat(0.0));
   readings.travel_counts[1] = 4;
   readings.counters_good = 0b0111;
-  const std::string told = MessageOf<Refused>([&] { Zero(config_.sensors, readings, {}, {}); });
+  const std::string told =
+      MessageOf<RejectedError>([&] { Zero(config_.sensors, readings, {}, {}); });
   EXPECT_THAT(told, HasSubstr("hub2: moved by 4 counts"));
   EXPECT_THAT(told, HasSubstr("rotor2: was not read"));
   EXPECT_THAT(told, Not(HasSubstr("hub1")));
@@ -131,7 +132,7 @@ TEST_F(CalibrateTest, AGainThatCannotBeRightIsRefusedWithTheChannel) {
   counts[11] *= -1.0;
   GainCalibration gains(config_.arm, config_.sensors);
   const std::string told =
-      MessageOf<Refused>([&] { gains.Add(load, StillArm(config_.sensors, counts), {}); });
+      MessageOf<RejectedError>([&] { gains.Add(load, StillArm(config_.sensors, counts), {}); });
   EXPECT_THAT(told, HasSubstr("strain_2_02: reads -"));
   EXPECT_THAT(told, Not(HasSubstr("strain_2_01")));
 }
@@ -139,9 +140,9 @@ TEST_F(CalibrateTest, AGainThatCannotBeRightIsRefusedWithTheChannel) {
 TEST_F(CalibrateTest, ALoadThatStrainsNothingIsRefused) {
   GainCalibration gains(config_.arm, config_.sensors);
   const StaticLoad load{.link = 1, .force_n = 0.01, .at_m = 0.8};
-  EXPECT_THAT(
-      MessageOf<Refused>([&] { gains.Add(load, StillArm(config_.sensors, Loaded(load)), {}); }),
-      HasSubstr("use a larger one"));
+  EXPECT_THAT(MessageOf<RejectedError>(
+                  [&] { gains.Add(load, StillArm(config_.sensors, Loaded(load)), {}); }),
+              HasSubstr("use a larger one"));
 }
 
 }  // namespace

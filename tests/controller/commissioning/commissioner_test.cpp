@@ -9,7 +9,7 @@
 
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/tasks/simulated_stack.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "tests/controller/commissioning/rest_ticks.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/message_of.h"
@@ -200,7 +200,7 @@ TEST(Commissioner, RefusesWhatTheStateDoesNotAllow) {
   Bench bench;
   Commissioner& commissioner = bench.commissioner();
   const auto told = [&](const Json& command) {
-    return MessageOf<Refused>([&] { commissioner.Start(command, bench.state()); });
+    return MessageOf<RejectedError>([&] { commissioner.Start(command, bench.state()); });
   };
   EXPECT_THAT(told({{"command", "pluck"}}), HasSubstr("flexarm arm"));
   EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "low"}}), HasSubstr("flexarm arm"));
@@ -213,7 +213,8 @@ TEST(Commissioner, RefusesWhatTheStateDoesNotAllow) {
 TEST(Commissioner, RefusesWhatMakesNoSense) {
   Bench bench;
   const auto told = [&](const Json& command) {
-    return MessageOf<Refused>([&] { bench.commissioner().Start(command, SafetyState::kArmed); });
+    return MessageOf<RejectedError>(
+        [&] { bench.commissioner().Start(command, SafetyState::kArmed); });
   };
   EXPECT_THAT(told({{"command", "home"}, {"joint", 3}, {"side", "low"}}), HasSubstr("1 or 2"));
   EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "up"}}), HasSubstr("low or high"));
@@ -226,7 +227,7 @@ TEST(Commissioner, RefusesWhatMakesNoSense) {
 TEST(Commissioner, DoesOneThingAtATime) {
   Bench bench;
   bench.commissioner().Start({{"command", "tare"}}, bench.state());
-  EXPECT_THAT(MessageOf<Refused>([&] {
+  EXPECT_THAT(MessageOf<RejectedError>([&] {
                 bench.commissioner().Start({{"command", "zero"}}, bench.state());
               }),
               HasSubstr("busy with tare"));
@@ -235,7 +236,7 @@ TEST(Commissioner, DoesOneThingAtATime) {
 TEST(Commissioner, HomingNeedsProvenWires) {
   Bench bench({"commissioning.prove_before_run=true"});
   bench.Ask(RequestKind::kArm);
-  EXPECT_THAT(MessageOf<Refused>([&] {
+  EXPECT_THAT(MessageOf<RejectedError>([&] {
                 bench.commissioner().Start({{"command", "home"}, {"joint", 1}, {"side", "low"}},
                                            bench.state());
               }),

@@ -12,7 +12,7 @@
 
 #include "controller/design/design_controller.h"
 #include "controller/design/run_design.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/message_of.h"
 
@@ -45,7 +45,7 @@ std::string JsonOf(const Design& design, const RigConfig& config) {
 }
 
 std::string RefusalOf(const std::string& text, const RigConfig& config) {
-  return MessageOf<Refused>([&] { DesignFromJson(text, config); });
+  return MessageOf<RejectedError>([&] { DesignFromJson(text, config); });
 }
 
 std::string RefusalOf(const std::string& text) {
@@ -247,11 +247,11 @@ TEST_F(GainsFile, IsUsedWhenTheConfigNamesIt) {
 TEST_F(GainsFile, OfAnotherAlphaIsRefused) {
   const RigConfig other = ShippedRig({"controller.alpha=2.5"});
   Write(JsonOf(DesignController(other), other));
-  EXPECT_THROW(DesignFor(RigWithGains()), Refused);
+  EXPECT_THROW(DesignFor(RigWithGains()), RejectedError);
 }
 
 TEST_F(GainsFile, ThatIsNotThereIsRefusedByName) {
-  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains()); }),
+  EXPECT_THAT(MessageOf<RejectedError>([&] { DesignFor(RigWithGains()); }),
               AllOf(HasSubstr(path_), HasSubstr("flexarm design")));
 }
 
@@ -260,7 +260,7 @@ TEST_F(GainsFile, WithoutWhatItsLawNeedsIsRefusedByFileAndKey) {
   Design design = DesignController(ShippedRig(plans));
   design.scheduled->start_gains.reset();
   Write(JsonOf(design, ShippedRig(plans)));
-  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains(plans)); }),
+  EXPECT_THAT(MessageOf<RejectedError>([&] { DesignFor(RigWithGains(plans)); }),
               AllOf(HasSubstr(path_), HasSubstr("'payload.start_gain' is missing")));
 }
 
@@ -268,7 +268,7 @@ TEST_F(GainsFile, WithAFailedCheckIsRefusedByItsName) {
   Design bad = ShippedDesign();
   bad.checks[0].value = 2.0 * bad.checks[0].limit;
   Write(JsonOf(bad, ShippedRig()));
-  EXPECT_THAT(MessageOf<Refused>([&] { DesignFor(RigWithGains()); }),
+  EXPECT_THAT(MessageOf<RejectedError>([&] { DesignFor(RigWithGains()); }),
               HasSubstr(bad.checks[0].name));
 }
 

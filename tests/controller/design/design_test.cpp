@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "controller/design/design_controller.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/math/dense_decompositions.h"
 #include "tests/controller/design/golden_design.h"
 #include "tests/controller/law/shipped_rig.h"

@@ -85,7 +85,7 @@ TEST(GainTable, HoldsTheArmWithFourModesBetweenItsKnots) {
   }
 }
 
-// The reason for GainPayload, docs/theory/payload.md 4.3.
+// The reason for SchedulingPayload, docs/theory/payload.md 4.3.
 TEST(GainTable, GainsOf150GramsHoldEveryPayloadThoseOfAKilogramDoNot) {
   for (const double theta2_deg : {0.0, 60.0, 120.0}) {
     const double theta2_rad = theta2_deg * kRadPerDeg;
@@ -114,19 +114,19 @@ TEST(GainTable, DoesNotAllocate) {
   EXPECT_GT(table.At(0.37, 0.5)(0, 0), 0.0);
 }
 
-TEST(GainPayload, IsTheEstimateWhenItIsSure) {
-  EXPECT_EQ(GainPayload(0.8, 0.0, 8.0, 0.0), 0.8);
-  EXPECT_EQ(GainPayload(0.8, 0.0, 20.0, 0.5), 0.8);
-  EXPECT_EQ(GainPayload(0.05, 0.3, 200.0, 2.0), 0.05) << "light gains are not made heavier";
+TEST(SchedulingPayload, IsTheEstimateWhenItIsSure) {
+  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 8.0, 0.0), 0.8);
+  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 20.0, 0.5), 0.8);
+  EXPECT_EQ(SchedulingPayload(0.05, 0.3, 200.0, 2.0), 0.05) << "light gains are not made heavier";
 }
 
-TEST(GainPayload, FallsTo150GramsWithDoubt) {
-  EXPECT_DOUBLE_EQ(GainPayload(0.55, 0.05, 8.0, 0.0), 0.55 - 0.25 * 0.40);
-  EXPECT_DOUBLE_EQ(GainPayload(0.55, 0.4, 8.0, 0.0), 0.15);
-  EXPECT_DOUBLE_EQ(GainPayload(0.55, 0.0, 40.0, 0.0), 0.35);
-  EXPECT_DOUBLE_EQ(GainPayload(0.55, 0.05, 40.0, 0.0), 0.35) << "the greater doubt counts";
-  EXPECT_DOUBLE_EQ(GainPayload(0.55, 0.0, 100.0, 0.0), 0.15);
-  EXPECT_DOUBLE_EQ(GainPayload(0.55, 0.0, 8.0, 0.51), 0.15);
+TEST(SchedulingPayload, FallsTo150GramsWithDoubt) {
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 8.0, 0.0), 0.55 - 0.25 * 0.40);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.4, 8.0, 0.0), 0.15);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 40.0, 0.0), 0.35);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 40.0, 0.0), 0.35) << "the greater doubt counts";
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 100.0, 0.0), 0.15);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 8.0, 0.51), 0.15);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ using testing::Contains;
 using testing::Field;
 
 /// The loop in time: the nonlinear arm without friction, a thousandth of a degree off its rest, the
-/// law's own parts around it. Nothing of it comes from the screen.
+/// law's own parts around it. Nothing of it comes from the robustness.
 class LoopInTime {
  public:
   LoopInTime(const RigConfig& config, Design design, double payload_kg, double theta2_rad,
@@ -140,19 +140,19 @@ class LoopInTime {
 
 // An independent look: how fast the loop in time grows or dies is its largest |eigenvalue|. The
 // mean over many periods hides the phase of the oscillation: ln(2) / 250 periods at most, 0.3 %.
-TEST(Screen, TheSpectralRadiusIsTheGrowthOfTheLoopInTime) {
+TEST(RobustnessAnalysis, TheSpectralRadiusIsTheGrowthOfTheLoopInTime) {
   const RigConfig config = ShippedRig({"controller.name=lqr-cgt"});
   const Design& design = ShippedDesign();
-  const Screen screen = ScreenDesign(config, design, {0.0, 1.0});
+  const RobustnessAnalysis robustness = AnalyzeRobustness(config, design, {0.0, 1.0});
   struct Case {
     double payload_kg, theta2_deg, gain;
   };
   for (const Case c : {Case{0.0, 90.0, 1.4}, {0.0, 45.0, 1.4}, {1.0, 0.0, 0.7}, {1.0, 90.0, 1.0}}) {
-    const auto found =
-        std::find_if(screen.cases.begin(), screen.cases.end(), [&c](const ScreenCase& s) {
+    const auto found = std::find_if(
+        robustness.cases.begin(), robustness.cases.end(), [&c](const RobustnessCase& s) {
           return s.payload_kg == c.payload_kg && s.theta2_deg == c.theta2_deg && s.gain == c.gain;
         });
-    ASSERT_NE(found, screen.cases.end());
+    ASSERT_NE(found, robustness.cases.end());
     LoopInTime loop(config, design, c.payload_kg, c.theta2_deg * std::numbers::pi / 180.0, c.gain);
     const double early = loop.Run(150), late = loop.Run(250);
     EXPECT_NEAR(std::pow(late / early, 1.0 / 250.0), found->spectral_radius, 0.003)
@@ -160,46 +160,49 @@ TEST(Screen, TheSpectralRadiusIsTheGrowthOfTheLoopInTime) {
   }
 }
 
-TEST(Screen, TheShippedGainsHoldWhatTheyHaveTo) {
-  const Screen screen = ScreenDesign(ShippedRig(), ShippedDesign(), {0.0, 0.01, 0.2, 0.5, 1.0});
-  EXPECT_EQ(screen.cases.size(), 54u) << "five payloads and the design's own";
-  EXPECT_LT(screen.worst_required().spectral_radius, 1.0);
-  for (const DesignCheck& check : ChecksOf(screen)) {
+TEST(RobustnessAnalysis, TheShippedGainsHoldWhatTheyHaveTo) {
+  const RobustnessAnalysis robustness =
+      AnalyzeRobustness(ShippedRig(), ShippedDesign(), {0.0, 0.01, 0.2, 0.5, 1.0});
+  EXPECT_EQ(robustness.cases.size(), 54u) << "five payloads and the design's own";
+  EXPECT_LT(robustness.worst_required().spectral_radius, 1.0);
+  for (const DesignCheck& check : ChecksOf(robustness)) {
     EXPECT_TRUE(check.passed()) << check.name << " " << check.value;
   }
   // What is reported and not asked for: an empty hand, the elbow square, 40 % too much gain.
-  EXPECT_EQ(screen.worst().payload_kg, 0.0);
-  EXPECT_EQ(screen.worst().theta2_deg, 90.0);
-  EXPECT_EQ(screen.worst().gain, 1.4);
-  EXPECT_NEAR(screen.worst().spectral_radius, 1.020, 0.001);
+  EXPECT_EQ(robustness.worst().payload_kg, 0.0);
+  EXPECT_EQ(robustness.worst().theta2_deg, 90.0);
+  EXPECT_EQ(robustness.worst().gain, 1.4);
+  EXPECT_NEAR(robustness.worst().spectral_radius, 1.020, 0.001);
 }
 
 // The design study's runs of the real pipeline: without prediction 0.01 kg diverges, with alpha = 3
 // and differences behind the gauge filter every run does.
-TEST(Screen, WhatTheStudySawDivergeIsFoundUnstable) {
+TEST(RobustnessAnalysis, WhatTheStudySawDivergeIsFoundUnstable) {
   for (const char* change : {"controller.prediction=false", "estimator.name=difference"}) {
     const RigConfig config = ShippedRig({change});
-    const Screen screen = ScreenDesign(config, DesignController(config), {0.01});
-    EXPECT_GT(screen.worst_required().spectral_radius, 1.0) << change;
-    EXPECT_THAT(ChecksOf(screen), Contains(Field(&DesignCheck::name, "screen-spectral-radius")));
-    EXPECT_FALSE(ChecksOf(screen)[0].passed()) << change;
+    const RobustnessAnalysis robustness =
+        AnalyzeRobustness(config, DesignController(config), {0.01});
+    EXPECT_GT(robustness.worst_required().spectral_radius, 1.0) << change;
+    EXPECT_THAT(ChecksOf(robustness),
+                Contains(Field(&DesignCheck::name, "robustness-spectral-radius")));
+    EXPECT_FALSE(ChecksOf(robustness)[0].passed()) << change;
   }
 }
 
 // A loop whose gains are those of its margin neither grows nor dies.
-TEST(Screen, AtTheGainMarginTheLoopIsOnTheEdge) {
+TEST(RobustnessAnalysis, AtTheGainMarginTheLoopIsOnTheEdge) {
   const RigConfig config = ShippedRig();
-  const LoopMargins margins = ScreenDesign(config, ShippedDesign(), {}).margins;
+  const LoopMargins margins = AnalyzeRobustness(config, ShippedDesign(), {}).margins;
   Design scaled = ShippedDesign();
   scaled.K *= margins.gain_up;
-  EXPECT_NEAR(ScreenDesign(config, scaled, {}).cases[0].spectral_radius, 1.0, 1e-3);
+  EXPECT_NEAR(AnalyzeRobustness(config, scaled, {}).cases[0].spectral_radius, 1.0, 1e-3);
 }
 
 // Delay that the loop does not know of, 0.3 ms to either side of the margin: with 0.2 ms a step
 // of the loop in time, the next delays that are surely beyond and surely within.
-TEST(Screen, TheDelayMarginIsThatOfTheLoopInTime) {
+TEST(RobustnessAnalysis, TheDelayMarginIsThatOfTheLoopInTime) {
   const RigConfig config = ShippedRig();
-  const double margin_s = ScreenDesign(config, ShippedDesign(), {}).margins.delay_s;
+  const double margin_s = AnalyzeRobustness(config, ShippedDesign(), {}).margins.delay_s;
   const auto growth = [&config](double delay_s) {
     LoopInTime loop(config, ShippedDesign(), config.arm.payload_mass_kg, 0.0, 1.0, delay_s);
     const double early = loop.Run(1500);
@@ -210,17 +213,17 @@ TEST(Screen, TheDelayMarginIsThatOfTheLoopInTime) {
 }
 
 // A torque that acts a microsecond before or after a sampling instant is another case of the
-// screen's bookkeeping, and the same loop: radius and margin join. A loop that predicts a period
-// further bears less on top. Measured: 27.2, 27.3 and 27.3 ms, with 20 ms declared 9.1 ms.
-TEST(Screen, TheMarginsOfADeclaredDelayJoinWherePeriodsEnd) {
+// robustness's bookkeeping, and the same loop: radius and margin join. A loop that predicts a
+// period further bears less on top. Measured: 27.2, 27.3 and 27.3 ms, with 20 ms declared 9.1 ms.
+TEST(RobustnessAnalysis, TheMarginsOfADeclaredDelayJoinWherePeriodsEnd) {
   const auto with = [](double late_ms) {
     RigConfig config = ShippedRig();
     config.loop.output = late_ms < 0.0 ? OutputTiming::kAtOnce : OutputTiming::kNextTick;
     config.loop.output_after_ms = config.loop.period_ms + late_ms;
     config.loop.actuation_delay_ms = std::max(late_ms, 0.0);
-    const Screen screen = ScreenDesign(config, ShippedDesign(), {});
-    EXPECT_DOUBLE_EQ(screen.margins.delay_s, DelayMargin_s(config, ShippedDesign()));
-    return std::pair(screen.worst_required().spectral_radius, screen.margins.delay_s);
+    const RobustnessAnalysis robustness = AnalyzeRobustness(config, ShippedDesign(), {});
+    EXPECT_DOUBLE_EQ(robustness.margins.delay_s, DelayMargin_s(config, ShippedDesign()));
+    return std::pair(robustness.worst_required().spectral_radius, robustness.margins.delay_s);
   };
   constexpr double kShort_ms = 1e-3;
   const auto own = with(0.0), before = with(-kShort_ms), after = with(kShort_ms);

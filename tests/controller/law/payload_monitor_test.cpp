@@ -16,7 +16,7 @@ namespace {
 constexpr double kMax_kg = 1.1, kMoveSigma_kg = 0.1;  // of StudyEstimator
 constexpr double kRightNis = 8.0;
 
-PayloadSupervisor Supervisor() { return PayloadSupervisor(*StudyEstimator().payload); }
+PayloadMonitor SafetyMonitor() { return PayloadMonitor(*StudyEstimator().payload); }
 
 PayloadFilter::Estimate Found(double payload_kg, double sigma_kg) {
   PayloadFilter::Estimate found{};
@@ -27,78 +27,78 @@ PayloadFilter::Estimate Found(double payload_kg, double sigma_kg) {
 }
 
 /// A path that moves for a sample and then rests, with this standard deviation at its end.
-std::uint32_t DoubtsAfterAMove(double sigma_kg, PayloadSupervisor* supervisor) {
+std::uint32_t DoubtsAfterAMove(double sigma_kg, PayloadMonitor* supervisor) {
   supervisor->Judge(Found(0.3, kMoveSigma_kg), kRightNis, true);
-  return supervisor->Judge(Found(0.3, sigma_kg), kRightNis, false).doubts;
+  return supervisor->Judge(Found(0.3, sigma_kg), kRightNis, false).warnings;
 }
 
-TEST(PayloadSupervisor, TellsWhatTheFilterFound) {
-  const PayloadKnowledge known = Supervisor().Judge(Found(0.3, 0.02), 9.0, true);
+TEST(PayloadMonitor, TellsWhatTheFilterFound) {
+  const PayloadKnowledge known = SafetyMonitor().Judge(Found(0.3, 0.02), 9.0, true);
   EXPECT_EQ(known.payload_kg, 0.3);
   EXPECT_EQ(known.payload_sigma_kg, 0.02);
   EXPECT_EQ(known.friction_nm, (std::array<double, 2>{0.16, 0.01}));
   EXPECT_EQ(known.mean_nis, 9.0);
-  EXPECT_EQ(known.doubts, 0u);
+  EXPECT_EQ(known.warnings, 0u);
 }
 
-TEST(PayloadSupervisor, APayloadAtItsBoundIsDoubtedAsLongAsItIsThere) {
+TEST(PayloadMonitor, APayloadAtItsBoundIsDoubtedAsLongAsItIsThere) {
   for (const bool moving : {true, false}) {
-    PayloadSupervisor supervisor = Supervisor();
-    EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).doubts, 0u);
-    EXPECT_EQ(supervisor.Judge(Found(kMax_kg, 0.0), kRightNis, moving).doubts,
+    PayloadMonitor supervisor = SafetyMonitor();
+    EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
+    EXPECT_EQ(supervisor.Judge(Found(kMax_kg, 0.0), kRightNis, moving).warnings,
               static_cast<std::uint32_t>(kPayloadAtBound));
-    EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).doubts, 0u);
+    EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
   }
 }
 
-// Where GainPayload gives the robust gains and nothing else: no earlier, and no later.
-TEST(PayloadSupervisor, AModelIsDoubtedWhileItsInnovationsAreFarTooLarge) {
+// Where SchedulingPayload gives the robust gains and nothing else: no earlier, and no later.
+TEST(PayloadMonitor, AModelIsDoubtedWhileItsInnovationsAreFarTooLarge) {
   for (const bool moving : {true, false}) {
-    PayloadSupervisor supervisor = Supervisor();
-    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kModelWrongNis, moving).doubts, 0u);
-    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), 60.1, moving).doubts,
+    PayloadMonitor supervisor = SafetyMonitor();
+    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kModelWrongNis, moving).warnings, 0u);
+    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), 60.1, moving).warnings,
               static_cast<std::uint32_t>(kPayloadModelMismatch));
-    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kRightNis, moving).doubts, 0u);
+    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kRightNis, moving).warnings, 0u);
   }
 }
 
-TEST(PayloadSupervisor, AMoveThatLeftThePayloadUnknownIsDoubtedUntilTheNextBegins) {
-  PayloadSupervisor supervisor = Supervisor();
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).doubts, 0u) << "it is not over";
+TEST(PayloadMonitor, AMoveThatLeftThePayloadUnknownIsDoubtedUntilTheNextBegins) {
+  PayloadMonitor supervisor = SafetyMonitor();
+  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u) << "it is not over";
   for (const double sigma_kg : {0.1, 0.4, 0.01}) {
-    EXPECT_EQ(supervisor.Judge(Found(0.3, sigma_kg), kRightNis, false).doubts,
-              static_cast<std::uint32_t>(kPayloadNotFound))
+    EXPECT_EQ(supervisor.Judge(Found(0.3, sigma_kg), kRightNis, false).warnings,
+              static_cast<std::uint32_t>(kPayloadNotObservable))
         << sigma_kg << ": what was judged when the move ended holds";
   }
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).doubts, 0u) << "the next one";
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.099), kRightNis, false).doubts, 0u) << "showed it";
+  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u) << "the next one";
+  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.099), kRightNis, false).warnings, 0u) << "showed it";
 }
 
 // By a walk of 3 g a sample the standard deviation passes 0.1 kg after 22 s at 50 Hz.
-TEST(PayloadSupervisor, ALongRestRaisesNoDoubt) {
-  PayloadSupervisor supervisor = Supervisor();
+TEST(PayloadMonitor, ALongRestRaisesNoDoubt) {
+  PayloadMonitor supervisor = SafetyMonitor();
   EXPECT_EQ(DoubtsAfterAMove(0.02, &supervisor), 0u);
   double variance_kg2 = 0.02 * 0.02;
   for (int k = 0; k < 1500; ++k) {
     variance_kg2 += 0.003 * 0.003;
-    ASSERT_EQ(supervisor.Judge(Found(0.3, std::sqrt(variance_kg2)), kRightNis, false).doubts, 0u)
+    ASSERT_EQ(supervisor.Judge(Found(0.3, std::sqrt(variance_kg2)), kRightNis, false).warnings, 0u)
         << k;
   }
   EXPECT_GT(std::sqrt(variance_kg2), kMoveSigma_kg) << "too short a rest: the test says nothing";
 }
 
-TEST(PayloadSupervisor, BeforeTheFirstMoveNothingIsDoubted) {
-  EXPECT_EQ(Supervisor().Judge(Found(0.2, 0.4), kRightNis, false).doubts, 0u);
+TEST(PayloadMonitor, BeforeTheFirstMoveNothingIsDoubted) {
+  EXPECT_EQ(SafetyMonitor().Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);
 }
 
-TEST(PayloadSupervisor, AResetForgetsTheMoveAndItsDoubt) {
-  PayloadSupervisor supervisor = Supervisor();
+TEST(PayloadMonitor, AResetForgetsTheMoveAndItsDoubt) {
+  PayloadMonitor supervisor = SafetyMonitor();
   ASSERT_NE(DoubtsAfterAMove(0.4, &supervisor), 0u);
   supervisor.Reset();
-  EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).doubts, 0u);
+  EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);
   supervisor.Judge(Found(0.2, 0.4), kRightNis, true);
   supervisor.Reset();
-  EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).doubts, 0u)
+  EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u)
       << "a move that a reset broke off has not ended";
 }
 

@@ -12,7 +12,7 @@
 #include "controller/reference/path_reference.h"
 #include "controller/reference/reference.h"
 #include "controller/step/motion_state.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"
@@ -56,7 +56,7 @@ constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
                                      .payload_sigma_kg = 0.0,
                                      .friction_nm = {0.16, 0.01},
                                      .mean_nis = 8.0,
-                                     .doubts = 0};
+                                     .warnings = 0};
 
 TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0), {0.1, -0.2});
@@ -114,12 +114,14 @@ TEST(PathReference, LawsThatDoNotFollowThePathKnowIt) {
 }
 
 TEST(PathReference, AMoveTooFastForTheHeaviestPayloadIsRefusedWithTheDurationThatWouldDo) {
-  const std::string message = MessageOf<Refused>([] { ScheduledTable(OneMove({60, 80}, 1.0)); });
+  const std::string message = MessageOf<RejectedError>([] {
+    ScheduledTable(OneMove({60, 80}, 1.0));
+  });
   EXPECT_THAT(message, AllOf(HasSubstr("move[0]"), HasSubstr("controller.payload.max_kg"),
                              HasSubstr("the shortest duration_s within the limits is ")));
   const double shortest_s = std::stod(message.substr(message.rfind(' ')));
   EXPECT_NO_THROW(ScheduledTable(OneMove({60, 80}, shortest_s)));
-  EXPECT_THROW(ScheduledTable(OneMove({60, 80}, shortest_s - kPeriod_s)), Refused);
+  EXPECT_THROW(ScheduledTable(OneMove({60, 80}, shortest_s - kPeriod_s)), RejectedError);
 }
 
 TEST(PathReference, AMoveWithoutDurationKeepsTheShareOfTheLimitsWithTheHeaviestPayload) {
@@ -137,7 +139,7 @@ TEST(PathReference, WhatIsNoMoveIsRefused) {
   Experiment doublet = OneMove({10, 10}, 1.0);
   doublet.doublet = {
       {.start_s = 4.0, .duration_s = 1.0, .shape = DoubletShape::kSquare, .move_deg = {5, 5}}};
-  EXPECT_THAT(MessageOf<Refused>([&] { ScheduledTable(doublet); }),
+  EXPECT_THAT(MessageOf<RejectedError>([&] { ScheduledTable(doublet); }),
               AllOf(HasSubstr("doublet[0]"), HasSubstr("[[move]] rows only")));
 }
 
@@ -182,9 +184,9 @@ TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
   heavy.mean_nis = 100.0;
   EXPECT_LT((AskedOf(x, heavy, path, 0.0) - robust).norm(), 1e-12);
   heavy.mean_nis = 8.0;
-  heavy.doubts = kPayloadModelMismatch | kPayloadNotFound;
+  heavy.warnings = kPayloadModelMismatch | kPayloadNotObservable;
   EXPECT_EQ(AskedOf(x, heavy, path, 0.0), sure) << "these are in its NIS and sigma";
-  heavy.doubts = kPayloadAtBound;
+  heavy.warnings = kPayloadAtBound;
   EXPECT_LT((AskedOf(x, heavy, path, 0.0) - robust).norm(), 1e-12)
       << "it may be heavier, however sure the filter is";
 }
@@ -218,8 +220,8 @@ TEST(ScheduledLaw, AfterAMoveTheFeedbackIsHelpedOverTheFriction) {
   }
 }
 
-TEST(MoveWatch, TellsTheBeginOfEachMoveAndSinceWhenThePathRests) {
-  MoveWatch watch;
+TEST(MotionState, TellsTheBeginOfEachMoveAndSinceWhenThePathRests) {
+  MotionState watch;
   RigidPoint rest{}, moving{};
   moving.rate_rad_s[1] = 0.1;
   EXPECT_FALSE(watch.Take(rest, kPeriod_s));

@@ -16,7 +16,7 @@
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/controller/loop/stack_run.h"
 #include "tests/support/loop_time.h"
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 #include "tools/sweep/random_moves.h"
 
 namespace flexarm {
@@ -41,7 +41,7 @@ struct EventOutcome {
   double last_rate_rad_s = 0.0;  // of the hubs, over the last half second that was simulated
   double farthest_deg = 0.0;     // that a hub ever was from zero
   double settling_s = 0.0;       // t15, the largest over the rests
-  std::uint32_t doubts = 0;
+  std::uint32_t warnings = 0;
   std::vector<TickRecord> running;  // from sample -1 of the experiment on
 };
 
@@ -61,7 +61,7 @@ class PayloadEvents : public testing::TestWithParam<const char*> {
 
   std::vector<EventOutcome> RunAll(const std::vector<Scene>& scenes) const {
     std::vector<EventOutcome> outcomes(scenes.size());
-    ForAllOnAllCores(scenes.size(), [&](std::size_t i) { outcomes[i] = RunOne(scenes[i]); });
+    ParallelFor(scenes.size(), [&](std::size_t i) { outcomes[i] = RunOne(scenes[i]); });
     return outcomes;
   }
 
@@ -97,10 +97,10 @@ EventOutcome PayloadEvents::RunOne(const Scene& scene) const {
           std::max(out.farthest_deg, std::fabs(angle_rad) * 180.0 / std::numbers::pi);
     }
     if (record.input.safety_state == SafetyState::kRunning) {
-      if ((record.output.payload_doubts & kPayloadModelMismatch) != 0) {
+      if ((record.output.payload_warnings & kPayloadModelMismatch) != 0) {
         EXPECT_EQ(record.output.payload_kg, 0.0) << "taken for dropped";
       }
-      out.doubts |= record.output.payload_doubts;
+      out.warnings |= record.output.payload_warnings;
       out.running.push_back(record);
     }
     // The frame after the trip still holds the torque of before it.
@@ -135,7 +135,7 @@ void Print(const char* what, const Scene& scene, double load_kg, const EventOutc
     std::printf("trips %s, a hub swings to %.0f deg", Name(out.trip), out.farthest_deg);
   }
   std::printf("%s; %.3f kg found\n",
-              (out.doubts & kPayloadModelMismatch) != 0 ? ", payload-model-mismatch" : "",
+              (out.warnings & kPayloadModelMismatch) != 0 ? ", payload-model-mismatch" : "",
               out.running.back().output.payload_kg);
 }
 
@@ -202,7 +202,7 @@ TEST_P(PayloadEvents, ALoadDroppedInMidMoveIsNoticed) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     Print("dropped in mid-move", scenes[i], scenes[i].payload_kg, outcomes[i]);
     ExpectEnded(outcomes[i]);
-    const bool contradicted = (outcomes[i].doubts & kPayloadModelMismatch) != 0;
+    const bool contradicted = (outcomes[i].warnings & kPayloadModelMismatch) != 0;
     const double load_kg = scenes[i].payload_kg;
     EXPECT_TRUE(contradicted || load_kg < 0.28) << i;
     EXPECT_FALSE(contradicted && load_kg < 0.18) << i;

@@ -11,7 +11,7 @@
 #include "controller/law/design.h"
 #include "controller/reference/motion_limits.h"
 #include "controller/reference/motion_plan.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/rigid_joint/rigid_joint_arm.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tools/sweep/random_moves.h"
@@ -78,7 +78,7 @@ class RandomRetargets {
       try {
         return PlanMoves(*out, design_, kMoveGrid_s, {0.0, 0.0}, limits_).back().periods *
                kMoveGrid_s;
-      } catch (const Refused&) {
+      } catch (const RejectedError&) {
         out->move.pop_back();
       }
     }

@@ -93,8 +93,8 @@ TEST_P(FindsThePayload, OnPlantsThatItDoesNotKnow) {
 }
 
 struct Doubted {
-  std::uint32_t doubts;  // all that the run had
-  double payload_kg;     // at its end
+  std::uint32_t warnings;  // all that the run had
+  double payload_kg;       // at its end
   double sigma_kg;
 };
 
@@ -106,7 +106,7 @@ Doubted DoubtsOf(double payload_kg, const Experiment& experiment,
   Doubted out{};
   for (const TickRecord& record : run.tick) {
     if (record.input.safety_state != SafetyState::kRunning) continue;
-    out.doubts |= record.output.payload_doubts;
+    out.warnings |= record.output.payload_warnings;
     out.payload_kg = record.output.payload_kg;
     out.sigma_kg = record.output.payload_sigma_kg;
   }
@@ -115,14 +115,14 @@ Doubted DoubtsOf(double payload_kg, const Experiment& experiment,
 
 TEST(GainScheduled, APayloadWithinItsRangeIsFoundWithoutDoubt) {
   const Doubted found = DoubtsOf(0.35, ShippedExperiment("benchmark-waypoints"));
-  EXPECT_EQ(found.doubts, 0u);
+  EXPECT_EQ(found.warnings, 0u);
   EXPECT_NEAR(found.payload_kg, 0.35, 0.03);
 }
 
 TEST(GainScheduled, APayloadBeyondItsRangeIsNamed) {
   const Doubted found =
       DoubtsOf(0.35, ShippedExperiment("benchmark-waypoints"), {"estimator.payload.max_kg=0.25"});
-  EXPECT_EQ(found.doubts & kPayloadAtBound, kPayloadAtBound);
+  EXPECT_EQ(found.warnings & kPayloadAtBound, kPayloadAtBound);
   EXPECT_LE(found.payload_kg, 0.25);
 }
 
@@ -131,7 +131,7 @@ TEST(GainScheduled, AMoveThatShowsNothingOfThePayloadIsNamed) {
   Experiment creeping = ShippedExperiment("benchmark-waypoints");
   creeping.move = {{.start_s = 0.0, .duration_s = 2.0, .to_deg = {0.5, 0.5}}};
   const Doubted found = DoubtsOf(0.35, creeping);
-  EXPECT_EQ(found.doubts, static_cast<std::uint32_t>(kPayloadNotFound));
+  EXPECT_EQ(found.warnings, static_cast<std::uint32_t>(kPayloadNotObservable));
 }
 
 // The payload's walk takes sigma past that with which a move begins; nothing is wrong with that.
@@ -140,7 +140,7 @@ TEST(GainScheduled, ALongRestRaisesNoDoubt) {
   resting.duration_s = 32.0;
   resting.move = {{.start_s = 0.0, .duration_s = 1.6, .to_deg = {30, 30}}};
   const Doubted found = DoubtsOf(0.35, resting, {}, 35'000'000'000);
-  EXPECT_EQ(found.doubts, 0u);
+  EXPECT_EQ(found.warnings, 0u);
   EXPECT_GT(found.sigma_kg, kPayloadUncertain_kg) << "too short a rest: the test says nothing";
   EXPECT_NEAR(found.payload_kg, 0.35, 0.03) << "flickering counts drag it";
 }

@@ -76,7 +76,7 @@ void GiveUpRights() {
 [[noreturn]] void Prepare() {
   try {
     PrepareRealtime(90);
-  } catch (const RealtimeRefused& refused) {
+  } catch (const RealtimeRejectedError& refused) {
     std::string text = refused.what();
     for (char& c : text) c = c == '\n' ? ' ' : c;  // one line for the matcher
     std::fprintf(stderr, "%s\n", text.c_str());

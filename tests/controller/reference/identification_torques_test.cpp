@@ -12,7 +12,7 @@
 #include <numeric>
 
 #include "controller/reference/reference.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"
 
@@ -146,7 +146,7 @@ TEST(Chirp, BeyondAQuarterOfTheSamplingRateIsRefused) {
   try {
     ExcitedTable(With({fast}, {}));
     FAIL() << "accepted";
-  } catch (const Refused& refused) {
+  } catch (const RejectedError& refused) {
     EXPECT_THAT(refused.what(), AllOf(HasSubstr("chirp[0]"), HasSubstr("12.5 Hz")));
   }
 }

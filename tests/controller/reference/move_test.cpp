@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "controller/reference/reference.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/math/dense_decompositions.h"
 #include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
@@ -166,15 +166,16 @@ TEST(Move, AStretchIsWhatLiesBetweenTwoRests) {
     out.periods = periods;
     return out;
   };
-  const auto stretches = StretchesOf({move(10, 50), move(60, 20), move(100, 40), move(120, 60)});
-  ASSERT_EQ(stretches.size(), 3u);
-  EXPECT_EQ(stretches[0].first, 10);
-  EXPECT_EQ(stretches[0].end, 60);
-  EXPECT_EQ(stretches[1].first, 60) << "from rest, though at once";
-  EXPECT_EQ(stretches[1].end, 80);
-  EXPECT_EQ(stretches[2].first, 100);
-  EXPECT_EQ(stretches[2].end, 180) << "the last took over";
-  EXPECT_TRUE(StretchesOf({}).empty());
+  const auto segments =
+      MotionSegmentsOf({move(10, 50), move(60, 20), move(100, 40), move(120, 60)});
+  ASSERT_EQ(segments.size(), 3u);
+  EXPECT_EQ(segments[0].first, 10);
+  EXPECT_EQ(segments[0].end, 60);
+  EXPECT_EQ(segments[1].first, 60) << "from rest, though at once";
+  EXPECT_EQ(segments[1].end, 80);
+  EXPECT_EQ(segments[2].first, 100);
+  EXPECT_EQ(segments[2].end, 180) << "the last took over";
+  EXPECT_TRUE(MotionSegmentsOf({}).empty());
 }
 
 TEST(Move, WithoutADurationTakesTheShortestThatKeepsItsShareOfTheLimits) {
@@ -196,7 +197,7 @@ TEST(Move, WithoutADurationTakesTheShortestThatKeepsItsShareOfTheLimits) {
       return ReferenceTable(asked, ShippedDesign(), kPeriod_s, {0.0, 0.0}, share);
     };
     EXPECT_NO_THROW(with(n)) << n;
-    EXPECT_THROW(with(n - 1), Refused) << n;
+    EXPECT_THROW(with(n - 1), RejectedError) << n;
   }
 }
 
@@ -217,7 +218,8 @@ TEST(Move, AChosenDurationIsWrittenIntoTheExperimentAndItsText) {
   EXPECT_THAT(chosen.text, AllOf(testing::StartsWith("x = 1\n"), HasSubstr("[[planned_move]]\n"),
                                  HasSubstr("row = 1\n")));
   experiment.move.push_back({.start_s = 2.2, .to_deg = {0, 0}});
-  EXPECT_THROW(MoveTable(experiment), Refused) << "overlaps the move whose duration was chosen";
+  EXPECT_THROW(MoveTable(experiment), RejectedError)
+      << "overlaps the move whose duration was chosen";
 }
 
 // The tip of two straight links of 0.8 and 0.9 m at th1 = 60, th2 = 60 deg: L1 at 60, L2 at 120.
@@ -233,7 +235,7 @@ TEST(Move, GoesToAPositionOfTheTip) {
 }
 
 std::string MoveRefusal(const Experiment& experiment) {
-  return MessageOf<Refused>([&] { MoveTable(experiment); });
+  return MessageOf<RejectedError>([&] { MoveTable(experiment); });
 }
 
 TEST(Move, OffTheGridTooShortOrBeyondTheSoftLimitIsRefused) {

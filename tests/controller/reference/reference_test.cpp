@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "controller/design/design_controller.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/golden_data.h"
@@ -172,7 +172,7 @@ TEST(ReferenceTable, BeforeTheStartItRestsThereAndAfterTheEndItStays) {
 }
 
 std::string RefusalOf(const Experiment& experiment) {
-  return MessageOf<Refused>([&] { Table(experiment); });
+  return MessageOf<RejectedError>([&] { Table(experiment); });
 }
 
 TEST(ReferenceTable, TimesOffTheSamplingGridAreRefusedByName) {
@@ -214,7 +214,7 @@ TEST(ReferenceTable, ABrokenLimitIsRefusedWithItsRow) {
     const ReferenceTable table(Doublets({MoveBy(10, 10), MoveBy(60, 60, 2.0, 0.6)}),
                                ShippedDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits());
     FAIL() << "accepted";
-  } catch (const Refused& refused) {
+  } catch (const RejectedError& refused) {
     EXPECT_THAT(refused.what(), AllOf(HasSubstr("doublet[1]: "), HasSubstr("beyond limits.")));
   }
 }
@@ -248,7 +248,7 @@ TEST(ReferenceTable, AShapedMoveThatDoesNotEndWithTheExperimentIsRefused) {
   try {
     const ReferenceTable table(kBase, shaped, kPeriod_s, {0.0, 0.0}, SoftAngles());
     FAIL() << "accepted";
-  } catch (const Refused& refused) {
+  } catch (const RejectedError& refused) {
     EXPECT_THAT(refused.what(), HasSubstr("ends after 6.02"));
   }
 }

@@ -11,7 +11,7 @@
 #include "controller/reference/path_reference.h"
 #include "controller/reference/reference.h"
 #include "controller/step/motion_state.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"
@@ -39,7 +39,7 @@ ReferenceTable PathTable(const Experiment& experiment,
 
 std::string PathRefusal(const Experiment& experiment,
                         const MotionLimits& limits = ShippedLimits()) {
-  return MessageOf<Refused>([&] { PathTable(experiment, limits); });
+  return MessageOf<RejectedError>([&] { PathTable(experiment, limits); });
 }
 
 // Out, elsewhere while it still moves, and again elsewhere while that lasts.
@@ -123,7 +123,7 @@ TEST(Retarget, AQuinticMoveIsTakenOverWithItsJerk) {
 // Nobody can have loaded an arm that moves: the estimator is not to open its doubt again.
 TEST(Retarget, IsNoBeginOfAMoveForTheEstimator) {
   const ReferenceTable table = PathTable(Chain());
-  MoveWatch watch;
+  MotionState watch;
   std::vector<int> begins;
   for (int k = 0; k <= table.periods(); ++k) {
     if (watch.Take(table.PathAround(k)[1], kPeriod_s)) begins.push_back(k);
@@ -133,7 +133,7 @@ TEST(Retarget, IsNoBeginOfAMoveForTheEstimator) {
 
 TEST(Retarget, ALawThatFollowsNoPathRefusesItAndSaysWhichDo) {
   const auto refusal = [](const Experiment& experiment) {
-    return MessageOf<Refused>([&] {
+    return MessageOf<RejectedError>([&] {
       ReferenceTable(experiment, ShippedDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits());
     });
   };

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "controller/reference/reference.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"
@@ -75,7 +75,7 @@ TEST(Trajectory, TheReferenceFollowsItAndAMoveGoesOnFromThere) {
 std::string RefusalOf(const CsvTrajectory& csv, double start_rad, double duration_s = 7.0) {
   Experiment experiment = Following(csv, duration_s);
   if (duration_s < 7.0) experiment.move.clear();
-  return MessageOf<Refused>([&] {
+  return MessageOf<RejectedError>([&] {
     ReferenceTable(experiment, ShippedDesign(), kPeriod_s, {start_rad, 0.0}, ShippedLimits());
   });
 }

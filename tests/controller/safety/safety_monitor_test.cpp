@@ -37,20 +37,20 @@ SafetyInputs Fine() {
 }
 
 TripCauses PresentIn(const SafetyInputs& in) {
-  Supervisor supervisor(kLimits);
+  SafetyMonitor supervisor(kLimits);
   return supervisor.Judge(in).present;
 }
 
 void ExpectEvidence(TripCause cause, const SafetyInputs& in, double value, double limit,
                     std::uint32_t channel) {
-  const Evidence evidence = Supervisor(kLimits).EvidenceOf(cause, in);
+  const Evidence evidence = SafetyMonitor(kLimits).EvidenceOf(cause, in);
   EXPECT_DOUBLE_EQ(evidence.value, value);
   EXPECT_DOUBLE_EQ(evidence.limit, limit);
   EXPECT_EQ(evidence.channel, channel);
 }
 
-TEST(Supervisor, SeesNothingWrongWhenAllIsWell) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, SeesNothingWrongWhenAllIsWell) {
+  SafetyMonitor supervisor(kLimits);
   const SafetyFacts facts = supervisor.Judge(Fine());
   EXPECT_EQ(facts.present, 0u);
   EXPECT_EQ(facts.all_reported, 1);
@@ -60,7 +60,7 @@ TEST(Supervisor, SeesNothingWrongWhenAllIsWell) {
   EXPECT_EQ(facts.reset_pressed, 0);
 }
 
-TEST(Supervisor, NamesEachOpenSwitchAndTheEmergencyStop) {
+TEST(SafetyMonitor, NamesEachOpenSwitchAndTheEmergencyStop) {
   const struct {
     Line line;
     TripCause cause;
@@ -81,7 +81,7 @@ TEST(Supervisor, NamesEachOpenSwitchAndTheEmergencyStop) {
   EXPECT_EQ(PresentIn(in), 0b111110u);
 }
 
-TEST(Supervisor, ControlHeartbeatIsLostAfterTwoPeriodsAndNotBefore) {
+TEST(SafetyMonitor, ControlHeartbeatIsLostAfterTwoPeriodsAndNotBefore) {
   SafetyInputs in = Fine();
   in.control_alive_ns = in.due_ns - 40 * kMs;
   EXPECT_EQ(PresentIn(in), 0u);
@@ -90,14 +90,14 @@ TEST(Supervisor, ControlHeartbeatIsLostAfterTwoPeriodsAndNotBefore) {
   ExpectEvidence(TripCause::kControlHeartbeatLost, in, 0.041, 0.040, 0);
 }
 
-TEST(Supervisor, AStepThatHasRunButDoesNotHoldYetKeepsTheHeartbeat) {
+TEST(SafetyMonitor, AStepThatHasRunButDoesNotHoldYetKeepsTheHeartbeat) {
   SafetyInputs in = Fine();
   in.control.due_ns = in.due_ns - 41 * kMs;  // one period was skipped
   in.control_alive_ns = in.due_ns - 1 * kMs;
   EXPECT_EQ(PresentIn(in), 0u);
 }
 
-TEST(Supervisor, StaleDriveSideIsAStaleFrame) {
+TEST(SafetyMonitor, StaleDriveSideIsAStaleFrame) {
   SafetyInputs in = Fine();
   in.drive_alive_ns = in.due_ns - 40 * kMs;
   EXPECT_EQ(PresentIn(in), 0u);
@@ -106,7 +106,7 @@ TEST(Supervisor, StaleDriveSideIsAStaleFrame) {
   ExpectEvidence(TripCause::kStaleFrame, in, 0.041, 0.040, 0);
 }
 
-TEST(Supervisor, BusAndDriveAreTakenAtTheirWord) {
+TEST(SafetyMonitor, BusAndDriveAreTakenAtTheirWord) {
   SafetyInputs in = Fine();
   in.drive.bus_ok = false;
   EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kBusLost));
@@ -115,13 +115,13 @@ TEST(Supervisor, BusAndDriveAreTakenAtTheirWord) {
   EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kDriveFault));
 }
 
-TEST(Supervisor, TheEvidenceOfABusSaysWhichAndWhatItMet) {
+TEST(SafetyMonitor, TheEvidenceOfABusSaysWhichAndWhatItMet) {
   SafetyInputs in = Fine();
   in.drive.bus_ok = in.drive.drive_ok = false;
   in.troubles = {.lost = {.bus = 3, .fault = {.kind = 1, .node = 2, .code = 7}},
                  .drive = {.bus = 1, .fault = {.kind = 5, .node = 0, .code = 0x2310}},
                  .oldest_bus = 2};
-  const Supervisor supervisor(kLimits);
+  const SafetyMonitor supervisor(kLimits);
   const Evidence lost = supervisor.EvidenceOf(TripCause::kBusLost, in);
   EXPECT_EQ(lost.channel, 3u);
   EXPECT_EQ(FaultFromBits(lost.detail), in.troubles.lost.fault);
@@ -133,7 +133,7 @@ TEST(Supervisor, TheEvidenceOfABusSaysWhichAndWhatItMet) {
   EXPECT_EQ(FaultFromBits(stale.detail).kind, kBusHangs);
 }
 
-TEST(Supervisor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
+TEST(SafetyMonitor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
   SafetyInputs in = Fine();
   in.control.missed_in_a_row = 2;
   EXPECT_EQ(PresentIn(in), 0u);
@@ -142,7 +142,7 @@ TEST(Supervisor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
   ExpectEvidence(TripCause::kMissedDeadlines, in, 3.0, 3.0, 0);
 }
 
-TEST(Supervisor, FaultsOfTheLoopCountWhileItLives) {
+TEST(SafetyMonitor, FaultsOfTheLoopCountWhileItLives) {
   SafetyInputs in = Fine();
   in.control.faults = CauseBit(TripCause::kHubRate2) | CauseBit(TripCause::kEstimatorResidual);
   in.control.evidence = {.value = 10.5, .limit = 10.0, .channel = 2, .detail = 0};
@@ -153,8 +153,8 @@ TEST(Supervisor, FaultsOfTheLoopCountWhileItLives) {
       << "old word is no word: only the silence counts";
 }
 
-TEST(Supervisor, NothingIsSaidOfATaskThatHasNotReportedYet) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, NothingIsSaidOfATaskThatHasNotReportedYet) {
+  SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.state = kStarting;
   in.control = kNoControlReport;
@@ -179,8 +179,8 @@ TEST(Supervisor, NothingIsSaidOfATaskThatHasNotReportedYet) {
   EXPECT_EQ(facts.all_reported, 1);
 }
 
-TEST(Supervisor, RestCountsOnlyFromALivingLoop) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, RestCountsOnlyFromALivingLoop) {
+  SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.control.at_rest = true;
   EXPECT_EQ(supervisor.Judge(in).at_rest, 1);
@@ -188,8 +188,8 @@ TEST(Supervisor, RestCountsOnlyFromALivingLoop) {
   EXPECT_EQ(supervisor.Judge(in).at_rest, 0);
 }
 
-TEST(Supervisor, StoppingDoesNotEndOnTheWordOfAStepBeforeIt) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, StoppingDoesNotEndOnTheWordOfAStepBeforeIt) {
+  SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.state = kStopping;
   in.control.at_rest = true;
@@ -199,8 +199,8 @@ TEST(Supervisor, StoppingDoesNotEndOnTheWordOfAStepBeforeIt) {
   EXPECT_EQ(supervisor.Judge(in).at_rest, 1);
 }
 
-TEST(Supervisor, TheEndOfTheLastExperimentDoesNotEndTheNext) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, TheEndOfTheLastExperimentDoesNotEndTheNext) {
+  SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.control.experiment_done = true;
   EXPECT_EQ(supervisor.Judge(in).experiment_done, 1);
@@ -211,8 +211,8 @@ TEST(Supervisor, TheEndOfTheLastExperimentDoesNotEndTheNext) {
   EXPECT_EQ(supervisor.Judge(in).experiment_done, 0);
 }
 
-TEST(Supervisor, StopExpiresAfterItsTimeInStoppingOnly) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, StopExpiresAfterItsTimeInStoppingOnly) {
+  SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.state = kStopping;
   in.state_since_ns = in.due_ns - 3000 * kMs;
@@ -224,8 +224,8 @@ TEST(Supervisor, StopExpiresAfterItsTimeInStoppingOnly) {
   EXPECT_EQ(supervisor.Judge(in).stop_expired, 0);
 }
 
-TEST(Supervisor, TheResetButtonCountsWhenItGoesDownAfterTheTrip) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, TheResetButtonCountsWhenItGoesDownAfterTheTrip) {
+  SafetyMonitor supervisor(kLimits);
   SafetyInputs up = Fine();
   SafetyInputs down = Fine();
   down.levels |= LineBit(Line::kResetButton);
@@ -245,15 +245,15 @@ TEST(Supervisor, TheResetButtonCountsWhenItGoesDownAfterTheTrip) {
   EXPECT_EQ(supervisor.Judge(up).reset_pressed, 0) << "the next trip wants its own press";
 }
 
-TEST(Supervisor, AButtonThatIsStuckFromTheStartNeverCounts) {
-  Supervisor supervisor(kLimits);
+TEST(SafetyMonitor, AButtonThatIsStuckFromTheStartNeverCounts) {
+  SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.state = kTripped;
   in.levels |= LineBit(Line::kResetButton);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(supervisor.Judge(in).reset_pressed, 0);
 }
 
-TEST(Supervisor, TakesItsLimitsFromTheConfiguration) {
+TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   SafetyConfig safety{};
   safety.stop_timeout_s = 3.0;
   safety.missed_deadlines_to_trip = 5;
@@ -281,45 +281,45 @@ class HomingContact : public testing::Test {
     return in;
   }
 
-  Supervisor supervisor_{kLimits};
+  SafetyMonitor monitor_{kLimits};
 };
 
 TEST_F(HomingContact, TheSwitchThatIsLookedForDoesNotTripAtOnce) {
-  EXPECT_EQ(supervisor_.Judge(OnSwitch()).present, 0u);
-  EXPECT_EQ(supervisor_.Judge(OnSwitch(500)).present, 0u);
+  EXPECT_EQ(monitor_.Judge(OnSwitch()).present, 0u);
+  EXPECT_EQ(monitor_.Judge(OnSwitch(500)).present, 0u);
 }
 
 TEST_F(HomingContact, StandingOnItForTooLongTrips) {
-  supervisor_.Judge(OnSwitch());
-  EXPECT_EQ(supervisor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
+  monitor_.Judge(OnSwitch());
+  EXPECT_EQ(monitor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
 }
 
 TEST_F(HomingContact, TheClockStartsAgainWhenTheSwitchHasClosed) {
-  supervisor_.Judge(OnSwitch());
+  monitor_.Judge(OnSwitch());
   SafetyInputs off = OnSwitch(400);
   off.levels = kHealthyLevels;
-  supervisor_.Judge(off);
-  EXPECT_EQ(supervisor_.Judge(OnSwitch(600)).present, 0u);
+  monitor_.Judge(off);
+  EXPECT_EQ(monitor_.Judge(OnSwitch(600)).present, 0u);
 }
 
 TEST_F(HomingContact, EveryOtherSwitchTripsAsEver) {
   SafetyInputs in = OnSwitch();
   in.levels &= ~LineBit(Line::kLimit2Low);
-  EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2Low));
+  EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2Low));
 }
 
 TEST_F(HomingContact, TheEmergencyStopCanNeverBeExcused) {
   SafetyInputs in = OnSwitch();
   in.may_open |= LineBit(Line::kEmergencyStop);
   in.levels &= ~LineBit(Line::kEmergencyStop);
-  EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kEmergencyStop));
+  EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kEmergencyStop));
 }
 
 TEST_F(HomingContact, OnlyARunningArmIsExcused) {
   for (const SafetyState state : {kIdle, kArmed, kStopping, kTripped}) {
     SafetyInputs in = OnSwitch();
     in.state = state;
-    EXPECT_EQ(supervisor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High)) << Name(state);
+    EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High)) << Name(state);
   }
 }
 

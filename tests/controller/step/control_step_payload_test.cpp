@@ -79,7 +79,7 @@ TEST(ControlStepWithPayload, AMoveOpensTheDoubtOfThePayload) {
       }
       moved = IsMoving(input.path[1]);
       sigma_before_kg = out.payload_sigma_kg;
-      EXPECT_EQ(out.payload_doubts, 0u) << k;
+      EXPECT_EQ(out.payload_warnings, 0u) << k;
     }
     EXPECT_EQ(moves, 2);
     EXPECT_LT(sigma_before_kg, 0.05) << "found again";
@@ -148,17 +148,17 @@ TEST(ControlStepWithPayload, RestingItTakesTheRobustGains) {
 TEST(ControlStepWithPayload, AMoveThatShowsNothingLeavesADoubtUntilTheNextRun) {
   const RigConfig config = ShippedRig({"controller.name=gain-scheduled"});
   ControlStep step(config, DesignController(config));
-  std::uint32_t doubts = 0;
+  std::uint32_t warnings = 0;
   for (int k = 0; k <= 10; ++k) {
     StepInput input = AtRest(k, SafetyState::kRunning);
     input.reset = k == 0 ? 1 : 0;
     if (k == 5) input.path[1].rate_rad_s[0] = 1e-9;
-    doubts = step.Step(input).payload_doubts;
-    EXPECT_EQ(doubts, k <= 5 ? 0u : static_cast<std::uint32_t>(kPayloadNotFound)) << k;
+    warnings = step.Step(input).payload_warnings;
+    EXPECT_EQ(warnings, k <= 5 ? 0u : static_cast<std::uint32_t>(kPayloadNotObservable)) << k;
   }
   StepInput again = AtRest(11, SafetyState::kArmed);
   again.reset = 1;
-  EXPECT_EQ(step.Step(again).payload_doubts, 0u) << "of the run before";
+  EXPECT_EQ(step.Step(again).payload_warnings, 0u) << "of the run before";
 }
 
 TEST(ControlStepWithPayload, WithoutItsEstimatorNothingIsSaidOfIt) {
@@ -168,7 +168,7 @@ TEST(ControlStepWithPayload, WithoutItsEstimatorNothingIsSaidOfIt) {
                              out.friction_nm[1]}) {
     EXPECT_TRUE(std::isnan(value));
   }
-  EXPECT_EQ(out.payload_doubts, 0u);
+  EXPECT_EQ(out.payload_warnings, 0u);
 }
 
 }  // namespace

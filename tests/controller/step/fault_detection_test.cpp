@@ -48,27 +48,26 @@ class LoopSupervisorTest : public testing::Test {
   void Expect(TripCause cause, int ticks, const Facts& facts, double value, double limit,
               std::uint16_t channel) {
     SCOPED_TRACE(Name(cause));
-    supervisor_.Reset();
+    monitor_.Reset();
     for (int k = 1; k < ticks; ++k) {
-      EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u) << "after " << k;
+      EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u) << "after " << k;
     }
     for (int k = 0; k < 3; ++k) {
-      const auto verdict = supervisor_.Judge(facts.Now());
+      const auto verdict = monitor_.Judge(facts.Now());
       EXPECT_EQ(verdict.faults, CauseBit(cause));
       EXPECT_DOUBLE_EQ(verdict.value, value);
       EXPECT_DOUBLE_EQ(verdict.limit, limit);
       EXPECT_EQ(verdict.channel, channel);
     }
-    EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u) << "the fact has gone";
+    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u) << "the fact has gone";
   }
 
   const RigConfig config_ = ShippedRig();
-  LoopSupervisor supervisor_{
-      config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96}};
+  FaultDetection monitor_{config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96}};
 };
 
 TEST_F(LoopSupervisorTest, AHealthyArmRaisesNothing) {
-  for (int k = 0; k < 100; ++k) EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u);
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
 }
 
 TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSampleThatShowsThem) {
@@ -80,7 +79,7 @@ TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSampleThatShowsThem) {
     Expect(TripCause::kSoftLimit2, 1, facts, 90.1 * kRadPerDeg, 90.0 * kRadPerDeg, 2);
     facts.counters.angle_rad = {sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg,
                                 sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg};
-    EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   }
 }
 
@@ -97,8 +96,8 @@ TEST_F(LoopSupervisorTest, AHubRateOfEverySecondSampleDoesNotTrip) {
   Facts fast;
   fast.estimate.x(6) = 9.0;
   for (int k = 0; k < 20; ++k) {
-    EXPECT_EQ(supervisor_.Judge(fast.Now()).faults, 0u);
-    EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(fast.Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
   }
 }
 
@@ -113,7 +112,7 @@ TEST_F(LoopSupervisorTest, BendingStrainTripsInTheSampleThatShowsIt) {
 TEST_F(LoopSupervisorTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
   Facts facts;
   facts.counters.jumped = 0b0100;
-  const auto verdict = supervisor_.Judge(facts.Now());
+  const auto verdict = monitor_.Judge(facts.Now());
   EXPECT_EQ(verdict.faults, CauseBit(TripCause::kEncoderJump));
   EXPECT_EQ(verdict.channel, 3);
   EXPECT_DOUBLE_EQ(verdict.limit, 14.0);
@@ -124,13 +123,13 @@ TEST_F(LoopSupervisorTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
   Facts facts;
   facts.counters.good = 0b1101;
   facts.counters.missing_ticks = {0, 1, 0, 0};
-  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   facts.counters.missing_ticks = {0, 2, 0, 0};
   Expect(TripCause::kNoCounterReading, 1, facts, 2.0, 2.0, 2);
 }
 
 TEST_F(LoopSupervisorTest, AnEncoderThatTheRigDoesNotHaveIsNotMissed) {
-  LoopSupervisor hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {761.59, 497.96});
+  FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {761.59, 497.96});
   Facts facts;
   facts.counters.good = 0b0011;
   facts.counters.missing_ticks = {0, 0, 500, 500};
@@ -143,22 +142,22 @@ TEST_F(LoopSupervisorTest, HubAgainstRotorTripsBeyondTheTorsionThatTheTorqueExpl
   facts.counters.angle_rad = {0.2, 0.0, 0.2 + 0.11, 0.0};
   Expect(TripCause::kHubAgainstRotor, 3, facts, 0.2 + 0.11 - 0.2, 0.1, 1);
   facts.counters.angle_rad = {0.0, 0.1, 0.0, 0.0};
-  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   // 761.59 N m twist joint 1 by one radian: nothing is wrong then.
   facts = {};
   facts.torque_nm = {761.59, 0.0};
   facts.counters.angle_rad = {0.0, 0.0, 1.0, 0.0};
-  for (int k = 0; k < 5; ++k) EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   facts.torque_nm = {-761.59, 0.0};
-  for (int k = 0; k < 3; ++k) supervisor_.Judge(facts.Now());
-  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, CauseBit(TripCause::kHubAgainstRotor));
+  for (int k = 0; k < 3; ++k) monitor_.Judge(facts.Now());
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, CauseBit(TripCause::kHubAgainstRotor));
 }
 
 TEST_F(LoopSupervisorTest, HubAgainstRotorIsNotJudgedWithoutBothReadings) {
   Facts facts;
   facts.counters.angle_rad = {0.0, 0.0, 0.5, 0.0};
   facts.counters.good = 0b1011;
-  for (int k = 0; k < 5; ++k) EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
 }
 
 TEST_F(LoopSupervisorTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
@@ -178,16 +177,16 @@ TEST_F(LoopSupervisorTest, AStrainFaultThatComesAndGoesDoesNotTrip) {
   Facts bad;
   bad.modes.outlier = 1;
   for (int k = 0; k < 10; ++k) {
-    EXPECT_EQ(supervisor_.Judge(bad.Now()).faults, 0u);
-    EXPECT_EQ(supervisor_.Judge(bad.Now()).faults, 0u);
-    EXPECT_EQ(supervisor_.Judge(Facts().Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(bad.Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(bad.Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
   }
 }
 
 TEST_F(LoopSupervisorTest, AStaleFrameTripsBeyondTwoPeriods) {
   Facts facts;
   facts.frame_age_s = 0.04;
-  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   facts.frame_age_s = 0.041;
   Expect(TripCause::kStaleFrame, 1, facts, 0.041, 0.04, 0);
 }
@@ -198,8 +197,8 @@ TEST_F(LoopSupervisorTest, AStateThatIsNotFiniteTripsAtOnce) {
     for (Eigen::Index i = 0; i < 12; ++i) {
       Facts facts;
       facts.estimate.x(i) = bad;
-      supervisor_.Reset();
-      const auto faults = supervisor_.Judge(facts.Now()).faults;
+      monitor_.Reset();
+      const auto faults = monitor_.Judge(facts.Now()).faults;
       EXPECT_TRUE((faults & CauseBit(TripCause::kStateNotFinite)) != 0) << i;
     }
   }
@@ -219,7 +218,7 @@ TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
   facts.frame_age_s = 0.1;
   facts.counters.jumped = 0b1000;
   facts.counters.angle_rad[1] = facts.counters.angle_rad[3] = 2.0;
-  const auto verdict = supervisor_.Judge(facts.Now());
+  const auto verdict = monitor_.Judge(facts.Now());
   EXPECT_EQ(verdict.faults, CauseBit(TripCause::kSoftLimit2) | CauseBit(TripCause::kEncoderJump) |
                                 CauseBit(TripCause::kStaleFrame));
   EXPECT_DOUBLE_EQ(verdict.value, 2.0);
@@ -230,10 +229,10 @@ TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
 TEST_F(LoopSupervisorTest, ResetForgetsSamplesInARow) {
   Facts facts;
   facts.modes.stuck = 1;
-  supervisor_.Judge(facts.Now());
-  supervisor_.Judge(facts.Now());
-  supervisor_.Reset();
-  EXPECT_EQ(supervisor_.Judge(facts.Now()).faults, 0u);
+  monitor_.Judge(facts.Now());
+  monitor_.Judge(facts.Now());
+  monitor_.Reset();
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
 }
 
 // Symptom: the log of a second run, armed away from zero, did not replay: a loop that had run
@@ -242,13 +241,13 @@ TEST_F(LoopSupervisorTest, ResetForgetsWhereTheArmWas) {
   Facts elsewhere;
   elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
   elsewhere.modes.root_strain = {2e-4, 1e-4};
-  LoopSupervisor fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
-  for (int k = 0; k < 38; ++k) supervisor_.Judge(elsewhere.Now());  // 38: not a full ring
-  supervisor_.Reset();
+  FaultDetection fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  for (int k = 0; k < 38; ++k) monitor_.Judge(elsewhere.Now());  // 38: not a full ring
+  monitor_.Reset();
   for (int k = 1; k <= 60; ++k) {
     // Moves from sample 30 to 33, so that the order in the ring shows.
     if (k >= 30 && k <= 33) elsewhere.counters.angle_rad[0] += 0.002;
-    const bool at_rest = supervisor_.Judge(elsewhere.Now()).at_rest;
+    const bool at_rest = monitor_.Judge(elsewhere.Now()).at_rest;
     EXPECT_EQ(at_rest, fresh.Judge(elsewhere.Now()).at_rest) << k;
     if (k < 30) {
       EXPECT_EQ(at_rest, k >= 25) << "half a second, wherever it stands: " << k;
@@ -260,7 +259,7 @@ TEST_F(LoopSupervisorTest, ResetForgetsWhereTheArmWas) {
 TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestHoweverShortTheRest) {
   SafetyConfig safety = config_.safety;
   safety.rest_time_s = 0.05;
-  LoopSupervisor hasty(safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
   Facts moving;
   for (int k = 0; k < 20; ++k) {
     moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
@@ -270,22 +269,22 @@ TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestHoweverShortTheRest) {
 
 // At rest: half a second, 25 samples, of slow hubs and slow strain.
 TEST_F(LoopSupervisorTest, RestIsSeenAfterHalfASecondOfIt) {
-  for (int k = 1; k < 25; ++k) EXPECT_FALSE(supervisor_.Judge(Facts().Now()).at_rest) << k;
-  EXPECT_TRUE(supervisor_.Judge(Facts().Now()).at_rest);
+  for (int k = 1; k < 25; ++k) EXPECT_FALSE(monitor_.Judge(Facts().Now()).at_rest) << k;
+  EXPECT_TRUE(monitor_.Judge(Facts().Now()).at_rest);
 }
 
 TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestAndACountOfItIs) {
   Facts moving;
   for (int k = 0; k < 60; ++k) {  // 0.06 rad/s, the bound being 0.05
     moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
-    EXPECT_FALSE(supervisor_.Judge(moving.Now()).at_rest);
+    EXPECT_FALSE(monitor_.Judge(moving.Now()).at_rest);
   }
-  supervisor_.Reset();
+  monitor_.Reset();
   Facts flicker;  // one count of 2540 to and fro: 0.12 rad/s from sample to sample
   bool at_rest = false;
   for (int k = 0; k < 60; ++k) {
     flicker.counters.angle_rad[0] = k % 2 == 0 ? 0.0 : 2.0 * std::numbers::pi / 2540.0;
-    at_rest = supervisor_.Judge(flicker.Now()).at_rest;
+    at_rest = monitor_.Judge(flicker.Now()).at_rest;
   }
   EXPECT_TRUE(at_rest);
 }
@@ -295,18 +294,18 @@ TEST_F(LoopSupervisorTest, ABendingLinkIsNotAtRest) {
   Facts bending;
   for (int k = 0; k < 60; ++k) {
     bending.modes.root_strain[1] = (k % 2 == 0 ? 1.0 : -1.0) * 0.6e-4;
-    EXPECT_FALSE(supervisor_.Judge(bending.Now()).at_rest);
+    EXPECT_FALSE(monitor_.Judge(bending.Now()).at_rest);
   }
 }
 
 TEST_F(LoopSupervisorTest, OneMovementStartsTheHalfSecondAnew) {
-  for (int k = 0; k < 40; ++k) supervisor_.Judge(Facts().Now());
-  ASSERT_TRUE(supervisor_.Judge(Facts().Now()).at_rest);
+  for (int k = 0; k < 40; ++k) monitor_.Judge(Facts().Now());
+  ASSERT_TRUE(monitor_.Judge(Facts().Now()).at_rest);
   Facts moved;
   moved.counters.angle_rad[0] = moved.counters.angle_rad[2] = 0.05;
-  EXPECT_FALSE(supervisor_.Judge(moved.Now()).at_rest);
+  EXPECT_FALSE(monitor_.Judge(moved.Now()).at_rest);
   int samples = 0;
-  while (!supervisor_.Judge(moved.Now()).at_rest && samples < 100) ++samples;
+  while (!monitor_.Judge(moved.Now()).at_rest && samples < 100) ++samples;
   EXPECT_GE(samples, 24);
   EXPECT_LE(samples, 30) << "the window of five samples may delay it, no more";
 }

@@ -21,7 +21,7 @@ struct Journal {
 };
 
 BusHealth Bus(bool ok, const char* fault, std::uint32_t failed) {
-  return {.name = "can0", .ok = ok, .fault = fault, .failed = failed, .taken_back = 0};
+  return {.name = "can0", .ok = ok, .fault = fault, .failed = failed, .recovered = 0};
 }
 
 TEST(BusJournal, SaysWhenABusIsLostAndWhenItIsBack) {
@@ -58,7 +58,7 @@ TEST(BusJournal, KeepsTheBusesApart) {
                           .ok = false,
                           .fault = "amplifier: connection lost",
                           .failed = 2,
-                          .taken_back = 0}});
+                          .recovered = 0}});
   EXPECT_EQ(told.lines, std::vector<std::string>{"error: lost: amplifier: connection lost"});
 }
 

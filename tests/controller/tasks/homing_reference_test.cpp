@@ -12,7 +12,7 @@ constexpr LineLevels kOpen = kHealthyLevels & ~LineBit(Line::kLimit2High);
 class HomingGoalTest : public testing::Test {
  protected:
   HomingGoalTest() { goal_.Start(kPlan, {0.3, -0.2}); }
-  HomingGoal goal_;
+  HomingReference goal_;
 };
 
 TEST_F(HomingGoalTest, MovesItsJointAndHoldsTheOther) {

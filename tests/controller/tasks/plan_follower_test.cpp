@@ -41,7 +41,7 @@ StepOutput AnOutput() {
   out.payload_kg = 0.3;
   out.payload_sigma_kg = 0.02;
   out.mean_nis = 9.0;
-  out.payload_doubts = kPayloadAtBound;
+  out.payload_warnings = kPayloadAtBound;
   out.friction_nm = {0.16, 0.01};
   for (std::size_t i = 0; i < 12; ++i) out.x_next[i] = 0.1 * static_cast<double>(i);
   return out;
@@ -97,7 +97,7 @@ TEST_F(PlanFollowerTest, AsksSoThatAPlanHoldsFromTheBeginningOfEachMoveAndEveryT
     EXPECT_EQ(request.sample, request.first - 5);
     EXPECT_EQ(request.needed_ns, request.first * kPeriodNs);
     EXPECT_EQ(request.run, 7u);
-    EXPECT_EQ(request.stretch, request.first < 154 ? 50 : 154);
+    EXPECT_EQ(request.segment, request.first < 154 ? 50 : 154);
     EXPECT_EQ(request.end, request.first < 154 ? 150 : 254);
   }
 }
@@ -141,7 +141,7 @@ TEST_F(PlanFollowerTest, TellsTheStateThePayloadAndThePathAroundTheHorizon) {
   EXPECT_EQ(first.known.payload_kg, 0.3);
   EXPECT_EQ(first.known.payload_sigma_kg, 0.02);
   EXPECT_EQ(first.known.mean_nis, 9.0);
-  EXPECT_EQ(first.known.doubts, static_cast<std::uint32_t>(kPayloadAtBound));
+  EXPECT_EQ(first.known.warnings, static_cast<std::uint32_t>(kPayloadAtBound));
   EXPECT_EQ(first.known.friction_nm, AnOutput().friction_nm);
   EXPECT_EQ(first.x[11], AnOutput().x_next[11]);
   // From one before `sample` to one after the plan's end: at the next move's beginning, ...
@@ -183,7 +183,7 @@ TEST_F(PlanFollowerTest, WhereTheModelIsContradictedThePlansAreVoidAndANewOneIsA
   Publish(7, 60, 0.5, 60 * kPeriodNs);
   ASSERT_TRUE(follower_.At(62, 62 * kPeriodNs));
   StepOutput dropped = AnOutput();
-  dropped.payload_doubts = kPayloadModelMismatch;
+  dropped.payload_warnings = kPayloadModelMismatch;
   follower_.Ask(62, 62 * kPeriodNs, TwoMoves(), dropped);
   const PlanRequest& request = requests_->Read();
   EXPECT_EQ(request.number, before + 1);

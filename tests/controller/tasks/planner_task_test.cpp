@@ -60,9 +60,9 @@ class PlannerTaskTest : public testing::Test {
   }
 
   // The control task asks at a sample, and the planner runs.
-  void AskAt(int sample, const PlanState& x, double payload_kg, std::uint32_t doubts = 0) {
+  void AskAt(int sample, const PlanState& x, double payload_kg, std::uint32_t warnings = 0) {
     StepOutput output{};
-    output.payload_doubts = doubts;
+    output.payload_warnings = warnings;
     PlanState::Map(output.x_next.data()) = x;
     output.payload_kg = payload_kg;
     output.mean_nis = 8.0;
@@ -86,7 +86,7 @@ class PlannerTaskTest : public testing::Test {
                                  .payload_sigma_kg = 0.0,
                                  .friction_nm = {0.0, 0.0},
                                  .mean_nis = 8.0,
-                                 .doubts = 0};
+                                 .warnings = 0};
     GaugedState at{.q = x.head<6>(), .v = x.tail<6>(), .phi_f = Eigen::Vector4d::Zero()};
     for (int k = sample; k < sample + 5; ++k) {
       const PlanState now = (PlanState() << at.q, at.v).finished();

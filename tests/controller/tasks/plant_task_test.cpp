@@ -74,7 +74,7 @@ class PlantTaskTest : public testing::Test {
   CommandChannel commands_{commands_history_};
   PermitChannel permits_{permits_history_};
   OutputChannel outputs_{outputs_history_};
-  PlanChannel plans_{PlannedRun{}};
+  ExperimentChannel plans_{LoadedExperiment{}};
   SpscQueue<LinePress> presses_{4};
   FrameChannel frames_{FrameHistory(kNoFrame)};
   LevelChannel levels_{LevelHistory(kHealthyLevels)};

@@ -10,7 +10,7 @@
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/runlog/metrics.h"
-#include "controller/types/refused.h"
+#include "controller/types/rejected_error.h"
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/support/loop_time.h"
@@ -157,7 +157,7 @@ TEST_F(WiredStackTest, ARealRigRefusesWhatOnlyASimulatedOneCanMeet) {
   EXPECT_FALSE(stack_.simulated());
   EXPECT_NO_THROW(RefuseSimEvents(experiment_));
   const std::string message =
-      MessageOf<Refused>([] { RefuseSimEvents(ShippedExperiment("payload-dropped")); });
+      MessageOf<RejectedError>([] { RefuseSimEvents(ShippedExperiment("payload-dropped")); });
   EXPECT_THAT(message, testing::HasSubstr("sim_event[0]"));
 }
 
@@ -203,7 +203,7 @@ TEST_F(WiredStackTest, ALostBusIsNamedInTheTripAndInTheHealth) {
   gauges_.status = BusStatus::kOk;
   RunUntil(now_ns_ + 100 * kMs);
   EXPECT_TRUE(stack_.buses()[1].ok);
-  EXPECT_EQ(stack_.buses()[1].taken_back, 1U);
+  EXPECT_EQ(stack_.buses()[1].recovered, 1U);
   EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: an answer that is none")
       << "the trip keeps what caused it";
 }

@@ -99,7 +99,7 @@ after=$(tail -n 1 rig.out | jq .drives_active_ms)
 check "the drives were off within their time-out ($((after - before)) ms)" \
   at_least 101 $((after - before))
 check "disarmed, the bus is taken back without a restart" within 5 bus_is_ok vcan0
-check "once" equal "$(bus vcan0 taken_back)" 1
+check "once" equal "$(bus vcan0 recovered)" 1
 check "nothing arms by itself" equal "$(state)" Tripped
 check "reset" press_and_reset
 check "and armed again" flexarm arm

@@ -30,12 +30,13 @@ Case RandomCase(std::mt19937* engine) {
 
 // A quarter of a million cases: the answer must satisfy Coulomb's law (3.12) and the equation of
 // motion. 1e-9 is round-off of the reaction; accelerations reach 1e4.
-TEST(BoxFriction, EveryAnswerObeysCoulombsLaw) {
+TEST(CoulombFrictionLcp, EveryAnswerObeysCoulombsLaw) {
   std::mt19937 engine(1);
   int stuck = 0, forward = 0;
   for (int i = 0; i < 250000; ++i) {
     const Case c = RandomCase(&engine);
-    const FrictionSolution s = BoxFriction(c.z11, c.z12, c.z22, c.r1, c.r2).Solve(c.v, c.F, c.h);
+    const FrictionSolution s =
+        CoulombFrictionLcp(c.z11, c.z12, c.z22, c.r1, c.r2).Solve(c.v, c.F, c.h);
     const double a1 = s.acceleration[0], a2 = s.acceleration[1];
     const double scale = 1.0 + std::abs(a1) + std::abs(a2);
     const std::array<double, 2> lambda = {c.z11 * a1 + c.z12 * a2 - c.r1,
@@ -58,9 +59,9 @@ TEST(BoxFriction, EveryAnswerObeysCoulombsLaw) {
   EXPECT_GT(forward, 50000);
 }
 
-TEST(BoxFriction, AHubAtRestBelowTheLimitGetsExactlyNoAcceleration) {
+TEST(CoulombFrictionLcp, AHubAtRestBelowTheLimitGetsExactlyNoAcceleration) {
   const FrictionSolution s =
-      BoxFriction(2.0, 0.5, 1.0, 0.1, -0.05).Solve({0, 0}, {0.16, 0.1}, 1e-3);
+      CoulombFrictionLcp(2.0, 0.5, 1.0, 0.1, -0.05).Solve({0, 0}, {0.16, 0.1}, 1e-3);
   EXPECT_EQ(s.acceleration[0], 0.0);
   EXPECT_EQ(s.acceleration[1], 0.0);
 }

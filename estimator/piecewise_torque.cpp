@@ -1,8 +1,8 @@
-#include "estimator/torque_pieces.h"
+#include "estimator/piecewise_torque.h"
 
 namespace flexarm {
 
-std::array<double, 2> TorquePieces::mean_nm() const noexcept {
+std::array<double, 2> PiecewiseTorque::mean_nm() const noexcept {
   if (size_ <= 1) return last_nm();
   double ticks = 0.0;
   std::array<double, 2> sum{};
@@ -14,8 +14,8 @@ std::array<double, 2> TorquePieces::mean_nm() const noexcept {
   return {sum[0] / ticks, sum[1] / ticks};
 }
 
-TorquePieces TorquePieces::WithMean(const std::array<double, 2>& mean_nm) const noexcept {
-  TorquePieces out = *this;
+PiecewiseTorque PiecewiseTorque::WithMean(const std::array<double, 2>& mean_nm) const noexcept {
+  PiecewiseTorque out = *this;
   if (size_ == 1) out.piece_[0].torque_nm = mean_nm;
   if (size_ <= 1) return out;
   const std::array<double, 2> mean = this->mean_nm();

@@ -1,33 +1,33 @@
-#include "controller/operator/payload_watch.h"
+#include "controller/operator/payload_warnings.h"
 
 #include <gtest/gtest.h>
 
 namespace flexarm {
 namespace {
 
-std::uint32_t Take(PayloadWatch* watch, std::uint32_t doubts,
+std::uint32_t Take(PayloadWarnings* watch, std::uint32_t warnings,
                    SafetyState state = SafetyState::kRunning) {
   StepInput input{};
   input.safety_state = state;
   StepOutput output{};
-  output.payload_doubts = doubts;
+  output.payload_warnings = warnings;
   return watch->Take(input, output);
 }
 
-TEST(PayloadWatch, TellsEachDoubtOnceARun) {
-  PayloadWatch watch;
+TEST(PayloadWarnings, TellsEachDoubtOnceARun) {
+  PayloadWarnings watch;
   EXPECT_EQ(Take(&watch, 0), 0u);
   EXPECT_EQ(Take(&watch, kPayloadAtBound), kPayloadAtBound);
   EXPECT_EQ(Take(&watch, kPayloadAtBound), 0u) << "said already";
-  EXPECT_EQ(Take(&watch, kPayloadAtBound | kPayloadNotFound), kPayloadNotFound);
+  EXPECT_EQ(Take(&watch, kPayloadAtBound | kPayloadNotObservable), kPayloadNotObservable);
   EXPECT_EQ(Take(&watch, kPayloadAtBound, SafetyState::kArmed), 0u) << "nothing runs";
   EXPECT_EQ(Take(&watch, kPayloadAtBound), kPayloadAtBound) << "the next run";
 }
 
-TEST(PayloadWatch, EveryDoubtHasAName) {
+TEST(PayloadWarnings, EveryDoubtHasAName) {
   std::uint32_t named = 0;
-  for (const PayloadWarning& warning : kPayloadWarnings) named |= warning.doubt;
-  EXPECT_EQ(named, kPayloadAtBound | kPayloadModelMismatch | kPayloadNotFound);
+  for (const PayloadWarningText& warning : kPayloadWarnings) named |= warning.bit;
+  EXPECT_EQ(named, kPayloadAtBound | kPayloadModelMismatch | kPayloadNotObservable);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "controller/operator/delay_watch.h"
+#include "controller/operator/delay_monitor.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ StepInput Acted(std::int64_t acted_late_ns, std::int64_t acts_late_ns,
   return input;
 }
 
-TEST(DelayWatch, TellsTheDelayOfTheLastTorqueAndTheLongest) {
-  DelayWatch watch(20 * kMs, 0.009);
+TEST(DelayMonitor, TellsTheDelayOfTheLastTorqueAndTheLongest) {
+  DelayMonitor watch(20 * kMs, 0.009);
   watch.Take(Acted(0, 0));
   watch.Take(Acted(2 * kMs, 2 * kMs));
   watch.Take(Acted(kMs, kMs));
@@ -27,15 +27,15 @@ TEST(DelayWatch, TellsTheDelayOfTheLastTorqueAndTheLongest) {
 }
 
 // The margin counts from the delay that is predicted: a long one that was known takes none of it.
-TEST(DelayWatch, AKnownDelayTakesNothingOfTheMargin) {
-  DelayWatch watch(20 * kMs, 0.009);
+TEST(DelayMonitor, AKnownDelayTakesNothingOfTheMargin) {
+  DelayMonitor watch(20 * kMs, 0.009);
   for (int k = 0; k < 5; ++k) EXPECT_FALSE(watch.Take(Acted(30 * kMs, 30 * kMs)));
   EXPECT_DOUBLE_EQ(watch.delay_ms(), 50.0);
   EXPECT_DOUBLE_EQ(watch.margin_ms(), 9.0);
 }
 
-TEST(DelayWatch, WarnsOnceARunWhenLessThanHalfOfTheMarginIsLeft) {
-  DelayWatch watch(20 * kMs, 0.008);
+TEST(DelayMonitor, WarnsOnceARunWhenLessThanHalfOfTheMarginIsLeft) {
+  DelayMonitor watch(20 * kMs, 0.008);
   EXPECT_FALSE(watch.Take(Acted(0, 0)));
   EXPECT_FALSE(watch.Take(Acted(4 * kMs, 0))) << "just half of it";
   EXPECT_TRUE(watch.Take(Acted(4 * kMs + 1, 0)));
@@ -44,8 +44,8 @@ TEST(DelayWatch, WarnsOnceARunWhenLessThanHalfOfTheMarginIsLeft) {
   EXPECT_TRUE(watch.Take(Acted(5 * kMs, 0))) << "the next run";
 }
 
-TEST(DelayFoundWatch, TellsOnceARunThatADelayWasFound) {
-  DelayFoundWatch watch;
+TEST(FoundDelayMonitor, TellsOnceARunThatADelayWasFound) {
+  FoundDelayMonitor watch;
   const auto take = [&watch](int found, SafetyState state = SafetyState::kRunning) {
     StepOutput output{};
     output.delay_found = static_cast<std::int8_t>(found);
@@ -60,8 +60,8 @@ TEST(DelayFoundWatch, TellsOnceARunThatADelayWasFound) {
   EXPECT_TRUE(take(1)) << "the next run";
 }
 
-TEST(DelayWatch, SaysNothingWhileNothingRuns) {
-  DelayWatch watch(20 * kMs, 0.008);
+TEST(DelayMonitor, SaysNothingWhileNothingRuns) {
+  DelayMonitor watch(20 * kMs, 0.008);
   for (int k = 0; k < 5; ++k) EXPECT_FALSE(watch.Take(Acted(9 * kMs, 0, SafetyState::kArmed)));
 }
 

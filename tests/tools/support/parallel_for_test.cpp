@@ -1,4 +1,4 @@
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 namespace flexarm {
 namespace {
 
-TEST(ForAllOnAllCores, RunsEachOnceAndReportsTheEnd) {
+TEST(ParallelFor, RunsEachOnceAndReportsTheEnd) {
   std::vector<std::atomic<int>> runs(1000);
   std::size_t told = 0;
-  ForAllOnAllCores(
+  ParallelFor(
       runs.size(), [&](std::size_t i) { ++runs[i]; },
       [&](std::size_t done) {
         EXPECT_GE(done, told);
@@ -22,20 +22,20 @@ TEST(ForAllOnAllCores, RunsEachOnceAndReportsTheEnd) {
   EXPECT_EQ(told, 1000u);
 }
 
-TEST(ForAllOnAllCores, NothingToDoIsDone) {
-  ForAllOnAllCores(0, [](std::size_t) { FAIL(); });
+TEST(ParallelFor, NothingToDoIsDone) {
+  ParallelFor(0, [](std::size_t) { FAIL(); });
 }
 
-TEST(ForAllOnAllCores, FirstExceptionEndsTheWorkAndIsThrownAgain) {
+TEST(ParallelFor, FirstExceptionEndsTheWorkAndIsThrownAgain) {
   std::atomic<int> runs = 0;
   const auto body = [&](std::size_t i) {
     ++runs;
     if (i == 3) throw std::runtime_error("three");
   };
   // One worker at a time: of several, another may run all the rest before the exception is caught.
-  EXPECT_THROW(ForAllOnAllCores(100000, body, {}, 1), std::runtime_error);
+  EXPECT_THROW(ParallelFor(100000, body, {}, 1), std::runtime_error);
   EXPECT_EQ(runs, 4);
-  EXPECT_THROW(ForAllOnAllCores(100000, body), std::runtime_error);
+  EXPECT_THROW(ParallelFor(100000, body), std::runtime_error);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "estimator/fractional_hold.h"
+#include "estimator/fractional_zero_order_hold.h"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ class FractionalHoldTest : public testing::Test {
 
   const NominalModel nominal_ = MakeNominalModel(ThesisRig(), kR12);
   const DiscreteModel whole_ = ZeroOrderHold(nominal_.A, nominal_.B, kPeriod_s);
-  const FractionalHold hold_{whole_, nominal_.A, nominal_.B, kPeriod_s};
+  const FractionalZeroOrderHold hold_{whole_, nominal_.A, nominal_.B, kPeriod_s};
   State start_ = State::LinSpaced(12, 0.2, -0.1);
 };
 
@@ -59,7 +59,7 @@ TEST_F(FractionalHoldTest, IsTheExactHoldOfAnyFraction) {
   std::uniform_int_distribution<std::int64_t> ticks(1, 3 * kPeriodTicks);
   for (int i = 0; i < 50; ++i) {
     const TorquePiece piece{.torque_nm = {3.0, -0.7}, .ticks = ticks(random)};
-    TorquePieces pieces;
+    PiecewiseTorque pieces;
     pieces.Add(piece);
     State x = start_;
     hold_.Advance(pieces, &x);
@@ -70,7 +70,7 @@ TEST_F(FractionalHoldTest, IsTheExactHoldOfAnyFraction) {
 }
 
 TEST_F(FractionalHoldTest, GoesThroughThePiecesInOrder) {
-  TorquePieces pieces;
+  PiecewiseTorque pieces;
   const TorquePiece first{.torque_nm = {3.0, -0.7}, .ticks = 20'000},
       second{.torque_nm = {-1.0, 0.4}, .ticks = 45'536};
   pieces.Add(first);
@@ -84,7 +84,7 @@ TEST_F(FractionalHoldTest, GoesThroughThePiecesInOrder) {
 // The digits of one whole period are never used: it stays what the design says, to the bit.
 TEST_F(FractionalHoldTest, AWholePeriodIsTheDesignsOwn) {
   State x = start_;
-  hold_.Advance(TorquePieces::WholePeriod({3.0, -0.7}), &x);
+  hold_.Advance(PiecewiseTorque::WholePeriod({3.0, -0.7}), &x);
   State expected = whole_.A.lazyProduct(start_);
   expected += whole_.B.col(0) * 3.0;
   expected += whole_.B.col(1) * -0.7;
@@ -93,7 +93,7 @@ TEST_F(FractionalHoldTest, AWholePeriodIsTheDesignsOwn) {
 
 TEST_F(FractionalHoldTest, NoTimeMovesNothing) {
   State x = start_;
-  hold_.Advance(TorquePieces(), &x);
+  hold_.Advance(PiecewiseTorque(), &x);
   EXPECT_EQ(x, start_);
 }
 

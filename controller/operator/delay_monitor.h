@@ -9,10 +9,10 @@ namespace flexarm {
 
 /// The delay of the loop as the drive side measured it, from sampling instant to torque, beside
 /// what the loop can bear: what the operator sees.
-class DelayWatch {
+class DelayMonitor {
  public:
   /// @param margin_s  delay beyond the predicted one that makes the loop unstable (screen.h)
-  DelayWatch(std::int64_t period_ns, double margin_s)
+  DelayMonitor(std::int64_t period_ns, double margin_s)
       : period_ns_(period_ns), margin_s_(margin_s) {}
 
   /// Every step, in order.
@@ -55,7 +55,7 @@ class DelayWatch {
 };
 
 /// A delay that nobody knew of was found: what the operator is told, once a run.
-class DelayFoundWatch {
+class FoundDelayMonitor {
  public:
   /// Every step, in order.
   /// @returns true once a run: it goes on with another delay than the known one

@@ -1,4 +1,4 @@
-#include "tools/support/parallel.h"
+#include "tools/support/parallel_for.h"
 
 #include <unistd.h>
 
@@ -84,8 +84,8 @@ std::string TimeLeft(std::chrono::steady_clock::time_point started, std::size_t 
 
 }  // namespace
 
-void ForAllOnAllCores(std::size_t count, const std::function<void(std::size_t)>& body,
-                      const std::function<void(std::size_t)>& progress, std::size_t jobs) {
+void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body,
+                 const std::function<void(std::size_t)>& progress, std::size_t jobs) {
   Crew(count, body, jobs).Wait(progress);
 }
 

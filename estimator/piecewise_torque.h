@@ -18,15 +18,15 @@ struct TorquePiece {
 };
 
 /// The torque over an interval: constant pieces, in order of time. No heap. Real-time: safe.
-class TorquePieces {
+class PiecewiseTorque {
  public:
   static constexpr std::size_t kMost = 8;
 
-  TorquePieces() = default;
+  PiecewiseTorque() = default;
 
   /// The same torque over one whole period.
-  static TorquePieces WholePeriod(const std::array<double, 2>& torque_nm) noexcept {
-    TorquePieces pieces;
+  static PiecewiseTorque WholePeriod(const std::array<double, 2>& torque_nm) noexcept {
+    PiecewiseTorque pieces;
     pieces.Add({.torque_nm = torque_nm, .ticks = kPeriodTicks});
     return pieces;
   }
@@ -49,7 +49,7 @@ class TorquePieces {
 
   /// These pieces with the mean that somebody measured: all are moved by the same amount, and a
   /// single one becomes the mean itself.
-  TorquePieces WithMean(const std::array<double, 2>& mean_nm) const noexcept;
+  PiecewiseTorque WithMean(const std::array<double, 2>& mean_nm) const noexcept;
 
  private:
   std::array<TorquePiece, kMost> piece_{};

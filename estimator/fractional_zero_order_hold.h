@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "estimator/torque_pieces.h"
+#include "estimator/piecewise_torque.h"
 #include "model/math/discretize.h"
 
 namespace flexarm {
@@ -14,16 +14,16 @@ namespace flexarm {
 /// one matrix, so those that are set in the binary digits of a duration, one after the other, are
 /// the exact hold of that duration. On line there are products and sums only: replay is to the bit.
 /// Real-time: Advance is safe; the constructor is not.
-class FractionalHold {
+class FractionalZeroOrderHold {
  public:
   /// @param whole_period  the hold of one period, as the design has it
   /// @param A, B  the same system, continuous, n x n and n x 2; 1/s
-  FractionalHold(const DiscreteModel& whole_period, const Eigen::MatrixXd& A,
-                 const Eigen::MatrixXd& B, double period_s);
+  FractionalZeroOrderHold(const DiscreteModel& whole_period, const Eigen::MatrixXd& A,
+                          const Eigen::MatrixXd& B, double period_s);
 
   /// Moves `x` along all pieces.
   template <typename Vector>
-  void Advance(const TorquePieces& torque, Vector* x) const noexcept {
+  void Advance(const PiecewiseTorque& torque, Vector* x) const noexcept {
     for (const TorquePiece& piece : torque.all()) {
       for (std::int64_t period = 0; period < piece.ticks / kPeriodTicks; ++period) {
         Hold(hold_[0], piece, x);

@@ -10,8 +10,8 @@ namespace flexarm {
 /// `progress` is called on the calling thread with the number done so far, now and then and at the
 /// end; it may be empty. The first exception of a body stops the rest and is thrown again here.
 /// @param jobs  how many at a time; 0: one a core
-void ForAllOnAllCores(std::size_t count, const std::function<void(std::size_t)>& body,
-                      const std::function<void(std::size_t)>& progress = {}, std::size_t jobs = 0);
+void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body,
+                 const std::function<void(std::size_t)>& progress = {}, std::size_t jobs = 0);
 
 /// A bar on standard error while it is a terminal, with the time left, and nothing otherwise.
 std::function<void(std::size_t)> ProgressBar(const char* what, std::size_t count);
