@@ -94,7 +94,7 @@ void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Prob
   if (!c.uses_payload_estimator()) return;
   const char* key = by_law ? "controller.name" : "estimator.name";
   const bool plans = PlansAhead(c.controller.kind);
-  const char* value = plans ? "receding-horizon" : by_law ? "gain-scheduled" : "ekf-payload";
+  const char* value = by_law ? LawOf(c.controller.kind).name : "ekf-payload";
   const auto require = [&](bool ok, const char* rule) {
     if (!ok) out->push_back({key, value, rule});
   };
@@ -136,7 +136,7 @@ void CheckCounters(const RigConfig& c, ProblemLog* log, std::vector<Problem>* ou
     const EncoderConfig& e = c.sensors.encoder[i];
     const double half_range =
         std::ldexp(2.0 * std::numbers::pi / e.counts_per_turn, e.counter_bits - 1);
-    const double rate = half_range / (c.loop.period_ms * 1e-3);
+    const double rate = half_range / c.loop.period_s();
     if (rate < slowest) row = i;
     slowest = std::min(slowest, rate);
   }

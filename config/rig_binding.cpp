@@ -4,6 +4,7 @@
 
 #include "config/hal_binding.h"
 #include "controller/types/csv_import_config.h"
+#include "controller/types/law_table.h"
 #include "model/units.h"
 
 namespace flexarm {
@@ -184,17 +185,9 @@ void ReadPlan(TableReader plan, PlanAheadConfig* out) {
 }
 
 void ReadController(TableReader controller, ControllerConfig* out) {
-  controller.Read("name", &out->kind,
-                  {{"sobel", ControllerKind::kSobel},
-                   {"sobel-original", ControllerKind::kSobelOriginal},
-                   {"lqr-cgt", ControllerKind::kLqrCgt},
-                   {"lqr-um", ControllerKind::kLqrUm},
-                   {"lqg", ControllerKind::kLqg},
-                   {"pd", ControllerKind::kPd},
-                   {"pd-zv", ControllerKind::kPdZv},
-                   {"pd-zvd", ControllerKind::kPdZvd},
-                   {"gain-scheduled", ControllerKind::kGainScheduled},
-                   {"receding-horizon", ControllerKind::kRecedingHorizon}});
+  std::vector<NamedValue<ControllerKind>> laws;
+  for (const LawRow& law : kLaws) laws.push_back({law.name, law.kind});
+  controller.Read("name", &out->kind, laws);
   controller.Read("nominal", &out->nominal,
                   {{"R12", kR12}, {"R8", kR8}, {"T12", kT12}, {"T16", kT16}});
   controller.Read("alpha", &out->alpha);

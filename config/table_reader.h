@@ -42,7 +42,11 @@ class TableReader {
   }
   void Read(std::string_view key, std::vector<double>* out);  // however many
   template <typename E>
-  void Read(std::string_view key, E* out, std::initializer_list<NamedValue<E>> values);
+  void Read(std::string_view key, E* out, const std::vector<NamedValue<E>>& values);
+  template <typename E>
+  void Read(std::string_view key, E* out, std::initializer_list<NamedValue<E>> values) {
+    Read(key, out, std::vector<NamedValue<E>>(values));
+  }
 
   /// False if the table has no such key, which then is not missing either.
   bool Has(std::string_view key);
@@ -67,7 +71,7 @@ class TableReader {
 };
 
 template <typename E>
-void TableReader::Read(std::string_view key, E* out, std::initializer_list<NamedValue<E>> values) {
+void TableReader::Read(std::string_view key, E* out, const std::vector<NamedValue<E>>& values) {
   std::string wanted = "one of";
   for (const NamedValue<E>& v : values) wanted += " \"" + std::string(v.name) + "\"";
   const toml::node* node = Find(key, wanted);

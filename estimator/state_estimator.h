@@ -8,13 +8,11 @@
 #include "estimator/estimator_config.h"
 #include "estimator/fractional_zero_order_hold.h"
 #include "estimator/piecewise_torque.h"
+#include "estimator/state_estimate.h"
 #include "estimator/state_layout.h"
 #include "estimator/strain_fit.h"
 
 namespace flexarm {
-
-/// Up to 16 nominal states, 20 with the gauge filter; no heap.
-using StateVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
 
 /// What the estimator needs of the off-line design (estimator/kalman_design.h).
 struct FilterGains {
@@ -31,10 +29,7 @@ struct FilterGains {
 /// Real-time: Reset and Update are safe.
 class StateEstimator {
  public:
-  struct Estimate {
-    StateVector x;                     ///< in the order of the layout, SI
-    std::array<double, 8> innovation;  ///< measured minus predicted outputs; 0 where not used
-  };
+  using Estimate = StateEstimate;
 
   /// @param joint_stiffness_nm_per_rad  K1, K2: to rigid joints, rotor angles are corrected by u/K
   StateEstimator(const EstimatorConfig& config, const FilterGains& gains, double period_s,

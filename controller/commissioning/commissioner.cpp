@@ -132,7 +132,7 @@ CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) 
 
 void Commissioner::StartRest(const std::string& command, SafetyState state, FromRest then) {
   RequireIdle(command, state);
-  const double ticks = config_.commissioning.measure_s / (config_.loop.period_ms * 1e-3);
+  const double ticks = config_.commissioning.measure_s / config_.loop.period_s();
   job_ = std::make_unique<Job>(Job{.command = command,
                                    .rest = RestMeter(static_cast<int>(std::lround(ticks))),
                                    .from_rest = std::move(then),
@@ -181,7 +181,7 @@ CommissioningMotion Commissioner::StartPluck(SafetyState state) {
   job_ = std::make_unique<Job>();
   job_->command = "pluck";
   job_->from_run = [this](const std::vector<TickRecord>& run) { return Pluck(run); };
-  const double period_s = config_.loop.period_ms * 1e-3;
+  const double period_s = config_.loop.period_s();
   return {
       .planned = std::make_unique<PlannedExperiment>(PluckTorques(config_.commissioning, period_s)),
       .may_open = 0};
@@ -199,7 +199,7 @@ CommissioningMotion Commissioner::StartHome(const Json& command, SafetyState sta
   const std::size_t number = 2 * joint + (side == "high" ? 1 : 0);
   const auto line = static_cast<Line>(number);  // limit 1 low, 1 high, 2 low, 2 high
   const CommissioningConfig& c = config_.commissioning;
-  const double step_rad = c.home_rate_deg_per_s * kRadPerDeg * config_.loop.period_ms * 1e-3;
+  const double step_rad = c.home_rate_deg_per_s * kRadPerDeg * config_.loop.period_s();
   const HomingPlan plan{.line = line,
                         .joint = joint,
                         .step_rad = side == "high" ? step_rad : -step_rad,

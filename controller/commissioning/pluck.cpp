@@ -47,7 +47,7 @@ class Judge {
  public:
   Judge(const RigConfig& config, const std::vector<TickRecord>& run)
       : config_(config), limits_(config.commissioning), names_(StrainColumns(config.sensors)) {
-    const double period_s = config.loop.period_ms * 1e-3;
+    const double period_s = config.loop.period_s();
     const Eigen::Index lead = Samples(kLead_s, period_s);
     pulse_ = Samples(limits_.pluck_pulse_s, period_s);
     const Eigen::Index rest = Samples(limits_.pluck_rest_s, period_s);

@@ -57,7 +57,7 @@ PluckMotion ExpectedMotion(const RigConfig& config, const std::vector<TickRecord
   const ArmModel arm(config.arm, {.link1 = kModes, .link2 = kModes});
   ArmSimulator simulator(arm);
   const Eigen::MatrixXd strain = StrainOfCoordinates(arm, config.sensors);
-  const double period_s = config.loop.period_ms * 1e-3;
+  const double period_s = config.loop.period_s();
   const int steps = static_cast<int>(std::ceil(period_s / ArmSimulator::kDefaultStep_s));
   const double step_s = period_s / steps;
   GaugeFilter filter(config.sensors.strain_input, step_s, strain.rows());

@@ -54,7 +54,7 @@ Eigen::MatrixXd CalmGain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
 // W = 0 and J = B'P'B/2.
 void DesignRegulator(const ControlConfig& config, Design* design) {
   const ControllerConfig& controller = config.controller;
-  const double a = std::exp(controller.design_alpha() * config.loop.period_ms * 1e-3);
+  const double a = std::exp(controller.design_alpha() * config.loop.period_s());
   const Eigen::MatrixXd& A = design->A;
   const Eigen::MatrixXd& B = design->B;
   const Eigen::MatrixXd Q = StateWeight(controller) / controller.torque_weight;
@@ -169,7 +169,7 @@ void DesignShaper(const ControlConfig& config, Design* design) {
 
 void DesignForPayload(const ControlConfig& config, Design* design) {
   if (!config.uses_payload_estimator()) return;
-  const double period_s = config.loop.period_ms * 1e-3;
+  const double period_s = config.loop.period_s();
   design->payload_model = PayloadModelConstants(config.arm, config.sensors, period_s);
   if (!IsScheduled(config.controller.kind)) return;
   const ControllerConfig& controller = config.controller;
@@ -196,7 +196,7 @@ void DesignForPayload(const ControlConfig& config, Design* design) {
 }  // namespace
 
 Design DesignController(const ControlConfig& config) {
-  const double period_s = config.loop.period_ms * 1e-3;
+  const double period_s = config.loop.period_s();
   const NominalModel nominal = MakeNominalModel(config.arm, config.controller.nominal);
   const NominalModel reference = MakeReferenceModel(nominal);
   const DiscreteModel plant = ZeroOrderHold(nominal.A, nominal.B, period_s);

@@ -145,7 +145,7 @@ LinearEstimator DifferenceOf(const Design& design, double period_s) {
 }
 
 LinearEstimator EstimatorOf(const ControlConfig& config, const Design& design) {
-  const double period_s = config.loop.period_ms * 1e-3;
+  const double period_s = config.loop.period_s();
   return config.estimator.kind == EstimatorKind::kKalman
              ? KalmanOf(design, OwnDelayOf(config.loop).rest_s, period_s)
              : DifferenceOf(design, period_s);
@@ -216,7 +216,7 @@ class Loop {
   // The torque of one step takes over from that of the one before within the period.
   void AddPlant(double late_s, const MatrixXd& asked, MatrixXd* loop) const {
     const Index nx = plant_.A.rows();
-    const double period_s = config_.loop.period_ms * 1e-3;
+    const double period_s = config_.loop.period_s();
     const Index periods = std::min(static_cast<Index>(late_s / period_s), kMaxDelayPeriods);
     const Index newest = own_.whole + periods;  // -1: the one that is asked now
     late_s -= static_cast<double>(periods) * period_s;

@@ -21,6 +21,16 @@ constexpr double kFrictionHelped = 0.7, kFrictionAsked = 0.5, kHelped_s = 2.0;
 
 }  // namespace
 
+LawOutput ScheduledLaw::Compute(const LawInput& input) noexcept {
+  const QuasiStaticSample desired =
+      input.plan == nullptr
+          ? ClosedForm(input.payload.payload_kg, *input.path)
+          : QuasiStaticSample{.x = State::Map(input.plan->x.data()),
+                              .torque_nm = Eigen::Vector2d::Map(input.plan->torque_nm.data())};
+  return SaturateWithoutAdaptation(Torque(*input.x, input.payload, desired, input.rested_s),
+                                   torque_limit_nm_);
+}
+
 Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& knowledge,
                                      const QuasiStaticSample& desired,
                                      double rested_s) const noexcept {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "controller/law/gain_table.h"
-#include "controller/law/payload_monitor.h"
+#include "controller/law/law.h"
 #include "model/rigid_joint/quasi_static_map.h"
 #include "model/rigid_joint/rigid_joint_arm.h"
 
@@ -22,12 +22,19 @@ namespace flexarm {
 /// vibrating; or of a plan (horizon_plan.h). K from the gain table at SchedulingPayload, for which
 /// a payload at its bound is wholly uncertain: it may be heavier. Source:
 /// docs/theory/payload.md 4.1 and 5. Real-time: all but the constructor is safe.
-class ScheduledLaw {
+class ScheduledLaw final : public Law {
  public:
   using State = Eigen::Matrix<double, 12, 1>;
 
-  ScheduledLaw(RigidJointArm arm, GainTable gains, double period_s)
-      : arm_(std::move(arm)), gains_(std::move(gains)), period_s_(period_s) {}
+  ScheduledLaw(RigidJointArm arm, GainTable gains, double period_s,
+               const std::array<double, 2>& torque_limit_nm)
+      : arm_(std::move(arm)),
+        gains_(std::move(gains)),
+        period_s_(period_s),
+        torque_limit_nm_(torque_limit_nm) {}
+
+  void Reset() noexcept override {}  // it learns nothing
+  LawOutput Compute(const LawInput& input) noexcept override;
 
   /// x_d and u_d in closed form: QuasiStaticOver.
   /// @param path  one period before the instant the torque acts, then, and one after
@@ -47,6 +54,7 @@ class ScheduledLaw {
   RigidJointArm arm_;
   GainTable gains_;
   double period_s_;
+  std::array<double, 2> torque_limit_nm_;
 };
 
 }  // namespace flexarm

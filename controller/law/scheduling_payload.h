@@ -1,18 +1,8 @@
 #pragma once
 
+#include "estimator/payload_monitor.h"
+
 namespace flexarm {
-
-/// A payload with this standard deviation, or a greater one, is as good as unknown.
-inline constexpr double kPayloadUncertain_kg = 0.1;
-
-/// From this mean NIS on, of 8 outputs, the filter's model is wrong, and what it finds with it.
-inline constexpr double kModelWrongNis = 60.0;
-
-/// The sensors say that the filter's model is wrong. Real-time: safe.
-/// @param mean_nis  as PayloadFilter's
-inline constexpr bool ContradictsModel(double mean_nis) noexcept {
-  return mean_nis > kModelWrongNis;
-}
 
 /// The payload for which the gains of a GainTable are taken, kg: the estimate, or less.
 ///

@@ -48,7 +48,6 @@ TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
       torque_limit_nm_(torque_limit_nm),
       states_(design.A.rows()),
       Cp_(FeedbackGain(design, config)),
-      K_stop_(design.K_stop),
       G_(design.G),
       feedforward_x_(Matrix2n::Zero(2, states_)),
       feedforward_u_(Eigen::Matrix2d::Zero()),
@@ -107,8 +106,8 @@ double TrackingLaw::Lyapunov(const StateVector& x, const StateVector& x_m,
   return e.dot(Pe) + K_I_.energy();
 }
 
-TrackingLaw::Result TrackingLaw::Compute(const StateVector& x, const ReferenceSample& reference,
-                                         bool may_adapt) noexcept {
+LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& reference,
+                               bool may_adapt) noexcept {
   StateVector x_m(states_);
   for (Eigen::Index i = 0; i < states_; ++i) x_m(i) = reference.x_m[static_cast<std::size_t>(i)];
   const Eigen::Vector2d u_m(reference.u_m_nm[0], reference.u_m_nm[1]);
@@ -116,7 +115,7 @@ TrackingLaw::Result TrackingLaw::Compute(const StateVector& x, const ReferenceSa
   const Eigen::Vector2d u_star = Feedforward(x_m, u_m);
   const double lyapunov = Lyapunov(x, x_m, u_m);
   if (!config_.adaptation) {
-    Result result = Clip(u_star + y_e);
+    LawOutput result = Saturate(u_star + y_e, torque_limit_nm_);
     result.lyapunov_nm2 = lyapunov;
     return result;
   }
@@ -135,34 +134,13 @@ TrackingLaw::Result TrackingLaw::Compute(const StateVector& x, const ReferenceSa
   const Eigen::Vector2d v((loop(1, 1) * drive(0) - loop(0, 1) * drive(1)) / determinant,
                           (loop(0, 0) * drive(1) - loop(1, 0) * drive(0)) / determinant);
 
-  Result result = Clip(from_gain + rho * v);
+  LawOutput result = Saturate(from_gain + rho * v, torque_limit_nm_);
   result.lyapunov_nm2 = lyapunov;
   if (!may_adapt || result.limits != 0 || !result.finite) {
     result.limits |= kAdaptationHeld;
     return result;
   }
   K_I_.Update(v, r);
-  return result;
-}
-
-TrackingLaw::Result TrackingLaw::Hold(const Eigen::Vector2d& u) const noexcept {
-  Result result = Clip(u);
-  result.limits |= kAdaptationHeld;
-  return result;
-}
-
-TrackingLaw::Result TrackingLaw::Clip(const Eigen::Vector2d& u) const noexcept {
-  Result result{.torque_nm = {0.0, 0.0},
-                .limits = 0,
-                .finite = u.allFinite(),
-                .lyapunov_nm2 = std::numeric_limits<double>::quiet_NaN()};
-  if (!result.finite) return result;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double limit = torque_limit_nm_[i];
-    const double asked = u(static_cast<Eigen::Index>(i));
-    result.torque_nm[i] = std::fmin(std::fmax(asked, -limit), limit);
-    if (result.torque_nm[i] != asked) result.limits |= i == 0 ? kLimitTorque1 : kLimitTorque2;
-  }
   return result;
 }
 

@@ -6,9 +6,10 @@
 
 #include "controller/law/adaptive_gain.h"
 #include "controller/law/design.h"
+#include "controller/law/law.h"
 #include "controller/types/controller_config.h"
 #include "controller/types/step_types.h"
-#include "estimator/state_estimator.h"
+#include "estimator/state_estimate.h"
 
 namespace flexarm {
 
@@ -39,20 +40,13 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 ///
 /// The algebraic loop between v and u is solved, not delayed. With T = Tbar = 0 it is lqr-cgt.
 /// Real-time: Reset and Compute are safe.
-class TrackingLaw {
+class TrackingLaw final : public Law {
  public:
-  struct Result {
-    std::array<double, 2> torque_nm;
-    std::uint32_t limits;  ///< LimitBit
-    bool finite;           ///< false: the law computed no number; the torque is zero
-    double lyapunov_nm2;   ///< V of (7.11) before this sample's adaptation; see Compute
-  };
-
   TrackingLaw(const Design& design, const ControllerConfig& config,
               const std::array<double, 2>& torque_limit_nm);
 
   /// K_I back to [I, S21, S22]: the law starts as lqr-cgt, without a step in its torque.
-  void Reset() noexcept { K_I_.Reset(); }
+  void Reset() noexcept override { K_I_.Reset(); }
 
   /// @param x          plant state at the instant the torque acts
   /// @param reference  of the same instant
@@ -61,19 +55,14 @@ class TrackingLaw {
   /// With the torque comes V = e'Pe + tr((K_I - K_I0) T^-1 (K_I - K_I0)'), N m squared: on the
   /// nominal plant it falls from sample to sample (vartheta = 0, u_m constant). NaN for the laws
   /// whose trajectory is not the command generator's: lqr-um, lqg, pd.
-  Result Compute(const StateVector& x, const ReferenceSample& reference, bool may_adapt) noexcept;
-
-  /// Calm regulator towards `x_goal`, not clipped: u = K_stop (x_goal - x). Damps the arm while
-  /// Stopping.
-  Eigen::Vector2d Regulate(const StateVector& x, const StateVector& x_goal) const noexcept {
-    return K_stop_.lazyProduct(x_goal - x);
+  LawOutput Compute(const StateVector& x, const ReferenceSample& reference,
+                    bool may_adapt) noexcept;
+  LawOutput Compute(const LawInput& input) noexcept override {
+    return Compute(*input.x, *input.reference, input.may_adapt);
   }
 
-  /// A torque that the adaptive law has no part in, clipped; K_I stays as it is.
-  Result Hold(const Eigen::Vector2d& u) const noexcept;
-
   /// Frobenius norm of K_I - K_I(0).
-  double adaptive_gain_change() const noexcept { return K_I_.change(); }
+  double adaptive_gain_change() const noexcept override { return K_I_.change(); }
 
  private:
   using Matrix2n = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 16>;
@@ -82,7 +71,6 @@ class TrackingLaw {
 
   void SetFeedforward(const Design& design);
   Eigen::Vector2d Feedforward(const StateVector& x_m, const Eigen::Vector2d& u_m) const noexcept;
-  Result Clip(const Eigen::Vector2d& u) const noexcept;
   double Lyapunov(const StateVector& x, const StateVector& x_m,
                   const Eigen::Vector2d& u_m) const noexcept;
 
@@ -90,7 +78,6 @@ class TrackingLaw {
   std::array<double, 2> torque_limit_nm_;
   Eigen::Index states_;
   Matrix2n Cp_;
-  Matrix2n K_stop_;
   Eigen::Matrix2d G_;
   Matrix2n feedforward_x_;  // u* = feedforward_x x_m + feedforward_u u_m
   Eigen::Matrix2d feedforward_u_;

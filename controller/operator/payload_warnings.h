@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "controller/types/step_types.h"
+#include "estimator/payload_knowledge.h"
 
 namespace flexarm {
 

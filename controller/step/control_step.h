@@ -1,9 +1,20 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
-#include <string>
+#include <optional>
 
+#include "controller/law/law.h"
+#include "controller/law/stop_controller.h"
+#include "controller/step/delay_compensation.h"
+#include "controller/step/fault_detection.h"
+#include "controller/step/motion_state.h"
 #include "controller/types/step_types.h"
+#include "estimator/counter_decoder.h"
+#include "estimator/observer.h"
+#include "estimator/strain_fit.h"
+#include "hal/sensor_config.h"
 
 namespace flexarm {
 
@@ -12,9 +23,8 @@ struct Design;
 
 /// The loop: counts in, torque out (docs/architecture.md).
 ///
-///   counts -decode-> angles, strains -fit-> modal coordinates -filter-> x(k) -predict-> x when the
-///   torque acts
-///          -reference, CGT, Sobel-> asked torque
+///   counts -decode-> angles, strains -fit-> modal coordinates -observe-> x(k) -predict-> x when
+///   the torque acts -law-> asked torque
 ///
 /// A function of its inputs since the last reset: no I/O, lock, allocation, clock or exception, and
 /// + - * / and sqrt only, so the same bytes in give the same bytes out.
@@ -22,15 +32,44 @@ struct Design;
 class ControlStep {
  public:
   ControlStep(const ControlConfig& config, const Design& design);
-  ~ControlStep();
-  ControlStep(const ControlStep&) = delete;
-  ControlStep& operator=(const ControlStep&) = delete;
+  /// With a law that is not in the table of laws.
+  ControlStep(const ControlConfig& config, const Design& design, std::unique_ptr<Law> law);
 
   StepOutput Step(const StepInput& input) noexcept;
 
  private:
-  struct Stages;
-  std::unique_ptr<Stages> stages_;
+  enum class Phase : std::uint8_t { kNoTorque, kRunning, kStopping };
+
+  void Reset(const StepInput& input) noexcept;
+  FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
+                  const PiecewiseTorque& applied) noexcept;
+  void FollowPath(const StepInput& input) noexcept;
+  StateEstimate Observe(const StepInput& input, const SensorFrame& frame,
+                        const DecodedCounters& counters, const FittedModes& modes,
+                        const PiecewiseTorque& applied) noexcept;
+  LawOutput Decide(const StepInput& input, const StateVector& x, bool sensors_good) noexcept;
+  LawOutput Follow(const StepInput& input, const StateVector& x, bool sensors_good) noexcept;
+  LawOutput Stop(const StepInput& input, const StateVector& x) noexcept;
+  LawOutput OpenLoop(const StepInput& input) const noexcept;
+  void CountSaturation(std::uint32_t limits) noexcept;
+
+  double period_s_;
+  std::int64_t max_reading_age_ns_;  // half a period: nearer to this sample than to another
+  bool prediction_;
+  std::array<double, 2> torque_limit_nm_;
+  StateLayout layout_;
+  std::optional<TipAccelerometerConfig> tip_accelerometer_;
+  CounterDecoder decoder_;
+  StrainFit fit_;
+  std::unique_ptr<Observer> observer_;
+  FaultDetection fault_detection_;
+  DelayCompensation delay_;
+  std::unique_ptr<Law> law_;
+  StopController stop_;
+  MotionState motion_;
+  std::array<double, 2> torque_nm_{};  // of the last step
+  std::array<double, 2> saturated_s_{};
+  Phase phase_ = Phase::kNoTorque;
 };
 
 }  // namespace flexarm

@@ -6,44 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "controller/types/law_table.h"
 #include "estimator/state_layout.h"
 #include "model/problem.h"
 
 namespace flexarm {
-
-/// The law by its name in the config; controller/law/tracking_law.h has the equations.
-enum class ControllerKind : std::uint8_t {
-  kSobel,            ///< "sobel": modified Sobel model-reference adaptive control
-  kSobelOriginal,    ///< "sobel-original": as Sobel published it, alpha = 0 and vartheta = 0
-  kLqrCgt,           ///< "lqr-cgt": LQR around the command generator's trajectory, T = Tbar = 0
-  kLqrUm,            ///< "lqr-um": LQR towards the reference model, its command fed forward
-  kLqg,              ///< "lqg": LQR with alpha = 0 towards the reference's joints, links at rest
-  kPd,               ///< "pd": proportional and derivative of each hub alone
-  kPdZv,             ///< "pd-zv": the same, the reference shaped to leave no vibration
-  kPdZvd,            ///< "pd-zvd": with a second derivative zero, robust to the frequency
-  kGainScheduled,    ///< "gain-scheduled": for the payload that is found while it runs
-  kRecedingHorizon,  ///< "receding-horizon": the same along a plan that is made while it runs
-};
-
-/// Whether the law follows planned moves with the payload that `ekf-payload` finds, the estimator
-/// that it brings along: controller/law/scheduled_law.h.
-constexpr bool IsScheduled(ControllerKind kind) {
-  return kind == ControllerKind::kGainScheduled || kind == ControllerKind::kRecedingHorizon;
-}
-
-/// Whether the law plans ahead: controller/planner/horizon_planner.h.
-constexpr bool PlansAhead(ControllerKind kind) { return kind == ControllerKind::kRecedingHorizon; }
-
-/// Whether the law corrects its gains while it runs.
-constexpr bool IsAdaptive(ControllerKind kind) {
-  return kind == ControllerKind::kSobel || kind == ControllerKind::kSobelOriginal;
-}
-
-/// Whether the law is a PD of the hubs.
-constexpr bool IsPd(ControllerKind kind) {
-  return kind == ControllerKind::kPd || kind == ControllerKind::kPdZv ||
-         kind == ControllerKind::kPdZvd;
-}
 
 enum class FeedforwardSign : std::uint8_t {
   kPrinted,    ///< (7.25) as printed: u_f = (B'B)^-1 B' (-(A_m - A) x_m + B_m u_m)

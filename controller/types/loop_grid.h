@@ -21,7 +21,7 @@ struct LoopGrid {
   std::int64_t actuation_ns;
 
   explicit LoopGrid(const LoopConfig& loop)
-      : period_ns(std::llround(loop.period_ms * 1e6)),
+      : period_ns(loop.period_ns()),
         phase_ns(std::llround(loop.acquire_before_ms * 1e6)),
         deadline_ns(std::llround(loop.step_deadline_ms * 1e6)),
         output_late_ns(loop.output == OutputTiming::kAtOnce

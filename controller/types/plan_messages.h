@@ -8,7 +8,7 @@
 #include "controller/exchange/latest_value.h"
 #include "controller/types/controller_config.h"
 #include "controller/types/horizon_plan.h"
-#include "controller/types/payload_knowledge.h"
+#include "estimator/payload_knowledge.h"
 #include "model/rigid_joint/rigid_point.h"
 
 // What the control task and the planner tell each other. Samples are those of the experiment: the

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct LoopConfig {
   OutputTiming output;
   double output_after_ms;     ///< of kAtOnce; not before a Step is due and its deadline over
   double actuation_delay_ms;  ///< known latency of drive and bus, from output to torque
+
+  double period_s() const { return period_ms * 1e-3; }
+  std::int64_t period_ns() const { return std::llround(period_ms * 1e6); }
 
   std::vector<Problem> Problems() const;
 };

@@ -71,13 +71,6 @@ enum LimitBit : std::uint32_t {
   kPredictionOff = 8,
 };
 
-/// What is wrong with the payload estimate. Bits of StepOutput::payload_warnings.
-enum PayloadWarningBit : std::uint32_t {
-  kPayloadAtBound = 1,        ///< as heavy as it may be, or heavier
-  kPayloadModelMismatch = 2,  ///< the innovations are far larger than model and noise explain
-  kPayloadNotObservable = 4,  ///< a move has ended, and as little is known as when it began
-};
-
 /// What one Step decided, and what it knew. No padding.
 struct StepOutput {
   std::int64_t tick;

@@ -83,6 +83,10 @@ struct ArmParameters {
   bool foreshortening;  ///< a bent link is shorter by 1/2 int w'^2: centrifugal stiffening
   BacklashParameters joint2_backlash;
 
+  std::array<double, 2> joint_stiffness_nm_per_rad() const {
+    return {joint[0].stiffness_nm_per_rad, joint[1].stiffness_nm_per_rad};
+  }
+
   /// Every broken rule, keys relative to the config sections [link1] [link2] [joint1] [joint2]
   /// [arm]. Empty means that a model can be built.
   std::vector<Problem> Problems() const;

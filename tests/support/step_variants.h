@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "controller/types/law_table.h"
+
 namespace flexarm {
 
 /// A law and an estimator that Step can be made of: --set of the shipped rig.
@@ -19,19 +21,16 @@ struct StepVariant {
 /// with the most states, and the laws that bring their estimator along.
 inline std::vector<StepVariant> StepVariants() {
   std::vector<StepVariant> variants;
-  for (const char* law :
-       {"sobel", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv", "pd-zvd"}) {
-    variants.push_back({law, {std::string("controller.name=") + law}});
+  constexpr int kMostWithPayload = 450'000;
+  for (const LawRow& law : kLaws) {
+    variants.push_back({law.name, {std::string("controller.name=") + law.name}});
+    if (law.is_scheduled) variants.back().most_instructions = kMostWithPayload;
   }
   for (const char* estimator : {"difference", "polynomial"}) {
     variants.push_back({estimator, {std::string("estimator.name=") + estimator}});
   }
   variants.push_back({"T16", {"controller.nominal=T16"}});
-  constexpr int kMostWithPayload = 450'000;
   variants.push_back({"ekf-payload", {"estimator.name=ekf-payload"}, kMostWithPayload});
-  for (const char* law : {"gain-scheduled", "receding-horizon"}) {
-    variants.push_back({law, {std::string("controller.name=") + law}, kMostWithPayload});
-  }
   // With a sample of delay declared, one less is possible as well.
   variants.push_back({"gain-scheduled-late",
                       {"controller.name=gain-scheduled", "loop.actuation_delay_ms=20"},

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "controller/runlog/errors.h"
+#include "controller/types/law_table.h"
 
 namespace flexarm {
 namespace {
@@ -38,10 +39,12 @@ BenchmarkKind BenchmarkKindNamed(const std::string& name) {
 }
 
 std::vector<std::string> CommandLaws() {
-  return {"sobel", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv", "pd-zvd"};
+  return LawNames([](const LawRow& law) { return !law.is_scheduled; });
 }
 
-std::vector<std::string> PayloadLaws() { return {"gain-scheduled", "receding-horizon"}; }
+std::vector<std::string> PayloadLaws() {
+  return LawNames([](const LawRow& law) { return law.is_scheduled; });
+}
 
 BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const RigConfig& config,
                             const std::filesystem::path& experiments) {

@@ -68,7 +68,7 @@ OrderedJson StrainJson(const SensorConfig& sensors) {
 }
 
 OrderedJson Derived(const RigConfig& config) {
-  const double period_s = config.loop.period_ms * 1e-3;
+  const double period_s = config.loop.period_s();
   OrderedJson json;
   json["valid"] = true;
   json["rig"] = config.rig_name;

@@ -69,7 +69,7 @@ Outcome ReplayCsv(const ReplayOptions& options) {
   }
   const RigConfig config = options.config.Load();
   const auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr,
-                                 config.sensors, config.loop.period_ms * 1e-3);
+                                 config.sensors, config.loop.period_s());
   Calibration calibration{};
   if (!options.calibration.empty()) {
     const auto read = ReadCalibration(options.calibration, config.sensors);

@@ -8,6 +8,7 @@
 
 #include "controller/host/simulation.h"
 #include "controller/runlog/errors.h"
+#include "controller/types/law_table.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
@@ -113,6 +114,14 @@ int Run(const SimulateOptions& options) {
   return result.completed ? Exit::kDone : Exit::kFailed;
 }
 
+std::string LawHelp() {
+  std::string text;
+  for (const LawRow& law : kLaws) {
+    text += std::string(law.name) + ": " + law.about + (&law == &kLaws.back() ? "" : "\n");
+  }
+  return text;
+}
+
 }  // namespace
 
 void RegisterSimulate(CLI::App& app, Exit& exit) {
@@ -125,8 +134,7 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
           "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config)")
       ->type_name("FILE");
   verb->add_option("--controller", options->controller,
-                   "controller.name: sobel, sobel-original, lqr-cgt, lqr-um, lqg, pd, pd-zv, "
-                   "pd-zvd, gain-scheduled, receding-horizon");
+                   "controller.name, the control law:\n" + LawHelp());
   verb->add_option("--estimator", options->estimator,
                    "estimator.name: kalman, difference, polynomial, ekf-payload");
   verb->add_option("--payload-kg", options->payload_kg,

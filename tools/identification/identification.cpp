@@ -135,8 +135,7 @@ Eigen::VectorXd StandardErrors(const RigConfig& config, const RunComparison& run
   const Eigen::MatrixXd J = Jacobian(config, run, free, x);
   const Eigen::VectorXd residual =
       Stacked(run, run.measured() - run.Predict(With(config, free, x)));
-  const auto lags =
-      static_cast<Eigen::Index>(std::ceil(kCorrelation_s / (config.loop.period_ms * 1e-3)));
+  const auto lags = static_cast<Eigen::Index>(std::ceil(kCorrelation_s / config.loop.period_s()));
   const Eigen::MatrixXd S = ScoreCovariance(J, residual, run.measured().cols(), lags);
   const Eigen::MatrixXd normal = J.transpose() * J;
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(normal);

@@ -97,7 +97,7 @@ RunComparison::RunComparison(std::filesystem::path file, const RigConfig& config
 std::vector<StepInput> RunComparison::Inputs(const RigConfig& config) const {
   if (csv_) {
     return ReadAnyCsv(file_, config.csv ? &*config.csv : nullptr, config.sensors,
-                      config.loop.period_ms * 1e-3);
+                      config.loop.period_s());
   }
   RunReader reader(file_);
   std::vector<StepInput> inputs;
@@ -107,7 +107,7 @@ std::vector<StepInput> RunComparison::Inputs(const RigConfig& config) const {
 
 void RunComparison::Measure(const RigConfig& config) {
   const auto angles = static_cast<Eigen::Index>(counter_.size());
-  const double period_s = config.loop.period_ms * 1e-3;
+  const double period_s = config.loop.period_s();
   const auto all = static_cast<Eigen::Index>(input_.size());
   measured_ = compared_ = Eigen::MatrixXd::Zero(all, angles + 2);
   time_s_ = Eigen::VectorXd::Zero(all);
@@ -187,7 +187,7 @@ Eigen::MatrixXd RunComparison::Predict(const RigConfig& candidate) const {
   ArmSimulator simulator(arm);
   const Eigen::MatrixXd counts = CountsOfCoordinates(arm, candidate.sensors);
   const double step_s = candidate.sim.step_ms * 1e-3;
-  const int steps = static_cast<int>(std::lround(candidate.loop.period_ms * 1e-3 / step_s));
+  const int steps = static_cast<int>(std::lround(candidate.loop.period_s() / step_s));
   GaugeFilter filter(candidate.sensors.strain_input, step_s, counts.rows());
   ArmState state = Start(arm.dof());
   const Eigen::VectorXd base = Offsets(candidate.sensors) - count_offset_;

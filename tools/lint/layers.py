@@ -35,8 +35,7 @@ LAYERS = {
     "controller/planner": "model/math model/rigid_joint controller/types controller/law",
     "controller/design": "model model/math model/arm model/rigid_joint estimator controller/types "
                          "controller/law",
-    "controller/step": "model model/rigid_joint estimator controller/types controller/law "
-                       "controller/reference",
+    "controller/step": "model model/rigid_joint hal estimator controller/types controller/law",
     "controller/runlog": "model model/parameters model/beam hal estimator controller/exchange "
                          "controller/realtime controller/types controller/safety",
     "controller/tasks": "hal hal/sim controller/exchange controller/realtime controller/types "
@@ -44,7 +43,7 @@ LAYERS = {
                         "controller/planner controller/step",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks",
-    "controller/operator": "model hal controller/realtime controller/types "
+    "controller/operator": "model hal estimator controller/realtime controller/types "
                            "controller/runlog controller/tasks controller/commissioning",
     "controller/host": "hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
@@ -59,7 +58,7 @@ LAYERS = {
                       "tools/runs tools/plot",
     "tools/sweep": "model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config tools/support tools/runs tools/plot",
-    "tools/benchmark": "controller/runlog config tools/runs tools/plot tools/sweep",
+    "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "
                             "controller/types controller/runlog config tools/support tools/runs "
                             "tools/plot",

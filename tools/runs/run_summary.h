@@ -18,7 +18,7 @@ struct LoadedRun {
   RigConfig config;
   std::optional<Experiment> experiment;  ///< nothing: the log names none
 
-  double period_s() const { return config.loop.period_ms * 1e-3; }
+  double period_s() const { return config.loop.period_s(); }
 };
 
 /// @throws InputError, ConfigError

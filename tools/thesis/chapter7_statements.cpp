@@ -126,7 +126,7 @@ Statement LargeAlpha(const ControlStudy& study) {
 std::array<double, 2> ClosedLoopModes(const RigConfig& config, double alpha) {
   const RigConfig at = WithOverrides(config, AlphaCase(alpha, 0.1).overrides);
   const Design design = DesignController(at);
-  const double period_s = at.loop.period_ms * 1e-3;
+  const double period_s = at.loop.period_s();
   const Eigen::MatrixXd closed = design.A - design.B * design.K;
   const Eigen::VectorXcd z = closed.eigenvalues();
   std::vector<double> frequency;

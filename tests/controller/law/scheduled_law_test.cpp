@@ -43,7 +43,8 @@ ReferenceTable ScheduledTable(const Experiment& experiment,
 }
 
 ScheduledLaw ShippedLaw() {
-  return {MakeRigidJointArm(ShippedPathDesign()), ShippedPathDesign().scheduled->gains, kPeriod_s};
+  return {MakeRigidJointArm(ShippedPathDesign()), ShippedPathDesign().scheduled->gains, kPeriod_s,
+          ShippedRig().safety.torque_limit_nm};
 }
 
 Vector2d AskedOf(const ScheduledLaw::State& x, const PayloadKnowledge& knowledge,

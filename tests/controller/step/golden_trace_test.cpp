@@ -52,7 +52,7 @@ Difference AgainstGolden(double step_s, bool friction) {
     ReferenceSample reference{};
     for (int i = 0; i < 12; ++i) reference.x_m[static_cast<std::size_t>(i)] = x_m(k, i);
     reference.u_m_nm = {u_m(k, 0), u_m(k, 1)};
-    const TrackingLaw::Result result = law.Compute(NominalState(state), reference, true);
+    const LawOutput result = law.Compute(NominalState(state), reference, true);
     EXPECT_EQ(result.limits, 0u) << "the golden trace never saturates";
     for (int i = 0; i < 2; ++i) {
       const double torque = result.torque_nm[static_cast<std::size_t>(i)];

@@ -21,12 +21,12 @@ class IdentificationTest : public RunLogTest {
     SimulatedRig rig(truth.arm, truth.sensors, truth.sim);
     std::ofstream file(File(name), std::ios::binary);
     CsvWriter writer(&file, truth.sensors, 0);
-    const auto steps = std::llround(truth.loop.period_ms * 1e6) / rig.step_ns();
+    const auto steps = truth.loop.period_ns() / rig.step_ns();
     std::array<double, 2> torque{};
     for (std::int64_t tick = 0; static_cast<double>(tick) * Period(truth) < seconds; ++tick) {
       StepInput input{};
       input.tick = tick;
-      input.sampling_instant_ns = tick * std::llround(truth.loop.period_ms * 1e6);
+      input.sampling_instant_ns = tick * truth.loop.period_ns();
       input.frame = rig.Sample(input.sampling_instant_ns);
       input.applied_torque_nm = torque;
       writer.Row(input);
@@ -39,7 +39,7 @@ class IdentificationTest : public RunLogTest {
     return File(name);
   }
 
-  static double Period(const RigConfig& config) { return config.loop.period_ms * 1e-3; }
+  static double Period(const RigConfig& config) { return config.loop.period_s(); }
 
   // Torque for half the time, its negative for the other half.
   static double Doublet(double t, double start, double duration, double height) {

@@ -1,6 +1,6 @@
 // What is said about the payload that is found: when each doubt comes and when it goes.
 
-#include "controller/law/payload_monitor.h"
+#include "estimator/payload_monitor.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 constexpr double kMax_kg = 1.1, kMoveSigma_kg = 0.1;  // of StudyEstimator
 constexpr double kRightNis = 8.0;
 
-PayloadMonitor SafetyMonitor() { return PayloadMonitor(*StudyEstimator().payload); }
+PayloadMonitor Monitor() { return PayloadMonitor(*StudyEstimator().payload); }
 
 PayloadFilter::Estimate Found(double payload_kg, double sigma_kg) {
   PayloadFilter::Estimate found{};
@@ -33,7 +33,7 @@ std::uint32_t DoubtsAfterAMove(double sigma_kg, PayloadMonitor* supervisor) {
 }
 
 TEST(PayloadMonitor, TellsWhatTheFilterFound) {
-  const PayloadKnowledge known = SafetyMonitor().Judge(Found(0.3, 0.02), 9.0, true);
+  const PayloadKnowledge known = Monitor().Judge(Found(0.3, 0.02), 9.0, true);
   EXPECT_EQ(known.payload_kg, 0.3);
   EXPECT_EQ(known.payload_sigma_kg, 0.02);
   EXPECT_EQ(known.friction_nm, (std::array<double, 2>{0.16, 0.01}));
@@ -43,7 +43,7 @@ TEST(PayloadMonitor, TellsWhatTheFilterFound) {
 
 TEST(PayloadMonitor, APayloadAtItsBoundIsDoubtedAsLongAsItIsThere) {
   for (const bool moving : {true, false}) {
-    PayloadMonitor supervisor = SafetyMonitor();
+    PayloadMonitor supervisor = Monitor();
     EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
     EXPECT_EQ(supervisor.Judge(Found(kMax_kg, 0.0), kRightNis, moving).warnings,
               static_cast<std::uint32_t>(kPayloadAtBound));
@@ -54,7 +54,7 @@ TEST(PayloadMonitor, APayloadAtItsBoundIsDoubtedAsLongAsItIsThere) {
 // Where SchedulingPayload gives the robust gains and nothing else: no earlier, and no later.
 TEST(PayloadMonitor, AModelIsDoubtedWhileItsInnovationsAreFarTooLarge) {
   for (const bool moving : {true, false}) {
-    PayloadMonitor supervisor = SafetyMonitor();
+    PayloadMonitor supervisor = Monitor();
     EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kModelWrongNis, moving).warnings, 0u);
     EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), 60.1, moving).warnings,
               static_cast<std::uint32_t>(kPayloadModelMismatch));
@@ -63,7 +63,7 @@ TEST(PayloadMonitor, AModelIsDoubtedWhileItsInnovationsAreFarTooLarge) {
 }
 
 TEST(PayloadMonitor, AMoveThatLeftThePayloadUnknownIsDoubtedUntilTheNextBegins) {
-  PayloadMonitor supervisor = SafetyMonitor();
+  PayloadMonitor supervisor = Monitor();
   EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u) << "it is not over";
   for (const double sigma_kg : {0.1, 0.4, 0.01}) {
     EXPECT_EQ(supervisor.Judge(Found(0.3, sigma_kg), kRightNis, false).warnings,
@@ -76,7 +76,7 @@ TEST(PayloadMonitor, AMoveThatLeftThePayloadUnknownIsDoubtedUntilTheNextBegins) 
 
 // By a walk of 3 g a sample the standard deviation passes 0.1 kg after 22 s at 50 Hz.
 TEST(PayloadMonitor, ALongRestRaisesNoDoubt) {
-  PayloadMonitor supervisor = SafetyMonitor();
+  PayloadMonitor supervisor = Monitor();
   EXPECT_EQ(DoubtsAfterAMove(0.02, &supervisor), 0u);
   double variance_kg2 = 0.02 * 0.02;
   for (int k = 0; k < 1500; ++k) {
@@ -88,11 +88,11 @@ TEST(PayloadMonitor, ALongRestRaisesNoDoubt) {
 }
 
 TEST(PayloadMonitor, BeforeTheFirstMoveNothingIsDoubted) {
-  EXPECT_EQ(SafetyMonitor().Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);
+  EXPECT_EQ(Monitor().Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);
 }
 
 TEST(PayloadMonitor, AResetForgetsTheMoveAndItsDoubt) {
-  PayloadMonitor supervisor = SafetyMonitor();
+  PayloadMonitor supervisor = Monitor();
   ASSERT_NE(DoubtsAfterAMove(0.4, &supervisor), 0u);
   supervisor.Reset();
   EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);

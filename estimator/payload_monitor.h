@@ -2,13 +2,23 @@
 
 #include <cstdint>
 
-#include "controller/law/scheduling_payload.h"
-#include "controller/types/payload_knowledge.h"
-#include "controller/types/step_types.h"
 #include "estimator/estimator_config.h"
 #include "estimator/payload_filter.h"
+#include "estimator/payload_knowledge.h"
 
 namespace flexarm {
+
+/// A payload with this standard deviation, or a greater one, is as good as unknown.
+inline constexpr double kPayloadUncertain_kg = 0.1;
+
+/// From this mean NIS on, of 8 outputs, the filter's model is wrong, and what it finds with it.
+inline constexpr double kModelWrongNis = 60.0;
+
+/// The sensors say that the filter's model is wrong. Real-time: safe.
+/// @param mean_nis  as PayloadFilter's
+inline constexpr bool ContradictsModel(double mean_nis) noexcept {
+  return mean_nis > kModelWrongNis;
+}
 
 /// Judges the payload that is found.
 ///

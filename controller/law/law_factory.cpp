@@ -1,0 +1,18 @@
+#include "controller/law/law_factory.h"
+
+#include "controller/law/scheduled_law.h"
+#include "controller/law/tracking_law.h"
+
+namespace flexarm {
+
+std::unique_ptr<Law> MakeLaw(const ControlConfig& config, const Design& design) {
+  const std::array<double, 2>& limit_nm = config.safety.torque_limit_nm;
+  if (design.scheduled) {
+    return std::make_unique<ScheduledLaw>(MakeRigidJointArm(design),  // start-up
+                                          design.scheduled->gains, config.loop.period_s(),
+                                          limit_nm);
+  }
+  return std::make_unique<TrackingLaw>(design, config.controller, limit_nm);  // start-up
+}
+
+}  // namespace flexarm

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "controller/law/design.h"
+#include "controller/types/control_config.h"
+#include "estimator/observer.h"
+
+namespace flexarm {
+
+/// The observer that `config` names, with the filter of `design`.
+std::unique_ptr<Observer> MakeObserver(const ControlConfig& config, const Design& design);
+
+}  // namespace flexarm

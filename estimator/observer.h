@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "estimator/counter_decoder.h"
+#include "estimator/delay_detector.h"
+#include "estimator/payload_knowledge.h"
+#include "estimator/piecewise_torque.h"
+#include "estimator/state_estimate.h"
+#include "estimator/strain_fit.h"
+
+namespace flexarm {
+
+/// One sample as an observer takes it.
+struct Measurement {
+  const DecodedCounters* counters;
+  const FittedModes* modes;
+  const PiecewiseTorque* applied;         ///< over the period before it, with the delay found
+  const TorqueByDelay* applied_by_delay;  ///< the same by hypothesis; null unless asked for
+  std::optional<double> tip_m_s2;         ///< of the accelerometer at the tip, if it has a reading
+};
+
+/// What the reference does at the sample.
+struct PathMotion {
+  bool begins;  ///< a move begins
+  bool moves;
+  double rested_s;  ///< since the last move ended; infinite before the first, 0 during one
+};
+
+/// A state observer: measurements in, the state of the arm out, and its open-loop prediction.
+///
+/// One object per estimator of the config (estimator.name). Real-time: all but construction is
+/// safe. Thread: the one that runs ControlStep::Step.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+
+  /// A new run: nothing of the one before it remains.
+  virtual void Reset() noexcept = 0;
+  /// The state was not finite: the next Update starts from its measurement.
+  virtual void Restart() noexcept = 0;
+
+  /// How fast the gauges' modal coordinates are expected to change at the next Update's sample,
+  /// m/s: f11 f12 f21 f22 behind their filters.
+  virtual std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept = 0;
+
+  /// Before Update, every sample on which the law follows a path.
+  virtual void FollowPath(const PathMotion& /*motion*/) noexcept {}
+  virtual StateEstimate Update(const Measurement& measurement) noexcept = 0;
+
+  /// The state of the last Update under torques that are on their way: delay compensation.
+  virtual StateVector Predict(const StateVector& x,
+                              const PiecewiseTorque& pending) const noexcept = 0;
+
+  /// Whether Update wants Measurement::applied_by_delay.
+  virtual bool wants_torque_by_delay() const noexcept { return false; }
+  /// Samples by which torques act later than is known, as the readings show.
+  virtual int delay_found() const noexcept { return 0; }
+  /// NaN and no warnings of an observer that does not estimate the payload.
+  virtual PayloadKnowledge payload() const noexcept { return kNoPayloadEstimate; }
+};
+
+}  // namespace flexarm
