@@ -9,6 +9,7 @@
 #include "config/toml_text.h"
 #include "controller/runlog/csv_table.h"
 #include "controller/runlog/errors.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -53,7 +54,7 @@ std::vector<TrajectoryPoint> ReadTrajectory(const std::string& file, const std::
   table.Need("time_s");
   table.Need(column[0]);
   table.Need(column[1]);
-  const double unit = degrees ? std::numbers::pi / 180.0 : 1.0;
+  const double unit = degrees ? kRadPerDeg : 1.0;
   std::vector<TrajectoryPoint> points;
   while (table.Next()) {
     const double time_s = table.Number("time_s");

@@ -13,6 +13,8 @@ namespace flexarm {
 class SafetyLines {
  public:
   static constexpr std::int64_t kBudgetNs = 200'000;
+  /// The hardware removes the enable when the charge pump has not toggled for this long.
+  static constexpr std::int64_t kPumpTimeoutNs = 5'000'000;
 
   struct Outputs {
     bool relay_closed;  ///< false removes the drives' enable

@@ -19,6 +19,7 @@
 #include "model/math/dense_decompositions.h"
 #include "model/math/discretize.h"
 #include "model/math/riccati.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -175,7 +176,7 @@ void DesignForPayload(const ControlConfig& config, Design* design) {
   const ControllerConfig& controller = config.controller;
   const PayloadLawConfig& law = *controller.payload;
   GainGrid grid{.payload_kg = law.gain_payload_kg, .theta2_rad = law.gain_elbow_deg};
-  for (double& theta2 : grid.theta2_rad) theta2 *= std::numbers::pi / 180.0;
+  for (double& theta2 : grid.theta2_rad) theta2 *= kRadPerDeg;
   const Eigen::VectorXd q = StateWeight(controller).diagonal();
   const RigidJointArm arm = MakeRigidJointArm(*design);
   const auto table = [&](double alpha_per_s) {

@@ -14,6 +14,7 @@
 #include "model/arm/linearization.h"
 #include "model/math/dense_decompositions.h"
 #include "model/math/discretize.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -74,7 +75,7 @@ Plant PlantAt(const ControlConfig& config, double payload_kg, double theta2_deg)
   const ArmModel model(arm, ModeCount{.link1 = kPlantModes, .link2 = kPlantModes});
   const Index dof = model.dof(), flex = dof - 4;
   VectorXd q = VectorXd::Zero(dof);
-  q(1) = q(3) = theta2_deg * std::numbers::pi / 180.0;
+  q(1) = q(3) = RadFromDeg(theta2_deg);
   const LinearModel linear = Linearize(model, q, VectorXd::Zero(dof), Eigen::Vector2d::Zero());
 
   const Index n = 2 * dof;

@@ -105,7 +105,8 @@ class Daemon {
         recorder_({.ticks = &stack().tick_records(),
                    .safety = &stack().safety_records(),
                    .timing = &timing_,
-                   .events = &events_},
+                   .events = &events_,
+                   .truth = stack().truth_records()},
                   &recording_),
         executor_(options.realtime),
         operator_(Context()) {}
@@ -169,10 +170,9 @@ DaemonResult Daemon::Run() {
   }
   const sigset_t signals = BlockEndSignals();
   PrepareHost();
-  executor_.Add(stack().safety());
-  executor_.Add(stack().control(), &timing_);
-  for (Task* task : stack().drive_tasks()) executor_.Add(*task);
-  for (Task* task : stack().law_tasks()) executor_.Add(*task);
+  for (Task* task : stack().tasks()) {
+    executor_.Add(*task, task == &stack().control() ? &timing_ : nullptr);
+  }
   executor_.Add(operator_);
   executor_.Add(recorder_);
   const std::int64_t epoch_ns = MonotonicNow() + kEpochLeadNs;

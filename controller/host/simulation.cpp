@@ -143,7 +143,8 @@ Simulation::Simulation(const SimulationRequest& request)
       recorder_({.ticks = &stack_.tick_records(),
                  .safety = &stack_.safety_records(),
                  .timing = &timing_,
-                 .events = &events_},
+                 .events = &events_,
+                 .truth = stack_.truth_records()},
                 &recording_),
       operator_(&stack_) {
   stack_.Plan({.experiment = &planned_, .number = 1});
@@ -165,10 +166,7 @@ void Simulation::Announce() {
 double Simulation::Loop(const std::function<void(double)>& progress) {
   constexpr std::int64_t kProgressNs = 100'000'000;
   LockstepExecutor executor;
-  executor.Add(stack_.safety());
-  executor.Add(stack_.control());
-  for (Task* task : stack_.drive_tasks()) executor.Add(*task);
-  for (Task* task : stack_.law_tasks()) executor.Add(*task);
+  for (Task* task : stack_.tasks()) executor.Add(*task);
   executor.Add(operator_);
   executor.Add(recorder_);
   const auto started = std::chrono::steady_clock::now();

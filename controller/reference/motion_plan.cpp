@@ -60,7 +60,7 @@ std::array<double, 2> AnglesOfTip(const Move& move, const std::string& row,
 std::array<double, 2> GoalOf(const Move& move, const std::string& row, const MotionLimits& limits) {
   if (move.to_tip_m) return AnglesOfTip(move, row, limits);
   const Eigen::Vector2d goal =
-      Eigen::Vector2d(move.to_deg[0], move.to_deg[1]) * std::numbers::pi / 180.0;
+      Eigen::Vector2d(RadFromDeg(move.to_deg[0]), RadFromDeg(move.to_deg[1]));
   return {goal(0), goal(1)};
 }
 
@@ -124,7 +124,7 @@ std::array<double, 2> PlaceBefore(const Experiment& experiment,
   }
   for (const Doublet& d : experiment.doublet) {
     if (d.start_s <= since_s || d.start_s > start_s) continue;
-    place += Eigen::Vector2d(d.move_deg[0], d.move_deg[1]) * std::numbers::pi / 180.0;
+    place += Eigen::Vector2d(RadFromDeg(d.move_deg[0]), RadFromDeg(d.move_deg[1]));
   }
   return {place(0), place(1)};
 }

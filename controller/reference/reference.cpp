@@ -16,6 +16,7 @@
 #include "controller/types/motion_profile.h"
 #include "controller/types/rejected_error.h"
 #include "model/problem_list.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -43,7 +44,7 @@ double Displacement(const std::vector<double>& shape, double period_s) {
 }
 
 Eigen::Vector2d Radians(const std::array<double, 2>& deg) {
-  return Eigen::Vector2d(deg[0], deg[1]) * std::numbers::pi / 180.0;
+  return {RadFromDeg(deg[0]), RadFromDeg(deg[1])};
 }
 
 /// Adds the torques of one row after another to the samples of an experiment.

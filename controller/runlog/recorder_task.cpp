@@ -43,6 +43,15 @@ void RecorderTask::Drain() {
   DrainInto(channels_.events, &events_);
   DrainInto(channels_.ticks, &ticks_);
   DrainInto(channels_.timing, &timing_);
+  // After the ticks: a step runs after its truth was written.
+  if (channels_.truth != nullptr) DrainInto(channels_.truth, &truth_);
+}
+
+void RecorderTask::AddTruth(TickRecord* record) {
+  while (!truth_.empty() && truth_.front().tick < record->input.tick) truth_.pop_front();
+  if (!truth_.empty() && truth_.front().tick == record->input.tick) {
+    record->truth = truth_.front().truth;
+  }
 }
 
 // At one instant: events first (they announce), then safety, tick, timing.
@@ -62,7 +71,10 @@ void RecorderTask::Merge(std::int64_t horizon_ns) {
     } else if (next == safety) {
       take(&safety_, [&](const SafetyRecord& value) { recording_->Safety(value); });
     } else if (next == tick) {
-      take(&ticks_, [&](const TickRecord& value) { recording_->Tick(value); });
+      take(&ticks_, [&](TickRecord& value) {
+        AddTruth(&value);
+        recording_->Tick(value);
+      });
     } else {
       take(&timing_, [&](const TimingRecord& value) { recording_->Timing(value); });
     }

@@ -17,6 +17,7 @@ struct RecorderChannels {
   SpscQueue<SafetyRecord>* safety;
   SpscQueue<TimingRecord>* timing;
   EventQueue* events;
+  SpscQueue<TruthRecord>* truth = nullptr;  ///< of a simulated arm; null: there is none
 };
 
 /// The recorder thread's body: drains the queues every 50 ms into the log of the run.
@@ -42,6 +43,8 @@ class RecorderTask final : public Task {
   void Drain();
   /// Hands over everything up to `horizon_ns` in order of time.
   void Merge(std::int64_t horizon_ns);
+  /// Adds what the simulated arm did at the record's tick.
+  void AddTruth(TickRecord* record);
   void NoteDropped(std::int64_t now_ns);
 
   RecorderChannels channels_;
@@ -50,6 +53,7 @@ class RecorderTask final : public Task {
   std::deque<SafetyRecord> safety_;
   std::deque<TimingRecord> timing_;
   std::deque<RunEvent> events_;
+  std::deque<TruthRecord> truth_;
   std::uint64_t dropped_ = 0;
   std::int64_t committed_ns_ = INT64_MIN;
 };

@@ -16,6 +16,13 @@ bool Finite(const std::array<double, 2>& values) noexcept {
 
 }  // namespace
 
+GateLimits MakeGateLimits(const SafetyConfig& safety, const LoopGrid& grid) noexcept {
+  return {.torque_nm = safety.torque_limit_nm,
+          .slew_nm_per_s = safety.slew_limit_nm_per_s,
+          .command_timeout_ns = 2 * grid.period_ns,
+          .permit_timeout_ns = std::llround(safety.permit_timeout_ms * 1e6)};
+}
+
 GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
   std::uint32_t why = 0;
   if (!Young(in.asked_age_ns, limits.command_timeout_ns)) why |= kGateCommandOld;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "controller/types/loop_grid.h"
+#include "controller/types/safety_config.h"
 #include "controller/types/safety_state.h"
 
 namespace flexarm {
@@ -19,6 +21,9 @@ struct GateLimits {
   std::int64_t command_timeout_ns;  ///< two control periods
   std::int64_t permit_timeout_ns;   ///< safety.permit_timeout_ms
 };
+
+/// The limits of a rig.
+GateLimits MakeGateLimits(const SafetyConfig& safety, const LoopGrid& grid) noexcept;
 
 struct GateInput {
   std::array<double, 2> asked_nm;     ///< newest command that acts

@@ -1,7 +1,6 @@
 #include "controller/tasks/bus_task.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "controller/types/rig_config.h"
 
@@ -10,10 +9,7 @@ namespace flexarm {
 BusTask::BusTask(const RigConfig& config, BusDevice* device, BusChannels channels)
     : device_(device),
       grid_(config.loop),
-      limits_{.torque_nm = config.safety.torque_limit_nm,
-              .slew_nm_per_s = config.safety.slew_limit_nm_per_s,
-              .command_timeout_ns = 2 * grid_.period_ns,
-              .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
+      limits_(MakeGateLimits(config.safety, grid_)),
       channels_(channels) {}
 
 Task::Traits BusTask::traits() const noexcept {
@@ -53,11 +49,12 @@ BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
             .previous_nm = applied_nm_,
             .dt_s = grid_.period_s()},
            limits_);
+  gate_reasons_ = device_->drives() != 0 ? gated.why : 0;
   for (std::size_t i = 0; i < 2; ++i) {
     applied_nm_[i] = (device_->drives() >> i & 1u) != 0 ? gated.torque_nm[i] : 0.0;
   }
-  const bool powered = permit.state == SafetyState::kArmed || TorqueAllowed(permit.state);
-  return {.torque_nm = applied_nm_, .enabled = powered && (gated.why & kGatePermitOld) == 0};
+  return {.torque_nm = applied_nm_,
+          .enabled = Powered(permit.state) && (gated.why & kGatePermitOld) == 0};
 }
 
 void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
@@ -68,6 +65,8 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
     packet.frame.sampled_at_ns -= epoch_ns_;
     levels_ = (part.levels & device_->lines()) | (kHealthyLevels & ~device_->lines());
   }
+  packet.gate_reasons = gate_before_;
+  gate_before_ = gate_reasons_;
   packet.applied_torque_nm =
       applied_.Between(due_ns - grid_.period_ns, due_ns, grid_.period_ns).mean_nm();
   // Of a bus with drives the frame's instant is also when they took the torque: the SYNC of

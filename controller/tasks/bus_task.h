@@ -60,6 +60,8 @@ class BusTask final : public Task {
   BusStatus status_ = BusStatus::kOk;
   int failures_ = 0;  // in a row
   std::uint32_t failed_ = 0;
+  std::uint32_t gate_reasons_ = 0,
+                gate_before_ = 0;  // GateBits of the newest torque, the one before
   std::uint32_t recovered_ = 0;
   LineLevels levels_ = kHealthyLevels;
   FrameHistory frames_{kNoFrame};

@@ -5,13 +5,6 @@
 #include <utility>
 
 namespace flexarm {
-namespace {
-
-bool Powered(SafetyState state) noexcept {
-  return state == SafetyState::kArmed || TorqueAllowed(state);
-}
-
-}  // namespace
 
 ControlTask::ControlTask(const LoopConfig& loop, ControlStep* step, ControlChannels channels)
     : grid_(loop), step_(step), channels_(std::move(channels)) {}
@@ -25,7 +18,6 @@ Task::Traits ControlTask::traits() const noexcept {
 }
 
 void ControlTask::Run(const Activation& activation) noexcept {
-  if (activation.due_ns >= frozen_from_ns_) return;
   // What was published at the due instant itself may or may not be there yet.
   FollowState(channels_.permits->Read().At(activation.due_ns - 1).value);
   const std::int64_t sampled_ns = grid_.SamplingInstant(grid_.Tick(activation.due_ns));
@@ -34,7 +26,7 @@ void ControlTask::Run(const Activation& activation) noexcept {
   TickRecord record{};
   record.input = Gather(activation, packet, state_);
   record.output = step_->Step(record.input);
-  record.truth = packet.truth;
+  record.gate_reasons = packet.gate_reasons;
   counts_ = record.output.counts;
   delay_found_ = int{record.output.delay_found};
   hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
@@ -58,7 +50,7 @@ FramePacket ControlTask::ReadFrames(std::int64_t sampled_ns) noexcept {
 void ControlTask::FollowState(const Permit& permit) noexcept {
   reset_ = reset_ || (Powered(permit.state) && !Powered(state_));
   if (permit.state == SafetyState::kRunning) {
-    if (state_ != SafetyState::kRunning) StartRun(permit.running_since_ns);
+    if (state_ != SafetyState::kRunning) StartRun();
     ++sample_;
   }
   state_ = permit.state;
@@ -73,7 +65,7 @@ void ControlTask::TakeCalibration() noexcept {
   reset_ = true;
 }
 
-void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
+void ControlTask::StartRun() noexcept {
   const LoadedExperiment& planned = channels_.plans->Read();
   const bool used_up = planned.number == plan_.number;
   plan_ = planned;
@@ -84,11 +76,6 @@ void ControlTask::StartRun(std::int64_t running_since_ns) noexcept {
   if (plan_.experiment == nullptr) return;
   if (plan_.experiment->mode == LoopMode::kRegulate) {
     homing_.Start(plan_.experiment->homing, hub_angle_rad_);
-  }
-  for (const SimEvent& event : plan_.experiment->sim_events) {
-    if (event.freeze != FreezeTarget::kControl) continue;
-    frozen_from_ns_ = grid_.ExperimentStart(running_since_ns) + std::llround(event.at_s * 1e9);
-    break;
   }
 }
 

@@ -54,7 +54,7 @@ class ControlTask final : public Task {
  private:
   FramePacket ReadFrames(std::int64_t sampled_ns) noexcept;
   void FollowState(const Permit& permit) noexcept;
-  void StartRun(std::int64_t running_since_ns) noexcept;
+  void StartRun() noexcept;
   void TakeCalibration() noexcept;
   void FollowReference(SafetyState state, StepInput* input) noexcept;
   void FollowPlan(StepInput* input) noexcept;
@@ -77,7 +77,6 @@ class ControlTask final : public Task {
   int sample_ = -1;                     // of the experiment, when the torque acts as known
   int delay_found_ = 0;                 // samples that the last step found beyond that
   bool reset_ = true;                   // the next step starts afresh
-  std::int64_t frozen_from_ns_ = INT64_MAX;
   std::array<std::int64_t, kCounters> counts_{};  // of the last step
   std::array<double, 2> hub_angle_rad_{};         // of the last step
   CommandHistory commands_{kNoCommand};

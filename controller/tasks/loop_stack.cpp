@@ -56,9 +56,11 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
                 .operator_ticks = &operator_ticks_,
                 .planner = follower_.get()}) {}
 
-std::vector<Task*> LoopStack::law_tasks() {
-  if (planner_ == nullptr) return {};
-  return {planner_.get()};
+std::vector<Task*> LoopStack::tasks() {
+  std::vector<Task*> all = {&safety_, &control()};
+  for (Task* task : drive_tasks()) all.push_back(task);
+  if (planner_ != nullptr) all.push_back(planner_.get());
+  return all;
 }
 
 }  // namespace flexarm

@@ -40,12 +40,13 @@ class LoopStack {
   LoopStack(const LoopStack&) = delete;
   LoopStack& operator=(const LoopStack&) = delete;
 
-  SafetyTask& safety() { return safety_; }
-  ControlTask& control() { return control_; }
-  /// Of the law; none if it does not plan ahead.
-  std::vector<Task*> law_tasks();
-  /// Of the backend, in order of priority.
+  /// Every task that an executor runs: safety, control, the backend's, the planner's.
+  std::vector<Task*> tasks();
+  Task& safety() { return safety_; }
+  /// Those of the backend, in order of priority.
   virtual std::vector<Task*> drive_tasks() = 0;
+  /// The task whose timing the log keeps: one activation a sample.
+  virtual Task& control() { return control_; }
 
   /// Instant 0 of the loop in CLOCK_MONOTONIC, for devices that stamp in that. Before any task
   /// runs.
@@ -73,6 +74,8 @@ class LoopStack {
   virtual bool simulated() const noexcept { return false; }
   /// False: this backend has no simulated switches.
   virtual bool Press(const LinePress& /*press*/) noexcept { return false; }
+  /// What the simulated arm did at each sample, for the log; null: a real rig does not know it.
+  virtual SpscQueue<TruthRecord>* truth_records() noexcept { return nullptr; }
 
   // Recorder's ends: one thread.
   SpscQueue<TickRecord>& tick_records() { return tick_records_; }

@@ -20,10 +20,7 @@ PlantTask::PlantTask(const RigConfig& config, double payload_kg, PlantChannels c
     : rig_(WithPayload(config.arm, payload_kg), config.sensors, config.sim),
       loss_(config.sim.lost_frame_fraction, config.sim.seed),
       grid_(config.loop),
-      limits_{.torque_nm = config.safety.torque_limit_nm,
-              .slew_nm_per_s = config.safety.slew_limit_nm_per_s,
-              .command_timeout_ns = 2 * grid_.period_ns,
-              .permit_timeout_ns = std::llround(config.safety.permit_timeout_ms * 1e6)},
+      limits_(MakeGateLimits(config.safety, grid_)),
       drive_{.delay_ns = std::llround(config.sim.transport_delay_ms * 1e6)},
       reported_{.delay_ns = grid_.actuation_ns},
       channels_(channels) {
@@ -57,7 +54,7 @@ void PlantTask::Run(const Activation& activation) noexcept {
 
 void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
   const bool enabled = Enabled(start_ns);
-  ApplyGate(start_ns, enabled, &drive_);
+  gate_reasons_ |= ApplyGate(start_ns, enabled, &drive_);
   ApplyGate(start_ns, enabled, &reported_);
   rig_.SetTorque(drive_.torque_nm);
   for (std::int64_t t = 0; t < kPeriodNs; t += rig_.step_ns()) rig_.Step();
@@ -67,7 +64,7 @@ void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
 
 // The slew limit counts from command to command: between two commands the drive holds its
 // set-point.
-void PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept {
+std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept {
   const std::int64_t acting_ns = start_ns - drive->delay_ns;
   const CommandHistory::Entry& command = channels_.commands->Read().At(acting_ns);
   const Permit& permit = channels_.permits->Read().At(start_ns).value;
@@ -81,6 +78,7 @@ void PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noe
                                  .dt_s = fresh ? grid_.period_s() : 0.0},
                                 limits_);
   drive->torque_nm = enabled ? gated.torque_nm : std::array<double, 2>{};
+  return gated.why;
 }
 
 bool PlantTask::Enabled(std::int64_t start_ns) noexcept {
@@ -89,7 +87,7 @@ bool PlantTask::Enabled(std::int64_t start_ns) noexcept {
     pump_level_ = outputs.pump_level;
     pump_toggled_ns_ = start_ns;
   }
-  return outputs.relay_closed && AgeNs(start_ns, pump_toggled_ns_) <= kPumpTimeoutNs;
+  return outputs.relay_closed && AgeNs(start_ns, pump_toggled_ns_) <= SafetyLines::kPumpTimeoutNs;
 }
 
 void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
@@ -103,6 +101,7 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
     next_event_ = 0;
     plan_ = channels_.plans->Read();
     released_.store(plan_.number, std::memory_order_release);
+    FreezeControlTask();
   }
   if (plan_.experiment == nullptr) return;
   const std::vector<SimEvent>& events = plan_.experiment->sim_events;
@@ -114,6 +113,16 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
     if (event.freeze == FreezeTarget::kPlant) frozen_ = true;
     if (event.kill) std::raise(SIGKILL);
     if (event.payload_kg) rig_.CarryPayload(*event.payload_kg);
+  }
+}
+
+void PlantTask::FreezeControlTask() noexcept {
+  if (plan_.experiment == nullptr) return;
+  for (const SimEvent& event : plan_.experiment->sim_events) {
+    if (event.freeze != FreezeTarget::kControl) continue;
+    channels_.control->FreezeFrom(grid_.ExperimentStart(run_since_ns_) +
+                                  std::llround(event.at_s * 1e9));
+    return;
   }
 }
 
@@ -129,11 +138,9 @@ void PlantTask::StartFrame(std::int64_t now_ns) noexcept {
   const CommandHistory::Entry& put_out = channels_.commands->Read().At(now_ns);
   packet_.output_tick = put_out.value.tick;
   packet_.acted_ns = put_out.from_ns + grid_.actuation_ns;
-  const SimulatedRig::Truth truth = rig_.truth();
-  packet_.truth = {.hub_angle_rad = truth.hub_angle_rad,
-                   .tip_m = truth.tip_m,
-                   .tip_deflection_m = truth.tip_deflection_m,
-                   .known = true};
+  packet_.gate_reasons = gate_reasons_;
+  gate_reasons_ = 0;
+  channels_.truth->Push({.tick = now_ns / grid_.period_ns, .truth = rig_.truth()});
 }
 
 // When the last channel of a multiplexed input has been sampled.

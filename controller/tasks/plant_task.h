@@ -7,12 +7,14 @@
 #include "controller/exchange/spsc_queue.h"
 #include "controller/realtime/task.h"
 #include "controller/safety/torque_gate.h"
+#include "controller/tasks/freezing_task.h"
 #include "controller/tasks/loaded_experiment.h"
 #include "controller/tasks/loop_stack.h"
 #include "controller/tasks/simulated_lines.h"
 #include "controller/types/frame_packet.h"
 #include "controller/types/loop_grid.h"
 #include "controller/types/messages.h"
+#include "controller/types/records.h"
 #include "hal/sim/frame_loss.h"
 #include "hal/sim/simulated_rig.h"
 
@@ -30,6 +32,8 @@ struct PlantChannels {
   FrameChannel* frames;           ///< written
   LevelChannel* levels;           ///< written
   DriveReportChannel* reports;    ///< written
+  SpscQueue<TruthRecord>* truth;  ///< written: what the arm really did, for the log
+  FreezingTask* control;          ///< told when the experiment freezes the control task
 };
 
 /// The simulated backend's thread: 1 kHz, integrates the plant up to its due instant.
@@ -45,7 +49,6 @@ struct PlantChannels {
 class PlantTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
-  static constexpr std::int64_t kPumpTimeoutNs = 5'000'000;
   static constexpr int kPriority = 60;
 
   /// @param payload_kg  what the plant really carries, whatever the config's arm says
@@ -66,9 +69,11 @@ class PlantTask final : public Task {
   };
 
   void AdvanceSlice(std::int64_t start_ns) noexcept;
-  void ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept;
+  /// @returns GateBits
+  std::uint32_t ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept;
   bool Enabled(std::int64_t start_ns) noexcept;
   void HandleEvents(std::int64_t now_ns) noexcept;
+  void FreezeControlTask() noexcept;
   void StartFrame(std::int64_t now_ns) noexcept;
   void PublishFrame() noexcept;
 
@@ -88,7 +93,8 @@ class PlantTask final : public Task {
   bool frozen_ = false;
   std::array<double, 2> applied_sum_nm_{};  // as reported
   int applied_slices_ = 0;
-  FramePacket packet_{};  // of the last sampling instant, until its readings are there
+  std::uint32_t gate_reasons_ = 0;  // GateBits since the last frame
+  FramePacket packet_{};            // of the last sampling instant, until its readings are there
   std::int64_t packet_ns_ = 0;
   bool packet_lost_ = false;
   bool pump_level_ = false;

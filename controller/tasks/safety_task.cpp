@@ -13,10 +13,6 @@ bool SameFacts(const SafetyFacts& a, const SafetyFacts& b) noexcept {
   return std::bit_cast<FactBytes>(a) == std::bit_cast<FactBytes>(b);
 }
 
-bool RelayClosed(SafetyState state) noexcept {
-  return state == SafetyState::kArmed || TorqueAllowed(state);
-}
-
 bool RaisesEnergy(RequestKind kind) noexcept {
   return kind == RequestKind::kArm || kind == RequestKind::kRun;
 }
@@ -156,7 +152,7 @@ void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in) noexcep
 }
 
 void SafetyTask::Drive(std::int64_t due_ns) noexcept {
-  const bool closed = RelayClosed(status_.state);
+  const bool closed = Powered(status_.state);
   pump_level_ = closed && !pump_level_;
   channels_.lines->Write(due_ns, {.relay_closed = closed, .pump_level = pump_level_});
 }

@@ -12,6 +12,7 @@ SimulatedStack::SimulatedStack(const RigConfig& config, const RigConfig& plant,
                  .commands = {&commands},
                  .permits = {&permits},
                  .drives = {&drive_reports}}),
+      control_(&LoopStack::control()),
       plant_(plant, payload_kg,
              {.commands = &commands,
               .permits = &permits,
@@ -20,7 +21,9 @@ SimulatedStack::SimulatedStack(const RigConfig& config, const RigConfig& plant,
               .presses = &presses,
               .frames = &frames,
               .levels = &levels,
-              .reports = &drive_reports}) {}
+              .reports = &drive_reports,
+              .truth = &truth,
+              .control = &control_}) {}
 
 void SimulatedStack::Plan(const LoadedExperiment& plan) noexcept {
   LoopStack::Plan(plan);

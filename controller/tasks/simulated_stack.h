@@ -20,6 +20,7 @@ struct SimulatedWires {
   DriveReportChannel drive_reports{DriveReportHistory(kNoDriveReport)};
   ExperimentChannel plans{LoadedExperiment{}};
   SpscQueue<LinePress> presses{64};
+  SpscQueue<TruthRecord> truth{4000};  // as deep as the queue of steps
   SimulatedLines lines{&levels, &outputs};
 };
 
@@ -35,13 +36,16 @@ class SimulatedStack final : private SimulatedWires, public LoopStack {
 
   PlantTask& plant() { return plant_; }
   std::vector<Task*> drive_tasks() override { return {&plant_}; }
+  Task& control() override { return control_; }
 
   void Plan(const LoadedExperiment& plan) noexcept override;
   std::uint32_t released_experiments() const noexcept override;
   bool simulated() const noexcept override { return true; }
   bool Press(const LinePress& press) noexcept override { return presses.Push(press); }
+  SpscQueue<TruthRecord>* truth_records() noexcept override { return &truth; }
 
  private:
+  FreezingTask control_;
   PlantTask plant_;
 };
 

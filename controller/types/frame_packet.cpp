@@ -28,6 +28,7 @@ void Join(const FramePacket& part, FramePacket* packet) noexcept {
     packet->output_tick = part.output_tick;
     packet->acted_ns = part.acted_ns;
   }
+  packet->gate_reasons |= part.gate_reasons;
   const std::int64_t apart_ns = part.frame.sampled_at_ns - frame.sampled_at_ns;
   if (apart_ns > kJoinableNs) frame = part.frame;  // the other bus has long been silent
   if (apart_ns > kJoinableNs || apart_ns < -kJoinableNs) return;

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "controller/exchange/history.h"
 #include "controller/exchange/latest_value.h"
 #include "controller/types/messages.h"
-#include "controller/types/records.h"
 #include "hal/safety_lines.h"
 #include "hal/sensor_frame.h"
 
@@ -15,7 +15,7 @@ namespace flexarm {
 struct FramePacket {
   SensorFrame frame;                        ///< a bus marks its own readings valid, and no other
   std::array<double, 2> applied_torque_nm;  ///< after the gate: mean since the last packet
-  PlantTruth truth;                         ///< simulated backend only
+  std::uint32_t gate_reasons = 0;           ///< GateBits of that time: why torque was changed
   std::int64_t output_tick = -1;            ///< of the newest command that was put out; -1: none
   std::int64_t acted_ns = 0;                ///< when that one began to act
 };

@@ -1,26 +1,26 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 
 #include "controller/types/step_types.h"
+#include "hal/sim/plant_truth.h"
 
 namespace flexarm {
 
-/// What the simulated arm really did at a sampling instant. A rig does not know it.
-struct PlantTruth {
-  std::array<double, 2> hub_angle_rad;     ///< th1, th2
-  std::array<double, 2> tip_m;             ///< x, y in the base frame
-  std::array<double, 2> tip_deflection_m;  ///< w1(L1), w2(L2)
-  bool known;
+/// What the simulated arm did, by the step that took it as a frame.
+struct TruthRecord {
+  std::int64_t tick;
+  PlantTruth truth;
 };
 
 /// One sample as the control task hands it to the recorder.
 struct TickRecord {
   StepInput input;
   StepOutput output;
-  PlantTruth truth;
+  /// GateBits (torque_gate.h) of the torque that acted in the period before the sample.
+  std::uint32_t gate_reasons;
+  PlantTruth truth;  ///< of the simulated stack: the recorder adds it
 };
 
 /// Something that happened: a trip, a refusal, an operator's command, a gap in the log.

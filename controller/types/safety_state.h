@@ -19,6 +19,11 @@ constexpr bool TorqueAllowed(SafetyState state) noexcept {
   return state == SafetyState::kRunning || state == SafetyState::kStopping;
 }
 
+/// The relay is closed and the drives are enabled only in these states.
+constexpr bool Powered(SafetyState state) noexcept {
+  return state == SafetyState::kArmed || TorqueAllowed(state);
+}
+
 constexpr const char* Name(SafetyState state) noexcept {
   switch (state) {
     case SafetyState::kStarting:

@@ -1,12 +1,12 @@
 #include "hal/emulation/emulated_rig.h"
 
 #include "hal/bus_device.h"
+#include "hal/safety_lines.h"
 
 namespace flexarm {
 namespace {
 
 constexpr std::int64_t kSliceNs = 1'000'000;
-constexpr std::int64_t kPumpTimeoutNs = 5'000'000;
 
 const GpiodConfig& LinesOf(const HalConfig& hal) {
   if (!hal.gpiod) throw HalError("no safety chain is wired: [hal.gpiod] is missing");
@@ -64,7 +64,7 @@ bool EmulatedRig::PowerOn(std::int64_t now_ns) noexcept {
   }
   observed_.relay_closed = gpio_.Value(lines_.relay);
   observed_.pump_alive =
-      pump_toggled_ns_ != INT64_MIN && now_ns - pump_toggled_ns_ <= kPumpTimeoutNs;
+      pump_toggled_ns_ != INT64_MIN && now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
   return observed_.relay_closed && observed_.pump_alive;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "model/rigid_joint/tip_acceleration.h"
+#include "model/units.h"
 
 namespace flexarm {
 
@@ -19,7 +20,7 @@ SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors
       skew_ns_(std::llround(sim.channel_skew_us * 1e3)) {
   for (std::size_t i = 0; i < 2; ++i) {
     motor_[i] = DcMotor(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
-    switch_angle_rad_[i] = sim.switch_angle_deg[i] * std::numbers::pi / 180.0;
+    switch_angle_rad_[i] = RadFromDeg(sim.switch_angle_deg[i]);
   }
   if (!sensors.tip_accelerometer) return;
   accelerometer_.emplace(*sensors.tip_accelerometer, sim.step_ms * 1e-3, sim.seed);
@@ -105,7 +106,7 @@ void SimulatedRig::CarryPayload(double payload_kg) noexcept {
   simulator_.CarryPayloadOf(arm_);
 }
 
-SimulatedRig::Truth SimulatedRig::truth() const noexcept {
+PlantTruth SimulatedRig::truth() const noexcept {
   const Eigen::Index m1 = arm_.mode_count().link1, m2 = arm_.mode_count().link2;
   const LinkModes& link1 = arm_.link_modes(1);
   // Shapes have psi(L) = 1: the deflection of a tip is the sum of its modal coordinates.
@@ -123,7 +124,8 @@ SimulatedRig::Truth SimulatedRig::truth() const noexcept {
                         w2 * std::sin(gamma),
                     L1 * std::sin(th1) + w1 * std::cos(th1) + L2 * std::sin(gamma) +
                         w2 * std::cos(gamma)},
-          .tip_deflection_m = {w1, w2}};
+          .tip_deflection_m = {w1, w2},
+          .known = true};
 }
 
 }  // namespace flexarm

@@ -7,6 +7,7 @@
 #include "hal/gauge_filter.h"
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
+#include "hal/sim/plant_truth.h"
 #include "hal/sim/sim_config.h"
 #include "hal/sim/simulated_accelerometer.h"
 #include "hal/sim/simulated_sensors.h"
@@ -25,13 +26,6 @@ namespace flexarm {
 /// Real-time: all but the constructor are safe.
 class SimulatedRig {
  public:
-  /// What really is, for metrics and pictures; a rig does not know it.
-  struct Truth {
-    std::array<double, 2> hub_angle_rad;     ///< th1, th2
-    std::array<double, 2> tip_m;             ///< x, y in the base frame
-    std::array<double, 2> tip_deflection_m;  ///< w1(L1), w2(L2)
-  };
-
   /// @param arm  the plant's parameters, with the payload that it really carries
   SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim);
 
@@ -63,7 +57,8 @@ class SimulatedRig {
   /// ArmModel::CarryPayload says what becomes of the momentum.
   void CarryPayload(double payload_kg) noexcept;
 
-  Truth truth() const noexcept;
+  /// For metrics and pictures.
+  PlantTruth truth() const noexcept;
   const ArmState& state() const noexcept { return state_; }
 
  private:

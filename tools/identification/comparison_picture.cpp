@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "model/units.h"
 #include "tools/plot/gnuplot.h"
 
 namespace flexarm {
@@ -24,7 +25,7 @@ void WriteData(std::size_t number, const ComparisonColumn& column, std::ostrings
     *script << run.time_s()(k);
     for (std::size_t i = 0; i < run.signal().size(); ++i) {
       const auto signal = static_cast<Eigen::Index>(i);
-      const double unit = run.signal()[i].angle ? 180.0 / std::numbers::pi : 1e3;
+      const double unit = run.signal()[i].angle ? kDegPerRad : 1e3;
       *script << ' ' << unit * run.measured()(k, signal) << ' '
               << unit * column.predicted(k, signal);
     }

@@ -56,7 +56,7 @@ LAYERS = {
     "tools/analysis": "model model/math model/beam model/beam_methods model/arm model/simulation "
                       "model/perturbation model/reduction controller/runlog config tools/support "
                       "tools/runs tools/plot",
-    "tools/sweep": "model/rigid_joint hal controller/types controller/runlog controller/host "
+    "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config tools/support tools/runs tools/plot",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/units.h"
+
 namespace flexarm {
 namespace {
 
@@ -52,8 +54,8 @@ RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed, double
   for (int i = 0; i < moves; ++i) {
     const double to2_deg = random.Between(-90.0, 90.0), to1_deg = random.Between(-60.0, 60.0);
     const Eigen::Vector2d to_deg(to1_deg, to2_deg);
-    const double rad = std::numbers::pi / 180.0;
-    const double rule_s = RuleDuration_s(arm, kRuleFor_kg, from_deg * rad, to_deg * rad);
+    const double rule_s =
+        RuleDuration_s(arm, kRuleFor_kg, from_deg * kRadPerDeg, to_deg * kRadPerDeg);
     Move move{.start_s = now_s, .to_deg = {to1_deg, to2_deg}, .profile = MoveProfile::kSeptic};
     move.duration_s = OnMoveGrid(rule_s * random.Between(1.0, 1.5));
     out.experiment.move.push_back(move);

@@ -37,9 +37,7 @@ class Bench {
       : config_(CommissionedRig(overrides)),
         stack_(config_, ShippedDesign(), config_.arm.payload_mass_kg),
         commissioner_(config_) {
-    executor_.Add(stack_.safety());
-    executor_.Add(stack_.control());
-    executor_.Add(stack_.plant());
+    for (Task* task : stack_.tasks()) executor_.Add(*task);
     Run(1.0);
   }
 
@@ -80,7 +78,7 @@ class Bench {
   TripCause trip() { return stack_.operator_permits().Read().Newest().value.cause; }
   double angle_deg(std::size_t joint) const { return last_.output.angle_rad[joint] * 180.0 / M_PI; }
   double truth_deg(std::size_t joint) const {
-    return last_.truth.hub_angle_rad[joint] * 180.0 / M_PI;
+    return truth_.truth.hub_angle_rad[joint] * 180.0 / M_PI;
   }
   Commissioner& commissioner() { return commissioner_; }
   const RigConfig& config() const { return config_; }
@@ -91,6 +89,8 @@ class Bench {
     now_ns_ += kLookNs;
     executor_.RunUntil(now_ns_);
     while (stack_.operator_ticks().Pop(&last_)) commissioner_.Take(last_);
+    while (stack_.truth_records()->Pop(&truth_)) {
+    }
   }
 
   RigConfig config_;
@@ -100,6 +100,7 @@ class Bench {
   std::vector<std::unique_ptr<PlannedExperiment>> motions_;
   std::uint32_t plans_ = 0;
   TickRecord last_{};
+  TruthRecord truth_{};
   std::int64_t now_ns_ = 0;
 };
 

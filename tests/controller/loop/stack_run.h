@@ -29,10 +29,7 @@ class StackRun {
         planned_(experiment, design_, grid_.period_s(), {0.0, 0.0}, MotionLimitsOf(config)),
         stack_(config, plant, design_, payload_kg) {
     stack_.Plan({.experiment = &planned_, .number = 1});
-    executor_.Add(stack_.safety());
-    executor_.Add(stack_.control());
-    executor_.Add(stack_.plant());
-    for (Task* task : stack_.law_tasks()) executor_.Add(*task);
+    for (Task* task : stack_.tasks()) executor_.Add(*task);
   }
 
   /// Lets the tasks run until `until_ns`; `unattended` makes the requests of UnattendedRun.
@@ -75,8 +72,14 @@ class StackRun {
 
  private:
   void Collect() {
+    TruthRecord truth{};
+    while (stack_.truth_records()->Pop(&truth)) truth_.push_back(truth.truth);
     TickRecord record{};
-    while (stack_.tick_records().Pop(&record)) tick.push_back(record);
+    while (stack_.tick_records().Pop(&record)) {
+      const auto k = static_cast<std::size_t>(record.input.tick);
+      if (k < truth_.size()) record.truth = truth_[k];  // a frozen plant has none
+      tick.push_back(record);
+    }
     SafetyRecord change{};
     while (stack_.safety_records().Pop(&change)) safety.push_back(change);
     RequestAnswer given{};
@@ -90,6 +93,7 @@ class StackRun {
   SimulatedStack stack_;
   LockstepExecutor executor_;
   UnattendedRun operator_;
+  std::vector<PlantTruth> truth_;  // by tick
   std::int64_t now_ns_ = 0;
   std::uint32_t asked_ = 1000;  // apart from the unattended run's numbers
 };

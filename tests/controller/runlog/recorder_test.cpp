@@ -22,7 +22,8 @@ class RecorderTest : public RunLogTest {
     recording_.emplace(MakeInfo(), std::move(open), [this](bool is_error, const std::string& text) {
       (is_error ? errors_ : notes_).push_back(text);
     });
-    recorder_.emplace(RecorderChannels{&ticks_, &safety_, &timing_, &events_}, &*recording_);
+    recorder_.emplace(RecorderChannels{&ticks_, &safety_, &timing_, &events_, &truth_},
+                      &*recording_);
   }
   // Arms at `at_ns`; the first tick after it carries the reset.
   void Arm(std::int64_t at_ns) { safety_.Push(MakeSafety(at_ns, kIdleStatus, RequestKind::kArm)); }
@@ -43,6 +44,7 @@ class RecorderTest : public RunLogTest {
   SpscQueue<SafetyRecord> safety_;
   SpscQueue<TimingRecord> timing_;
   EventQueue events_;
+  SpscQueue<TruthRecord> truth_{4096};
   std::optional<RunRecording> recording_;
   std::optional<RecorderTask> recorder_;
   std::vector<std::string> errors_, notes_;
@@ -102,6 +104,31 @@ TEST_F(RecorderTest, WhenRecordsArriveDoesNotChangeTheLog) {
   recorder_->Finish();
   ASSERT_EQ(late.tick.size(), at_once.tick.size());
   EXPECT_EQ(late.tick.front().input.tick, 1);
+}
+
+// The truth of a tick is there before the tick; one that is missing leaves it unknown.
+TEST_F(RecorderTest, WhatTheSimulatedArmDidIsAddedToItsTick) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  Arm(0);
+  for (std::int64_t tick = 1; tick <= 4; ++tick) {
+    TickRecord record = MakeTick(tick);
+    record.input.reset = tick == 1 ? 1 : 0;
+    record.truth = {};
+    ticks_.Push(record);
+  }
+  for (const std::int64_t tick : {0, 1, 2, 4}) {
+    truth_.Push({.tick = tick,
+                 .truth = {.hub_angle_rad = {0.1 * static_cast<double>(tick), 0.0},
+                           .tip_m = {},
+                           .tip_deflection_m = {},
+                           .known = true}});
+  }
+  recorder_->Finish();
+  ASSERT_EQ(run.tick.size(), 4U);
+  EXPECT_EQ(run.tick[1].truth.hub_angle_rad[0], 0.2);
+  EXPECT_FALSE(run.tick[2].truth.known);
+  EXPECT_EQ(run.tick[3].truth.hub_angle_rad[0], 0.4);
 }
 
 TEST_F(RecorderTest, AMissingTickIsAnEvent) {

@@ -28,6 +28,18 @@ struct World {
   std::int64_t running_since_ns = INT64_MIN;
 };
 
+// Stands for the control task.
+class CountingTask final : public Task {
+ public:
+  Traits traits() const noexcept override {
+    return {
+        .name = "control", .period_ns = 20 * kMs, .phase_ns = 0, .deadline_ns = 1, .priority = 0};
+  }
+  void Run(const Activation& /*activation*/) noexcept override { ++runs; }
+
+  int runs = 0;
+};
+
 class PlantTaskTest : public testing::Test {
  protected:
   explicit PlantTaskTest(const std::vector<std::string>& overrides = {})
@@ -39,7 +51,18 @@ class PlantTaskTest : public testing::Test {
                .presses = &presses_,
                .frames = &frames_,
                .levels = &levels_,
-               .reports = &reports_}) {}
+               .reports = &reports_,
+               .truth = &truth_,
+               .control = &control_}) {}
+
+  // What the arm did at a sample, taken from the queue up to it.
+  PlantTruth TruthAt(std::int64_t tick) {
+    TruthRecord record{};
+    while (truth_.Pop(&record)) {
+      if (record.tick == tick) return record.truth;
+    }
+    return {};
+  }
 
   // Runs to `until_ns`, the world as it says from now on; returns the mean torque of joint 1 over
   // the 20 ms that end there.
@@ -79,12 +102,37 @@ class PlantTaskTest : public testing::Test {
   FrameChannel frames_{FrameHistory(kNoFrame)};
   LevelChannel levels_{LevelHistory(kHealthyLevels)};
   DriveReportChannel reports_{DriveReportHistory(kNoDriveReport)};
+  SpscQueue<TruthRecord> truth_{64};
+  CountingTask control_task_;
+  FreezingTask control_{&control_task_};
   PlantTask task_;
 };
 
 TEST_F(PlantTaskTest, AppliesTheCommandWhileEverythingAllowsIt) {
   EXPECT_EQ(RunTo(40 * kMs, {}), 2.0);
   EXPECT_EQ(RunTo(60 * kMs, {}), 2.0);
+}
+
+TEST_F(PlantTaskTest, AFrameCarriesWhyTheGateChangedTheTorqueBeforeIt) {
+  World world;
+  RunTo(60 * kMs, world);
+  EXPECT_EQ(frames_.Read().At(60 * kMs).value.gate_reasons, 0U);
+  world.permit = SafetyState::kArmed;
+  RunTo(80 * kMs, world);
+  EXPECT_EQ(frames_.Read().At(80 * kMs).value.gate_reasons, std::uint32_t{kGateNotAllowed});
+}
+
+TEST(FreezingTask, RunsItsTaskUpToTheInstantAndNotFromThereOn) {
+  CountingTask inner;
+  FreezingTask task(&inner);
+  EXPECT_STREQ(task.traits().name, "control");
+  task.Run({.due_ns = 20 * kMs, .missed_in_a_row = 0});
+  task.FreezeFrom(40 * kMs);
+  task.Run({.due_ns = 40 * kMs - 1, .missed_in_a_row = 0});
+  EXPECT_EQ(inner.runs, 2);
+  task.Run({.due_ns = 40 * kMs, .missed_in_a_row = 0});
+  task.Run({.due_ns = 60 * kMs, .missed_in_a_row = 0});
+  EXPECT_EQ(inner.runs, 2);
 }
 
 TEST_F(PlantTaskTest, APermitThatAllowsNoTorqueStopsItAlone) {
@@ -176,9 +224,9 @@ class LatePlantTaskTest : public PlantTaskTest {
 TEST_F(LatePlantTaskTest, ADelayThatIsNotDeclaredIsNotReportedEither) {
   EXPECT_EQ(RunTo(20 * kMs, {}), 0.0);
   EXPECT_EQ(RunTo(40 * kMs, {}), 2.0);
-  EXPECT_EQ(frames_.Read().At(40 * kMs).value.truth.hub_angle_rad[0], 0.0);
+  EXPECT_EQ(TruthAt(2).hub_angle_rad[0], 0.0);
   EXPECT_EQ(RunTo(60 * kMs, {}), 2.0);
-  EXPECT_GT(frames_.Read().At(60 * kMs).value.truth.hub_angle_rad[0], 0.0);
+  EXPECT_GT(TruthAt(3).hub_angle_rad[0], 0.0);
 }
 
 class LossyPlantTaskTest : public PlantTaskTest {
@@ -199,7 +247,7 @@ TEST_F(LossyPlantTaskTest, ALostFrameHoldsNoReadingAndTheDriveGoesOn) {
     EXPECT_EQ(packet.frame.sampled_at_ns, instant_ns);
     EXPECT_EQ(packet.frame.counter_valid, whole ? 0xfu : 0u) << k;
     EXPECT_EQ(packet.frame.strain_valid, whole ? 0xfffffu : 0u) << k;
-    EXPECT_TRUE(packet.truth.known);
+    EXPECT_TRUE(TruthAt(k).known);
   }
 }
 

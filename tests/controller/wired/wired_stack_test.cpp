@@ -108,9 +108,7 @@ class WiredStackTest : public testing::Test {
  protected:
   WiredStackTest() {
     stack_.Plan({.experiment = &planned_, .number = 1});
-    executor_.Add(stack_.safety());
-    executor_.Add(stack_.control());
-    for (Task* task : stack_.drive_tasks()) executor_.Add(*task);
+    for (Task* task : stack_.tasks()) executor_.Add(*task);
   }
 
   void RunUntil(std::int64_t end_ns) {

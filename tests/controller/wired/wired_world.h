@@ -34,7 +34,7 @@ class WorldLines final : public SafetyLines {
     pump_ = outputs.pump_level;
   }
   bool PowerOn(std::int64_t now_ns) const {
-    return relay && now_ns - pump_toggled_ns_ <= 5'000'000;
+    return relay && now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
   }
 
   LineLevels levels = kHealthyLevels;
