@@ -15,7 +15,7 @@ namespace flexarm {
 namespace {
 
 constexpr std::size_t kLargestAttachment =
-    std::size_t{512} * 1024;  // the daemon takes a line of 1 MiB
+    std::size_t{512} * 1024;  // the daemon accepts a line of at most 1 MiB
 
 bool Attached(const toml::table& document, const std::string& file) {
   const toml::array* rows = document["attached"].as_array();

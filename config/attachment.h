@@ -8,10 +8,11 @@
 
 namespace flexarm {
 
-/// An experiment's text with the CSV file that it names appended to it, as a row [[attached]]: so
-/// it travels to the daemon and into the log as one text. Unchanged if it names none, or brings it.
+/// The text of an experiment with the CSV file that it names appended as a row [[attached]], so
+/// that one text goes to the daemon and into the log. Unchanged if the experiment names no file or
+/// already contains it.
 /// @param file  of the experiment; the CSV file's name is relative to it
-/// @throws ConfigError  the CSV file cannot be read, is too large, or no text
+/// @throws ConfigError  the CSV file cannot be read, is too large, or is not text
 std::string WithAttachments(const std::string& text, const std::filesystem::path& file);
 
 /// The rows of a trajectory: columns time_s and th1_deg, th2_deg or th1_rad, th2_rad.

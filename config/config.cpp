@@ -16,7 +16,7 @@
 namespace flexarm {
 namespace {
 
-// The length of a link if it was read well; NaN, which no rule minds, if not.
+// The length of a link if it was read; otherwise NaN, which violates no rule.
 double KnownLength(const RigConfig& config, std::size_t link, const ProblemLog& log) {
   const std::string section = "link" + NumberText(link + 1) + ".section";
   return log.Clear({section}) ? config.arm.link[link].length_m()
@@ -25,7 +25,8 @@ double KnownLength(const RigConfig& config, std::size_t link, const ProblemLog& 
 
 void CheckRules(const RigConfig& config, ProblemLog* log) {
   ProblemList rig("rig.");
-  rig.Require(!config.rig_name.empty(), "name", "\"\"", "must name the rig: logs carry it");
+  rig.Require(!config.rig_name.empty(), "name", "\"\"",
+              "must name the rig: the logs contain the name");
   log->AddRules(rig.Take());
   log->AddRules(config.arm.Problems());
   log->AddRules(
@@ -50,7 +51,9 @@ RigConfig ReadConfig(const std::string& name, toml::table document,
   ApplyOverrides(overrides, &document, &log);
   TableReader root(&document, "", &log);
   if (root.Has("extends")) {
-    root.Refuse("extends", "must stand in a rig's own file: a logged text and --set are complete");
+    root.Refuse(
+        "extends",
+        "must be in a config file: neither the config text of a log nor --set can extend a file");
   }
   RigConfig config{};
   ReadRig(root, &config);

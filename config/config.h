@@ -11,20 +11,21 @@
 
 namespace flexarm {
 
-/// One thing wrong with a file, and where: the file in which the value really stands, which may be
-/// one that the named file extends; "--set" for an override.
+/// A problem of a config, with its place: the file that contains the value, which may be one that
+/// the named file extends; "--set" for an override.
 struct ConfigProblem {
   std::string file;
-  int line;  ///< 1-based; of the table if a key is missing; 0 if there is no line (an override)
-  std::string key;    ///< dotted, rows counted from 0: "sensors.strain[3].position_m"; may be empty
+  int line;  ///< 1-based; the line of the table if a key is missing; 0 for an override, which has
+             ///< no line
+  std::string key;  ///< dotted, rows numbered from 0: "sensors.strain[3].position_m"; may be empty
   std::string value;  ///< as TOML; empty if there is none
-  std::string rule;   ///< what was expected
+  std::string rule;   ///< the rule that the value violates
 
   /// "thesis-rig.toml:14: loop.period_ms = 0: must be ..."
   std::string Text() const;
 };
 
-/// Everything wrong with a file at once; what() has one line a problem.
+/// All problems of a config at once; what() has one line per problem.
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::vector<ConfigProblem> problems);
@@ -43,18 +44,19 @@ class ConfigError : public std::runtime_error {
 RigConfig LoadConfig(const std::filesystem::path& file,
                      const std::vector<std::string>& overrides = {});
 
-/// The same from text, as a run log holds it: `extends` is refused. `name` stands for the file in
-/// messages.
+/// Reads the text of a config, such as the one in a run log: `extends` is refused. `name` stands
+/// for the file in messages.
 RigConfig ParseConfig(const std::string& text, const std::string& name);
 
-/// The same rig with other values, in the form of --set: a search over parameters asks for many.
+/// The config with other values, in the form of --set; fast enough for searches over parameters.
 /// @throws ConfigError with every problem found
 RigConfig WithOverrides(const RigConfig& config, const std::vector<std::string>& overrides);
 
-/// The number that stands at a dotted key of the config, "sensors.strain[3].position_m".
+/// The number at a dotted key of the config, "sensors.strain[3].position_m".
 std::optional<double> NumberAt(const RigConfig& config, const std::string& key);
 
-/// Reads what one run does. Whether the arm may do it (its soft limits) is judged by who runs it.
+/// Reads the experiment of one run. Its limits (soft limits, torque) are checked when it is loaded
+/// into a run, not here.
 /// @throws ConfigError with every problem found
 Experiment LoadExperiment(const std::filesystem::path& file);
 Experiment ParseExperiment(const std::string& text, const std::string& name);

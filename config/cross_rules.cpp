@@ -17,7 +17,7 @@ namespace {
 
 std::string At(std::string_view key, std::size_t i) { return ProblemList::Element(key, i); }
 
-// A whole number of steps; 1e-9 is the rounding of decimal fractions, far below any wrong one.
+// True for a whole number of steps; 1e-9 allows for the rounding of decimal fractions.
 bool IsMultiple(double value, double step) {
   const double steps = value / step;
   return std::abs(steps - std::nearbyint(steps)) <= 1e-9 * std::max(1.0, steps);
@@ -45,7 +45,8 @@ void CheckChannelsForFit(const RigConfig& c, ProblemLog* log, std::vector<Proble
   }
 }
 
-// A model knows no mode that nothing measures; differences of what is not measured are none.
+// The nominal model may have only modes that are measured, and only measured angles can be
+// differentiated.
 void CheckNominalModel(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr const char* kKey = "controller.nominal";
   if (!log->Clear({kKey, "estimator.modes_per_link", "estimator.name", "sensors.encoder"})) return;
@@ -61,7 +62,7 @@ void CheckNominalModel(const RigConfig& c, ProblemLog* log, std::vector<Problem>
       (c.sensors.counters_present() & kRotors) != kRotors) {
     out->push_back({kKey, std::string(NameOf(nominal)),
                     "has rotor angles: without an encoder on each rotor only estimator.name = "
-                    "\"kalman\" can tell them"});
+                    "\"kalman\" can estimate them"});
   }
 }
 
@@ -70,8 +71,9 @@ void CheckStateWeight(const RigConfig& c, ProblemLog* log, std::vector<Problem>*
   if (!log->Clear({kKey, "controller.nominal"}) || c.controller.state_weight.empty()) return;
   const auto states = static_cast<std::size_t>(c.controller.nominal.states());
   if (c.controller.state_weight.size() == states) return;
-  out->push_back({kKey, NumberText(c.controller.state_weight.size()) + " numbers",
-                  "must have one for each state of controller.nominal: " + NumberText(states)});
+  out->push_back(
+      {kKey, NumberText(c.controller.state_weight.size()) + " numbers",
+       "must have one weight for each state of controller.nominal: " + NumberText(states)});
 }
 
 void CheckPayloadStart(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
@@ -84,7 +86,7 @@ void CheckPayloadStart(const RigConfig& c, ProblemLog* log, std::vector<Problem>
                       ": the estimate stays within it"});
 }
 
-// The filter's model: two modes a link, rigid joints, gauges behind filters of first order.
+// The model of the filter has two modes a link, rigid joints and gauge filters of first order.
 void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"controller.name", "estimator.name", "controller.nominal",
                    "estimator.modes_per_link", "sensors.strain_input"})) {
@@ -103,30 +105,31 @@ void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Prob
   require(!plans || c.controller.plan.has_value(), "needs the table [controller.plan]");
   require(
       c.controller.nominal == kR12 && c.estimator.modes_per_link == 2,
-      "needs controller.nominal = \"R12\" and estimator.modes_per_link = 2: the filter's state");
+      "needs controller.nominal = \"R12\" and estimator.modes_per_link = 2, as the filter's state");
   require(c.sensors.strain_input.filter_hz > 0.0 && !(c.sensors.strain_input.filter_damping > 0.0),
-          "knows gauge filters of first order only: sensors.strain_input.filter_hz above 0, no "
+          "needs gauge filters of first order: sensors.strain_input.filter_hz above 0, no "
           "filter_damping");
 }
 
-// A board or bus that could bring its reading is not told of it; without the model's share of the
-// doubt the filter would believe it blindly.
+// No backend of a hardware rig can read this sensor. Without the noise term for the error of the
+// model the filter would give its reading too much weight.
 void CheckTipAccelerometer(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr const char* kTable = "sensors.tip_accelerometer";
   if (!c.sensors.tip_accelerometer) return;
   if (log->Clear({kTable, "hal.backend"}) && c.backend == "wired") {
-    out->push_back({kTable, "a table",
-                    "must not be there with hal.backend = \"wired\": only the simulated rig has "
-                    "this sensor, no bus or board is read for it"});
+    out->push_back(
+        {kTable, "a table",
+         "must be absent with hal.backend = \"wired\": only the simulated rig has this sensor"});
   }
   if (!log->Clear({kTable, "estimator.payload"}) || !c.estimator.payload) return;
   if (c.estimator.payload->tip_extra_sigma_m_s2) return;
   out->push_back({kTable, "a table",
-                  "needs the key estimator.payload.tip_extra_sigma_m_s2: what the filter's model "
-                  "lacks of the reading"});
+                  "needs the key estimator.payload.tip_extra_sigma_m_s2: the noise for effects "
+                  "that the filter's model lacks"});
 }
 
-// Between two samples a counter moves by less than half its range, or its direction is lost.
+// Between two samples a counter must move by less than half its range, or its direction is
+// ambiguous.
 void CheckCounters(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr std::string_view kKey = "estimator.max_joint_rate_rad_s";
   if (!log->Clear({kKey, "loop.period_ms", "sensors.encoder"})) return;
@@ -141,11 +144,12 @@ void CheckCounters(const RigConfig& c, ProblemLog* log, std::vector<Problem>* ou
     slowest = std::min(slowest, rate);
   }
   if (c.estimator.max_joint_rate_rad_s < slowest) return;
-  out->push_back({std::string(kKey), NumberText(c.estimator.max_joint_rate_rad_s),
-                  "must be below " + NumberText(std::floor(100.0 * slowest) / 100.0) +
-                      ": there the counter of " + At("sensors.encoder", row) + " (" +
-                      NumberText(c.sensors.encoder[row].counter_bits) +
-                      " bits) moves by half its range in a period, and its direction is lost"});
+  out->push_back(
+      {std::string(kKey), NumberText(c.estimator.max_joint_rate_rad_s),
+       "must be below " + NumberText(std::floor(100.0 * slowest) / 100.0) +
+           ": there the counter of " + At("sensors.encoder", row) + " (" +
+           NumberText(c.sensors.encoder[row].counter_bits) +
+           " bits) moves by half its range in a period, so that its direction is ambiguous"});
 }
 
 void CheckRates(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
@@ -169,7 +173,7 @@ void CheckAnglesAndTorques(const RigConfig& c, ProblemLog* log, std::vector<Prob
       out->push_back({angle, NumberText(c.safety.soft_angle_deg[i]),
                       "must be below sim.switch_angle_deg[" + NumberText(i) +
                           "] = " + NumberText(switch_deg) +
-                          ": the soft limit acts before the limit switch"});
+                          ": the soft limit must act before the limit switch"});
     }
     const std::string torque = At("limits.torque_limit_nm", i);
     const std::string friction = "joint" + NumberText(i + 1) + ".coulomb_friction_nm";
@@ -200,16 +204,16 @@ void CheckStrainLimits(const RigConfig& c, ProblemLog* log, std::vector<Problem>
         continue;
       out->push_back({key, NumberText(c.safety.strain_limit[i]),
                       "must be below the full scale of every channel of the link, or the amplifier "
-                      "clips before the trip: " +
+                      "saturates before the trip: " +
                           At("sensors.strain", row) + " ends at " + NumberText(full_scale)});
-      break;  // one channel says it
+      break;  // one channel is enough for the message
     }
   }
 }
 
 void CheckStrainJudgement(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sensors.strain", "sensors.strain_input"})) return;
-  double noise = 0.0;  // largest standard deviation of a channel, quantisation at least
+  double noise = 0.0;  // largest standard deviation of a channel, at least that of the quantisation
   for (const StrainChannelConfig& s : c.sensors.strain) {
     const double counts = std::max(1.0, c.sensors.strain_input.noise_counts);
     const double volts = counts * c.sensors.strain_input.volts_per_count();
@@ -219,7 +223,7 @@ void CheckStrainJudgement(const RigConfig& c, ProblemLog* log, std::vector<Probl
     if (!log->Clear({key}) || value >= 4.0 * noise) return;
     out->push_back({key, NumberText(value),
                     "must be at least four times the noise of a strain channel, " +
-                        NumberText(noise) + ", or healthy channels are judged faulty"});
+                        NumberText(noise) + ", or healthy channels are reported as faulty"});
   };
   require("estimator.strain_family_limit", c.estimator.strain_family_limit);
   require("estimator.strain_stuck_limit", c.estimator.strain_stuck_limit);
@@ -230,33 +234,34 @@ void CheckGrid(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
     if (!log->Clear({key, "sim.step_ms"}) || IsMultiple(value, c.sim.step_ms)) return;
     out->push_back({key, NumberText(value),
                     "must be a whole number of sim.step_ms = " + NumberText(c.sim.step_ms) +
-                        ": the plant is sampled and driven between its steps only"});
+                        ": the plant is sampled and actuated only between its steps"});
   };
   require("loop.period_ms", c.loop.period_ms);
   require("loop.acquire_before_ms", c.loop.acquire_before_ms);
 }
 
-// A frame is there when its last strain channel has been sampled; the plant's milliseconds are
-// integrated when they are over.
+// A frame is complete when its last strain channel has been sampled; each millisecond of the plant
+// is integrated after it has passed.
 void CheckSkew(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sim.channel_skew_us", "loop.acquire_before_ms", "sensors.strain"})) return;
   if (c.sim.channel_skew_us <= 0.0) return;
   const double last_ms =
       1e-3 * c.sim.channel_skew_us * static_cast<double>(c.sensors.strain.size() - 1);
   if (last_ms + 2.0 <= c.loop.acquire_before_ms) return;
-  out->push_back({"sim.channel_skew_us", NumberText(c.sim.channel_skew_us),
-                  "must let the last strain channel be sampled 2 ms before the step is due: " +
-                      NumberText(last_ms) + " + 2 <= loop.acquire_before_ms = " +
-                      NumberText(c.loop.acquire_before_ms) + " does not hold"});
+  out->push_back(
+      {"sim.channel_skew_us", NumberText(c.sim.channel_skew_us),
+       "must be so small that the last strain channel is sampled 2 ms before the step is due: " +
+           NumberText(last_ms) + " + 2 <= loop.acquire_before_ms = " +
+           NumberText(c.loop.acquire_before_ms) + " does not hold"});
 }
 
-// The simulated drive takes a command every millisecond. Buses put a torque out with their
-// exchange.
+// The simulated drive accepts a command every millisecond. A bus writes a torque in its exchange.
 void CheckOutput(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   const auto require = [&](const char* key, double value) {
     if (!log->Clear({key}) || IsMultiple(value, 1.0)) return;
-    out->push_back({key, NumberText(value),
-                    "must be whole milliseconds: the simulated drive takes a torque every one"});
+    out->push_back(
+        {key, NumberText(value),
+         "must be whole milliseconds: the simulated drive accepts one torque per millisecond"});
   };
   require("sim.transport_delay_ms", c.sim.transport_delay_ms);
   if (c.backend != "wired") {

@@ -5,8 +5,8 @@
 
 namespace flexarm {
 
-/// Rules between the structs of a config, which none of them can see alone. A rule is asked only if
-/// nothing is wrong yet with the values that it compares.
+/// Checks the rules between several structs of a config. A rule is checked only if the values that
+/// it compares have no other problem.
 void CheckCrossRules(const RigConfig& config, ProblemLog* log);
 
 }  // namespace flexarm

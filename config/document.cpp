@@ -30,7 +30,8 @@ void CheckNesting(std::string_view text, const std::string& name) {
   for (const char c : text) {
     if (c == '.') ++dots;
     if (dots > kMostDotsInALine) {
-      Fail(name, line, "must not have more than 32 dots in one line: no config is nested so deep");
+      Fail(name, line,
+           "must not have more than 32 dots in one line: no config is nested that deep");
     }
     if (c != '\n') continue;
     ++line;
@@ -38,7 +39,7 @@ void CheckNesting(std::string_view text, const std::string& name) {
   }
 }
 
-// The files that led here, to refuse a circle.
+// The chain of files that led to this one, to refuse a cycle.
 using Chain = std::vector<fs::path>;
 
 toml::table LoadOnTopOfBase(const fs::path& file, Chain chain);
@@ -87,7 +88,7 @@ std::string ReadConfigFile(const fs::path& file) {
   if (in.bad()) Fail(file.string(), 0, "cannot be read: " + std::string(std::strerror(errno)));
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (text.size() > kLargestFile) {
-    Fail(file.string(), 0, "is larger than 1 MiB: this is no config file");
+    Fail(file.string(), 0, " is larger than 1 MiB: a config file is smaller");
   }
   return text;
 }

@@ -30,11 +30,13 @@ void ReadMove(TableReader row, Move* out) {
   }
   if (!row.Has("to_tip_m")) {
     row.Read("to_deg", &out->to_deg);
-    if (row.Has("elbow")) row.Refuse("elbow", "must stand beside to_tip_m: angles leave no choice");
+    if (row.Has("elbow"))
+      row.Refuse("elbow", "must be given with to_tip_m only: with angles there is no choice");
     return;
   }
   row.Read("to_tip_m", &out->to_tip_m.emplace());
-  if (row.Has("to_deg")) row.Refuse("to_deg", "must not stand beside to_tip_m: one goal a move");
+  if (row.Has("to_deg"))
+    row.Refuse("to_deg", "must not be given beside to_tip_m: a move has one goal");
   if (row.Has("elbow")) {
     row.Read("elbow", &out->elbow.emplace(),
              {{"left", ElbowSide::kLeft}, {"right", ElbowSide::kRight}});
@@ -68,7 +70,7 @@ void ReadSimEvent(TableReader row, SimEvent* out) {
   if (has_line) {
     row.Read("level", &out->level);
   } else if (row.Has("level")) {
-    row.Refuse("level", "must stand beside line: it is the level of that line");
+    row.Refuse("level", "must be given with line only: it is the level of that line");
   }
   if (row.Has("freeze")) {
     row.Read("freeze", &out->freeze,
@@ -78,7 +80,7 @@ void ReadSimEvent(TableReader row, SimEvent* out) {
   if (row.Has("payload_kg")) row.Read("payload_kg", &out->payload_kg.emplace());
 }
 
-// What was appended to a text that was planned or sent before.
+// The files that are attached to a text.
 using Attachments = std::map<std::string, std::string>;  // file name, text
 
 Attachments ReadAttachments(TableReader root) {
@@ -116,7 +118,7 @@ void ReadCsv(TableReader csv, const Attachments& attached, Experiment* out) {
   if (found == attached.end()) {
     csv.Refuse("file",
                "must be attached: read the experiment from its own file, or run it by "
-               "`flexarm run` or `flexarm simulate`, which attach what it names");
+               "`flexarm run` or `flexarm simulate`, which attach the file");
     out->csv.reset();
     return;
   }

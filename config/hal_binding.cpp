@@ -133,7 +133,7 @@ void ReadCanopen(TableReader row, double period_ms, CanopenConfig* out) {
   for (const TableReader& node : row.Rows("node")) ReadNode(node, &out->node.emplace_back());
 }
 
-// Role of a drive or of an encoder, as in the other buses.
+// The role of a drive or of an encoder, with the same names as on the other buses.
 void ReadJoint(TableReader row, int* out) { row.Read("role", out, {{"drive1", 0}, {"drive2", 1}}); }
 void ReadCounter(TableReader row, int* out) {
   row.Read("role", out, {{"hub1", 0}, {"hub2", 1}, {"rotor1", 2}, {"rotor2", 3}});

@@ -7,8 +7,8 @@
 
 namespace flexarm {
 
-/// Reads [hal]: the backend's name and how the rig is wired.
-/// @param period_ms  of the loop: buses keep its time
+/// Reads [hal]: the backend's name, and the buses, devices and lines of a hardware rig.
+/// @param period_ms  of the loop; the buses run at the same period
 void ReadHal(TableReader hal, double period_ms, std::string* backend, HalConfig* out);
 
 }  // namespace flexarm

@@ -5,7 +5,7 @@
 
 namespace flexarm {
 
-/// Reads key `line`: a digital line by its name (hal/line_names.h).
+/// Reads the key `line`: a digital line by its name (hal/line_names.h).
 void ReadLine(TableReader row, Line* out);
 
 }  // namespace flexarm

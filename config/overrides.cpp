@@ -29,8 +29,8 @@ std::string_view Trimmed(std::string_view text) {
   return text;
 }
 
-// A table with the one key `key` (dotted: nested tables), or nothing if that is not TOML. One line
-// only: a second one could set another key.
+// A table with the single key `key` (dotted: nested tables); empty if the text is not TOML. One
+// line only: a second line could set another key.
 std::optional<toml::table> ParseAssignment(const std::string& key, std::string_view value) {
   if (std::count(key.begin(), key.end(), '.') > 8) return std::nullopt;
   if (value.find('\n') != std::string_view::npos) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<toml::table> ParseOverride(const std::string& key, std::string_vie
   return ParseAssignment(key, std::string("\"").append(value).append("\""));
 }
 
-// One name of a path with its index, if it has one: "strain[3]".
+// One name of a path, with an optional index: "strain[3]".
 struct Step {
   std::string name;
   std::optional<std::size_t> index;
@@ -81,13 +81,13 @@ std::optional<std::vector<Step>> ParsePath(std::string_view path) {
   return steps;
 }
 
-// Replaces an element where it is: only this keeps the source of the new one.
+// Replaces an element in place, which keeps the source of the new one.
 void ReplaceElement(toml::array* array, std::size_t index, toml::node&& value) {
   const auto at = array->erase(array->cbegin() + static_cast<std::ptrdiff_t>(index));
   array->insert(at, std::move(value));
 }
 
-// An array at the end of `names` below `table`, long enough for `index`.
+// The array at the end of `names` below `table`, if it is long enough for `index`.
 toml::array* FindArray(toml::table* table, const std::vector<std::string>& names,
                        std::size_t index) {
   toml::node* node = table;
@@ -100,10 +100,10 @@ toml::array* FindArray(toml::table* table, const std::vector<std::string>& names
   return array != nullptr && index < array->size() ? array : nullptr;
 }
 
-// Sets the value; says what is wrong if it cannot.
+// Sets the value. @returns the problem if that is not possible
 std::optional<std::string> Apply(const std::vector<Step>& steps, std::string_view value,
                                  toml::table* table) {
-  std::vector<std::string> names;  // since the last index
+  std::vector<std::string> names;  // names since the last index
   for (std::size_t i = 0; i < steps.size(); ++i) {
     names.push_back(steps[i].name);
     if (!steps[i].index) continue;

@@ -32,7 +32,7 @@ const toml::node* Child(const toml::node& parent, std::string_view segment) {
   return element != nullptr ? element : child;
 }
 
-// At most 60 bytes, cut between two characters of UTF-8.
+// Shortens a text to at most 60 bytes, without splitting a UTF-8 character.
 std::string Shortened(std::string text) {
   constexpr std::size_t kLongest = 60;
   if (text.size() <= kLongest) return text;
@@ -77,7 +77,7 @@ void ProblemLog::AddRules(const std::vector<Problem>& problems) {
     problems_.push_back(Placed(Locate(p.key), p.key, p.value, p.rule));
     broken.push_back(p.key);
   }
-  // Only now: a value may break two rules of its struct.
+  // Added after the loop: a value may violate two rules of its struct.
   reported_.insert(reported_.end(), broken.begin(), broken.end());
 }
 
@@ -93,7 +93,7 @@ void ProblemLog::AddUnknown() { AddUnknownIn(*document_, ""); }
 
 void ProblemLog::AddUnknownIn(const toml::table& table, const std::string& path) {
   const auto known = known_.find(path);
-  if (known == known_.end()) return;  // nobody read this table: it is reported itself
+  if (known == known_.end()) return;  // no reader for this table: the table itself is reported
   for (const auto& [key, node] : table) {
     const std::vector<std::string>& keys = known->second;
     if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
@@ -119,7 +119,7 @@ void ProblemLog::AddUnknownKey(const std::string& path, std::string_view key,
 std::string ProblemLog::Suggestion(const std::string& path, std::string_view key) {
   const std::vector<std::string>& keys = known_.at(path);
   if (const std::optional<std::string> meant = ClosestWord(key, keys)) {
-    // A misspelt key is one problem, not also a missing one.
+    // A misspelt key is one problem: it is not reported as missing too.
     const auto erased = std::erase_if(
         missing_, [&](const Missing& m) { return m.path == path && m.key == *meant; });
     return "did you mean \"" + *meant + (erased > 0 ? "\", which is missing?" : "\"?");
@@ -158,7 +158,7 @@ ConfigProblem ProblemLog::Placed(const toml::node* node, std::string key, std::s
   return problem;
 }
 
-// The deepest node that is there on the way to `path`.
+// The deepest existing node on the path.
 const toml::node* ProblemLog::Locate(std::string_view path) const {
   const toml::node* found = document_;
   while (!path.empty()) {

@@ -16,36 +16,38 @@ namespace flexarm {
 /// Joins a path and a key below it: "loop" and "period_ms" give "loop.period_ms".
 std::string JoinKey(const std::string& path, std::string_view key);
 
-/// Everything found wrong while one document is read, each with the file and line of its value.
+/// Collects the problems found while one document is read, each with the file and line of its
+/// value.
 ///
-/// A value that could not be read is reported once: rules about it stay silent.
+/// A value that could not be read is reported once: rules about it are not checked.
 class ProblemLog {
  public:
-  /// `document` outlives this; `file` stands for what has no place in it.
+  /// `document` outlives this object; `file` is the place of problems without a node.
   ProblemLog(std::string file, const toml::table* document);
 
-  /// Says that the table at `path` may have `key`, so that it is not reported as unknown.
+  /// Declares that the table at `path` may have `key`, so that it is not reported as unknown.
   void Know(const std::string& path, std::string_view key);
 
-  /// A required key that is not there. `wanted` is what it should hold, "a number".
+  /// Reports a missing required key. `wanted` describes its value, such as "a number".
   void AddMissing(const std::string& path, std::string_view key, std::string_view wanted);
 
-  /// A value that breaks `rule`; its text and place are those of `node`.
+  /// Reports a value that violates `rule`; its text and place are those of `node`.
   void Add(const std::string& key, const toml::node& node, std::string rule);
 
-  /// A problem of an override that never became part of the document.
+  /// Reports an override that could not be applied to the document.
   void AddOverride(const std::string& override_text, std::string rule);
 
-  /// Broken rules of a struct, placed at the keys they name.
+  /// Reports violated rules of a struct, at the places of the keys that they name.
   void AddRules(const std::vector<Problem>& problems);
 
-  /// True if nothing is reported at, above or below any of `keys`.
+  /// True if no problem is reported at, above or below any of `keys`.
   bool Clear(std::initializer_list<std::string_view> keys) const;
 
-  /// Reports every key of the document that nobody asked for. Call it last.
+  /// Reports every key of the document that no reader knows. Call it last.
   void AddUnknown();
 
-  /// Everything, missing keys included, in order of file and line. Throws ConfigError unless empty.
+  /// Throws a ConfigError with all problems, missing keys included, in order of file and line,
+  /// unless there are none.
   void ThrowIfAny();
 
  private:
@@ -64,8 +66,8 @@ class ProblemLog {
 
   std::string file_;
   const toml::table* document_;
-  std::map<std::string, std::vector<std::string>> known_;  // table path -> its keys, in order
-  std::vector<std::string> reported_;                      // keys that rules shall not judge
+  std::map<std::string, std::vector<std::string>> known_;  // table path -> known keys, in order
+  std::vector<std::string> reported_;                      // keys whose rules are not checked
   std::vector<Missing> missing_;
   std::vector<ConfigProblem> problems_;
 };

@@ -5,8 +5,8 @@
 
 namespace flexarm {
 
-/// Reads every section of a rig into `config`, all but its text. What cannot be read goes into the
-/// reader's log.
+/// Reads every section of a rig into `config`, except its text. Values that cannot be read are
+/// reported in the reader's log.
 void ReadRig(TableReader root, RigConfig* config);
 
 }  // namespace flexarm

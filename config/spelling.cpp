@@ -7,9 +7,9 @@
 namespace flexarm {
 namespace {
 
-constexpr std::size_t kLongestWord = 64;  // keeps a hostile file from taking long
+constexpr std::size_t kLongestWord = 64;  // bounds the time that a hostile file can take
 
-// Levenshtein: the fewest insertions, deletions and replacements that turn a into b.
+// Levenshtein distance: the smallest number of insertions, deletions and replacements from a to b.
 std::size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 
-// A whole number is a number too. Nothing for inf and nan: no key has a use for them.
+// The value of a number, whole numbers included. Empty for inf and nan, which no key accepts.
 std::optional<double> FiniteNumber(const toml::node& node) {
   const auto value = node.value<double>();
   const bool number = node.is_number() && value && std::isfinite(*value);

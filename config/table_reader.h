@@ -14,7 +14,7 @@
 
 namespace flexarm {
 
-/// A value of an enumeration (or of an int that stands for one) and its text in a file.
+/// A value of an enumeration (or of an int used as one) and its text in a file.
 template <typename E>
 struct NamedValue {
   std::string_view name;
@@ -23,14 +23,14 @@ struct NamedValue {
 
 /// Reads one table of a document, key by key, into plain fields.
 ///
-/// Each call names a key that the table may have. What is missing, mistyped or not finite goes into
-/// the log, and a number that could not be read becomes NaN or stays as it was: rules about it are
-/// not asked. A reader of a table that is not there reads nothing and says nothing.
+/// Each call declares a key that the table may have. A value that is missing, mistyped or not
+/// finite is reported in the log, and a number that could not be read becomes NaN or keeps its
+/// value: rules about it are not checked. A reader for a missing table is a no-op.
 class TableReader {
  public:
   TableReader(const toml::table* table, std::string path, ProblemLog* log);
 
-  // Required keys.
+  // Read a required key.
   void Read(std::string_view key, double* out);
   void Read(std::string_view key, int* out);
   void Read(std::string_view key, std::uint64_t* out);  // 0 and above
@@ -40,7 +40,7 @@ class TableReader {
   void Read(std::string_view key, std::array<double, n>* out) {
     ReadNumbers(key, out->data(), n);
   }
-  void Read(std::string_view key, std::vector<double>* out);  // however many
+  void Read(std::string_view key, std::vector<double>* out);  // any number of elements
   template <typename E>
   void Read(std::string_view key, E* out, const std::vector<NamedValue<E>>& values);
   template <typename E>
@@ -48,14 +48,14 @@ class TableReader {
     Read(key, out, std::vector<NamedValue<E>>(values));
   }
 
-  /// False if the table has no such key, which then is not missing either.
+  /// True if the table has the key; if not, the key is not reported as missing.
   bool Has(std::string_view key);
-  /// Reports the value of a key that is there: it breaks `rule`.
+  /// Reports that the value of an existing key violates `rule`.
   void Refuse(std::string_view key, std::string rule);
 
-  /// The table below `key`; one that is not there is reported once, as a whole.
+  /// The table below `key`; a missing table is reported once, as a whole.
   TableReader Table(std::string_view key);
-  /// The rows [[key]]; none if there are none.
+  /// The rows [[key]]; empty if the table has none.
   std::vector<TableReader> OptionalRows(std::string_view key);
   std::vector<TableReader> Rows(std::string_view key);
 
@@ -65,7 +65,7 @@ class TableReader {
   void Mistyped(std::string_view key, const toml::node& node, std::string_view wanted);
   std::string Key(std::string_view key) const { return JoinKey(path_, key); }
 
-  const toml::table* table_;  // null: not there
+  const toml::table* table_;  // null: the table is missing
   std::string path_;
   ProblemLog* log_;
 };

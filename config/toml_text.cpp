@@ -30,7 +30,8 @@ std::string Quoted(std::string_view text) {
 
 std::string FloatText(double value) {
   std::string text = NumberText(value);
-  if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";  // stay a float
+  if (text.find_first_not_of("-0123456789") == std::string::npos)
+    text += ".0";  // otherwise it would be read as an integer
   return text;
 }
 
@@ -52,7 +53,7 @@ bool IsRows(const toml::node& node) {
   return rows != nullptr && !rows->empty() && rows->is_homogeneous(toml::node_type::table);
 }
 
-// Plain values before sections: a value below a header belongs to that header.
+// Plain values come before sections: a value below a header would belong to that header.
 void AppendTable(const toml::table& table, const std::string& path, std::string* out) {
   for (const auto& [key, node] : table) {
     if (node.is_table() || IsRows(node)) continue;

@@ -8,16 +8,17 @@
 
 namespace flexarm {
 
-/// What commissioning found out about a rig's sensors, on top of its config. All zero: nothing.
+/// Measured zeros and gains of a rig's sensors, relative to its config. All zero: none measured.
 ///
 ///   joint angle = sign * 2 pi / counts_per_turn * (unwrapped counts - counter_zero)
 ///   counts      = (1 + strain_gain_error) * (counts of the config) + strain_zero_counts
 ///
-/// Recorded in every StepInput; the loop takes it over when it is reset. The layout has no padding.
+/// Recorded in every StepInput; a reset of the loop adopts it. The layout has no padding.
 struct Calibration {
-  std::array<std::int64_t, kCounters> counter_zero;          ///< unwrapped counts at angle 0
-  std::array<float, kMaxStrainChannels> strain_zero_counts;  ///< beside the config's offset_counts
-  std::array<float, kMaxStrainChannels> strain_gain_error;   ///< measured gain / config's gain - 1
+  std::array<std::int64_t, kCounters> counter_zero;  ///< unwrapped counts at angle 0
+  std::array<float, kMaxStrainChannels>
+      strain_zero_counts;                                   ///< added to the config's offset_counts
+  std::array<float, kMaxStrainChannels> strain_gain_error;  ///< measured gain / config's gain - 1
 
   friend bool operator==(const Calibration&, const Calibration&) = default;
 };

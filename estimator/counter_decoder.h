@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// What the counters say at one sample.
+/// Joint angles decoded from the counters of one sample.
 struct DecodedCounters {
   std::array<double, kCounters> angle_rad;     ///< th1..th4; the last good value if not good
   std::array<std::int64_t, kCounters> counts;  ///< unwrapped
@@ -18,18 +18,19 @@ struct DecodedCounters {
   std::array<int, kCounters> missing_ticks;    ///< ticks since the last good reading
 };
 
-/// Unwraps the encoder counters into joint angles, and refuses impossible jumps.
+/// Unwraps the encoder counters into joint angles, and rejects impossible jumps.
 ///
 /// A counter of n bits is unwrapped to the value nearest to the expected one: the last count after
-/// one period, or the last count extrapolated at the last rate when readings were missed. A rig
-/// without some encoder reads 0 there, never good. Real-time: Reset and Decode are safe.
+/// one period, or the last count extrapolated at the last rate when readings were missed. An
+/// encoder that the rig does not have reads 0 and is never good. Real-time: Reset and Decode are
+/// safe.
 class CounterDecoder {
  public:
   /// @param max_rate_rad_s  a faster mean rate between two readings is a jump
   CounterDecoder(const SensorConfig& sensors, double period_s, double max_rate_rad_s);
 
-  /// Forgets rates and misses.
-  /// @param counts  the unwrapped counts known so far
+  /// Clears rates and missed readings.
+  /// @param counts  the last unwrapped counts
   /// @param zero    the unwrapped counts at which the joints are at zero (Calibration)
   void Reset(const std::array<std::int64_t, kCounters>& counts,
              const std::array<std::int64_t, kCounters>& zero) noexcept;

@@ -6,7 +6,7 @@
 namespace flexarm {
 namespace {
 
-// What is not a number is as bad as anything: a delay that predicts none explains nothing.
+// NaN counts as the largest NIS: a hypothesis whose prediction is NaN explains nothing.
 double Bounded(double value) noexcept {
   return value < DelayDetector::kMost ? value : DelayDetector::kMost;
 }

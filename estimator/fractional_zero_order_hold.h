@@ -8,20 +8,21 @@
 
 namespace flexarm {
 
-/// x' = A x + B u over any fraction of a period, under torques that are constant in pieces.
+/// Zero-order hold over any fraction of a period: x' = A x + B u under piecewise constant torque.
 ///
-/// The zero-order holds of Ts, Ts/2 .. Ts/2^16 are made off line. They commute, being functions of
-/// one matrix, so those that are set in the binary digits of a duration, one after the other, are
-/// the exact hold of that duration. On line there are products and sums only: replay is to the bit.
+/// The zero-order holds of Ts, Ts/2 .. Ts/2^16 are computed off line. They are functions of one
+/// matrix and commute, so applying those of the binary digits of a duration one after the other is
+/// the exact hold of that duration. On line there are products and sums only, so a replay is exact
+/// to the bit.
 /// Real-time: Advance is safe; the constructor is not.
 class FractionalZeroOrderHold {
  public:
-  /// @param whole_period  the hold of one period, as the design has it
+  /// @param whole_period  the hold of one period, from the design
   /// @param A, B  the same system, continuous, n x n and n x 2; 1/s
   FractionalZeroOrderHold(const DiscreteModel& whole_period, const Eigen::MatrixXd& A,
                           const Eigen::MatrixXd& B, double period_s);
 
-  /// Moves `x` along all pieces.
+  /// Advances `x` over all pieces.
   template <typename Vector>
   void Advance(const PiecewiseTorque& torque, Vector* x) const noexcept {
     for (const TorquePiece& piece : torque.all()) {

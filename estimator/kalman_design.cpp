@@ -105,7 +105,7 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
   const Eigen::MatrixXd C_all = OutputMatrix(layout, system.A.rows());
   const Eigen::VectorXd R_all = OutputVariance(sensors, estimator, layout);
 
-  std::vector<Eigen::Index> present;  // rows of C that the rig measures
+  std::vector<Eigen::Index> present;  // rows of C with a sensor on this rig
   for (Eigen::Index row = 0; row < C_all.rows(); ++row) {
     if (row >= kCounters || (sensors.counters_present() >> row & 1u) != 0)
       present.push_back(row);  // start-up

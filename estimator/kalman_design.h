@@ -12,9 +12,9 @@ namespace flexarm {
 ///
 /// States: the nominal model's n, then the filtered modal coordinates phi_f' = w_f (phi - phi_f),
 /// or phi_f and phi_f' of phi_f'' = w_f^2 (phi - phi_f) - 2 zeta w_f phi_f' behind a second-order
-/// filter. Outputs y = [th1, th2, th3, th4, phi_f..]: 4 + 2 m rows; to a model with rigid joints
-/// the rotors show their hubs, as th3 - u1/K1 and th4 - u2/K2, u the torque applied during the last
-/// interval. The gain column of an encoder that the rig does not have is zero.
+/// filter. Outputs y = [th1, th2, th3, th4, phi_f..]: 4 + 2 m rows; in a model with rigid joints
+/// the rotor outputs are th3 - u1/K1 and th4 - u2/K2, equal to the hubs', u the torque applied
+/// during the last interval. The gain column of an encoder that the rig does not have is zero.
 ///   x(k|k) = x(k|k-1) + L (y - C x(k|k-1)),  x(k+1|k) = A x(k|k) + B u(k)
 /// Source: docs/theory/control-law.md 7.3.
 struct KalmanDesign {
@@ -23,8 +23,8 @@ struct KalmanDesign {
   double residual;                 ///< of the filter's Riccati equation, relative
 };
 
-/// @throws std::runtime_error when the Riccati equation has no stabilising solution: the sensors
-///         do not see a motion that does not die out by itself
+/// @throws std::runtime_error when the Riccati equation has no stabilising solution: a motion that
+///         is not asymptotically stable is not observable by the sensors
 KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig& sensors,
                                 const EstimatorConfig& estimator, double period_s);
 

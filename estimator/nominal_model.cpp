@@ -35,7 +35,7 @@ void FormStateSpace(NominalModel* model) {
   model->B.bottomRows(n) = mass.solve(E);
 }
 
-// Non-zero roots of K v = w^2 M v. Two are zero by construction: K does not feel the arm turn.
+// Non-zero roots of K v = w^2 M v. Two are zero by construction: a rigid rotation has no stiffness.
 Eigen::VectorXd TorqueModes(const NominalModel& model) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(model.K, model.M,
                                                                         Eigen::EigenvaluesOnly);

@@ -7,11 +7,11 @@
 
 namespace flexarm {
 
-/// The linear model that estimator and controller are designed on: "R12" and its kin.
+/// The linear model for the design of estimator and controller: "R12" and its variants.
 ///
 /// Straight arm, no friction: M q'' + D q' + K q = E u, u = tau1 tau2 (N m) on the rotors, with M,
 /// D, K reduced from the nonlinear arm by T_r. With rigid joints the rotors turn with their hubs:
-/// the free ends are so light that the torsion modes leave the band of a 50 Hz loop
+/// the free ends are so light that the torsion modes lie above the band of a 50 Hz loop
 /// (docs/theory/control-law.md 1.2). The thesis's own models have torsional joints: T12 with one
 /// mode a link, T16 with two.
 struct NominalModel {
@@ -20,7 +20,7 @@ struct NominalModel {
   Eigen::MatrixXd A, B;               ///< continuous, n x n and n x 2
   Eigen::VectorXd torque_mode_rad_s;  ///< undamped circular frequencies, non-zero, ascending
 
-  /// M_r of the arm unbent and its joints untwisted, kg m^2: u = M_r th'' moves it as a rigid body.
+  /// M_r of the arm unbent and its joints untwisted, kg m^2: rigid-body motion has u = M_r th''.
   Eigen::Matrix2d RigidInertia_kgm2() const;
 };
 

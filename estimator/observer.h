@@ -12,20 +12,22 @@
 
 namespace flexarm {
 
-/// One sample as an observer takes it.
+/// Inputs of an observer for one sample.
 struct Measurement {
   const DecodedCounters* counters;
   const FittedModes* modes;
-  const PiecewiseTorque* applied;         ///< over the period before it, with the delay found
-  const TorqueByDelay* applied_by_delay;  ///< the same by hypothesis; null unless asked for
-  std::optional<double> tip_m_s2;         ///< of the accelerometer at the tip, if it has a reading
+  const PiecewiseTorque* applied;  ///< over the period before it, with the estimated delay
+  const TorqueByDelay*
+      applied_by_delay;            ///< the same by hypothesis; null unless wants_torque_by_delay()
+  std::optional<double> tip_m_s2;  ///< of the accelerometer at the tip, if it has a reading
 };
 
-/// What the reference does at the sample.
+/// Motion of the reference at the sample.
 struct PathMotion {
   bool begins;  ///< a move begins
   bool moves;
-  double rested_s;  ///< since the last move ended; infinite before the first, 0 during one
+  double
+      rested_s;  ///< time since the end of the last move; infinite before the first, 0 during one
 };
 
 /// A state observer: measurements in, the state of the arm out, and its open-loop prediction.
@@ -36,28 +38,28 @@ class Observer {
  public:
   virtual ~Observer() = default;
 
-  /// A new run: nothing of the one before it remains.
+  /// Starts a new run: clears all states.
   virtual void Reset() noexcept = 0;
   /// The state was not finite: the next Update starts from its measurement.
   virtual void Restart() noexcept = 0;
 
-  /// How fast the gauges' modal coordinates are expected to change at the next Update's sample,
-  /// m/s: f11 f12 f21 f22 behind their filters.
+  /// Predicted rates of the modal coordinates as the gauges read them, behind their filters, at the
+  /// next Update's sample, m/s: f11 f12 f21 f22.
   virtual std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept = 0;
 
-  /// Before Update, every sample on which the law follows a path.
+  /// To be called before Update, every sample on which the law follows a path.
   virtual void FollowPath(const PathMotion& /*motion*/) noexcept {}
   virtual StateEstimate Update(const Measurement& measurement) noexcept = 0;
 
-  /// The state of the last Update under torques that are on their way: delay compensation.
+  /// Delay compensation: predicts the state under the torques that do not act yet.
   virtual StateVector Predict(const StateVector& x,
                               const PiecewiseTorque& pending) const noexcept = 0;
 
-  /// Whether Update wants Measurement::applied_by_delay.
+  /// True if Update uses Measurement::applied_by_delay.
   virtual bool wants_torque_by_delay() const noexcept { return false; }
-  /// Samples by which torques act later than is known, as the readings show.
+  /// Estimated delay of the torques beyond the declared one, in samples.
   virtual int delay_found() const noexcept { return 0; }
-  /// NaN and no warnings of an observer that does not estimate the payload.
+  /// NaN and no warnings for an observer that does not estimate the payload.
   virtual PayloadKnowledge payload() const noexcept { return kNoPayloadEstimate; }
 };
 

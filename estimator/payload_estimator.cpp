@@ -8,11 +8,11 @@
 namespace flexarm {
 namespace {
 
-// Of the state at a start: at rest, where the encoders say.
+// Standard deviations of the state at the start: at rest, at the measured angles.
 constexpr double kStartMotion = 1e-3;  // hubs and all rates, rad and m, and per second
-constexpr double kStartBent_m = 1e-4;  // modal coordinates, and what the gauges' filters show
+constexpr double kStartBent_m = 1e-4;  // modal coordinates, and the states of the gauges' filters
 
-// The difference for a derivative by friction: a hundredth of the level.
+// Difference for a derivative by friction: a hundredth of the level.
 constexpr double kFrictionProbe = 0.01;
 constexpr double kLeastFrictionProbe_nm = 1e-4;
 
@@ -20,7 +20,7 @@ double OfQuantum(double quantum, double extra) {
   return std::sqrt(quantum * quantum / 12.0 + extra * extra);
 }
 
-// Rad a count of the counter; 0 without such an encoder.
+// Rad per count of the counter; 0 without such an encoder.
 double Quantum(const SensorConfig& sensors, int counter) {
   for (const EncoderConfig& encoder : sensors.encoder) {
     if (encoder.counter == counter) return 2.0 * std::numbers::pi / encoder.counts_per_turn;

@@ -15,56 +15,70 @@
 
 namespace flexarm {
 
-/// The constants of PayloadFilter's model, for the design: a run replays with those it was made
-/// with. @returns as RigidJointStepper::Constants
+/// The constants of PayloadFilter's model, for the design: a replay uses the recorded ones.
+/// @returns as RigidJointStepper::Constants
 std::vector<double> PayloadModelConstants(const ArmParameters& arm, const SensorConfig& sensors,
                                           double period_s);
 
-/// The filter's settings for a rig: the noise of its encoders and gauges, the friction of its
-/// joints. @param config  with `payload`
+/// The filter's settings for a rig: the noise of its
+/// encoders and gauges, the friction of its joints.
+/// @param config  with `payload`
 PayloadFilterConfig PayloadFilterFor(const ArmParameters& arm, const SensorConfig& sensors,
                                      const EstimatorConfig& config);
 
-/// The estimator `ekf-payload`: PayloadFilter on decoded counters and fitted modal coordinates. An
-/// input that is not good counts for nothing in that sample. The first Update after a Reset finds
-/// the arm at rest where the hubs are.
-/// Real-time: all but the constructor is safe.
+/// The estimator `ekf-payload`: an extended Kalman filter
+/// (PayloadFilter) on decoded counters and fitted modal
+/// coordinates, with a test for undeclared delay
+/// (DelayDetector). An input that is not good is ignored
+/// in that sample. The first Update after a Reset starts
+/// at rest at the measured hub angles. Real-time: all but
+/// the constructor is safe.
 class PayloadEstimator {
  public:
-  using State = Eigen::Matrix<double, 12, 1>;  ///< q, q' of RigidJointArm: the order of R12
+  using State = Eigen::Matrix<double, 12,
+                              1>;  ///< q, q' of RigidJointArm: the
+                                   ///< order of R12
 
   /// @param model  as PayloadModelConstants
   PayloadEstimator(std::span<const double> model, const PayloadFilterConfig& config);
 
-  /// The delay found is forgotten as well: the torques act as known.
+  /// Also resets the estimated delay to the declared one.
   void Reset() noexcept {
     started_ = false;
     delay_.Reset();
   }
 
-  /// @param tip_m_s2  of the accelerometer at the tip (TipReading), if there is a reading
+  /// @param tip_m_s2  of the accelerometer at the tip
+  /// (TipReading), if it was read
   const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
                                         const PiecewiseTorque& applied,
                                         std::optional<double> tip_m_s2 = std::nullopt) noexcept;
 
-  /// The same with the torque of the delay that was found, and a look at whether another explains
-  /// the readings better. If so, what was learnt by now is forgotten.
-  /// @param applied  of the delay that was found there is one
+  /// The same with the torques of all delay hypotheses,
+  /// followed by the test. If it switches to another
+  /// hypothesis, the payload and friction estimates
+  /// restart.
+  /// @param applied  must contain the torque of the
+  /// current hypothesis
   const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
                                         const TorqueByDelay& applied,
                                         std::optional<double> tip_m_s2 = std::nullopt) noexcept;
 
-  /// Beyond the known delay, in samples.
+  /// Estimated delay beyond the declared one, in samples.
   int delay_found() const noexcept { return delay_.samples(); }
 
-  /// A move starts: the payload may be another than before.
+  /// A move starts: the payload may have changed since
+  /// the last one.
   void BeginMove() noexcept { filter_.BeginMove(); }
-  /// The model has been contradicted.
+  /// The readings contradict the model: resets the
+  /// payload estimate to 0 kg.
   void AssumePayloadLost() noexcept { filter_.AssumePayloadLost(hypotheses_); }
-  /// The arm has come to rest after a move.
+  /// The arm is at rest after a move: payload and
+  /// friction are not updated until the next move.
   void EndMove() noexcept { filter_.EndMove(); }
 
-  /// How fast the gauges' modal coordinates change, m/s: f11 f12 f21 f22 behind their filters.
+  /// Rates of the modal coordinates as the gauges read
+  /// them, behind their filters, m/s: f11 f12 f21 f22.
   std::array<double, 4> ModalRates() const noexcept;
 
   State Now() const noexcept { return StateOf(filter_.estimate().state); }
@@ -87,8 +101,8 @@ class PayloadEstimator {
 
   PayloadFilter filter_;
   DelayDetector delay_;
-  std::array<PayloadFilter::Hypothesis, kDelays>
-      hypotheses_;  // by delay; that which holds is the filter
+  std::array<PayloadFilter::Hypothesis, kDelays> hypotheses_;  // by delay; filter_ itself is the
+                                                               // current one
   bool started_ = false;
 };
 

@@ -23,12 +23,12 @@ constexpr double kMostFading = 30.0;
 
 constexpr int kMostGlitches = 2;
 
-// After a load is taken for dropped, standard deviations: of what is left of it, little, so that
-// the first samples do not throw the estimate about; of what the wrong load has done to the hubs.
+// Standard deviations after the payload was assumed lost: of the rest of it, small, so that the
+// first samples do not upset the estimate; of the errors that the wrong payload caused at the hubs.
 constexpr double kDroppedPayload_kg = 0.1;
 constexpr double kDroppedAngle_rad = 3e-3, kDroppedRate_rad_s = 0.1;
 
-// Of an output that was not read, with no innovation: far more than any, so that it says nothing.
+// Variance of an output that was not read, with zero innovation: so large that it has no effect.
 constexpr double kUnreadVariance = 1e12;
 
 constexpr std::uint32_t kElbowOutputs = 0b1010;  // hub 2 and rotor 2
@@ -41,12 +41,12 @@ MotionVector Stacked(const GaugedState& x) noexcept {
   return out;
 }
 
-// What y sees of the motion: th1 th2 th1 th2 phi_f.
+// State of the motion that each output measures: th1 th2 th1 th2 phi_f.
 constexpr std::array<int, PayloadFilter::kOutputs> kSeen = {0, 1, 0, 1, 12, 13, 14, 15};
 
 double Square(double x) noexcept { return x * x; }
 
-// What the variance of a glitch grows by.
+// Factor on the variance of an output beyond the gate.
 double Loosening(double sigmas, double gate_sigmas) noexcept {
   return 4.0 * Square(sigmas / gate_sigmas);
 }
@@ -160,7 +160,7 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const PiecewiseTorque& torq
   return estimate_;
 }
 
-// What the torque at the end of the sample twists the joints by, rad.
+// Torsion of the joints by the torque at the end of the sample, rad.
 Eigen::Vector2d PayloadFilter::Torsion(const PiecewiseTorque& torque) const noexcept {
   const std::array<double, 2> torque_nm = torque.last_nm();
   return {torque_nm[0] / config_.joint_stiffness_nm_per_rad[0],
@@ -274,7 +274,7 @@ void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation, cons
   for (Hypothesis& hypothesis : hypotheses)
     hypothesis.apart += K.lazyProduct(hypothesis.innovation - innovation);
   Add(K.lazyProduct(innovation));
-  // P <- (I - K H) P (I - K H)' + K R K', right for any K.
+  // P <- (I - K H) P (I - K H)' + K R K', valid for any K.
   Matrix J = Matrix::Identity();
   for (int i = 0; i < kOutputs; ++i) J.col(kSeen[static_cast<std::size_t>(i)]) -= K.col(i);
   const Matrix JP = J.lazyProduct(P_);

@@ -13,61 +13,61 @@
 
 namespace flexarm {
 
-/// What PayloadFilter has to be told. The design study's values: docs/theory/payload.md 2.
+/// Settings of PayloadFilter. The design study's values: docs/theory/payload.md 2.
 struct PayloadFilterConfig {
-  std::array<double, 2> joint_stiffness_nm_per_rad;  ///< K1, K2: rotor angles are freed of u/K
+  std::array<double, 2> joint_stiffness_nm_per_rad;  ///< K1, K2: rotor angles are corrected by u/K
   /// Standard deviations of the generalised process forces on th1 th2 (N m) and the modal
   /// coordinates (N), held over a sample.
   std::array<double, 6> process_force;
   /// Of the outputs: hubs 1 and 2, rotors 1 and 2 (rad), modal coordinates (m).
   std::array<double, 8> output_sigma;
-  /// Of the state at a start: q, q' and phi_f, rad and m, and per second.
+  /// Of the state at the start: q, q' and phi_f, rad and m, and per second.
   std::array<double, 16> start_sigma;
 
   double payload_start_kg, payload_start_sigma_kg;
   double payload_max_kg;          ///< the estimate stays in 0 .. this
   double payload_max_sigma_kg;    ///< bound on its standard deviation
-  double payload_move_sigma_kg;   ///< at the start of a move it is opened to at least this
-  double payload_walk_kg;         ///< standard deviation of its change in a sample
-  double payload_min_rate_rad_s;  ///< with both hubs slower it is not learnt: play would drag it
+  double payload_move_sigma_kg;   ///< least standard deviation at the start of a move
+  double payload_walk_kg;         ///< standard deviation of its random walk per sample
+  double payload_min_rate_rad_s;  ///< with both hubs slower it is not updated, due to backlash
 
   std::array<double, 2> friction_start_nm, friction_start_sigma_nm;
   std::array<double, 2> friction_max_nm;    ///< the estimates stay in 0 .. this
-  std::array<double, 2> friction_walk_nm;   ///< standard deviation of the change in a sample
+  std::array<double, 2> friction_walk_nm;   ///< standard deviation of the random walk per sample
   std::array<double, 2> friction_probe_nm;  ///< difference for the derivative, > 0
-  double friction_min_rate_rad_s;           ///< a slower hub's friction does not walk
+  double friction_min_rate_rad_s;           ///< the friction of a slower hub has no random walk
 
-  double play_threshold_rad;  ///< rotor 2 further than this from hub 2: joint 2 has play
+  double play_threshold_rad;  ///< a larger distance of rotor 2 from hub 2 is backlash
   double play_memory;         ///< share of the largest such distance kept after a sample, 0..1
-  double gate_sigmas;         ///< a single output beyond this is a glitch
+  double gate_sigmas;         ///< a single output beyond this is an outlier
 
   /// Of an accelerometer at the tip: standard deviation of its reading about the model's, and the
   /// lag of its analogue filter. Not used without readings.
   double tip_sigma_m_s2, tip_lag_s;
 };
 
-/// Extended Kalman filter that finds the payload and the joints' friction while the arm moves.
+/// Extended Kalman filter that estimates state, payload and joint friction while the arm moves.
 ///
 /// 19 states: q and q' of RigidJointArm, the gauges' filters phi_f, the payload m_p, the Coulomb
 /// levels F_1, F_2. Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f]. A sample:
 ///   1. state by RigidJointStepper, its derivatives by TransitionOver and by differences;
-///   2. P <- F P F' + s G Q G' + walk, s in 1..30: grows with the normalised innovation squared
-///      (NIS), so that the filter forgets faster when the model is wrong;
-///   3. variance of rotor 2 raised while joint 2 has play; one or two outputs beyond the gate get
-///      less weight, with three or more the model is wrong and all count;
+///   2. P <- F P F' + s G Q G' + random walk, s in 1..30: grows with the normalised innovation
+///      squared (NIS), so that with a wrong model old data count less;
+///   3. the variance of rotor 2 is raised while joint 2 shows backlash; one or two outputs beyond
+///      the gate get less weight; three or more mean a wrong model, and all keep their weight;
 ///   4. update with the payload's gain row zero at rest, and the friction's too after EndMove. That
 ///      gain is not the optimal one, so the covariance follows by Joseph's form;
-///   5. if the tip's acceleration was read, it updates what (4) found, gated and in the same form.
-///      It is no part of NIS and innovation.
-/// Source: docs/theory/payload.md 2. Real-time: all but the constructor is safe; no loop without a
-/// bound.
+///   5. if the tip's acceleration was read, it updates the result of (4), gated and in the same
+///      form. It is not part of NIS and innovation.
+/// Source: docs/theory/payload.md 2. Real-time: all but the constructor is safe; every loop is
+/// bounded.
 class PayloadFilter {
  public:
   static constexpr int kStates = 19;
   static constexpr int kOutputs = 8;
   using Outputs = Eigen::Matrix<double, kOutputs, 1>;
 
-  /// What was read at the end of a sample.
+  /// Measurements at the end of a sample.
   struct Reading {
     Outputs z;           ///< th1 th2 th3 th4 as counted, rad; fitted modal coordinates, m
     std::uint32_t good;  ///< bit i: z[i] was read; none: the frame was lost
@@ -85,45 +85,46 @@ class PayloadFilter {
     double tip_innovation_m_s2;  ///< of the accelerometer; 0 without its reading
   };
 
-  /// A filter beside this one, with the same gains and readings but another torque, to first order:
-  /// the two differ by what the other torques did since they were one.
+  /// First-order copy of this filter for another delay hypothesis: same gains and readings, another
+  /// torque. The states differ by the effect of the torques that differed.
   struct Hypothesis {
     PiecewiseTorque torque;                   ///< during the sample
     Eigen::Matrix<double, kStates, 1> apart;  ///< its state minus this filter's
     Outputs innovation;                       ///< of the last reading
-    double nis;  ///< the same squared, by the covariance of this filter
+    double nis;  ///< of that innovation, by the covariance of this filter
   };
 
   PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config);
 
-  /// At rest at q, payload and friction unknown again.
+  /// Restarts at rest at q, with payload and friction at their start values.
   void Reset(const RigidJointArm::Vector& q) noexcept;
 
-  /// A move starts: the payload may be another than before, and is learnt.
+  /// A move starts: the payload may have changed, and is updated again.
   void BeginMove() noexcept;
 
-  /// The model has been contradicted: the load is taken for dropped, and found anew from nothing.
-  /// It is the likely cause, and the safe one: what moves an empty arm does little to a heavy one.
-  /// @param rivals  take it for dropped as well
+  /// Resets the payload estimate to 0 kg after the readings contradicted the model. A lost payload
+  /// is the likely cause, and the safe assumption: a torque for an empty arm does little to a
+  /// loaded one.
+  /// @param hypotheses  reset in the same way
   void AssumePayloadLost(std::span<Hypothesis> hypotheses = {}) noexcept;
 
-  /// The arm has come to rest: payload and friction are learnt no more until the next move. Counts
-  /// that flicker look like motion to a filter that has grown unsure, and would drag both.
+  /// The arm is at rest: payload and friction are not updated until the next move. Encoder
+  /// quantisation looks like motion to a filter whose covariance has grown, and would move both.
   void EndMove() noexcept { learns_ = false; }
 
-  /// The rival's torques were the right ones: its motion is taken over. What was learnt came from
-  /// the wrong ones: payload, friction and all doubt are as at a start.
+  /// Switches to this delay hypothesis: copies its motion state and resets payload, friction and
+  /// covariance to their start values, as they were estimated with wrong torques.
   void SwitchTo(const Hypothesis& hypothesis) noexcept;
 
-  /// @param torque  really applied during the sample that ends with the reading
-  /// @param rivals  go on as well
+  /// @param torque      applied during the sample that ends with the reading
+  /// @param hypotheses  updated as well
   const Estimate& Update(const PiecewiseTorque& torque, const Reading& reading,
                          std::span<Hypothesis> hypotheses = {}) noexcept;
 
   const Estimate& estimate() const noexcept { return estimate_; }
 
-  /// The state after `torque`, with the payload and the friction found so far. Borders between
-  /// pieces, and the end, count to the nearest step_s().
+  /// Prediction of the state after `torque`, with the current payload and friction estimates. Ends
+  /// of pieces are rounded to the nearest step_s().
   GaugedState After(const PiecewiseTorque& torque) const noexcept;
 
   const RigidJointStepper& stepper() const noexcept { return stepper_; }
@@ -155,7 +156,7 @@ class PayloadFilter {
   Matrix P_;
   double mean_nis_;
   bool learns_;
-  double play_rad_;  // largest distance of rotor 2 from hub 2, forgotten slowly
+  double play_rad_;  // largest distance of rotor 2 from hub 2, decays slowly
 };
 
 }  // namespace flexarm

@@ -6,14 +6,14 @@
 
 namespace flexarm {
 
-/// What is wrong with the payload estimate. Bits, logged as StepOutput::payload_warnings.
+/// Warnings of the payload estimate. Bits, logged as StepOutput::payload_warnings.
 enum PayloadWarningBit : std::uint32_t {
-  kPayloadAtBound = 1,        ///< as heavy as it may be, or heavier
+  kPayloadAtBound = 1,        ///< the estimate is at its upper bound
   kPayloadModelMismatch = 2,  ///< the innovations are far larger than model and noise explain
-  kPayloadNotObservable = 4,  ///< a move has ended, and as little is known as when it began
+  kPayloadNotObservable = 4,  ///< a move has ended without reducing the uncertainty
 };
 
-/// What the estimator has found of the arm, and what is wrong with it.
+/// Payload and friction estimates of the observer, with their warnings.
 struct PayloadKnowledge {
   double payload_kg, payload_sigma_kg;
   std::array<double, 2> friction_nm;
@@ -21,9 +21,9 @@ struct PayloadKnowledge {
   std::uint32_t warnings;  ///< PayloadWarningBit
 };
 
-/// In place of what an observer does not estimate.
+/// Value of a quantity that an observer does not estimate.
 inline constexpr double kNotEstimated = std::numeric_limits<double>::quiet_NaN();
-/// Of an observer that does not estimate the payload.
+/// Result of an observer that does not estimate the payload.
 inline constexpr PayloadKnowledge kNoPayloadEstimate = {
     .payload_kg = kNotEstimated,
     .payload_sigma_kg = kNotEstimated,

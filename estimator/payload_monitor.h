@@ -8,33 +8,33 @@
 
 namespace flexarm {
 
-/// A payload with this standard deviation, or a greater one, is as good as unknown.
+/// A payload with this standard deviation, or a larger one, counts as unknown.
 inline constexpr double kPayloadUncertain_kg = 0.1;
 
-/// From this mean NIS on, of 8 outputs, the filter's model is wrong, and what it finds with it.
+/// From this mean NIS on, of 8 outputs, the filter's model and so its estimate are wrong.
 inline constexpr double kModelWrongNis = 60.0;
 
-/// The sensors say that the filter's model is wrong. Real-time: safe.
+/// True if the innovations contradict the filter's model. Real-time: safe.
 /// @param mean_nis  as PayloadFilter's
 inline constexpr bool ContradictsModel(double mean_nis) noexcept {
   return mean_nis > kModelWrongNis;
 }
 
-/// Judges the payload that is found.
+/// Monitor of the payload estimate: raises its warnings.
 ///
-/// Bound and model are judged anew at every sample. Whether a move has shown the payload is judged
-/// once, when it ends, and holds until the next one begins: a payload that is as good as unknown
-/// then (kPayloadUncertain_kg). At rest the standard deviation only grows, by the payload's walk,
-/// and says nothing about the move. Real-time: safe.
+/// Bound and model are checked at every sample. Whether a move has made the payload observable is
+/// checked once, at its end, and holds until the next one begins: the payload is unknown if its
+/// standard deviation is at least kPayloadUncertain_kg then. At rest the standard deviation only
+/// grows, by the payload's random walk, and does not depend on the move. Real-time: safe.
 class PayloadMonitor {
  public:
   explicit PayloadMonitor(const PayloadEstimatorConfig& config) noexcept : max_kg_(config.max_kg) {}
 
   void Reset() noexcept { moving_ = not_found_ = false; }
 
-  /// Every sample, in order.
+  /// To be called every sample, in order.
   /// @param mean_nis  as PayloadFilter's
-  /// @param moving    whether the path does: MotionState
+  /// @param moving    true while the path moves: MotionState
   PayloadKnowledge Judge(const PayloadFilter::Estimate& found, double mean_nis,
                          bool moving) noexcept {
     if (moving) {

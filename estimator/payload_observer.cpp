@@ -6,7 +6,7 @@
 namespace flexarm {
 namespace {
 
-// A move excites vibration that shows the payload; it has decayed this long after the move's end.
+// The vibration that a move excites makes the payload observable; it decays within this time.
 constexpr double kVibrationDecays_s = 2.0;
 
 }  // namespace

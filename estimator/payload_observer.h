@@ -11,7 +11,7 @@ namespace flexarm {
 /// The observer `ekf-payload`: the extended Kalman filter of PayloadEstimator with its monitor, and
 /// its model as predictor.
 ///
-/// A filter whose innovations contradict its model assumes that the payload was lost
+/// If the innovations contradict the filter's model, the payload is assumed to be lost
 /// (docs/theory/payload.md 2.6).
 class PayloadObserver final : public Observer {
  public:

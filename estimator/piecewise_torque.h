@@ -11,7 +11,7 @@ namespace flexarm {
 inline constexpr int kPeriodDigits = 16;
 inline constexpr std::int64_t kPeriodTicks = std::int64_t{1} << kPeriodDigits;
 
-/// A torque that holds for a while.
+/// A constant torque and its duration.
 struct TorquePiece {
   std::array<double, 2> torque_nm;
   std::int64_t ticks;  ///< how long, in 2^-16 Ts
@@ -31,24 +31,24 @@ class PiecewiseTorque {
     return pieces;
   }
 
-  /// Behind the last one; nothing if it has no length, or if there are kMost already.
+  /// Appends a piece; no effect if it has no length, or if there are kMost already.
   void Add(const TorquePiece& piece) noexcept {
     if (piece.ticks > 0 && size_ < kMost) piece_[size_++] = piece;
   }
 
   std::span<const TorquePiece> all() const& noexcept { return {piece_.data(), size_}; }
-  std::span<const TorquePiece> all() && = delete;  // it would outlive what it looks at
+  std::span<const TorquePiece> all() && = delete;  // the span would outlive the pieces
 
-  /// What holds at the end of the interval; 0 for an empty one.
+  /// Torque at the end of the interval; 0 for an empty one.
   std::array<double, 2> last_nm() const noexcept {
     return size_ == 0 ? std::array<double, 2>{} : piece_[size_ - 1].torque_nm;
   }
 
-  /// Over the whole interval; of a single piece its torque as it is, 0 for an empty one.
+  /// Mean over the interval; for a single piece exactly its torque, 0 for an empty interval.
   std::array<double, 2> mean_nm() const noexcept;
 
-  /// These pieces with the mean that somebody measured: all are moved by the same amount, and a
-  /// single one becomes the mean itself.
+  /// Offsets all pieces so that their mean equals the measured mean; a single piece becomes the
+  /// mean itself.
   PiecewiseTorque WithMean(const std::array<double, 2>& mean_nm) const noexcept;
 
  private:

@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-// Of the shape over the link, for the second least squares: far closer than any bend is.
+// Points of the shape along the link in the second least squares: far finer than any wave length.
 constexpr int kPoints = 201;
 
 }  // namespace

@@ -7,10 +7,11 @@
 
 namespace flexarm {
 
-/// Surface strain per metre of each modal coordinate, (h/2) psi_j'', where the link bends most.
+/// Surface strain per metre of each modal coordinate, (h/2) psi_j'', at the root of the section
+/// where the first mode strains the surface most.
 ///
-/// At the root of the section where the first mode strains the surface most: at the root of the
-/// link, unless it is stiffer there. Unit: 1/m. A link of one mode has 0 for the second.
+/// That is the root of the link, unless the link is stiffer there. Unit: 1/m. A link of one mode
+/// has 0 for the second.
 /// Source: thesis B.2. Real-time: start-up only.
 std::array<double, 2> RootStrainShape(const LinkParameters& link, const LinkModes& modes);
 

@@ -24,8 +24,8 @@ void StateEstimator::Reset() noexcept {
 }
 
 // y = [th1, th2, th3, th4, f..]. A rotor leads its hub by the torsion u/K, which a model with rigid
-// joints does not know: it gets th3 - u1/K1, th4 - u2/K2, u the torque that acts at the sample: the
-// springs follow within a few ms.
+// joints does not contain: it gets th3 - u1/K1, th4 - u2/K2, u the torque that acts at the sample,
+// as the springs settle within a few ms.
 StateEstimator::OutputVector StateEstimator::Measure(const DecodedCounters& counters,
                                                      const FittedModes& modes,
                                                      const std::array<double, 2>& torque_nm,

@@ -14,38 +14,40 @@
 
 namespace flexarm {
 
-/// What the estimator needs of the off-line design (estimator/kalman_design.h).
+/// The part of the off-line design that the estimator uses (estimator/kalman_design.h).
 struct FilterGains {
   StateLayout layout;
   Eigen::MatrixXd A, B, C, L;
   Eigen::MatrixXd A_rate, B_rate;  ///< continuous, for the fractions of a period
 };
 
-/// The state of the nominal model at k Ts, from decoded counters and fitted modal coordinates.
+/// State estimator of the nominal model at k Ts, from decoded counters and fitted modal
+/// coordinates.
 ///
-/// `kalman`: the steady-state filter; an input that is not good leaves the state alone (its gain
-/// column is skipped). `difference`: coordinates as measured and backward differences, as in the
-/// thesis: the rates lag by half a sample.
+/// `kalman`: steady-state Kalman filter; an input that is not good does not change the state (its
+/// gain column is skipped). `difference`: coordinates as measured and backward differences, as in
+/// the thesis: the rates lag by half a sample.
 /// Real-time: Reset and Update are safe.
 class StateEstimator {
  public:
   using Estimate = StateEstimate;
 
-  /// @param joint_stiffness_nm_per_rad  K1, K2: to rigid joints, rotor angles are corrected by u/K
+  /// @param joint_stiffness_nm_per_rad  K1, K2: with rigid joints, rotor angles are corrected by
+  /// u/K
   StateEstimator(const EstimatorConfig& config, const FilterGains& gains, double period_s,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 
   /// The next Update starts from its measurement, at rest.
   void Reset() noexcept;
 
-  /// How fast the gauges' modal coordinates are expected to change at the next Update's sample,
-  /// m/s: f11 f12 f21 f22 behind their filters. Of `difference` the rates of the last Update.
+  /// Predicted rates of the modal coordinates as the gauges read them, behind their filters, at the
+  /// next Update's sample, m/s: f11 f12 f21 f22. For `difference` the rates of the last Update.
   std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept;
 
-  /// @param applied  the torque over the last period, in constant pieces
+  /// @param applied  the torque over the last period, piecewise constant
   Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
                   const PiecewiseTorque& applied) noexcept;
-  /// The same torque over the whole period.
+  /// The same for a torque that was constant over the period.
   Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
                   const std::array<double, 2>& applied_torque_nm) noexcept {
     return Update(counters, modes, PiecewiseTorque::WholePeriod(applied_torque_nm));

@@ -6,12 +6,12 @@
 
 namespace flexarm {
 
-/// Which entry of the nominal model's state is what.
+/// Indices of the nominal model's state vector.
 ///
 ///   x = [q; q'],  q = [th1 th2 f11 .. f1m f21 .. f2m] with rigid joints,
 ///                 q = [th1 th2 th3 th4 f11 .. f1m f21 .. f2m] with torsional ones
 ///
-/// A rigid joint's rotor is its hub: th3 = th1, th4 = th2. Joints, links and modes count from 0.
+/// With rigid joints th3 = th1, th4 = th2. Joints, links and modes count from 0.
 struct StateLayout {
   bool torsion;        ///< the joints are springs between rotor and hub; false: rigid
   int modes_per_link;  ///< m, 1 or 2
@@ -22,7 +22,7 @@ struct StateLayout {
 
   // Coordinates: entries of q.
   constexpr int hub(int joint) const { return joint; }
-  /// Where the torque of a joint enters.
+  /// The coordinate on which the torque of a joint acts.
   constexpr int rotor(int joint) const { return torsion ? 2 + joint : joint; }
   constexpr int mode(int link, int number) const {
     return angles() + link * modes_per_link + number;
@@ -31,9 +31,9 @@ struct StateLayout {
   /// The entry of x that is the rate of a coordinate.
   constexpr int rate(int coordinate) const { return dof() + coordinate; }
 
-  // Outputs: entries of y = [th1 th2 th3 th4 f11 .. f2m], what the sensors show.
+  // Outputs: entries of y = [th1 th2 th3 th4 f11 .. f2m], measured by the sensors.
   constexpr int outputs() const { return 4 + 2 * modes_per_link; }
-  /// The output that shows a coordinate; of a rigid joint that of its hub.
+  /// The output that measures a coordinate; with rigid joints that of the hub.
   constexpr int output(int coordinate) const {
     return coordinate < angles() ? coordinate : coordinate + 4 - angles();
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxOutliersPerLink = 2;
 
-// Smallest determinant of the normalised normal equations that still separates two modes: the
+// Smallest determinant of the normalised normal equations at which two modes are separable: the
 // squared sine of the angle between the two columns.
 constexpr double kMinSeparation = 1e-4;
 
@@ -168,7 +168,7 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
   out.modal_m = last_modal_;
   for (int link = 0; link < 2; ++link) FitLink(link, strain, &out);
   JudgeStuck(frame, &out);
-  for (int link = 0; link < 2; ++link) {  // once more without the channels that are stuck
+  for (int link = 0; link < 2; ++link) {  // fit again without the stuck channels
     const std::uint32_t stuck = out.stuck & out.used & LinkMask(link);
     if (stuck == 0) continue;
     const std::size_t i = static_cast<std::size_t>(link);

@@ -20,38 +20,38 @@ struct FittedModes {
   /// Surface strain of the fit at the root of each link, or of the section where it bends most.
   std::array<double, 2> root_strain;
   std::array<double, 2> residual;  ///< rms of channel minus fit, unit strain
-  std::uint32_t used;              ///< bit i: channel i took part
-  std::uint32_t saturated;         ///< bit i: at a rail of the converter
-  std::uint32_t stuck;             ///< bit i: does not move while its link does
-  std::uint32_t outlier;           ///< bit i: far from what the others agree on
-  double worst_outlier;            ///< its distance, unit strain
+  std::uint32_t used;              ///< bit i: channel i was used
+  std::uint32_t saturated;         ///< bit i: at an end of the converter's range
+  std::uint32_t stuck;             ///< bit i: constant while its link bends
+  std::uint32_t outlier;           ///< bit i: too far from the fit of the other channels
+  double worst_outlier;            ///< its distance from the fit, unit strain
 };
 
-/// Weighted least-squares fit of one or two modal coordinates a link to the strain channels.
+/// Weighted least-squares fit of one or two modal coordinates per link to the strain channels.
 ///
 ///   strain_i = face_i (h/2) sum_j psi_j''(x_i) f_j        (thesis B.2, and 7.4)
 ///
-/// With the estimator `polynomial` the thesis's fit of (B.1) takes its place, as long as all
-/// channels of the link are good.
+/// The estimator `polynomial` uses the thesis's fit of (B.1) instead, as long as all channels of
+/// the link are good.
 ///
 /// Channels are weighted by the inverse variance of their noise. With all channels good the fit is
 /// one product with a precomputed pseudo-inverse; otherwise the 2 x 2 normal equations of the good
-/// ones are solved. A channel that is saturated, stuck, or out of family by more than the limit is
-/// left out in the same sample; outliers are removed worst first, at most two a link.
+/// ones are solved. A channel that is saturated, stuck, or farther from the fit than the limit is
+/// excluded in the same sample; outliers are removed worst first, at most two per link.
 /// Real-time: Reset and Fit are safe.
 class StrainFit {
  public:
   StrainFit(const ArmParameters& arm, const SensorConfig& sensors, const EstimatorConfig& config);
 
   void Reset(const Calibration& calibration) noexcept;
-  /// A reading taken d after the instant is moved back along its channel's slope at the instant,
-  /// -d times what `modal_rate_m_s` makes of it. What is left is the curvature, (w d)^2 / 2 of a
-  /// signal of w rad/s where it was w d, and d times the error of the rates.
-  /// @param instant_ns      that the modes are of; the frame's own if all was sampled together
-  /// @param modal_rate_m_s  at that instant, of the coordinates as the gauges show them
+  /// Skew correction: a reading taken d after the instant is extrapolated by -d times the strain
+  /// rate that `modal_rate_m_s` gives its channel. The residual error is (w d)^2 / 2 of a signal of
+  /// w rad/s, instead of w d, plus d times the error of the rates.
+  /// @param instant_ns      instant of the fitted modes; the frame's own if there is no skew
+  /// @param modal_rate_m_s  at that instant, of the coordinates as the gauges read them
   FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
                   const std::array<double, 4>& modal_rate_m_s) noexcept;
-  /// Every reading taken as one of the frame's instant.
+  /// Treats every reading as taken at the frame's instant.
   FittedModes Fit(const SensorFrame& frame) noexcept { return Fit(frame, frame.sampled_at_ns, {}); }
 
  private:
@@ -87,7 +87,7 @@ class StrainFit {
   double family_limit_;
   double stuck_limit_;
   std::array<Channel, kMaxStrainChannels> channel_;
-  std::array<bool, 2> solvable_{};                     // a link's channels tell its modes apart
+  std::array<bool, 2> solvable_{};                     // a link's channels separate its modes
   std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j'' there
   std::array<double, 4> last_modal_{};
 };

@@ -11,7 +11,7 @@ constexpr double kProbe = 1e-6;  // rad, m, rad/s, m/s
 constexpr double kPayloadStep_kg = 1e-3;
 constexpr double kTorqueProbe_nm = 1e-3;
 
-// `by_s` earlier, under an acceleration that hardly changes meanwhile.
+// The state `by_s` earlier, under a nearly constant acceleration.
 GaugedState Before(const GaugedState& x, const Vector& a, double by_s) noexcept {
   GaugedState out = x;
   out.q += -by_s * x.v + 0.5 * by_s * by_s * a;

@@ -7,8 +7,8 @@
 
 namespace flexarm {
 
-/// What the accelerometer at the tip shows, m/s^2: nothing if it was not read for this frame, or is
-/// at a rail of its converter and so may stand for anything beyond. Real-time: safe.
+/// Reading of the accelerometer at the tip, m/s^2; empty if it was not read for this frame, or is
+/// at an end of its range, where the acceleration may be larger. Real-time: safe.
 std::optional<double> TipReading(const SensorFrame& frame,
                                  const TipAccelerometerConfig& config) noexcept;
 

@@ -10,23 +10,23 @@
 
 namespace flexarm {
 
-/// A device cannot be opened or configured: which one, what happened, what was expected.
+/// A device cannot be opened or configured. what(): device, what was found, what was expected.
 class HalError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// How one exchange with a bus went. Anything but kOk is counted and, if it lasts, a named fault.
+/// Result of one exchange with a bus. Anything but kOk is counted and, if it lasts, a named fault.
 enum class BusStatus : std::uint8_t {
   kOk,
-  kTimeout,       ///< no answer, or not all of it, in time
-  kMalformed,     ///< an answer that cannot be one: wrong id, length, unit, checksum, range
-  kDisconnected,  ///< the peer is gone
+  kTimeout,       ///< no reply, or an incomplete one, within the time-out
+  kMalformed,     ///< malformed reply: wrong id, length, unit, checksum, range
+  kDisconnected,  ///< the connection to the peer is lost
   kBusOff,        ///< the CAN controller has left the bus
   kDriveFault,    ///< a drive reports a fault, or has left the operational state
 };
 
-/// "no answer in time", as in messages.
+/// Text of a status for messages: "no answer in time".
 constexpr const char* Words(BusStatus status) noexcept {
   switch (status) {
     case BusStatus::kOk:
@@ -34,7 +34,7 @@ constexpr const char* Words(BusStatus status) noexcept {
     case BusStatus::kTimeout:
       return "no answer in time";
     case BusStatus::kMalformed:
-      return "an answer that is none";
+      return "malformed reply";
     case BusStatus::kDisconnected:
       return "connection lost";
     case BusStatus::kBusOff:
@@ -45,13 +45,13 @@ constexpr const char* Words(BusStatus status) noexcept {
   return "?";
 }
 
-/// What a bus is told for one period. A bus without drives ignores it.
+/// Command to a bus for one period. A bus without drives ignores it.
 struct BusCommand {
   std::array<double, 2> torque_nm;  ///< after the gate, at the gearbox output
-  bool enabled;                     ///< false: the drives shall be off, whatever the torque
+  bool enabled;                     ///< false: the drives must be off, for any torque
 };
 
-/// One bus, board or serial line, on a thread of its own because it may block.
+/// One bus, board or serial line. It has its own thread, because its calls may block.
 ///
 /// Order: Open, then Exchange once a period; after a failed one Reconnect, until it succeeds, but
 /// only while the arm is disarmed. Thread: the bus's own; Open and Close when no thread runs.
@@ -67,32 +67,32 @@ class BusDevice {
   /// The digital inputs that an exchange reads; the other levels of its frame are 0.
   virtual LineLevels lines() const noexcept { return 0; }
 
-  /// Declared bound of one Exchange or Reconnect, whatever the peer does. A test asserts it.
+  /// Declared bound of one Exchange or Reconnect, for any behaviour of the peer. A test asserts it.
   virtual std::int64_t worst_case_ns() const noexcept = 0;
 
   /// Connects, identifies, configures and reads the configuration back. May take seconds.
   /// @throws HalError
   virtual void Open() = 0;
 
-  /// Writes `command`, then reads. On return `part` holds this bus's readings as valid and nothing
-  /// else; sampled_at_ns and offsets in CLOCK_MONOTONIC. On failure nothing is valid.
+  /// Writes `command`, then reads. On return only this bus's readings in `part` are valid;
+  /// sampled_at_ns and offsets in CLOCK_MONOTONIC. On failure no reading is valid.
   [[nodiscard]] virtual BusStatus Exchange(const BusCommand& command,
                                            SensorFrame* part) noexcept = 0;
 
-  /// One bounded attempt to come back after a failure.
+  /// One bounded attempt to recover from a failure.
   [[nodiscard]] virtual BusStatus Reconnect() noexcept = 0;
 
-  /// What the last Exchange or Reconnect met, which gave `status`, not kOk. Thread: the bus's.
+  /// Fault that made the last Exchange or Reconnect return `status`, not kOk. Thread: the bus's.
   virtual BusFault FaultOf(BusStatus status) const noexcept {
     return {.kind = static_cast<std::uint8_t>(status), .node = 0, .code = 0};
   }
 
-  /// What FaultOf gave, in words, with the device's name and the node's. Any thread; not real-time.
+  /// Text of a fault of FaultOf, with the names of device and node. Any thread; not real-time.
   virtual std::string FaultText(const BusFault& fault) const {
     return std::string(name()) + ": " + Words(static_cast<BusStatus>(fault.kind));
   }
 
-  /// Torque off by the shortest path there is, then lets go.
+  /// Switches the torque off by the shortest path, then releases the device.
   virtual void Close() noexcept = 0;
 };
 

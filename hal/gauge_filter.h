@@ -7,22 +7,22 @@
 
 namespace flexarm {
 
-/// The analogue low-pass between gauge and converter, of first or second order, in steps.
+/// The analogue low-pass between gauge and converter, of first or second order, discretised.
 ///
-/// Exact for an input that is constant over a step; takes the input's middle, so that a straight
-/// line is followed to second order in the step. Without a filter the output is the input. Starts
-/// at rest at zero. Real-time: all but the constructor are safe.
+/// Exact for an input that is constant over a step; uses the mean of the input's ends, so that a
+/// linear input is followed to second order in the step. Without a filter the output is the input.
+/// Starts at rest at zero. Real-time: all but the constructor are safe.
 class GaugeFilter {
  public:
-  /// Signals that pass side by side: no heap.
+  /// Signals filtered in parallel; no heap.
   using Signals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStrainChannels, 1>;
 
   /// @param size  number of signals, at most kMaxStrainChannels
   GaugeFilter(const StrainInputConfig& input, double step_s, Eigen::Index size);
 
-  /// At rest with this input since long.
+  /// Sets the steady state for this input.
   void Settle(const Signals& input) noexcept;
-  /// One step, at whose end the input is `input`.
+  /// One step; `input` is the input at its end.
   void Step(const Signals& input) noexcept;
   const Signals& output() const noexcept { return output_; }
 

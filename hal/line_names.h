@@ -7,10 +7,10 @@
 
 namespace flexarm {
 
-/// "limit-1-low" .. "emergency-stop", "reset-button": as in experiments and commands.
+/// "limit-1-low" .. "emergency-stop", "reset-button": names in experiments and commands.
 const char* Name(Line line) noexcept;
 
-/// Nothing if there is no such line.
+/// The line with this name; empty if there is none.
 std::optional<Line> LineByName(std::string_view name) noexcept;
 
 }  // namespace flexarm

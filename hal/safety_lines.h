@@ -6,7 +6,7 @@
 
 namespace flexarm {
 
-/// The digital lines of the safety chain: what the safety task reads and drives every millisecond.
+/// The digital lines of the safety chain, which the safety task reads and drives every millisecond.
 ///
 /// Both calls are bounded by `kBudgetNs`, never allocate and never throw: real-time safe. Only the
 /// safety thread calls them.
@@ -18,7 +18,7 @@ class SafetyLines {
 
   struct Outputs {
     bool relay_closed;  ///< false removes the drives' enable
-    bool pump_level;    ///< charge pump: the enable lives only while this toggles
+    bool pump_level;    ///< charge pump: the drives are enabled only while this toggles
   };
 
   virtual ~SafetyLines() = default;

@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-// Rails of a two's complement converter.
+// Range of a two's complement converter.
 int LowestCount(int bits) { return -(1 << (bits - 1)); }
 int HighestCount(int bits) { return (1 << (bits - 1)) - 1; }
 
@@ -31,7 +31,7 @@ void CheckEncoders(const std::vector<EncoderConfig>& encoder, ProblemList* list)
     const std::uint32_t bit = std::uint32_t{1} << static_cast<unsigned>(e.counter);
     const char* joint = kJointNames[static_cast<std::size_t>(e.counter)];
     list->Require((seen & bit) == 0, row + ".joint", joint,
-                  "must be named by one row only: an angle has one encoder");
+                  "must be used once: an angle has one encoder");
     seen |= bit;
     list->Within(row + ".counts_per_turn", e.counts_per_turn, 100.0, 1e8,
                  "counts per turn of the joint, gear and quadrature included");
@@ -52,29 +52,29 @@ void CheckStrainInput(const StrainInputConfig& input, ProblemList* list) {
   list->Within("strain_input.range_v", input.range_v, 0.01, 100.0,
                "full scale is -range_v .. +range_v");
   list->Within("strain_input.filter_hz", input.filter_hz, 0.0, 1e5,
-               "corner of the analogue filter, 0 for none");
+               "corner frequency of the analogue filter, 0 for none");
   list->Require(
       input.filter_damping == 0.0 || (input.filter_damping >= 0.1 && input.filter_damping <= 2.0),
       "strain_input.filter_damping", NumberText(input.filter_damping),
-      "must lie in 0.1 .. 2: damping ratio of a second-order filter; leave the key out "
+      "must lie in 0.1 .. 2: damping ratio of a second-order filter; omit the key "
       "for a first-order one");
   list->Within("strain_input.noise_counts", input.noise_counts, 0.0, 1e4,
                "standard deviation before quantising");
 }
 
-// Up to its corner's tenth the filter is a delay, and so the estimator takes it: the arm's own
-// vibrations that it knows end at 10 Hz or so.
+// Below a tenth of its corner the filter is a pure delay, as the estimator assumes: the vibrations
+// in its model end at about 10 Hz.
 constexpr double kLeastAccelerometerFilter_hz = 100.0;
 
 void CheckTipAccelerometer(const TipAccelerometerConfig& config, ProblemList* list) {
   list->Within("tip_accelerometer.range_m_s2", config.range_m_s2, 1.0, 1e4,
                "full scale is -range_m_s2 .. +range_m_s2");
   list->Within("tip_accelerometer.converter_bits", config.converter_bits, 8, 24,
-               "two's complement; below 8 bits it tells nothing that the gauges do not");
+               "two's complement; below 8 bits it adds nothing to the gauges");
   list->Within("tip_accelerometer.noise_counts", config.noise_counts, 0.0, 1e4,
                "standard deviation before quantising");
   list->Within("tip_accelerometer.filter_hz", config.filter_hz, kLeastAccelerometerFilter_hz, 1e5,
-               "corner of the analogue filter: \"ekf-payload\" takes it as a short delay");
+               "corner of the analogue filter: \"ekf-payload\" treats it as a short delay");
 }
 
 void CheckStrainPosition(const StrainChannelConfig& channel, const std::string& key,
@@ -83,7 +83,7 @@ void CheckStrainPosition(const StrainChannelConfig& channel, const std::string& 
                 NumberText(channel.position_m), "must be 0 or more: counted from the link's root");
   if (channel.link != 1 && channel.link != 2) return;
   const double length = link_length_m[static_cast<std::size_t>(channel.link - 1)];
-  // Written so that an unknown (NaN) length breaks nothing.
+  // Written so that an unknown (NaN) length violates no rule.
   list->Require(!(channel.position_m > length), key, NumberText(channel.position_m),
                 "must lie on the link: link " + NumberText(channel.link) + " is " +
                     NumberText(length) + " m long");
@@ -95,7 +95,7 @@ void CheckStrainChannels(const std::vector<StrainChannelConfig>& strain,
   list->Require(strain.size() <= std::size_t{kMaxStrainChannels}, "strain",
                 NumberText(strain.size()) + " rows",
                 "must be at most " + NumberText(kMaxStrainChannels) +
-                    " rows, both links together: a frame holds no more");
+                    " rows, both links together: the size of a frame");
   const bool bits_known = input.converter_bits >= 8 && input.converter_bits <= 24;
   const double rail = bits_known ? input.highest_count() : 1e8;
   for (std::size_t i = 0; i < strain.size(); ++i) {
@@ -111,7 +111,7 @@ void CheckStrainChannels(const std::vector<StrainChannelConfig>& strain,
                   "must not be 0 (and at most 1e9): volts per unit strain");
     list->Require(std::abs(channel.offset_counts) < rail, row + ".offset_counts",
                   NumberText(channel.offset_counts),
-                  "must lie between the converter's rails, or the channel is always saturated");
+                  "must lie within the converter's range, or the channel is always saturated");
   }
 }
 

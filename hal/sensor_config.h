@@ -9,10 +9,10 @@
 
 namespace flexarm {
 
-/// "hub1" "hub2" "rotor1" "rotor2": as key `joint` has it. @param counter  0..3
+/// "hub1" "hub2" "rotor1" "rotor2": values of the key `joint`. @param counter  0..3
 const char* CounterName(int counter);
 
-/// One incremental encoder and the counter behind it: [[sensors.encoder]].
+/// One incremental encoder and its counter: [[sensors.encoder]].
 ///
 /// angle = sign * 2 pi * unwrapped counts / counts_per_turn, counter-clockwise positive.
 struct EncoderConfig {
@@ -35,11 +35,11 @@ struct StrainChannelConfig {
 
 /// The converter and amplifier that all strain channels share: [sensors.strain_input].
 struct StrainInputConfig {
-  int converter_bits;     ///< 8..24, two's complement, clips at its rails
+  int converter_bits;     ///< 8..24, two's complement, saturates at the ends of its range
   double range_v;         ///< full scale is -range_v .. +range_v
   double filter_hz;       ///< natural frequency of the analogue filter; 0: no filter
   double noise_counts;    ///< standard deviation before quantising
-  double filter_damping;  ///< of a second-order filter; 0, without such a key: of first order
+  double filter_damping;  ///< damping ratio of a second-order filter; 0, no such key: first order
 
   double volts_per_count() const;  ///< 2 range / 2^bits
   int lowest_count() const;        ///< -2^(bits-1)
@@ -48,22 +48,22 @@ struct StrainInputConfig {
 
 /// A single-axis accelerometer at the tip: [sensors.tip_accelerometer].
 ///
-/// Glued to the end of link 2, its axis normal to the link there and in the plane of the arm, so
-/// that it turns with the tip; positive counter-clockwise, the way the deflection w2 grows. Gravity
-/// stands on the plane and does not show. counts = round(acceleration / m_s2_per_count()).
+/// Mounted at the end of link 2, its axis normal to the link there and in the plane of the arm, so
+/// that it turns with the tip; positive counter-clockwise, in the direction of w2. Gravity is
+/// normal to the plane and not read. counts = round(acceleration / m_s2_per_count()).
 struct TipAccelerometerConfig {
   double range_m_s2;    ///< full scale is -range_m_s2 .. +range_m_s2
-  int converter_bits;   ///< 8..24, two's complement, clips at its rails
+  int converter_bits;   ///< 8..24, two's complement, saturates at the ends of its range
   double noise_counts;  ///< standard deviation before quantising
   double filter_hz;     ///< corner of the first-order analogue filter, 100 Hz at least
 
   double m_s2_per_count() const;  ///< 2 range / 2^bits
-  double lag_s() const;           ///< of the filter well below its corner: 1 / (2 pi filter_hz)
+  double lag_s() const;           ///< lag of the filter well below its corner: 1 / (2 pi filter_hz)
   int lowest_count() const;       ///< -2^(bits-1)
   int highest_count() const;      ///< 2^(bits-1) - 1
 };
 
-/// What the rig measures, section [sensors]. Rotor encoders and accelerometer may be absent.
+/// Sensors of the rig, section [sensors]. Rotor encoders and accelerometer may be absent.
 struct SensorConfig {
   std::vector<EncoderConfig> encoder;
   std::vector<StrainChannelConfig> strain;
@@ -72,7 +72,7 @@ struct SensorConfig {
 
   /// Bit i: counter i exists.
   std::uint32_t counters_present() const;
-  /// Broken rules; `link_length_m` bounds the positions.
+  /// Violated rules; `link_length_m` bounds the positions.
   std::vector<Problem> Problems(const std::array<double, 2>& link_length_m) const;
 };
 

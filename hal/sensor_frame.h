@@ -35,17 +35,18 @@ inline constexpr LineLevels kHealthyLevels =
     LineBit(Line::kLimit1Low) | LineBit(Line::kLimit1High) | LineBit(Line::kLimit2Low) |
     LineBit(Line::kLimit2High) | LineBit(Line::kEmergencyStop);
 
-/// Two readings of the same lines: a switch is open, and the button pressed, when either says so.
+/// Merges redundant readings of the lines: a switch is open, and the button pressed, if one says
+/// so.
 constexpr LineLevels MergeRedundantLevels(LineLevels a, LineLevels b) {
   return (a & b & kHealthyLevels) | ((a | b) & ~kHealthyLevels);
 }
 
-/// Everything that the rig measured around one sampling instant, as raw counts.
+/// All readings of the rig around one sampling instant, as raw counts.
 ///
-/// A reading that is not valid repeats the last good value. The offset tells when a reading was
-/// taken, relative to `sampled_at_ns`: 0 is simultaneous sampling, a positive value is the skew of
-/// a multiplexed input, a negative one an older reading; so age = now - sampled_at - offset. The
-/// layout has no padding: its bytes go into the run log and are compared by replay.
+/// A reading that is not valid repeats the last good value. The offset is the instant at which a
+/// reading was taken, relative to `sampled_at_ns`: 0 is simultaneous sampling, a positive value is
+/// the skew of a multiplexed input, a negative one an older reading; so age = now - sampled_at -
+/// offset. The layout has no padding: its bytes go into the run log and are compared by replay.
 struct SensorFrame {
   std::int64_t sampled_at_ns;                    ///< sampling instant, in the clock of the loop
   std::array<std::uint32_t, kCounters> counter;  ///< raw counter value, wraps at 2^counter_bits

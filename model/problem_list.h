@@ -12,7 +12,7 @@
 
 namespace flexarm {
 
-/// A number as the shortest text that reads back as the same number: "0.1", "6.89e+10".
+/// A number as the shortest text that parses to the same number: "0.1", "6.89e+10".
 template <typename Number>
 std::string NumberText(Number value) {
   std::array<char, 32> text{};
@@ -20,12 +20,12 @@ std::string NumberText(Number value) {
   return {text.data(), end};
 }
 
-/// Collects broken rules: the body of every Problems(). Allocates: start-up only.
+/// Collects violated rules: the body of every Problems(). Allocates: start-up only.
 ///
-/// Rules are written so that a NaN breaks them. `why` says what breaks if the rule does not hold.
+/// Rules are written so that a NaN violates them. `why` states what the rule protects.
 class ProblemList {
  public:
-  /// `section` stands before every key, e.g. "loop."; "" for none.
+  /// `section` is the prefix of every key, e.g. "loop."; "" for none.
   explicit ProblemList(std::string section) : section_(std::move(section)) {}
 
   /// Records the problem unless `ok`.
@@ -60,12 +60,12 @@ class ProblemList {
     for (std::size_t i = 0; i < n; ++i) Positive(Element(key, i), values[i], high, why);
   }
 
-  /// "key[2]": how messages name an element or a row, counted from 0.
+  /// "key[2]": the name of an element or a row in messages, counted from 0.
   static std::string Element(std::string_view key, std::size_t i) {
     return std::string(key) + "[" + NumberText(i) + "]";
   }
 
-  /// No rule broken so far: rules between values make sense.
+  /// True while no rule is violated: rules between several values can be checked.
   bool empty() const { return list_.empty(); }
   std::vector<Problem> Take() { return std::move(list_); }
 

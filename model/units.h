@@ -4,8 +4,8 @@
 
 namespace flexarm {
 
-// Angles are in radians and frequencies in radians per second wherever their name says nothing
-// else.
+// Angles are in radians and frequencies in radians per second unless their name states another
+// unit.
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;  ///< rad per turn
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;

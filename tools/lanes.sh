@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The lanes of tools/run-tests, which runs `tools/lanes.sh NAME` for each and keeps what it writes.
-# docs/testing.md says what each lane is for; tools/lint/check_docs.py compares the two.
+# The lanes of tools/run-tests, which runs `tools/lanes.sh NAME` for each and stores its output.
+# docs/testing.md describes each lane; tools/lint/check_docs.py compares the two.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -17,8 +17,8 @@ passes=build/lanes
 jobs=$(nproc)
 export CTEST_PARALLEL_LEVEL=$jobs PYTHONDONTWRITEBYTECODE=1
 
-# What a pass stands for: the commit, all that differs from it, and the installed packages. Empty
-# where there is no git: then nothing is known to have passed.
+# A hash of the tree that a lane passed on: the commit, all differences from it, and the installed
+# packages. Empty without git: then no lane counts as passed.
 tree_state() {
   git rev-parse --quiet --verify HEAD >/dev/null 2>&1 || return 0
   {
@@ -29,11 +29,11 @@ tree_state() {
   } | sha256sum | cut -d' ' -f1
 }
 
-has_passed() {  # has_passed NAME STATE: on this tree, and the caller asked for --resume
+has_passed() {  # has_passed NAME STATE: on this tree, and --resume was given
   [[ ${FLEXARM_RESUME:-no} == yes && -n $2 && $(cat "$passes/$1.passed" 2>/dev/null) == "$2" ]]
 }
 
-record_pass() {  # record_pass NAME STATE: the state from before the run, if it still holds
+record_pass() {  # record_pass NAME STATE: stores the state if the run has not changed it
   rm -f "$passes/$1.passed"
   if [[ -n $2 && $(tree_state) == "$2" ]]; then
     mkdir -p "$passes"
@@ -41,7 +41,7 @@ record_pass() {  # record_pass NAME STATE: the state from before the run, if it 
   fi
 }
 
-part() {  # part NAME COMMAND..: a piece of a long lane; --resume does not repeat one that passed
+part() {  # part NAME COMMAND..: a part of a long lane; --resume skips a part that passed
   local name=$lane.$1 state
   state=$(tree_state)
   if has_passed "$name" "$state"; then
@@ -55,7 +55,7 @@ part() {  # part NAME COMMAND..: a piece of a long lane; --resume does not repea
 # A lane may leave one line for the summary.
 note() { printf '%s\n' "$*" >"$logs/$lane.note"; }
 
-configure() {  # configure PRESET: once a run of run-tests; after that ninja sees what has changed
+configure() {  # configure PRESET: once per run of run-tests; later ninja detects changes
   local mark=$passes/$1.configured
   if [[ -n ${FLEXARM_RUN:-} && $(cat "$mark" 2>/dev/null) == "$FLEXARM_RUN" ]]; then return; fi
   cmake --preset "$1"
@@ -72,7 +72,7 @@ build() {  # build PRESET [TARGET..]
   fi
 }
 
-test_folder() {  # test_folder PRESET FOLDER LABELS: none, or one whose program is missing, fails
+test_folder() {  # test_folder PRESET FOLDER LABELS: fails without tests, or if a program is missing
   local listed
   listed=$(ctest --test-dir "build/$1/$2" -N)
   # CMake lists a program that was not built as one test without a label: a filter would hide it.
@@ -83,7 +83,7 @@ test_folder() {  # test_folder PRESET FOLDER LABELS: none, or one whose program 
   ctest --test-dir "build/$1/$2" -L "$3" --output-on-failure --no-tests=error "${@:4}"
 }
 
-# ctest takes no folder beside a preset: what the preset sets is set here.
+# ctest accepts no folder beside a preset: the environment of the preset is set here.
 use_environment_of() {  # use_environment_of TEST_PRESET
   local assignments
   assignments=$(python3 -c '
@@ -103,14 +103,15 @@ lane_format() {  # clang-format 14 changes nothing
   note "$(sources | tr -cd '\0' | wc -c) files"
 }
 
-lane_layers() {  # includes, documents and other rules of tools/lint; shellcheck
+lane_layers() {  # includes, documents, words and other rules of tools/lint; shellcheck
   python3 tools/lint/check_layers.py
   python3 tools/lint/check_docs.py
+  python3 tools/lint/check_words.py
   git ls-files -z -- tools/install-deps tools/run-hil tools/run-tests .ci/run '*.sh' |
     xargs -0 shellcheck --severity=warning
 }
 
-# What stands between the world and the arm.
+# The code between the outside world and the arm.
 guards=(tests/hal tests/controller/safety tests/config)
 
 lane_guards() {  # unit tests of drivers, safety logic and configs, release build (part of release)
@@ -122,7 +123,7 @@ lane_guards() {  # unit tests of drivers, safety logic and configs, release buil
 lane_unit() {  # tests labelled unit, release build (part of release)
   configure release
   local list programs
-  # A program's name ends with the label of its tests where that is another.
+  # The name of a program ends with the label of its tests if that is not `unit`.
   list=$(ninja -C build/release -t targets all | sed -n 's/^\([a-z_]*_test\): phony$/\1/p' |
          grep -vE '^cmake_|_(loop|long|rt)_test$')
   mapfile -t programs <<<"$list"
@@ -141,7 +142,7 @@ lane_step-cost() {  # instructions of one control step are within their limits
     --note "$logs/$lane.note"
 }
 
-lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, bad input
+lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, wrong input
   build release flexarm flexarm-study flexarmd
   ctest --preset e2e
 }
@@ -163,7 +164,7 @@ lane_bench() {  # benchmarks; the default experiment runs 100 times faster than 
   python3 tests/bench/bench_report.py --build build/release --note "$logs/$lane.note"
 }
 
-lane_headers() {  # public headers that changed of late compile on their own
+lane_headers() {  # public headers that changed recently compile on their own
   build release flexarm_build_info
   tools/lint/headers.py --changed --jobs "$jobs" --note "$logs/$lane.note"
 }
@@ -177,7 +178,7 @@ lane_install() {  # cmake --install leaves a complete tree, and systemd accepts 
   tests/e2e/install_check.sh build/release
 }
 
-lane_build-cost() {  # what the product costs the compiler is within the committed figures
+lane_build-cost() {  # the compile time of the product is within the committed figures
   build release flexarm_build_info
   tools/lint/build_cost.py --jobs "$jobs" --note "$logs/$lane.note"
 }
@@ -199,8 +200,8 @@ lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop
   local folders folder
   build asan
   use_environment_of asan
-  # All folders that have tests to run; the folders in hal run with it. Left out:
-  # figures of whole simulations, which the release build checks.
+  # All folders that have tests; the folders in hal run with it. Left out: figures of whole
+  # simulations, which the release build checks.
   mapfile -t folders < <(git ls-files 'tests/*/CMakeLists.txt' | xargs -n 1 dirname |
                          grep -vxE 'tests/(bench|guest|controller|hal/.*)')
   for folder in "${folders[@]}"; do
@@ -226,17 +227,17 @@ lane_separate() {  # every source compiles by itself, without batches
 product=(model hal estimator controller config tools)
 
 tidy() {  # tidy OPTION.. FOLDER..: a finding is an error (WarningsAsErrors)
-  # Commands of the files themselves: the release build's are those of batches.
+  # Uses the compile commands of single files: the release build compiles batches.
   build separate flexarm_build_info
   tools/lint/tidy.py --jobs "$jobs" --note "$logs/$lane.note" "$@"
 }
 
-# In CI the time is limited; what it leaves is named, and clang-tidy-all checks it.
-lane_clang-tidy() {  # .clang-tidy on files of the product that changed of late
+# In CI the time is limited; the files left out are named, and clang-tidy-all checks them.
+lane_clang-tidy() {  # .clang-tidy on files of the product that changed recently
   tidy --changed --within 450 "${product[@]}"
 }
 
-lane_clang-tidy-all() {  # .clang-tidy on product and tests; not again where unchanged
+lane_clang-tidy-all() {  # .clang-tidy on product and tests; unchanged files are skipped
   tidy "${product[@]}" tests
 }
 

@@ -7,11 +7,11 @@
 
 namespace flexarm {
 
-/// What became of a frame that was to be sent. Only kSent is good; none of them waits.
+/// Result of sending a frame. Only kSent is success; no call waits.
 enum class SendResult : std::uint8_t {
   kSent,       ///< handed to the transmit queue
-  kQueueFull,  ///< ENOBUFS, EAGAIN: nobody acknowledges, or the bus is too busy
-  kFailed,     ///< the interface is down or gone
+  kQueueFull,  ///< ENOBUFS, EAGAIN: no node acknowledges, or the bus is overloaded
+  kFailed,     ///< the interface is down or was removed
 };
 
 /// State of the CAN controller.
@@ -21,12 +21,12 @@ enum class CanState : std::uint8_t { kActive, kPassive, kBusOff, kDown };
 struct CanCounts {
   std::uint64_t sent = 0;
   std::uint64_t received = 0;
-  std::uint64_t queue_full = 0;    ///< sends refused
-  std::uint64_t error_frames = 0;  ///< reports of the controller, or of the kernel
+  std::uint64_t queue_full = 0;    ///< rejected sends
+  std::uint64_t error_frames = 0;  ///< error reports of the controller or of the kernel
 };
 
-/// One end of a CAN bus, with its clock: a driver never asks for the time elsewhere, so that a test
-/// can give it. Thread: one. Nothing waits but WaitUntil; Open and Restart may take milliseconds.
+/// One end of a CAN bus, with its clock: a driver takes the time from here only, so that a test can
+/// set it. Thread: one. Only WaitUntil waits; Open and Restart may take milliseconds.
 class CanBus {
  public:
   virtual ~CanBus() = default;
@@ -36,26 +36,26 @@ class CanBus {
   /// CLOCK_MONOTONIC, or the test's time.
   virtual std::int64_t now_ns() const noexcept = 0;
 
-  /// Joins the bus, at `bitrate_bps` if it has one. From now on frames with one of `ids` are
-  /// received and no others; the own ones among them too, as their echo.
+  /// Joins the bus, at `bitrate_bps` if it has a bit rate. Then only frames with one of `ids` are
+  /// received, including the echo of the frames sent from this end.
   /// @throws HalError
   virtual void Open(std::span<const std::uint32_t> ids, int bitrate_bps) = 0;
 
   [[nodiscard]] virtual SendResult Send(const CanFrame& frame) noexcept = 0;
 
-  /// The oldest frame that has come, if there is one.
+  /// Takes the oldest received frame; false if there is none.
   virtual bool Receive(ReceivedFrame* received) noexcept = 0;
 
-  /// Returns at `instant_ns`, or as soon as there may be a frame to receive.
+  /// Returns at `instant_ns`, or earlier if a frame may have been received.
   virtual void WaitUntil(std::int64_t instant_ns) noexcept = 0;
 
-  /// As the last error frame and the interface say.
+  /// State from the last error frame and the interface.
   virtual CanState state() noexcept = 0;
 
-  /// Frames of this end still wait to go out.
+  /// True while frames of this end wait for transmission.
   virtual bool unsent() noexcept = 0;
 
-  /// Throws away every frame that waits to be sent, and leaves bus-off. Only while disarmed.
+  /// Drops all frames that wait for transmission, and leaves bus-off. Only while disarmed.
   /// False if that is not possible (yet).
   virtual bool Restart() noexcept = 0;
 

@@ -17,14 +17,14 @@ struct CanFrame {
   friend bool operator==(const CanFrame&, const CanFrame&) = default;
 };
 
-/// A frame as it came from the bus.
+/// A frame received from the bus.
 struct ReceivedFrame {
   CanFrame frame;
   std::int64_t at_ns;  ///< end of the frame on the bus, CLOCK_MONOTONIC
-  bool own;            ///< the echo of a frame that this end has sent
+  bool own;            ///< echo of a frame sent from this end
 };
 
-/// Unsigned number at `offset`, least significant byte first, as CANopen has it.
+/// Unsigned number at `offset`, least significant byte first, as in CANopen.
 template <std::unsigned_integral Number>
 constexpr Number LoadLe(std::span<const std::uint8_t> bytes, std::size_t offset) noexcept {
   std::uint64_t value = 0;
@@ -42,7 +42,7 @@ constexpr void StoreLe(std::span<std::uint8_t> bytes, std::size_t offset, Number
   }
 }
 
-/// Longest time that a frame of `length` data bytes takes, in bits: 47 + 8 n of frame and pause,
+/// Longest duration of a frame with `length` data bytes, in bits: 47 + 8 n of frame and pause,
 /// and a stuff bit after every fourth bit of the 34 + 8 n that are stuffed.
 constexpr int WorstCaseBits(int length) noexcept { return 47 + 8 * length + (33 + 8 * length) / 4; }
 

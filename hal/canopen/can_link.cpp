@@ -24,7 +24,7 @@ struct Request {
   ifinfomsg link;
 };
 
-// Answers come in one datagram each.
+// Each answer is one datagram.
 class RouteSocket {
  public:
   RouteSocket() : fd_(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE)) {}

@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// What the kernel says of a CAN interface, over rtnetlink.
+/// Properties of a CAN interface as the kernel reports them over rtnetlink.
 struct CanLink {
   bool up;
   bool controller;               ///< has a CAN controller: not a virtual interface
@@ -18,13 +18,13 @@ struct CanLink {
   std::uint32_t restart_ms;      ///< bus-off recovery by the kernel, 0: none
 };
 
-/// Asks the kernel; waits for whoever configures interfaces at the time. False, with errno, if
-/// there is no such interface. Not on a cyclic path.
+/// Queries the kernel; may wait for other processes that configure interfaces. False, with errno,
+/// if there is no such interface. Not on a cyclic path.
 bool ReadCanLink(const std::string& interface, CanLink* link) noexcept;
 
-/// Takes the interface down and up again: every queued frame is dropped, in the queue as in the
-/// controller, and a controller that was bus-off starts anew. Needs CAP_NET_ADMIN. A driver may
-/// take milliseconds. False, with errno, if the kernel refuses.
+/// Takes the interface down and up again: every queued frame is dropped, in the queue and in the
+/// controller, and a controller in bus-off restarts. Needs CAP_NET_ADMIN. A driver may take
+/// milliseconds. False, with errno, if the kernel rejects the request.
 bool RestartCanLink(int index) noexcept;
 
 }  // namespace flexarm

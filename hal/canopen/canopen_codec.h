@@ -25,7 +25,7 @@ constexpr std::uint32_t CobId(std::uint32_t function, int node_id) noexcept {
 
 inline constexpr int kMaxNodeId = 127;
 
-/// What an NMT master can order.
+/// NMT commands of a master.
 enum class NmtCommand : std::uint8_t {
   kStart = 0x01,
   kStop = 0x02,
@@ -34,7 +34,7 @@ enum class NmtCommand : std::uint8_t {
   kResetCommunication = 0x82,
 };
 
-/// What a heartbeat says of its node.
+/// NMT state of a node as its heartbeat reports it.
 enum class NmtState : std::uint8_t {
   kBooting = 0x00,  ///< the boot-up message
   kStopped = 0x04,
@@ -42,26 +42,26 @@ enum class NmtState : std::uint8_t {
   kPreOperational = 0x7F,
 };
 
-/// An NMT order as received.
+/// A received NMT command.
 struct NmtOrder {
   NmtCommand command;
   int node_id;  ///< 0: all
 };
 
-/// An emergency message. Code 0 says that the error has gone.
+/// An emergency message. Code 0: the error is cleared.
 struct Emergency {
   std::uint16_t code;
   std::uint8_t error_register;
   std::array<std::uint8_t, 5> vendor_bytes;
 };
 
-/// What a drive is told: RPDO 1, mapped 6040, 6071.
+/// Command to a drive: RPDO 1, mapped 6040, 6071.
 struct DriveCommand {
   std::uint16_t controlword;
   std::int16_t torque_per_mille;  ///< of the rated torque, in the motor's sense
 };
 
-/// What a drive answers to SYNC: TPDO 1, mapped 6041, 6064, 6077.
+/// A drive's reply to SYNC: TPDO 1, mapped 6041, 6064, 6077.
 struct DriveFeedback {
   std::uint16_t statusword;
   std::int32_t position_counts;

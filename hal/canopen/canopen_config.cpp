@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kCommandBytes = 4, kFeedbackBytes = 8, kEncoderBytes = 4, kEmergencyBytes = 8;
 
-// What the nodes need to answer, beside the bus: drives latch and send within half a millisecond.
+// Answer time of the nodes, besides the bus: drives sample and send within half a millisecond.
 constexpr double kNodeAnswer_ms = 0.5;
-// Computing, draining the queue, waking up late at FIFO 70.
+// Computing, emptying the queue, waking up late at FIFO 70.
 constexpr std::int64_t kMargin_ns = 1'000'000;
 constexpr double kMostLoad = 0.6;
 
@@ -44,7 +44,7 @@ void CheckEncoder(const CanopenNodeConfig& node, const std::string& row, Problem
                     node.gear == 0.0 && !node.position_is_rotor,
                 row + ".role", CanopenRoleName(node.role),
                 "must have no torque_per_mille_nm, sign, torque_range_nm, gear or "
-                "position_is_rotor: those are a drive's");
+                "position_is_rotor: only drives have them");
 }
 
 void CheckNodes(const CanopenConfig& config, ProblemList* list) {
@@ -62,14 +62,14 @@ void CheckNodes(const CanopenConfig& config, ProblemList* list) {
     for (std::size_t k = 0; k < i; ++k) {
       const CanopenNodeConfig& other = config.node[k];
       list->Require(node.node_id != other.node_id, row + ".node_id", NumberText(node.node_id),
-                    "must be used once: " + ProblemList::Element("node", k) + " has it too");
+                    "must be used once: " + ProblemList::Element("node", k) + " uses it too");
       list->Require(node.role != other.role, row + ".role", CanopenRoleName(node.role),
-                    "must be used once: " + ProblemList::Element("node", k) + " has it too");
+                    "must be used once: " + ProblemList::Element("node", k) + " uses it too");
       list->Require(
           node.role == other.role || node.counter() < 0 || node.counter() != other.counter(),
           row + ".position_is_rotor", CanopenRoleName(node.role),
-          "must leave the counter to " + ProblemList::Element("node", k) +
-              ", which feeds it already");
+          "must be left to " + ProblemList::Element("node", k) +
+              ", which already reads this counter");
     }
     IsDrive(node.role) ? CheckDrive(node, row, list) : CheckEncoder(node, row, list);
   }
@@ -81,19 +81,20 @@ void CheckTimes(const CanopenConfig& config, ProblemList* list) {
                config.period_ms / 2.0,
                "the frames of one exchange take " + NumberText(wire_ms) +
                    " ms at worst, the nodes half a millisecond; the other half of the period is "
-                   "not the bus's");
-  list->Within("sdo_timeout_ms", config.sdo_timeout_ms, 1, 1000, "a node's answer to one SDO");
+                   "reserved for the rest of the loop");
+  list->Within("sdo_timeout_ms", config.sdo_timeout_ms, 1, 1000,
+               "time-out of a node's answer to one SDO");
   list->Within("boot_timeout_ms", config.boot_timeout_ms, 10, 60000,
-               "from a node's reset to its boot-up message");
+               "time from a node's reset to its boot-up message");
   list->Within("node_heartbeat_ms", config.node_heartbeat_ms, 5, 1000,
-               "producer heartbeat time of the nodes; 0 would be none");
+               "producer heartbeat time of the nodes; 0 would mean none");
   list->Within("node_timeout_ms", config.node_timeout_ms, 2 * config.node_heartbeat_ms, 2000,
-               "at least two heartbeats, or a single lost frame is a lost node");
-  // A drive's timer runs on while one heartbeat is late by a whole period.
+               "at least two heartbeats, or one lost frame would count as a lost node");
+  // A drive's timer keeps running while one heartbeat is late by a whole period.
   const int least = static_cast<int>(std::ceil(2.5 * config.period_ms));
   list->Within("master_timeout_ms", config.master_timeout_ms, least, std::max(least, 200),
-               "two and a half periods at least, or one late heartbeat stops the arm; above 200 ms "
-               "a dead daemon's torque would last too long");
+               "at least two and a half periods, or one late heartbeat stops the arm; above 200 ms "
+               "the torque of a dead daemon would last too long");
 }
 
 }  // namespace
@@ -134,7 +135,7 @@ std::int64_t CanopenConfig::wire_time_ns(const CanopenNodeConfig& n) const noexc
 }
 
 std::int64_t CanopenConfig::wire_time_ns() const noexcept {
-  // Foreign, SYNC, heartbeat.
+  // A foreign frame, SYNC, heartbeat.
   const int bits = WorstCaseBits(8) + WorstCaseBits(0) + WorstCaseBits(1);
   std::int64_t time_ns = std::int64_t{bits} * 1'000'000'000 / std::max(bitrate_bps, 1);
   for (const CanopenNodeConfig& n : node) time_ns += wire_time_ns(n);
@@ -162,18 +163,18 @@ std::vector<Problem> CanopenConfig::Problems(const std::string& section) const {
   list.Require(!interface.empty() && interface.size() <= 15, "interface", interface,
                "must name a CAN interface, at most 15 characters");
   constexpr std::array kBitrates = {125'000, 250'000, 500'000, 800'000, 1'000'000};
-  list.Require(
-      std::find(kBitrates.begin(), kBitrates.end(), bitrate_bps) != kBitrates.end(), "bitrate_bps",
-      NumberText(bitrate_bps),
-      "must be 125000, 250000, 500000, 800000 or 1000000: CiA 301's rates that leave time");
+  list.Require(std::find(kBitrates.begin(), kBitrates.end(), bitrate_bps) != kBitrates.end(),
+               "bitrate_bps", NumberText(bitrate_bps),
+               "must be 125000, 250000, 500000, 800000 or 1000000: the bit rates of CiA 301 that "
+               "are fast enough");
   list.Within("period_ms", period_ms, 1.0, 100.0, "period of the loop");
   list.Within("master_node_id", master_node_id, 1, kMaxNodeId, "the daemon's own node id");
   CheckNodes(*this, &list);
-  if (!list.empty()) return list.Take();  // times are computed from what has to be right first
+  if (!list.empty()) return list.Take();  // times need valid values
   CheckTimes(*this, &list);
   list.Require(bus_load() <= kMostLoad, "bitrate_bps", NumberText(bitrate_bps),
-               "must carry the nodes at " + NumberText(kMostLoad) +
-                   " of the bus's time or less: " + NumberText(bus_load()) + " are used");
+               "must use at most " + NumberText(kMostLoad) +
+                   " of the bus's time: " + NumberText(bus_load()) + " are used");
   return list.Take();
 }
 

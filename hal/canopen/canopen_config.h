@@ -8,12 +8,12 @@
 
 namespace flexarm {
 
-/// What a node is to the rig. Drives first, then the encoders in the order of the frame's counters.
+/// Role of a node. Drives first, then the encoders in the order of the frame's counters.
 enum class CanopenRole : std::uint8_t { kDrive1, kDrive2, kHub1, kHub2, kRotor1, kRotor2 };
 
 inline constexpr int kMaxCanopenNodes = 8;
 
-/// "drive1", "drive2", "hub1", "hub2", "rotor1", "rotor2": as key `role` has it.
+/// "drive1", "drive2", "hub1", "hub2", "rotor1", "rotor2": values of the key `role`.
 const char* CanopenRoleName(CanopenRole role) noexcept;
 
 constexpr bool IsDrive(CanopenRole role) noexcept { return role <= CanopenRole::kDrive2; }
@@ -26,14 +26,15 @@ struct CanopenNodeConfig {
   std::uint32_t product;  ///< 1018:2
   std::uint32_t serial;   ///< 1018:4, or 0: any
 
-  // Drives only; absent (0, false) from an encoder.
+  // Drives only; not set (0, false) for an encoder.
   double torque_per_mille_nm;  ///< torque at the gearbox output per 0.1 % of rated torque, > 0
   int sign;                ///< +1: positive motor torque turns the joint counter-clockwise; or -1
-  double torque_range_nm;  ///< most torque at the gearbox output, either way; drive's object 6072
+  double torque_range_nm;  ///< largest torque at the gearbox output, both directions; drive's
+                           ///< object 6072
   double gear;             ///< turns of the motor per turn of the joint, 1: direct drive
   bool position_is_rotor;  ///< 6064 is the counter of the joint's rotor
 
-  /// Counter of the frame that the node feeds, or -1.
+  /// Counter of the frame that the node's position provides, or -1.
   int counter() const noexcept;
   /// Rated torque of the motor (6076) that fits torque_per_mille_nm and gear.
   double rated_motor_torque_mnm() const noexcept { return torque_per_mille_nm * 1e6 / gear; }
@@ -44,28 +45,29 @@ struct CanopenNodeConfig {
 /// One CAN interface and its nodes: [[hal.canopen]].
 struct CanopenConfig {
   std::string interface;     ///< "can0"
-  int bitrate_bps;           ///< as the interface is set up; a virtual one has none
+  int bitrate_bps;           ///< bit rate of the interface; a virtual one has none
   double period_ms;          ///< of the exchanges, and of the master's heartbeat
-  int master_node_id;        ///< of the daemon
-  double answer_timeout_ms;  ///< from the begin of an exchange until every node has answered SYNC
+  int master_node_id;        ///< node id of the daemon
+  double answer_timeout_ms;  ///< from the start of an exchange until every node has answered SYNC
   int sdo_timeout_ms;        ///< a node's answer to one SDO
   int boot_timeout_ms;       ///< from a node's reset to its boot-up message
-  int node_heartbeat_ms;     ///< the nodes' own
-  int node_timeout_ms;       ///< without one, a node is lost
-  int master_timeout_ms;     ///< without the master's, a drive removes its torque by itself
+  int node_heartbeat_ms;     ///< heartbeat period of the nodes
+  int node_timeout_ms;       ///< a node without heartbeat for so long is lost
+  int master_timeout_ms;     ///< without the master's heartbeat for so long, a drive removes its
+                             ///< torque
   std::vector<CanopenNodeConfig> node;
 
-  /// Longest time on the wire of everything that one exchange moves, and of what may get in
-  /// between: a heartbeat and an emergency of every node, and one frame that had already begun.
+  /// Longest time on the wire of all frames of one exchange, and of frames that may interleave: a
+  /// heartbeat and an emergency of every node, and one frame that had already begun.
   std::int64_t wire_time_ns() const noexcept;
-  /// The part of one node.
+  /// The part of one node in that time.
   std::int64_t wire_time_ns(const CanopenNodeConfig& n) const noexcept;
-  /// Part of the bus's time that is used, 0..1, every frame at its longest.
+  /// Bus load, 0..1, with every frame at its longest.
   double bus_load() const noexcept;
   /// Bound of CanopenDevice::Exchange.
   std::int64_t worst_case_exchange_ns() const noexcept;
 
-  /// Broken rules. `section` stands before every key, e.g. "hal.canopen[0].".
+  /// Violated rules. `section` is the prefix of every key, e.g. "hal.canopen[0].".
   std::vector<Problem> Problems(const std::string& section) const;
 };
 

@@ -10,14 +10,14 @@
 namespace flexarm {
 namespace {
 
-// One lost frame happens on any bus; three in a row at 50 Hz is 60 ms without a drive.
+// A single lost frame can occur on any bus; three in a row at 50 Hz are 60 ms without a drive.
 constexpr int kMissedIsSilent = 3;
 constexpr int kStuckIsFault = 3;
 // A drive charges its intermediate circuit or releases a brake: a second at 50 Hz.
 constexpr int kPatienceToEnable = 50;
 constexpr int kPatienceToDisable = 5;
 constexpr int kResetsBeforeSetup = 6;
-// More than a full socket holds: a flood cannot keep one call busy.
+// More than a full socket holds: bounds the time of a call under a flood of frames.
 constexpr int kMostFrames = 1024;
 
 }  // namespace
@@ -86,7 +86,7 @@ BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexce
   if (BusIsGone()) return FaultStatus();
   CheckHeartbeats();
   first_ = false;
-  // Also what has latched just now, while draining.
+  // Includes faults that latched just now, while draining.
   if (fault_.kind != CanopenFaultKind::kNone && wish == DriveWish::kOn) wish = DriveWish::kOff;
   if (bus_->unsent() || !Send(wish, command)) return Stuck();
   Collect(until_ns);
@@ -138,7 +138,7 @@ bool CanopenDevice::Send(DriveWish wish, const BusCommand& command) noexcept {
 }
 
 void CanopenDevice::Collect(std::int64_t until_ns) noexcept {
-  // A node that has missed a SYNC may answer twice: the whole time is waited for the second.
+  // A node that has missed a SYNC may answer twice: wait the whole time for the second answer.
   const auto complete = [this] {
     return sampled_ns_ != 0 && std::all_of(nodes().begin(), nodes().end(), [](const Node& node) {
              return node.answered && node.missed == 0;
@@ -227,7 +227,7 @@ BusStatus CanopenDevice::ConfigureAnew() noexcept {
   if (!configuring_) {
     const CanState state = bus_->state();
     const bool well = state == CanState::kActive || state == CanState::kPassive;
-    // The restart may take the time of a whole call: the nodes come with the next one.
+    // The restart may take the time of a whole call: the next call configures the nodes.
     if ((!well || bus_->unsent()) && !bus_->Restart()) return FaultStatus();
     setup_.Begin();
     configuring_ = true;
@@ -268,7 +268,7 @@ BusStatus CanopenDevice::ResetFaults() noexcept {
   return BusStatus::kOk;
 }
 
-// What has not latched yet is of one exchange: who did not answer, or not well.
+// Faults that have not latched yet are of one exchange: a node did not answer, or sent a bad reply.
 BusFault CanopenDevice::FaultOf(BusStatus /*status*/) const noexcept {
   using enum CanopenFaultKind;
   if (fault_.kind != kNone) return Packed(fault_);
@@ -296,8 +296,8 @@ void CanopenDevice::Close() noexcept {
     static_cast<void>(bus_->Send(CommandFor(node, DriveWish::kOff, off)));
   }
   static_cast<void>(bus_->Send(EncodeSync()));
-  // Without the cyclic traffic a drive is to be out of the operational state. No more than the
-  // drives: a socket takes about six frames at once.
+  // Without the cyclic traffic a drive must not be in the operational state. Only the drives: a
+  // socket holds about six frames.
   for (const Node& node : nodes()) {
     if (!IsDrive(node.config->role)) continue;
     static_cast<void>(bus_->Send(EncodeNmt(NmtCommand::kPreOperational, node.config->node_id)));

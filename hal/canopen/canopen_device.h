@@ -16,25 +16,26 @@
 
 namespace flexarm {
 
-/// Frames that were not taken, since Open.
+/// Counts of rejected and missing frames since Open.
 struct CanopenCounts {
-  std::uint32_t stale = 0;       ///< PDOs of before the SYNC, dropped by their time stamp
+  std::uint32_t stale = 0;       ///< PDOs from before the SYNC, rejected by their time stamp
   std::uint32_t duplicated = 0;  ///< second answers to one SYNC
-  std::uint32_t malformed = 0;   ///< of a length or content that the protocol does not have
-  std::uint32_t missed = 0;      ///< answers that did not come in time
+  std::uint32_t malformed = 0;   ///< wrong length or content
+  std::uint32_t missed = 0;      ///< answers that did not arrive in time
 };
 
-/// The CANopen nodes of one interface: drives in cyclic synchronous torque mode, encoders.
+/// Driver of the CANopen nodes of one interface: drives in cyclic synchronous torque mode,
+/// encoders.
 ///
-/// One exchange: torque and controlword to each drive, SYNC, the daemon's heartbeat; then the PDOs
-/// that answer SYNC, until all have come or the answer time is over. All nodes latch, and all
-/// drives act, at the SYNC: it is the sampling instant, and every offset is 0.
+/// One exchange: torque and controlword to each drive, SYNC, the daemon's heartbeat; then it
+/// receives the PDOs that answer SYNC, until all have arrived or the answer time is over. All nodes
+/// sample, and all drives act, at the SYNC: it is the sampling instant, and every offset is 0.
 ///
-/// Torque goes out only while enabled and only to a drive that said "operation enabled" in the last
-/// exchange. A fault latches: drives are told off until Reconnect, which may be called while
-/// disarmed only; it resets the drives' faults, or configures all nodes anew if one was lost. If
-/// the last frames have not gone out, nothing is added to them: at most one exchange can be queued,
-/// and Reconnect throws that away. If the daemon dies, the drives miss its heartbeat (1016) and
+/// Torque is sent only while enabled and only to a drive that reported "operation enabled" in the
+/// last exchange. A fault latches: drives are switched off until Reconnect, which may be called
+/// while disarmed only; it resets the drives' faults, or configures all nodes again if one was
+/// lost. While the last frames wait for transmission no frames are added: at most one exchange is
+/// queued, and Reconnect drops it. If the daemon dies, the drives miss its heartbeat (1016) and
 /// remove their torque (6007) within master_timeout_ms.
 class CanopenDevice : public BusDevice {
  public:
@@ -53,14 +54,15 @@ class CanopenDevice : public BusDevice {
   std::string FaultText(const BusFault& fault) const override;
   void Close() noexcept override;
 
-  /// What latched, for the log. Thread: the bus's.
+  /// The latched fault, for the log. Thread: the bus's.
   const CanopenFault& fault() const noexcept { return fault_; }
   const CanopenCounts& counts() const noexcept { return counts_; }
   const CanCounts& bus_counts() const noexcept { return bus_->counts(); }
   const CanopenConfig& config() const noexcept { return config_; }
-  /// State of the drive of joint `joint` (0, 1) at the last exchange; kUnknown if it is elsewhere.
+  /// State of the drive of joint `joint` (0, 1) at the last exchange; kUnknown if it is not on this
+  /// bus.
   DriveState drive_state(int joint) const noexcept;
-  /// Torque that it says it makes, at the gearbox output, positive as the joint.
+  /// Torque reported by the drive, at the gearbox output, positive as the joint.
   double drive_torque_nm(int joint) const noexcept;
 
  private:
@@ -72,9 +74,9 @@ class CanopenDevice : public BusDevice {
     std::uint32_t counts = 0;
     std::int64_t heartbeat_ns = 0;
     bool answered = false;     // this SYNC
-    bool was_enabled = false;  // has been in operation since it was last told off
-    int missed = 0;            // SYNCs in a row
-    int waiting = 0;           // exchanges that it does not follow the controlword
+    bool was_enabled = false;  // was in operation since it was last switched off
+    int missed = 0;            // SYNCs in a row without answer
+    int waiting = 0;           // exchanges in a row without following the controlword
   };
 
   std::span<Node> nodes() noexcept { return std::span(nodes_).first(node_count_); }
@@ -84,7 +86,7 @@ class CanopenDevice : public BusDevice {
   void Latch(CanopenFaultKind kind, const Node* node, unsigned code) noexcept;
   BusStatus FaultStatus() const noexcept { return StatusOf(config_, fault_); }
 
-  /// One SYNC with its answers. kOk: everybody has answered.
+  /// One SYNC with its answers. kOk: all nodes have answered.
   BusStatus Cycle(DriveWish wish, const BusCommand& command) noexcept;
   void Drain(std::int64_t until_ns) noexcept;
   bool Send(DriveWish wish, const BusCommand& command) noexcept;
@@ -113,14 +115,14 @@ class CanopenDevice : public BusDevice {
   std::size_t node_count_ = 0;
   std::uint32_t drives_ = 0;
   bool open_ = false;
-  bool first_ = true;                // no exchange yet: the nodes' time-outs begin with it
-  bool configuring_ = false;         // Reconnect is in the middle of it
+  bool first_ = true;                // no exchange yet: the nodes' time-outs start with the first
+  bool configuring_ = false;         // Reconnect has begun the configuration
   int resets_ = 0;                   // attempts to reset the drives' faults
-  int stuck_ = 0;                    // exchanges in a row whose frames did not go out
-  const Node* malformed_ = nullptr;  // whose PDO was none, in this exchange
+  int stuck_ = 0;                    // exchanges in a row whose frames were not sent
+  const Node* malformed_ = nullptr;  // node with a malformed PDO in this exchange
   bool collecting_ = false;
   std::int64_t sync_sent_ns_ = 0;
-  std::int64_t sampled_ns_ = 0;  // the SYNC's end on the bus; 0: it has not gone out
+  std::int64_t sampled_ns_ = 0;  // the SYNC's end on the bus; 0: not sent yet
   CanopenFault fault_;
   CanopenCounts counts_;
 };

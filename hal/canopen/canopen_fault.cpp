@@ -25,7 +25,7 @@ const char* Words(CanopenFaultKind kind) {
     case CanopenFaultKind::kNotOperational:
       return "left the operational state, NMT state";
     case CanopenFaultKind::kSilent:
-      return "answers no SYNC";
+      return "does not answer SYNC";
     case CanopenFaultKind::kDriveFault:
       return "drive in fault, statusword";
     case CanopenFaultKind::kLeftOperation:
@@ -35,19 +35,19 @@ const char* Words(CanopenFaultKind kind) {
     case CanopenFaultKind::kNotDisabled:
       return "does not switch its torque off, statusword";
     case CanopenFaultKind::kSecondMaster:
-      return "somebody else sends SYNC";
+      return "another node sends SYNC";
     case CanopenFaultKind::kTransmitStuck:
-      return "frames do not go out, no node acknowledges";
+      return "frames are not sent, no node acknowledges";
     case CanopenFaultKind::kBusOff:
       return "the CAN controller has left the bus (bus-off)";
     case CanopenFaultKind::kInterfaceDown:
       return "the interface is down";
     case CanopenFaultKind::kMalformed:
-      return "sends a PDO that is none";
+      return "sends a malformed PDO";
     case CanopenFaultKind::kSetupRefused:
-      return "is not, or does not become, what the config says, object";
+      return "does not match the config, object";
     case CanopenFaultKind::kSetupSilent:
-      return "does not answer while it is configured, object";
+      return "does not answer during its configuration, object";
   }
   return "?";
 }

@@ -2,7 +2,7 @@
 
 #include "hal/canopen/canopen_device.h"
 
-// CanopenDevice: what it makes of each frame that comes.
+// CanopenDevice: handling of received frames.
 
 namespace flexarm {
 namespace {
@@ -23,7 +23,7 @@ void CanopenDevice::Handle(const ReceivedFrame& received) noexcept {
     case kCobHeartbeat:
       return HandleHeartbeat(received, node);
     default:
-      return;  // an SDO answer that came too late
+      return;  // a late SDO answer
   }
 }
 
@@ -39,7 +39,7 @@ void CanopenDevice::HandleFeedback(const ReceivedFrame& received, Node* node) no
   }
   if (node->answered) {
     ++counts_.duplicated;
-    // After a miss the first may be the late answer to the SYNC before; a node sends in order.
+    // After a miss the first may be the late answer to the previous SYNC; a node sends in order.
     if (node->missed == 0) return;
   }
   const bool answered_before = node->answered;
@@ -65,7 +65,7 @@ void CanopenDevice::HandleEmergency(const ReceivedFrame& received, const Node* n
   const auto emergency = DecodeEmergency(received.frame);
   if (!emergency) {
     ++counts_.malformed;
-  } else if (emergency->code != 0) {  // 0: the error has gone; the statusword says so too
+  } else if (emergency->code != 0) {  // 0: the error is cleared; the statusword shows it too
     Latch(CanopenFaultKind::kEmergency, node, emergency->code);
   }
 }

@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-/// State of a CiA 402 drive. kUnknown: no pattern of the profile fits the statusword.
+/// State of a CiA 402 drive. kUnknown: the statusword matches no pattern of the profile.
 enum class DriveState : std::uint8_t {
   kUnknown,
   kNotReady,
@@ -17,11 +17,11 @@ enum class DriveState : std::uint8_t {
   kFault,
 };
 
-/// What is wanted of a drive.
+/// Requested state of a drive.
 enum class DriveWish : std::uint8_t {
-  kOff,         ///< no voltage on the motor, at once
+  kOff,         ///< voltage off, immediately
   kOn,          ///< operation enabled, one transition at a time; a fault is never reset
-  kResetFault,  ///< a drive in fault leaves it, any other is switched off
+  kResetFault,  ///< a drive in fault is reset, any other is switched off
 };
 
 /// Controlwords of CiA 402.
@@ -31,7 +31,7 @@ inline constexpr std::uint16_t kControlSwitchOn = 0x07;
 inline constexpr std::uint16_t kControlEnableOperation = 0x0F;
 inline constexpr std::uint16_t kControlFaultReset = 0x80;  ///< acts on the rising edge of its bit
 
-/// State that a statusword (6041) says: bits 0 to 3, 5 and 6.
+/// State of a statusword (6041): bits 0 to 3, 5 and 6.
 constexpr DriveState DecodeDriveState(std::uint16_t statusword) noexcept {
   using enum DriveState;
   switch (statusword & 0x4FU) {
@@ -65,7 +65,7 @@ constexpr std::uint16_t EncodeDriveState(DriveState state) noexcept {
   using enum DriveState;
   switch (state) {
     case kUnknown:
-      return 0x0020;  // a pattern of no state
+      return 0x0020;  // not a pattern of any state
     case kNotReady:
       return 0x0000;
     case kSwitchOnDisabled:
@@ -86,7 +86,7 @@ constexpr std::uint16_t EncodeDriveState(DriveState state) noexcept {
   return 0x0020;
 }
 
-/// Controlword that takes a drive one transition nearer to what is wanted.
+/// Controlword that moves a drive one transition towards the requested state.
 constexpr std::uint16_t ControlwordFor(DriveState state, DriveWish wish) noexcept {
   using enum DriveState;
   if (wish == DriveWish::kResetFault && state == kFault) return kControlFaultReset;
@@ -101,7 +101,7 @@ constexpr std::uint16_t ControlwordFor(DriveState state, DriveWish wish) noexcep
       return kControlEnableOperation;
     case kUnknown:
     case kNotReady:
-    case kQuickStopActive:  // out of it by way of "switch on disabled" only
+    case kQuickStopActive:  // leaves it through "switch on disabled" only
     case kFaultReactionActive:
     case kFault:
       return kControlDisableVoltage;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kProfileMask = 0xFFFF;
 constexpr std::uint32_t kProfileDrive = 402, kProfileEncoder = 406;
-constexpr int kPdosByDefault = 4;  // of the predefined connection set
+constexpr int kPdosByDefault = 4;  // PDOs of the predefined connection set
 
 using Steps = std::vector<SetupStep>;
 
@@ -57,7 +57,7 @@ void AddPdo(std::uint16_t communication, std::uint16_t mapping, std::uint32_t co
   steps->push_back(cob(cob_id));
 }
 
-// What is not used must not be sent, nor be taken from anybody.
+// Unused PDOs must be neither sent nor received.
 void AddPdosOff(std::uint16_t communication, std::uint32_t first_cob_id, Steps* steps) {
   for (int pdo = 1; pdo < kPdosByDefault; ++pdo) {
     const auto index = static_cast<std::uint16_t>(communication + pdo);
@@ -75,8 +75,8 @@ void AddDrive(const CanopenConfig& config, const CanopenNodeConfig& node, Steps*
   const double rated_mnm = node.rated_motor_torque_mnm();
   steps->push_back(Expect("rated motor torque in mN m", kObjectRatedTorque,
                           static_cast<std::uint32_t>(std::lround(rated_mnm))));
-  // 5 %: the gearbox's losses are in torque_per_mille_nm and not in the drive's figure; a wrong
-  // gear or a wrong motor is off by far more.
+  // 5 %: torque_per_mille_nm includes the gearbox's losses, the drive's figure does not; a wrong
+  // gear or a wrong motor differs by far more.
   steps->back().tolerance = static_cast<std::uint32_t>(std::lround(0.05 * rated_mnm)) + 1;
   AddPdo(kObjectRpdoCommunication, kObjectRpdoMapping, CobId(kCobRpdo, node.node_id),
          {MappingEntry(kObjectControlword, 16), MappingEntry(kObjectTargetTorque, 16)}, steps);
@@ -87,7 +87,7 @@ void AddDrive(const CanopenConfig& config, const CanopenNodeConfig& node, Steps*
          steps);
   steps->push_back(Write("mode of operation", kObjectMode, 1, kCyclicTorqueMode));
   steps->push_back(Expect("mode of operation in force", kObjectModeDisplay, kCyclicTorqueMode));
-  steps->push_back(Write("most torque in 0.1 % of rated", kObjectMaxTorque, 2,
+  steps->push_back(Write("largest torque in 0.1 % of rated", kObjectMaxTorque, 2,
                          static_cast<std::uint32_t>(node.torque_range_per_mille())));
   steps->push_back(Write("period of the set-points", kObjectPeriodMantissa, 1,
                          static_cast<std::uint32_t>(std::lround(config.period_ms))));
@@ -223,7 +223,7 @@ void NodeSetup::Ask(Phase phase) noexcept {
 
 void NodeSetup::Handle(const ReceivedFrame& received) noexcept {
   const int node_id = config_.node[node_].node_id;
-  if (received.own || received.at_ns <= asked_ns_) return;  // an answer to an older question
+  if (received.own || received.at_ns <= asked_ns_) return;  // an answer to an older request
   if (phase_ == Phase::kListening && received.frame.id == CobId(kCobHeartbeat, node_id)) {
     const NmtState wanted =
         step().action == SetupAction::kAwaitBoot ? NmtState::kBooting : NmtState::kOperational;
@@ -243,7 +243,7 @@ void NodeSetup::HandleReply(const CanFrame& frame) noexcept {
     return step().optional && missing ? NextStep() : Fail(Failure::kAborted, reply.value);
   }
   if (reply.kind == SdoReply::Kind::kMalformed) return Fail(Failure::kMalformed, 0);
-  if (reply.kind != awaited) return;  // the answer to the write once more
+  if (reply.kind != awaited) return;  // a repeated answer to the write
   if (phase_ == Phase::kWriting) return Ask(Phase::kReading);
   const std::uint32_t found = reply.value & step().mask, expected = step().value & step().mask;
   const std::uint32_t difference = found > expected ? found - expected : expected - found;
@@ -264,13 +264,13 @@ std::string NodeSetup::FailureText() const {
     case Failure::kNone:
       break;
     case Failure::kNotSent:
-      text += ": the bus takes no frames";
+      text += ": the bus accepts no frames";
       break;
     case Failure::kNoAnswer:
       text += ": no answer";
       break;
     case Failure::kMalformed:
-      text += ": the answer is none of CiA 301's for such a value";
+      text += ": malformed answer (CiA 301)";
       break;
     case Failure::kAborted:
       text += ": refused, " + std::string(SdoAbortText(found_)) + " (0x" + Hex(found_, 8) + ")";

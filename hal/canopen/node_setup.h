@@ -11,53 +11,52 @@
 
 namespace flexarm {
 
-/// What a step of a node's start-up does.
+/// Action of a step of a node's configuration.
 enum class SetupAction : std::uint8_t {
   kResetNode,           ///< NMT: application and communication, as after power on
   kResetCommunication,  ///< NMT: an incremental encoder keeps its count
   kAwaitBoot,           ///< the boot-up message
-  kExpect,              ///< reads the object: it must have the value
-  kWrite,               ///< writes the object, and then expects the value
+  kExpect,              ///< reads the object and compares it with the value
+  kWrite,               ///< writes the object, then reads it back
   kStart,               ///< NMT: operational
-  kAwaitOperational,    ///< a heartbeat that says so
+  kAwaitOperational,    ///< a heartbeat in the operational state
 };
 
-/// One step. What is not an SDO transfer has no object.
+/// One step. A step without SDO transfer has no object.
 struct SetupStep {
   SetupAction action;
-  const char* what;  ///< for the operator
+  const char* what;  ///< text for the operator
   CanopenObject object{};
   int size = 0;  ///< of the object, bytes
   std::uint32_t value = 0;
-  std::uint32_t mask = 0xFFFF'FFFF;  ///< bits that count when it is read
-  std::uint32_t tolerance = 0;       ///< how far the value read may be off
-  bool optional = false;             ///< a node may be without the object
+  std::uint32_t mask = 0xFFFF'FFFF;  ///< bits that are compared
+  std::uint32_t tolerance = 0;       ///< largest accepted deviation of the value
+  bool optional = false;             ///< the object need not exist
 };
 
-/// Everything that is asked of a node before it may take part, in this order: identity, PDOs on
-/// SYNC and nothing else, torque mode, what it does when the daemon dies, heartbeats. Start-up
-/// only.
+/// All configuration steps of a node before operation, in this order: identity, PDOs on SYNC only,
+/// torque mode, reaction to the loss of the daemon, heartbeats. Start-up only.
 std::vector<SetupStep> SetupSteps(const CanopenConfig& config, const CanopenNodeConfig& node);
 
-/// Takes all nodes of a bus through their steps, one at a time. Advance is real-time safe: it can
-/// be left and entered again at any point. Thread: that of the bus.
+/// Configures all nodes of a bus step by step, one node at a time. Advance is real-time safe: it
+/// can be interrupted and resumed at any point. Thread: that of the bus.
 class NodeSetup {
  public:
   enum class Progress : std::uint8_t { kBusy, kDone, kFailed };
 
   NodeSetup(const CanopenConfig& config, CanBus* bus);
 
-  /// Starts over with the first node.
+  /// Restarts with the first node.
   void Begin() noexcept;
-  /// Goes on until all is done, one step has failed, or it is `until_ns`.
+  /// Continues until all steps are done, one has failed, or `until_ns`.
   Progress Advance(std::int64_t until_ns) noexcept;
 
-  /// True if the step that failed got no answer at all.
+  /// True if the step that failed got no answer.
   bool without_answer() const noexcept { return failure_ == Failure::kNoAnswer; }
-  /// Node of the step that failed, and the index of its object: 0 if it is no SDO transfer.
+  /// Node of the step that failed, and the index of its object: 0 if it is not an SDO transfer.
   int failed_node_id() const noexcept { return config_.node[node_].node_id; }
   std::uint16_t failed_index() const noexcept { return step().object.index; }
-  /// What failed: interface, node, object, found and expected. Not real-time.
+  /// Text of the failure: interface, node, object, found and expected. Not real-time.
   std::string FailureText() const;
 
  private:

@@ -25,12 +25,12 @@ inline constexpr std::uint16_t kObjectRpdoMapping = 0x1600;
 inline constexpr std::uint16_t kObjectTpdoCommunication = 0x1800;
 inline constexpr std::uint16_t kObjectTpdoMapping = 0x1A00;
 inline constexpr CanopenObject kObjectEncoderPosition{0x6004, 0};  ///< CiA 406, unsigned 32
-inline constexpr CanopenObject kObjectAbortConnection{0x6007,
-                                                      0};  ///< what a lost link does to the drive
+inline constexpr CanopenObject kObjectAbortConnection{
+    0x6007, 0};  ///< the drive's reaction to a lost connection
 inline constexpr CanopenObject kObjectControlword{0x6040, 0};
 inline constexpr CanopenObject kObjectStatusword{0x6041, 0};
-inline constexpr CanopenObject kObjectMode{0x6060, 0};          ///< mode of operation asked for
-inline constexpr CanopenObject kObjectModeDisplay{0x6061, 0};   ///< mode of operation in force
+inline constexpr CanopenObject kObjectMode{0x6060, 0};          ///< requested mode of operation
+inline constexpr CanopenObject kObjectModeDisplay{0x6061, 0};   ///< active mode of operation
 inline constexpr CanopenObject kObjectPosition{0x6064, 0};      ///< actual, integer 32, counts
 inline constexpr CanopenObject kObjectTargetTorque{0x6071, 0};  ///< integer 16, per mille of rated
 inline constexpr CanopenObject kObjectMaxTorque{0x6072, 0};     ///< unsigned 16, per mille of rated

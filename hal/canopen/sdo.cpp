@@ -8,7 +8,7 @@ namespace flexarm {
 namespace {
 
 // First byte: command specifier in bits 7..5; for expedited transfers bit 1 is set, and with bit 0
-// set bits 3..2 hold the number of bytes without data.
+// set, bits 3..2 are the number of bytes without data.
 constexpr std::uint8_t kSpecifier = 0xE0;
 constexpr std::uint8_t kExpedited = 0x02;
 constexpr std::uint8_t kSizeGiven = 0x01;

@@ -9,7 +9,7 @@ namespace flexarm {
 
 /// Service data objects, expedited transfers only: values of 1 to 4 bytes, CiA 301 7.2.4.3.
 
-/// Why a transfer was aborted: the codes that a server of ours sends.
+/// Abort codes of a transfer: those that our server sends.
 inline constexpr std::uint32_t kSdoAbortBadCommand = 0x0504'0001;
 inline constexpr std::uint32_t kSdoAbortReadOnly = 0x0601'0002;
 inline constexpr std::uint32_t kSdoAbortNoObject = 0x0602'0000;
@@ -20,15 +20,15 @@ inline constexpr std::uint32_t kSdoAbortNoSubIndex = 0x0609'0011;
 inline constexpr std::uint32_t kSdoAbortValueRange = 0x0609'0030;
 inline constexpr std::uint32_t kSdoAbortDeviceState = 0x0800'0022;
 
-/// The words of CiA 301 for an abort code; "unknown reason" for one that it does not have.
+/// Text of CiA 301 for an abort code; "unknown reason" for a code that it lacks.
 const char* SdoAbortText(std::uint32_t code) noexcept;
 
-/// Client: asks node `node_id` for the value of `object`.
+/// Client: request to read `object` of node `node_id`.
 CanFrame SdoReadRequest(int node_id, CanopenObject object) noexcept;
-/// Client: sets it. @param size  1..4 bytes
+/// Client: request to write it. @param size  1..4 bytes
 CanFrame SdoWriteRequest(int node_id, CanopenObject object, std::uint32_t value, int size) noexcept;
 
-/// What a server has answered.
+/// A decoded reply of a server.
 struct SdoReply {
   enum class Kind : std::uint8_t { kMalformed, kWritten, kValue, kAborted };
   Kind kind;
@@ -36,10 +36,10 @@ struct SdoReply {
   std::uint32_t value;  ///< of kValue: the value, zero-extended; of kAborted: the abort code
   int size;             ///< of kValue: bytes
 };
-/// A segmented answer is kMalformed: nothing that is asked for here is longer than 4 bytes.
+/// A segmented reply is kMalformed: every value requested here has at most 4 bytes.
 SdoReply DecodeSdoReply(const CanFrame& frame) noexcept;
 
-/// What a client asks.
+/// A decoded request of a client.
 struct SdoRequest {
   enum class Kind : std::uint8_t { kMalformed, kRead, kWrite };
   Kind kind;
@@ -49,11 +49,11 @@ struct SdoRequest {
 };
 SdoRequest DecodeSdoRequest(const CanFrame& frame) noexcept;
 
-/// Server's answers.
+/// Server: confirmation of a write.
 CanFrame SdoWrittenReply(int node_id, CanopenObject object) noexcept;
-/// The value asked for. @param size  1..4 bytes
+/// Server: the requested value. @param size  1..4 bytes
 CanFrame SdoValueReply(int node_id, CanopenObject object, std::uint32_t value, int size) noexcept;
-/// The refusal, with one of sdo_abort.
+/// Server: abort, with one of the abort codes.
 CanFrame SdoAbortReply(int node_id, CanopenObject object, std::uint32_t code) noexcept;
 
 }  // namespace flexarm

@@ -25,16 +25,16 @@ namespace flexarm {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-// Room for what comes while nobody reads: seconds of a full set of nodes.
+// Buffer for frames that are not read yet: seconds of traffic of a full set of nodes.
 constexpr int kReceiveBytes = 1 << 20;
-// The controller's own state only: one frame for every damaged frame could flood a bad bus.
+// The controller's own state only: reports of damaged frames could flood the socket on a bad bus.
 constexpr can_err_mask_t kErrorsWanted =
     CAN_ERR_BUSOFF | CAN_ERR_CRTL | CAN_ERR_RESTARTED | CAN_ERR_TX_TIMEOUT;
 
 // The first CAN_MTU bytes are a classic frame; can_frame itself has its length in a union.
 using ClassicFrame = canfd_frame;
 
-// What recvmsg puts beside a frame: three time stamps, of which the first is the kernel's.
+// Control data of recvmsg: three time stamps, of which the first is the kernel's.
 constexpr std::size_t kControlBytes = CMSG_SPACE(3 * sizeof(timespec));
 
 [[noreturn]] void Fail(const std::string& interface, const std::string& what) {
@@ -66,7 +66,7 @@ struct LinkProblem {
   const char* why;
 };
 
-// What makes an interface unfit for drives.
+// Reason why an interface is unsuitable for drives.
 std::optional<LinkProblem> FindProblem(const CanLink& link, std::uint32_t bitrate_bps) noexcept {
   if (!link.up) return LinkProblem{"up", 0, "", 1, ", the interface is down"};
   if (link.transmit_queue > SocketCanBus::kMostQueued) {
@@ -78,7 +78,7 @@ std::optional<LinkProblem> FindProblem(const CanLink& link, std::uint32_t bitrat
   }
   if (link.restart_ms != 0) {
     return LinkProblem{"restart-ms", link.restart_ms, "", 0,
-                       ", the bus comes back by the operator's reset only"};
+                       ", only the operator's reset may restart the bus"};
   }
   return std::nullopt;
 }
@@ -124,13 +124,15 @@ void SocketCanBus::Configure(std::span<const std::uint32_t> ids) {
   for (const std::uint32_t id : ids) {
     filters_.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
   }
-  Set(interface_, fd_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorsWanted, "error frames refused");
-  Set(interface_, fd_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, 1, "echo refused");
-  Set(interface_, fd_, SOL_SOCKET, SO_SNDBUF, 1, "send buffer refused");  // the kernel's least
-  Set(interface_, fd_, SOL_SOCKET, SO_RCVBUF, kReceiveBytes, "receive buffer refused");
+  Set(interface_, fd_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorsWanted,
+      "cannot enable error frames");
+  Set(interface_, fd_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, 1, "cannot enable the echo");
+  Set(interface_, fd_, SOL_SOCKET, SO_SNDBUF, 1,
+      "cannot set the send buffer");  // the kernel's minimum
+  Set(interface_, fd_, SOL_SOCKET, SO_RCVBUF, kReceiveBytes, "cannot set the receive buffer");
   Set(interface_, fd_, SOL_SOCKET, SO_TIMESTAMPING,
       static_cast<int>(SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE),
-      "time stamps refused");
+      "cannot enable time stamps");
   if (!Join()) Fail(interface_, "cannot join the bus");
 }
 
@@ -179,8 +181,8 @@ bool SocketCanBus::Receive(ReceivedFrame* received) noexcept {
     if ((raw.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG)) != 0 || raw.len > CAN_MAX_DLEN) continue;
     const std::int64_t monotonic_ns = clocks_.monotonic_ns();
     const std::int64_t stamp_ns = StampOf(&message);
-    // How long it has waited since, never negative: a set clock must not make a frame of the
-    // future.
+    // Its waiting time since then, never negative: a clock that was set back must not give a frame
+    // from the future.
     const std::int64_t age_ns =
         stamp_ns == 0 ? 0 : std::max<std::int64_t>(clocks_.realtime_ns() - stamp_ns, 0);
     *received = ReceivedFrame{.frame = {.id = raw.can_id, .length = raw.len, .data = {}},
@@ -211,15 +213,15 @@ void SocketCanBus::WaitUntil(std::int64_t instant_ns) noexcept {
   pollfd ready{.fd = fd_, .events = POLLIN, .revents = 0};
   const timespec timeout{.tv_sec = left_ns / kSecond_ns, .tv_nsec = left_ns % kSecond_ns};
   ppoll(&ready, 1, &timeout, nullptr);
-  // An interface that went down is reported at once and for ever: not a reason to spin.
+  // An interface that went down is reported on every call: do not spin.
   if ((ready.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0 && (ready.revents & POLLIN) == 0) {
     ppoll(nullptr, 0, &timeout, nullptr);
   }
 }
 
 CanState SocketCanBus::state() noexcept {
-  if (gone_) return CanState::kDown;  // to ask for it by name would have the kernel load a module
-  // The flags are read without the lock that netlink takes; a bus-off controller has no carrier.
+  if (gone_) return CanState::kDown;  // a query by name would make the kernel load a module
+  // The flags are read without netlink's lock; a bus-off controller has no carrier.
   ifreq request{};
   std::copy_n(interface_.c_str(), std::min<std::size_t>(interface_.size(), IFNAMSIZ - 1),
               request.ifr_name);
@@ -239,8 +241,8 @@ bool SocketCanBus::unsent() noexcept {
 
 bool SocketCanBus::Restart() noexcept {
   if (gone_) {
-    // Plugged in again it is another interface of the same name, which the system has to set up.
-    // The kernel has dropped the socket's filters with the old one.
+    // Plugged in again it is another interface with the same name, which the system has to
+    // configure. The kernel has dropped the socket's filters with the old one.
     CanLink link{};
     if (!ReadCanLink(interface_, &link) || FindProblem(link, bitrate_bps_)) return false;
     index_ = link.index;
@@ -248,7 +250,7 @@ bool SocketCanBus::Restart() noexcept {
     gone_ = false;
   }
   if (!RestartCanLink(index_)) return false;
-  int down = 0;  // the socket keeps "network is down" for its next call: read it away
+  int down = 0;  // the socket keeps "network is down" for its next call: clear it
   socklen_t size = sizeof(down);
   getsockopt(fd_, SOL_SOCKET, SO_ERROR, &down, &size);
   state_ = CanState::kActive;

@@ -10,20 +10,20 @@
 
 namespace flexarm {
 
-/// Clocks in ns since their epochs; they come from outside, as only executors read clocks.
+/// Clocks in ns since their epochs; injected, as only executors read clocks.
 struct CanClocks {
   std::int64_t (*monotonic_ns)() noexcept;
-  std::int64_t (*realtime_ns)() noexcept;  ///< CLOCK_REALTIME, in which the kernel stamps frames
+  std::int64_t (
+      *realtime_ns)() noexcept;  ///< CLOCK_REALTIME, the clock of the kernel's frame time stamps
 };
 
-/// An interface of the kernel (SocketCAN), hardware or virtual.
+/// A CAN interface of the kernel (SocketCAN), hardware or virtual.
 ///
-/// Only the identifiers asked for are received, as data frames with 11 bits, besides error frames
-/// of the controller's state. Frames carry the kernel's time stamp of their arrival. Send never
-/// waits: the socket holds a few frames, the interface's queue at most kMostQueued. The interface
-/// is set up by the system (bit rate, up), and refused if its queue is long, its bit rate another
-/// one, or if the kernel would leave bus-off by itself (restart-ms): a drive must not come back
-/// while armed.
+/// Receives only the requested identifiers, as data frames with 11 bits, and error frames of the
+/// controller's state. Frames carry the kernel's time stamp of their arrival. Send never waits: the
+/// socket holds a few frames, the interface's queue at most kMostQueued. The system configures the
+/// interface (bit rate, up). Open rejects it if its queue is longer, its bit rate differs, or the
+/// kernel would leave bus-off automatically (restart-ms): a drive must not come back while armed.
 class SocketCanBus : public CanBus {
  public:
   static constexpr std::uint32_t kMostQueued = 16;  ///< frames; Linux gives a CAN interface 10
@@ -57,7 +57,7 @@ class SocketCanBus : public CanBus {
   int index_ = 0;  // of the interface
   std::vector<can_filter> filters_;
   std::uint32_t bitrate_bps_ = 0;
-  bool gone_ = false;  // the interface has been removed, as an adapter that was pulled out
+  bool gone_ = false;  // the interface was removed, e.g. an adapter was unplugged
   CanState state_ = CanState::kDown;
   CanCounts counts_;
 };

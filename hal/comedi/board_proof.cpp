@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-// What a reader that was kept away, or a disk that was slow, must not lose.
+// Periods that the buffer must hold when the reader is delayed, for example by a slow disk.
 constexpr double kPeriodsToHold = 5.0;
 
 const char* Name(DaqKind kind) {
@@ -29,7 +29,7 @@ class Proof {
     Same("driver", identity.driver, config_.driver);
     Same("board", identity.board, config_.board);
     ComediChannels channels;
-    if (config_.output) ProveOutput(*config_.output, &channels);  // first: the arm is to be off
+    if (config_.output) ProveOutput(*config_.output, &channels);  // first: the arm must be off
     if (config_.input) ProveInput(*config_.input, &channels);
     for (const ComediCounterConfig& row : config_.counter) ProveCounter(row, &channels);
     for (const ComediLineConfig& row : config_.line) ProveLine(row, &channels);
@@ -66,7 +66,7 @@ class Proof {
     const std::vector<DaqRange> ranges = board_->Ranges(subdevice, channel);
     std::string found;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-      // 1e-6 V: what comedi's kernel interface rounds ranges to.
+      // 1e-6 V: comedi's kernel interface rounds ranges to that.
       if (std::abs(ranges[i].lowest_v + range_v) <= 1e-6 &&
           std::abs(ranges[i].highest_v - range_v) <= 1e-6) {
         return static_cast<int>(i);
@@ -92,7 +92,7 @@ class Proof {
       const bool done = board_->Write(channel, ZeroCode(out.bits)) == DaqResult::kOk &&
                         board_->Read(channel, &code) == DaqResult::kOk;
       const std::string what = "output " + std::to_string(drive.channel) + " after writing 0 V";
-      if (!done) Refuse(what, "not to be had", "code " + std::to_string(ZeroCode(out.bits)));
+      if (!done) Refuse(what, "cannot be read back", "code " + std::to_string(ZeroCode(out.bits)));
       Same(what, static_cast<int>(code), static_cast<int>(ZeroCode(out.bits)));
       channels->drive.push_back(channel);
     }
@@ -116,7 +116,7 @@ class Proof {
                    const std::vector<DaqChannel>& channels) {
     if (!found.streams) {
       Refuse("acquisition", "possible by single reads only",
-             "streaming: set acquisition = \"single\", and look at what it costs");
+             "streaming: set acquisition = \"single\", and check the time that it takes");
     }
     const DaqScan made = board_->SetScan({.channel = channels,
                                           .scan_interval_ns = in.scan_interval_ns(),
@@ -127,13 +127,13 @@ class Proof {
                         static_cast<double>(channels.size()) *
                         static_cast<double>(in.scan_interval_ns()) / (config_.period_ms * 1e6);
     if (held >= kPeriodsToHold) return;
-    Refuse("what the input buffer can hold", NumberText(held) + " periods",
+    Refuse("size of the input buffer", NumberText(held) + " periods",
            NumberText(kPeriodsToHold) + " or more: comedi_config --read-buffer makes it larger");
   }
 
   void SameTime(const std::string& what, std::int64_t made_ns, std::int64_t wanted_ns) const {
     if (made_ns == wanted_ns) return;
-    Refuse(what, NumberText(static_cast<double>(made_ns) / 1e3) + ", as the board's clock has it",
+    Refuse(what, NumberText(static_cast<double>(made_ns) / 1e3) + " with the board's clock",
            NumberText(static_cast<double>(wanted_ns) / 1e3));
   }
 

@@ -7,17 +7,17 @@
 
 namespace flexarm {
 
-/// The channels of a proven board, in the order of the config's rows, with their range.
+/// The channels of a verified board, in the order of the config's rows, with their range.
 struct ComediChannels {
   std::vector<DaqChannel> strain;
   std::vector<DaqChannel> drive;
   std::vector<DaqChannel> counter;
-  std::vector<int> line_subdevice;  ///< each once
+  std::vector<int> line_subdevice;  ///< without duplicates
 };
 
-/// Proves that an opened board is the one of the config: driver, name, and for every subdevice that
-/// is used its kind, channels, bits and range. Takes the subdevices for us alone, sets every output
-/// to 0 V, lines to input and the scan up, each read back. The scan is not started.
+/// Verifies that an opened board is the one of the config: driver, name, and for every subdevice
+/// that is used its kind, channels, bits and range. Locks the subdevices, sets every output to 0 V,
+/// lines to input, and configures the scan, each read back. The scan is not started.
 /// @throws HalError naming the device, what was found and what was expected
 ComediChannels ProveComediBoard(const ComediBoardConfig& config, const DaqIdentity& identity,
                                 DaqBoard* board);

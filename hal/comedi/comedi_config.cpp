@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kMostChannels = 256;  // of a subdevice; no board has more
+constexpr int kMostChannels = 256;  // per subdevice; no board has more
 constexpr int kMostSubdevices = 64;
 
 std::int64_t Nanoseconds(double us) { return std::llround(us * 1e3); }
@@ -36,9 +36,9 @@ void CheckChannel(const std::string& row, int channel, int channels, std::set<in
 }
 
 void CheckStreaming(const ComediInputConfig& in, double period_ms, ProblemList* list) {
-  list->Within("input.scan_interval_us", in.scan_interval_us, 10.0, 1e6, "from scan to scan");
+  list->Within("input.scan_interval_us", in.scan_interval_us, 10.0, 1e6, "time from scan to scan");
   list->Within("input.convert_interval_us", in.convert_interval_us, 0.0, 1e5,
-               "from channel to channel; 0 if all are converted at the same time");
+               "time from channel to channel; 0 if all are sampled simultaneously");
   list->Within("input.transfer_us", in.transfer_us, 0.0, 1e5,
                "longest time from a scan's end until it can be read");
   const double scan_us = in.convert_interval_us * static_cast<double>(in.channel.size());
@@ -49,7 +49,7 @@ void CheckStreaming(const ComediInputConfig& in, double period_ms, ProblemList* 
   const double oldest_us = in.scan_interval_us + scan_us + in.transfer_us;
   list->Require(
       !(oldest_us > 500.0 * period_ms), "input.scan_interval_us", NumberText(in.scan_interval_us),
-      "must be short against the loop: the oldest reading would be " + NumberText(oldest_us) +
+      "must be short compared with the loop: the oldest reading would be " + NumberText(oldest_us) +
           " us old (interval, scan and transfer), half a period "
           "is " +
           NumberText(500.0 * period_ms) + " us");
@@ -61,11 +61,11 @@ void CheckInput(const ComediBoardConfig& board, std::size_t strain_rows, Problem
   list->Within("input.channels", in.channels, 1, kMostChannels, "analogue inputs of the board");
   list->Within("input.bits", in.bits, 8, 24, "of the board's converter");
   list->Within("input.range_v", in.range_v, 0.01, 100.0, "full scale is -range_v .. +range_v");
-  list->Require(!in.channel.empty(), "input.channel", "0 rows", "must have a row: what to read");
+  list->Require(!in.channel.empty(), "input.channel", "0 rows", "must have at least one row");
   const auto most = static_cast<std::size_t>(in.channels < 0 ? 0 : in.channels);
   list->Require(in.channel.size() <= most, "input.channel", NumberText(in.channel.size()) + " rows",
                 "must be at most the board's inputs: it has " + NumberText(in.channels) +
-                    "; more gauges take another board, or half bridges");
+                    "; more gauges need another board, or half bridges");
   std::set<int> taken;
   for (std::size_t i = 0; i < in.channel.size(); ++i) {
     const ComediStrainConfig& row = in.channel[i];
@@ -73,7 +73,7 @@ void CheckInput(const ComediBoardConfig& board, std::size_t strain_rows, Problem
     const bool known = row.strain >= 0 && static_cast<std::size_t>(row.strain) < strain_rows;
     list->Require(
         known, key + ".strain", NumberText(row.strain),
-        "must be a row of [[sensors.strain]], from 0; there are " + NumberText(strain_rows));
+        "must be a row of [[sensors.strain]], from 0; it has rows: " + NumberText(strain_rows));
     CheckChannel(key, row.channel, in.channels, &taken, list);
   }
   if (in.acquisition == ComediAcquisition::kStream) CheckStreaming(in, board.period_ms, list);
@@ -89,7 +89,7 @@ void CheckDrive(const ComediDriveConfig& drive, double range_v, const std::strin
   list->Require(drive.sign == 1 || drive.sign == -1, row + ".sign", NumberText(drive.sign),
                 "must be 1, or -1 if positive volts turn the joint clockwise");
   const double most_nm = drive.torque_per_volt_nm() * range_v;
-  // 1e-9: the rounding of a range that takes all the volts, such as 10 * 3.
+  // 1e-9: the rounding of a range that uses all the volts, such as 10 * 3.
   list->Require(drive.torque_range_nm > 0.0 && drive.torque_range_nm <= most_nm * (1.0 + 1e-9),
                 row + ".torque_range_nm", NumberText(drive.torque_range_nm),
                 "must be above 0 and within the output's range: " + NumberText(range_v) + " V at " +
@@ -103,7 +103,7 @@ void CheckOutput(const ComediOutputConfig& out, ProblemList* list) {
   list->Within("output.channels", out.channels, 1, kMostChannels, "analogue outputs of the board");
   list->Within("output.bits", out.bits, 8, 24, "of the board's converter");
   list->Within("output.range_v", out.range_v, 0.01, 100.0, "full scale is -range_v .. +range_v");
-  list->Require(!out.drive.empty(), "output.drive", "0 rows", "must have a row: what to drive");
+  list->Require(!out.drive.empty(), "output.drive", "0 rows", "must have at least one row");
   std::set<int> taken;
   for (std::size_t i = 0; i < out.drive.size(); ++i) {
     const std::string row = "output." + ProblemList::Element("drive", i);
@@ -132,7 +132,7 @@ void CheckCountersAndLines(const ComediBoardConfig& board, ProblemList* list) {
   }
 }
 
-// Names the first channel that comes too late, and what it costs.
+// Names the first channel that is too late, and the time it takes.
 void CheckTime(const ComediBoardConfig& board, std::int64_t available_ns, ProblemList* list) {
   const ComediPlan plan = PlanComedi(board);
   std::map<int, const ComediChannelCost*> transactions;  // by their first channel
@@ -154,7 +154,7 @@ void CheckTime(const ComediBoardConfig& board, std::int64_t available_ns, Proble
                 "must leave an exchange within " + Milliseconds(available_ns) + ": " + first +
                     "all together take " + Milliseconds(plan.exchange_worst_ns) + costs +
                     (single ? "; a board that can stream (acquisition = \"stream\") reads its "
-                              "inputs at no such cost"
+                              "inputs without that time"
                             : ""));
 }
 
@@ -178,11 +178,11 @@ std::vector<Problem> ComediBoardConfig::Problems(const std::string& section,
   list.Positive("instruction_us", instruction_us, 1e6,
                 "longest single read or write; PCI boards take about 20, USB boards about 2000");
   list.Require(input || output || !counter.empty() || !line.empty(), "device", device,
-               "must have an input, output, counter or line: the board would do nothing");
+               "must have an input, output, counter or line: the board would have no function");
   if (input) CheckInput(*this, strain_rows, &list);
   if (output) CheckOutput(*output, &list);
   CheckCountersAndLines(*this, &list);
-  if (list.empty()) CheckTime(*this, available_ns, &list);  // times make sense
+  if (list.empty()) CheckTime(*this, available_ns, &list);  // times are valid
   return list.Take();
 }
 

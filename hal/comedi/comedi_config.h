@@ -11,13 +11,13 @@
 
 namespace flexarm {
 
-/// How the analogue inputs are read.
+/// Acquisition mode of the analogue inputs.
 enum class ComediAcquisition : std::uint8_t {
-  kStream,  ///< the board scans by its own clock, over and over; the newest complete scan counts
-  kSingle,  ///< one instruction a channel: boards without commands, such as cheap USB ones
+  kStream,  ///< the board scans continuously by its own clock; the newest complete scan is used
+  kSingle,  ///< one instruction per channel: boards without commands, such as cheap USB ones
 };
 
-/// What a voltage is measured against; comedi's AREF.
+/// Reference of a voltage measurement; comedi's AREF.
 enum class ComediReference : std::uint8_t { kGround, kCommon, kDifferential };
 
 /// A strain channel on an analogue input: [[hal.comedi.input.channel]].
@@ -29,14 +29,14 @@ struct ComediStrainConfig {
 /// The analogue inputs of a board: [hal.comedi.input].
 struct ComediInputConfig {
   int subdevice;
-  int channels;    ///< that the board has, used or not
+  int channels;    ///< of the board, used or not
   int bits;        ///< of its converter
   double range_v;  ///< full scale is -range_v .. +range_v
   ComediReference reference;
   ComediAcquisition acquisition;
-  double scan_interval_us;     ///< streaming: from scan to scan, as the board's clock makes it
+  double scan_interval_us;     ///< streaming: scan period, as the board's clock produces it
   double convert_interval_us;  ///< streaming: from channel to channel; 0: all at the same time
-  double transfer_us;          ///< streaming: longest from a scan's end until it can be read
+  double transfer_us;          ///< streaming: longest time from a scan's end until it can be read
   std::vector<ComediStrainConfig> channel;  ///< in the order of the scan
 
   std::int64_t scan_interval_ns() const;
@@ -44,14 +44,14 @@ struct ComediInputConfig {
   std::int64_t transfer_ns() const;
 };
 
-/// An amplifier that takes a voltage: [[hal.comedi.output.drive]].
+/// An amplifier with a voltage command input: [[hal.comedi.output.drive]].
 struct ComediDriveConfig {
   int joint;                        ///< 0 or 1: key `role` = "drive1" "drive2"
   int channel;                      ///< of the board, from 0
   double motor_torque_per_volt_nm;  ///< amplifier and motor together, before the gear, > 0
   double gear;                      ///< turns of the motor per turn of the joint, 1: direct drive
   int sign;                         ///< +1: positive volts turn the joint counter-clockwise; or -1
-  double torque_range_nm;           ///< most torque at the gearbox output, either way
+  double torque_range_nm;           ///< largest torque at the gearbox output, both directions
 
   /// At the gearbox output, > 0.
   double torque_per_volt_nm() const noexcept { return motor_torque_per_volt_nm * gear; }
@@ -66,8 +66,8 @@ struct ComediOutputConfig {
   std::vector<ComediDriveConfig> drive;
 };
 
-/// An encoder on a counter of the board: [[hal.comedi.counter]]. It is read as it stands: a counter
-/// that does not count quadrature by itself has to be set up with comedi's tools before.
+/// An encoder on a counter of the board: [[hal.comedi.counter]]. The driver only reads it: a
+/// counter that has no fixed quadrature mode has to be configured with comedi's tools before.
 struct ComediCounterConfig {
   int counter;  ///< of the frame, 0..3: key `role` = "hub1" "hub2" "rotor1" "rotor2"
   int subdevice;
@@ -75,8 +75,8 @@ struct ComediCounterConfig {
   int bits;  ///< wraps at 2^bits
 };
 
-/// A digital input: [[hal.comedi.line]]. A second reading of a line of the safety chain, once a
-/// period: see Either.
+/// A digital input: [[hal.comedi.line]]. A redundant reading of a line of the safety chain, once
+/// per period: see MergeRedundantLevels.
 struct ComediLineConfig {
   Line line;
   int subdevice;
@@ -86,7 +86,7 @@ struct ComediLineConfig {
 /// One DAQ board: [[hal.comedi]].
 struct ComediBoardConfig {
   std::string device;  ///< "/dev/comedi0"
-  std::string driver;  ///< as `comedi_board_info` prints them: which board it has to be
+  std::string driver;  ///< as `comedi_board_info` prints them: identifies the board
   std::string board;
   double instruction_us;  ///< longest single read or write; PCI about 20, USB about 2000
   double period_ms;       ///< of the exchanges
@@ -95,14 +95,14 @@ struct ComediBoardConfig {
   std::vector<ComediCounterConfig> counter;
   std::vector<ComediLineConfig> line;
 
-  /// Broken rules. `section` stands before every key, e.g. "hal.comedi[0].".
+  /// Violated rules. `section` is the prefix of every key, e.g. "hal.comedi[0].".
   /// @param strain_rows   rows of [[sensors.strain]]
-  /// @param available_ns  in which one exchange must be over
+  /// @param available_ns  time available for one exchange
   std::vector<Problem> Problems(const std::string& section, std::size_t strain_rows,
                                 std::int64_t available_ns) const;
 };
 
-/// "strain[3]", "drive1", "hub2", or the name of the line: as messages and lists name a channel.
+/// "strain[3]", "drive1", "hub2", or the name of the line: name of a channel in messages and lists.
 std::string ChannelName(const ComediStrainConfig& row);
 std::string ChannelName(const ComediDriveConfig& row);
 std::string ChannelName(const ComediCounterConfig& row);

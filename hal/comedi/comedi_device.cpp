@@ -61,7 +61,7 @@ void ComediDevice::AwaitFirstScan() {
   }
   if (scan_clock_.running()) return;
   if (fault_ == ComediFault::kNone) Fail(ComediFault::kLateScan);
-  throw HalError("comedi " + config_.device + ": no scan has come: " + Name(fault_) +
+  throw HalError("comedi " + config_.device + ": no scan has arrived: " + Name(fault_) +
                  ", expected one every " +
                  std::to_string(config_.input->scan_interval_ns() / 1000) + " us");
 }
@@ -72,7 +72,7 @@ void ComediDevice::StartStream() noexcept {
   scan_clock_.Restart(board_->now_ns());
 }
 
-// The first is the cause.
+// Keeps the first fault: it is the cause.
 void ComediDevice::Fail(ComediFault fault, std::size_t channel) noexcept {
   if (fault_ != ComediFault::kNone && fault != ComediFault::kGone) return;
   fault_ = fault;
@@ -97,7 +97,7 @@ BusStatus ComediDevice::Exchange(const BusCommand& command, SensorFrame* part) n
   fresh.counter_valid = 0;
   fresh.strain_valid = 0;
   fresh.levels = 0;
-  *part = fresh;  // nothing is valid
+  *part = fresh;  // no reading is valid
   if (fault_ == ComediFault::kNone) ReadAll(&fresh);
   if (fault_ == ComediFault::kNone) {
     last_ = fresh;
@@ -148,7 +148,7 @@ void ComediDevice::ReadStream(SensorFrame* fresh) noexcept {
   }
 }
 
-// Everything that waits in the board's buffer. Returns how many scans became complete.
+// Reads all samples in the board's buffer. Returns the number of completed scans.
 std::int64_t ComediDevice::Drain() noexcept {
   const std::size_t channels = channels_.strain.size();
   std::int64_t scans = 0;
@@ -169,7 +169,7 @@ std::int64_t ComediDevice::Drain() noexcept {
       ++scans;
     }
   }
-  Fail(ComediFault::kOverrun);  // it comes faster than it can be read
+  Fail(ComediFault::kOverrun);  // samples arrive faster than they are read
   return 0;
 }
 

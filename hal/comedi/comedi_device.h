@@ -17,22 +17,23 @@
 
 namespace flexarm {
 
-/// A DAQ board: gauges on analogue inputs, amplifiers on analogue outputs, encoders on counters.
+/// Driver of a DAQ board: gauges on analogue inputs, amplifiers on analogue outputs, encoders on
+/// counters.
 ///
 /// One exchange: a voltage to each amplifier; then the newest complete scan of the streamed inputs,
-/// or one read an input; then the counters and lines, one read each. sampled_at_ns is the instant
-/// after the outputs. A streamed reading is older than that, by its offset: the scan's end comes
-/// from ScanClock, and every channel lies convert_interval before the next. What is read singly
-/// has the middle of its read.
+/// or one read per input; then the counters and lines, one read each. sampled_at_ns is the instant
+/// after the outputs. A streamed reading is older than that, by its offset: ScanClock estimates the
+/// end of the scan, and every channel is sampled convert_interval before the next. A single read
+/// has the instant of its middle.
 ///
-/// Torque goes out only while enabled, and 0 V otherwise, while a fault lasts, and on Close. An
-/// output keeps its last voltage when this process dies: the relay and the charge pump of the
-/// safety chain are what stops the arm then.
+/// Torque is sent only while enabled; the output is 0 V otherwise, while a fault lasts, and on
+/// Close. An output keeps its last voltage when this process dies: then the relay and the charge
+/// pump of the safety chain stop the arm.
 ///
-/// Each instruction is the board's own: comedi lets a stuck one busy-wait for a second at most, and
-/// no program can shorten that. An exchange reads nothing more after the first that takes it beyond
-/// its declared time; the outputs are written whatever happened. So the bound holds for a board
-/// that keeps instruction_us, and one stuck instruction an output is all that can come on top.
+/// The duration of an instruction depends on the board: comedi lets a stuck one busy-wait for a
+/// second at most, and no program can shorten that. After the first read that exceeds the declared
+/// time, an exchange reads nothing more; it always writes the outputs. So the bound holds for a
+/// board that keeps instruction_us; beyond it, at most one stuck instruction per output can follow.
 /// Real-time: Exchange, Reconnect and Close do not allocate; reading the stream does not wait.
 /// Thread: the bus's own.
 class ComediDevice final : public BusDevice {
@@ -49,30 +50,30 @@ class ComediDevice final : public BusDevice {
   /// Of an exchange, or of a reconnection, whichever is longer.
   std::int64_t worst_case_ns() const noexcept override;
 
-  /// Identifies the board, reads everything configured back, starts the scan and reads every
+  /// Identifies the board, reads its whole configuration back, starts the scan and reads every
   /// channel once.
   /// @throws HalError naming the device, what was found and what was expected
   void Open() override;
 
   [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
 
-  /// 0 V, and the scan anew; kOk with a later call, once a scan has come. A board that is gone
-  /// stays gone: to open it again would allocate.
+  /// Sets 0 V and restarts the scan; a later call returns kOk once a scan has arrived. A board that
+  /// is gone stays gone: opening it again would allocate.
   [[nodiscard]] BusStatus Reconnect() noexcept override;
 
-  /// node: 1 + the channel's place in plan().channels, 0: the board.
+  /// node: 1 + the channel's index in plan().channels, 0: the board.
   BusFault FaultOf(BusStatus status) const noexcept override;
   std::string FaultText(const BusFault& fault) const override;
 
   void Close() noexcept override;
 
-  /// Of the last exchange, or what lasts.
+  /// Fault of the last exchange, or the latched one.
   ComediFault fault() const noexcept { return fault_; }
   const ComediPlan& plan() const noexcept { return plan_; }
 
  private:
-  /// At most kMostReads of kChunk samples are read; with more than that nobody has read for too
-  /// long.
+  /// At most kMostReads of kChunk samples are read; more than that means that the stream was not
+  /// read for too long.
   static constexpr std::size_t kChunk = 4096;
   static constexpr int kMostReads = 10;
   static constexpr std::size_t kNoChannel = 254;  ///< there are fewer
@@ -102,13 +103,13 @@ class ComediDevice final : public BusDevice {
   bool open_ = false;
   bool restarting_ = false;  // Reconnect waits for the first scan
   ComediFault fault_ = ComediFault::kNone;
-  std::size_t fault_channel_ = kNoChannel;  // place in plan_.channels
-  std::int64_t begin_ns_ = 0;               // of this exchange
+  std::size_t fault_channel_ = kNoChannel;  // index in plan_.channels
+  std::int64_t begin_ns_ = 0;               // start of this exchange
   std::array<std::uint32_t, kChunk> samples_{};
-  std::array<std::uint32_t, kMaxStrainChannels> partial_{};  // the scan that is coming in
+  std::array<std::uint32_t, kMaxStrainChannels> partial_{};  // the scan that is being received
   std::array<std::uint32_t, kMaxStrainChannels> newest_{};
-  std::size_t position_ = 0;  // in partial_
-  SensorFrame last_{};        // good values, repeated while there are none
+  std::size_t position_ = 0;  // index in partial_
+  SensorFrame last_{};        // good values, repeated while there are no new ones
 };
 
 }  // namespace flexarm

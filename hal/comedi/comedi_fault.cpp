@@ -7,11 +7,11 @@ const char* Name(ComediFault fault) noexcept {
     case ComediFault::kNone:
       return "no fault";
     case ComediFault::kStarting:
-      return "the scan starts anew";
+      return "the scan restarts";
     case ComediFault::kLateScan:
       return "scan late";
     case ComediFault::kEarlyScan:
-      return "scans come too fast";
+      return "scans arrive too fast";
     case ComediFault::kSlow:
       return "instruction takes longer than instruction_us";
     case ComediFault::kReadRefused:

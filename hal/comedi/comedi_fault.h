@@ -6,28 +6,28 @@
 
 namespace flexarm {
 
-/// What went wrong with a board. Those that say so last until Reconnect has succeeded.
+/// Faults of a board. Those marked "latched" last until Reconnect has succeeded.
 enum class ComediFault : std::uint8_t {
   kNone,
-  kStarting,       ///< the scan has been started anew, and nothing has come yet
-  kSlow,           ///< an instruction took longer than the config says
-  kReadRefused,    ///< the driver refuses to read a counter, an input or a line
-  kLateScan,       ///< lasts: the newest scan is older than the board's clock allows
-  kEarlyScan,      ///< lasts: scans come faster than the board said
-  kOverrun,        ///< lasts: the board's buffer ran over, or the board reports an error
-  kScanStopped,    ///< lasts: the board has stopped scanning
-  kStartRefused,   ///< lasts: the board does not start to scan
-  kOutputRefused,  ///< lasts: an output cannot be written
-  kGone,           ///< lasts, until the daemon starts anew: there is no board any more
+  kStarting,       ///< the scan was restarted, and no scan has arrived yet
+  kSlow,           ///< an instruction took longer than configured
+  kReadRefused,    ///< the driver rejects reading a counter, an input or a line
+  kLateScan,       ///< latched: the newest scan is older than the board's clock allows
+  kEarlyScan,      ///< latched: scans arrive faster than the board reported
+  kOverrun,        ///< latched: buffer overrun, or the board reports an error
+  kScanStopped,    ///< latched: the board has stopped scanning
+  kStartRefused,   ///< latched: the board does not start the scan
+  kOutputRefused,  ///< latched: an output cannot be written
+  kGone,           ///< latched until the daemon restarts: the board is gone
 };
 
-/// "scan late", for the log.
+/// Text of a fault for the log: "scan late".
 const char* Name(ComediFault fault) noexcept;
 
-/// It stays until Reconnect has succeeded.
+/// True for a latched fault: it lasts until Reconnect has succeeded.
 bool Lasts(ComediFault fault) noexcept;
 
-/// What an exchange returns.
+/// Status that an exchange returns for a fault.
 BusStatus StatusOf(ComediFault fault) noexcept;
 
 }  // namespace flexarm

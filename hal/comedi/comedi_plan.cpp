@@ -6,7 +6,7 @@
 namespace flexarm {
 namespace {
 
-// Ten system calls that copy 40960 samples; what is more has lain there for too long (an overrun).
+// Ten system calls that copy 40960 samples; more are an overrun.
 constexpr std::int64_t kStreamNs = 300'000;
 // Waking up late at FIFO 70, and the driver's own work.
 constexpr std::int64_t kOverheadNs = 200'000;

@@ -10,17 +10,17 @@
 
 namespace flexarm {
 
-/// What a subdevice of a board is for.
+/// Kind of a subdevice of a board.
 enum class DaqKind : std::uint8_t {
   kAnalogInput,
   kAnalogOutput,
   kDigital,
   kCounter,
   kOther,
-  kNone,  ///< the board has no subdevice of that number
+  kNone,  ///< the board has no subdevice with that number
 };
 
-/// What a board says of itself, and of one of its subdevices.
+/// Identity of a board, and properties of one of its subdevices.
 struct DaqIdentity {
   std::string driver;
   std::string board;
@@ -30,7 +30,7 @@ struct DaqSubdevice {
   int channels;
   int bits;                    ///< values are 0 .. 2^bits - 1; 0: some other range
   bool streams;                ///< can scan by its own clock
-  std::size_t buffer_samples;  ///< between the board and us; 0 without streaming
+  std::size_t buffer_samples;  ///< of the driver; 0 without streaming
 };
 
 /// An input or output range.
@@ -39,10 +39,10 @@ struct DaqRange {
   double highest_v;
 };
 
-/// What a voltage is measured against; the value is comedi's AREF.
+/// Reference of a voltage measurement; the value is comedi's AREF.
 enum class DaqReference : std::uint8_t { kGround = 0, kCommon = 1, kDifferential = 2 };
 
-/// One channel, and how it is to be read or written.
+/// One channel, with range and reference.
 struct DaqChannel {
   int subdevice;
   int channel;
@@ -50,25 +50,25 @@ struct DaqChannel {
   DaqReference reference;
 };
 
-/// A scan of several inputs of one subdevice, repeated without end by the board's clock.
+/// A scan of several inputs of one subdevice, repeated by the board's clock.
 struct DaqScan {
   std::vector<DaqChannel> channel;   ///< in the order of conversion
-  std::int64_t scan_interval_ns;     ///< from the begin of a scan to that of the next
+  std::int64_t scan_interval_ns;     ///< from the start of a scan to the start of the next
   std::int64_t convert_interval_ns;  ///< from channel to channel; 0: all at the same time
 };
 
-/// How a call went. Only kOk is good; none of them waits for more than the board's own time.
+/// Result of a call. Only kOk is success; no call waits for more than the board's own time.
 enum class DaqResult : std::uint8_t {
   kOk,
-  kNothing,  ///< no sample waits to be read
-  kStopped,  ///< the scan has ended by itself, and all samples are read
-  kOverrun,  ///< the same, because the buffer was full or the board reports an error
-  kFailed,   ///< the board, or its driver, refuses
-  kGone,     ///< there is no board any more
+  kNothing,  ///< no sample is available
+  kStopped,  ///< the board has ended the scan, and all samples are read
+  kOverrun,  ///< the same, because of a full buffer or an error of the board
+  kFailed,   ///< the board or its driver rejects the call
+  kGone,     ///< the board is gone
 };
 
-/// One DAQ board with its clock: a driver never asks for the time elsewhere, so that a test can
-/// give it. Thread: one. Calls that return DaqResult or nothing do not allocate and do not throw.
+/// One DAQ board with its clock: a driver takes the time from here only, so that a test can set it.
+/// Thread: one. Calls that return DaqResult or nothing do not allocate and do not throw.
 class DaqBoard {
  public:
   virtual ~DaqBoard() = default;
@@ -78,31 +78,32 @@ class DaqBoard {
   /// CLOCK_MONOTONIC, or the test's time.
   virtual std::int64_t now_ns() const noexcept = 0;
 
-  /// @throws HalError if there is no board, or we may not use it
+  /// @throws HalError if there is no board, or access is denied
   virtual DaqIdentity Open() = 0;
 
-  /// Ask and set up, start-up only. `subdevice` may be any number.
+  /// Query and configuration, start-up only. `subdevice` may be any number.
   virtual DaqSubdevice Describe(int subdevice) = 0;
-  /// In volts, by index; a range that is none in volts is empty (0 .. 0).
+  /// In volts, by index; a range in another unit is empty (0 .. 0).
   virtual std::vector<DaqRange> Ranges(int subdevice, int channel) = 0;
-  /// From now on nobody else can use the subdevice. False if somebody has it.
+  /// Locks the subdevice for this process. False if another one has locked it.
   virtual bool Lock(int subdevice) = 0;
-  /// Makes a digital channel an input and reads that back. False if it is none.
+  /// Makes a digital channel an input and reads that back. False if it is not.
   virtual bool SetInput(int subdevice, int channel) = 0;
-  /// Sets up a scan for StartScan. Returns it as the board will make it: its clock has steps.
-  /// @throws HalError if it cannot be made at all
+  /// Configures a scan for StartScan. Returns the scan with the timing that the board's clock
+  /// allows.
+  /// @throws HalError if no such scan is possible
   virtual DaqScan SetScan(const DaqScan& scan) = 0;
 
   [[nodiscard]] virtual DaqResult StartScan() noexcept = 0;
-  /// Ends the scan, if one runs; what was not read is dropped.
+  /// Ends the scan, if one is running; samples that were not read are dropped.
   virtual void StopScan() noexcept = 0;
-  /// Copies the oldest samples that are there, at most as many as `samples` holds.
+  /// Copies the oldest available samples, at most as many as `samples` holds.
   [[nodiscard]] virtual DaqResult ReadScan(std::span<std::uint32_t> samples,
                                            std::size_t* count) noexcept = 0;
-  /// Returns at `instant_ns`, or as soon as there may be samples to read.
+  /// Returns at `instant_ns`, or earlier if samples may be available.
   virtual void WaitUntil(std::int64_t instant_ns) noexcept = 0;
 
-  /// One channel, by one instruction; an output gives what was written to it last.
+  /// One channel, by one instruction; an output returns the value written last.
   [[nodiscard]] virtual DaqResult Read(const DaqChannel& channel,
                                        std::uint32_t* value) noexcept = 0;
   [[nodiscard]] virtual DaqResult Write(const DaqChannel& channel,

@@ -10,12 +10,12 @@ namespace flexarm {
 /// V is 2^(bits-1), a step is 2 range / 2^bits, as in StrainInputConfig. Real-time: safe.
 constexpr std::uint32_t ZeroCode(int bits) noexcept { return std::uint32_t{1} << (bits - 1); }
 
-/// What the converter shows, as a signed count.
+/// Converter code as a signed count.
 constexpr std::int32_t CountsFromCode(std::uint32_t code, int bits) noexcept {
   return static_cast<std::int32_t>(code) - static_cast<std::int32_t>(ZeroCode(bits));
 }
 
-/// The code nearest to `volts`, clipped to the range; what is not a number is 0 V.
+/// The code nearest to `volts`, clipped to the range; NaN is 0 V.
 inline std::uint32_t CodeFromVolts(double volts, double range_v, int bits) noexcept {
   const double zero = ZeroCode(bits);
   if (!std::isfinite(volts)) return ZeroCode(bits);

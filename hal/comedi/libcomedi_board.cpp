@@ -42,7 +42,7 @@ DaqResult RefusedWith(int error) noexcept {
   return error == ENODEV || error == ENXIO ? DaqResult::kGone : DaqResult::kFailed;
 }
 
-// What libcomedi's functions return, below 0 with an error of its own or of the system.
+// Result of a libcomedi function; below 0 an error of libcomedi or of the system.
 DaqResult ResultOf(int returned) noexcept {
   return returned >= 0 ? DaqResult::kOk : RefusedWith(comedi_errno());
 }
@@ -60,7 +60,8 @@ struct LibcomediBoard::Handle {
     if (fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) | O_NONBLOCK) != 0) {
       const int error = errno;
       comedi_close(board);
-      throw HalError("comedi " + device + ": its descriptor blocks: " + std::strerror(error));
+      throw HalError("comedi " + device +
+                     ": its file descriptor cannot be made non-blocking: " + std::strerror(error));
     }
   }
   ~Handle() { comedi_close(board); }
@@ -69,7 +70,7 @@ struct LibcomediBoard::Handle {
 
   comedi_t* board;
   comedi_cmd command{};
-  std::vector<unsigned> channels;  // of the command, which points to them
+  std::vector<unsigned> channels;  // storage of the command's channel list
   bool wide = false;               // samples of 32 bits
   std::array<std::byte, kChunkBytes> bytes{};
 };
@@ -156,7 +157,7 @@ DaqScan LibcomediBoard::SetScan(const DaqScan& scan) {
   const bool follow = (can.scan_begin_src & TRIG_TIMER) == 0;  // scans back to back
   h.command = comedi_cmd{};
   h.command.subdev = subdevice;
-  h.command.flags = CMDF_WAKE_EOS;  // hand every scan over, not every full buffer
+  h.command.flags = CMDF_WAKE_EOS;  // deliver every scan, not every full buffer
   h.command.start_src = TRIG_NOW;
   h.command.scan_begin_src = follow ? TRIG_FOLLOW : TRIG_TIMER;
   h.command.scan_begin_arg = follow ? 0 : static_cast<unsigned>(scan.scan_interval_ns);
@@ -167,11 +168,10 @@ DaqScan LibcomediBoard::SetScan(const DaqScan& scan) {
   h.command.stop_src = TRIG_NONE;
   h.command.chanlist = h.channels.data();
   h.command.chanlist_len = count;
-  // Each test corrects the values that the one before has found wrong: comedi asks for two or
-  // three.
+  // Each test corrects the values that the previous one rejected: comedi needs two or three.
   int wrong = comedi_command_test(h.board, &h.command);
   for (int i = 0; i < 3 && wrong > 0; ++i) wrong = comedi_command_test(h.board, &h.command);
-  if (wrong != 0) refuse("such a scan cannot be made, test " + std::to_string(wrong));
+  if (wrong != 0) refuse("the board cannot make this scan, test " + std::to_string(wrong));
   h.wide = (Unsigned(comedi_get_subdevice_flags(h.board, subdevice)) & SDF_LSAMPL) != 0;
   DaqScan made = scan;
   made.convert_interval_ns = at_once ? 0 : h.command.convert_arg;

@@ -8,17 +8,17 @@
 
 namespace flexarm {
 
-/// A board of the kernel, through libcomedi. The only file that knows its interface.
+/// A board of the kernel, through libcomedi. The only file that uses its interface.
 ///
-/// What libcomedi 0.11 does in the calls that the loop makes (read in its source, and held to by
-/// the guest's test): comedi_data_read, comedi_data_write and comedi_dio_bitfield2 are one ioctl
-/// each on stack memory, comedi_command and comedi_cancel one ioctl; it allocates in comedi_open
-/// and in questions about ranges and commands only. The kernel takes the board's mutex and a small
-/// buffer for each ioctl. The stream is read with read(2) on a descriptor that does not block.
-/// Real-time: as DaqBoard says; how long an instruction takes is the board's.  Thread: one.
+/// Calls of libcomedi 0.11 in the loop (from its source; a test in the virtual machine checks
+/// them): comedi_data_read, comedi_data_write and comedi_dio_bitfield2 are one ioctl each on stack
+/// memory, comedi_command and comedi_cancel one ioctl; it allocates in comedi_open and in queries
+/// of ranges and commands only. The kernel takes the board's mutex and a small buffer for each
+/// ioctl. The stream is read with read(2) on a non-blocking descriptor. Real-time: as DaqBoard; the
+/// duration of an instruction depends on the board.  Thread: one.
 class LibcomediBoard final : public DaqBoard {
  public:
-  /// CLOCK_MONOTONIC in ns; comes from outside, as only executors read clocks.
+  /// CLOCK_MONOTONIC in ns; injected, as only executors read clocks.
   using Clock = std::int64_t (*)() noexcept;
 
   LibcomediBoard(std::string device, Clock clock);
@@ -45,7 +45,7 @@ class LibcomediBoard final : public DaqBoard {
   void Close() noexcept override;
 
  private:
-  struct Handle;  // libcomedi's, and the command
+  struct Handle;  // libcomedi's handle, and the command
 
   std::string device_;
   Clock clock_;

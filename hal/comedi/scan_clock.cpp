@@ -6,7 +6,7 @@ namespace flexarm {
 namespace {
 
 constexpr std::int64_t kSlowness = 64;          // 1.3 s at 50 Hz: 100 ppm of drift are 0.13 ms
-constexpr std::int64_t kStartNs = 100'000'000;  // for a board to begin, and a driver that polls it
+constexpr std::int64_t kStartNs = 100'000'000;  // for a board to start, and a driver that polls it
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void ScanClock::Take(std::int64_t begin_ns, std::int64_t end_ns, std::int64_t sc
   late_ = late_ || counted_ns < earliest_ns - patience_ns;
   early_ = early_ || counted_ns > end_ns + patience_ns;
   const std::int64_t drawn_ns = counted_ns + (middle_ns - counted_ns) / kSlowness;
-  // What is late stays as old as it is.
+  // A late scan keeps its age.
   newest_end_ns_ = late_ ? counted_ns : std::clamp(drawn_ns, earliest_ns, end_ns);
 }
 

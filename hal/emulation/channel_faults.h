@@ -11,22 +11,22 @@
 
 namespace flexarm {
 
-/// What is wrong with the strain channels behind an amplifier: wired or set up otherwise than the
-/// config says, or broken. Channels are rows of [[sensors.strain]], from 0.
+/// Fault injection for the strain channels behind an amplifier: wrong wiring or settings, or a
+/// defect. Channels are rows of [[sensors.strain]], from 0.
 class ChannelFaults {
  public:
   explicit ChannelFaults(const SensorConfig& sensors);
 
   void Clear() noexcept;
   void Swap(std::size_t one, std::size_t other);  ///< two plugs exchanged
-  void Invert(std::size_t channel) noexcept;      ///< the bridge wired the wrong way round
+  void Invert(std::size_t channel) noexcept;      ///< the bridge wired with inverted polarity
   void Scale(std::size_t channel, double factor) noexcept;  ///< another gain; zero stays
-  void Stick(std::size_t channel) noexcept;                 ///< repeats what it shows now
-  void Freeze() noexcept;                                   ///< all repeat what they show now
+  void Stick(std::size_t channel) noexcept;                 ///< repeats its present reading
+  void Freeze() noexcept;                                   ///< all repeat their present readings
 
   std::size_t channels() const noexcept { return offset_counts_.size(); }
 
-  /// Turns what the gauges say into what the amplifier shows.
+  /// Converts the gauges' readings into the amplifier's output.
   void Apply(SensorFrame* frame) noexcept;
 
  private:

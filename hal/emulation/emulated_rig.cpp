@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kSliceNs = 1'000'000;
 
 const GpiodConfig& LinesOf(const HalConfig& hal) {
-  if (!hal.gpiod) throw HalError("no safety chain is wired: [hal.gpiod] is missing");
+  if (!hal.gpiod) throw HalError("no safety chain: section [hal.gpiod] is missing");
   return *hal.gpiod;
 }
 

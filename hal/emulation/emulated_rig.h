@@ -17,35 +17,35 @@
 
 namespace flexarm {
 
-/// The simulated arm behind the real protocols, as the daemon's config wires it: CANopen drives and
+/// The simulated arm behind the real protocols, wired as in the daemon's config: CANopen drives and
 /// encoders, Modbus strain amplifiers, switches, relay and charge pump on gpio-sim lines. The
-/// unchanged daemon with its real drivers runs against it.
+/// unchanged daemon with its hardware drivers runs against it.
 ///
-/// Its hardware is what a test looks at afterwards: a drive makes torque only while its own state
-/// machine is in operation, the relay is closed, and the charge pump has toggled within 5 ms.
-/// Thread: one, but for the Modbus servers', which it starts.
+/// Tests check the state of its hardware: a drive makes torque only while its own state machine is
+/// in operation, the relay is closed, and the charge pump has toggled within 5 ms.
+/// Thread: one, besides the threads of the Modbus servers, which it starts.
 class EmulatedRig {
  public:
-  struct Observed {                   ///< what the hardware saw, since the start
+  struct Observed {                   ///< state of the hardware, counts since the start
     std::array<double, 2> torque_nm;  ///< now
     bool relay_closed;                ///< now
     bool pump_alive;                  ///< now
-    std::int64_t powered_slices;      ///< milliseconds in which some drive made torque
-    std::int64_t active_slices;       ///< or would have, with its power on
+    std::int64_t powered_slices;      ///< milliseconds in which a drive made torque
+    std::int64_t active_slices;       ///< or would have made torque with power on
   };
 
-  /// @param arm  with the payload that the plant really carries
+  /// @param arm  with the actual payload of the plant
   /// @throws HalError
   EmulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
               const HalConfig& hal, const CanClocks& clocks);
 
-  /// One millisecond of the rig, up to `now_ns` of CLOCK_MONOTONIC.
+  /// Simulates one millisecond, up to `now_ns` of CLOCK_MONOTONIC.
   void Step(std::int64_t now_ns) noexcept;
 
   /// Forces a switch or the button, as SimulatedRig::Press.
   void Press(Line line, int level) noexcept { rig_.Press(line, level); }
 
-  // What can be made to misbehave: null if the rig has none of that name.
+  // Devices with fault injection: null if the rig has none with that name.
   SimulatedNode* FindNode(std::string_view role) noexcept;  ///< "drive1" .. "rotor2"
   SimulatedAmplifier* FindAmplifier(std::string_view name) noexcept;
 

@@ -5,8 +5,8 @@
 
 namespace flexarm {
 
-/// The far side of the lines of a gpio-sim chip: pulls its inputs, and sees what its outputs are.
-/// Through sysfs, so a call is a few system calls. Simulated rig only. Thread: one.
+/// The peer of the lines of a gpio-sim chip: sets its inputs, and reads its outputs.
+/// Through sysfs, so a call is a few system calls. Emulated rig only. Thread: one.
 class GpioSim {
  public:
   /// @param chip  as GpiodConfig's: "/dev/gpiochip0" or "gpiochip0"
@@ -16,7 +16,7 @@ class GpioSim {
   GpioSim(const GpioSim&) = delete;
   GpioSim& operator=(const GpioSim&) = delete;
 
-  /// Level of an input from now on. Nothing is written if it is that already.
+  /// Sets the level of an input. Writes only changes.
   void Pull(int offset, bool high) noexcept;
 
   /// Level of an output; false if it cannot be read.
@@ -26,7 +26,7 @@ class GpioSim {
   struct Line {
     int pull_fd = -1;
     int value_fd = -1;
-    int pulled = -1;  // -1: not known
+    int pulled = -1;  // -1: unknown
   };
 
   Line& At(int offset) noexcept;

@@ -95,7 +95,7 @@ void MemoryBus::OpenForAll() {
 SendResult MemoryBus::Send(const CanFrame& frame) noexcept {
   if (!open_) return SendResult::kFailed;
   if (state_ == CanState::kBusOff || sending_count_ >= capacity_) {
-    ++counts_.queue_full;  // a controller that is off the bus takes nothing from its queue
+    ++counts_.queue_full;  // a controller in bus-off sends nothing from its queue
     return SendResult::kQueueFull;
   }
   sending_[sending_count_++] = frame;

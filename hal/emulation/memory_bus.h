@@ -12,15 +12,15 @@ namespace flexarm {
 class MemoryBus;
 
 /// A CAN bus in memory, with its own time: frames take the time that they take on a wire, the
-/// lowest identifier goes first, and a test may lose, change, delay or repeat each. Nothing happens
-/// but within AdvanceTo, or while an end waits. One thread. Allocates while it is set up only.
+/// lowest identifier is sent first, and a test may lose, change, delay or repeat each. It advances
+/// only within AdvanceTo, or while an end waits. One thread. Allocates during set-up only.
 class MemoryWire {
  public:
-  /// What a test does to a frame; the frame itself it may change.
+  /// Manipulation of a frame by a test, which may also change the frame itself.
   struct Fate {
-    int copies = 1;              ///< 0: lost, though acknowledged
-    std::int64_t delay_ns = 0;   ///< on top of the wire's own
-    std::int64_t waited_ns = 0;  ///< in the receiver's queue: its time stamp is that much older
+    int copies = 1;              ///< 0: lost after its acknowledgement
+    std::int64_t delay_ns = 0;   ///< in addition to the wire's delay
+    std::int64_t waited_ns = 0;  ///< time in the receiver's queue: its time stamp is older by that
   };
 
   explicit MemoryWire(int bitrate_bps) : bitrate_bps_(bitrate_bps) {}
@@ -30,10 +30,10 @@ class MemoryWire {
   std::uint64_t frames() const noexcept { return frames_; }
   void AdvanceTo(std::int64_t instant_ns) noexcept;
 
-  /// Called every 100 us and after each frame, to let a node work; it must not wait.
+  /// Called every 100 us and after each frame, to run a node; it must not wait.
   void AddRunner(std::function<void()> run) { runners_.push_back(std::move(run)); }
   void SetTamper(std::function<Fate(CanFrame*)> tamper) { tamper_ = std::move(tamper); }
-  /// While set nobody acknowledges: what is sent waits in the transmit queues.
+  /// While set no node acknowledges: sent frames wait in the transmit queues.
   void SetStalled(bool stalled) noexcept { stalled_ = stalled; }
 
  private:
@@ -47,7 +47,7 @@ class MemoryWire {
     const MemoryBus* from;
   };
 
-  /// To the next event, at most to `limit_ns`.
+  /// Advances to the next event, at most to `limit_ns`.
   void StepTo(std::int64_t limit_ns) noexcept;
   void BeginFrame() noexcept;
   void EndFrame() noexcept;
@@ -66,8 +66,8 @@ class MemoryWire {
   std::function<Fate(CanFrame*)> tamper_;
 };
 
-/// One end of a MemoryWire. It takes part from Open to Close; what is in its queue then still goes
-/// out, as a kernel does it.
+/// One end of a MemoryWire. It is connected from Open to Close; frames queued at Close are still
+/// sent, as by a kernel.
 class MemoryBus : public CanBus {
  public:
   static constexpr std::size_t kTransmitQueue = 16;  ///< frames, as a CAN interface has about ten
@@ -90,11 +90,11 @@ class MemoryBus : public CanBus {
   void Close() noexcept override { open_ = false; }
   const CanCounts& counts() const noexcept override { return counts_; }
 
-  /// For a test that listens: receives every frame.
+  /// For a test: receives every frame.
   void OpenForAll();
-  /// The controller leaves the bus: nothing goes out or comes in until Restart.
+  /// The controller leaves the bus: no frame is sent or received until Restart.
   void SetBusOff() noexcept { state_ = CanState::kBusOff; }
-  /// Sends beyond this number of waiting frames are refused; at most kTransmitQueue.
+  /// Sends beyond this number of waiting frames are rejected; at most kTransmitQueue.
   void SetTransmitQueue(std::size_t frames) noexcept { capacity_ = frames; }
   /// Whether Restart works: false as long as the cause of a bus-off lasts.
   void SetRestartable(bool restartable) noexcept { restartable_ = restartable; }

@@ -65,7 +65,7 @@ ModbusBytes Payload(const RegisterImage& image, ModbusTable table, std::size_t f
   return payload;
 }
 
-// Function code and what follows it, of a request's.
+// Function code and data of the reply to a request.
 ModbusBytes Answer(const RegisterImage& image, const ModbusBytes& body, WireFault fault) {
   const std::uint8_t function = body[0];
   if (function < 1 || function > 4) return Refusal(function, kIllegalFunction);
@@ -106,7 +106,7 @@ ModbusBytes TcpFrame(const ModbusBytes& request, std::uint8_t unit, const Modbus
   return frame;
 }
 
-// Cuts, or puts rubbish in its place.
+// Truncates the frame, or replaces it by garbage.
 ModbusBytes Spoilt(ModbusBytes frame, WireFault fault) {
   if (fault == WireFault::kGarbage) frame.assign(64, 0xFF);
   if (fault == WireFault::kThreeBytes) frame.resize(3);
@@ -121,7 +121,7 @@ ModbusBytes Spoilt(ModbusBytes frame, WireFault fault) {
 int RequestLength(ModbusTransport transport, const ModbusBytes& received) {
   if (transport == ModbusTransport::kTcp) {
     if (received.size() < kTcpHeader) return 0;
-    const unsigned length = WordAt(received, 4);  // of what follows it
+    const unsigned length = WordAt(received, 4);  // of the bytes after it
     if (WordAt(received, 2) != 0 || length < 2 || length > 254) return -1;
     return received.size() < 6 + length ? 0 : static_cast<int>(6 + length);
   }

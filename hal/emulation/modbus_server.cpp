@@ -59,7 +59,7 @@ void ModbusServer::Listen() {
   address.sin_port = htons(static_cast<std::uint16_t>(port_));
   auto* generic = reinterpret_cast<sockaddr*>(&address);
   socklen_t size = sizeof(address);
-  const int one = 1, small = 1;  // the kernel makes the smallest buffer of it
+  const int one = 1, small = 1;  // the kernel uses its smallest buffer
   listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
   setsockopt(listener_, SOL_SOCKET, SO_RCVBUF, &small, sizeof(small));
@@ -70,7 +70,7 @@ void ModbusServer::Listen() {
     throw HalError("modbus server '" + config_.name + "': cannot listen on " + config_.host + ":" +
                    std::to_string(port_) + ": " + std::strerror(errno));
   }
-  if (port_ == 0) port_ = ntohs(address.sin_port);  // it comes back to the same
+  if (port_ == 0) port_ = ntohs(address.sin_port);  // kAway returns to the same port
 }
 
 void ModbusServer::OpenPseudoTerminal() {
@@ -81,19 +81,19 @@ void ModbusServer::OpenPseudoTerminal() {
   std::array<char, 64> name{};
   if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 ||
       ptsname_r(master, name.data(), name.size()) != 0) {
-    fail("no pseudo-terminal");
+    fail("cannot create a pseudo-terminal");
   }
   clients_.push_back({.fd = master, .received = {}});
   path_ = name.data();
   slave_ = open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios settings{};
   if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) fail(path_);
-  cfmakeraw(&settings);  // or our replies would come back as an echo
+  cfmakeraw(&settings);  // otherwise replies would be echoed
   tcsetattr(slave_, TCSANOW, &settings);
   if (config_.device.empty()) return;
   struct stat there {};
   if (lstat(config_.device.c_str(), &there) == 0 && S_ISLNK(there.st_mode)) {
-    unlink(config_.device.c_str());  // of a server that died
+    unlink(config_.device.c_str());  // left by a server that died
   }
   if (symlink(path_.c_str(), config_.device.c_str()) != 0) fail(config_.device);
 }
@@ -177,11 +177,11 @@ void ModbusServer::Release() {
   int bytes = 0;
   for (const Held& held : held_) bytes += static_cast<int>(held.bytes.size());
   SendDue();
-  // A pseudo-terminal hands bytes on when the kernel finds time for it.
+  // A pseudo-terminal delivers bytes with a delay.
   for (int there = 0; rtu() && there < bytes && !stop_;) ioctl(slave_, FIONREAD, &there);
 }
 
-// In order of their time: the delay is the same for all, or they are one after the other.
+// In order of due time: the delay is the same for all replies, or they are sequential.
 void ModbusServer::SendDue() {
   while (!held_.empty() && held_.front().at <= Clock::now()) {
     const Held due = std::move(held_.front());
@@ -195,7 +195,7 @@ void ModbusServer::Flood() {
   for (const Client& client : clients_) {
     const ssize_t sent = rtu() ? write(client.fd, rubbish.data(), rubbish.size())
                                : send(client.fd, rubbish.data(), rubbish.size(), MSG_NOSIGNAL);
-    if (sent > 0) flooded_ += sent;  // or its buffers are full
+    if (sent > 0) flooded_ += sent;  // else its buffers are full
   }
 }
 
@@ -246,7 +246,7 @@ void ModbusServer::Read(int fd) {
                         [fd](const Client& client) { return client.fd == fd; });
   };
   find()->received.insert(find()->received.end(), chunk.begin(), chunk.begin() + count);
-  // An answer may close the client.
+  // A reply may close the client.
   for (auto client = find(); client != clients_.end(); client = find()) {
     const int length = RequestLength(config_.transport, client->received);
     if (length < 0) client->received.clear();
@@ -295,7 +295,7 @@ void ModbusServer::Send(int fd, const ModbusBytes& bytes) {
   if (bytes.empty()) return;
   const ssize_t sent = rtu() ? write(fd, bytes.data(), bytes.size())
                              : send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-  // Read finds out that a client is gone; what does not fit is lost, as on a wire.
+  // Read detects that a client is gone; bytes that do not fit are lost, as on a wire.
   static_cast<void>(sent);
 }
 

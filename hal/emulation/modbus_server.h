@@ -15,17 +15,17 @@
 
 namespace flexarm {
 
-/// The simulated amplifier or remote I/O on the wire: serves a register image over TCP, to several
-/// clients, or over a pseudo-terminal as RTU; and misbehaves on request.
+/// Modbus server of the emulated amplifier or remote I/O: serves a register image over TCP, to
+/// several clients, or over a pseudo-terminal as RTU; with fault injection.
 ///
-/// Reads of the four tables are answered, anything else is an illegal function: nobody but the
-/// image's writer changes it. Another unit is gateway-target-failed over TCP, and silence over RTU.
-/// Thread: Run blocks, on a thread that the owner starts for it; Stop, Behave and what follows them
-/// from any other. Not real-time.
+/// Reads of the four tables are answered, other functions are an illegal function: only the image's
+/// writer changes it. Another unit is gateway-target-failed over TCP, and silence over RTU.
+/// Thread: Run blocks, on a thread that the owner starts for it; Stop, Behave and the calls after
+/// them from any other. Not real-time.
 class ModbusServer {
  public:
-  /// TCP: listens on config.host and config.port; port 0 takes a free one. RTU: makes a
-  /// pseudo-terminal and puts a symbolic link to it at config.device, if that is not empty.
+  /// TCP: listens on config.host and config.port; port 0: a free one. RTU: creates a
+  /// pseudo-terminal and a symbolic link to it at config.device, if that is not empty.
   /// @param image  outlives the server
   /// @throws HalError
   ModbusServer(ModbusDeviceConfig config, const RegisterImage& image);
@@ -36,20 +36,20 @@ class ModbusServer {
   /// Serves until Stop.
   void Run();
 
-  /// Run returns soon; it stays stopped.
+  /// Ends Run; the server cannot be restarted.
   void Stop() noexcept;
 
-  /// From now on; what was still held back is forgotten. `late`: of kLate, by how much.
+  /// Sets the fault; replies that were held back are dropped. `late`: the delay of kLate.
   void Behave(WireFault fault, std::chrono::milliseconds late = {});
 
-  /// Sends what kLate holds back at once; over RTU it has arrived when this is settled.
+  /// Sends the replies that kLate holds back at once; over RTU, settled() means that they arrived.
   void ReleaseLate();
 
-  /// What was asked for last is in force.
+  /// True if the last request of Behave or ReleaseLate is in effect.
   bool settled() const noexcept { return taken_.load() == asked_.load(); }
 
   int port() const noexcept { return port_; }  ///< TCP
-  /// RTU: the pseudo-terminal. Another one after kAway: the link leads there.
+  /// RTU: the pseudo-terminal. kAway replaces it: the link leads to the new one.
   const std::string& path() const noexcept { return path_; }
   std::uint64_t requests() const noexcept { return requests_.load(); }
   std::int64_t bytes_flooded() const noexcept { return flooded_.load(); }
@@ -60,7 +60,7 @@ class ModbusServer {
     int fd;
     ModbusBytes received;
   };
-  struct Held {  // leaves when it is time
+  struct Held {  // sent at its due time
     Clock::time_point at;
     int fd;
     ModbusBytes bytes;
@@ -94,7 +94,7 @@ class ModbusServer {
   const RegisterImage& image_;
   int wake_ = -1;
   int listener_ = -1;
-  int slave_ = -1;  // held open: without it, the master sees a hang-up when a client leaves
+  int slave_ = -1;  // kept open: otherwise the master gets a hang-up when a client closes
   int port_ = 0;
   std::string path_;
   std::vector<Client> clients_;  // RTU: the master's side of the terminal
@@ -103,7 +103,7 @@ class ModbusServer {
   Order now_;
 
   std::mutex mutex_;
-  Order order_;  // given, not yet taken
+  Order order_;  // requested, not yet in effect
   std::atomic<std::uint64_t> asked_{0}, taken_{0}, requests_{0};
   std::atomic<std::int64_t> flooded_{0};
   std::atomic<bool> stop_{false};

@@ -8,8 +8,8 @@
 namespace flexarm {
 
 // Why no fence is needed: cells are written with release after the odd number, and read with
-// acquire before the number is read again. A reader that meets a new cell therefore sees the number
-// that announced it.
+// acquire before the number is read again. A reader that gets a new cell therefore also sees the
+// odd number that preceded it.
 
 RegisterImage::RegisterImage(ModbusDeviceConfig config) : config_(std::move(config)) {
   const auto reach = [this](ModbusTable table, int address, int width) {

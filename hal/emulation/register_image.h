@@ -12,12 +12,12 @@
 
 namespace flexarm {
 
-/// The registers of a simulated device: one thread publishes, another serves them.
+/// Seqlock of a simulated device's registers: one thread publishes, another serves them.
 ///
-/// Each table reaches from the lowest to the highest address that the config names in it; what lies
-/// between reads 0. Identification registers hold what the config expects.
-/// The writer never waits; a reader that meets a write begins again, so it sees all of a
-/// publication or nothing. Real-time: writing is safe.
+/// Each table extends from the lowest to the highest address that the config names in it; addresses
+/// between read 0. Identification registers contain the expected values of the config.
+/// The writer never waits; a reader that overlaps a write retries, so it reads a publication as a
+/// whole. Real-time: writing is safe.
 class RegisterImage {
  public:
   struct Extent {
@@ -28,14 +28,14 @@ class RegisterImage {
   /// @param config  as the driver's, without problems
   explicit RegisterImage(ModbusDeviceConfig config);
 
-  /// Writer's thread. Every row of the map shows this frame, valid or not.
+  /// Writer's thread. Every row of the map contains the reading of this frame, valid or not.
   void Publish(const SensorFrame& frame) noexcept;
 
-  /// Writer's thread. True: 32-bit values are published with their registers the wrong way round.
+  /// Writer's thread. True: 32-bit values are published with their registers swapped.
   void SwapWords(bool swapped) noexcept { swapped_ = swapped; }
   bool has_words_to_swap() const noexcept;
 
-  /// Writer's thread. Registers (or bits, 0 or 1) from `address` on; what lies outside is left out.
+  /// Writer's thread. Registers (or bits, 0 or 1) from `address` on; addresses outside are ignored.
   void Set(ModbusTable table, int address, std::span<const std::uint16_t> cells) noexcept;
 
   Extent extent(ModbusTable table) const noexcept;
@@ -58,7 +58,7 @@ class RegisterImage {
   const ModbusDeviceConfig config_;
   bool swapped_ = false;
   std::array<Table, 4> tables_;
-  std::atomic<std::uint32_t> sequence_{0};  // odd: the writer is at it
+  std::atomic<std::uint32_t> sequence_{0};  // odd: a write is in progress
 };
 
 }  // namespace flexarm

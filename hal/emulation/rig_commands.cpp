@@ -14,31 +14,31 @@
 namespace flexarm {
 
 const char* const kRigCommands =
-    R"(Commands on stdin, one a line; the last one for a device counts, `well` mends it:
+    R"(Commands on stdin, one per line; each replaces the last one of its device, `well` removes it:
   press LINE 0|1             limit-1-low limit-1-high limit-2-low limit-2-high
                              emergency-stop reset-button
   amplifier NAME well        NAME as in [[hal.modbus]]
-  amplifier NAME late MS     each reply that much later
+  amplifier NAME late MS     each reply delayed by MS
   amplifier NAME FAULT       silent byte-by-byte wrong-unit wrong-transaction wrong-length
                              garbage flood reset half-frame away (unplugged), and
                              one-behind wrong-protocol wrong-function long-payload
                              short-payload huge-payload bad-checksum three-bytes
                              half-frame-then-close twice exception close never-reads
-  amplifier NAME frozen      repeats what it shows now
+  amplifier NAME frozen      repeats its present readings
   amplifier NAME stuck C     channel C alone: a row of [[sensors.strain]], from 0
-  amplifier NAME inverted C  the bridge wired the wrong way round
+  amplifier NAME inverted C  the bridge wired with inverted polarity
   amplifier NAME swapped C D the plugs of two channels exchanged
   amplifier NAME scaled C F  F times the gain
   amplifier NAME wrong-word-order
   node ROLE well             ROLE as in [[hal.canopen.node]]: drive1 .. rotor2
-  node ROLE silent           without power; `well` is power again
-  node ROLE no-answer        to SYNC; its heartbeat goes on
-  node ROLE no-heartbeat     its answers go on
-  node ROLE short-pdo        a byte too short
-  node ROLE another-product  somebody has changed the device
-  node ROLE emcy CODE        one emergency message; a drive goes to fault. CODE as 0x2310
-  bus-off INTERFACE          the CAN controllers leave the bus, as far as the kernel tells
-  report                     what the hardware sees now
+  node ROLE silent           without power; `well` restores power
+  node ROLE no-answer        to SYNC; its heartbeat continues
+  node ROLE no-heartbeat     its answers continue
+  node ROLE short-pdo        PDOs one byte too short
+  node ROLE another-product  the device was replaced by another product
+  node ROLE emcy CODE        one emergency message; a drive enters its fault state. CODE as 0x2310
+  bus-off INTERFACE          reports to every socket that the CAN controllers have left the bus
+  report                     present state of the hardware
 )";
 
 namespace {
@@ -55,7 +55,7 @@ std::string NoChannel(const ChannelFaults& channels) {
   return "expected a channel from 0 to " + std::to_string(channels.channels() - 1);
 }
 
-// What is wrong with single channels. Nothing: `what` is none of these.
+// Executes a fault of single channels. Empty: `what` is not one of them.
 std::optional<std::string> ObeyChannels(const std::string& what, std::istringstream& words,
                                         ChannelFaults* channels) {
   if (what != "stuck" && what != "inverted" && what != "swapped" && what != "scaled") {
@@ -87,18 +87,18 @@ std::string ObeyAmplifier(std::istringstream& words, SimulatedAmplifier* amplifi
   if (const auto done = ObeyChannels(what, words, &amplifier->channels())) return *done;
   if (what == "late") {
     int late_ms = 0;
-    if (!(words >> late_ms) || late_ms < 0) return "expected how late, in ms";
+    if (!(words >> late_ms) || late_ms < 0) return "expected a delay in ms";
     amplifier->server().Behave(WireFault::kLate, std::chrono::milliseconds(late_ms));
   } else if (what == "well") {
     amplifier->Mend();
   } else if (what == "frozen") {
     amplifier->channels().Freeze();
   } else if (what == "wrong-word-order") {
-    if (!amplifier->SwapWords()) return "this amplifier has no value of two words";
+    if (!amplifier->SwapWords()) return "this amplifier has no 32-bit value";
   } else if (const std::optional<WireFault> fault = WireFaultByName(what)) {
     amplifier->server().Behave(*fault);
   } else {
-    return "no such fault of an amplifier: '" + what + "'";
+    return "unknown amplifier fault: '" + what + "'";
   }
   return "";
 }
@@ -126,7 +126,7 @@ std::string ObeyNode(std::istringstream& words, SimulatedNode* node) {
     }
     node->RaiseFault(static_cast<std::uint16_t>(number));
   } else {
-    return "no such fault of a node: '" + what + "'";
+    return "unknown node fault: '" + what + "'";
   }
   return "";
 }

@@ -9,13 +9,13 @@
 
 namespace flexarm {
 
-/// The commands of `flexarm rig`, one a line, as its help prints them.
+/// The commands of `flexarm rig`, one per line, as its help prints them.
 extern const char* const kRigCommands;
 
-/// Does what a line says. @returns what is wrong with it, for people; empty if it was done
+/// Executes one line. @returns the error message for the operator; empty on success
 std::string ExecuteRigCommand(const std::string& line, EmulatedRig* rig);
 
-/// The same for what follows "amplifier NAME" and "node ROLE".
+/// The same for the words after "amplifier NAME" and "node ROLE".
 std::string ObeyAmplifier(std::istringstream& words, SimulatedAmplifier* amplifier);
 std::string ObeyNode(std::istringstream& words, SimulatedNode* node);
 

@@ -8,26 +8,26 @@
 
 namespace flexarm {
 
-/// A strain amplifier of the simulated rig: its registers, its server on a thread of its own, and
-/// what is wrong with it. Thread: one, besides the server's.
+/// A strain amplifier of the emulated rig: its registers, its server on a thread of its own, and
+/// its injected faults. Thread: one, besides the server's.
 class SimulatedAmplifier {
  public:
-  /// Serves at once. @throws HalError
+  /// Starts the server. @throws HalError
   SimulatedAmplifier(const ModbusDeviceConfig& config, const SensorConfig& sensors);
   ~SimulatedAmplifier();
   SimulatedAmplifier(const SimulatedAmplifier&) = delete;
   SimulatedAmplifier& operator=(const SimulatedAmplifier&) = delete;
 
-  /// What the gauges say now.
+  /// Sets the present readings of the gauges.
   void Show(SensorFrame frame) noexcept;
 
-  /// Everything well again.
+  /// Removes all injected faults.
   void Mend();
 
   const std::string& name() const noexcept { return name_; }
   ModbusServer& server() noexcept { return server_; }
   ChannelFaults& channels() noexcept { return channels_; }
-  /// 32-bit values in the wrong word order; false if it has none.
+  /// Swaps the word order of 32-bit values; false if it has none.
   bool SwapWords() noexcept;
 
  private:

@@ -74,7 +74,7 @@ void SimulatedNode::FillDictionary() noexcept {
     return;
   }
   AddPdo(kObjectRpdoCommunication, kCobRpdo, kObjectRpdoMapping, 4);
-  // As delivered, many drives send a second PDO on every event.
+  // By default many drives send a second PDO on every event.
   AddPdo(kObjectTpdoCommunication + 1, 0x280, kObjectTpdoMapping + 1, 2);
   Add(kObjectAbortConnection, 2, true, 0);
   Add(kObjectControlword, 2, true, 0);
@@ -288,7 +288,7 @@ void SimulatedNode::Follow(std::uint16_t control) noexcept {
     if (reset_edge) state_ = kSwitchOnDisabled;
     return;
   }
-  // Voltage off, or quick stop, after which a motor without speed control has no voltage either.
+  // Voltage off, or quick stop, which ends without voltage as there is no speed control.
   if ((control & 0x02U) == 0 || (control & 0x04U) == 0) {
     state_ = kSwitchOnDisabled;
   } else if ((control & 0x07U) == kControlShutdown) {
@@ -333,7 +333,7 @@ void SimulatedNode::LoseMaster() noexcept {
   if (config_.drive && option != 0) {
     RemoveTorque(option == 1 ? DriveState::kFault : DriveState::kSwitchOnDisabled);
   }
-  nmt_ = NmtState::kPreOperational;  // 1029:1 as delivered; a drive with option 0 keeps its torque
+  nmt_ = NmtState::kPreOperational;  // default of 1029:1; a drive with option 0 keeps its torque
 }
 
 void SimulatedNode::RaiseFault(std::uint16_t code) noexcept {

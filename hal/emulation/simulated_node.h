@@ -14,7 +14,7 @@
 
 namespace flexarm {
 
-/// What a simulated node is.
+/// Identity and kind of a simulated node.
 struct SimulatedNodeConfig {
   bool drive;  ///< CiA 402 drive, or CiA 406 encoder
   int node_id;
@@ -24,50 +24,50 @@ struct SimulatedNodeConfig {
   std::uint32_t rated_torque_mnm;  ///< of a drive's motor
 };
 
-/// The node that a rig's config expects to find.
+/// The simulated node that matches a rig's config.
 SimulatedNodeConfig SimulatedNodeOf(const CanopenNodeConfig& config);
 
-/// What a simulated node does wrong.
+/// Injected faults of a simulated node.
 struct Misbehaviour {
-  bool silent = false;                                     ///< sends and hears nothing: no power
-  bool answers_no_sync = false;                            ///< heartbeats go on
-  bool no_heartbeat = false;                               ///< everything else goes on
+  bool silent = false;                                     ///< sends and receives nothing: no power
+  bool answers_no_sync = false;                            ///< heartbeats continue
+  bool no_heartbeat = false;                               ///< everything else continues
   bool cuts_pdos = false;                                  ///< sends its PDOs a byte too short
-  std::optional<std::uint16_t> statusword = std::nullopt;  ///< stuck
+  std::optional<std::uint16_t> statusword = std::nullopt;  ///< constant value
   std::uint16_t refuses_index = 0;                         ///< aborts a write to this object
   std::uint16_t forgets_index = 0;   ///< acknowledges a write to it, and keeps the old value
   bool has_no_abort_option = false;  ///< object 6007 does not exist
   bool keeps_torque = false;         ///< ignores its heartbeat consumer
-  bool another_product = false;      ///< 1018:2 is not what it was: somebody has changed the node
+  bool another_product = false;      ///< 1018:2 differs: the node was replaced by another product
 };
 
 /// A CiA 402 drive in cyclic synchronous torque mode, or a CiA 406 encoder, on a CanBus: object
-/// dictionary with SDO server, PDOs as they are mapped, on SYNC, heartbeat producer and consumer. A
-/// drive that no longer hears the heartbeat of its master does what 6007 says.
+/// dictionary with SDO server, PDOs as mapped, on SYNC, heartbeat producer and consumer. A drive
+/// that misses the heartbeat of its master reacts as configured in 6007.
 ///
-/// Everything starts anew by NMT reset; the encoder's position outlives a reset of communication
-/// only. Real-time: Run is safe. Thread: that of its bus.
+/// NMT reset resets everything; the encoder's position survives a reset of communication only.
+/// Real-time: Run is safe. Thread: that of its bus.
 class SimulatedNode {
  public:
   SimulatedNode(CanBus* bus, const SimulatedNodeConfig& config);
 
   /// Joins the bus and sends the boot-up message. @throws HalError
   void Start();
-  /// Handles what has come and what is due. Call it often: its timers are as fine as that.
+  /// Handles received frames and due timers. The call rate is the resolution of its timers.
   void Run() noexcept;
 
   /// Torque on the motor's shaft in 0.1 % of rated: 0 unless operation is enabled.
   int torque_per_mille() const noexcept;
   DriveState state() const noexcept { return state_; }
   NmtState nmt() const noexcept { return nmt_; }
-  /// What 6064 or 6004 shows from now on.
+  /// Sets the position in 6064 or 6004.
   void SetPosition(std::uint32_t counts) noexcept;
   /// The value of an object; 0 if there is none.
   std::uint32_t Value(CanopenObject object) const noexcept;
 
-  /// Emergency message, and the fault state of a drive.
+  /// Sends an emergency message, and sets the fault state of a drive.
   void RaiseFault(std::uint16_t code) noexcept;
-  /// Takes what is wrong with it from now on; all well again by `{}`.
+  /// Sets the injected faults; `{}` removes them.
   void Misbehave(const Misbehaviour& wrong) noexcept { wrong_ = wrong; }
 
  private:
@@ -89,7 +89,7 @@ class SimulatedNode {
   void Handle(const CanFrame& frame) noexcept;
   void HandleNmt(const NmtOrder& order) noexcept;
   void HandleSdo(const CanFrame& frame) noexcept;
-  /// Abort code, or 0 if the value was taken.
+  /// Abort code, or 0 if the value was accepted.
   std::uint32_t Write(CanopenObject object, std::uint32_t value, int size) noexcept;
   std::uint32_t CheckMapping(std::uint16_t index, std::uint32_t count) const noexcept;
   void HandleSync() noexcept;
@@ -108,7 +108,7 @@ class SimulatedNode {
   NmtState nmt_ = NmtState::kBooting;
   DriveState state_ = DriveState::kSwitchOnDisabled;
   std::uint16_t last_control_ = 0;
-  std::optional<CanFrame> command_;  // RPDO that waits for SYNC
+  std::optional<CanFrame> command_;  // received RPDO, applied at SYNC
   std::int64_t next_heartbeat_ns_ = 0;
   std::optional<std::int64_t> master_heard_ns_;
 };

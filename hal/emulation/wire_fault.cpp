@@ -28,7 +28,7 @@ constexpr std::array<const char*, kWireFaults> kNames = {"well",
                                                          "close",
                                                          "never-reads",
                                                          "away"};
-static_assert(kNames.back() != nullptr, "every fault has its name");
+static_assert(kNames.back() != nullptr, "every fault must have a name");
 
 }  // namespace
 

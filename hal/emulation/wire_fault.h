@@ -7,40 +7,40 @@
 
 namespace flexarm {
 
-/// What a Modbus device can do wrong on its wire.
+/// Injected faults of a Modbus device on its wire.
 enum class WireFault : std::uint8_t {
   kNone,
-  kSilent,            ///< takes requests, never answers
-  kLate,              ///< each reply some time later
-  kOneBehind,         ///< answers each request with the reply to the one before, for ever
+  kSilent,            ///< accepts requests, never answers
+  kLate,              ///< delays each reply
+  kOneBehind,         ///< answers each request with the reply to the previous one
   kByteByByte,        ///< a byte every 20 ms
   kWrongTransaction,  ///< TCP
   kWrongProtocol,     ///< TCP
   kWrongFrameLength,  ///< TCP: the header's length field is not the frame's
   kWrongUnit,
   kWrongFunction,
-  kLongPayload,   ///< a register more than asked for, all lengths consistent
-  kShortPayload,  ///< nothing where something was asked for
-  kHugePayload,   ///< says 255 bytes
+  kLongPayload,   ///< a register more than requested, all lengths consistent
+  kShortPayload,  ///< an empty payload
+  kHugePayload,   ///< byte count 255
   kBadChecksum,   ///< RTU
   kGarbage,       ///< 64 bytes 0xFF in place of a reply
-  kThreeBytes,    ///< and nothing after them
-  kHalfFrame,     ///< and nothing after it
+  kThreeBytes,    ///< then nothing
+  kHalfFrame,     ///< then nothing
   kHalfFrameThenClose,
-  kTwice,  ///< each reply twice
+  kTwice,  ///< sends each reply twice
   kException,
-  kFlood,       ///< sends without being asked, 16 MB/s
-  kReset,       ///< TCP: RST in place of a reply
-  kClose,       ///< TCP: in place of a reply
-  kNeverReads,  ///< TCP: leaves requests in its buffer, which is small
-  kAway,        ///< unplugged: connections, listener or terminal closed; back with any other
+  kFlood,       ///< sends unrequested data, 16 MB/s
+  kReset,       ///< TCP: RST instead of a reply
+  kClose,       ///< TCP: closes instead of a reply
+  kNeverReads,  ///< TCP: does not read its receive buffer, which is small
+  kAway,        ///< unplugged: connections, listener or terminal closed, until another fault
 };
 inline constexpr int kWireFaults = 25;
 
-/// As in commands: "byte-by-byte"; kNone is "well".
+/// Name of a fault in commands: "byte-by-byte"; kNone is "well".
 const char* Name(WireFault fault) noexcept;
 
-/// Nothing if there is no such fault.
+/// The fault with this name; empty if there is none.
 std::optional<WireFault> WireFaultByName(std::string_view name) noexcept;
 
 }  // namespace flexarm

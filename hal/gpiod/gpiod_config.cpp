@@ -29,7 +29,7 @@ std::vector<Problem> GpiodConfig::Problems() const {
                  "must be a line's offset on the chip, 0 to " + std::to_string(kMaxOffset));
     const auto [other, is_new] = taken.emplace(offset, key);
     list.Require(is_new, key, std::to_string(offset),
-                 "must be a line of its own: " + other->second + " has it already");
+                 "must be used once: " + other->second + " uses it too");
   };
   for (int i = 0; i < kLines; ++i) {
     check(KeyOf(static_cast<Line>(i)), input[static_cast<std::size_t>(i)]);

@@ -12,15 +12,15 @@ namespace flexarm {
 /// The safety chain on the lines of one GPIO chip: [hal.gpiod]. Offsets on the chip.
 ///
 /// Inputs read 1 when their contact is closed: limit switches and emergency stop are normally
-/// closed, so a cut wire reads as pressed. The relay closes at 1; the charge pump lives while its
-/// line toggles.
+/// closed, so a cut wire reads as pressed. The relay closes at 1; the charge pump enables the
+/// drives while its line toggles.
 struct GpiodConfig {
   std::string chip;               ///< "/dev/gpiochip0", or a chip's name or label
   std::array<int, kLines> input;  ///< keys by Name(Line), with underscores: limit_1_low, ..
   int relay;
   int pump;
 
-  /// Broken rules; every line has an offset of its own.
+  /// Violated rules; every line needs its own offset.
   std::vector<Problem> Problems() const;
 };
 

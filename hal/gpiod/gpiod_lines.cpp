@@ -21,12 +21,12 @@ constexpr const char* kConsumer = "flexarmd";
 gpiod_line* LineAt(const GpiodConfig& config, gpiod_chip* chip, int offset,
                    const std::string& name) {
   gpiod_line* line = gpiod_chip_get_line(chip, static_cast<unsigned>(offset));
-  if (line == nullptr) Fail(config, name + " = line " + std::to_string(offset) + " is not there");
+  if (line == nullptr) Fail(config, name + " = line " + std::to_string(offset) + " does not exist");
   if (gpiod_line_is_used(line)) {
     const char* consumer = gpiod_line_consumer(line);
     errno = EBUSY;
     Fail(config, name + " = line " + std::to_string(offset) + " is held by " +
-                     (consumer != nullptr ? consumer : "somebody"));
+                     (consumer != nullptr ? consumer : "an unknown process"));
   }
   return line;
 }
@@ -60,11 +60,11 @@ struct GpiodLines::Lines {
     gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.relay, "relay"));
     gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.pump, "pump"));
     if (gpiod_line_request_bulk_input(&inputs, kConsumer) != 0) {
-      Fail(config, "the inputs are refused");
+      Fail(config, "the input lines cannot be requested");
     }
     const std::array<int, 2> low = {0, 0};
     if (gpiod_line_request_bulk_output(&outputs, kConsumer, low.data()) != 0) {
-      Fail(config, "the outputs are refused");
+      Fail(config, "the output lines cannot be requested");
     }
   }
 

@@ -18,7 +18,7 @@ namespace flexarm {
 namespace {
 
 constexpr int kAddresses = 65536;
-// What every kind of serial port can do.
+// Baud rates that every kind of serial port supports.
 constexpr std::array<int, 9> kBauds = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400};
 
 bool IsAddress(int address) { return address >= 0 && address < kAddresses; }
@@ -26,7 +26,7 @@ bool IsAddress(int address) { return address >= 0 && address < kAddresses; }
 void CheckTcp(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
   in_addr address{};
   list->Require(inet_pton(AF_INET, d.host.c_str(), &address) == 1, row + ".host", d.host,
-                "must be an IPv4 address in digits: looking a name up has no time bound");
+                "must be an IPv4 address in digits: a name lookup has no time bound");
   list->Within(row + ".port", d.port, 1, 65535, "a TCP port; Modbus's own is 502");
   list->Require((d.unit >= 0 && d.unit <= 247) || d.unit == 255, row + ".unit", NumberText(d.unit),
                 "must lie in 0 .. 247, or be 255 (the TCP device itself)");
@@ -34,19 +34,19 @@ void CheckTcp(const ModbusDeviceConfig& d, const std::string& row, ProblemList* 
 
 void CheckRtu(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
   list->Require(d.device.starts_with('/'), row + ".device", d.device,
-                "must be the absolute path of a serial port, best one of /dev/serial/by-id");
+                "must be the absolute path of a serial port, preferably in /dev/serial/by-id");
   list->Require(std::find(kBauds.begin(), kBauds.end(), d.baud) != kBauds.end(), row + ".baud",
                 NumberText(d.baud),
                 "must be 1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200 or 230400");
   list->Require(d.data_bits == 8, row + ".data_bits", NumberText(d.data_bits),
                 "must be 8: a byte of a Modbus RTU frame has 8 bits");
   list->Within(row + ".stop_bits", d.stop_bits, 1, 2, "stop bits of a character");
-  list->Within(row + ".unit", d.unit, 1, 247, "0 is the broadcast, which nobody answers");
+  list->Within(row + ".unit", d.unit, 1, 247, "0 is the broadcast, which has no reply");
 }
 
 void CheckIdentification(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
   list->Require(!d.identification.empty(), row + ".identification", "0 rows",
-                "must have a row: a register whose value proves which device answers");
+                "must have a row: a register whose value identifies the device");
   std::set<std::pair<ModbusTable, int>> seen;
   for (std::size_t i = 0; i < d.identification.size(); ++i) {
     const ModbusIdentity& id = d.identification[i];
@@ -60,7 +60,7 @@ void CheckIdentification(const ModbusDeviceConfig& d, const std::string& row, Pr
   }
 }
 
-// Largest count that the row can give; 0 for types whose range tells nothing.
+// Largest count that the row can give; 0 for types without a bounded range.
 double LargestCounts(const ModbusRegister& row) {
   const double value = row.type == ModbusType::kInt16    ? 32768.0
                        : row.type == ModbusType::kUint16 ? 65535.0
@@ -73,7 +73,7 @@ void CheckStrainRow(const ModbusRegister& r, const std::string& key, std::size_t
   list->Require(
       r.index >= 0 && static_cast<std::size_t>(r.index) < strain_rows, key + ".strain",
       NumberText(r.index),
-      "must be a row of [[sensors.strain]], from 0; there are " + NumberText(strain_rows));
+      "must be a row of [[sensors.strain]], from 0; it has rows: " + NumberText(strain_rows));
   list->Require(!HoldsBits(r.table), key + ".table", Name(r.table),
                 "must be \"input register\" or \"holding register\": a strain is a number");
   list->Require(r.type != ModbusType::kBit, key + ".type", "bit",
@@ -95,7 +95,7 @@ void CheckInputRow(const ModbusRegister& r, const std::string& key, ProblemList*
                 "must be left out, or bit: an input is a bit");
 }
 
-// Two rows of a device at the same place: one of them has a wrong address.
+// Two overlapping rows of a device: one of them has a wrong address.
 void CheckOverlaps(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
   std::map<std::pair<ModbusTable, int>, std::size_t> taken;
   for (std::size_t i = 0; i < d.map.size(); ++i) {
@@ -115,8 +115,8 @@ void CheckOverlaps(const ModbusDeviceConfig& d, const std::string& row, ProblemL
   }
 }
 
-// A late reply on a serial line bears no number. It is recognised because what is asked after a
-// failure, a proof, looks different from what is asked first otherwise.
+// A late reply on a serial line has no transaction number. It is recognised because the request
+// after a failure, an identity check, differs from every first request for readings.
 void CheckResynchronisation(const ModbusDeviceConfig& d, const std::string& row,
                             const ModbusPlan& plan, ProblemList* list) {
   if (d.transport != ModbusTransport::kRtu) return;
@@ -125,10 +125,10 @@ void CheckResynchronisation(const ModbusDeviceConfig& d, const std::string& row,
         std::none_of(plan.reads.begin(), plan.reads.end(), [&](const ModbusRequest& read) {
           return proof.table == read.table && proof.count == read.count;
         });
-    list->Require(differs, row + ".identification",
-                  NumberText(proof.count) + " x " + Name(proof.table),
-                  "must differ in table or number from every request for readings, or a late reply "
-                  "on the serial line could be taken for another; name one register more or less");
+    list->Require(
+        differs, row + ".identification", NumberText(proof.count) + " x " + Name(proof.table),
+        "must differ in table or number from every request for readings, or a late reply "
+        "on the serial line could be mistaken for another; name one register more or less");
   }
 }
 
@@ -154,18 +154,18 @@ void CheckTime(const ModbusDeviceConfig& d, const std::string& row, const Modbus
 void CheckDevice(const ModbusDeviceConfig& d, const std::string& row, std::size_t strain_rows,
                  std::int64_t available_ns, ProblemList* all) {
   ProblemList list("hal.");
-  list.Require(!d.name.empty(), row + ".name", d.name, "must not be empty: messages use it");
+  list.Require(!d.name.empty(), row + ".name", d.name, "must not be empty: messages contain it");
   if (d.transport == ModbusTransport::kTcp) {
     CheckTcp(d, row, &list);
   } else {
     CheckRtu(d, row, &list);
   }
   list.Within(row + ".response_timeout_ms", d.response_timeout_ms, 0.5, 1000.0,
-              "what the device may take to answer");
+              "largest response time of the device");
   list.Within(row + ".gap_limit", d.gap_limit, 0, 120,
-              "addresses that may be read in vain to spare a request");
+              "unused addresses that may be read to save a request");
   CheckIdentification(d, row, &list);
-  list.Require(!d.map.empty(), row + ".register", "0 rows", "must have a row: what to read");
+  list.Require(!d.map.empty(), row + ".register", "0 rows", "must have at least one row");
   for (std::size_t i = 0; i < d.map.size(); ++i) {
     const std::string key = row + "." + ProblemList::Element("register", i);
     if (d.map[i].role == ModbusRole::kStrain) {
@@ -175,7 +175,7 @@ void CheckDevice(const ModbusDeviceConfig& d, const std::string& row, std::size_
     }
   }
   CheckOverlaps(d, row, &list);
-  if (list.empty()) {  // requests and times make sense
+  if (list.empty()) {  // requests and times are valid
     const ModbusPlan plan = PlanModbus(d);
     CheckResynchronisation(d, row, plan, &list);
     CheckTime(d, row, plan, available_ns, &list);
@@ -185,7 +185,7 @@ void CheckDevice(const ModbusDeviceConfig& d, const std::string& row, std::size_
   }
 }
 
-// What two devices, or two rows of any devices, must not share.
+// Values that two devices, or two rows of any devices, must not share.
 void CheckDuplicates(const std::vector<ModbusDeviceConfig>& device, ProblemList* list) {
   std::set<std::string> names;
   std::set<std::tuple<std::string, int, int>> places;
@@ -194,13 +194,13 @@ void CheckDuplicates(const std::vector<ModbusDeviceConfig>& device, ProblemList*
     const ModbusDeviceConfig& d = device[i];
     const std::string row = ProblemList::Element("modbus", i);
     list->Require(names.insert(d.name).second, row + ".name", d.name,
-                  "must be the name of one device only");
+                  "must be used for one device only");
     if (d.transport == ModbusTransport::kTcp) {
       list->Require(places.insert({d.host, d.port, d.unit}).second, row + ".host", d.host,
-                    "must be named, with this port and unit, by one device only");
+                    "must be used once with this port and unit");
     } else {
       list->Require(places.insert({d.device, 0, 0}).second, row + ".device", d.device,
-                    "must be named by one device only: two masters on a line disturb each other");
+                    "must be used for one device only: two masters on a line disturb each other");
     }
     for (std::size_t k = 0; k < d.map.size(); ++k) {
       const ModbusRegister& r = d.map[k];

@@ -10,7 +10,7 @@
 
 namespace flexarm {
 
-/// What carries the requests.
+/// Transport of the requests.
 enum class ModbusTransport : std::uint8_t { kTcp, kRtu };
 
 /// The four tables of a Modbus device; the value is the function code that reads it.
@@ -21,7 +21,7 @@ enum class ModbusTable : std::uint8_t {
   kInputRegister = 4,
 };
 
-/// How a value lies in its registers.
+/// Encoding of a value in its registers.
 enum class ModbusType : std::uint8_t { kBit, kInt16, kUint16, kInt32, kFloat32 };
 
 /// Which register of a 32-bit value has the lower address. Bytes in a register: high byte first.
@@ -32,15 +32,15 @@ enum class ModbusWordOrder : std::uint8_t {
 
 enum class ModbusParity : std::uint8_t { kNone, kEven, kOdd };
 
-/// What a row of the register map is to the rig.
+/// Meaning of a row of the register map.
 enum class ModbusRole : std::uint8_t {
   kStrain,  ///< a strain channel; index: row of [[sensors.strain]], from 0
-  kInput,   ///< a digital input, a second reading of the Line `index` once a period: see Either
+  kInput,   ///< a digital input: redundant reading of the Line `index`, once per period
 };
 
 /// One reading: [[hal.modbus.register]].
 ///
-/// Strain: counts = round(scale * value + offset_counts), what the channel's converter would show.
+/// Strain: counts = round(scale * value + offset_counts), equal to the converter's counts.
 struct ModbusRegister {
   ModbusRole role;
   int index;                   ///< see ModbusRole
@@ -52,7 +52,7 @@ struct ModbusRegister {
   double offset_counts;        ///< counts at value 0
 };
 
-/// A register whose value proves which device this is, or that it is set up as the rig needs it:
+/// A register whose value identifies the device or verifies its settings:
 /// [[hal.modbus.identification]].
 struct ModbusIdentity {
   ModbusTable table;  ///< kHoldingRegister or kInputRegister
@@ -60,11 +60,11 @@ struct ModbusIdentity {
   int expected;  ///< 0 .. 65535
 };
 
-/// One Modbus server with one unit: [[hal.modbus]]. It has a connection and a thread of its own.
+/// One Modbus server with one unit: [[hal.modbus]]. It has its own connection and thread.
 struct ModbusDeviceConfig {
   std::string name;  ///< in messages: "strain-amplifier-1"
   ModbusTransport transport;
-  std::string host;    ///< TCP: IPv4 address in digits: looking a name up has no time bound
+  std::string host;    ///< TCP: IPv4 address in digits: a name lookup has no time bound
   int port;            ///< TCP: 1 .. 65535
   std::string device;  ///< RTU: "/dev/serial/by-id/.."
   int baud;            ///< RTU: 1/s
@@ -73,7 +73,7 @@ struct ModbusDeviceConfig {
   int stop_bits;               ///< RTU: 1 or 2
   int unit;                    ///< 1 .. 247; TCP also 0 and 255
   double response_timeout_ms;  ///< the device's own time; the wire's is added for RTU
-  int gap_limit;               ///< addresses that may be read in vain to spare a request
+  int gap_limit;               ///< unused addresses that may be read to save a request
   std::vector<ModbusIdentity> identification;
   std::vector<ModbusRegister> map;
 };
@@ -82,13 +82,13 @@ struct ModbusDeviceConfig {
 struct ModbusConfig {
   std::vector<ModbusDeviceConfig> device;
 
-  /// Broken rules.
+  /// Violated rules.
   /// @param strain_rows   rows of [[sensors.strain]]
-  /// @param available_ns  in which one exchange must be over, whatever the peer does
+  /// @param available_ns  bound of one exchange, for any behaviour of the peer
   std::vector<Problem> Problems(std::size_t strain_rows, std::int64_t available_ns) const;
 };
 
-/// Registers (or bits) that a value of this type takes.
+/// Number of registers (or bits) of a value of this type.
 constexpr int WidthOf(ModbusType type) {
   return type == ModbusType::kInt32 || type == ModbusType::kFloat32 ? 2 : 1;
 }
@@ -97,7 +97,7 @@ constexpr bool HoldsBits(ModbusTable table) {
   return table == ModbusTable::kCoil || table == ModbusTable::kDiscreteInput;
 }
 
-/// "input register", as in messages.
+/// Name of a table in messages: "input register".
 const char* Name(ModbusTable table) noexcept;
 
 /// "strain[3]" or the name of the line.

@@ -82,7 +82,7 @@ void ModbusDevice::Open() {
       const ModbusIdentity& id = *wrong.identity;
       throw HalError(Place() + Name(id.table) + " " + std::to_string(id.address) + " is " +
                      Hexadecimal(wrong.found) + ", expected " + Hexadecimal(id.expected) +
-                     ": another device, or one that is set up otherwise");
+                     ": another device, or different settings");
     }
     if (status == BusStatus::kOk) status = ReadAll(&fresh);
   }
@@ -116,7 +116,7 @@ BusStatus ModbusDevice::Prove(const ModbusRequest& request, Wrong* wrong) noexce
     const int found = reply.Word(id.address - request.address);
     if (found == id.expected) continue;
     *wrong = {.identity = &id, .found = found};
-    link_.Close();  // nobody that we know
+    link_.Close();  // not the expected device
     return BusStatus::kMalformed;
   }
   return BusStatus::kOk;
@@ -183,7 +183,7 @@ BusStatus ModbusDevice::Exchange(const BusCommand&, SensorFrame* part) noexcept 
   return status;
 }
 
-// A value that is repeated stays as old as it is.
+// A repeated value keeps its age.
 void ModbusDevice::KeepAges(SensorFrame* fresh) const noexcept {
   for (std::size_t i = 0; i < fresh->strain.size(); ++i) {
     if ((fresh->strain_valid & Bit(static_cast<int>(i))) != 0) continue;

@@ -11,17 +11,18 @@
 
 namespace flexarm {
 
-/// Strain amplifiers and remote inputs behind Modbus/TCP or Modbus RTU.
+/// Driver of strain amplifiers and remote inputs on Modbus/TCP or Modbus RTU.
 ///
-/// An exchange reads every row of the map, in as few requests as the plan has, and ends with the
-/// first that fails. Readings carry the middle of their request as their time: sampled_at_ns is
-/// that of the first request, the others' distance from it is their offset. A channel whose value
-/// is not a number, or does not fit, is not valid while the others are: a broken amplifier channel
-/// must not take its neighbours away.
-/// After a failure on a serial line, whose replies bear no number, the next exchange first reads an
-/// identification register: its reply looks unlike every reading's, so a late one is recognised.
-/// Statuses: an exception of the device is kMalformed, counted apart; a second mismatch in a row is
-/// kDisconnected, and so is everything until Reconnect has succeeded.
+/// An exchange reads every row of the map, in the requests of the plan, and ends with the first
+/// that fails. The time of a reading is the middle of its request: sampled_at_ns is that of the
+/// first request, offsets are relative to it. A channel whose value is not a number, or does not
+/// fit, is marked not valid while the others stay valid: a broken amplifier channel must not
+/// invalidate its neighbours.
+/// Replies on a serial line have no transaction number. So after a failure there the next exchange
+/// first reads an identification register: its reply has another form than every reading's, so a
+/// late one is recognised.
+/// Statuses: an exception of the device is kMalformed, counted separately; a second mismatch in a
+/// row is kDisconnected, as is everything until Reconnect has succeeded.
 /// Real-time: Exchange, Reconnect and Close do not allocate. Thread: the bus's own.
 class ModbusDevice final : public BusDevice {
  public:
@@ -29,7 +30,7 @@ class ModbusDevice final : public BusDevice {
   ModbusDevice(ModbusDeviceConfig config, ModbusClock clock);
 
   const char* name() const noexcept override { return config_.name.c_str(); }
-  /// Of an exchange, or of connecting and identifying, whichever is longer.
+  /// Bound of an exchange, or of connecting and identifying, whichever is longer.
   std::int64_t worst_case_ns() const noexcept override;
 
   /// Connects, reads the settings and the identification back, and reads every row once.
@@ -38,7 +39,7 @@ class ModbusDevice final : public BusDevice {
 
   [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
 
-  /// Connects and identifies again. An attempt that fails doubles the pause before the next, up to
+  /// Connects and identifies again. A failed attempt doubles the pause before the next, up to
   /// 1.6 s; within the pause it returns at once.
   [[nodiscard]] BusStatus Reconnect() noexcept override;
 
@@ -49,16 +50,16 @@ class ModbusDevice final : public BusDevice {
 
   void Close() noexcept override { link_.Close(); }
 
-  /// The strain channels that an exchange gives; bit i is channel i.
+  /// The strain channels that an exchange reads; bit i is channel i.
   std::uint32_t strain_channels() const noexcept { return strain_channels_; }
 
   const ModbusPlan& plan() const noexcept { return plan_; }
   const ModbusCounters& counters() const noexcept { return link_.counters(); }
-  /// Readings that were no number, or did not fit.
+  /// Number of readings that were not a number, or did not fit.
   std::uint64_t values_refused() const noexcept { return values_refused_; }
 
  private:
-  struct Wrong {  // what a proof found
+  struct Wrong {  // an identification register with a wrong value
     const ModbusIdentity* identity;
     int found;
   };
@@ -77,9 +78,9 @@ class ModbusDevice final : public BusDevice {
   ModbusLink link_;
   std::uint32_t strain_channels_ = 0;
   LineLevels lines_ = 0;
-  SensorFrame last_{};  // good values, repeated while there are none
+  SensorFrame last_{};  // good values, repeated while there are no new ones
   bool prove_first_ = false;
-  const ModbusRequest* failed_ = nullptr;  // the request asked last, for messages
+  const ModbusRequest* failed_ = nullptr;  // the last request, for messages
   std::int64_t pause_ns_;
   std::int64_t next_attempt_ns_ = INT64_MIN;
   std::uint64_t values_refused_ = 0;

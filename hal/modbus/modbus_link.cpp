@@ -30,7 +30,7 @@ constexpr int kTcpRequest = kTcpHeader + 5;
 constexpr int kMostWaitingRequests = 4;
 constexpr int kSerialHeader = 1;  // unit
 constexpr int kMostMismatchesInARow = 2;
-constexpr int kMostDrainedFrames = 8;  // more waiting bytes than so many frames are a flood
+constexpr int kMostDrainedFrames = 8;  // more waiting bytes than of this many frames are a flood
 constexpr std::uint8_t kExceptionBit = 0x80;
 
 std::uint8_t High(int value) noexcept { return static_cast<std::uint8_t>(value >> 8); }
@@ -133,7 +133,7 @@ BusStatus ModbusLink::Connect() noexcept {
   const auto timeout_ns = static_cast<std::int64_t>(std::ceil(config_.response_timeout_ms * 1e6));
   SetTimeout(context_->modbus, timeout_ns);
   if (modbus_connect(context_->modbus) != 0) {
-    const int error = errno == EINPROGRESS ? ETIMEDOUT : errno;  // what select leaves behind
+    const int error = errno == EINPROGRESS ? ETIMEDOUT : errno;  // errno after select
     return Fail("cannot connect", error);
   }
   open_ = true;
@@ -164,15 +164,16 @@ BusStatus ModbusLink::SetUpTcp() noexcept {
 
 BusStatus ModbusLink::SetUpSerial() noexcept {
   termios found{};
-  if (tcgetattr(fd_, &found) != 0) return Fail("the port's settings cannot be read back", errno);
+  if (tcgetattr(fd_, &found) != 0)
+    return Fail("the settings of the serial port cannot be read back", errno);
   const SerialLatency latency = SetLowLatency(fd_, KernelIoctl);
   if (latency == SerialLatency::kRefused) {
     return Fail(
-        "the serial adapter does not take the low-latency flag: it may hold replies back "
-        "for 16 ms; use another adapter or port",
+        "the serial adapter does not support the low-latency flag: it may delay replies by "
+        "16 ms; use another adapter or port",
         0);
   }
-  // A pseudo-terminal has no wire, and keeps no parity bit.
+  // A pseudo-terminal has no wire, and does not store the parity bit.
   const tcflag_t parity_kept = latency == SerialLatency::kNoWire ? 0 : PARENB | PARODD;
   tcflag_t parity = config_.parity == ModbusParity::kNone ? 0 : PARENB;
   if (config_.parity == ModbusParity::kOdd) parity |= PARODD;
@@ -182,14 +183,14 @@ BusStatus ModbusLink::SetUpSerial() noexcept {
                       ((found.c_cflag & CSTOPB) != 0) == (config_.stop_bits == 2) &&
                       (found.c_cflag & parity_kept) == (parity & parity_kept);
   if (!as_set) return Fail("baud rate, parity or stop bits do not read back as set", 0);
-  ioctl(fd_, TIOCEXCL);  // nobody else opens the port; pseudo-terminals may ignore it
+  ioctl(fd_, TIOCEXCL);  // exclusive use of the port; pseudo-terminals may ignore it
   return BusStatus::kOk;
 }
 
 void ModbusLink::Close() noexcept {
   if (!open_) return;
   open_ = false;
-  if (rtu()) modbus_flush(context_->modbus);  // close would wait until all is sent
+  if (rtu()) modbus_flush(context_->modbus);  // close would wait until all bytes are sent
   modbus_close(context_->modbus);
 }
 
@@ -236,8 +237,8 @@ BusStatus ModbusLink::Drain() noexcept {
   return Mismatch();
 }
 
-// After a failure, the rest of a late or broken reply is expected. When all was well, bytes that
-// nobody asked for mean that the peer is out of step.
+// After a failure, the rest of a late or broken reply is expected. Otherwise unrequested bytes mean
+// that the peer is out of step.
 BusStatus ModbusLink::JudgeDrained(int bytes) noexcept {
   if (bytes == 0) return BusStatus::kOk;
   if (in_step_) return Mismatch();
@@ -249,10 +250,11 @@ void ModbusLink::WaitForSilence(std::int64_t silent_ns) noexcept {
   const std::int64_t wait_ns = last_traffic_ns_ + silent_ns - clock_();
   if (wait_ns <= 0) return;
   const timespec wait{.tv_sec = wait_ns / kSecondNs, .tv_nsec = wait_ns % kSecondNs};
-  ppoll(nullptr, 0, &wait, nullptr);  // a signal may end it early: the device then misses a frame
+  ppoll(nullptr, 0, &wait,
+        nullptr);  // a signal may end the wait early: the device then misses a frame
 }
 
-// Serial: nothing may wait. TCP: a peer may acknowledge 40 ms late, which is two periods.
+// Serial: no bytes may wait. TCP: a peer may acknowledge 40 ms late, which is two periods.
 bool ModbusLink::RequestsLeave() noexcept {
   int waiting = 0;
   static_assert(SIOCOUTQ == TIOCOUTQ);
@@ -265,7 +267,7 @@ bool ModbusLink::Send(const ModbusRequest& request) noexcept {
       Low(config_.unit),     Low(static_cast<int>(request.table)),
       High(request.address), Low(request.address),
       High(request.count),   Low(request.count)};
-  if (rtu()) {  // adds the checksum
+  if (rtu()) {  // libmodbus adds the checksum
     return modbus_send_raw_request(context_->modbus, body.data(), body.size()) > 0;
   }
   // libmodbus gives raw requests no transaction number of their own.
@@ -288,7 +290,7 @@ BusStatus ModbusLink::Receive(const ModbusRequest& request, ModbusReply* reply) 
     }
     return errno == EMBBADDATA || errno == EMBBADCRC ? Mismatch() : Lost();
   }
-  if (length == 0) return Mismatch();  // serial: another unit's
+  if (length == 0) return Mismatch();  // serial: a reply of another unit
   const int header = rtu() ? kSerialHeader : kTcpHeader;
   const int tail = rtu() ? 2 : 0;
   if (!rtu()) {

@@ -10,49 +10,49 @@
 
 namespace flexarm {
 
-/// CLOCK_MONOTONIC in ns; comes from outside, as only executors read clocks.
+/// CLOCK_MONOTONIC in ns; injected, as only executors read clocks.
 using ModbusClock = std::int64_t (*)() noexcept;
 
-/// What a link has met since it was made.
+/// Counters of a link since its construction.
 struct ModbusCounters {
   std::uint64_t connects;       ///< attempts to connect
   std::uint64_t requests;       ///< sent
-  std::uint64_t timeouts;       ///< no reply, or not all of it, in time
-  std::uint64_t mismatches;     ///< bytes that are no reply to the request
-  std::uint64_t exceptions;     ///< the device refused a request
-  std::uint64_t late_bytes;     ///< dropped: of replies that came after their time-out
-  std::uint64_t stale_dropped;  ///< requests not sent because earlier ones do not leave
+  std::uint64_t timeouts;       ///< no reply, or an incomplete one, within the time-out
+  std::uint64_t mismatches;     ///< bytes that are not a reply to the request
+  std::uint64_t exceptions;     ///< requests answered with an exception
+  std::uint64_t late_bytes;     ///< bytes of replies after their time-out, dropped
+  std::uint64_t stale_dropped;  ///< requests not sent because earlier ones are not acknowledged
   std::uint64_t lost_links;     ///< closed by the peer, by the kernel, or after two mismatches
-  int last_exception;           ///< code that the last reply refused with, 0: it did not
+  int last_exception;           ///< exception code of the last reply, 0: none
 };
 
-/// What a reply carries.
+/// Content of a reply.
 struct ModbusReply {
   std::array<std::uint8_t, 250> payload;
-  std::int64_t middle_ns;  ///< half-way between request and reply: when it was true
+  std::int64_t middle_ns;  ///< half-way between request and reply: time of the values
 
-  /// The i-th register asked for.
+  /// The i-th requested register.
   std::uint16_t Word(int i) const noexcept;
-  /// The i-th bit asked for.
+  /// The i-th requested bit.
   bool Bit(int i) const noexcept;
 };
 
-/// One connection, TCP or serial, to one unit: sends a request, waits for its reply and lets
-/// nothing else pass.
+/// One connection, TCP or serial, to one unit: sends a request, waits for its reply and rejects
+/// everything else.
 ///
-/// libmodbus connects, frames and times; the replies are judged here, because it does not compare
-/// the unit and the length of a TCP reply, and does not tell a late reply from a broken one.
-/// Against what bites (each with a test in tests/hal/modbus/hostile_peer_test.cpp):
-/// - A late reply would make every later one late: whatever has arrived is thrown away before each
-///   request, transaction numbers are compared, and two mismatches without a good exchange between
-///   them are a lost link. (modbus_flush itself reads for as long as a flooding peer sends: over
-///   TCP, this reads a bounded number of bytes.)
+/// libmodbus connects, frames and times; the replies are checked here, because it does not compare
+/// the unit and the length of a TCP reply, and does not distinguish a late reply from a broken one.
+/// Measures against known faults (each with a test in tests/hal/modbus/hostile_peer_test.cpp):
+/// - One late reply would make all later ones late: received bytes are dropped before each request,
+///   transaction numbers are compared, and two mismatches without a good exchange between them are
+///   a lost link. (modbus_flush itself reads for as long as a flooding peer sends: over TCP, this
+///   reads a bounded number of bytes.)
 /// - The byte time-out of libmodbus restarts with every byte: it is 0, so one time-out bounds the
 ///   whole reply.
 /// - Its error recovery sleeps and loops: it is off.
-/// - A pulled cable lets requests pile up and burst later: at most four wait for acknowledgement,
-///   and the kernel gives a connection up that acknowledges nothing for 250 ms.
-/// - Serial adapters hold bytes back: see serial_latency.h.
+/// - With an unplugged cable requests queue up and are sent in a burst later: at most four wait for
+///   acknowledgement, and the kernel closes a connection without acknowledgement for 250 ms.
+/// - Serial adapters delay bytes: see serial_latency.h.
 ///
 /// Real-time: Ask is bounded by the request's worst_ns; nothing after the constructor allocates.
 /// Thread: one.
@@ -69,8 +69,8 @@ class ModbusLink {
 
   [[nodiscard]] BusStatus Ask(const ModbusRequest& request, ModbusReply* reply) noexcept;
 
-  /// All of an exchange was right: mismatches before it no longer count. One right reply is not
-  /// enough: a serial peer that is late for ever gives those too.
+  /// A whole exchange was right: earlier mismatches no longer count. One right reply is not enough:
+  /// a serial peer that is always late gives right replies too.
   void ForgiveMismatches() noexcept { mismatches_in_a_row_ = 0; }
 
   void Close() noexcept;
@@ -78,7 +78,7 @@ class ModbusLink {
   bool is_open() const noexcept { return open_; }
   const ModbusCounters& counters() const noexcept { return counters_; }
 
-  /// What the last failing Connect met, and its errno or 0.
+  /// Reason of the last failed Connect, and its errno or 0.
   struct Failure {
     const char* what;
     int error;
@@ -106,7 +106,7 @@ class ModbusLink {
   std::unique_ptr<Context> context_;
   int fd_ = -1;
   bool open_ = false;
-  bool in_step_ = true;  // every request so far was answered: bytes before the next are unexpected
+  bool in_step_ = true;  // all requests were answered: bytes before the next are unexpected
   int mismatches_in_a_row_ = 0;
   std::uint16_t transaction_ = 0;
   std::int64_t last_traffic_ns_ = 0;

@@ -24,7 +24,7 @@ struct Span {
 
 int MostPerRequest(ModbusTable table) { return HoldsBits(table) ? kMostBits : kMostRegisters; }
 
-// Greedy from the lowest address: no other choice needs fewer requests.
+// Greedy from the lowest address, which gives the fewest requests.
 std::vector<ModbusRequest> Group(std::vector<Span> spans, int gap_limit) {
   std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) {
     return a.table != b.table ? a.table < b.table : a.address < b.address;
@@ -96,8 +96,8 @@ ModbusPlan PlanModbus(const ModbusDeviceConfig& config) {
                      .count = WidthOf(row.type),
                      .row = static_cast<int>(i)});
   }
-  // Proofs are not joined over gaps: a device may refuse to read what it does not have, and what
-  // the order of its identification registers is like is nobody's wish.
+  // The identity check reads no gaps: a device may reject addresses that it does not have, and the
+  // order of its identification registers is arbitrary.
   ModbusPlan plan{.proofs = Group(std::move(proofs), 0),
                   .reads = Group(std::move(reads), config.gap_limit),
                   .exchange_worst_ns = 0,

@@ -9,7 +9,7 @@ namespace flexarm {
 
 /// Counts of a strain row from its registers, in the order of their addresses.
 ///
-/// Nothing if the value is not finite or the counts do not fit into 32 bits: a broken amplifier.
+/// Empty if the value is not finite or the counts do not fit into 32 bits: a broken amplifier.
 /// Rounds halves away from zero. Real-time: safe.
 std::optional<std::int32_t> CountsFromWords(const ModbusRegister& row,
                                             const std::uint16_t* words) noexcept;

@@ -5,7 +5,7 @@
 namespace flexarm {
 namespace {
 
-// Apart from the noise, which has the seed itself: losing frames leaves the noise as it was.
+// Separate from the noise, which uses the seed itself: lost frames do not change the noise.
 constexpr std::uint64_t kFrameLossStream = 0x6c6f7373;
 
 }  // namespace

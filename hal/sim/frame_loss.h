@@ -5,17 +5,17 @@
 
 namespace flexarm {
 
-/// Which frames of a simulated bus are lost: a share of them, each one alone.
+/// Random loss of frames on a simulated bus, never two in a row.
 ///
 /// Two frames in a row without a reading are a lost bus, and a trip (docs/safety.md), so the frame
-/// after a lost one arrives; any other is lost with probability p / (1 - p), which makes the share
-/// p. One seeded generator: same seed, same losses. Real-time: Next is safe.
+/// after a lost one arrives; any other is lost with probability p / (1 - p), which makes the
+/// fraction p. One seeded generator: same seed, same losses. Real-time: Next is safe.
 class FrameLoss {
  public:
   /// @param fraction  p, 0 .. 0.5
   FrameLoss(double fraction, std::uint64_t seed);
 
-  /// True: the next frame is lost.
+  /// Returns true if the next frame is lost.
   bool Next() noexcept;
 
  private:

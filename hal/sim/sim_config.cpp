@@ -8,7 +8,7 @@ namespace flexarm {
 
 std::vector<Problem> SimConfig::Problems() const {
   ProblemList list("sim.");
-  list.Within("plant_modes", plant_modes, 1, 6, "bending modes a link that the plant can have");
+  list.Within("plant_modes", plant_modes, 1, 6, "bending modes per link of the plant");
   const double steps_per_ms = 1.0 / step_ms;
   // 1e-9: the rounding of a decimal step such as 0.2, far below the nearest wrong one (0.3).
   list.Require(step_ms >= 0.001 && step_ms <= 1.0 &&
@@ -17,11 +17,11 @@ std::vector<Problem> SimConfig::Problems() const {
                "must lie in 0.001 .. 1 and divide 1 ms, or the steps miss the 1 kHz safety grid");
   list.EachWithin("motor_lag_ms", motor_lag_ms, 0.0, 100.0, "electrical time constant, 0 for none");
   list.Within("transport_delay_ms", transport_delay_ms, 0.0, 40.0,
-              "from command to drive, on top of the loop's own delay");
+              "from command to drive, in addition to the loop's own delay");
   list.Within("lost_frame_fraction", lost_frame_fraction, 0.0, 0.5,
-              "every frame after a lost one arrives, two lost in a row are a trip");
+              "two frames are never lost in a row, as that would trip");
   list.Within("channel_skew_us", channel_skew_us, 0.0, 5000.0,
-              "a multiplexer goes from channel to channel");
+              "delay of a multiplexer from channel to channel");
   list.EachPositive("switch_angle_deg", switch_angle_deg, 360.0,
                     "the limit switches open beyond this hub angle");
   return list.Take();

@@ -6,7 +6,7 @@
 namespace flexarm {
 namespace {
 
-// Apart from the gauges' noise, which has the seed itself.
+// Separate from the gauges' noise, which uses the seed itself.
 constexpr std::uint64_t kAccelerometerStream = 0x74697061;
 
 }  // namespace

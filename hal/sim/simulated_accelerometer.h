@@ -8,19 +8,19 @@
 
 namespace flexarm {
 
-/// The accelerometer at the simulated arm's tip: analogue filter, noise, rounding and rails.
+/// The accelerometer at the simulated arm's tip: analogue filter, noise, rounding and saturation.
 ///
 /// The filter is exact for an acceleration that is constant during a step; it starts at rest. Noise
-/// comes from a generator of its own: the gauges' stays as it is without this sensor.
+/// has its own generator, so that this sensor does not change the noise of the gauges.
 /// Real-time: all but the constructor are safe.
 class SimulatedAccelerometer {
  public:
   SimulatedAccelerometer(const TipAccelerometerConfig& config, double step_s, std::uint64_t seed);
 
-  /// One step of the plant with this acceleration in its middle.
+  /// One step of the plant with this acceleration at its middle.
   void Step(double acceleration_m_s2) noexcept;
 
-  /// Puts the reading of now into the frame, at its sampling instant.
+  /// Writes the present reading into the frame, at its sampling instant.
   void Sample(SensorFrame* frame) noexcept;
 
  private:

@@ -27,7 +27,7 @@ SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors
 }
 
 void SimulatedRig::Step() noexcept {
-  // The lag uses the middle of the step on either side, so it stays second order like the arm.
+  // The torque at the middle of the step is used, so the lag is of second order like the arm.
   Eigen::Vector2d torque;
   for (std::size_t i = 0; i < 2; ++i) {
     torque(static_cast<Eigen::Index>(i)) = motor_[i].Step(set_point_nm_[i]);
@@ -42,7 +42,7 @@ void SimulatedRig::Step() noexcept {
   frame_age_ns_ += step_ns_;
 }
 
-// The step's mean acceleration: with the impulse of a hub that comes to rest within it.
+// The step's mean acceleration: including the impulse of a hub that stops within it.
 void SimulatedRig::SampleAccelerometer(const ArmState& before) noexcept {
   const double h = static_cast<double>(step_ns_) * 1e-9;
   accelerometer_->Step(TipAcceleration(arm_, ArmVector(0.5 * (before.q + state_.q)),

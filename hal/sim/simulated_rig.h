@@ -17,8 +17,8 @@
 
 namespace flexarm {
 
-/// The arm, its drives, its switches and its sensors, simulated: a passive object that whoever owns
-/// it advances. Starts at rest at zero, switches closed.
+/// Simulation of the arm, its drives, switches and sensors: a passive object that its owner
+/// advances. Starts at rest at zero, switches closed.
 ///
 /// Drive: the torque follows its set-point with the electrical lag of (3.24), first order.
 /// Switches: a limit switch opens while its hub is beyond the switch angle or while it is held open
@@ -26,35 +26,35 @@ namespace flexarm {
 /// Real-time: all but the constructor are safe.
 class SimulatedRig {
  public:
-  /// @param arm  the plant's parameters, with the payload that it really carries
+  /// @param arm  the plant's parameters, with its actual payload
   SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim);
 
   std::int64_t step_ns() const noexcept { return step_ns_; }
 
-  /// Set-point of the drives from now on, at the gearbox output.
+  /// Sets the torque set-point of the drives, at the gearbox output.
   void SetTorque(const std::array<double, 2>& torque_nm) noexcept { set_point_nm_ = torque_nm; }
 
   /// One integration step.
   void Step() noexcept;
 
-  /// What the converters show now, every strain channel at once.
+  /// Samples all converters now, all strain channels simultaneously.
   SensorFrame Sample(std::int64_t now_ns) noexcept;
 
   /// Begins a frame: counters, accelerometer and lines now, the strain channels `channel_skew_us`
-  /// apart, the first of them now. The others follow in Step, between its ends by a straight line:
-  /// next to a signal of w rad/s that errs by (w h)^2 / 8, 4e-4 of the second modes.
+  /// apart, the first of them now. Step samples the others by linear interpolation over the step:
+  /// for a signal of w rad/s its error is (w h)^2 / 8, 4e-4 of the second modes.
   void StartFrame(std::int64_t now_ns) noexcept;
-  /// The frame that was begun, once its last channel has been sampled; then never again.
+  /// The begun frame once its last channel has been sampled; empty before, and after it was taken.
   std::optional<SensorFrame> TakeFrame() noexcept;
 
   LineLevels levels() const noexcept;
 
   /// Forces a line to a level (0 or 1) until it is forced to the other. A limit switch forced to 1
-  /// still opens by the arm's own angle.
+  /// still opens at the switch angle.
   void Press(Line line, int level) noexcept;
 
-  /// The arm carries this from now on; where it is and how it moves does not change by that.
-  /// ArmModel::CarryPayload says what becomes of the momentum.
+  /// Changes the payload; position and rates of the arm stay.
+  /// ArmModel::CarryPayload defines the momentum.
   void CarryPayload(double payload_kg) noexcept;
 
   /// For metrics and pictures.
@@ -62,16 +62,16 @@ class SimulatedRig {
   const ArmState& state() const noexcept { return state_; }
 
  private:
-  // One step of the arm, as the accelerometer feels it.
+  // Advances the accelerometer by one step of the arm.
   void SampleAccelerometer(const ArmState& before) noexcept;
-  // Samples the channels whose turn comes until `until_ns` after the frame's begin.
+  // Samples the channels that are due until `until_ns` after the frame's begin.
   void SampleChannels(std::int64_t until_ns, const ArmVector& before) noexcept;
 
   ArmModel arm_;
   ArmSimulator simulator_;
   SimulatedSensors sensors_;
   ArmState state_;
-  GaugeFilter filter_;  // of the modal coordinates
+  GaugeFilter filter_;  // filters the modal coordinates
   std::optional<SimulatedAccelerometer> accelerometer_;
   std::int64_t step_ns_;
   std::array<DcMotor, 2> motor_;
@@ -81,7 +81,7 @@ class SimulatedRig {
 
   std::int64_t skew_ns_;
   std::optional<SensorFrame> frame_;  // begun
-  std::size_t next_channel_ = 0;      // of it
+  std::size_t next_channel_ = 0;      // of frame_
   std::int64_t frame_age_ns_ = 0;
 };
 

@@ -12,10 +12,10 @@
 
 namespace flexarm {
 
-/// Turns the state of the simulated arm into the raw counts that the rig's converters would show.
+/// Converts the state of the simulated arm into the raw counts of the rig's converters.
 ///
 /// Encoders round to the nearest count and wrap at their counter's width. Strain channels read the
-/// modal coordinates behind the gauges' analogue filter, then noise, rounding and rails. Noise
+/// modal coordinates behind the gauges' analogue filter, then noise, rounding and saturation. Noise
 /// comes from one seeded generator, drawn channel by channel in config order: same seed, same
 /// frames. Real-time: Sample is safe.
 class SimulatedSensors {
@@ -27,7 +27,7 @@ class SimulatedSensors {
   SensorFrame Sample(std::int64_t now_ns, const ArmVector& q, const ArmVector& filtered,
                      LineLevels levels) noexcept;
 
-  /// The same without its strain channels: they follow one by one.
+  /// The same without strain channels, which SampleStrain adds one by one.
   SensorFrame SampleCounters(std::int64_t now_ns, const ArmVector& q,
                              LineLevels levels) const noexcept;
 

@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-// What the transactions leave of the bound.
+// The rest of the bound that no transaction uses.
 void SetOther(BusCost* bus) {
   bus->other_ns = bus->worst_ns;
   std::set<int> counted;

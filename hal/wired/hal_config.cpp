@@ -16,10 +16,10 @@ void Append(const std::vector<Problem>& more, std::vector<Problem>* all) {
   all->insert(all->end(), more.begin(), more.end());
 }
 
-// Where something is wired: its rows.
+// Config rows in which something is wired.
 using Places = std::vector<std::string>;
 
-// Where every counter, drive, strain channel and line is wired.
+// The rows of every counter, drive, strain channel and line.
 struct Census {
   std::array<Places, kCounters> counter;
   std::array<Places, 2> drive;
@@ -27,7 +27,8 @@ struct Census {
   std::array<Places, kLines> line;
 
   void AddStrain(int row, const std::string& place) {
-    if (row < 0 || static_cast<std::size_t>(row) >= strain.size()) return;  // said by its own rule
+    if (row < 0 || static_cast<std::size_t>(row) >= strain.size())
+      return;  // reported by its own rule
     strain[static_cast<std::size_t>(row)].push_back(place);
   }
   template <std::size_t n>
@@ -134,10 +135,10 @@ void CheckWiring(const HalConfig& hal, const SensorConfig& sensors, ProblemList*
   for (std::size_t i = 0; i < census.line.size(); ++i) {
     list->Require(census.line[i].size() <= 1, std::string("line ") + Name(static_cast<Line>(i)),
                   Times(census.line[i]),
-                  "must be read once at most, beside [hal.gpiod]" + Where(census.line[i]));
+                  "must be read once at most, besides [hal.gpiod]" + Where(census.line[i]));
   }
   list->Require(hal.gpiod.has_value(), "gpiod", "missing",
-                "must be there: limit switches, emergency stop, relay and charge pump");
+                "must be configured: limit switches, emergency stop, relay and charge pump");
 }
 
 // "; on the wire: drive1 430 us, hub1 295 us"
@@ -160,7 +161,7 @@ void CheckCanopenDrives(const HalConfig& hal, std::int64_t available_ns,
                   "must leave room: one exchange takes up to " +
                       std::to_string(bus.worst_case_exchange_ns() / 1000) + " us, " +
                       std::to_string(available_ns / 1000) +
-                      " us are there (loop.acquire_before_ms)" + NodeCosts(bus));
+                      " us are available (loop.acquire_before_ms)" + NodeCosts(bus));
     for (std::size_t n = 0; n < bus.node.size(); ++n) {
       const CanopenNodeConfig& node = bus.node[n];
       if (!IsDrive(node.role)) continue;
@@ -169,7 +170,7 @@ void CheckCanopenDrives(const HalConfig& hal, std::int64_t available_ns,
                     row + "." + ProblemList::Element("node", n) + ".torque_range_nm",
                     NumberText(node.torque_range_nm),
                     "must cover limits.torque_limit_nm = " + NumberText(limit) +
-                        ": the loop would ask for more than the drive can give");
+                        ": the loop may command more than the drive can give");
     }
   }
 }
@@ -186,11 +187,11 @@ void CheckComediDrives(const ComediOutputConfig& out, const std::string& row,
                   "must cover limits.torque_limit_nm = " + NumberText(limit) + ", which takes " +
                       NumberText(limit / drive.torque_per_volt_nm()) + " V of +-" +
                       NumberText(out.range_v) +
-                      " V: the loop would ask for more than the drive can give");
+                      " V: the loop may command more than the drive can give");
   }
 }
 
-// A count of the board is a count of the rig: the same converter, the same width.
+// Counts of the board are counts of the rig: the same converter range and width.
 void CheckComediCounts(const ComediBoardConfig& board, const std::string& row,
                        const SensorConfig& sensors, ProblemList* list) {
   if (board.input) {
@@ -222,7 +223,7 @@ void CheckComedi(const HalConfig& hal, const SensorConfig& sensors,
     const ComediBoardConfig& board = hal.comedi[b];
     const std::string row = ProblemList::Element("comedi", b);
     list->Require(devices.insert(board.device).second, row + ".device", board.device,
-                  "must be named by one board only");
+                  "must be used for one board only");
     CheckComediCounts(board, row, sensors, list);
     if (board.output) CheckComediDrives(*board.output, row, torque_limit_nm, list);
   }

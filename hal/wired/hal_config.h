@@ -14,8 +14,8 @@
 
 namespace flexarm {
 
-/// How a real rig is wired, section [hal]: buses in any mixture, and the safety chain. All empty
-/// for the simulated backend in process.
+/// Wiring of a real rig, section [hal]: buses in any combination, and the safety chain. Empty for
+/// the simulated backend in the process.
 struct HalConfig {
   ModbusConfig modbus;                    ///< [[hal.modbus]]
   std::vector<CanopenConfig> canopen;     ///< [[hal.canopen]]
@@ -26,11 +26,11 @@ struct HalConfig {
     return modbus.device.empty() && canopen.empty() && comedi.empty() && !gpiod;
   }
 
-  /// Broken rules of every part, and of the whole: each sensor of the rig, each drive and the
+  /// Violated rules of every part, and of the whole: each sensor of the rig, each drive and the
   /// safety chain must be wired exactly once, over all buses, and every exchange must fit into the
-  /// time there is.
+  /// available time.
   /// @param available_ns     from the sampling instant until the step is due
-  /// @param torque_limit_nm  that the loop may ask for
+  /// @param torque_limit_nm  largest torque of the loop
   std::vector<Problem> Problems(const SensorConfig& sensors, std::int64_t available_ns,
                                 const std::array<double, 2>& torque_limit_nm) const;
 };

@@ -9,7 +9,7 @@
 
 namespace flexarm {
 HardwareRig::HardwareRig(const HalConfig& config, const CanClocks& clocks) {
-  if (!config.gpiod) throw HalError("no safety chain is wired: [hal.gpiod] is missing");
+  if (!config.gpiod) throw HalError("no safety chain: section [hal.gpiod] is missing");
   lines_ = std::make_unique<GpiodLines>(*config.gpiod);
   for (const CanopenConfig& bus : config.canopen) {
     buses_.push_back(std::make_unique<CanopenDevice>(

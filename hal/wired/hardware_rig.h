@@ -10,13 +10,13 @@
 
 namespace flexarm {
 
-/// The devices of a real rig, made from its config.
+/// The devices of a real rig, created from its config.
 class HardwareRig {
  public:
   /// Opens the safety chain first, then every bus: identified, configured, read back.
-  /// @throws HalError of the first that refuses; what was opened is closed
+  /// @throws HalError of the first device that fails; opened devices are closed
   HardwareRig(const HalConfig& config, const CanClocks& clocks);
-  ~HardwareRig();  ///< closes the buses, torque off, then lets the lines go
+  ~HardwareRig();  ///< closes the buses, torque off, then releases the lines
   HardwareRig(const HardwareRig&) = delete;
   HardwareRig& operator=(const HardwareRig&) = delete;
 

@@ -13,7 +13,7 @@ const ArmParameters& Checked(const ArmParameters& p, ModeCount count) {
   if (count.link1 < 1 || count.link1 > kMaxModesPerLink || count.link2 < 1 ||
       count.link2 > kMaxModesPerLink) {
     throw std::invalid_argument("ModeCount: 1 to " + std::to_string(kMaxModesPerLink) +
-                                " modes a link");
+                                " modes per link");
   }
   return p;
 }
@@ -27,7 +27,7 @@ ArmConstants::ArmConstants(const ArmParameters& p, ModeCount count)
       link2(Link2Modes(p, count.link2)),
       L1(link1.length_m),
       L2(link2.length_m),
-      backlash(p, 0.0),  // its load comes with the payload
+      backlash(p, 0.0),  // CarryPayload sets its load inertia
       foreshortening(p.foreshortening) {
   I1 = p.joint[0].hub_inertia_kgm2 + link1.second_moment;
   Ir2 = p.motor2_inertia_kgm2;
@@ -45,8 +45,8 @@ ArmConstants::ArmConstants(const ArmParameters& p, ModeCount count)
   CarryPayload(p);
 }
 
-// Always from the bare link: what is added and taken away again would leave its round-off. An
-// outer product that may alias takes the heap.
+// Computed from the bare link each time: adding a mass and removing it again would leave round-off.
+// An outer product that may alias allocates.
 void ArmConstants::CarryPayload(const ArmParameters& p) noexcept {
   const double m_p = p.payload_mass_kg;
   m_outboard = p.motor2_mass_kg + p.hub2_mass_kg + link2.m + m_p;

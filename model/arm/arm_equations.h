@@ -14,14 +14,14 @@ using VectorX = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
 /// Inertial forces M(q) a + bias(q, v) of the arm, from the kinetic energy (3.19) in compact form.
 ///
-/// Works outwards from the shoulder with velocities and accelerations, and back with forces; no
-/// mass matrix and no derivative of one is formed. (3.19) with its misprints mended: the second
-/// I_r2 is J2, I_r1 is J1. Frames: 1 turns with th1, 2 with gamma = th1 + alpha1 + th2, where
-/// tan(alpha1) = s = w1'(L1). Everything outboard of the elbow is one flexible body in frame 2.
-/// Source: thesis (3.14)-(3.21), derived again (Appendix A has misprints). With foreshortening,
-/// which the thesis has not, each link adds the terms of ShortenedLink.
-/// Scalar: double, or std::complex<double> for derivatives by the complex step: no abs, no
-/// conjugation, no comparison in here.
+/// Recursive Newton-Euler form: velocities and accelerations from the shoulder outwards, forces
+/// back inwards; no mass matrix and no derivative of one is formed. Misprints of (3.19) corrected:
+/// the second I_r2 is J2, I_r1 is J1. Frames: 1 turns with th1, 2 with gamma = th1 + alpha1 + th2,
+/// where tan(alpha1) = s = w1'(L1). Everything outboard of the elbow is one flexible body in
+/// frame 2. Source: thesis (3.14)-(3.21), derived again (Appendix A has misprints). With
+/// foreshortening, which the thesis does not model, each link adds the terms of ShortenedLink.
+/// Scalar: double, or std::complex<double> for derivatives by the complex step: the body must not
+/// use abs, conjugation or comparison.
 /// @param q, v, a  dof vectors: angles rad, modal coordinates m, and their derivatives
 /// @returns generalised forces, N m for angles, N for modal coordinates
 template <typename Scalar>
@@ -29,7 +29,7 @@ VectorX<Scalar> InertialForces(const ArmConstants& c, const VectorX<Scalar>& q,
                                const VectorX<Scalar>& v, const VectorX<Scalar>& a) {
   using std::cos, std::sin, std::sqrt;
   using Vector = VectorX<Scalar>;
-  // NOLINTNEXTLINE(readability-const-return-type): Eigen's own type, a reference where it can be
+  // NOLINTNEXTLINE(readability-const-return-type): Eigen's return type, a reference if possible
   const auto cast = [](const auto& x) -> decltype(auto) { return x.template cast<Scalar>(); };
   const auto dot = [&](const Eigen::VectorXd& x, const Vector& y) {
     return (cast(x).array() * y.array()).sum();
@@ -84,7 +84,7 @@ VectorX<Scalar> InertialForces(const ArmConstants& c, const VectorX<Scalar>& q,
            short2->k * Y;
   }
   const Scalar R = c.Ir2 * (a[kTheta1] + alpha_ddot);              // stator of motor 2
-  const Scalar J = c.J2 * (a[kTheta1] + alpha_ddot + a[kTheta4]);  // its rotor
+  const Scalar J = c.J2 * (a[kTheta1] + alpha_ddot + a[kTheta4]);  // rotor of motor 2
 
   Vector out(c.dof());
   const Scalar f_x1 = cb * F_x - sb * F_y, f_y1 = sb * F_x + cb * F_y;

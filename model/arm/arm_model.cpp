@@ -23,7 +23,7 @@ Vector2d Turned(double angle, const Vector2d& p) {
 
 Vector2d Crossed(double rate, const Vector2d& p) { return {-rate * p.y(), rate * p.x()}; }
 
-// What foreshortening changes in MassMatrix before its sum over the bodies.
+// Quantities of MassMatrix that foreshortening changes before the sum over the bodies.
 struct Turn {
   double sine, cosine;  // of frame 1 to frame 2
 };
@@ -71,7 +71,7 @@ ArmModel::ArmModel(const ArmParameters& parameters, ModeCount count)
 const LinkModes& ArmModel::link_modes(int link) const {
   if (link == 1) return constants_.link1;
   if (link == 2) return constants_.link2;
-  throw std::out_of_range("ArmModel: link is 1 or 2");
+  throw std::out_of_range("ArmModel: the link must be 1 or 2");
 }
 
 void ArmModel::CarryPayload(double payload_kg) noexcept {
@@ -79,8 +79,8 @@ void ArmModel::CarryPayload(double payload_kg) noexcept {
   constants_.CarryPayload(parameters_);
 }
 
-// M = sum of T' m T over the bodies, T their velocities as rows over q'. Written apart from
-// InertialForces, so that each checks the other.
+// M = sum of T' m T over the bodies, T their velocities as rows over q'. Implemented independently
+// of InertialForces, so that tests compare the two.
 MatrixXd ArmModel::MassMatrix(const VectorXd& q) const {
   const ArmConstants& c = constants_;
   const VectorXd f1 = ModalPart(1, q), f2 = ModalPart(2, q);
@@ -168,8 +168,9 @@ double ArmModel::Deflection(int link, double u_m, const VectorXd& coordinates) c
   return w;
 }
 
-// int_0^u a' b' for deflections a, b: a bent link's loss of length is half of it for a = b, and its
-// rate that for w, w_dot. By quadrature of the slopes, apart from the products of the equations.
+// int_0^u a' b' for deflections a, b: half of it, for a = b, is the bent link's loss of length; for
+// w, w_dot it is the rate of that. By quadrature of the slopes, independent of the products used in
+// the equations.
 double ArmModel::Shortening(int link, double u_m, const VectorXd& a, const VectorXd& b) const {
   if (!constants_.foreshortening) return 0.0;
   const LinkModes& modes = link_modes(link);

@@ -8,14 +8,14 @@
 
 namespace flexarm {
 
-/// The flexible arm: M(q) q'' + bias(q, q') + D q' + K q = generalised forces.
+/// Nonlinear model of the flexible arm: M(q) q'' + bias(q, q') + D q' + K q = generalised forces.
 ///
 /// q = [th1 th2 th3 th4 phi1_1.. phi2_1..]; th1 and th3 against the base, th2 and th4 against the
 /// tangent at the end of link 1; counter-clockwise seen from above is positive. phi in metres of
-/// tip deflection. Off-line form in dynamic-size matrices; ArmSimulator steps the same equations
-/// fast. Options: foreshortening (foreshortening.h; the thesis has none) and play between the gears
-/// of joint 2 (backlash.h). Not modelled: gravity; friction is a generalised force, see
-/// ArmSimulator. Source: thesis chapter 3, (3.15)-(3.22), corrected by docs/theory/thesis.md 2.
+/// tip deflection. Off-line form in dynamic-size matrices; ArmSimulator integrates the same
+/// equations fast. Options: foreshortening (foreshortening.h; not in the thesis) and backlash of
+/// joint 2 (backlash.h). Not modelled: gravity; friction is a generalised force, see ArmSimulator.
+/// Source: thesis chapter 3, (3.15)-(3.22), corrected by docs/theory/thesis.md 2.
 /// Real-time: all but CarryPayload start-up only (allocates).
 class ArmModel {
  public:
@@ -31,11 +31,12 @@ class ArmModel {
   /// @throws std::out_of_range otherwise
   const LinkModes& link_modes(int link) const;
 
-  /// Another payload mass at the tip, as if it had been made with it; `payload_inertia_kgm2` stays.
+  /// Sets another payload mass, as if constructed with it; `payload_inertia_kgm2` stays.
   ///
-  /// What lets go of a load in flight, or closes around one: shapes, and so what q and v mean, stay
-  /// those of `shape_payload_mass_kg`, so a state goes on as it is. A mass that leaves takes along
-  /// its momentum at the velocity of the tip; one that comes has that velocity already: no impact.
+  /// For a payload that is lost or picked up during a simulation. The mode shapes stay those of
+  /// `shape_payload_mass_kg`, so q and v keep their meaning and the state continues unchanged. The
+  /// momentum of a lost mass leaves with it, at the velocity of the tip; a mass that is picked up
+  /// has that velocity already, so there is no impact.
   /// Real-time: safe.
   /// @param payload_kg  >= 0
   void CarryPayload(double payload_kg) noexcept;
@@ -44,14 +45,14 @@ class ArmModel {
   Eigen::MatrixXd MassMatrix(const Eigen::VectorXd& q) const;
   /// Coriolis and centrifugal forces, quadratic in v.
   Eigen::VectorXd Bias(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
-  /// What the play at joint 2 adds to -K q on the right: zero without play.
+  /// Term on the right side that backlash of joint 2 adds to -K q: zero without backlash.
   Eigen::VectorXd BacklashForce(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
   /// M^-1 (force - bias - D v - K q + backlash).
   Eigen::VectorXd Acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                const Eigen::VectorXd& generalized_force) const;
   const Eigen::MatrixXd& stiffness() const {
     return stiffness_;
-  }                                                            ///< K, constant; gears without play
+  }                                                            ///< K, constant; without backlash
   const Eigen::MatrixXd& damping() const { return damping_; }  ///< D, constant
   /// dof x 2: motor torques act on th3 and th4, at the gearbox output.
   Eigen::MatrixXd InputMatrix() const;

@@ -6,7 +6,7 @@
 
 namespace flexarm {
 
-/// What joint 2's gears and spring do at one twist, with the derivatives of an implicit step.
+/// Torques of joint 2's gears and spring at one twist, with the derivatives of an implicit step.
 struct Joint2Torque {
   double spring_nm;             ///< on th2, its opposite on th4
   double stiffness_nm_per_rad;  ///< d spring / d twist
@@ -15,21 +15,21 @@ struct Joint2Torque {
   double drag_slope_nms;        ///< d drag / d th4'
 };
 
-/// Play between the gears of joint 2, in series with the joint's spring.
+/// Backlash between the gears of joint 2, in series with the joint's spring.
 ///
 /// Twist = th4 - th2. "dead_zone", the default: with p = |twist| - d_b/2 > 0,
-///   torque = K_2 p (1 + 3/2 zeta p') sign(twist), never pulling; none inside the play.
+///   torque = K_2 p (1 + 3/2 zeta p') sign(twist), never attractive; zero within the clearance.
 /// The spring is the compliance of the contact; Hunt and Crossley's loss gives an impact at rate v
 /// the restitution e = 1 - zeta v + O(v^2), the thesis's formula (J. Appl. Mech. 42 (1975) 440).
 ///
-/// "thesis": a drag on the rotor from V_B = Delta E / (2 Delta t), (3.9)-(3.11), spring unbroken:
+/// "thesis": a drag on the rotor from V_B = Delta E / (2 Delta t), (3.9)-(3.11), spring unchanged:
 ///   drag = mu zeta v^3 (4 - 5 zeta |v|) / (2 d_b), v = th4', mu = I_1 I_2 / (I_1 + I_2).
-/// Its faults, kept because it is there to be compared with: (a) it acts always, not only when
-/// teeth meet, and never frees the joint; (b) above |v| = 0.8 / zeta it feeds energy in, above
-/// 1 / zeta the restitution itself is negative; (c) d_b -> 0 means infinite, not no, damping; (d)
-/// it is the Rayleigh form of a function of degree 4 to 5, so takes 2 to 2.5 times Delta E / Delta
-/// t; (e) zeta is in s/m, th4' in rad/s; (f) the appendix has the wrong sign in B_4 and lacks the
-/// 1/2. I_1 and I_2 are not defined: read here as J_2 and all that turns with hub 2, undeformed.
+/// Kept for comparison; its errors: (a) it acts always, not only when teeth meet, and never frees
+/// the joint; (b) above |v| = 0.8 / zeta it adds energy, above 1 / zeta the restitution itself is
+/// negative; (c) d_b -> 0 means infinite, not zero, damping; (d) it is the Rayleigh form of a
+/// function of degree 4 to 5, so it dissipates 2 to 2.5 times Delta E / Delta t; (e) zeta is in
+/// s/m, th4' in rad/s; (f) the appendix has the wrong sign in B_4 and lacks the 1/2. I_1 and I_2
+/// are not defined: taken here as J_2 and the inertia of all that turns with hub 2, undeformed.
 /// Source: thesis 3.4, Appendix A's B_X; docs/theory/plant.md 4.3. Real-time: safe.
 class Backlash {
  public:
@@ -42,7 +42,7 @@ class Backlash {
         mu_(p.joint[1].rotor_inertia_kgm2 * load_inertia_kgm2 /
             (p.joint[1].rotor_inertia_kgm2 + load_inertia_kgm2)) {}
 
-  /// False without play: then joint 2 is its spring alone.
+  /// False without backlash: joint 2 is then its spring alone.
   bool active() const noexcept { return d_b_ > 0.0; }
   bool breaks_spring() const noexcept { return active() && model_ == BacklashModel::kDeadZone; }
 
@@ -56,7 +56,7 @@ class Backlash {
     return out;
   }
 
-  /// Wound-up part of the twist: what the spring's energy 1/2 K_2 x^2 is taken of, rad.
+  /// Twist x of the spring beyond the clearance, rad: its energy is 1/2 K_2 x^2.
   double Wound(double twist_rad) const noexcept {
     if (!breaks_spring()) return twist_rad;
     return std::fmax(std::fabs(twist_rad) - 0.5 * d_b_, 0.0);

@@ -4,9 +4,10 @@
 
 namespace flexarm {
 
-/// Torque of a DC motor, (3.24): tau = C i (1 - e^(-t/T)) after a step of the current i, so
-/// T tau' + tau = C i; T the sum of its electrical and mechanical time constants. (The thesis
-/// neglects the mechanical one as the smaller; of a DC motor it is the larger. T is what counts.)
+/// First-order lag of a DC motor's torque, (3.24): tau = C i (1 - e^(-t/T)) after a step of the
+/// current i, so T tau' + tau = C i; T the sum of its electrical and mechanical time constants.
+/// (The thesis neglects the mechanical one as the smaller; in a DC motor it is the larger. Only the
+/// sum T matters.)
 ///
 /// Advanced exactly over steps in which the set-point C i is held. Torques at the gearbox output.
 /// Real-time: Step is safe.
@@ -17,7 +18,7 @@ class DcMotor {
   DcMotor(double step_s, double time_constant_s)
       : blend_(time_constant_s > 0.0 ? 1.0 - std::exp(-step_s / time_constant_s) : 1.0) {}
 
-  /// Advances by one step. @returns the torque in its middle, N m, second order in the step
+  /// Advances by one step. @returns the torque at its middle, N m, second order in the step
   double Step(double set_point_nm) noexcept {
     const double before = torque_nm_;
     torque_nm_ += blend_ * (set_point_nm - before);
@@ -27,7 +28,7 @@ class DcMotor {
   double torque_nm() const noexcept { return torque_nm_; }
 
  private:
-  double blend_ = 1.0;  // share of the way to the set-point in a step
+  double blend_ = 1.0;  // part of the distance to the set-point covered in a step
   double torque_nm_ = 0.0;
 };
 

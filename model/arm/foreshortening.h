@@ -12,14 +12,14 @@ constexpr int ProductCount(int modes) {
   return modes == Eigen::Dynamic ? Eigen::Dynamic : modes * (modes + 1) / 2;
 }
 
-/// Integrals of a link that gets shorter as it bends.
+/// Integrals over a link that gets shorter along its axis as it bends.
 ///
 /// A point at arc length u stands at x = u - delta(u), y = w(u), with
 ///   delta(u) = 1/2 int_0^u w'^2 = h(u)'p,   p = products phi_i phi_j (i <= j),
 ///   h_ij(u) = int_0^u psi_i' psi_j' (half of it for i = j):
 /// an inextensible beam to second order in its slope. The products are coordinates along the link
 /// as the phi are across it, so the kinetic energy of these positions is exact with constant
-/// integrals. lam = rho A. Not in the thesis, whose links keep their projected length: there the
+/// integrals. lam = rho A. Not in the thesis, whose links keep their projected length: in it the
 /// centrifugal force softens a turning link instead of stiffening it.
 template <int M = Eigen::Dynamic>
 struct Foreshortening {

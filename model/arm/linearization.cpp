@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kStep = 1e-30;  // any value whose square vanishes: nothing is subtracted
+constexpr double kStep = 1e-30;  // any value whose square underflows: no subtraction
 
 // Generalised K x = w^2 M x on the chosen coordinates; w^2 ascending.
 VectorXd SquaredFrequencies(const ArmModel& model, double theta2, const Eigen::VectorXi& keep) {

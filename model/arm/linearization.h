@@ -16,16 +16,16 @@ struct LinearModel {
 ///
 /// A = [[0, 1], [-M^-1 (dF/dq + K), -M^-1 (dF/dv + D)]], F = M(q) a + bias(q, v) with a the
 /// acceleration at the state. dF by the complex step with h = 1e-30: no cancellation, so exact to
-/// round-off. Replaces the thesis's Appendix C. Play at joint 2 counts by its slopes at the state:
-/// no spring inside it. Friction (3.12) has no derivative where it matters; it is left out, or, as
-/// in the thesis's 6.2, smoothed to K_F tanh(k th').
+/// round-off. Replaces the thesis's Appendix C. Backlash of joint 2 enters by its slopes at the
+/// state: no spring within the clearance. Friction (3.12) is not differentiable at zero rate; it is
+/// left out, or, as in the thesis's 6.2, smoothed to K_F tanh(k th').
 /// @param torque_nm              on th3 and th4 at the state, N m
 /// @param friction_gain_s_per_rad  k >= 0; 0: no friction
 LinearModel Linearize(const ArmModel& model, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                       const Eigen::Vector2d& torque_nm, double friction_gain_s_per_rad = 0.0);
 
-/// The same along a motion whose accelerations are given: those of a nominal trajectory, held by
-/// whatever forces it takes. With a = 0 the nominal trajectory has constant rates.
+/// The same along a motion with given accelerations: those of a nominal trajectory, sustained by
+/// whatever forces are required. With a = 0 the nominal trajectory has constant rates.
 /// @param a  nominal accelerations, dof, rad/s^2 and m/s^2
 LinearModel LinearizeAlong(const ArmModel& model, const Eigen::VectorXd& q,
                            const Eigen::VectorXd& v, const Eigen::VectorXd& a);

@@ -6,10 +6,10 @@
 
 namespace flexarm {
 
-/// What foreshortening adds to the inertial forces of one link, at one state.
+/// Terms that foreshortening adds to the inertial forces of one link, at one state.
 ///
-/// With p, p_dot, p_ddot the products and their derivatives and J = dp/dphi; the rest is bookwork
-/// from x = u - h'p, y = w in a frame that turns at `rate` and whose origin accelerates.
+/// With p, p_dot, p_ddot the products and their derivatives and J = dp/dphi; everything else
+/// follows from x = u - h'p, y = w in a frame that turns at `rate` and whose origin accelerates.
 /// Scalar: double, or std::complex<double> for the complex step. M: modes, fixed or Eigen::Dynamic.
 /// Real-time: safe for a fixed M.
 template <typename Scalar, int M>
@@ -42,12 +42,12 @@ class ShortenedLink {
 
   Scalar tip, tip_dot, tip_ddot;  ///< delta(L), m
   Vec tip_slope;                  ///< d delta(L) / d phi
-  Scalar k, k_dot, k_ddot;        ///< int lam delta: the first moment that is lost, kg m
-  Vec k_slope;                    ///< its derivative to phi
+  Scalar k, k_dot, k_ddot;        ///< int lam delta: the loss of first moment, kg m
+  Vec k_slope;                    ///< d k / d phi
   Scalar second_moment;           ///< added to int lam (x^2 + y^2), kg m^2
-  Scalar half_rate;               ///< half of its time derivative, without y
+  Scalar half_rate;               ///< half of the second moment's time derivative, without y
   Scalar turning;                 ///< moment of the accelerations relative to the frame, N m
-  Vec coupling;                   ///< added to int lam u psi: frame's turning against phi
+  Vec coupling;  ///< added to int lam u psi: coupling of the frame's rotation to phi
 
   /// Forces on phi in a frame that turns with `rate` and `rate_dot`.
   Vec Forces(const Scalar& rate, const Scalar& rate_dot) const {
@@ -90,7 +90,7 @@ class ShortenedLink {
   Vec coriolis_, centrifugal_, inertia_;
 };
 
-/// J'QJ: what foreshortening adds to the masses of the modal coordinates, kg.
+/// J'QJ: added by foreshortening to the masses of the modal coordinates, kg.
 template <int M>
 Eigen::Matrix<double, M, M> ShorteningMass(const Foreshortening<M>& link,
                                            const Eigen::Matrix<double, M, 1>& f) {

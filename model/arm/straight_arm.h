@@ -12,9 +12,10 @@ enum class ElbowSide : std::uint8_t {
   kRight,  ///< th2 >= 0
 };
 
-/// th1, th2 that put the tip of the unbent arm at `tip_m`; nothing if it is out of reach.
+/// Inverse kinematics of the unbent arm: th1, th2 that place its tip at `tip_m`; empty if out of
+/// reach.
 ///
-/// Links straight, joints untwisted: where the arm stands at rest.
+/// Links straight, joints untwisted: the shape of the arm at rest.
 /// Frame: base; th1 in -pi .. pi against its x axis, th2 against link 1, counter-clockwise.
 /// @param length_m  L1, L2
 /// @param tip_m     x, y; between |L1 - L2| and L1 + L2 from the shoulder

@@ -24,7 +24,7 @@ Eigen::Matrix4d StaticMass(double l) {
   return l / 420.0 * M;
 }
 
-// Exact dynamic stiffness of a section: [w0 w0' wl wl'] -> end forces, beam held at nothing.
+// Exact dynamic stiffness of a section: [w0 w0' wl wl'] -> end forces, free-free beam.
 Eigen::Matrix4d SectionStiffness(const BeamSection& s, double omega) {
   const double EI = s.bending_stiffness_nm2(), l = s.length_m;
   // Below beta l = 0.02 the next term of the series, (beta l)^8, is lost in round-off, and so are
@@ -63,7 +63,7 @@ int CountNegativeEigenvalues(const Eigen::MatrixXd& K) {
   return static_cast<int>((eigen.eigenvalues().array() < 0.0).count());
 }
 
-// Frequencies beyond these bounds are no beam's: something is wrong with its numbers.
+// Frequencies beyond these bounds mean that the beam's parameters are wrong.
 constexpr double kLowest_rad_s = 1e-9, kHighest_rad_s = 1e12;
 
 double FindFrequency(const std::vector<BeamSection>& section, const BeamTip& tip, int order,
@@ -83,12 +83,12 @@ double FindFrequency(const std::vector<BeamSection>& section, const BeamTip& tip
   }
 }
 
-// Newton on the smallest singular value of the matching matrix. Counting is certain but, with very
-// short sections, loses digits in their stiffness (12 EI/l^3); matching does not. A step beyond
-// counting's own uncertainty means two roots that close: then the counted value stands.
+// Newton on the smallest singular value of the matching matrix. Counting cannot miss a root, but
+// with very short sections their stiffness (12 EI/l^3) loses digits; matching does not. A step
+// larger than the uncertainty of counting means two roots that close: the counted value is kept.
 double Polished(const std::vector<BeamSection>& section, const BeamTip& tip, BeamRoot root,
                 double counted) {
-  constexpr double kDelta = 1e-4;  // of the derivative: its error only slows the convergence
+  constexpr double kDelta = 1e-4;  // difference step: its error only slows the convergence
   double omega = counted;
   for (int i = 0; i < 3; ++i) {
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(MatchingMatrix(section, tip, omega, root),
@@ -160,8 +160,8 @@ void CheckBeam(const std::vector<BeamSection>& section, const BeamTip& tip, Beam
   const auto require = [&](bool ok, const char* rule) {
     if (!ok) throw std::invalid_argument(name + ": " + rule);
   };
-  require(!section.empty(), "a beam needs a section");
-  require(count >= 1, "at least one mode");
+  require(!section.empty(), "a beam needs at least one section");
+  require(count >= 1, "the number of modes must be at least 1");
   require(tip.mass_kg >= 0.0 && tip.inertia_kgm2 >= 0.0,
           "tip mass and inertia must not be negative");
   require(root.stiffness_nm_per_rad >= 0.0, "the root's stiffness must not be negative");

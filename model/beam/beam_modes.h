@@ -9,13 +9,13 @@
 
 namespace flexarm {
 
-/// What the free end of a beam carries.
+/// Lumped mass and inertia at the free end of a beam.
 struct BeamTip {
   double mass_kg;       ///< m_t >= 0
   double inertia_kgm2;  ///< J_t >= 0, about the tip point
 };
 
-/// What holds the root of a beam, whose deflection is zero there: a torsion spring of any
+/// Support at the root of a beam, whose deflection is zero there: a torsion spring of any
 /// stiffness, EI psi''(0) = k psi'(0).
 struct BeamRoot {
   double stiffness_nm_per_rad;  ///< k: 0 pinned, infinite clamped
@@ -26,8 +26,7 @@ struct BeamRoot {
   bool clamped() const { return stiffness_nm_per_rad > std::numeric_limits<double>::max(); }
 };
 
-/// One bending mode psi(x) of a Euler-Bernoulli beam of uniform sections, clamped unless said
-/// otherwise.
+/// One bending mode psi(x) of an Euler-Bernoulli beam of uniform sections, clamped by default.
 ///
 /// In every section EI psi'''' = w^2 rho A psi with the section's own beta = (w^2 rho A/EI)^(1/4);
 /// psi, psi', EI psi'' and EI psi''' are continuous; at the tip EI psi'' = w^2 J_t psi' and
@@ -37,10 +36,10 @@ struct BeamRoot {
 /// Frame: x along the undeformed link, 0 at the clamp; deflection along +y of the link frame.
 /// Source: thesis (3.1)-(3.7) corrected by docs/theory/thesis.md 2.1: one beta per section instead
 /// of (3.7)'s single one.
-/// Real-time: start-up only (looks the section up, uses libm).
+/// Real-time: start-up only (searches the section, uses libm).
 class BeamMode {
  public:
-  /// The shape in one section: four coefficients in a basis that stays well conditioned.
+  /// The shape in one section: four coefficients in a well-conditioned basis.
   struct Piece {
     double start_m;  ///< x of its root end
     double length_m;
@@ -75,8 +74,8 @@ class BeamMode {
 /// rigid-body root, 0, is one of them.
 ///
 /// Wittrick and Williams, Q. J. Mech. Appl. Math. 24 (1971) 263: clamped-clamped frequencies of the
-/// sections plus negative eigenvalues of the exact dynamic stiffness. Exact for any w, so that a
-/// search built on it can miss no root, however close two of them are.
+/// sections plus negative eigenvalues of the exact dynamic stiffness. Exact for any w, so a search
+/// based on it misses no root, however close two of them are.
 int CountFrequenciesBelow(const std::vector<BeamSection>& section, const BeamTip& tip,
                           double frequency_rad_s, BeamRoot root = BeamRoot::Clamped());
 
@@ -86,7 +85,7 @@ double PinnedFrequency(const std::vector<BeamSection>& section, const BeamTip& t
 /// The lowest `count` elastic modes, ascending: a pinned beam's rigid-body mode is left out.
 /// Frequencies are good to a few units of round-off (uniform beams: beta*L within 1e-12 of the
 /// closed form).
-/// @param name  of the beam in messages, "link 1"
+/// @param name  of the beam in messages, for example "link 1"
 /// @throws std::invalid_argument if there is no section, a property is not positive, a tip property
 /// or the root's stiffness is negative, or count < 1; RootSearchError if a frequency is not found.
 std::vector<BeamMode> NaturalModes(const std::vector<BeamSection>& section, const BeamTip& tip,
@@ -96,7 +95,7 @@ std::vector<BeamMode> NaturalModes(const std::vector<BeamSection>& section, cons
 std::vector<BeamMode> ClampedModes(const std::vector<BeamSection>& section, const BeamTip& tip,
                                    int count, const std::string& name = "beam");
 
-/// What NaturalModes requires of a beam. @throws std::invalid_argument if it is broken.
+/// Checks the requirements of NaturalModes. @throws std::invalid_argument if one is violated.
 void CheckBeam(const std::vector<BeamSection>& section, const BeamTip& tip, BeamRoot root,
                int count, const std::string& name);
 

@@ -9,9 +9,9 @@
 
 namespace flexarm {
 
-/// The mode shapes of one link and the integrals over it that the dynamics needs.
+/// Mode shapes of one link and the integrals over it that the equations of motion need.
 ///
-/// lam = rho A. Tip terms are not in here: only the distributed mass of the link.
+/// lam = rho A. Tip terms are not included: only the distributed mass of the link.
 /// Integrals by 10-point Gauss-Legendre on panels of beta*l <= 2: relative error below 1e-13.
 struct LinkModes {
   std::vector<BeamMode> mode;
@@ -31,10 +31,10 @@ struct LinkModes {
   int count() const { return static_cast<int>(mode.size()); }
 };
 
-/// What the tip of link 1 carries when its shapes are computed.
+/// Lumped mass and inertia at the tip of link 1 for which its shapes are computed.
 BeamTip Link1Tip(const ArmParameters& p);
 
-/// What the tip of link 2 carries when its shapes are computed.
+/// Lumped mass and inertia at the tip of link 2 for which its shapes are computed.
 BeamTip Link2Tip(const ArmParameters& p);
 
 /// Link 1: clamped; its tip carries motor 2, hub 2, link 2 and the payload as a mass, and the

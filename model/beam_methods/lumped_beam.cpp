@@ -37,7 +37,8 @@ LumpedBeam::LumpedBeam(const std::vector<BeamSection>& section, const BeamTip& t
                        int parts, std::string name, LumpInertia lump_inertia)
     : root_(root), name_(std::move(name)) {
   CheckBeam(section, tip, root, 1, name_);
-  if (parts < 1) throw std::invalid_argument(name_ + ": at least one part a section");
+  if (parts < 1)
+    throw std::invalid_argument(name_ + ": the number of parts per section must be at least 1");
   station_.push_back({0.0, 0.0, 0.0});
   double start = 0.0;
   for (const BeamSection& s : section) {
@@ -61,7 +62,7 @@ LumpedBeam::LumpedBeam(const std::vector<BeamSection>& section, const BeamTip& t
 int LumpedBeam::CountBelow(double omega) const {
   const double w2 = omega * omega;
   Eigen::Matrix4d K = StaticStiffness(part_[0].length_m, part_[0].bending_stiffness_nm2);
-  // The first station has w = 0; of a clamped one nothing is left.
+  // The first station has w = 0; a clamped one has no degree of freedom left.
   Eigen::Matrix2d pivot = K.bottomRightCorner<2, 2>();
   int count = 0;
   if (!root_.clamped()) {
@@ -144,12 +145,12 @@ double LumpedBeam::FindFrequency(int order) const {
     (CountBelow(middle) < order ? low : high) = middle;
   };
   while (high - low > 1e-3 * high || CountBelow(low) != order - 1 || CountBelow(high) != order) {
-    if (high - low < 1e-13 * high) fail("two roots that cannot be told apart");
+    if (high - low < 1e-13 * high) fail("two roots that cannot be distinguished");
     split();
   }
   double at_low = EndDeterminant(low);
   if (!(at_low * EndDeterminant(high) < 0.0)) {
-    fail("the transfer matrix has no change of sign");
+    fail("the determinant of the end conditions does not change sign");
   }
   for (;;) {
     const double middle = 0.5 * (low + high);
@@ -182,7 +183,7 @@ LumpedMode LumpedBeam::ModeAt(double omega) const {
 }
 
 std::vector<LumpedMode> LumpedBeam::Modes(int count) const {
-  if (count < 1) throw std::invalid_argument(name_ + ": at least one mode");
+  if (count < 1) throw std::invalid_argument(name_ + ": the number of modes must be at least 1");
   const int rigid = root_.stiffness_nm_per_rad == 0.0 ? 1 : 0;
   std::vector<LumpedMode> mode;
   for (int order = 1 + rigid; order <= count + rigid; ++order) {

@@ -16,23 +16,24 @@ struct LumpedMode {
   std::vector<double> w;
 };
 
-/// What rotary inertia I_m a point of the lumped beam has.
+/// Rotary inertia I_m of a point of the lumped beam.
 enum class LumpInertia : std::uint8_t {
   kNone,  ///< zero: consistent with the Euler-Bernoulli beam
   kSlab,  ///< m l^2/12 of a part: the thesis's concentrated moment of inertia; a coarser beam
 };
 
-/// The thesis's beam of point masses on massless elastic parts, by transfer matrices (Myklestad).
+/// Lumped-mass (Myklestad) model of the thesis: point masses on massless elastic parts, by transfer
+/// matrices.
 ///
-/// Every section is cut into equal parts; a part's mass goes by halves to its two ends. The state
-/// {-V, M, theta, w} passes a part by the field matrix (3.2) and a mass by the point matrix (3.4)
-/// with the sign of I_m mended. A solver apart from ClampedModes', which it checks: its
-/// frequencies converge to the exact ones as N^-2. Solutions are made orthonormal at every station,
-/// so that long beams keep their digits. Source: thesis 3.2, docs/theory/thesis.md 2.1.
-/// Real-time: start-up only.
+/// Every section is cut into equal parts; a part's mass is divided equally between its two ends.
+/// The field matrix (3.2) transfers the state {-V, M, theta, w} across a part, the point matrix
+/// (3.4), with the sign of I_m corrected, across a mass. Independent of the solver of ClampedModes,
+/// and so a check of it: its frequencies converge to the exact ones as N^-2. Solutions are made
+/// orthonormal at every station, so that long beams lose no digits.
+/// Source: thesis 3.2, docs/theory/thesis.md 2.1. Real-time: start-up only.
 class LumpedBeam {
  public:
-  /// @param parts  N >= 1 a section
+  /// @param parts  N >= 1 per section
   /// @param name   of the beam in messages
   /// @throws std::invalid_argument as NaturalModes.
   LumpedBeam(const std::vector<BeamSection>& section, const BeamTip& tip, BeamRoot root, int parts,
@@ -41,7 +42,7 @@ class LumpedBeam {
   /// Frequencies below `omega_rad_s`: negative pivots of its stiffness less omega^2 mass.
   int CountBelow(double omega_rad_s) const;
 
-  /// The far end's two conditions, -V = 0 and M = 0, as a determinant: changes sign at a frequency.
+  /// Determinant of the far end's two conditions, -V = 0 and M = 0: changes sign at a frequency.
   double EndDeterminant(double omega_rad_s) const;
 
   /// Elastic modes, ascending; a pinned beam's rigid-body mode is left out.

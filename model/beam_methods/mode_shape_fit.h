@@ -8,9 +8,9 @@
 
 namespace flexarm {
 
-/// A mode shape fitted to samples of it.
+/// A mode shape fitted to samples.
 struct ModeShapeFit {
-  BeamMode mode;        ///< a shape per section, not forced to be continuous
+  BeamMode mode;        ///< a shape per section, continuity not enforced
   double rms_residual;  ///< of the samples, in their unit
   double max_residual;
 
@@ -18,11 +18,12 @@ struct ModeShapeFit {
   std::array<double, 4> Coefficients(std::size_t section) const;
 };
 
-/// Least squares of (3.7) to samples w(x) of a mode of known frequency, each section by itself with
-/// its own beta = (omega^2 rho A/(EI))^(1/4).
+/// Least-squares fit of (3.7) to samples w(x) of a mode of known frequency, each section separately
+/// with its own beta = (omega^2 rho A/(EI))^(1/4).
 ///
-/// The thesis fits one beta to the whole link, which only a uniform one has. Samples at a step
-/// count for both sections. Solved in the basis of beam_basis.h, which keeps its digits where sinh
+/// The thesis fits one beta to the whole link, which is right for a uniform link only. Samples at a
+/// step belong to both sections. Solved in the basis of beam_basis.h, which loses no digits where
+/// sinh and cosh agree; Coefficients() has the thesis's form.
 /// and cosh agree; Coefficients() has the thesis's form.
 /// @param x_m, w  samples, ascending from 0 to L
 /// @throws std::invalid_argument if a section has fewer than four samples or the sizes differ.

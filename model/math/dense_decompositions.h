@@ -4,11 +4,11 @@
 
 #include "model/math/dense_kernels.h"
 
-// Eigen's decompositions of matrices whose size is known at run time only, as off-line code uses
-// them. Declared here, they are compiled once (dense_decompositions.cpp): each takes a compiler
-// seconds. What is solved for has to be a plain matrix or vector, not an expression. Code that
-// includes <Eigen/Dense> itself computes the same numbers and compiles longer. Real-time: not for
-// the loop, they allocate.
+// Eigen's decompositions of matrices whose size is known at run time only, for off-line code.
+// Declared here, they are compiled once (dense_decompositions.cpp): each costs seconds of compile
+// time. The right side has to be a plain matrix or vector, not an expression. Code that includes
+// <Eigen/Dense> itself computes the same numbers and compiles more slowly. Real-time: start-up
+// only, they allocate.
 namespace Eigen {
 
 extern template void PartialPivLU<MatrixXd>::compute();

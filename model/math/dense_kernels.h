@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 
 // The inner loops of Eigen's products of real matrices too large to unroll. Declared here, they are
-// compiled once (dense_kernels.cpp): a file with one product takes a compiler a second less. Code
-// that includes <Eigen/Dense> itself computes the same numbers and compiles longer.
-// Real-time: these loops are safe. A product around them allocates unless its sizes are bounded.
+// compiled once (dense_kernels.cpp): that saves a second of compile time per file with a product.
+// Code that includes <Eigen/Dense> itself computes the same numbers and compiles more slowly.
+// Real-time: these loops are safe. A product that uses them allocates unless its sizes are bounded.
 namespace Eigen::internal {
 
 using GebpTraits = gebp_traits<double, double>;

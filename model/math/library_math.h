@@ -6,7 +6,7 @@
 
 namespace flexarm {
 
-/// PortableMath's functions by the C library: for off-line use, and for comparison.
+/// PortableMath's functions from the C library: for off-line use, and for comparison.
 struct LibraryMath {
   static SineCosine SinCos(double angle_rad) noexcept {
     return {std::sin(angle_rad), std::cos(angle_rad)};

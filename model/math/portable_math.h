@@ -11,9 +11,9 @@ struct SineCosine {
   double sine, cosine;  ///< 1
 };
 
-/// Elementary functions from + - * / alone: the same bits on every machine that follows IEEE 754.
+/// Elementary functions from + - * / alone: bit-identical on every machine that follows IEEE 754.
 ///
-/// libm's sin and exp differ between processors and versions, and a replay would with them. Taylor
+/// libm's sin and exp differ between processors and versions, and so would a replay. Taylor
 /// polynomials on a reduced argument, long enough that truncation stays far below round-off.
 /// Built without contraction (-ffp-contract=off). NaN in, NaN out.
 /// Real-time: safe. Usable in constant expressions.
@@ -76,7 +76,7 @@ struct PortableMath {
     return x + x * z * p;
   }
 
-  // First term left out: x^18 / 18! < 3e-18. 1 - z/2 is rounded once and its error put back.
+  // First term left out: x^18 / 18! < 3e-18. 1 - z/2 is rounded once and its error added back.
   static constexpr double CosineNearZero(double x) noexcept {
     constexpr double k4 = 1.0 / 24.0, k6 = -1.0 / 720.0, k8 = 1.0 / 40320.0, k10 = -1.0 / 3628800.0,
                      k12 = 1.0 / 479001600.0, k14 = -1.0 / 87178291200.0,

@@ -33,7 +33,7 @@ MatrixXd Refined(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const 
   return Symmetric(P + SolveStein(F.transpose(), F, residual));
 }
 
-// Newton until the residual stops falling. Strongly unstable A costs doubling many digits.
+// Newton until the residual stops falling. For a strongly unstable A doubling loses many digits.
 MatrixXd Polished(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R,
                   MatrixXd P) {
   double residual = DareResidual(A, B, Q, R, P);

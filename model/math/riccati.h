@@ -12,7 +12,7 @@ namespace flexarm {
 /// @param Q, R  symmetric; Q >= 0, R > 0
 /// @throws std::invalid_argument if sizes do not fit or R is not positive definite;
 /// std::runtime_error if the doubling does not converge (a mode on or outside the unit circle that
-/// B cannot reach, or on it and not seen by Q).
+/// B does not reach, or on it and not weighted by Q).
 Eigen::MatrixXd SolveDare(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                           const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R);
 
@@ -28,7 +28,7 @@ Eigen::MatrixXd DareGain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
 ///
 /// Complex Schur forms of A (n x n) and B (m x m), column by column, with two rounds of iterative
 /// refinement. Eigenvalues may lie anywhere, on the unit circle too; only products of one of A with
-/// one of B must stay away from 1. Poorly scaled coordinates are the caller's to scale.
+/// one of B must stay away from 1. The caller scales badly scaled coordinates.
 /// @throws std::invalid_argument if sizes do not fit; std::runtime_error if such a product is
 /// within 1e-13 of 1: then there is no solution, or no unique one.
 Eigen::MatrixXd SolveStein(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,

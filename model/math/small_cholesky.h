@@ -5,10 +5,10 @@
 
 namespace flexarm {
 
-/// Cholesky factor L of A = L L' for a size known when compiled, at most about 16.
+/// Cholesky factor L of A = L L' for a size known at compile time, at most about 16.
 ///
-/// Eigen's LLT has an algorithm for large matrices too, in every size: it costs a compiler seconds
-/// and small systems do not reach it, or pay for its copies. Sums are taken in the order of
+/// Eigen's LLT instantiates its blocked algorithm in every size: that costs seconds of compile
+/// time, and small systems do not use it or pay for its copies. Sums are taken in the order of
 /// Eigen's, so both give the same bits where no fused multiply-add is used. NaN if A is not
 /// positive definite. Real-time: safe.
 template <int N>
@@ -39,7 +39,7 @@ class SmallCholesky {
     }
   }
 
-  /// The factor; above its diagonal stands what A had there.
+  /// The factor; above its diagonal are the entries of A.
   const Matrix& L() const noexcept { return L_; }
 
   /// X = L^-1 X, for a few columns.

@@ -40,7 +40,7 @@ class Rules {
 
   void CheckBacklash(const BacklashParameters& backlash) {
     Require(backlash.clearance_rad >= 0.0 && backlash.clearance_rad < 1.0, "joint2.backlash_rad",
-            backlash.clearance_rad, "must lie in 0 <= d_b < 1 rad; 0: no play");
+            backlash.clearance_rad, "must lie in 0 <= d_b < 1 rad; 0: no backlash");
     Require(backlash.restitution_slope_s_per_rad >= 0.0, "joint2.restitution_slope_s_per_rad",
             backlash.restitution_slope_s_per_rad, "must not be negative");
   }

@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// One uniform stretch of a link. A link is any number of them, root to tip.
+/// One uniform section of a link. A link has any number of them, from root to tip.
 struct BeamSection {
   double length_m;           ///< l > 0
   double area_m2;            ///< A > 0
@@ -22,16 +22,16 @@ struct BeamSection {
   double bending_stiffness_nm2() const { return youngs_modulus_pa * second_moment_m4; }
 };
 
-/// What the structural damping of a link means (docs/theory/plant.md 5: the thesis's (3.8) lacks
-/// rho).
+/// Interpretation of the structural damping of a link (docs/theory/plant.md 5: the thesis's (3.8)
+/// lacks rho).
 enum class DampingReading : std::uint8_t {
-  kNone,                ///< no structural damping
-  kCurvatureRho,        ///< "ca_rho": C_a = xi L^2 sqrt(rho A E / I): (3.8) with its units mended
+  kNone,          ///< no structural damping
+  kCurvatureRho,  ///< "ca_rho": C_a = xi L^2 sqrt(rho A E / I): (3.8) with its units corrected
   kCurvatureAsPrinted,  ///< "ca_lit": C_a = xi L^2 sqrt(A E / I), as printed
   kModal,               ///< "modal": every clamped mode of a link has the damping ratio xi
 };
 
-/// Which rotary inertia the tip of link 1 carries when its mode shapes are computed.
+/// Rotary inertia at the tip of link 1 for which its mode shapes are computed.
 enum class Link1TipInertia : std::uint8_t {
   kMotor,          ///< "motor": I_r2
   kMotorAndRotor,  ///< "motor_and_rotor": I_r2 + J2
@@ -50,22 +50,22 @@ struct JointParameters {
   double rotor_inertia_kgm2;             ///< J > 0, at the gearbox output
   double hub_inertia_kgm2;               ///< I_h >= 0
   double coulomb_friction_nm;            ///< K_F >= 0, acts between hub and its base (3.12)
-  double viscous_friction_nm_s_per_rad;  ///< >= 0, there too; the thesis has none
+  double viscous_friction_nm_s_per_rad;  ///< >= 0, same place; not in the thesis
 };
 
-/// What the play between the gears of joint 2 does (backlash.h).
+/// Model of the backlash between the gears of joint 2 (backlash.h).
 enum class BacklashModel : std::uint8_t {
-  kDeadZone,  ///< "dead_zone": no torque inside the play, spring and impact loss at its ends
-  kThesis,    ///< "thesis": the dissipation (3.9)-(3.11) on the rotor, faults included
+  kDeadZone,  ///< "dead_zone": no torque within the clearance, spring and impact loss at its ends
+  kThesis,    ///< "thesis": the dissipation (3.9)-(3.11) on the rotor, errors included
 };
 
 struct BacklashParameters {
   BacklashModel model;
-  double clearance_rad;                ///< d_b >= 0: free rotation, end to end; 0: no play
+  double clearance_rad;                ///< d_b >= 0: free rotation, end to end; 0: no backlash
   double restitution_slope_s_per_rad;  ///< zeta >= 0: e = 1 - zeta |impact rate|
 };
 
-/// Physical constants of the arm, thesis Table 2 with names. SI units.
+/// Physical constants of the arm, thesis Table 2 with readable names. SI units.
 ///
 /// Joint 1 is the shoulder, joint 2 the elbow. Index 0 is link or joint 1.
 struct ArmParameters {
@@ -87,7 +87,7 @@ struct ArmParameters {
     return {joint[0].stiffness_nm_per_rad, joint[1].stiffness_nm_per_rad};
   }
 
-  /// Every broken rule, keys relative to the config sections [link1] [link2] [joint1] [joint2]
+  /// Every violated rule, keys relative to the config sections [link1] [link2] [joint1] [joint2]
   /// [arm]. Empty means that a model can be built.
   std::vector<Problem> Problems() const;
 };

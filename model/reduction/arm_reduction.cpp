@@ -50,7 +50,7 @@ VectorXd ModalScale(const LinkModes& link, ModalScaling scaling) {
   VectorXd scale = VectorXd::Ones(link.count());
   for (int i = 0; i < link.count(); ++i) {
     const double omega = link.mode[static_cast<std::size_t>(i)].frequency_rad_s();
-    // Strain and kinetic energy of a mode are equal: its mass, tip included, is G / omega^2.
+    // Strain and kinetic energy of a mode are equal: the modal mass, tip included, is G / omega^2.
     if (scaling == ModalScaling::kMass) scale[i] = std::sqrt(link.G(i, i)) / omega;
     if (scaling == ModalScaling::kLength) scale[i] = std::sqrt(link.N(i, i) / link.m);
   }

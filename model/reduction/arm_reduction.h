@@ -9,8 +9,8 @@
 
 namespace flexarm {
 
-/// A nominal trajectory of chapter 6: unbent links, joint springs relaxed, constant rates held by
-/// whatever forces it takes. th1 does not matter.
+/// A nominal trajectory of chapter 6: unbent links, joint springs relaxed, constant rates sustained
+/// by whatever forces are required. th1 has no influence.
 struct NominalMotion {
   double theta2_rad;
   double theta1_rate_rad_s, theta2_rate_rad_s;
@@ -18,12 +18,12 @@ struct NominalMotion {
 
 /// How the modal coordinates phi are scaled; contributions depend on it.
 enum class ModalScaling : std::uint8_t {
-  kTip,     ///< psi(L) = 1: phi is a tip deflection, as everywhere else here
+  kTip,     ///< psi(L) = 1: phi is a tip deflection, as in the rest of the program
   kMass,    ///< rho A int psi^2 + m_t psi(L)^2 + J_t psi'(L)^2 = 1 kg
   kLength,  ///< int psi^2 = L (weighted by rho A on a stepped link), as a bare beam's shapes
 };
 
-/// The arm about a nominal motion, all dissipation left out: (6.21) with A2 = 0. Q1 = 1,
+/// The arm about a nominal motion, without dissipation: (6.21) with A2 = 0. Q1 = 1,
 /// Q2 = M^-1 (dF/dq + K), input torques, output the tip's position in the base frame, m.
 UndampedSystem UndampedArm(const ArmModel& model, const NominalMotion& motion);
 
@@ -42,16 +42,16 @@ struct LinkContribution {
 /// Power elements and contributions at one nominal motion.
 struct ArmReduction {
   PowerBalance balance;                  ///< in tip scaling
-  std::array<LinkContribution, 2> link;  ///< in the scaling asked for
+  std::array<LinkContribution, 2> link;  ///< in the requested scaling
 };
 
-/// Thesis 6.5: power balancing at one nominal motion. Two rigid-body roots are marked; those that
-/// stay zero or turn negative are dropped, one that turned positive counts in mu.
+/// Power balancing of the arm at one nominal motion, thesis 6.5. Two rigid-body roots are marked;
+/// those that stay zero or turn negative are dropped, one that turned positive counts in mu.
 /// @throws as BalancePower
 ArmReduction ReduceArm(const ArmModel& model, const NominalMotion& motion, ModalScaling scaling,
                        double rigid_below_rad2_s2 = PowerOptions{}.rigid_below_rad2_s2);
 
-/// phi in the scaling over phi with psi(L) = 1, for each mode of a link.
+/// Factor from phi with psi(L) = 1 to phi in the scaling, for each mode of a link.
 Eigen::VectorXd ModalScale(const LinkModes& link, ModalScaling scaling);
 
 }  // namespace flexarm

@@ -35,7 +35,8 @@ BalancedSystem BalanceGramians(const StateSpace& system, double margin_per_s) {
   const Eigen::JacobiSVD<MatrixXd> svd(R.transpose() * F,
                                        Eigen::ComputeFullU | Eigen::ComputeFullV);
   out.hankel = svd.singularValues();
-  // States below round-off of the largest are neither reached nor seen: no coordinates for them.
+  // States below round-off of the largest are neither controllable nor observable: they get no
+  // coordinates.
   const Index states = (out.hankel.array() > 1e-14 * out.hankel[0]).count();
   const Eigen::VectorXd scale = out.hankel.head(states).cwiseSqrt().cwiseInverse();
   const MatrixXd T = F * svd.matrixV().leftCols(states) * scale.asDiagonal();

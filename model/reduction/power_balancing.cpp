@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A root of Q3 with its eigenvector, and what maps it to the halves of z.
+// A root of Q3 with its eigenvector, and its maps to the halves of z.
 struct Spectrum {
   Eigen::VectorXcd root;
   Eigen::MatrixXcd T1, T2, T2_inverse;
@@ -71,7 +71,7 @@ Spectrum DiagonalisedSpectrum(const UndampedSystem& s) {
   return {eigen.eigenvalues(), t.asDiagonal() * S, t.asDiagonal() * S, inverse};
 }
 
-// Reason to leave a root out; nothing if it oscillates.
+// Reason to exclude a root; null if it oscillates.
 const DroppedRoot::Reason* ReasonToDrop(std::complex<double> root, double rigid_below) {
   static constexpr DroppedRoot::Reason kRigid = DroppedRoot::Reason::kRigid,
                                        kNegative = DroppedRoot::Reason::kNegative,
@@ -81,7 +81,7 @@ const DroppedRoot::Reason* ReasonToDrop(std::complex<double> root, double rigid_
   return root.real() < 0.0 ? &kNegative : nullptr;
 }
 
-// Places of the roots that are kept, ascending; the others are recorded.
+// Indices of the roots that are kept, ascending; the others are recorded.
 std::vector<Index> Kept(const Spectrum& spectrum, double rigid_below, PowerBalance* balance) {
   std::vector<Index> order(static_cast<std::size_t>(spectrum.root.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -133,7 +133,7 @@ PowerBalance BalancePower(const UndampedSystem& system, const PowerOptions& opti
                                 ? SymmetricSpectrum(system)
                                 : DiagonalisedSpectrum(system);
   const std::vector<Index> kept = Kept(spectrum, options.rigid_below_rad2_s2, &balance);
-  // Real roots have real vectors: nothing is lost.
+  // Real roots have real eigenvectors: the imaginary part is zero.
   balance.T1 = spectrum.T1(Eigen::all, kept).real();
   balance.T2 = spectrum.T2(Eigen::all, kept).real();
   balance.b = spectrum.T2_inverse(kept, Eigen::all).real() * system.B0;
@@ -168,7 +168,8 @@ PowerBalancedSystem Realize(const PowerBalance& balance, int modes) {
     const std::size_t i = order[static_cast<std::size_t>(k)];
     const PowerMode& mode = balance.mode[i];
     if (!(mode.rho > 0.0)) {
-      throw std::domain_error("power balancing: a mode is not reached or not seen, rho = 0");
+      throw std::domain_error(
+          "power balancing: a mode is not controllable or not observable, rho = 0");
     }
     const double omega = mode.frequency_rad_s;
     const double r = std::sqrt(mode.b_norm / (mode.c_norm * omega)), r_rate = r * omega;

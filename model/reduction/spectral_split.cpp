@@ -39,7 +39,7 @@ void SwapNeighbours(Index i, MatrixXcd* T, MatrixXcd* Z) {
   (*T)(i + 1, i + 1) = first;
 }
 
-// Brings eigenvalues left of the line to the top; returns how many there are.
+// Moves eigenvalues left of the line to the top; returns how many there are.
 Index OrderStableFirst(double line, MatrixXcd* T, MatrixXcd* Z) {
   Index stable = 0;
   for (Index i = 0; i < T->rows(); ++i) {
@@ -58,7 +58,7 @@ MatrixXcd TriangularSylvester(const MatrixXcd& T, Index stable) {
     MatrixXcd left = T.topLeftCorner(stable, stable);
     left.diagonal().array() -= T(stable + j, stable + j);
     if (stable > 0 && !(left.diagonal().cwiseAbs().minCoeff() > 0.0)) {
-      throw std::domain_error("linear system: its stable part cannot be told from the rest");
+      throw std::domain_error("linear system: its stable part cannot be separated from the rest");
     }
     const MatrixXcd right =
         X.leftCols(j) * T.block(stable, stable + j, j, 1) - T.block(0, stable + j, stable, 1);
@@ -71,7 +71,7 @@ MatrixXcd TriangularSylvester(const MatrixXcd& T, Index stable) {
 StateSpace Part(const StateSpace& s, const MatrixXd& projector, Index rank, MatrixXd* V) {
   const Eigen::JacobiSVD<MatrixXd> svd(projector, Eigen::ComputeFullU);
   *V = svd.matrixU().leftCols(rank);
-  const MatrixXd W = V->transpose() * projector;  // W V = 1, as the projector leaves V alone
+  const MatrixXd W = V->transpose() * projector;  // W V = 1, as the projector maps V to itself
   return {W * s.A * *V, W * s.B, s.C * *V};
 }
 
@@ -80,7 +80,7 @@ StateSpace Part(const StateSpace& s, const MatrixXd& projector, Index rank, Matr
 SplitSystem SplitStable(const StateSpace& system, double margin_per_s) {
   CheckSystem(system);
   if (!(margin_per_s > 0.0)) throw std::invalid_argument("linear system: margin must be positive");
-  // In balanced coordinates: units cost no digits.
+  // In balanced coordinates: mixed units lose no digits.
   const Eigen::VectorXd t = BalancingScale(system.A);
   const Eigen::VectorXd t_inverse = t.cwiseInverse();
   const StateSpace balanced{t_inverse.asDiagonal() * system.A * t.asDiagonal(),
@@ -103,7 +103,7 @@ MatrixXd GramianFactor(const MatrixXd& A, const MatrixXd& B) {
   const Index n = A.rows();
   const Eigen::ComplexSchur<MatrixXd> schur(A);
   const MatrixXcd& T = schur.matrixT();
-  MatrixXcd b = schur.matrixU().adjoint() * B;  // what is left of it, from the last row upwards
+  MatrixXcd b = schur.matrixU().adjoint() * B;  // the remainder, from the last row upwards
   MatrixXcd U = MatrixXcd::Zero(n, n);          // T (UU^H) + (UU^H) T^H + b b^H = 0
   for (Index j = n - 1; j >= 0; --j) {
     const Complex lambda = T(j, j);

@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// Deflection, hubs and torque with which an arm that follows Y is bent without vibrating.
+/// Pose and torque of an arm that follows Y with quasi-static deflection, without vibration.
 struct QuasiStaticPose {
   RigidJointArm::Vector q;    ///< as RigidJointArm's, rad and m
   Eigen::Vector2d torque_nm;  ///< on hubs 1 and 2, without friction
@@ -17,8 +17,9 @@ struct QuasiStaticPose {
 /// Closed form, with g the forces at q = (Y, 0), v = (Y', 0), a = (Y'', 0):
 ///   f = -K_ff^-1 g_f,  theta = Y - M_tt^-1 M_tf f,  u = g_t.
 ///
-/// The links' deflection balances the inertial forces of the straight arm at once. Left out: the
-/// inertia of f itself, and the geometry of the bent arm. A second pass with them gained nothing.
+/// The links' deflection balances the inertial forces of the straight arm instantaneously.
+/// Neglected: the inertia of f itself, and the geometry of the bent arm. A second pass with them
+/// gained nothing.
 /// Source: docs/theory/payload.md 3.3. Real-time: safe.
 QuasiStaticPose QuasiStaticAt(const RigidJointArm& arm, const OutboardBody& body,
                               const RigidPoint& point) noexcept;
@@ -29,8 +30,8 @@ struct QuasiStaticSample {
   Eigen::Vector2d torque_nm;       ///< mean of this instant and the next, for the sample between
 };
 
-/// Rates are central differences over the neighbours, all with the same payload.
-/// Source: docs/theory/payload.md 3.3. Real-time: safe.
+/// Quasi-static reference: rates are central differences over the neighbours, all with the same
+/// payload. Source: docs/theory/payload.md 3.3. Real-time: safe.
 /// @param previous_now_next  the path, one period apart
 /// @param period_s           > 0
 QuasiStaticSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,

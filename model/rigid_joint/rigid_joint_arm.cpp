@@ -45,7 +45,7 @@ RigidJointArm::RigidJointArm(const ArmParameters& parameters)
   damping_ = T_r.transpose() * model.damping() * T_r;
 }
 
-// One order for writing and reading.
+// Defines the order of the constants for writing and reading.
 template <typename Arm, typename Visit>
 void RigidJointArm::ForEachConstant(Arm& arm, Visit visit) {
   const auto visit_all = [&visit](auto& matrix) {
@@ -93,7 +93,7 @@ double RigidJointArm::TipAcceleration(const Vector& q, const Vector& v,
   const auto link1 = [](const Eigen::Vector2d& shape, const Vector& x) {
     return shape.dot(x.segment<2>(2));
   };
-  // A kilogram at the tip shows where the tip is: its first moment is L2, k2 is psi2(L2).
+  // A unit payload mass contains the tip's position: its first moment is L2, k2 is psi2(L2).
   const double L2 = per_kg_.Sx;
   const auto w2 = [this](const Vector& x) { return per_kg_.k2.dot(x.tail<2>()); };
   return flexarm::TipAcceleration({.theta1 = {q[0], v[0], a[0]},

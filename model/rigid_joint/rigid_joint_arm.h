@@ -9,8 +9,8 @@
 
 namespace flexarm {
 
-/// All that turns with hub 2, as the end of link 1 feels it; moments about the elbow. Affine in the
-/// payload.
+/// Everything that turns with hub 2, as a load on the end of link 1; moments about the elbow.
+/// Affine in the payload.
 struct OutboardBody {
   double m;            ///< mass, kg
   double Sx;           ///< first moment along link 2, kg m
@@ -24,8 +24,8 @@ struct OutboardBody {
 ///   M(q; m_p) q'' + bias(q, q'; m_p) + D q' + K q = [tau1 tau2 0 0 0 0]' + friction.
 ///
 /// q = [th1 th2 phi1_1 phi1_2 phi2_1 phi2_2], rad and m: ArmModel with th3 = th1, th4 = th2, so
-/// M = T_r' M T_r and bias = T_r' bias. Mode shapes are those of the nominal payload whatever the
-/// payload is, so mass and bias are affine in it. Not modelled: foreshortening, play, torsion.
+/// M = T_r' M T_r and bias = T_r' bias. Mode shapes are those of the nominal payload for any
+/// payload, so mass and bias are affine in it. Not modelled: foreshortening, backlash, torsion.
 /// Source: docs/theory/payload.md 1; docs/theory/plant.md 3.4.
 /// Real-time: all but the constructor is safe.
 class RigidJointArm {
@@ -34,20 +34,20 @@ class RigidJointArm {
   using Vector = Eigen::Matrix<double, kDof, 1>;
   using Matrix = Eigen::Matrix<double, kDof, kDof>;
 
-  /// What At computes.
+  /// Result of At.
   struct Inertia {
     Matrix M;     ///< mass matrix, symmetric up to round-off
     Vector bias;  ///< Coriolis and centrifugal forces
   };
 
-  /// The payload in `parameters` is not used but for its inertia: Outboard sets it.
+  /// Of the payload in `parameters` only the inertia is used; the mass is the argument of Outboard.
   /// @throws std::invalid_argument if the parameters have Problems().
   explicit RigidJointArm(const ArmParameters& parameters);
 
-  /// All that the constructor computed, as numbers: another processor's libm may compute others in
-  /// the last digit, and a run must replay to the bit.
+  /// All computed constants, as numbers. Another processor's libm may differ in the last digit, and
+  /// a replay must agree to the bit, so a run records them.
   std::vector<double> Constants() const;
-  /// @throws std::invalid_argument if they are not as many as Constants() gives
+  /// @throws std::invalid_argument if their number differs from that of Constants()
   explicit RigidJointArm(std::span<const double> constants);
 
   OutboardBody Outboard(double payload_kg) const noexcept;
@@ -56,7 +56,7 @@ class RigidJointArm {
   template <typename Math = PortableMath>
   Inertia At(const OutboardBody& body, const Vector& q, const Vector& v) const noexcept;
 
-  /// Of the tip, along the normal of link 2 there, m/s^2: tip_acceleration.h.
+  /// Acceleration of the tip along the normal of link 2 there, m/s^2: tip_acceleration.h.
   double TipAcceleration(const Vector& q, const Vector& v, const Vector& a) const noexcept;
 
   const Matrix& stiffness() const noexcept { return stiffness_; }  ///< K; zero for the hubs

@@ -6,9 +6,9 @@
 
 namespace flexarm {
 
-// Forces by the velocities of three things: the elbow along and across link 2 (x, y), and hub 2's
-// turning (g). Each is a row over [th1 th2 phi1_1 phi1_2]' plus a part that the rates alone give.
-// Names as in arm_equations.h; rotor 2 turns with hub 2 here, so J2 is in I2.
+// Forces by the velocities of three bodies: the elbow along and across link 2 (x, y), and the
+// rotation of hub 2 (g). Each is a row over [th1 th2 phi1_1 phi1_2]' plus a part due to the rates
+// alone. Names as in arm_equations.h; rotor 2 turns with hub 2 here, so J2 is in I2.
 template <typename Math>
 RigidJointArm::Inertia RigidJointArm::At(const OutboardBody& body, const Vector& q,
                                          const Vector& v) const noexcept {
@@ -47,7 +47,7 @@ RigidJointArm::Inertia RigidJointArm::At(const OutboardBody& body, const Vector&
   out.M.topRightCorner<4, 2>() = out.M.bottomLeftCorner<2, 4>().transpose();
   out.M.bottomRightCorner<2, 2>() = body.N2 + Ip_ * p * p.transpose();
 
-  // Accelerations that the rates alone give: elbow in frame 1, then in frame 2; hub 2; payload.
+  // Accelerations due to the rates alone: elbow in frame 1, then in frame 2; hub 2; payload.
   const double x1 = -2.0 * th1_dot * w_dot - th1_dot * th1_dot * L1_, y1 = -th1_dot * th1_dot * w;
   const double X = cb * x1 + sb * y1, Y = cb * y1 - sb * x1;
   const double gamma_dot = th1_dot + v[1] + alpha_dot;

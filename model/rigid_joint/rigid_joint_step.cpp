@@ -61,7 +61,7 @@ RigidJointArm::Vector RigidJointStepper::AccelerationAt(const GaugedState& x,
 }
 
 // A a = r + friction, v the rates at the start of a step. The modal coordinates are eliminated;
-// friction acts on what is left.
+// friction acts on the remaining hub equations.
 inline RigidJointArm::Vector RigidJointStepper::Solve(
     const RigidJointArm::Matrix& A, const Vector& r, const Vector& v,
     const std::array<double, 2>& friction_nm) const noexcept {

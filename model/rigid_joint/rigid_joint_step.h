@@ -13,24 +13,25 @@ struct GaugedState {
   Eigen::Vector4d phi_f;       ///< filtered modal coordinates, phi_f' = w_f (phi - phi_f), m
 };
 
-/// What is constant during a sample.
+/// Inputs that are constant during a sample.
 struct SampleInputs {
   Eigen::Vector2d torque_nm;
   double payload_kg;
   std::array<double, 2> friction_nm;  ///< Coulomb levels of the hubs, >= 0
 };
 
-/// One sample of the arm with exact Coulomb stiction: a few implicit midpoint steps of kPasses
-/// fixed-point passes each.
+/// Integrates one sample of the arm with exact Coulomb stiction: a few implicit midpoint steps of
+/// kPasses fixed-point passes each.
 ///
-/// As ArmSimulator (hubs by CoulombFrictionLcp at the midpoint velocity), in long steps, and for a
-/// payload that may differ from sample to sample. A step's passes start from zero acceleration. The
-/// gauges' filters see the modal coordinates of the middle of each step.
+/// As ArmSimulator (hubs by CoulombFrictionLcp at the midpoint velocity), in longer steps, and for
+/// a payload that may differ from sample to sample. The passes of a step start from zero
+/// acceleration. The gauges' filters are driven by the modal coordinates of the middle of each
+/// step.
 /// Source: docs/theory/payload.md 1.
 /// Real-time: Advance is safe.
 class RigidJointStepper {
  public:
-  static constexpr int kSteps = 8;  ///< the filter's
+  static constexpr int kSteps = 8;  ///< used by PayloadFilter
   static constexpr int kPasses = 2;
 
   /// @param period_s         one sample, > 0
@@ -38,9 +39,9 @@ class RigidJointStepper {
   /// @param steps            a power of two, for TransitionOver's doublings
   RigidJointStepper(RigidJointArm arm, double period_s, double gauge_filter_hz, int steps = kSteps);
 
-  /// As RigidJointArm's, with those of the sample.
+  /// As RigidJointArm::Constants, with the constants of the sample.
   std::vector<double> Constants() const;
-  /// @throws std::invalid_argument if they are not as many as Constants() gives
+  /// @throws std::invalid_argument if their number differs from that of Constants()
   explicit RigidJointStepper(std::span<const double> constants);
 
   /// One sample.
@@ -51,8 +52,8 @@ class RigidJointStepper {
   GaugedState Advance(const GaugedState& start, const SampleInputs& inputs,
                       int steps) const noexcept;
 
-  /// Accelerations at this very state. A hub that friction can stop within a step is being stopped:
-  /// one at rest stays so. rad/s^2, m/s^2
+  /// Accelerations at this state, rad/s^2 and m/s^2. A hub that friction can stop within a step is
+  /// decelerated to rest; a hub at rest remains so.
   RigidJointArm::Vector AccelerationAt(const GaugedState& x,
                                        const SampleInputs& inputs) const noexcept;
 
@@ -60,7 +61,7 @@ class RigidJointStepper {
   int steps() const noexcept { return steps_; }
   double period_s() const noexcept { return steps_ * h_; }
   double step_s() const noexcept { return h_; }
-  /// Share of its error that a gauge's filter takes away in one step.
+  /// Part of a gauge filter's error that one step removes.
   double gauge_share() const noexcept { return gauge_share_; }
 
  private:

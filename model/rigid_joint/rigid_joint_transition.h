@@ -17,8 +17,8 @@ struct Transition {
 /// Linearises a sample of RigidJointStepper about its middle.
 ///
 /// One midpoint step of M a + (D + dg/dv) v + (K + dg/dq) q = F with g = M(q) a + bias(q, v), then
-/// doublings to the whole sample. dg by forward differences of 1e-6, 11 evaluations: th1 turns the
-/// whole arm and changes nothing. Friction is a constant force here.
+/// doublings to the whole sample. dg by forward differences of 1e-6, 11 evaluations: th1 rotates
+/// the whole arm and changes nothing. Friction is a constant force here.
 /// Source: docs/theory/payload.md 2.2. Real-time: safe.
 /// @param q, v  at the middle of the sample
 /// @param a     mean acceleration of the sample

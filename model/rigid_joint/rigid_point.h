@@ -4,11 +4,11 @@
 
 namespace flexarm {
 
-/// The rigid coordinate Y of both joints at one instant, and its derivatives. Plain bytes: the log
-/// holds it.
+/// The rigid coordinate Y of both joints at one instant, and its derivatives. Trivially copyable:
+/// it is logged as bytes.
 ///
-/// Y = theta + M_tt^-1 M_tf f obeys M_tt Y'' + bias_t = u, because springs push on no hub: a smooth
-/// Y asks for a smooth torque. With straight links it is theta.
+/// Y = theta + M_tt^-1 M_tf f satisfies M_tt Y'' + bias_t = u, because no spring acts on a hub: a
+/// smooth Y needs a smooth torque. With straight links it is theta.
 struct RigidPoint {
   std::array<double, 2> angle_rad;            ///< Y
   std::array<double, 2> rate_rad_s;           ///< Y'

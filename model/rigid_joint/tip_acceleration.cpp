@@ -18,8 +18,8 @@ Vector2d Turning(double gamma_dot, double gamma_ddot, const Moving& x, const Mov
           y.ddot + gamma_ddot * x.x + 2.0 * gamma_dot * x.dot - gamma_dot * gamma_dot * y.x};
 }
 
-// What a bent link lacks in length: quadratic in phi, so 2 B(x, y) = delta(x + y) - delta(x) -
-// delta(y) is its derivative.
+// Foreshortening of a link: quadratic in phi, so 2 B(x, y) = delta(x + y) - delta(x) - delta(y) is
+// its derivative.
 Moving Shortening(const Foreshortening<>& link, const Coordinates& phi, const Coordinates& phi_dot,
                   const Coordinates& phi_ddot) noexcept {
   const double at = TipShortening(link, phi), by_rate = TipShortening(link, phi_dot);

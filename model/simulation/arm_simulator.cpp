@@ -7,9 +7,10 @@
 namespace flexarm {
 namespace {
 
-// ArmVector has no room for more, and in a release build does not say so.
+// ArmVector has a fixed capacity, and release builds do not check it.
 ArmVector RestingVector(int dof) {
-  if (dof > kMaxSteppedDof) throw std::invalid_argument("ArmState: too many modes to be stepped");
+  if (dof > kMaxSteppedDof)
+    throw std::invalid_argument("ArmState: more modes than ArmSimulator supports");
   return ArmVector::Zero(dof);
 }
 

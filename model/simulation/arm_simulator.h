@@ -9,7 +9,7 @@ namespace flexarm {
 
 class StepKernel;
 
-/// A vector of up to kMaxSteppedDof entries that lives without the heap.
+/// A vector of up to kMaxSteppedDof entries without heap memory.
 using ArmVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSteppedDof, 1>;
 
 /// State of the simulated arm. q and v as ArmModel's.
@@ -20,27 +20,27 @@ struct ArmState {
 
   ArmVector q;  ///< rad and m
   ArmVector v;  ///< rad/s and m/s
-  ArmVector a;  ///< accelerations of the last step, rad/s^2 and m/s^2: only where the next one
-                ///< starts its iteration; zero is always allowed
+  ArmVector a;  ///< accelerations of the last step, rad/s^2 and m/s^2: only the start value of
+                ///< the next step's iteration; zero is always allowed
 };
 
-/// How ArmSimulator spends its time.
+/// Number of passes and steps of ArmSimulator.
 struct SimulatorOptions {
   int passes = 3;    ///< fixed-point passes a step, >= 1
-  int substeps = 1;  ///< equal midpoint steps that one Step is made of, >= 1
+  int substeps = 1;  ///< equal midpoint steps per Step, >= 1
   bool coulomb_friction = true;
 };
 
-/// Steps the arm: implicit midpoint with exact Coulomb stiction. The project's default integrator.
+/// Time integrator of the arm: implicit midpoint with exact Coulomb stiction. The default one.
 ///
 /// Solves M(q_m) a + bias(q_m, v_m) + D v_m + K q_m = force + friction at the middle of the step,
 /// with (M + h/2 D + h^2/4 K) on the left, by fixed-point passes; friction torques on th1 and th2
-/// (hub against its base) make a 2-contact box problem that is solved exactly in each pass
-/// (box_friction.h). A hub that comes to rest inside a step ends it with exactly zero velocity, by
-/// an impulse that can only take energy. Second order in h, stable for any h.
+/// (hub against its base) make a linear complementarity problem of two contacts that is solved
+/// exactly in each pass (coulomb_friction_lcp.h). A hub that stops within a step ends it with
+/// exactly zero velocity, by an impulse that only dissipates. Second order in h, stable for any h.
 ///
 /// The linear system is solved by structure (articulated bodies), not by a factorisation of M:
-/// each link touches the rest through three constant vectors only, so that a pass costs two
+/// each link is coupled to the rest through three constant vectors only, so that a pass costs two
 /// products with constant inverses and a 2x2 system.
 /// Source: docs/theory/plant.md 7; thesis (3.12), (3.21)-(3.22).
 /// Real-time: Step is safe (no allocation, no exception); construction is start-up only.
@@ -61,11 +61,11 @@ class ArmSimulator {
   /// Advances `state` by h_s with the motor torques held.
   /// @param state      of size dof(); updated in place
   /// @param torque_nm  on th3 and th4, at the gearbox output, N m
-  /// @param h_s        > 0; 1e-5 and less to 1e-3 make sense
+  /// @param h_s        > 0; useful range 1e-5 and less to 1e-3
   void Step(ArmState& state, const Eigen::Vector2d& torque_nm, double h_s) noexcept;
 
-  /// From now on steps this model: the one it was made with, but for its payload. The state of
-  /// before is the state now (ArmModel::CarryPayload). Real-time: safe, costs about a Step.
+  /// Replaces the model by one that differs in its payload only. The state is kept
+  /// (ArmModel::CarryPayload). Real-time: safe, costs about a Step.
   void CarryPayloadOf(const ArmModel& model) noexcept;
 
  private:

@@ -31,9 +31,9 @@ struct FixedConstants {
   Mat N1, D1, G1, N2, D2, G2;
 };
 
-/// What depends on the step h only: A = N + h/2 D + h^2/4 G of each link, inverted, and its
-/// products with the three vectors through which the link touches the rest. h = 0 gives the plain
-/// masses.
+/// Matrices that depend on the step h only: A = N + h/2 D + h^2/4 G of each link, inverted, and its
+/// products with the three vectors through which the link is coupled to the rest. h = 0 gives the
+/// plain masses.
 template <int M>
 struct StepConstants {
   using Vec = Eigen::Matrix<double, M, 1>;
@@ -62,14 +62,15 @@ struct AppliedForces {
   double drag4;  // h/2 of the drag's slope on th4
 };
 
-/// Solves (M(q) + h/2 D + h^2/4 K) a = r - bias(q, v) from the tip inwards.
+/// Articulated-body algorithm: solves (M(q) + h/2 D + h^2/4 K) a = r - bias(q, v) from the tip
+/// inwards.
 ///
-/// Unknowns of link 2 are eliminated first: they touch the hub through k2 (with the acceleration
-/// across the link), a2 and the payload's rotation (with gamma''). What is left looks like a rigid
-/// body with corrected mass m_y, moment Sx and inertia I2. Then link 1's: they touch the rest
-/// through w'' = p1'f1'', s'' = s1'f1'' and a1'f1''. The remaining 3x3 system in th1, th2, th4
-/// loses th4, and friction acts on the 2x2 one in th1, th2. Each object is one evaluation. Equation
-/// names as in arm_equations.h.
+/// Unknowns of link 2 are eliminated first: they are coupled to the hub through k2 (with the
+/// acceleration across the link), a2 and the payload's rotation (with gamma''). The result is a
+/// rigid body with corrected mass m_y, moment Sx and inertia I2. Then link 1's: they are coupled to
+/// the rest through w'' = p1'f1'', s'' = s1'f1'' and a1'f1''. The remaining 3x3 system in th1, th2,
+/// th4 is reduced by th4, and friction acts on the 2x2 one in th1, th2. Each object is one
+/// evaluation. Equation names as in arm_equations.h.
 template <int M>
 class ArticulatedArm {
  public:
@@ -87,7 +88,7 @@ class ArticulatedArm {
   double z11() const noexcept { return z11_; }
   double z12() const noexcept { return z12_; }
   double z22() const noexcept { return z22_; }
-  /// All accelerations but th3's, from those of th1 and th2.
+  /// All accelerations except that of th3, from those of th1 and th2.
   void Expand(const std::array<double, 2>& hub, ArmCoordinates<M>* a) const noexcept;
 
  private:
@@ -102,7 +103,7 @@ class ArticulatedArm {
   const StepConstants<M>& k_;
   // geometry and rates
   double w_, w_dot_, s_, e_, sb_, cb_, gamma_dot_, kappa_, tx_, ty_;
-  // outboard body as felt at the elbow
+  // outboard body reduced to the elbow
   double m_y_, Sx_, Sy_, I_, u_, phi_, B_x_, B_y_, B_g_, X_, Y_;
   Vec r_f2_, r_f1_;
   // system in (th1, th2, th4 | w, s)

@@ -68,11 +68,11 @@ void ArticulatedArm<M>::Turn(const ArmCoordinates<M>& q, const ArmCoordinates<M>
   sb_ = root * (sine + s_ * cosine), cb_ = root * (cosine - s_ * sine);
   gamma_dot_ = v.th[0] + v.th[1] + alpha_dot;
   kappa_ = -2.0 * s_ * alpha_dot * alpha_dot;
-  // Elbow acceleration that is there without any q'', in frame 2.
+  // Elbow acceleration without any q'', in frame 2.
   const double w1 = v.th[0];
   const double x1 = -2.0 * w1 * w_dot_ - w1 * w1 * c_.L1, y1 = -w1 * w1 * w_;
   X_ = cb_ * x1 + sb_ * y1, Y_ = -sb_ * x1 + cb_ * y1;
-  // Elbow velocity in frame 2 a unit th1': along and across link 2.
+  // Elbow velocity in frame 2 per unit th1': along and across link 2.
   tx_ = -cb_ * w_ + sb_ * c_.L1, ty_ = sb_ * w_ + cb_ * c_.L1;
 }
 

@@ -5,21 +5,22 @@
 
 namespace flexarm {
 
-/// What dry friction does at the two hubs during a step.
+/// Contact state of dry friction at a hub during a step.
 enum class Contact : signed char { kBackward = -1, kStuck = 0, kForward = 1 };
 
-/// Hub accelerations of a step and the contact states they belong to.
+/// Hub accelerations of a step and their contact states.
 struct FrictionSolution {
   std::array<double, 2> acceleration;  ///< rad/s^2
   std::array<Contact, 2> contact;
 };
 
-/// Two-joint Coulomb friction (3.12) at the midpoint velocity of a step, solved exactly.
+/// Two-contact linear complementarity problem of Coulomb friction (3.12) at the midpoint velocity
+/// of a step, solved exactly.
 ///
 ///   Z a = r + lambda,  v_m = v + h/2 a,
 ///   lambda_i = -F_i sign(v_m,i) if v_m,i != 0, else |lambda_i| <= F_i.
 /// Z is symmetric positive definite, so there is one solution; the nine combinations of
-/// stuck/forward/backward are tried, the likely one first. A stuck hub gets a = -2 v / h: exactly
+/// stuck/forward/backward are tried, the most likely first. A stuck hub gets a = -2 v / h: exactly
 /// zero midpoint velocity, and exactly zero acceleration if it was at rest.
 /// Real-time: safe.
 class CoulombFrictionLcp {
@@ -50,7 +51,7 @@ class CoulombFrictionLcp {
         if (least <= 0.0) return best;
       }
     }
-    return best;  // on the border between two combinations: the one least violated by round-off
+    return best;  // at the boundary of two combinations: the smallest violation, which is round-off
   }
 
  private:
@@ -76,7 +77,7 @@ class CoulombFrictionLcp {
     return {Slide(lambda1, lambda2), c};
   }
 
-  // How far a trial breaks its own assumption, N m; <= 0 if it does not.
+  // Largest violation of a trial's own assumption, N m; <= 0 if there is none.
   double Violation(const FrictionSolution& s, const std::array<double, 2>& v,
                    const std::array<double, 2>& F, double h) const noexcept {
     const double a1 = s.acceleration[0], a2 = s.acceleration[1];

@@ -11,8 +11,8 @@ namespace flexarm {
 
 /// One implicit midpoint step for links of Arm::kModes modes, padded if they have fewer.
 ///
-/// Arm solves one linear system of it: ArticulatedArm, or ForeshortenedArm with its interface.
-/// Inside of step_kernel.cpp and foreshortened_kernel.cpp. Real-time: Step is safe.
+/// Arm solves its linear system: ArticulatedArm, or ForeshortenedArm with the same interface.
+/// Used by step_kernel.cpp and foreshortened_kernel.cpp only. Real-time: Step is safe.
 template <typename Arm>
 class FixedKernel final : public StepKernel {
   static constexpr int kModes = Arm::kModes;
@@ -108,8 +108,8 @@ class FixedKernel final : public StepKernel {
     return r;
   }
 
-  // Joint 2 with play, as Newton sees it about the middle of the step that accelerations `a` give:
-  // its slopes go to the left side. A drag that falls with speed is left on the right.
+  // Backlash of joint 2, linearised (Newton) about the middle of the step that accelerations `a`
+  // give: its slopes go to the left side. A drag that falls with speed stays on the right.
   void ApplyJoint2(const Coordinates& q_m, const Coordinates& v_m, const Coordinates& a,
                    double torque2, AppliedForces<kModes>* r) const noexcept {
     const double h = k_.h;
@@ -122,8 +122,8 @@ class FixedKernel final : public StepKernel {
     r->th4 = torque2 - spring - joint.drag_nm + r->drag4 * a.th[3];
   }
 
-  // A hub that stuck in this step stands still at its end. If it moved at the start, midpoint alone
-  // would leave it with the opposite velocity; an impulse at the hub takes that away.
+  // A hub that stuck in this step is at rest at its end. If it moved at the start, midpoint alone
+  // would leave it with the opposite velocity; an impulse at the hub removes that.
   void Settle(const FrictionSolution& hubs, const Coordinates& q, Coordinates* v) const noexcept {
     const bool stop1 = has_friction_ && hubs.contact[0] == Contact::kStuck;
     const bool stop2 = has_friction_ && hubs.contact[1] == Contact::kStuck;

@@ -17,10 +17,10 @@ struct ForeshortenedConstants : FixedConstants<M> {
   Foreshortening<M> shortening1, shortening2;
 };
 
-/// ArticulatedArm's work for an arm whose links get shorter as they bend.
+/// Linear solver of a step for an arm with foreshortening.
 ///
 /// Foreshortening makes the masses of the modal coordinates depend on them, so there is no constant
-/// inverse to work with: M + h/2 D + h^2/4 K is assembled from the velocities of the bodies as rows
+/// inverse: M + h/2 D + h^2/4 K is assembled from the velocities of the bodies as rows
 /// (as ArmModel::MassMatrix does) in the order th4, phi1, phi2 | th1, th2 and factorised. Same
 /// interface and meaning as ArticulatedArm. Real-time: safe.
 template <int M>

@@ -87,7 +87,7 @@ void ForeshortenedArm<M>::AddBias(const ArmCoordinates<M>& q, const ArmCoordinat
   f_ = F_x * x_ + F_y * y_row_ + T_g * gamma_ + ((c_.Ir2 + c_.J2) * kappa_) * turn_;
   f_.template head<M>() += link1.Forces(w1, 0.0) - (w1 * w1) * N1f1;
   f_[M] += 2.0 * w1 * (N1f1.dot(v.f1) + link1.half_rate) + link1.turning;
-  // to_gamma_ holds the payload's turning with gamma already, but not with alpha2.
+  // to_gamma_ contains the payload's rotation with gamma already, but not with alpha2.
   f2_ = Y_ * c_.k2 - X_ * link2.k_slope + kappa_ * (to_gamma_ - link2.coupling) +
         link2.Forces(g, kappa_) - (g * g) * N2f2 + (c_.Ip * e2_ * kappa2) * c_.s2;
 }

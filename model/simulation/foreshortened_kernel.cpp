@@ -7,7 +7,8 @@
 
 namespace flexarm {
 
-// Three sizes serve all counts: each takes a compiler ten seconds, a padded mode next to nothing.
+// Three sizes serve all counts: each costs ten seconds of compile time, a padded mode almost no
+// run time.
 std::unique_ptr<StepKernel> MakeForeshortenedKernel(const ArmConstants& c, bool coulomb_friction) {
   switch (std::max(c.m1, c.m2)) {
     case 1:
@@ -20,7 +21,7 @@ std::unique_ptr<StepKernel> MakeForeshortenedKernel(const ArmConstants& c, bool 
     case 6:
       return std::make_unique<FixedKernel<ForeshortenedArm<6>>>(c, coulomb_friction);
     default:
-      throw std::invalid_argument("MakeForeshortenedKernel: 1 to 6 modes a link");
+      throw std::invalid_argument("MakeForeshortenedKernel: 1 to 6 modes per link");
   }
 }
 

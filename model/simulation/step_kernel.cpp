@@ -31,7 +31,7 @@ std::unique_ptr<StepKernel> MakeStepKernel(const ArmConstants& c, bool coulomb_f
     case 6:
       return MakeArticulated<6>(c, coulomb_friction);
     default:
-      throw std::invalid_argument("MakeStepKernel: 1 to 6 modes a link");
+      throw std::invalid_argument("MakeStepKernel: 1 to 6 modes per link");
   }
 }
 

@@ -8,21 +8,21 @@
 
 namespace flexarm {
 
-/// One implicit midpoint step for a fixed number of modes. Inside of ArmSimulator.
+/// One implicit midpoint step for a fixed number of modes. Internal to ArmSimulator.
 class StepKernel {
  public:
   virtual ~StepKernel() = default;
   virtual void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h_s,
                     int passes) noexcept = 0;
-  /// From now on with these constants: the same arm with another payload.
+  /// Replaces the constants by those of the same arm with another payload.
   virtual void CarryPayload(const ArmConstants& constants) noexcept = 0;
 };
 
-/// The kernel compiled for max(m1, m2) modes a link. A link with fewer modes is padded with modes
-/// of unit mass that nothing excites.
+/// The kernel compiled for max(m1, m2) modes per link. A link with fewer modes is padded with modes
+/// of unit mass that are not excited.
 std::unique_ptr<StepKernel> MakeStepKernel(const ArmConstants& constants, bool coulomb_friction);
 
-/// The same for an arm with foreshortening: MakeStepKernel's own choice.
+/// The same for an arm with foreshortening; MakeStepKernel calls it.
 std::unique_ptr<StepKernel> MakeForeshortenedKernel(const ArmConstants& constants,
                                                     bool coulomb_friction);
 

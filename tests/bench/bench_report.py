@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Runs the benchmarks for a few seconds each and reports the figures that the project promises.
+"""Runs the benchmarks for a few seconds each and reports the figures that the project guarantees.
 
-Times on a shared machine are a report. The one gate is the speed of the default experiment,
-realtime_factor at least 100 (median of 5), which leaves room for a busy neighbour.
+Times on a shared machine are only reported. The only limit is the speed of the default experiment,
+realtime_factor at least 100 (median of 5), which has a margin for other load on the machine.
 """
 
 import argparse
@@ -52,7 +52,7 @@ def main():
     factor = next(b for name, b in control.items()
                   if name.startswith("SimulatedRun/modes:4"))["realtime_factor"]
     text = (f"Step of {len(steps)} laws and estimators: p99.9 {slowest['p99.9_us']:.1f} us at most"
-            f" ({slowest['label']}), of those that find the payload {with_payload['p99.9_us']:.0f} us"
+            f" ({slowest['label']}), with payload filter {with_payload['p99.9_us']:.0f} us"
             f" ({with_payload['p50_us'] / sobel['p50_us']:.0f} times sobel, medians);"
             f" a sample of receding-horizon {per_sample:.0f} us with its share of a plan"
             f" ({per_sample / sobel['p50_us']:.0f} times sobel), a first plan"
@@ -62,7 +62,7 @@ def main():
     if arguments.note:
         arguments.note.write_text(text + "\n", encoding="utf-8")
     if factor < arguments.min_realtime_factor:
-        print(f"too slow: at least {arguments.min_realtime_factor:.0f} times is promised",
+        print(f"too slow: at least {arguments.min_realtime_factor:.0f} times is required",
               file=sys.stderr)
         return 1
     return 0

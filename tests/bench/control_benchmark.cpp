@@ -1,4 +1,4 @@
-// How long a control step takes, and how fast the whole stack runs on the simulated arm.
+// Duration of a control step, and speed of all tasks together on the simulated arm.
 
 #include <benchmark/benchmark.h>
 
@@ -25,8 +25,8 @@ double MicrosecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-// Each call is timed by itself: what counts is the slowest, not the mean. The counters hold the
-// reading of the clock too, some 20 ns.
+// Each call is timed separately, because the slowest matters, not the mean. The counters include
+// the reading of the clock, about 20 ns.
 void Step(benchmark::State& state) {
   const StepVariant variant = StepVariants()[static_cast<std::size_t>(state.range(0))];
   state.SetLabel(variant.name);
@@ -61,8 +61,8 @@ void Design(benchmark::State& state) {
 }
 BENCHMARK(Design)->Unit(benchmark::kMillisecond);
 
-// All tasks in lock step, design and start-up left out as in realtime_factor, for the plant's modes
-// a link.
+// All tasks in lock step, without design and start-up as in realtime_factor, for each number of
+// plant modes a link.
 void SimulatedRun(benchmark::State& state) {
   const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml",
                                       {"sim.plant_modes=" + std::to_string(state.range(0))});

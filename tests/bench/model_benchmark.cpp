@@ -1,4 +1,4 @@
-// How fast the simulated arm is: one step, and one simulated second, for 1 to 6 modes a link.
+// Speed of the simulated arm: one step, and one simulated second, for 1 to 6 modes a link.
 
 #include <benchmark/benchmark.h>
 

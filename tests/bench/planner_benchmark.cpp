@@ -1,5 +1,5 @@
-// What the rest of a move costs to plan: 109 stages, as in docs/theory/payload.md 5.5, and what it
-// is made of.
+// Cost of planning the rest of a move: 109 stages, as in docs/theory/payload.md 5.5, and the cost
+// of its parts.
 
 #include <benchmark/benchmark.h>
 

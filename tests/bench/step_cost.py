@@ -2,7 +2,7 @@
 """Counts the instructions of every call of ControlStep::Step with callgrind, for every law and
 estimator. Exit 1 if one takes more than tests/support/step_variants.h allows.
 
-Counts do not depend on how busy the machine is, so they can be a gate where times cannot.
+Counts do not depend on the load of the machine, so a test can limit them, unlike times.
 """
 
 import argparse
@@ -16,7 +16,7 @@ FUNCTION = "flexarm::CountedStep(flexarm::ControlStep&, flexarm::StepInput const
 
 
 def count(program):
-    """Instructions of each call, in order, and the most that are allowed, by variant."""
+    """Instructions of each call, in order, and their limit, by variant."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "out"
         # One profile a call: each holds what was collected since the one before.

@@ -1,6 +1,6 @@
 // Runs Step with every law and estimator on the inputs of a whole run, for callgrind to count
 // (tests/bench/step_cost.py). Prints how many steps it ran. The simulation that makes the inputs
-// runs Step too: what counts goes through CountedStep.
+// calls Step too; only calls through CountedStep are counted.
 
 #include <cstdint>
 #include <cstdio>

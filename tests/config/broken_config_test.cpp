@@ -64,7 +64,7 @@ const BrokenText kForm[] = {
      "must be one of \"sim\"", "[hal]\nbackend = "},
     {"BackendSectionWithoutBackend", "[loop]", "[hal]\n[loop]", "hal.backend", "missing", "[hal]"},
     {"ExtendsInAText", "[rig]", "extends = \"other.toml\"\n[rig]", "extends",
-     "must stand in a rig's own file", "extends = "},
+     "must be in a config file", "extends = "},
 };
 INSTANTIATE_TEST_SUITE_P(Form, BrokenConfig, ::testing::ValuesIn(kForm), NameOfCase);
 
@@ -91,7 +91,7 @@ TEST(BrokenConfigs, AreReportedAllAtOnceInOrderOfLine) {
   }
 }
 
-// Every key of the file in turn, so that none can be forgotten by the reader.
+// Tests every key of the file in turn, so that the reader cannot omit one.
 class EveryKey : public ::testing::Test {
  protected:
   // The file with its line `i` edited.

@@ -67,7 +67,7 @@ duration_s = 1.4
 to_deg = [0.0, 0.0]
 )";
 
-TEST(ExperimentFile, MovesAreReadWhole) {
+TEST(ExperimentFile, EveryKeyOfAMoveIsRead) {
   const Experiment e = ParseExperiment(kMoves, "e.toml");
   ASSERT_EQ(e.move.size(), 2U);
   EXPECT_EQ(e.move[0].start_s, 1.2);
@@ -75,8 +75,8 @@ TEST(ExperimentFile, MovesAreReadWhole) {
   EXPECT_EQ(e.move[0].to_deg, (std::array{10.0, -5.0}));
 }
 
-// Whether a move may take over is for the law to say.
-TEST(ExperimentFile, AMoveMayBeginWhileTheOneAboveItLasts) {
+// The law decides whether it accepts a retarget.
+TEST(ExperimentFile, AMoveMayBeginDuringTheMoveBefore) {
   const Experiment e =
       ParseExperiment(Replaced(kMoves, "start_s = 2.6", "start_s = 1.5"), "e.toml");
   EXPECT_EQ(e.move[1].start_s, 1.5);
@@ -158,13 +158,13 @@ TEST(ExperimentFile, EveryKindOfRowIsRead) {
   EXPECT_NEAR(e.csv->point[1].angle_rad[1], -0.314159265, 1e-9);
 }
 
-TEST(ExperimentFile, ADurationThatWasChosenIsReadBack) {
+TEST(ExperimentFile, AComputedDurationIsReadBack) {
   const std::string planned =
       std::string(kKinds) + "\n[[planned_move]]\nrow = 0\nduration_s = 1.3\n";
   EXPECT_EQ(ParseExperiment(planned, "e.toml").move[0].duration_s, 1.3);
 }
 
-// The file beside the experiment travels in its text: parsed again without the file, all is there.
+// The text of the experiment contains the CSV file: it can be parsed without the file.
 TEST(ExperimentFile, TheCsvFileIsAttachedToTheText) {
   const std::filesystem::path file = FLEXARM_SOURCE_DIR "/config/experiments/trajectory.toml";
   const Experiment loaded = LoadExperiment(file);
@@ -190,7 +190,7 @@ TEST(ExperimentFile, AFaultyTrajectoryIsNamedByFileAndLine) {
   EXPECT_THAT(RefusedCsv("0.5, 9, -18\n1.5,18,-36\n", ""), HasSubstr("at least two rows"));
 }
 
-TEST(ExperimentFile, IsReadWhole) {
+TEST(ExperimentFile, EveryKeyIsRead) {
   const Experiment e = ParseExperiment(kExperiment, "e.toml");
   EXPECT_EQ(e.name, "switch");
   EXPECT_EQ(e.text, kExperiment);
@@ -210,7 +210,7 @@ TEST(ExperimentFile, IsReadWhole) {
   EXPECT_EQ(e.sim_event[3].payload_kg, 0.25);
 }
 
-TEST(ExperimentFile, NeedsNoRows) {
+TEST(ExperimentFile, MayHaveNoRows) {
   EXPECT_NO_THROW(ParseExperiment("name = \"hold\"\nduration_s = 2\n", "e.toml"));
 }
 
@@ -254,7 +254,7 @@ const BrokenText kBroken[] = {
     {"TipAndAngles", "elbow = \"left\"", "to_deg = [1.0, 2.0]", "move[0].to_deg", "one goal", "",
      kKinds},
     {"ElbowOfAngles", "to_tip_m = [1.2, -0.4]", "to_deg = [1.0, 2.0]", "move[0].elbow",
-     "beside to_tip_m", "elbow", kKinds},
+     "with to_tip_m", "elbow", kKinds},
     {"UnknownProfile", "profile = \"septic\"", "profile = \"linear\"", "move[0].profile",
      "one of \"quintic\" \"septic\"", "", kKinds},
     {"ChirpOfNoFrequency", "to_hz = 4.0", "to_hz = 0.0", "chirp[0].to_hz", "above 0", "", kKinds},
@@ -275,7 +275,7 @@ const BrokenText kBroken[] = {
      "\"emergency-stop\""},
     {"LineWithoutLevel", "level = 0", "", "sim_event[0].level", "missing", "[[sim_event]]"},
     {"LevelWithoutLine", "line = \"limit-1-high\"", "kill = true", "sim_event[0].level",
-     "must stand beside line", "level = 0"},
+     "must be given with line", "level = 0"},
     {"LevelOfTwo", "level = 0", "level = 2", "sim_event[0].level", "must be 0"},
     {"TwoThingsInOneEvent", "kill = true", "kill = true\nfreeze = \"plant\"", "sim_event[2]",
      "exactly one of", "\"control\"\n\n[[sim_event]]"},
@@ -296,7 +296,7 @@ const BrokenText kBroken[] = {
 };
 INSTANTIATE_TEST_SUITE_P(All, BrokenExperiment, ::testing::ValuesIn(kBroken), NameOfCase);
 
-TEST(ExperimentFile, ThatIsNotThereIsNamed) {
+TEST(ExperimentFile, AMissingFileIsNamed) {
   EXPECT_EQ(MessageOf<ConfigError>([] { LoadExperiment("no-such-file.toml"); }),
             "no-such-file.toml: cannot be read: No such file or directory");
 }

@@ -53,7 +53,7 @@ const BrokenText kRange[] = {
     {"ZeroGain", "gain_v_per_unit = 5000.0", "gain_v_per_unit = 0.0",
      "sensors.strain[0].gain_v_per_unit", "must not be 0"},
     {"OffsetAtTheRail", "offset_counts = 0.0", "offset_counts = 2047.0",
-     "sensors.strain[0].offset_counts", "rails"},
+     "sensors.strain[0].offset_counts", "the converter's range"},
     {"StepThatDoesNotDivide", "step_ms = 0.5", "step_ms = 0.3", "sim.step_ms", "divide 1 ms"},
     {"NoPlantModes", "plant_modes = 4", "plant_modes = 0", "sim.plant_modes", "1 .. 6"},
     {"LongTransport", "transport_delay_ms = 0.0", "transport_delay_ms = 41.0",
@@ -91,7 +91,7 @@ const BrokenText kRange[] = {
     {"StartsBeyondItsHeaviestPayload", "start_kg = 0.2 ", "start_kg = 1.2 ",
      "estimator.payload.start_kg", "at most estimator.payload.max_kg = 1.1"},
     {"NoDoubtOfThePayload", "start_sigma_kg = 0.4", "start_sigma_kg = 0.0",
-     "estimator.payload.start_sigma_kg", "never found"},
+     "estimator.payload.start_sigma_kg", "never estimated"},
     {"PlayIsNeverForgotten", "play_memory = 0.999", "play_memory = 1.999",
      "estimator.payload.play_memory", "0 .. 1"},
     {"GainsNotAscending", "gain_payload_kg = [0.0, 0.05, 0.1,",
@@ -122,13 +122,13 @@ const BrokenText kPlan[] = {
     {"PlanReadyAtOnce", "ready_periods = 5", "ready_periods = 1", "controller.plan.ready_periods",
      "2 .. 20"},
     {"PlanOfFreeTorque", "torque_weight = [0.02, 0.2]", "torque_weight = [0.02, 0.0]",
-     "controller.plan.torque_weight[1]", "any torque"},
+     "controller.plan.torque_weight[1]", "does not limit the torque"},
     {"PlanBeyondTheLimits", "torque_share = 0.93", "torque_share = 1.1",
-     "controller.plan.torque_share", "left to the feedback"},
+     "controller.plan.torque_share", "reserved for the feedback"},
 };
 INSTANTIATE_TEST_SUITE_P(Plan, BrokenConfig, ::testing::ValuesIn(kPlan), NameOfCase);
 
-TEST(BrokenConfigs, TooManyStrainChannels) {
+TEST(BrokenConfigs, TooManyStrainChannelsAreReported) {
   std::string text = FileText(Shipped("thesis-rig.toml"));
   for (int i = 0; i < 13; ++i) {
     text +=
@@ -140,7 +140,7 @@ TEST(BrokenConfigs, TooManyStrainChannels) {
   EXPECT_EQ(ProblemsOf(text)[0].value, "33 rows");
 }
 
-// A rig with the sensor, and what may be wrong with it.
+// A rig with a tip accelerometer.
 std::string WithTipAccelerometer() {
   return Replaced(Replaced(FileText(Shipped("thesis-rig.toml")), "[sim]",
                            "[sensors.tip_accelerometer]\nrange_m_s2 = 50.0\nconverter_bits = 14\n"
@@ -148,7 +148,7 @@ std::string WithTipAccelerometer() {
                   "gate_sigmas = 4.0", "gate_sigmas = 4.0\ntip_extra_sigma_m_s2 = 0.5");
 }
 
-TEST(BrokenConfigs, OfATipAccelerometerAreReportedOnce) {
+TEST(BrokenConfigs, AFaultyTipAccelerometerIsReportedOnce) {
   const std::string rig = WithTipAccelerometer();
   EXPECT_TRUE(ProblemsOf(rig).empty());
   const std::string table = "sensors.tip_accelerometer";

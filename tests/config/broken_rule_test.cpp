@@ -43,7 +43,7 @@ const BrokenText kContradiction[] = {
      "controller.nominal", "has 2 modes a link: estimator.modes_per_link = 1", "nominal = \"R12\""},
     {"StateWeightOfAnotherModel", "torque_weight = 2.0",
      "torque_weight = 2.0\nstate_weight = [100, 20, 0, 0, 5, 1, 0, 0]", "controller.state_weight",
-     "one for each state of controller.nominal: 12", "state_weight = [100"},
+     "one weight for each state of controller.nominal: 12", "state_weight = [100"},
     {"RateAboveTheJump", "hub_rate_rad_s = [8.0, 10.0]", "hub_rate_rad_s = [8.0, 14.0]",
      "limits.hub_rate_rad_s[1]", "impossible jump"},
     {"RestAboveTheRateLimit", "hub_rate_rad_s = [8.0, 10.0]", "hub_rate_rad_s = [0.05, 10.0]",
@@ -62,7 +62,7 @@ const BrokenText kContradiction[] = {
 INSTANTIATE_TEST_SUITE_P(Contradiction, BrokenConfig, ::testing::ValuesIn(kContradiction),
                          NameOfCase);
 
-TEST(BrokenConfigs, TooFewGaugesForTheModes) {
+TEST(BrokenConfigs, TooFewGaugesForTheModesAreReported) {
   std::string text = FileText(Shipped("thesis-rig.toml"));
   const std::size_t begin = text.find("# Link 1: the middles");
   const std::size_t end = text.find("# Link 2: the middles");
@@ -71,7 +71,7 @@ TEST(BrokenConfigs, TooFewGaugesForTheModes) {
                "gain_v_per_unit = 5000.0\noffset_counts = 0.0\n");
   ASSERT_EQ(ProblemsOf(text).size(), 1U);
   EXPECT_EQ(ProblemsOf(text)[0].key, "estimator.modes_per_link");
-  // One gauge at the clamp is enough for one mode.
+  // For one mode, one gauge at the clamp is enough.
   const std::string one = Replaced(text, "modes_per_link = 2", "modes_per_link = 1");
   EXPECT_TRUE(ProblemsOf(Replaced(one, "nominal = \"R12\"", "nominal = \"R8\"")).empty());
 }
@@ -83,7 +83,7 @@ TEST(BrokenConfigs, RotorEncodersMayBeAbsent) {
   EXPECT_TRUE(ProblemsOf(text).empty());
 }
 
-// Differences of angles that nobody measures are none; the Kalman filter infers them.
+// Angles that are not measured cannot be differentiated; the Kalman filter estimates them.
 TEST(BrokenConfigs, ATorsionalModelWithoutRotorEncodersNeedsTheKalmanFilter) {
   std::string text = FileText(Shipped("thesis-rig.toml"));
   const std::size_t begin = text.rfind("[[sensors.encoder]]");
@@ -96,7 +96,7 @@ TEST(BrokenConfigs, ATorsionalModelWithoutRotorEncodersNeedsTheKalmanFilter) {
   EXPECT_THAT(problems[0].rule, HasSubstr("an encoder on each rotor"));
 }
 
-TEST(BrokenConfigs, ALawThatFindsThePayloadNeedsItsTables) {
+TEST(BrokenConfigs, ALawThatEstimatesThePayloadNeedsItsTables) {
   const auto without = [](const std::string& law, const std::string& table) {
     return ProblemsOf(Replaced(Replaced(FileText(Shipped("thesis-rig.toml")), "name = \"sobel\"",
                                         "name = \"" + law + "\""),
@@ -111,10 +111,10 @@ TEST(BrokenConfigs, ALawThatFindsThePayloadNeedsItsTables) {
   EXPECT_TRUE(told(without("gain-scheduled", payload), payload));
   EXPECT_TRUE(told(without("receding-horizon", payload), payload));
   EXPECT_TRUE(told(without("receding-horizon", plan), plan));
-  EXPECT_FALSE(told(without("gain-scheduled", plan), plan)) << "it plans nothing";
+  EXPECT_FALSE(told(without("gain-scheduled", plan), plan)) << "this law has no planner";
 }
 
-TEST(BrokenConfigs, AWiredRigHasNoTipAccelerometer) {
+TEST(BrokenConfigs, AHardwareRigHasNoTipAccelerometer) {
   const std::vector<ConfigProblem> problems = ProblemsFrom([] {
     LoadConfig(Shipped("daq-rig.toml"),
                {"sensors.tip_accelerometer={range_m_s2=50, converter_bits=14, noise_counts=4, "

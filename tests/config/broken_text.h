@@ -12,16 +12,16 @@
 
 namespace flexarm {
 
-/// One edit of a file's text that makes one problem.
+/// One edit of a file's text that causes one problem.
 struct BrokenText {
   std::string name;
-  std::string from;  ///< the first of these in the text ...
-  std::string to;    ///< ... becomes this
+  std::string from;  ///< its first occurrence in the text is replaced ...
+  std::string to;    ///< ... by this
   std::string key;   ///< the key that is reported
-  std::string rule;  ///< a part of what is said
-  /// A text whose line is reported: that of `to` (its last line) unless given.
+  std::string rule;  ///< a part of the message
+  /// The text whose line is reported; the last line of `to` if not given.
   std::string line_of = {};
-  std::string text = {};  ///< where a suite has more than one
+  std::string text = {};  ///< for suites with several texts
 
   std::string Edit(const std::string& whole) const { return Replaced(whole, from, to); }
 };
@@ -32,7 +32,7 @@ inline std::string NameOfCase(const ::testing::TestParamInfo<BrokenText>& info) 
   return info.param.name;
 }
 
-/// What is wrong with the edited `text` of `file` is what the case says, once, and nothing else.
+/// Expects that the edited `text` of `file` has exactly one problem, the one of the case.
 inline void ExpectReportedOnce(const BrokenText& c, const std::string& text,
                                const std::string& file,
                                const std::vector<ConfigProblem>& problems) {
@@ -44,7 +44,7 @@ inline void ExpectReportedOnce(const BrokenText& c, const std::string& text,
   EXPECT_THAT(problems[0].rule, ::testing::HasSubstr(c.rule));
 }
 
-/// Edits of thesis-rig.toml. One test (broken_config_test.cpp), with the tables of several files.
+/// Edits of thesis-rig.toml: one test (broken_config_test.cpp) with the tables of several files.
 class BrokenConfig : public ::testing::TestWithParam<BrokenText> {};
 
 }  // namespace flexarm

@@ -10,8 +10,8 @@
 namespace flexarm {
 namespace {
 
-// True if it is a config, and then its text must be one too. Anything thrown but ConfigError fails
-// the test; a crash is for the sanitizers.
+// True if the text is a valid config; then its logged text must be valid too. Any exception other
+// than ConfigError fails the test; the sanitizers detect memory errors.
 bool Survives(const std::string& text) {
   try {
     const RigConfig config = ParseConfig(text, "fuzz");
@@ -26,13 +26,13 @@ bool Survives(const std::string& text) {
   }
 }
 
-TEST(ConfigFuzz, CutAnywhereIsRefusedOrWhole) {
+TEST(ConfigFuzz, ATextCutAnywhereIsRefusedOrComplete) {
   const std::string text = FileText(Shipped("thesis-rig.toml"));
   int whole = 0;
   for (std::size_t i = 0; i < 200; ++i) {
     if (Survives(text.substr(0, i * text.size() / 200))) ++whole;
   }
-  EXPECT_EQ(whole, 0);  // its last section is needed
+  EXPECT_EQ(whole, 0);  // the last section is required
   EXPECT_TRUE(Survives(text));
 }
 

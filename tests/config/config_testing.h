@@ -33,7 +33,7 @@ inline std::string FileText(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// 1-based line of the end of the first `part` in `text`; 0 if it is not there.
+/// 1-based line of the end of the first `part` in `text`; 0 if `text` does not contain it.
 inline int LineOf(const std::string& text, const std::string& part) {
   const std::size_t at = text.find(part);
   if (at == std::string::npos) return 0;
@@ -41,14 +41,15 @@ inline int LineOf(const std::string& text, const std::string& part) {
   return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
 }
 
-/// `text` with its first `from` replaced. Throws if there is none: the test would test nothing.
+/// `text` with its first `from` replaced. Throws if there is none, because the test would then
+/// check nothing.
 inline std::string Replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::runtime_error("not in the file: " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// What is wrong with what `action` reads; empty if nothing is.
+/// The problems reported by `action`; empty if there are none.
 template <typename Action>
 std::vector<ConfigProblem> ProblemsFrom(const Action& action) {
   try {
@@ -59,12 +60,12 @@ std::vector<ConfigProblem> ProblemsFrom(const Action& action) {
   return {};
 }
 
-/// What is wrong with a rig's text.
+/// The problems of a rig's text.
 inline std::vector<ConfigProblem> ProblemsOf(const std::string& text) {
   return ProblemsFrom([&] { ParseConfig(text, "rig.toml"); });
 }
 
-/// An empty folder for the files of one test, gone afterwards.
+/// An empty folder for the files of one test, deleted afterwards.
 class TempFolder {
  public:
   TempFolder() {

@@ -7,7 +7,7 @@
 #include "tests/config/config_testing.h"
 #include "tests/support/message_of.h"
 
-// A rig with DAQ boards: read from config/daq-rig.toml, and refused where it cannot work.
+// A rig with DAQ boards: it is read from config/daq-rig.toml, and refused if it cannot work.
 
 namespace flexarm {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-// What is wrong with the shipped rig once `overrides` are made; "" if nothing is.
+// The problems of the shipped rig with `overrides`; "" if there are none.
 std::string Complaint(const std::vector<std::string>& overrides) {
   return MessageOf<ConfigError>([&] { LoadConfig(Shipped("daq-rig.toml"), overrides); });
 }
@@ -47,7 +47,7 @@ TEST(DaqConfig, TheLoggedTextGivesTheSameBoardsAgain) {
   EXPECT_EQ(ParseConfig(config.text, "log").text, config.text);
 }
 
-TEST(DaqConfig, ARoleThatDoesNotExistIsRefused) {
+TEST(DaqConfig, AnUnknownRoleIsRefused) {
   EXPECT_THAT(Complaint({"hal.comedi[0].counter[0].role=hub3"}),
               HasSubstr(R"(one of "hub1" "hub2" "rotor1" "rotor2")"));
   EXPECT_THAT(Complaint({"hal.comedi[0].output.drive[0].role=hub1"}),
@@ -102,7 +102,7 @@ TEST(DaqConfig, ATorqueLimitBeyondTheRangeIsRefusedInVolts) {
 TEST(DaqConfig, MoreGaugesThanTheBoardHasInputsAreRefused) {
   EXPECT_THAT(Complaint({"hal.comedi[0].input.channels=8"}),
               HasSubstr("hal.comedi[0].input.channel = 10 rows: must be at most the board's "
-                        "inputs: it has 8; more gauges take another board"));
+                        "inputs: it has 8; more gauges need another board"));
 }
 
 TEST(DaqConfig, AScanThatDoesNotFitItsIntervalIsRefused) {
@@ -120,9 +120,9 @@ TEST(DaqConfig, AConverterOrCounterOfAnotherWidthIsRefused) {
               HasSubstr("must be the counter_bits of its [[sensors.encoder]], 24"));
 }
 
-TEST(DaqConfig, OneBoardTwiceIsRefused) {
+TEST(DaqConfig, ABoardThatIsNamedTwiceIsRefused) {
   EXPECT_THAT(Complaint({"hal.comedi[1].device=/dev/comedi0"}),
-              HasSubstr("hal.comedi[1].device = /dev/comedi0: must be named by one board"));
+              HasSubstr("hal.comedi[1].device = /dev/comedi0: must be used for one board"));
 }
 
 // The shipped rig with its second board read one channel at a time.
@@ -134,13 +134,13 @@ std::string WithSingleReads() {
   return text.replace(second, end - second, "acquisition = \"single\"\n  ");
 }
 
-// Pitfall: a USB board takes 2 ms a channel by single reads.
-TEST(DaqConfig, AUsbBoardThatReadsOneByOneIsRefusedByTheFirstChannelThatDoesNotFit) {
+// Pitfall: a USB board takes 2 ms for the single read of a channel.
+TEST(DaqConfig, ARefusalOfSlowSingleReadsNamesTheFirstChannelThatEndsTooLate) {
   const TempFolder folder;
   const auto file = folder.Write("single.toml", WithSingleReads());
-  EXPECT_NO_THROW(LoadConfig(file));  // at 50 us a read it fits
-  // 0.2 ms for the exchange itself; four channels end at 8.2 ms, the fifth does not end in time;
-  // with the two counters they are twelve.
+  EXPECT_NO_THROW(LoadConfig(file));  // with 50 us per read it fits
+  // The exchange itself takes 0.2 ms; four channels end at 8.2 ms, the fifth ends too late; with
+  // the two counters there are twelve reads.
   EXPECT_THAT(
       MessageOf<ConfigError>([&] { LoadConfig(file, {"hal.comedi[1].instruction_us=2000.0"}); }),
       AllOf(HasSubstr("hal.comedi[1].instruction_us = 2000: must leave an exchange "

@@ -59,7 +59,7 @@ TEST(Extends, ProblemsNameTheFileInWhichTheValueStands) {
   EXPECT_EQ(problems[1].key, "controller.alpha");
 }
 
-TEST(Extends, RefusesACircle) {
+TEST(Extends, RefusesACycle) {
   const TempFolder folder;
   folder.Write("a.toml", "extends = \"b.toml\"\n");
   folder.Write("b.toml", "extends = \"c.toml\"\n");
@@ -74,7 +74,7 @@ TEST(Extends, RefusesItself) {
   EXPECT_THAT(ErrorOf(file), HasSubstr(":1: extends"));
 }
 
-TEST(Extends, NamesTheLineThatNamesNoFile) {
+TEST(Extends, NamesTheLineOfAMissingFile) {
   const TempFolder folder;
   const auto file = folder.Write("a.toml", "# a\nextends = \"none.toml\"\n");
   EXPECT_THAT(ErrorOf(file), HasSubstr(file.string() + ":2: extends = \"none.toml\": there is no "
@@ -89,7 +89,7 @@ TEST(Extends, ReportsABrokenBaseUnderItsOwnName) {
   EXPECT_THAT(ErrorOf(top), HasSubstr(base.string() + ":2: is not valid TOML"));
 }
 
-TEST(ConfigFile, GetsOneClearMessageIfItIsNoConfig) {
+TEST(ConfigFile, GetsOneMessageIfItIsNotAConfig) {
   const TempFolder folder;
   const auto expect = [](const std::filesystem::path& file, const std::string& rule) {
     const std::string error = ErrorOf(file);

@@ -8,7 +8,8 @@
 #include "config/config.h"
 #include "tests/support/message_of.h"
 
-// The wiring of a real rig: read from config/hil-wire.toml, and refused where it cannot work.
+// The wiring of a hardware rig: it is read from config/hil-wire.toml, and refused if it cannot
+// work.
 
 namespace flexarm {
 namespace {
@@ -28,7 +29,7 @@ std::string WiringWith(const std::string& from, const std::string& to) {
   return wired;
 }
 
-// What is wrong with the shipped wiring once `from` has become `to`.
+// The problems of the shipped wiring after `from` is replaced by `to`.
 std::string Complaint(const std::string& from, const std::string& to) {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string name =
@@ -63,7 +64,7 @@ TEST(HalConfig, ASwitchThatRemoteIoReadsAsWellIsALineATableAndAnAddress) {
               testing::AllOf(testing::HasSubstr("scale"), testing::HasSubstr("unknown key")));
 }
 
-TEST(HalConfig, AnEncoderThatNobodyReadsIsNamed) {
+TEST(HalConfig, AnEncoderWithoutAReaderIsNamed) {
   EXPECT_THAT(
       Complaint("role = \"hub2\"", "role = \"hub1\""),
       testing::AllOf(testing::HasSubstr("hal.role hub2 = 0 times"),
@@ -77,7 +78,7 @@ TEST(HalConfig, AStrainChannelThatIsReadTwiceIsNamed) {
                      testing::HasSubstr("it is in modbus[0].register[3], modbus[0].register[4]")));
 }
 
-TEST(HalConfig, ADriveThatCannotGiveWhatTheLoopMayAskIsRefused) {
+TEST(HalConfig, ADriveThatCannotApplyTheTorqueLimitIsRefused) {
   EXPECT_THAT(Complaint("torque_range_nm = 6.0", "torque_range_nm = 5.0"),
               testing::HasSubstr("must cover limits.torque_limit_nm = 6"));
 }
@@ -92,7 +93,7 @@ TEST(HalConfig, AnExchangeThatDoesNotFitBeforeTheStepIsRefused) {
                              testing::HasSubstr("drive1 430 us, drive2 430 us, hub1 295 us")));
 }
 
-TEST(HalConfig, ABackendThatDoesNotExistIsRefused) {
+TEST(HalConfig, AnUnknownBackendIsRefused) {
   EXPECT_THAT(Complaint("backend = \"wired\"", "backend = \"real\""),
               testing::HasSubstr("one of \"sim\" \"wired\""));
 }

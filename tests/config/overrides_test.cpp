@@ -33,7 +33,7 @@ TEST(Overrides, SetNumbersWordsAndArrays) {
   EXPECT_EQ(config.daemon.socket, "/tmp/a.sock");
   EXPECT_EQ(config.rig_name, "two words");
   EXPECT_EQ(config.controller.gains_file, "gains.json");
-  EXPECT_EQ(config.controller.vartheta, 0.35);  // what nobody set stays
+  EXPECT_EQ(config.controller.vartheta, 0.35);  // other values do not change
 }
 
 TEST(Overrides, ReachRowsAndElementsByNumber) {
@@ -46,17 +46,17 @@ TEST(Overrides, ReachRowsAndElementsByNumber) {
   EXPECT_EQ(config.arm.link[1].section[0].length_m, 0.95);
 }
 
-TEST(Overrides, LastOneWins) {
+TEST(Overrides, TheLastOneWins) {
   EXPECT_EQ(HilWith({"controller.alpha=1", "controller.alpha=2"}).controller.alpha, 2.0);
 }
 
-TEST(Overrides, AreInTheText) {
+TEST(Overrides, AreInTheConfigText) {
   const RigConfig config = HilWith({"controller.alpha=2.5"});
   EXPECT_EQ(ParseConfig(config.text, "log").controller.alpha, 2.5);
   EXPECT_NE(config.text, HilWith({}).text);
 }
 
-TEST(Overrides, AreNamedAsTheFileOfTheirProblems) {
+TEST(Overrides, AreTheSourceOfTheirProblems) {
   const auto problems = ProblemsWith({"loop.period_ms=0"});
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].file, "--set");
@@ -64,14 +64,14 @@ TEST(Overrides, AreNamedAsTheFileOfTheirProblems) {
   EXPECT_THAT(problems[0].Text(), HasSubstr("--set: loop.period_ms = 0: must lie in 5 .. 100"));
 }
 
-TEST(Overrides, OfAnElementKeepTheSourceOfTheRest) {
+TEST(Overrides, OfAnElementKeepTheSourceOfTheOtherElements) {
   const auto problems = ProblemsWith({"sim.motor_lag_ms[1]=-1"});
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].file, "--set");
   EXPECT_EQ(problems[0].key, "sim.motor_lag_ms[1]");
 }
 
-TEST(Overrides, WithoutSenseAreRefusedOneByOne) {
+TEST(Overrides, EachInvalidOneIsRefused) {
   const std::vector<std::string> bad = {
       "controller.alfa=1",            // unknown key
       "nothing.here=1",               // unknown section
@@ -81,7 +81,7 @@ TEST(Overrides, WithoutSenseAreRefusedOneByOne) {
       "controller.alpha=",            // empty value
       "controller..alpha=1",          // empty name
       "rig.name=two words",           // not one word, not TOML
-      "controller.alpha=1\nsigma=2",  // a second key by the back door
+      "controller.alpha=1\nsigma=2",  // a second key in a second line
       "controller.alpha=1\ncontroller.sigma=0.1",
       "sensors.strain[20].face=1",   // no such row
       "sensors.strain[-1].face=1",   // no such row
@@ -89,7 +89,7 @@ TEST(Overrides, WithoutSenseAreRefusedOneByOne) {
       "controller.alpha[0]=1",       // no array
       "limits.soft_angle_deg[2]=1",  // no such element
       "controller.alpha=three",      // a word for a number
-      "extends=other.toml",          // too late
+      "extends=other.toml",          // `extends` is allowed in files only
   };
   for (const std::string& text : bad) {
     const auto problems = ProblemsWith({text});

@@ -10,8 +10,8 @@
 namespace flexarm {
 namespace {
 
-// Every key of a section gets a value that no other key of its type has: a value in the wrong field
-// shows.
+// Every key of a section gets a value that no other key of its type has, so that a value in the
+// wrong field is detected.
 TEST(RigBinding, PutsEveryKeyOfTheArmInItsField) {
   const ArmParameters arm =
       HilWith({"arm.hub2_mass_kg=1", "arm.motor2_mass_kg=2", "arm.motor2_inertia_kgm2=3",
@@ -56,7 +56,8 @@ TEST(RigBinding, PutsEveryKeyOfTheSensorsInItsField) {
   EXPECT_EQ(s.strain_input.filter_hz, 21.0);
   EXPECT_EQ(s.strain_input.noise_counts, 2.0);
   EXPECT_EQ(s.strain_input.filter_damping, 0.7);
-  EXPECT_EQ(HilWith({}).sensors.strain_input.filter_damping, 0.0);  // no key: of first order
+  EXPECT_EQ(HilWith({}).sensors.strain_input.filter_damping,
+            0.0);  // without the key the filter is of first order
 }
 
 TEST(RigBinding, PutsEveryKeyOfATipAccelerometerInItsField) {
@@ -92,15 +93,15 @@ TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
   EXPECT_EQ(torque.offset, 0.25);
   EXPECT_EQ(torque.target, "torque_1");
   EXPECT_DOUBLE_EQ(rig.csv->column[1].unit * 180.0, std::numbers::pi);  // degrees
-  EXPECT_EQ(rig.csv->column[0].offset, 0.0);                            // no key
+  EXPECT_EQ(rig.csv->column[0].offset, 0.0);                            // without the key
   EXPECT_THROW(LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[0].unit=parsec"}),
                ConfigError);
   EXPECT_THROW(LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[0].target=hub3"}),
                ConfigError);
 }
 
-// What a search over parameters does many times.
-TEST(RigBinding, ANumberIsFoundAndReplacedByItsKey) {
+// A search over parameters does this many times.
+TEST(RigBinding, ANumberIsReadAndReplacedByItsKey) {
   const RigConfig rig = HilWith({});
   EXPECT_EQ(NumberAt(rig, "link1.section[0].length_m"), 0.8);
   EXPECT_EQ(NumberAt(rig, "sensors.encoder[3].counter_bits"), 16.0);

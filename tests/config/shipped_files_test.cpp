@@ -110,7 +110,7 @@ TEST(ShippedFiles, ThesisRigHasTheSensorsOfTheThesis) {
     const int link = i < 10 ? 1 : 2;
     const double length = link == 1 ? 0.8 : 0.9;
     EXPECT_EQ(sensors.strain[i].link, link);
-    // The file's decimals against a product in binary: one rounding.
+    // Decimals of the file compared with a binary product: one rounding.
     EXPECT_NEAR(sensors.strain[i].position_m, (static_cast<double>(i % 10) + 0.5) * length / 10.0,
                 1e-15);
   }

@@ -1,4 +1,4 @@
-"""flexarm analyze: what the model says about the arm, and about any linear system."""
+"""flexarm analyze: results for the arm, and for any linear system."""
 
 import contextlib
 import csv
@@ -74,7 +74,7 @@ class Reduce(ProgramTest):
             picture = self.folder / f"out/figure-6.{number}.png"
             self.assertGreater(picture.stat().st_size, 5000, picture.name)
 
-    def test_the_bound_on_rigid_body_roots_counts_in_the_grid_too(self):
+    def test_the_bound_on_rigid_body_roots_applies_to_the_grid_too(self):
         def shares(*options):
             self.reduce(*REFERENCE, "--grid", "--grid-cells", 2, "-o", self.folder / "out",
                         *options)
@@ -84,14 +84,14 @@ class Reduce(ProgramTest):
         self.assertGreater(min(shares()), 50)  # the elbow's slow oscillation
         self.assertEqual(max(shares("--rigid-below", 1000)), 0)  # lowest bending: 1730 rad^2/s^2
 
-    def test_the_whole_grid_of_the_thesis_is_a_matter_of_seconds(self):
+    def test_the_whole_grid_of_the_thesis_takes_seconds(self):
         before = cpu_seconds()
         grid = self.reduce(*REFERENCE, "--grid")["grid"]
         used = cpu_seconds() - before
         self.assertEqual(grid["cells"], 8000)
         for link in grid["links"]:  # two modes dominate everywhere
             self.assertGreater(link["epsilon_2"]["least"]["percent"], 99.4)
-        self.assertLess(used, 15, "processor time of what two cores are to do in 10 s")
+        self.assertLess(used, 15, "processor time; two cores have to finish in 10 s")
 
     def test_a_system_of_masses_and_springs(self):
         result = self.reduce("--system", self.system(TWO_MASSES))
@@ -112,7 +112,7 @@ class Reduce(ProgramTest):
             {"A": [[0, 0, 1, 0], [0, 0, 0, 1], [-4, 1, 0, 0], [0, -9, 0, -0.1]],
              "B": [[0], [0], [1], [1]], "C": [[1, 1, 0, 0]]}))
         self.assertEqual(result["power"]["condition"], "diagonalisable")
-        # x' = -4 x + 3 u, y = -2 x has the one Hankel value 6/8, and no form to be power balanced.
+        # x' = -4 x + 3 u, y = -2 x has the one Hankel value 6/8, and no form for power balancing.
         lag = self.reduce("--system", self.system({"A": [[-4]], "B": [[3]], "C": [[-2]]}))
         self.assertIsNone(lag["power"])
         self.assertIn("odd number", lag["power_refused"])
@@ -153,7 +153,7 @@ class Reduce(ProgramTest):
                 (("reduce", "-c", RIG, "--theta2-deg", "nan"), "--theta2-deg"),
                 (("reduce", "-c", RIG, "--scaling", "big"), "--scaling"),
                 (("reduce", "-c", RIG, "--grid", "--grid-cells", 0), "--grid-cells"),
-                (("reduce", "-c", RIG, "--grid", "--grid-theta2-deg", 30, 30), "grid of nothing"),
+                (("reduce", "-c", RIG, "--grid", "--grid-theta2-deg", 30, 30), "the grid is empty"),
                 (("reduce", "-c", RIG, "--grid", "--grid-theta1-rate", 0), "--grid-theta1-rate")):
             with self.subTest(arguments):
                 self.assert_refused(self.run_program("flexarm", "analyze", *arguments), said)
@@ -200,15 +200,15 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
 def last_digit(number):
-    """What one more in the last printed digit is worth."""
+    """The value of one unit of the last printed digit."""
     mantissa, _, exponent = number.partition("e")
     return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
 
 class Check(ProgramTest):
-    """The committed page is what the program writes: the same words and verdicts, and numbers that
-    differ by no more than two in their last printed digit, which is what another compiler or
-    processor may change."""
+    """The committed page equals the page that the program writes: the same words and verdicts, and
+    numbers that differ by at most two in their last printed digit, as another compiler or processor
+    may cause."""
 
     def compare(self, committed, written):
         self.assertEqual(NUMBER.sub("#", committed), NUMBER.sub("#", written))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whatever a user may hand over by mistake ends in one clear message and exit code 2."""
+"""Each wrong input of a user gives one clear message and exit code 2."""
 
 import random
 import re
@@ -10,7 +10,7 @@ from program import HIL, ROOT, SQUARE, ProgramTest
 
 RIG = ROOT / "config/thesis-rig.toml"
 
-# What is broken -> (text of thesis-rig.toml, what stands there instead, what the message names).
+# What is wrong -> (text of thesis-rig.toml, its replacement, text that the message must contain).
 # Texts must occur; the first occurrence is replaced.
 BROKEN_CONFIGS = {
     "a typing error in a key": ("payload_mass_kg = 0.1", "payload_mas_kg = 0.1", "payload_mas_kg"),
@@ -27,11 +27,11 @@ BROKEN_CONFIGS = {
     "not a number": ("alpha = 3.0", "alpha = nan", "controller.alpha"),
     "infinite": ("payload_mass_kg = 0.1", "payload_mass_kg = inf", "arm.payload_mass_kg"),
     "a negative mass": ("payload_mass_kg = 0.1", "payload_mass_kg = -0.1", "arm.payload_mass_kg"),
-    "a period of nothing": ("period_ms = 20.0", "period_ms = 0.0", "loop.period_ms"),
+    "a period of zero": ("period_ms = 20.0", "period_ms = 0.0", "loop.period_ms"),
     "a deadline after the period": ("step_deadline_ms = 5.0", "step_deadline_ms = 50.0",
                                     "loop.step_deadline_ms"),
     "an unknown name": ('name = "kalman"', 'name = "kalmann"', "estimator.name"),
-    "a counter of no bits": ("counter_bits = 8", "counter_bits = 0", "counter_bits"),
+    "a counter of zero bits": ("counter_bits = 8", "counter_bits = 0", "counter_bits"),
     "an encoder too many": ("[sensors.strain_input]",
                             '[[sensors.encoder]]\njoint = "hub1"\ncounts_per_turn = 1.0\n'
                             "counter_bits = 8\nsign = 1\n\n[sensors.strain_input]", "encoder"),
@@ -55,7 +55,7 @@ BROKEN_EXPERIMENTS = {
 
 class BadConfig(ProgramTest):
     def broken(self, text, old, new, name):
-        self.assertIn(old, text, "the shipped file has changed: mend this test")
+        self.assertIn(old, text, "the shipped file has changed: adapt this test")
         file = self.folder / name
         file.write_text(text.replace(old, new, 1), encoding="utf-8")
         return file
@@ -131,7 +131,7 @@ class BadLog(ProgramTest):
                 result = self.run_program("flexarm", "replay", damaged)
                 self.assertIn(result.returncode, (0, 1, 2), result.stderr)
 
-    def test_what_is_no_log_is_refused(self):
+    def test_a_file_that_is_not_a_log_is_refused(self):
         text = self.folder / "notes.flexarm"
         text.write_text("This is a text.\n" * 100, encoding="utf-8")
         empty = self.folder / "empty.flexarm"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The benchmark's table, its shards, and what it refuses."""
+"""The benchmark's table, its shards, and its refusals."""
 
 import unittest
 
@@ -31,7 +31,7 @@ class Benchmark(ProgramTest):
         for name in sobel["scenarios"]:
             self.assertIn(f"| {name} |", text)
 
-    def test_moves_go_on_where_they_were_and_limits_show_in_the_figures(self):
+    def test_moves_continue_after_an_interruption_and_ideal_limits_reduce_the_motion(self):
         moves = ("-c", HIL, "--table", "limits", "--seeds", "4001")
         results = self.folder / "limits.sqlite"
         half = self.flexarm_json("benchmark", *moves, "--shard", "1/2", "-o", results)

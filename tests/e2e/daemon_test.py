@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The daemon as a process: real time, its socket, its signals, its death."""
+"""The daemon as a process: real time, socket, signals, kill."""
 
 import json
 import os
@@ -41,7 +41,7 @@ to_deg = [30.0, -30.0]
 
 class Daemon(ProgramTest):
     def wait_for_state(self, *states, within_s=20):
-        """The status in which the daemon first is in one of the states."""
+        """Waits until the daemon is in one of the states and returns its status."""
         end = time.monotonic() + within_s
         status = {}
         while time.monotonic() < end:
@@ -78,7 +78,7 @@ class Daemon(ProgramTest):
         self.assert_equals_lock_step(SQUARE, 300)
 
     @in_real_time
-    def test_so_does_a_run_whose_plans_another_thread_makes(self):
+    def test_a_real_time_run_with_a_planner_thread_equals_the_lock_step_run(self):
         options = ["--set", "controller.name=receding-horizon"]
         if "TSAN_OPTIONS" in os.environ:  # a first plan takes 2.6 ms, under this sanitizer 100 ms
             options += ["--set", "controller.plan.ready_periods=9"]
@@ -87,7 +87,7 @@ class Daemon(ProgramTest):
         self.assertEqual(planned, 110, "1.8 s of move and 20 periods of rest")
 
     def assert_equals_lock_step(self, experiment, ticks, *options):
-        """Up to the first deadline that was missed; and none is, but for a stall of the machine."""
+        """Compares up to the first missed deadline; only a stall of the machine may cause one."""
         simulated, _ = self.simulate("lockstep.flexarm", *options, experiment=experiment)
         daemon = self.start_daemon("--experiment", experiment, *options)
         daemon.wait(timeout=60)
@@ -105,8 +105,8 @@ class Daemon(ProgramTest):
         equal_until = difference["first_different_tick"]
         if equal_until is not None:
             self.assertGreaterEqual(equal_until, missed[0])
-        self.assertGreaterEqual(missed[0], 100, "too short to show anything")
-        print(f"{self.id()}: shown for {missed[0]} ticks, then the machine stood still for "
+        self.assertGreaterEqual(missed[0], 100, "too short for a comparison")
+        print(f"{self.id()}: equal for {missed[0]} ticks, then the machine stalled for "
               f"{max(stalls_ms)} ms", file=sys.stderr)
         return simulated
 
@@ -140,7 +140,7 @@ class Daemon(ProgramTest):
         self.operate("arm", expect=1)
         self.operate("reset", expect=1)  # the cause is still there
         self.operate("sim", "emergency-stop", "1")
-        self.operate("reset", expect=1)  # nobody has pressed the button
+        self.operate("reset", expect=1)  # the button has not been pressed
         time.sleep(2.0)                  # the arm comes to rest
         self.operate("sim", "reset-button", "1")
         self.operate("sim", "reset-button", "0")
@@ -160,7 +160,7 @@ class Daemon(ProgramTest):
         tared = json.loads(self.operate("tare", "--json").stdout)
         self.assertEqual(len(tared["strain"]), 20)
         refused = self.operate("calibrate", "--link", "1", "--force-n", "5", "--at-m", "0.8", expect=1)
-        self.assertIn("strain_1_01", refused.stderr)  # nothing hangs there
+        self.assertIn("strain_1_01", refused.stderr)  # there is no load
         time.sleep(0.8)
         self.operate("arm")
         refused = self.operate("run", self.experiment(LONG), expect=1)
@@ -171,7 +171,7 @@ class Daemon(ProgramTest):
         refused = self.operate("run", self.experiment(LONG), expect=1)
         self.assertIn("flexarm zero", refused.stderr)
         self.operate("disarm")
-        time.sleep(2.0)  # the elbow creeps for a while after its pulse
+        time.sleep(2.0)  # the elbow moves slowly for some time after its pulse
         self.operate("zero", "--angle-deg", "5", "-5")
         time.sleep(0.8)
         self.operate("arm")
@@ -214,7 +214,7 @@ class Daemon(ProgramTest):
         self.assertIn("Stopping", states)
 
     @in_real_time
-    def test_a_killed_process_leaves_a_log_that_lost_half_a_second_at_most(self):
+    def test_a_killed_process_loses_at_most_half_a_second_of_its_log(self):
         daemon = self.start_daemon("--experiment", self.experiment(
             LONG + "\n[[sim_event]]\nat_s = 2.0\nkill = true\n"))
         self.assertEqual(daemon.wait(timeout=60), -signal.SIGKILL, self.daemon_log())
@@ -238,7 +238,7 @@ class Daemon(ProgramTest):
         self.assertIn("socket", second.stderr)
         self.wait_for_state("Idle")
 
-    def test_without_permission_real_time_is_refused_loudly_and_never_replaced(self):
+    def test_without_permission_the_daemon_refuses_to_start_and_says_why(self):
         if os.geteuid() != 0:
             self.skipTest("dropping a permission needs root")
         os.chmod(self.folder, 0o777)
@@ -261,7 +261,7 @@ class Daemon(ProgramTest):
 
     @despite_stalls
     def test_messages_go_to_stderr_unless_that_is_the_journal_itself(self):
-        # A terminal, or a script, that a service of systemd started inherits this variable.
+        # A terminal or a script inherits this variable if a systemd service started it.
         with unittest.mock.patch.dict(os.environ, {"JOURNAL_STREAM": "8:12345"}):
             daemon = self.start_daemon("--run-for", "0.5")
         self.assertEqual(daemon.wait(timeout=30), 0, self.daemon_log())

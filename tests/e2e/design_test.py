@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Gains: designed, screened, refused, forced, and run with."""
+"""Design of gains: checks, refusal, --force, and runs with the gains."""
 
 import json
 import sys
@@ -24,7 +24,7 @@ class Design(ProgramTest):
         read, _ = self.simulate("read.flexarm", "--set", f'controller.gains="{gains}"')
         self.assertIs(self.flexarm_json("diff", designed, read)["identical"], True)
 
-    def test_gains_that_the_screen_fails_are_written_by_force_only_and_say_so(self):
+    def test_gains_that_fail_the_robustness_analysis_are_written_only_with_force_and_marked(self):
         bad = ("--set", "controller.prediction=false")  # diverges with 0.01 kg
         gains, result = self.design(*bad, expect=1)
         self.assertIs(result["sound"], False)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/run-hil as its user types it: the main job runs to its end and leaves a picture."""
+"""tools/run-hil as a user calls it: the experiment runs to its end and leaves log and picture."""
 
 import subprocess
 import sys
@@ -12,7 +12,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 
 class RunHil(ProgramTest):
     @despite_stalls
-    def test_the_main_job_runs_to_its_end_and_leaves_log_and_picture(self):
+    def test_the_experiment_runs_to_its_end_and_leaves_log_and_picture(self):
         options = [] if realtime_permitted() else ["--without-realtime"]
         result = subprocess.run([ROOT / "tools/run-hil", "--log-dir", self.folder / "runs", *options],
                                 capture_output=True, text=True, check=False)

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Installs into an empty folder and looks at what a machine would get.
-# usage: install_check.sh BUILD_FOLDER
+# Installs into an empty folder and checks the installed files. usage: install_check.sh BUILD_FOLDER
 set -euo pipefail
 
 build=$1
@@ -24,7 +23,7 @@ for program in flexarmd flexarm flexarm-study; do
 done
 flexarm=$(find . -type f -name flexarm -path '*/bin/*')
 
-# The shipped configs find each other where they are installed.
+# The installed configs find the files that they extend.
 hil=$(find . -name hil.toml)
 [[ -n $hil ]] || fail "no configs are installed"
 while read -r config; do
@@ -46,13 +45,13 @@ if [[ -n $started && $started != *[%$]* && ! -e .$started ]]; then
 fi
 
 if command -v systemd-analyze >/dev/null; then
-  # systemd looks for the program on this machine: show it the one just installed.
+  # systemd looks for the program on this machine: the path of the installed one is inserted.
   mkdir verify
   sed "s#^\(ExecStart=[-@:+!]*\)/#\1$machine/#" "$unit" >verify/flexarmd.service
   said=$(systemd-analyze verify --man=no verify/flexarmd.service 2>&1) || fail "the unit: $said"
-  # What is only ignored ends in exit code 0. Other units of this machine are not our business.
-  if grep -F flexarmd.service <<<"$said"; then fail "systemd does not take the unit as it is"; fi
+  # Ignored settings give exit code 0. Messages about other units of this machine are skipped.
+  if grep -F flexarmd.service <<<"$said"; then fail "systemd ignores a part of the unit"; fi
 else
-  echo "systemd-analyze is not here: the unit was not verified"
+  echo "systemd-analyze is not installed: the unit was not verified"
 fi
 echo "install check: complete"

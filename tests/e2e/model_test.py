@@ -26,7 +26,8 @@ class Modes(ProgramTest):
         spring = self.modes("--base", "spring", "--base-spring-nm-per-rad", 20)["links"]
         for link in range(2):
             self.assertEqual(spring[link]["base"], "spring")
-            # The spring's modes lie between: the pinned beam's rigid body is left out of its list.
+            # The modes with a spring lie between; the list of the pinned beam has no rigid-body
+            # mode.
             for mode in range(1, 4):
                 self.assertLess(pinned[link]["frequency_hz"][mode - 1],
                                 spring[link]["frequency_hz"][mode])
@@ -35,8 +36,8 @@ class Modes(ProgramTest):
 
     def test_the_lumped_beam_converges_as_the_square_of_its_parts(self):
         links = self.modes("--convergence")["convergence"]
-        # Of link 1 the lowest two: in its higher modes the heavy end hardly moves, the N^-2 term is
-        # next to nothing and the following one shows.
+        # Only the lowest two of link 1: in its higher modes the heavy end hardly moves, so that the
+        # N^-2 term is negligible and the next term dominates.
         for link, modes in zip(links, (2, 4)):
             errors = dict(zip(link["parts"], link["error_percent"]))
             for coarse, fine in list(zip(errors[100], errors[200]))[:modes]:
@@ -68,7 +69,8 @@ class Excite(ProgramTest):
         return self.flexarm_json("analyze", "excite", "-c", RIG, *arguments)
 
     def test_the_square_wave_of_chapter_4_moves_the_arm_as_the_reference_does(self):
-        # An eighth-order integrator's tip at 3 s; the default one, second order, is 6 um off.
+        # The tip at 3 s by an eighth-order integrator; the default one, of second order, differs by
+        # 6 um.
         picture = self.folder / "square-wave.png"
         result = self.excite("--without-dissipation", "--modes", 2, "--set",
                              "arm.link1_tip_inertia=motor", "-o", picture)
@@ -79,7 +81,7 @@ class Excite(ProgramTest):
         self.assertAlmostEqual(result["peak_bending_mm"][1], 15.06, delta=0.03)
         self.assertTrue(picture.read_bytes().startswith(PNG))
 
-    def test_friction_and_damping_take_bending_away(self):
+    def test_friction_and_damping_reduce_the_bending(self):
         free = self.excite("--without-dissipation")["peak_bending_mm"]
         for with_losses, without in zip(self.excite()["peak_bending_mm"], free):
             self.assertLess(with_losses, 0.8 * without)

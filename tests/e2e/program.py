@@ -1,4 +1,4 @@
-"""Running the programs as a user does, and looking at what they leave."""
+"""Runs the programs as a user does, and reads the files that they write."""
 
 import functools
 import json
@@ -19,10 +19,10 @@ BIN = Path(os.environ.get("FLEXARM_BIN", ROOT / "build/release/bin"))
 HIL = ROOT / "config/hil.toml"
 SQUARE = ROOT / "config/experiments/square-30deg.toml"
 
-# Signs of a program that fell over instead of saying what is wrong.
+# Signs of a program that crashed instead of reporting the problem.
 CRASH_SIGNS = ("terminate called", "Sanitizer", "runtime error:", "Assertion", "core dumped")
 
-# A wait this long is a machine that took the processor away, not Linux being late.
+# A longer wait means that the machine withdrew the processor; Linux itself is faster.
 STALL_MS = 2.0
 
 
@@ -32,7 +32,7 @@ def realtime_permitted():
 
 
 class StallWitness:
-    """When this machine kept the most urgent thread waiting, by cyclictest beside the test."""
+    """Records the delays of the thread of highest priority by cyclictest beside the test."""
 
     def __enter__(self):
         self.process = subprocess.Popen(
@@ -47,7 +47,7 @@ class StallWitness:
 
     @functools.cached_property
     def stalls_ms(self):
-        """Every wait of stall_ms or more on any processor. Ends the watch."""
+        """Every wait of STALL_MS or more on any processor. Ends the recording."""
         self.process.send_signal(signal.SIGINT)
         told, _ = self.process.communicate(timeout=10)
         stalls = []
@@ -59,7 +59,7 @@ class StallWitness:
 
 
 def wait_for_calm(within_s=30):
-    """Until a second passes without a stall: they come in bouts."""
+    """Waits until a second passes without a stall, because stalls come in groups."""
     end = time.monotonic() + within_s
     while time.monotonic() < end:
         with StallWitness() as witness:
@@ -69,8 +69,8 @@ def wait_for_calm(within_s=30):
 
 
 def despite_stalls(test, tries=12):
-    """A test that holds on a machine that gives processor time when it is due. A shared one may
-    take it away from everybody: a failure counts unless the witness saw that, or the last try."""
+    """For a test that needs processor time when it is due. A shared machine may withdraw it: a
+    failed try is repeated if the witness recorded a stall, except for the last try."""
     @functools.wraps(test)
     def tried(self):
         for left in reversed(range(tries)):
@@ -81,7 +81,7 @@ def despite_stalls(test, tries=12):
                     stalls_ms = self.witness.stalls_ms
                     if left == 0 or not stalls_ms:
                         raise
-                    print(f"{self.id()}: again, the machine stood still for {max(stalls_ms)} ms\n"
+                    print(f"{self.id()}: repeated, the machine stalled for {max(stalls_ms)} ms\n"
                           f"{failure}", file=sys.stderr)
             self.end_daemons()
             self.new_folder()
@@ -90,7 +90,7 @@ def despite_stalls(test, tries=12):
 
 
 def in_real_time(test):
-    """despite_stalls, and nothing where real time is not permitted."""
+    """despite_stalls; skips the test where real time is not permitted."""
     @functools.wraps(test)
     def permitted(self):
         if not realtime_permitted():
@@ -153,7 +153,7 @@ class ProgramTest(unittest.TestCase):
         return file
 
     def start_daemon(self, *arguments):
-        """The daemon with its own log folder and socket; ended when the test is."""
+        """Starts the daemon with its own log folder and socket; the end of the test kills it."""
         options = [] if realtime_permitted() else ["--without-realtime"]
         with open(self.folder / "daemon.log", "w", encoding="utf-8") as log:
             daemon = subprocess.Popen(

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The report: one page that needs nothing else, with every figure; and what it refuses."""
+"""The report: one self-contained page with every figure; and its refusals."""
 
 import html.parser
 import unittest
@@ -12,7 +12,7 @@ VOID = {"meta", "img"}
 
 
 class Page(html.parser.HTMLParser):
-    """Every tag closed in order; what the page would load; the text of its captions and cells."""
+    """Checks that tags are closed in order; collects links to other files, and captions."""
 
     def __init__(self, text):
         super().__init__()
@@ -37,7 +37,7 @@ class Page(html.parser.HTMLParser):
 
 
 class Report(ProgramTest):
-    def test_is_one_whole_page_with_every_figure(self):
+    def test_is_one_self_contained_page_with_every_figure(self):
         folder = self.folder / "report"
         page_file = self.flexarm_json("report", "-c", HIL, "-o", folder, timeout_s=280)["page"]
         text = (folder / "report.html").read_text()
@@ -50,7 +50,7 @@ class Report(ProgramTest):
             self.assertIn(figure, captions)
         for chapter in (3, 4, 5, 6, 7):
             self.assertIn(f"Chapter {chapter}", text)
-        self.assertIn("What limits the laws that find the payload", captions)
+        self.assertIn("What limits the laws that estimate the payload", captions)
         for cell in ("gain-scheduled", "encoders-x10", "reached"):
             self.assertIn(f"<td>{cell}</td>", text)
         for verdict in ("holds", "does not hold", "holds in part"):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A simulated run from the command line, and everything that can be done with its log."""
+"""A simulated run from the command line, and the verbs that read its log."""
 
 import csv
 import shutil
@@ -10,7 +10,7 @@ from program import HIL, ProgramTest, rows, ticks
 
 
 class Simulate(ProgramTest):
-    def test_runs_the_base_experiment_to_its_end_within_the_promised_errors(self):
+    def test_runs_the_default_experiment_to_its_end_within_the_specified_errors(self):
         run, result = self.simulate("a run.flexarm")
         self.assertIs(result["completed"], True)
         self.assertIsNone(result["trip"])
@@ -21,10 +21,10 @@ class Simulate(ProgramTest):
         self.assertLess(max(result["joint_final_error_deg"]), 1.3 * 0.35)
         self.assertLess(result["peak_torque_nm"][0], 30)
         self.assertTrue(run.is_file())
-        self.assertFalse(run.with_name(run.name + "-wal").exists(), "the one file is all")
+        self.assertFalse(run.with_name(run.name + "-wal").exists(), "the log is a single file")
         self.assertEqual(rows(run, "SELECT state FROM tick WHERE state = 'Running'").__len__(), 300)
 
-    def test_gives_the_same_log_for_the_same_seed_and_another_for_another(self):
+    def test_the_same_seed_gives_the_same_log_and_another_seed_another_log(self):
         first, _ = self.simulate("1.flexarm", "--seed", 7)
         second, _ = self.simulate("2.flexarm", "--seed", 7)
         other, _ = self.simulate("3.flexarm", "--seed", 8)
@@ -72,7 +72,7 @@ class Replay(ProgramTest):
         super().setUp()
         self.run_file, _ = self.simulate("run.flexarm")
 
-    def test_is_exact_to_the_bit(self):
+    def test_is_bit_exact(self):
         replay = self.flexarm_json("replay", self.run_file)
         self.assertIs(replay["bit_exact"], True)
         self.assertIs(replay["safety_exact"], True)
@@ -93,7 +93,8 @@ class Replay(ProgramTest):
         tick, blob = log.execute(
             "SELECT tick, input FROM tick WHERE state = 'Running' ORDER BY tick LIMIT 1 OFFSET 50"
         ).fetchone()
-        # The first counter's lowest byte: behind version, tick, two instants and the frame's time.
+        # The lowest byte of the first counter, after version, tick, two instants and the frame's
+        # time.
         blob = bytearray(blob)
         blob[4 + 3 * 8 + 8] ^= 1
         log.execute("UPDATE tick SET input = ? WHERE tick = ?", (bytes(blob), tick))

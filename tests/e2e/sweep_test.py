@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A sweep that is killed goes on; shards merged are the whole; what makes no sense is refused."""
+"""A killed sweep can be continued; merged shards equal the whole sweep; wrong input is refused."""
 
 import sqlite3
 import subprocess
@@ -14,7 +14,7 @@ POINTS = 18
 
 
 def results(file):
-    """Every column of every run, but for the time that it took."""
+    """Every column of every run, except its wall time."""
     columns = [name for _, name, *_ in rows(file, "PRAGMA table_info(run)") if name != "wall_s"]
     quoted = ", ".join(f'"{name}"' for name in columns)
     return columns, rows(file, f"SELECT {quoted} FROM run ORDER BY point")
@@ -26,7 +26,7 @@ class Sweep(ProgramTest):
         return file, self.flexarm_json("sweep", *grid, *arguments, "-o", file, expect=expect)
 
     def runs_in(self, file):
-        """As whoever goes on finds it: what a kill left half written is taken back."""
+        """The number of runs in the file, after SQLite has rolled back incomplete transactions."""
         results_file = sqlite3.connect(file)
         try:
             if not results_file.execute("SELECT 1 FROM sqlite_master").fetchall():
@@ -38,15 +38,15 @@ class Sweep(ProgramTest):
     def refused(self, *arguments, said):
         self.assert_refused(self.run_program("flexarm", "sweep", *arguments), said)
 
-    def test_what_is_there_is_not_run_again(self):
+    def test_runs_in_the_file_are_not_repeated(self):
         file, first = self.sweep("all.sqlite")
         self.assertEqual((first["points"], first["run_now"]), (POINTS, POINTS))
         before = rows(file, "SELECT * FROM run")
         _, again = self.sweep("all.sqlite")
         self.assertEqual((again["run_now"], again["there_already"]), (0, POINTS))
-        self.assertEqual(rows(file, "SELECT * FROM run"), before)  # the times as well
+        self.assertEqual(rows(file, "SELECT * FROM run"), before)  # the wall times too
 
-    def test_killed_at_any_instant_it_goes_on_to_the_same_results(self):
+    def test_a_sweep_that_is_killed_at_any_instant_continues_to_the_same_results(self):
         whole, _ = self.sweep("whole.sqlite")
         file = self.folder / "killed.sqlite"
         kills, there, wait_s = 0, 0, 0.02
@@ -55,19 +55,19 @@ class Sweep(ProgramTest):
                                        stdout=subprocess.DEVNULL)
             time.sleep(wait_s)
             if process.poll() is not None:
-                break  # it had done all that the kills before had left
+                break  # it had finished the remaining runs
             process.kill()
             process.wait()
             kills += 1
             there = self.runs_in(file)
             wait_s *= 1.4
-        self.assertGreater(kills, 0, "never killed: the test says nothing")
+        self.assertGreater(kills, 0, "never killed: the test shows nothing")
         there = self.runs_in(file)
         _, told = self.sweep("killed.sqlite")
         self.assertEqual(told["there_already"], there)
         self.assertEqual(results(file), results(whole))
 
-    def test_shards_merged_are_the_whole_whatever_the_jobs(self):
+    def test_merged_shards_equal_the_whole_sweep_for_any_number_of_jobs(self):
         whole, _ = self.sweep("whole.sqlite", "--jobs", "1")
         parts = [self.sweep(f"part-{i}.sqlite", "--shard", f"{i}/4", "--jobs", i)[0]
                  for i in (1, 2, 3, 4)]
@@ -76,7 +76,7 @@ class Sweep(ProgramTest):
         self.assertEqual((told["done"], told["missing"]), (POINTS, []))
         self.assertEqual(results(merged), results(whole))
 
-    def test_a_merge_names_what_is_missing_and_the_sweep_fills_it(self):
+    def test_a_merge_names_missing_points_and_the_sweep_fills_them(self):
         part, _ = self.sweep("part.sqlite", "--shard", "2/3")
         merged = self.folder / "merged.sqlite"
         told = self.flexarm_json("sweep", "merge", part, "-o", merged, expect=1)
@@ -85,7 +85,7 @@ class Sweep(ProgramTest):
         self.assertEqual(filled["there_already"], POINTS // 3)
         self.assertEqual(len(results(merged)[1]), POINTS)
 
-    def test_a_run_of_it_is_that_of_simulate(self):
+    def test_a_run_of_a_sweep_equals_that_of_simulate(self):
         file, _ = self.sweep("one.sqlite", grid=("-c", HIL, "--over", "controller.alpha=2.0",
                                                  "--payload-kg", "0.2", "--seeds", "5"))
         single = self.flexarm_json("simulate", "-c", HIL, "--set", "controller.alpha=2.0",
@@ -116,7 +116,7 @@ class Sweep(ProgramTest):
     def test_show_gives_a_table_json_csv_and_a_picture(self):
         file, _ = self.sweep("all.sqlite")
         table = self.flexarm("sweep", "show", file).stdout.splitlines()
-        self.assertEqual(len(table), 1 + 6 + 1)  # a head, a line a group, a foot
+        self.assertEqual(len(table), 1 + 6 + 1)  # a head, one line per group, a foot
         shown = self.flexarm_json("sweep", "show", file, "--by", "payload_kg")
         self.assertEqual([(group["controller.alpha"], group["payload_kg"], group["runs"])
                           for group in shown["groups"]],
@@ -129,7 +129,7 @@ class Sweep(ProgramTest):
         self.flexarm("sweep", "show", file, "-o", self.folder / "picture.png")
         self.assertEqual((self.folder / "picture.png").read_bytes()[:4], b"\x89PNG")
 
-    def test_what_makes_no_sense_is_refused(self):
+    def test_wrong_input_is_refused(self):
         out = ("-o", self.folder / "x.sqlite")
         rig = ("-c", HIL)
         self.refused(*rig, *out, said="nothing to sweep")
@@ -143,9 +143,9 @@ class Sweep(ProgramTest):
         self.refused(*rig, "--seeds", "1..3", "--shard", "0/4", *out, said="0/4")
         self.refused(*rig, "--seeds", "1..3", "--jobs", "0", *out, said="--jobs")
         self.refused(*rig, "--seeds", "one", *out, said="sim.seed")
-        self.assertFalse((self.folder / "x.sqlite").exists(), "refused, and yet a file was made")
+        self.assertFalse((self.folder / "x.sqlite").exists(), "refused, but a file was created")
 
-    def test_files_that_are_no_sweep_or_another_are_refused(self):
+    def test_files_without_a_sweep_or_of_another_sweep_are_refused(self):
         text = self.folder / "notes.sqlite"
         text.write_text("no database\n" * 1000, encoding="utf-8")
         run, _ = self.simulate("run.flexarm")
@@ -163,7 +163,7 @@ class Sweep(ProgramTest):
                      said="experiment")
         self.assertEqual(len(results(file)[1]), 1)
 
-    def test_a_full_disk_is_one_message(self):
+    def test_a_full_disk_gives_one_message(self):
         limited = f"ulimit -f 24; exec '{BIN / 'flexarm'}' sweep -c '{HIL}' --seeds 1..500 -o f.sqlite"
         result = subprocess.run(["bash", "-c", "trap '' XFSZ; " + limited], cwd=self.folder,
                                 capture_output=True, text=True, check=False, timeout=120)

@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-// One encoder on hub 1: 1000 counts a turn, so that a period at 14 rad/s is 44.6 counts.
+// One encoder on hub 1: 1000 counts a turn, so a period at 14 rad/s is 44.6 counts.
 SensorConfig OneEncoder(int bits, int sign = 1) {
   SensorConfig sensors{};
   sensors.encoder = {{.counter = 0, .counts_per_turn = 1000.0, .counter_bits = bits, .sign = sign}};
@@ -32,8 +32,8 @@ double Rate(double counts_per_period) { return counts_per_period / 1000.0 * kTwo
 
 class Width : public testing::TestWithParam<int> {};
 
-// Three turns one way and six back: 8 bits roll over a dozen times, 16 bits below zero.
-TEST_P(Width, ManyTurnsAndRollOversAreFollowedBothWays) {
+// Three turns one way and six back: 8 bits overflow a dozen times, 16 bits below zero.
+TEST_P(Width, ManyTurnsAndOverflowsAreCountedBothWays) {
   const int bits = GetParam();
   for (const int sign : {1, -1}) {
     CounterDecoder decoder(OneEncoder(bits, sign), kPeriod_s, Rate(60.0));
@@ -51,8 +51,8 @@ TEST_P(Width, ManyTurnsAndRollOversAreFollowedBothWays) {
 
 INSTANTIATE_TEST_SUITE_P(Bits, Width, testing::Values(8, 16, 32));
 
-// Any walk whose steps stay below half the counter's range comes back exactly.
-TEST(CounterDecoder, AnyWalkBelowHalfTheRangeIsRecovered) {
+// Any random walk whose steps stay below half the counter's range is decoded exactly.
+TEST(CounterDecoder, ARandomWalkBelowHalfTheRangeIsDecodedExactly) {
   setenv("RC_PARAMS", "seed=20261120 max_success=2000", 0);  // repeatable
   EXPECT_TRUE(rc::check("random walk", [] {
     const int bits = *rc::gen::element(8, 10, 16);
@@ -70,8 +70,8 @@ TEST(CounterDecoder, AnyWalkBelowHalfTheRangeIsRecovered) {
 }
 
 // At 100 counts a period an 8-bit counter moves 200 over one missed reading, more than half its
-// range: only the extrapolated rate tells 200 from -56.
-TEST(CounterDecoder, OneMissingReadingAtHighRateLosesNoCount) {
+// range: only the extrapolated rate distinguishes 200 from -56.
+TEST(CounterDecoder, AMissingReadingAtHighRateLosesNoCount) {
   for (const int direction : {1, -1}) {
     CounterDecoder decoder(OneEncoder(8), kPeriod_s, Rate(110.0));
     std::int64_t count = 0;
@@ -90,7 +90,7 @@ TEST(CounterDecoder, OneMissingReadingAtHighRateLosesNoCount) {
   }
 }
 
-TEST(CounterDecoder, AnImpossibleJumpIsReportedAndNotFollowed) {
+TEST(CounterDecoder, AnImpossibleJumpIsReportedAndRejected) {
   CounterDecoder decoder(OneEncoder(16), kPeriod_s, Rate(45.0));
   decoder.Decode(Reading(10, 16));
   const DecodedCounters out = decoder.Decode(Reading(10 + 46, 16));
@@ -98,7 +98,7 @@ TEST(CounterDecoder, AnImpossibleJumpIsReportedAndNotFollowed) {
   EXPECT_EQ(out.good, 0u);
   EXPECT_EQ(out.counts[0], 10);
   EXPECT_EQ(out.missing_ticks[0], 1);
-  // The next reading is again where the joint can be.
+  // The next reading is plausible again.
   const DecodedCounters next = decoder.Decode(Reading(12, 16));
   EXPECT_EQ(next.good, 1u);
   EXPECT_EQ(next.jumped, 0u);
@@ -111,7 +111,7 @@ TEST(CounterDecoder, TheFastestPossibleChangeIsNoJump) {
   EXPECT_EQ(decoder.Decode(Reading(0, 16)).good, 1u);
 }
 
-TEST(CounterDecoder, ResetStartsFromTheCountsItIsGiven) {
+TEST(CounterDecoder, ResetStartsFromTheGivenCounts) {
   CounterDecoder decoder(OneEncoder(8), kPeriod_s, Rate(60.0));
   decoder.Reset({1'000'000, 0, 0, 0}, {});
   const DecodedCounters out = decoder.Decode(Reading(1'000'020, 8));
@@ -119,7 +119,7 @@ TEST(CounterDecoder, ResetStartsFromTheCountsItIsGiven) {
   EXPECT_EQ(out.good, 1u);
 }
 
-TEST(CounterDecoder, AnglesCountFromTheZeroItIsGiven) {
+TEST(CounterDecoder, AnglesAreRelativeToTheGivenZero) {
   CounterDecoder decoder(OneEncoder(8), kPeriod_s, Rate(60.0));
   decoder.Reset({1000, 0, 0, 0}, {700, 0, 0, 0});
   const DecodedCounters out = decoder.Decode(Reading(1010, 8));
@@ -127,7 +127,7 @@ TEST(CounterDecoder, AnglesCountFromTheZeroItIsGiven) {
   EXPECT_NEAR(out.angle_rad[0], 310.0 * 2.0 * M_PI / 1000.0, 1e-12);
 }
 
-TEST(CounterDecoder, ResetForgetsTheRate) {
+TEST(CounterDecoder, ResetClearsTheRate) {
   CounterDecoder decoder(OneEncoder(8), kPeriod_s, Rate(110.0));
   for (int k = 1; k <= 3; ++k) decoder.Decode(Reading(100 * k, 8));
   decoder.Reset({300, 0, 0, 0}, {});

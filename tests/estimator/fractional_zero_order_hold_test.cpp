@@ -16,7 +16,7 @@ using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 16, 1>;
 
 // exp(M) by its own series, in extended precision: 30 terms of a matrix scaled below 1/16 leave
-// 16^-30, then squaring. Shares nothing with the Pade approximant that the product uses.
+// 16^-30, then squaring. Independent of the Pade approximant that the product uses.
 LongMatrix Exponential(LongMatrix M) {
   int squarings = 0;
   while (M.cwiseAbs().rowwise().sum().maxCoeff() > 0.0625L) {
@@ -69,7 +69,7 @@ TEST_F(FractionalHoldTest, IsTheExactHoldOfAnyFraction) {
   }
 }
 
-TEST_F(FractionalHoldTest, GoesThroughThePiecesInOrder) {
+TEST_F(FractionalHoldTest, AdvancesOverThePiecesInOrder) {
   PiecewiseTorque pieces;
   const TorquePiece first{.torque_nm = {3.0, -0.7}, .ticks = 20'000},
       second{.torque_nm = {-1.0, 0.4}, .ticks = 45'536};
@@ -81,8 +81,8 @@ TEST_F(FractionalHoldTest, GoesThroughThePiecesInOrder) {
   EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 2e-12 * expected.cwiseAbs().maxCoeff());
 }
 
-// The digits of one whole period are never used: it stays what the design says, to the bit.
-TEST_F(FractionalHoldTest, AWholePeriodIsTheDesignsOwn) {
+// A whole period does not use the digits: it is the hold of the design, to the bit.
+TEST_F(FractionalHoldTest, AWholePeriodIsTheHoldOfTheDesign) {
   State x = start_;
   hold_.Advance(PiecewiseTorque::WholePeriod({3.0, -0.7}), &x);
   State expected = whole_.A.lazyProduct(start_);
@@ -91,7 +91,7 @@ TEST_F(FractionalHoldTest, AWholePeriodIsTheDesignsOwn) {
   EXPECT_EQ(x, expected);
 }
 
-TEST_F(FractionalHoldTest, NoTimeMovesNothing) {
+TEST_F(FractionalHoldTest, AnEmptyIntervalChangesNothing) {
   State x = start_;
   hold_.Advance(PiecewiseTorque(), &x);
   EXPECT_EQ(x, start_);

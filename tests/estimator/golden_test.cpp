@@ -1,5 +1,5 @@
-// The linear model and the filter against golden.json, which another program computed. Compared as
-// max |X - G| / max |G|; bars of the design study: 1e-8, gains 1e-6.
+// The linear model and the filter against golden.json, from another program. Compared as
+// max |X - G| / max |G|; bounds of the design study: 1e-8, gains 1e-6.
 
 #include <gtest/gtest.h>
 
@@ -32,14 +32,14 @@ TEST_F(EstimatorGolden, DiscreteNominalModelAgrees) {
 
 // docs/theory/control-law.md 1.2 has the two lowest torque modes: 42.0 and 55.6 rad/s (6.69 and
 // 8.85 Hz).
-TEST_F(EstimatorGolden, TorqueModesAreThoseOfTheStudy) {
+TEST_F(EstimatorGolden, TorqueModesAgreeWithTheStudy) {
   ASSERT_EQ(nominal_.torque_mode_rad_s.size(), 4);
   EXPECT_NEAR(nominal_.torque_mode_rad_s(0), 42.0450, 5e-5);
   EXPECT_NEAR(nominal_.torque_mode_rad_s(1), 55.6125, 5e-5);
 }
 
 // The golden reference model was made with those frequencies rounded to four decimals; with the
-// rounded ones put in, ours must be the same to round-off.
+// rounded ones, the model must agree to round-off.
 TEST_F(EstimatorGolden, ReferenceModelWithTheRoundedTorqueModesAgrees) {
   NominalModel rounded = nominal_;
   rounded.torque_mode_rad_s(0) = 42.0450;

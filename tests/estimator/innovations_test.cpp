@@ -1,5 +1,5 @@
 // The Kalman filter on the linear model with the noises that it was designed for: its innovations
-// must be white, of zero mean, and as large as it thinks they are.
+// must be white, of zero mean, and of the predicted covariance.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 constexpr int kInnovations = 4000, kSettled = 200, kOutputs = 8, kStates = 16;
 
-// Continuous model with the gauge filter, written down here again: phi_f' = w_f (phi - phi_f).
+// Continuous model with the gauge filter, written independently: phi_f' = w_f (phi - phi_f).
 struct Truth {
   MatrixXd A, G_d, C, R;
 
@@ -50,7 +50,7 @@ struct Truth {
     R = variance.asDiagonal();
   }
 
-  // Covariance of the innovations of the best filter, by running its covariance recursion out.
+  // Covariance of the innovations of the optimal filter, by iterating its covariance recursion.
   MatrixXd InnovationCovariance() const {
     const MatrixXd W = G_d * G_d.transpose() + 1e-13 * MatrixXd::Identity(kStates, kStates);
     MatrixXd P = W, S;

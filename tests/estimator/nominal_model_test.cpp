@@ -50,7 +50,7 @@ TEST_P(Layout, IsNamedByItsJointsAndItsStates) {
   EXPECT_EQ(LayoutNamed(name), layout);
 }
 
-TEST_P(Layout, GivesEveryStateOneMeaning) {
+TEST_P(Layout, GivesEveryStateADistinctMeaning) {
   const StateLayout layout = GetParam().layout;
   std::multiset<int> coordinates;
   for (int i = 0; i < 2; ++i) {
@@ -73,9 +73,9 @@ TEST_P(Layout, HasTheSameRigidInertiaAsAnyOther) {
   EXPECT_NEAR(M_r(1, 1), 0.1529, 5e-5);
 }
 
-// With joints a million times as stiff the torsional models are the rigid ones: their lowest torque
-// modes agree to what compliance is left, 1e-6 of a few, and the torque acts alike.
-TEST(TorsionalModels, WithStiffJointsAreTheRigidOnes) {
+// With joints a million times as stiff the torsional models equal the rigid ones: their lowest
+// torque modes agree up to the remaining compliance, 1e-6 of a few, and the torque acts alike.
+TEST(TorsionalModels, WithStiffJointsEqualTheRigidOnes) {
   ArmParameters stiff = ThesisRig();
   for (JointParameters& joint : stiff.joint) joint.stiffness_nm_per_rad *= 1e6;
   for (const auto& [torsional, rigid] : {std::pair{kT12, kR8}, std::pair{kT16, kR12}}) {

@@ -1,4 +1,4 @@
-// The payload filter behind the decoders, as the loop uses it.
+// The payload filter behind the decoders, as used in the loop.
 
 #include "estimator/payload_estimator.h"
 
@@ -35,7 +35,7 @@ FittedModes BendWith(const std::array<double, 4>& modal, bool valid = true) {
 
 PiecewiseTorque Held(double u1, double u2) { return PiecewiseTorque::WholePeriod({u1, u2}); }
 
-TEST(PayloadEstimator, StartsAtRestWhereTheHubsAre) {
+TEST(PayloadEstimator, StartsAtRestAtTheMeasuredHubAngles) {
   PayloadEstimator estimator = Estimator();
   estimator.Update(Angles(0.4, -0.3), BendWith({}), Held(0.0, 0.0));
   PayloadEstimator::State expected = PayloadEstimator::State::Zero();
@@ -48,8 +48,8 @@ TEST(PayloadEstimator, StartsAtRestWhereTheHubsAre) {
   EXPECT_NEAR(estimator.Now()[0], -0.1, 1e-12);
 }
 
-// What is not good may hold anything.
-TEST(PayloadEstimator, AnInputThatIsNotGoodCountsForNothing) {
+// An input that is not good may have any value.
+TEST(PayloadEstimator, AnInputThatIsNotGoodIsIgnored) {
   PayloadEstimator clean = Estimator(), garbage = Estimator();
   for (auto* estimator : {&clean, &garbage}) {
     estimator->Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
@@ -61,11 +61,11 @@ TEST(PayloadEstimator, AnInputThatIsNotGoodCountsForNothing) {
   garbage.Update(wrong, BendWith({1.0, 1.0, 1.0, 1.0}, false), Held(1.0, 0.2));
   EXPECT_EQ(clean.Now(), garbage.Now());
   EXPECT_EQ(clean.estimate().nis, garbage.estimate().nis);
-  EXPECT_GT((clean.Now() - Estimator().Now()).norm(), 1e-4) << "nothing was read at all";
+  EXPECT_GT((clean.Now() - Estimator().Now()).norm(), 1e-4) << "the inputs had no effect";
 }
 
-// Without any input the filter predicts, with the same model as After.
-TEST(PayloadEstimator, ALostFrameIsPredicted) {
+// Without any input the filter predicts, by the same model as After.
+TEST(PayloadEstimator, ALostFrameLeavesThePredictionOnly) {
   PayloadEstimator estimator = Estimator();
   estimator.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   const PayloadEstimator::State predicted = estimator.After(Held(2.0, 0.4));
@@ -73,7 +73,7 @@ TEST(PayloadEstimator, ALostFrameIsPredicted) {
   EXPECT_EQ(estimator.Now(), predicted);
 }
 
-// Two pieces are the first for its time, then the second; equal ones are one.
+// Two pieces act one after the other for their durations; equal ones are one piece.
 TEST(PayloadEstimator, PiecesOfTorqueActOneAfterTheOther) {
   PayloadEstimator estimator = Estimator();
   estimator.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
@@ -98,13 +98,13 @@ TEST(PayloadEstimator, PiecesOfTorqueActOneAfterTheOther) {
   EXPECT_EQ(estimator.After(mixed).tail<6>(), x.v);
 }
 
-// An arm that is just as the filter's model thinks, moved by torques that act `late` samples later
-// than is known.
+// An arm that equals the filter's model, driven by torques that act `late` samples later than
+// declared.
 class LateArm {
  public:
   explicit LateArm(int late) : late_(late) {}
 
-  /// @returns the delay found by then
+  /// @returns the estimated delay after `samples`
   int Run(int samples, PayloadEstimator* estimator) {
     for (int k = next_; k < next_ + samples; ++k) {
       const PiecewiseTorque acting = Torque(k - late_);
@@ -132,17 +132,17 @@ class LateArm {
                  .phi_f = Eigen::Vector4d::Zero()};
 };
 
-// Rotors are where the hubs are: the arm's joints are rigid, and the estimator takes u/K off them.
-TEST(PayloadEstimator, FindsTheDelayOfItsTorquesWhileTheArmMoves) {
+// Rotors are at the hub angles: the arm's joints are rigid, and the estimator subtracts u/K.
+TEST(PayloadEstimator, EstimatesTheUndeclaredDelayWhileTheArmMoves) {
   for (const int late : {-1, 0, 1, 2}) {
     PayloadEstimator estimator = Estimator();
     LateArm arm(late);
     EXPECT_EQ(arm.Run(50, &estimator), late);
-    EXPECT_EQ(arm.Run(100, &estimator), late) << "and stays with it";
+    EXPECT_EQ(arm.Run(100, &estimator), late) << "the estimate stays";
   }
 }
 
-TEST(PayloadEstimator, WithADelayFoundWhatWasLearntIsForgotten) {
+TEST(PayloadEstimator, ANewDelayEstimateResetsThePayloadEstimate) {
   PayloadEstimator estimator = Estimator();
   LateArm arm(1);
   double sigma_kg = estimator.estimate().payload_sigma_kg;
@@ -152,15 +152,15 @@ TEST(PayloadEstimator, WithADelayFoundWhatWasLearntIsForgotten) {
     sigma_kg = estimator.estimate().payload_sigma_kg;
     arm.Run(1, &estimator);
   }
-  EXPECT_LT(sigma_kg, 0.39) << "nothing had been learnt";
+  EXPECT_LT(sigma_kg, 0.39) << "the payload was not estimated";
   EXPECT_EQ(estimator.estimate().payload_kg, 0.2);
   EXPECT_EQ(estimator.estimate().payload_sigma_kg, 0.4);
   estimator.Reset();
   EXPECT_EQ(estimator.delay_found(), 0);
 }
 
-// The torque that is not among those offered is never taken, nor is any without a frame.
-TEST(PayloadEstimator, TakesTheTorqueOfTheDelayThatHolds) {
+// A hypothesis without torque is never used, and no hypothesis is tested without a frame.
+TEST(PayloadEstimator, UsesTheTorqueOfTheCurrentDelayHypothesis) {
   PayloadEstimator estimator = Estimator(), alone = Estimator();
   for (int k = 0; k < 5; ++k) {
     const PiecewiseTorque torque = Held(1.0 + k, 0.2);
@@ -177,7 +177,7 @@ TEST(PayloadEstimator, TakesTheTorqueOfTheDelayThatHolds) {
   EXPECT_EQ(estimator.delay_found(), 0);
 }
 
-TEST(PayloadModel, ComesBackFromItsConstantsToTheBit) {
+TEST(PayloadModel, IsReproducedFromItsConstantsToTheBit) {
   const std::vector<double> constants = Model();
   const std::vector<double> again = RigidJointStepper(constants).Constants();
   ASSERT_EQ(again.size(), constants.size());
@@ -188,7 +188,7 @@ TEST(PayloadModel, ComesBackFromItsConstantsToTheBit) {
   }
 }
 
-TEST(PayloadEstimator, TellsHowFastTheGaugesChange) {
+TEST(PayloadEstimator, ReportsTheRatesOfTheGauges) {
   PayloadEstimator estimator = Estimator();
   for (int k = 0; k < 10; ++k) {
     estimator.Update(Angles(0.0, 0.0, 0), BendWith({}, false), Held(2.0, 0.4));
@@ -196,7 +196,7 @@ TEST(PayloadEstimator, TellsHowFastTheGaugesChange) {
   const GaugedState& x = estimator.estimate().state;
   constexpr double kCorner_rad_s = 2.0 * M_PI * 20.0;
   for (int i = 0; i < 4; ++i) {
-    // phi_f' = w_f (phi - phi_f); the share of a step is w_f h to first order, 15 % less.
+    // phi_f' = w_f (phi - phi_f); gauge_share is w_f h to first order, 15 % less.
     const double expected = kCorner_rad_s * (x.q[2 + i] - x.phi_f[i]);
     EXPECT_NEAR(estimator.ModalRates()[static_cast<std::size_t>(i)] / expected, 0.93, 0.08) << i;
   }

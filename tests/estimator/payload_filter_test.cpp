@@ -1,5 +1,5 @@
-// The filter against another program's run, and on the simulated arm, whose joints are elastic and
-// which has modes that the filter does not know.
+// The filter against another program's run, and on the simulated arm, which has elastic joints and
+// modes that the filter does not model.
 
 #include "estimator/payload_filter.h"
 
@@ -29,8 +29,8 @@ PiecewiseTorque Held(const Vector2d& torque_nm) {
   return PiecewiseTorque::WholePeriod({torque_nm[0], torque_nm[1]});
 }
 
-// A reading of the tip's acceleration behind 200 Hz, which the design study does not have; without
-// one the two numbers change nothing.
+// Accelerometer at the tip behind 200 Hz, which the design study does not have; without a reading
+// the two settings have no effect.
 PayloadFilterConfig WithTheTipRead() {
   PayloadFilterConfig config = StudyPayload();
   config.tip_sigma_m_s2 = 0.3;
@@ -44,7 +44,7 @@ PayloadFilter StudyFilter() { return {StudyStepper(), WithTheTipRead()}; }
 
 double Rounded(double angle, double quantum) { return quantum * std::round(angle / quantum); }
 
-/// The elastic arm with counted angles and filtered modal coordinates.
+/// The elastic arm with quantised angles and filtered modal coordinates.
 class Plant {
  public:
   explicit Plant(const ArmParameters& p)
@@ -68,7 +68,7 @@ class Plant {
     return z;
   }
 
-  /// Behind the filter of an accelerometer.
+  /// Acceleration of the tip behind the filter of an accelerometer.
   double tip_m_s2() const { return tip_m_s2_; }
 
  private:
@@ -91,9 +91,9 @@ Vector2d MoveTorque(int k) {
   return {3.0 * s, 0.6 * s};
 }
 
-// 5e-8 of the state measured, 4e-7 of the NIS: both programs difference by 1e-6. The design study
-// does not print the start's standard deviations of the motion: those of PayloadFilterFor are the
-// only decades (in halves) that reproduce the first sample of its trace, and they do to 1e-9.
+// 5e-8 of the state measured, 4e-7 of the NIS: both programs use differences of 1e-6. The design
+// study does not print the start's standard deviations of the motion: those of PayloadFilterFor are
+// the only decades (in halves) that reproduce the first sample of its trace; they do to 1e-9.
 TEST(PayloadFilter, AgreesWithTheGoldenRun) {
   const auto golden = GoldenFile("beyond-golden.json");
   PayloadFilter filter = StudyFilter();
@@ -117,7 +117,7 @@ TEST(PayloadFilter, AgreesWithTheGoldenRun) {
   EXPECT_EQ(k, 60u);
 }
 
-// What the filter's own model shows after `x`, to the bit: of `torque` at the end of the sample.
+// Reading by the filter's own model after `x`, to the bit: with `torque` at the end of the sample.
 PayloadFilter::Reading ShownBy(const GaugedState& x, const Vector2d& torque, double payload_kg,
                                bool tip_is_read) {
   const PayloadFilterConfig config = WithTheTipRead();
@@ -134,12 +134,12 @@ PayloadFilter::Reading ShownBy(const GaugedState& x, const Vector2d& torque, dou
   return reading;
 }
 
-// To first order: 0.02 N m more on both joints, beside a filter that really has them, with and
-// without the tip's accelerometer. The arm is just as the model, and nothing holds its joints: so
-// the gains of the two, which follow the innovations, are all but the same. What is left of the
-// states is that the transition is not quite the stepper's derivative: 0.08 with a tenth of the
-// torque too.
-TEST(PayloadFilter, ARivalIsTheFilterWithAnotherTorque) {
+// To first order: 0.02 N m more on both joints, compared with a filter that has that torque, with
+// and without the tip's accelerometer. The arm equals the model, and no friction holds its joints:
+// so the gains of the two, which depend on the innovations, are nearly the same. The remaining
+// difference of the states is that the transition is not exactly the stepper's derivative: 0.08,
+// with a tenth of the torque too.
+TEST(PayloadFilter, AHypothesisEqualsAFilterWithAnotherTorque) {
   PayloadFilterConfig config = WithTheTipRead();
   config.friction_start_nm = config.friction_start_sigma_nm = config.friction_walk_nm = {};
   const double payload_kg = config.payload_start_kg;
@@ -172,7 +172,7 @@ TEST(PayloadFilter, ARivalIsTheFilterWithAnotherTorque) {
   }
 }
 
-TEST(PayloadFilter, GivesWayToARivalWithItsMotionAndLearnsAgain) {
+TEST(PayloadFilter, SwitchingCopiesTheMotionAndRestartsThePayloadEstimate) {
   Plant plant(RigWith(0.6));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 60; ++k) {
@@ -197,11 +197,11 @@ TEST(PayloadFilter, GivesWayToARivalWithItsMotionAndLearnsAgain) {
     filter.Update(Held(MoveTorque(k)),
                   {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
   }
-  EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.03) << "and learns again";
+  EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.03) << "the payload is estimated again";
 }
 
 // docs/theory/payload.md 6.2: within 0.03 kg at the end of a run.
-TEST(PayloadFilter, FindsThePayloadOfTheSimulatedArm) {
+TEST(PayloadFilter, EstimatesThePayloadOfTheSimulatedArm) {
   for (const double payload_kg : {0.0, 0.1, 0.3, 0.6, 1.0}) {
     Plant plant(RigWith(payload_kg));
     PayloadFilter filter = StudyFilter();
@@ -214,8 +214,8 @@ TEST(PayloadFilter, FindsThePayloadOfTheSimulatedArm) {
 }
 
 // After a fifth of a second of a move, where the gauges' filters still lag: with the accelerometer
-// the payload is nearer, and at the end as near as without it.
-TEST(PayloadFilter, TheTipsAccelerationFindsThePayloadSooner) {
+// the estimate is closer, and at the end as close as without it.
+TEST(PayloadFilter, TheTipAccelerationSpeedsUpThePayloadEstimate) {
   double early_with = 0.0, early_without = 0.0;
   for (const double payload_kg : {0.0, 0.1, 0.3, 0.6, 1.0}) {
     Plant plant(RigWith(payload_kg));
@@ -234,8 +234,8 @@ TEST(PayloadFilter, TheTipsAccelerationFindsThePayloadSooner) {
   EXPECT_LT(early_with, 0.8 * early_without);
 }
 
-// The other sign, or another unit, would be no reading of this arm.
-TEST(PayloadFilter, TheTipsAccelerationIsWhatTheModelExpects) {
+// Detects a wrong sign or unit of the accelerometer.
+TEST(PayloadFilter, TheTipAccelerationAgreesWithTheModel) {
   Plant plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   double squares = 0.0, reading_squares = 0.0;
@@ -244,15 +244,15 @@ TEST(PayloadFilter, TheTipsAccelerationIsWhatTheModelExpects) {
     const auto& e =
         filter.Update(Held(MoveTorque(k)),
                       {.z = z, .good = PayloadFilter::kAllGood, .tip_m_s2 = plant.tip_m_s2()});
-    if (k < 40) continue;  // until the payload is found
+    if (k < 40) continue;  // until the payload estimate has converged
     squares += e.tip_innovation_m_s2 * e.tip_innovation_m_s2;
     reading_squares += plant.tip_m_s2() * plant.tip_m_s2();
   }
   EXPECT_LT(squares, 0.02 * reading_squares);
 }
 
-// Innovation and NIS are of the eight outputs, whatever the accelerometer shows.
-TEST(PayloadFilter, AReadingThatIsMissingCountsForNothingInThatSample) {
+// Innovation and NIS belong to the eight outputs, for any reading of the accelerometer.
+TEST(PayloadFilter, AMissingTipReadingHasNoEffectInItsSample) {
   Plant plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 20; ++k) {
@@ -273,7 +273,7 @@ TEST(PayloadFilter, AReadingThatIsMissingCountsForNothingInThatSample) {
   EXPECT_EQ(with.innovation, without.innovation);
   EXPECT_NE(with.state.v, without.state.v);
   EXPECT_LT(with.payload_sigma_kg, without.payload_sigma_kg);
-  // A frame without anything, and the accelerometer alone.
+  // A frame without any reading, and one with the accelerometer only.
   PayloadFilter lost = filter, alone = filter;
   lost.Update(Held(MoveTorque(20)), {.z = z, .good = 0});
   alone.Update(Held(MoveTorque(20)), {.z = z, .good = 0, .tip_m_s2 = nine.tip_m_s2});
@@ -281,9 +281,9 @@ TEST(PayloadFilter, AReadingThatIsMissingCountsForNothingInThatSample) {
   EXPECT_EQ(lost.estimate().innovation, alone.estimate().innovation);
 }
 
-// A gain h / (s + R) takes h^2 / (s + R) of the variance. Two sensors of different noise tell h by
-// what the same reading does to the payload.
-TEST(PayloadFilter, AReadingTakesItsShareOfTheVariance) {
+// An update with gain h / (s + R) reduces the variance by h^2 / (s + R). Two sensors of different
+// noise give h from the effect of the same reading on the payload.
+TEST(PayloadFilter, AReadingReducesTheVarianceAsPredicted) {
   const RigidJointStepper stepper(RigidJointArm(ThesisRig()), kPeriod_s, kGauge_hz);
   PayloadFilterConfig fine = WithTheTipRead(), coarse = fine;
   fine.tip_sigma_m_s2 = 0.3;
@@ -305,12 +305,12 @@ TEST(PayloadFilter, AReadingTakesItsShareOfTheVariance) {
   const auto variance = [](const PayloadFilter& filter) {
     return filter.estimate().payload_sigma_kg * filter.estimate().payload_sigma_kg;
   };
-  EXPECT_GT(K * h, 0.1 * variance(none)) << "the reading says nothing";
+  EXPECT_GT(K * h, 0.1 * variance(none)) << "the reading has too little effect";
   EXPECT_NEAR(variance(none) - variance(with_fine), K * h, 1e-6 * K * h);
 }
 
-// 40 m/s^2 beside the truth, once: a broken wire. The gate leaves a twentieth of what it would do.
-TEST(PayloadFilter, AnAccelerometersGlitchHardlyMovesTheEstimate) {
+// 40 m/s^2 beside the true value, once: a broken wire. The gate leaves a twentieth of the effect.
+TEST(PayloadFilter, AnAccelerometerOutlierHardlyMovesTheEstimate) {
   Plant plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 60; ++k) {
@@ -329,11 +329,11 @@ TEST(PayloadFilter, AnAccelerometersGlitchHardlyMovesTheEstimate) {
   EXPECT_LT((hit.state.v - clean.state.v).norm(), 0.05);
 }
 
-TEST(PayloadFilter, LearnsNoPayloadAtRest) {
+TEST(PayloadFilter, ThePayloadIsNotUpdatedAtRest) {
   PayloadFilter filter = StudyFilter();
   Outputs z = Outputs::Zero();
   for (int k = 0; k < 200; ++k) {
-    z[3] = k % 20 < 10 ? 0.004 : -0.004;  // play
+    z[3] = k % 20 < 10 ? 0.004 : -0.004;  // backlash
     filter.Update(Held(Vector2d::Zero()), {.z = z, .good = PayloadFilter::kAllGood});
     ASSERT_EQ(filter.estimate().payload_kg, StudyPayload().payload_start_kg) << k;
   }
@@ -354,8 +354,8 @@ TEST(PayloadFilter, PredictsThroughLostFrames) {
   EXPECT_EQ(e.innovation, Outputs::Zero());
 }
 
-// One channel that jumps by 0.5 rad for a sample: the gate leaves a hundredth of the damage.
-TEST(PayloadFilter, OneGlitchHardlyMovesTheEstimate) {
+// One channel that jumps by 0.5 rad for a sample: the gate leaves a hundredth of the error.
+TEST(PayloadFilter, OneOutlierHardlyMovesTheEstimate) {
   Plant plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 60; ++k) {
@@ -374,7 +374,7 @@ TEST(PayloadFilter, OneGlitchHardlyMovesTheEstimate) {
   EXPECT_NEAR(hit, clean, 0.005);
 }
 
-TEST(PayloadFilter, AMoveOpensThePayloadAgain) {
+TEST(PayloadFilter, AMoveRaisesThePayloadVariance) {
   Plant plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 140; ++k) {
@@ -386,9 +386,9 @@ TEST(PayloadFilter, AMoveOpensThePayloadAgain) {
   EXPECT_DOUBLE_EQ(filter.estimate().payload_sigma_kg, 0.1);
 }
 
-// A model of a light arm answers a torque so much more than one of a heavy arm that a filter sure
-// of no load would find a fraction of a kilogram, and be sure of that.
-TEST(PayloadFilter, NoMoveBeginsLighterThanTheFirst) {
+// A model of a light arm responds to a torque so much more than that of a heavy arm that a filter
+// with a small variance at 0 kg would converge to a fraction of a kilogram, overconfidently.
+TEST(PayloadFilter, NoMoveStartsBelowTheFirstPayloadEstimate) {
   for (const double payload_kg : {0.0, 0.6}) {
     Plant plant(RigWith(payload_kg));
     PayloadFilter filter = StudyFilter();
@@ -404,8 +404,8 @@ TEST(PayloadFilter, NoMoveBeginsLighterThanTheFirst) {
   }
 }
 
-// The load is there all the same: taken for dropped, it is found again.
-TEST(PayloadFilter, ALoadTakenForDroppedIsFoundAgainFromNothing) {
+// The payload is still there: assumed lost, it is estimated again.
+TEST(PayloadFilter, APayloadAssumedLostIsEstimatedAgainFromZero) {
   Plant plant(RigWith(0.6));
   PayloadFilter filter = StudyFilter();
   const auto sample = [&](int k) {
@@ -420,16 +420,16 @@ TEST(PayloadFilter, ALoadTakenForDroppedIsFoundAgainFromNothing) {
   EXPECT_EQ(filter.estimate().payload_sigma_kg, 0.1);
   EXPECT_EQ(filter.estimate().state.q, before.state.q);
   EXPECT_EQ(filter.estimate().friction_nm, before.friction_nm);
-  EXPECT_EQ(filter.mean_nis(), 8.0) << "what contradicted is dealt with";
+  EXPECT_EQ(filter.mean_nis(), 8.0) << "the NIS average restarts";
   for (int k = 140; k < 280; ++k) sample(k);
   EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.05);
 
   filter.EndMove();
   filter.AssumePayloadLost();
-  EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.05) << "at rest somebody leans on the arm";
+  EXPECT_NEAR(filter.estimate().payload_kg, 0.6, 0.05) << "an external force acts at rest";
 }
 
-TEST(PayloadFilter, LearnsNothingOfTheArmBetweenTwoMoves) {
+TEST(PayloadFilter, PayloadAndFrictionAreNotUpdatedBetweenMoves) {
   Plant plant(RigWith(0.6));
   PayloadFilter filter = StudyFilter();
   filter.EndMove();
@@ -440,7 +440,7 @@ TEST(PayloadFilter, LearnsNothingOfTheArmBetweenTwoMoves) {
   for (int k = 0; k < 30; ++k) sample(k);
   EXPECT_EQ(filter.estimate().payload_kg, StudyPayload().payload_start_kg);
   EXPECT_EQ(filter.estimate().friction_nm, StudyPayload().friction_start_nm);
-  EXPECT_GT(std::fabs(filter.estimate().state.q[0]), 0.01) << "the motion is still followed";
+  EXPECT_GT(std::fabs(filter.estimate().state.q[0]), 0.01) << "the motion is still estimated";
   filter.BeginMove();
   for (int k = 30; k < 60; ++k) sample(k);
   EXPECT_NE(filter.estimate().payload_kg, StudyPayload().payload_start_kg);

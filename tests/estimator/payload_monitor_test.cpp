@@ -1,4 +1,4 @@
-// What is said about the payload that is found: when each doubt comes and when it goes.
+// Warnings of the payload estimate: when each is raised and when it is cleared.
 
 #include "estimator/payload_monitor.h"
 
@@ -32,7 +32,7 @@ std::uint32_t DoubtsAfterAMove(double sigma_kg, PayloadMonitor* supervisor) {
   return supervisor->Judge(Found(0.3, sigma_kg), kRightNis, false).warnings;
 }
 
-TEST(PayloadMonitor, TellsWhatTheFilterFound) {
+TEST(PayloadMonitor, ReportsTheEstimateOfTheFilter) {
   const PayloadKnowledge known = Monitor().Judge(Found(0.3, 0.02), 9.0, true);
   EXPECT_EQ(known.payload_kg, 0.3);
   EXPECT_EQ(known.payload_sigma_kg, 0.02);
@@ -41,7 +41,7 @@ TEST(PayloadMonitor, TellsWhatTheFilterFound) {
   EXPECT_EQ(known.warnings, 0u);
 }
 
-TEST(PayloadMonitor, APayloadAtItsBoundIsDoubtedAsLongAsItIsThere) {
+TEST(PayloadMonitor, WarnsWhileThePayloadIsAtItsBound) {
   for (const bool moving : {true, false}) {
     PayloadMonitor supervisor = Monitor();
     EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
@@ -51,8 +51,8 @@ TEST(PayloadMonitor, APayloadAtItsBoundIsDoubtedAsLongAsItIsThere) {
   }
 }
 
-// Where SchedulingPayload gives the robust gains and nothing else: no earlier, and no later.
-TEST(PayloadMonitor, AModelIsDoubtedWhileItsInnovationsAreFarTooLarge) {
+// At the same NIS at which SchedulingPayload gives the robust gains only.
+TEST(PayloadMonitor, WarnsWhileTheInnovationsContradictTheModel) {
   for (const bool moving : {true, false}) {
     PayloadMonitor supervisor = Monitor();
     EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kModelWrongNis, moving).warnings, 0u);
@@ -62,20 +62,23 @@ TEST(PayloadMonitor, AModelIsDoubtedWhileItsInnovationsAreFarTooLarge) {
   }
 }
 
-TEST(PayloadMonitor, AMoveThatLeftThePayloadUnknownIsDoubtedUntilTheNextBegins) {
+TEST(PayloadMonitor, WarnsAfterAMoveWithoutObservabilityUntilTheNextBegins) {
   PayloadMonitor supervisor = Monitor();
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u) << "it is not over";
+  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u)
+      << "the move is not over";
   for (const double sigma_kg : {0.1, 0.4, 0.01}) {
     EXPECT_EQ(supervisor.Judge(Found(0.3, sigma_kg), kRightNis, false).warnings,
               static_cast<std::uint32_t>(kPayloadNotObservable))
-        << sigma_kg << ": what was judged when the move ended holds";
+        << sigma_kg << ": the result at the end of the move holds";
   }
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u) << "the next one";
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.099), kRightNis, false).warnings, 0u) << "showed it";
+  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u)
+      << "the next move begins";
+  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.099), kRightNis, false).warnings, 0u)
+      << "the payload was observable";
 }
 
-// By a walk of 3 g a sample the standard deviation passes 0.1 kg after 22 s at 50 Hz.
-TEST(PayloadMonitor, ALongRestRaisesNoDoubt) {
+// With a random walk of 3 g per sample the standard deviation exceeds 0.1 kg after 22 s at 50 Hz.
+TEST(PayloadMonitor, ALongRestRaisesNoWarning) {
   PayloadMonitor supervisor = Monitor();
   EXPECT_EQ(DoubtsAfterAMove(0.02, &supervisor), 0u);
   double variance_kg2 = 0.02 * 0.02;
@@ -84,14 +87,14 @@ TEST(PayloadMonitor, ALongRestRaisesNoDoubt) {
     ASSERT_EQ(supervisor.Judge(Found(0.3, std::sqrt(variance_kg2)), kRightNis, false).warnings, 0u)
         << k;
   }
-  EXPECT_GT(std::sqrt(variance_kg2), kMoveSigma_kg) << "too short a rest: the test says nothing";
+  EXPECT_GT(std::sqrt(variance_kg2), kMoveSigma_kg) << "the rest is too short for this test";
 }
 
-TEST(PayloadMonitor, BeforeTheFirstMoveNothingIsDoubted) {
+TEST(PayloadMonitor, NoWarningBeforeTheFirstMove) {
   EXPECT_EQ(Monitor().Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);
 }
 
-TEST(PayloadMonitor, AResetForgetsTheMoveAndItsDoubt) {
+TEST(PayloadMonitor, AResetClearsTheMoveAndItsWarning) {
   PayloadMonitor supervisor = Monitor();
   ASSERT_NE(DoubtsAfterAMove(0.4, &supervisor), 0u);
   supervisor.Reset();
@@ -99,7 +102,7 @@ TEST(PayloadMonitor, AResetForgetsTheMoveAndItsDoubt) {
   supervisor.Judge(Found(0.2, 0.4), kRightNis, true);
   supervisor.Reset();
   EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u)
-      << "a move that a reset broke off has not ended";
+      << "a move that a reset aborted has not ended";
 }
 
 }  // namespace

@@ -21,9 +21,9 @@ std::vector<StrainStation> Stations(double length_m, int count) {
   return stations;
 }
 
-// A shape that is a polynomial itself: w = 3 u^2 - u^4. Its strains are known, and so is what the
-// least squares over the link makes of it: the normal equations, by a sum over points of their own.
-TEST(PolynomialFit, AShapeOfItsOwnKindIsProjectedOntoTheModesExactly) {
+// A shape that is a polynomial: w = 3 u^2 - u^4. Its strains are known, and so is the result of the
+// least squares over the link: the normal equations, by an independent sum over points.
+TEST(PolynomialFit, APolynomialShapeIsProjectedOntoTheModesExactly) {
   const LinkModes link = Link2Modes(ThesisRig(), 2);
   const double L = link.length_m;
   for (const int count : {5, 10}) {

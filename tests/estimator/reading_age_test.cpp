@@ -25,7 +25,7 @@ TEST(ReadingAge, ReadingsOfTheInstantStayValid) {
   EXPECT_EQ(frame.accelerometer_valid, 1u);
 }
 
-TEST(ReadingAge, TheLimitItselfIsYoungEnoughAndANanosecondMoreIsNot) {
+TEST(ReadingAge, AnAgeAtTheLimitIsValidAndANanosecondMoreIsNot) {
   for (const int side : {-1, 1}) {  // before the instant, after it
     const std::int64_t at_limit = kInstant + side * 10 * kMs;
     EXPECT_EQ(WithoutStaleReadings(FrameAt(at_limit), kInstant, 10 * kMs).counter_valid, 0b1111u);
@@ -36,7 +36,7 @@ TEST(ReadingAge, TheLimitItselfIsYoungEnoughAndANanosecondMoreIsNot) {
   }
 }
 
-// Each reading by its own offset: here the frame is young, two of its readings are not.
+// Each reading by its own offset: here the frame is recent, two of its readings are stale.
 TEST(ReadingAge, EachReadingIsJudgedByItsOwnOffset) {
   SensorFrame frame = FrameAt(kInstant);
   frame.counter_offset_ns[2] = -20'000'000;
@@ -52,7 +52,7 @@ TEST(ReadingAge, AnInvalidReadingStaysInvalid) {
   EXPECT_EQ(WithoutStaleReadings(frame, kInstant, 10 * kMs).counter_valid, 0b0101u);
 }
 
-TEST(ReadingAge, TellsWhetherTheGoodStrainsAreOfTheInstant) {
+TEST(ReadingAge, ReportsWhetherTheGoodStrainsAreOfTheInstant) {
   SensorFrame frame{};
   frame.sampled_at_ns = 100;
   frame.strain_valid = 0b111;
@@ -60,7 +60,7 @@ TEST(ReadingAge, TellsWhetherTheGoodStrainsAreOfTheInstant) {
   EXPECT_FALSE(StrainsAreOf(frame, 101));
   frame.strain_offset_ns[2] = 5;
   EXPECT_FALSE(StrainsAreOf(frame, 100));
-  frame.strain_valid = 0b011;  // a reading that is not good has no say
+  frame.strain_valid = 0b011;  // a reading that is not good is ignored
   EXPECT_TRUE(StrainsAreOf(frame, 100));
 }
 

@@ -56,8 +56,8 @@ TEST(KalmanFilter, StartsFromItsFirstMeasurementAtRest) {
   EXPECT_EQ((out.x - expected).cwiseAbs().maxCoeff(), 0.0);
 }
 
-// Fed what the model itself does, it makes no innovation: a filter whose prediction is wrong in any
-// term does. Round-off of 200 products of numbers up to 50: 1e-12 measured below.
+// With the outputs of its own model the innovation is zero: any wrong term of the prediction makes
+// it non-zero. Round-off of 200 products of numbers up to 50: 1e-12 measured below.
 TEST(KalmanFilter, OnItsOwnModelWithoutNoiseTheInnovationsVanish) {
   const KalmanDesign design = ThesisFilter();
   StateEstimator estimator = Kalman(design);
@@ -78,7 +78,7 @@ TEST(KalmanFilter, OnItsOwnModelWithoutNoiseTheInnovationsVanish) {
   }
 }
 
-// To torsional joints a rotor shows itself, free of what u/K would have it lead by.
+// With torsional joints the rotor output is the rotor angle itself, without the correction u/K.
 class TorsionalFilter : public testing::TestWithParam<StateLayout> {};
 INSTANTIATE_TEST_SUITE_P(NominalModels, TorsionalFilter, testing::Values(kT12, kT16),
                          [](const auto& shown) { return std::string(NameOf(shown.param)); });
@@ -109,7 +109,7 @@ TEST_P(TorsionalFilter, OnItsOwnModelWithoutNoiseTheInnovationsVanish) {
   }
 }
 
-TEST_P(TorsionalFilter, StartsWithJointsThatAreNotTwisted) {
+TEST_P(TorsionalFilter, StartsWithUntwistedJoints) {
   const StateLayout layout = GetParam();
   StateEstimator estimator = Kalman(ThesisFilter(ThesisSensors(), layout), layout);
   const auto out =
@@ -125,7 +125,7 @@ TEST_P(TorsionalFilter, StartsWithJointsThatAreNotTwisted) {
   EXPECT_EQ((out.x - expected).cwiseAbs().maxCoeff(), 0.0);
 }
 
-// The hubs feel the rotors through the springs, so that a filter can do without rotor encoders.
+// The rotors act on the hubs through the springs, so a filter works without rotor encoders.
 TEST_P(TorsionalFilter, NeedsNoRotorEncoders) {
   SensorConfig hubs_only = ThesisSensors();
   hubs_only.encoder.resize(2);
@@ -136,21 +136,21 @@ TEST_P(TorsionalFilter, NeedsNoRotorEncoders) {
   EXPECT_EQ(design.L.middleCols(2, 2).cwiseAbs().maxCoeff(), 0.0);
 }
 
-TEST_P(TorsionalFilter, WithoutAnyEncoderIsRefusedByTheModelsName) {
+TEST_P(TorsionalFilter, WithoutAnyEncoderIsRejectedNamingTheModel) {
   SensorConfig none = ThesisSensors();
   none.encoder.clear();
   try {
     ThesisFilter(none, GetParam());
-    ADD_FAILURE() << "gauges do not show where the arm points";
+    ADD_FAILURE() << "the gauges do not measure the angle of the arm";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find(NameOf(GetParam())), std::string::npos)
         << error.what();
   }
 }
 
-// The filter in the design against the filter of the simulated rig, in small steps beside the
-// nominal model. Both hold their input over a step: 2e-5 s of it makes 4e-6 of the peak, measured
-// 2e-8 of it at most thanks to the middle; 1e-5 allowed.
+// The filter in the design against the filter of the simulated rig, in small steps with the nominal
+// model. Holding the input over a step of 2e-5 s errs by 4e-6 of the peak; measured at most
+// 2e-8 of it, as the middle of the step is used; 1e-5 allowed.
 TEST(KalmanFilter, HasASecondOrderGaugeFilterInItsModel) {
   SensorConfig sensors = ThesisSensors();
   sensors.strain_input.filter_hz = 4.0;
@@ -180,7 +180,7 @@ TEST(KalmanFilter, HasASecondOrderGaugeFilterInItsModel) {
   EXPECT_LT(worst, 1e-5 * peak);
 }
 
-TEST(KalmanFilter, WithoutAnyMeasurementThePredictionStays) {
+TEST(KalmanFilter, WithoutAnyMeasurementTheEstimateIsThePrediction) {
   const KalmanDesign design = ThesisFilter();
   StateEstimator estimator = Kalman(design);
   estimator.Update(Angles(0.1, 0.2, 0.1, 0.2), Bend({0.03, 0.0, 0.01, 0.0}), {0.0, 0.0});
@@ -198,10 +198,11 @@ TEST(KalmanFilter, WithoutAnyMeasurementThePredictionStays) {
   }
 }
 
-// A torque that changes within the period: the time update goes through both pieces, each by a hold
-// of just its length. The mean torque has the impulse right and the lever not: the hubs are light
-// and the links swing, so here it misses th1 by 2.2e-3 rad, a count, and its rate by 0.5 rad/s.
-TEST(KalmanFilter, ATorqueThatChangesWithinThePeriodIsFollowed) {
+// A torque that changes within the period: the time update advances over both pieces, each by a
+// hold of exactly its length. The mean torque has the right impulse at the wrong time: the hubs are
+// light and the links vibrate, so it errs by 2.2e-3 rad in th1, a count, and by 0.5 rad/s in its
+// rate.
+TEST(KalmanFilter, ATorqueThatChangesWithinThePeriodIsIntegratedPiecewise) {
   const KalmanDesign design = ThesisFilter();
   StateEstimator estimator = Kalman(design), by_mean = Kalman(design);
   const std::array<double, 2> before = {2.0, -0.3}, after = {0.0, 0.3};
@@ -222,14 +223,15 @@ TEST(KalmanFilter, ATorqueThatChangesWithinThePeriodIsFollowed) {
                       second = ZeroOrderHold(design.A_rate, design.B_rate, kPeriod_s - first_s);
   x = first.A * x + first.B * Eigen::Vector2d(before[0], before[1]);
   x = second.A * x + second.B * Eigen::Vector2d(after[0], after[1]);
-  EXPECT_LT((out.x - x.head(12)).cwiseAbs().maxCoeff(), 1e-11);  // as in fractional_hold_test
+  EXPECT_LT((out.x - x.head(12)).cwiseAbs().maxCoeff(),
+            1e-11);  // as in fractional_zero_order_hold_test
   const Eigen::VectorXd missed = (mean.x - x.head(12)).cwiseAbs();
   EXPECT_NEAR(missed(0), 2.2e-3, 1e-4);
   EXPECT_NEAR(missed(6), 0.48, 0.02);
 }
 
-// One lost input is skipped and the others still count: the same as a correction by L without its
-// column.
+// One lost input is skipped and the others are still used: the same as a correction by L without
+// its column.
 TEST(KalmanFilter, ALostMeasurementOnlyLosesItsOwnColumn) {
   const KalmanDesign design = ThesisFilter();
   for (Eigen::Index lost = 0; lost < 8; ++lost) {
@@ -243,7 +245,7 @@ TEST(KalmanFilter, ALostMeasurementOnlyLosesItsOwnColumn) {
     if (lost < 4) {
       counters.good &= ~(1u << static_cast<unsigned>(lost));
       seen(lost) = 0.0;
-    } else {  // a link's two coordinates come and go together
+    } else {  // a link's two coordinates are valid together
       const std::size_t link = lost < 6 ? 0 : 1;
       modes.valid[link] = false;
       seen.segment(4 + 2 * static_cast<Eigen::Index>(link), 2).setZero();
@@ -260,10 +262,10 @@ TEST(KalmanFilter, TheGainColumnOfAnAbsentEncoderIsZero) {
   const KalmanDesign design = ThesisFilter(hubs_only);
   EXPECT_EQ(design.L.middleCols(2, 2).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_GT(design.L.col(0).cwiseAbs().maxCoeff(), 0.0);
-  // The hubs then count for more than when the rotors help.
+  // The hubs then have larger gains than with rotor encoders.
   const KalmanDesign with = ThesisFilter();
   EXPECT_GT(design.L(0, 0), with.L(0, 0));
-  // And the filter is still a filter.
+  // The filter is still stable.
   const Eigen::MatrixXd error =
       design.A * (Eigen::MatrixXd::Identity(16, 16) - design.L * design.C);
   EXPECT_LT(error.eigenvalues().cwiseAbs().maxCoeff(), 1.0);
@@ -298,7 +300,7 @@ TEST(DifferenceEstimator, RatesLagBehindByHalfASample) {
   }
 }
 
-TEST(DifferenceEstimator, OfATorsionalModelTakesTheRotorsAsTheyAre) {
+TEST(DifferenceEstimator, OfATorsionalModelUsesTheRotorAnglesUncorrected) {
   const KalmanDesign design = ThesisFilter(ThesisSensors(), kT12);
   StateEstimator estimator(ThesisEstimator(EstimatorKind::kDifference), GainsOf(design, kT12),
                            kPeriod_s, kStiffness);
@@ -310,7 +312,7 @@ TEST(DifferenceEstimator, OfATorsionalModelTakesTheRotorsAsTheyAre) {
   EXPECT_LT((out.x - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(DifferenceEstimator, ALostAngleGoesOnAtItsLastRate) {
+TEST(DifferenceEstimator, ALostAngleIsExtrapolatedAtItsLastRate) {
   StateEstimator estimator = Difference();
   for (int k = 0; k < 3; ++k) {
     estimator.Update(Angles(0.01 * k, 0, 0.01 * k, 0), Bend({}), {0.0, 0.0});
@@ -322,9 +324,9 @@ TEST(DifferenceEstimator, ALostAngleGoesOnAtItsLastRate) {
   EXPECT_NEAR(out.x(6), 0.5, 1e-12);
 }
 
-// How fast the gauges are expected to change: the slope of the prediction's own outputs, by a
-// central difference over +-0.1 ms around the sample. It errs by (w h)^2 / 6, 1e-4 at 300 rad/s.
-TEST(KalmanFilter, KnowsTheRatesOfItsPredictedModes) {
+// Predicted rates of the gauges: the derivative of the prediction's own outputs, by a central
+// difference over +-0.1 ms around the sample. Its error is (w h)^2 / 6, 1e-4 at 300 rad/s.
+TEST(KalmanFilter, PredictsTheRatesOfTheModes) {
   const KalmanDesign design = ThesisFilter();
   StateEstimator estimator = Kalman(design);
   EXPECT_EQ(estimator.ModalRates(PiecewiseTorque()), (std::array<double, 4>{}));

@@ -1,4 +1,4 @@
-// The fit against strain that ArmModel::Strain computes on its own way, and against the theory of
+// The fit against strain that ArmModel::Strain computes independently, and against the theory of
 // least squares.
 
 #include "estimator/strain_fit.h"
@@ -20,7 +20,7 @@ namespace {
 
 const std::array<double, 4> kBend = {0.05, 2e-4, -0.03, 1e-3};  // f11 f12 f21 f22, m
 
-// 24 bits over the same volts: a count is 2.4e-10 of strain, so rounding is out of the way.
+// 24 bits over the same volts: a count is 2.4e-10 of strain, so rounding is negligible.
 SensorConfig FineSensors() {
   SensorConfig sensors = ThesisSensors();
   sensors.strain_input.converter_bits = 24;
@@ -55,7 +55,7 @@ SensorFrame FrameOf(const SensorConfig& sensors, const std::vector<double>& stra
 }
 
 // Half a count of rounding on a channel, 1.2e-10 of strain, against curvatures of 5e-3 (1/m) a
-// metre: below 1e-7 m. A swapped mode or link is off by centimetres.
+// metre: below 1e-7 m. A swapped mode or link gives an error of centimetres.
 constexpr double kRounding_m = 1e-7;
 
 void ExpectRecovered(const SensorConfig& sensors, const EstimatorConfig& config,
@@ -74,7 +74,7 @@ void ExpectRecovered(const SensorConfig& sensors, const EstimatorConfig& config,
   EXPECT_NEAR(out.root_strain[1], arm.Strain(2, 0.0, q), 1e-9);
 }
 
-TEST(StrainFit, NoiseFreeStrainGivesTheModalCoordinatesBack) {
+TEST(StrainFit, NoiseFreeStrainReproducesTheModalCoordinates) {
   ExpectRecovered(FineSensors(), ThesisEstimator(), kBend);
   ExpectRecovered(FineSensors(), ThesisEstimator(), {-0.06, -3e-4, 0.02, -5e-4});
 }
@@ -89,8 +89,8 @@ TEST(StrainFit, FaceGainSignAndOffsetAreTakenIntoAccount) {
   ExpectRecovered(sensors, ThesisEstimator(), kBend);
 }
 
-// The thesis's five half bridges a link: rows of twice the gain.
-TEST(StrainFit, FiveHalfBridgesALinkAreFiveRows) {
+// The thesis's five half bridges per link: rows of twice the gain.
+TEST(StrainFit, FiveHalfBridgesPerLinkAreFiveRows) {
   SensorConfig sensors = FineSensors();
   std::vector<StrainChannelConfig> rows;
   for (std::size_t i = 0; i < sensors.strain.size(); i += 2) rows.push_back(sensors.strain[i]);
@@ -99,9 +99,9 @@ TEST(StrainFit, FiveHalfBridgesALinkAreFiveRows) {
   ExpectRecovered(sensors, ThesisEstimator(), kBend);
 }
 
-// A hub as stiff as a block ahead of the flexible part: the strain that may break the link is where
-// that begins, and the limit is about it.
-TEST(StrainFit, BehindAStiffHubTheRootStrainIsThatOfTheFlexiblePart) {
+// A nearly rigid hub section before the flexible part: the strain limit of the link applies where
+// the flexible part begins.
+TEST(StrainFit, WithAStiffHubSectionTheRootStrainIsThatOfTheFlexiblePart) {
   ArmParameters arm = ThesisRig();
   BeamSection hub = arm.link[0].section[0];
   hub.length_m = 0.1;
@@ -118,15 +118,15 @@ TEST(StrainFit, BehindAStiffHubTheRootStrainIsThatOfTheFlexiblePart) {
   }
   StrainFit fit(arm, sensors, ThesisEstimator());
   const FittedModes out = fit.Fit(FrameOf(sensors, strains));
-  // Just behind the joint of the sections; 1e-9 m of it bend by 1e-9 of the strain.
+  // Just behind the joint of the sections; 1e-9 m changes the strain by 1e-9 of it.
   const double expected = model.Strain(1, 0.1 + 1e-9, q);
   EXPECT_NEAR(out.root_strain[0], expected, 1e-5 * std::abs(expected));
   EXPECT_GT(std::abs(expected), 50.0 * std::abs(model.Strain(1, 0.0, q)));
 }
 
-// The thesis's polynomial has five coefficients for shapes that the direct fit knows. Measured: the
-// first modes come back to a micrometre; of link 2's second one 1.4 % appears in the first.
-TEST(StrainFit, ThePolynomialOfTheThesisComesCloseToTheModes) {
+// The thesis's polynomial fits five coefficients, the direct fit uses the mode shapes. Measured:
+// the first modes agree to a micrometre; 1.4 % of link 2's second one appears in the first.
+TEST(StrainFit, ThePolynomialOfTheThesisApproximatesTheModes) {
   const SensorConfig sensors = FineSensors();
   StrainFit fit(ThesisRig(), sensors, ThesisEstimator(EstimatorKind::kPolynomial));
   const FittedModes first = fit.Fit(FrameOf(sensors, Strains(sensors, {0.05, 0.0, -0.03, 0.0})));
@@ -139,7 +139,7 @@ TEST(StrainFit, ThePolynomialOfTheThesisComesCloseToTheModes) {
   EXPECT_TRUE(second.valid[0] && second.valid[1]);
 }
 
-// With a channel gone the direct fit takes over: the shape is known, the polynomial's is not.
+// Without one channel the direct fit is used: the polynomial needs all channels.
 TEST(StrainFit, ThePolynomialNeedsAllItsChannels) {
   const SensorConfig sensors = FineSensors();
   StrainFit fit(ThesisRig(), sensors, ThesisEstimator(EstimatorKind::kPolynomial));
@@ -148,7 +148,7 @@ TEST(StrainFit, ThePolynomialNeedsAllItsChannels) {
   EXPECT_NEAR(fit.Fit(frame).modal_m[2], 0.0, kRounding_m);
 }
 
-TEST(StrainFit, OneGaugeALinkFitsOneMode) {
+TEST(StrainFit, OneGaugePerLinkFitsOneMode) {
   SensorConfig sensors = FineSensors();
   sensors.strain = {sensors.strain[0], sensors.strain[10]};
   EstimatorConfig config = ThesisEstimator();
@@ -156,7 +156,7 @@ TEST(StrainFit, OneGaugeALinkFitsOneMode) {
   ExpectRecovered(sensors, config, {0.05, 0.0, -0.03, 0.0});
 }
 
-TEST(StrainFit, OneGaugeCannotFitTwoModesAndSaysSo) {
+TEST(StrainFit, OneGaugeForTwoModesIsReportedAsNotValid) {
   SensorConfig sensors = FineSensors();
   sensors.strain.erase(sensors.strain.begin() + 11, sensors.strain.end());  // link 2: one left
   StrainFit fit(ThesisRig(), sensors, ThesisEstimator());
@@ -166,7 +166,7 @@ TEST(StrainFit, OneGaugeCannotFitTwoModesAndSaysSo) {
   EXPECT_NEAR(out.modal_m[0], kBend[0], kRounding_m);
 }
 
-TEST(StrainFit, WithoutAReadingTheLastGoodFitStaysAndIsNotValid) {
+TEST(StrainFit, WithoutAReadingTheLastGoodFitIsKeptAndNotValid) {
   const SensorConfig sensors = FineSensors();
   StrainFit fit(ThesisRig(), sensors, ThesisEstimator());
   const SensorFrame frame = FrameOf(sensors, Strains(sensors, kBend));
@@ -180,7 +180,7 @@ TEST(StrainFit, WithoutAReadingTheLastGoodFitStaysAndIsNotValid) {
 }
 
 // The covariance of least squares, sigma^2 (H'H)^-1 with H the strains of unit coordinates, sigma
-// one count of noise and its rounding. 4000 frames: the mean's standard error is its own deviation
+// one count of noise and its rounding. 4000 frames: the mean's standard error is its deviation
 // / 63, five of them allowed; a variance's is 2.2 %, five of them 11 %, and so for correlations.
 TEST(StrainFit, UnderNoiseIsUnbiasedWithTheCovarianceOfLeastSquares) {
   const SensorConfig sensors = ThesisSensors();
@@ -225,10 +225,10 @@ TEST(StrainFit, UnderNoiseIsUnbiasedWithTheCovarianceOfLeastSquares) {
   }
 }
 
-// Weights: a channel of a tenth of the gain has a hundred times the variance, and must be believed
-// that much less. Bent by an error of 20 counts on that channel, the fit moves by a hundredth of
-// what an equal strain error on a good one does.
-TEST(StrainFit, AChannelCountsByTheInverseOfItsVariance) {
+// Weights: a channel of a tenth of the gain has a hundred times the variance, and must get that
+// much less weight. An error of 20 counts on that channel changes the fit by a hundredth of the
+// effect of an equal strain error on a good one.
+TEST(StrainFit, AChannelIsWeightedByTheInverseOfItsVariance) {
   const auto moved = [](double gain) {
     SensorConfig sensors = FineSensors();
     sensors.strain[2].gain_v_per_unit = gain;
@@ -237,7 +237,7 @@ TEST(StrainFit, AChannelCountsByTheInverseOfItsVariance) {
     StrainFit fit(ThesisRig(), sensors, ThesisEstimator());
     return fit.Fit(FrameOf(sensors, strains)).modal_m[0] - kBend[0];
   };
-  // Not exactly 1/100: the weak channel also leaves the others alone with the fit. Its leverage is
+  // Not exactly 1/100: the weak channel also changes the weight of the others. Its leverage is
   // below 0.4, so the ratio lies between 1/100 and 1/60.
   const double ratio = moved(500.0) / moved(5000.0);
   EXPECT_GT(ratio, 0.009);
@@ -245,7 +245,7 @@ TEST(StrainFit, AChannelCountsByTheInverseOfItsVariance) {
 }
 
 // A channel with a zero and a gain of its own reads the same strain once both are known.
-TEST(StrainFit, ACalibratedChannelReadsAsIfItWereRight) {
+TEST(StrainFit, ACalibratedChannelReadsTheTrueStrain) {
   const SensorConfig sensors = FineSensors();
   SensorFrame frame = FrameOf(sensors, Strains(sensors, kBend));
   Calibration calibration{};
@@ -259,19 +259,19 @@ TEST(StrainFit, ACalibratedChannelReadsAsIfItWereRight) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(out.modal_m[i], kBend[i], kRounding_m) << i;
 }
 
-// A multiplexer at 0.25 ms a channel on an arm that swings at w. With d_i = i dt and weights p_i of
-// the least-squares fit of f11 (the other coordinates at rest), the fit of what the channels read
-// is sum p_i exp(j w d_i) of the swing: wrong by |sum p_i (exp(j w d_i) - 1)|, and once every
-// reading is moved back along its slope, by |sum p_i (exp(j w d_i) - 1 - j w d_i)|. The p_i come
-// from the shapes by the normal equations, here.
+// A multiplexer at 0.25 ms per channel on an arm that vibrates at w. With d_i = i dt and weights
+// p_i of the least-squares fit of f11 (the other coordinates at rest), the fit of the readings is
+// sum p_i exp(j w d_i) of the amplitude: its error is |sum p_i (exp(j w d_i) - 1)|, and after the
+// skew correction |sum p_i (exp(j w d_i) - 1 - j w d_i)|. The p_i are computed here from the shapes
+// by the normal equations.
 class SkewedFit : public testing::TestWithParam<double> {};  // Hz
 
-TEST_P(SkewedFit, ErrsByTheCurvatureThatIsLeft) {
+TEST_P(SkewedFit, TheResidualErrorIsTheCurvature) {
   constexpr double kSkew_s = 0.25e-3, kSwing_m = 0.05;
   const double w = 2.0 * M_PI * GetParam();
   SensorConfig sensors = FineSensors();
   EstimatorConfig config = ThesisEstimator();
-  config.strain_family_limit = 1.0;  // skew is not a broken channel
+  config.strain_family_limit = 1.0;  // skew must not count as a broken channel
   StrainFit fit(ThesisRig(), sensors, config);
   fit.Reset({});
   Eigen::MatrixXd shape(10, 2);
@@ -303,9 +303,9 @@ TEST_P(SkewedFit, ErrsByTheCurvatureThatIsLeft) {
     worst_moved =
         std::max(worst_moved, std::abs(fit.Fit(frame, 0, {rate, 0.0, 0.0, 0.0}).modal_m[0] - f11));
   }
-  std::printf("  %4.1f Hz: off by %.2f %% of the swing, moved back by %.3f %%\n", GetParam(),
+  std::printf("  %4.1f Hz: error %.2f %% of the amplitude, skew-corrected %.3f %%\n", GetParam(),
               100.0 * worst_raw / kSwing_m, 100.0 * worst_moved / kSwing_m);
-  // The grid of 360 phases meets the peak within 4e-5 of it; rounding as above.
+  // The grid of 360 phases contains the peak within 4e-5 of it; rounding as above.
   EXPECT_NEAR(worst_raw, std::abs(raw) * kSwing_m, 1e-4 * worst_raw + kRounding_m);
   EXPECT_NEAR(worst_moved, std::abs(moved) * kSwing_m, 1e-4 * worst_moved + kRounding_m);
   EXPECT_LT(worst_moved, 0.2 * worst_raw);
@@ -316,8 +316,8 @@ INSTANTIATE_TEST_SUITE_P(Frequencies, SkewedFit, testing::Values(1.0, 6.7, 8.8, 
                            return "MilliHertz" + std::to_string(std::lround(1e3 * shown.param));
                          });
 
-// What counts is when a reading was taken, not how the frame says it.
-TEST(StrainFit, AFrameThatIsLateAsAWholeIsMovedBackAsAWhole) {
+// Only the instant of a reading matters, not its split into frame instant and offset.
+TEST(StrainFit, AFrameThatIsLateAsAWholeIsCorrectedAsAWhole) {
   const SensorConfig sensors = FineSensors();
   StrainFit fit(ThesisRig(), sensors, ThesisEstimator());
   fit.Reset({});

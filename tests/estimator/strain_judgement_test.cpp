@@ -1,5 +1,5 @@
-// One bad channel among ten: found, named and left out in the very sample that shows it, and the
-// fit of the others is what it would be without that channel.
+// One bad channel among ten: detected, named and excluded in the first sample that shows it; the
+// fit of the others is the fit without that channel.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 const std::array<double, 4> kBent = {0.03, 1e-4, -0.02, 5e-4};
 
-// A count is 0.98 microstrain. Rounding of half a count on every channel moves a coordinate by
+// A count is 0.98 microstrain. Rounding of half a count on every channel changes a coordinate by
 // 5e-5 m (measured, f21 without its root channel); a bad channel that stays in the fit, by 1e-3 m
 // and more.
 constexpr double kCoarseRounding_m = 1e-4;
@@ -47,7 +47,7 @@ class StrainJudgement : public testing::Test {
   const ArmModel arm_{ThesisRig(), ModeCount{.link1 = 2, .link2 = 2}};
 };
 
-TEST_F(StrainJudgement, ASaturatedChannelIsLeftOutAtOnce) {
+TEST_F(StrainJudgement, ASaturatedChannelIsExcludedInTheSameSample) {
   for (std::size_t i = 0; i < 20; ++i) {
     for (const std::int32_t rail : {-2048, 2047}) {
       StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
@@ -62,8 +62,8 @@ TEST_F(StrainJudgement, ASaturatedChannelIsLeftOutAtOnce) {
   }
 }
 
-// 1000 microstrain out of family, the limit being 400; every channel, both ways.
-TEST_F(StrainJudgement, AWildChannelIsLeftOutAtOnce) {
+// 1000 microstrain from the fit, the limit being 400; every channel, both signs.
+TEST_F(StrainJudgement, AnOutlierChannelIsExcludedInTheSameSample) {
   for (std::size_t i = 0; i < 20; ++i) {
     for (const int sign : {-1, 1}) {
       StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
@@ -78,8 +78,8 @@ TEST_F(StrainJudgement, AWildChannelIsLeftOutAtOnce) {
   }
 }
 
-// Two wild ones a link are the most that are removed.
-TEST_F(StrainJudgement, TwoWildChannelsOfALinkAreLeftOut) {
+// At most two outliers per link are removed.
+TEST_F(StrainJudgement, TwoOutlierChannelsOfALinkAreExcluded) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
   SensorFrame frame = FrameOf(kBent);
   frame.strain[5] += 1500;
@@ -89,9 +89,9 @@ TEST_F(StrainJudgement, TwoWildChannelsOfALinkAreLeftOut) {
   ExpectBend(out, kBent, 5);
 }
 
-// A channel that holds its value while its link bends: stuck once the fit at its station has moved
-// by the limit of 100 microstrain, long before it is out of family.
-TEST_F(StrainJudgement, AStuckChannelIsLeftOutInTheSampleThatShowsIt) {
+// A channel that is constant while its link bends: stuck once the fit at its station has changed by
+// the limit of 100 microstrain, long before it is an outlier.
+TEST_F(StrainJudgement, AStuckChannelIsExcludedInTheSampleThatShowsIt) {
   for (std::size_t i = 0; i < 20; ++i) {
     StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
     const SensorFrame rest = FrameOf({});
@@ -99,21 +99,21 @@ TEST_F(StrainJudgement, AStuckChannelIsLeftOutInTheSampleThatShowsIt) {
     bool found = false;
     for (int k = 1; k <= 200 && !found; ++k) {
       const double share = 0.01 * k;
-      // Bent until even the stations near the tips have moved.
+      // Bent until the strain at the stations near the tips has changed too.
       const std::array<double, 4> bend = {share * 0.03, 0.0, share * -0.03, 0.0};
       SensorFrame frame = FrameOf(bend);
       frame.strain[i] = rest.strain[i];
       const bool others_saturated = std::abs(frame.strain[0]) >= 2047;
-      ASSERT_FALSE(others_saturated) << "channel " << i << " never moved enough";
+      ASSERT_FALSE(others_saturated) << "channel " << i << " never changed enough";
       const FittedModes out = fit.Fit(frame);
       if (out.stuck == 0) continue;
       found = true;
       EXPECT_EQ(out.stuck, 1u << i);
-      EXPECT_EQ(out.outlier, 0u) << "stuck is noticed first";
+      EXPECT_EQ(out.outlier, 0u) << "stuck is detected first";
       EXPECT_EQ(out.used & (1u << i), 0u) << "channel " << i;
       ExpectBend(out, bend, i);
     }
-    // At the free ends there is hardly any strain: 102 counts are the limit, and some room.
+    // At the free ends there is hardly any strain: the limit is 102 counts, plus a margin.
     const bool moves_enough = std::abs(FrameOf({0.06, 0.0, -0.06, 0.0}).strain[i]) > 110;
     EXPECT_EQ(found, moves_enough) << i;
   }
@@ -124,7 +124,7 @@ TEST_F(StrainJudgement, ChannelsOfAnArmAtRestAreNotStuck) {
   for (int k = 0; k < 500; ++k) EXPECT_EQ(fit.Fit(FrameOf(kBent)).stuck, 0u);
 }
 
-TEST_F(StrainJudgement, ResetForgetsWhatWasStuck) {
+TEST_F(StrainJudgement, ResetClearsTheStuckDetection) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
   fit.Fit(FrameOf({}));
   SensorFrame frame = FrameOf(kBent);

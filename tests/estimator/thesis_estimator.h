@@ -11,7 +11,7 @@
 
 namespace flexarm {
 
-/// Of the joints of the simulated rig, N m/rad.
+/// Stiffness of the joints of the simulated rig, N m/rad.
 inline constexpr std::array<double, 2> kStiffness = {761.59, 497.96};
 
 /// The estimator of the simulated rig (docs/theory/control-law.md 7.3).

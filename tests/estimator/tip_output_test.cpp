@@ -1,5 +1,5 @@
-// What the filter's model says of the tip's acceleration: against the equation of motion, and its
-// slopes against differences.
+// The predicted acceleration of the tip: against the equation of motion, and its derivatives
+// against differences.
 
 #include "estimator/tip_output.h"
 
@@ -18,7 +18,7 @@ using Vector = RigidJointArm::Vector;
 
 constexpr std::array<double, 2> kProbe_nm = {1.6e-3, 1e-4};
 
-// Both hubs slide, the links are bent and swing.
+// Both hubs slide, the links are bent and vibrate.
 GaugedState Swinging() {
   GaugedState x;
   x.q << 0.3, -0.7, 0.02, -0.001, 0.03, 0.002;
@@ -45,27 +45,27 @@ double OfTheEquation(const RigidJointArm& arm, const GaugedState& x, const Sampl
   return arm.TipAcceleration(x.q, x.v, a);
 }
 
-TEST(TipOutput, IsTheEquationOfMotionsAcceleration) {
+TEST(TipOutput, IsTheAccelerationOfTheEquationOfMotion) {
   const RigidJointStepper stepper(RigidJointArm(ThesisRig()), 0.02, kGauge_hz);
   const double shown = TipOutputAt(stepper, 0.0, Swinging(), Inputs(), kProbe_nm).m_s2;
   EXPECT_NEAR(shown, OfTheEquation(stepper.arm(), Swinging(), Inputs()), 1e-9);
   EXPECT_GT(std::fabs(shown), 1.0);
 }
 
-// The lag of a 200 Hz filter: what was, 0.8 ms ago.
+// The lag of a 200 Hz filter: the acceleration 0.8 ms ago.
 TEST(TipOutput, IsOfTheLagBeforeTheInstant) {
   const RigidJointArm arm(ThesisRig());
   const RigidJointStepper fine(arm, 8e-4, kGauge_hz, 64), loop(arm, 0.02, kGauge_hz);
   const GaugedState before = Swinging(), now = fine.Advance(before, Inputs());
   const double was = OfTheEquation(arm, before, Inputs()), is = OfTheEquation(arm, now, Inputs());
   const double shown = TipOutputAt(loop, 8e-4, now, Inputs(), kProbe_nm).m_s2;
-  EXPECT_GT(std::fabs(is - was), 0.2) << "too slow to tell";
+  EXPECT_GT(std::fabs(is - was), 0.2) << "changes too slowly for this test";
   EXPECT_LT(std::fabs(shown - was), 0.2 * std::fabs(is - was));
 }
 
-// Of every state, payload, friction and torque, by central differences of the whole; forward ones
-// of 1e-6 (1e-3 kg, a hundredth of the friction) leave 1e-4 of the largest slope.
-TEST(TipOutput, SlopesAreDifferencesOfTheOutput) {
+// For every state, payload, friction and torque, by central differences of the whole; forward ones
+// of 1e-6 (1e-3 kg, a hundredth of the friction) err by 1e-4 of the largest derivative.
+TEST(TipOutput, DerivativesAgreeWithDifferencesOfTheOutput) {
   const RigidJointStepper stepper(RigidJointArm(ThesisRig()), 0.02, kGauge_hz);
   constexpr double kLag_s = 8e-4;
   const TipOutput out = TipOutputAt(stepper, kLag_s, Swinging(), Inputs(), kProbe_nm);
@@ -86,7 +86,7 @@ TEST(TipOutput, SlopesAreDifferencesOfTheOutput) {
     });
     EXPECT_NEAR(out.by_motion[i], slope, 2e-3 * largest * (i < 6 ? 1.0 : 0.1)) << i;
   }
-  EXPECT_EQ(out.by_motion[0], 0.0) << "turning the whole arm changes nothing";
+  EXPECT_EQ(out.by_motion[0], 0.0) << "rotating the whole arm changes nothing";
   const double by_payload =
       central(1e-3, [](double by, GaugedState*, SampleInputs* in) { in->payload_kg += by; });
   EXPECT_NEAR(out.by_payload, by_payload, 0.02 * std::fabs(by_payload));

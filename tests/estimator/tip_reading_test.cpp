@@ -20,14 +20,14 @@ TEST(TipReading, IsInMetresPerSecondSquaredWithItsSign) {
   EXPECT_DOUBLE_EQ(TipReading(Frame(-512), kConfig).value(), -12.5);
 }
 
-TEST(TipReading, IsNoneIfItWasNotRead) {
+TEST(TipReading, IsEmptyIfItWasNotRead) {
   SensorFrame frame = Frame(1024);
   frame.accelerometer_valid = 0;
   EXPECT_FALSE(TipReading(frame, kConfig).has_value());
 }
 
-// At the rail the tip may accelerate by anything from there on.
-TEST(TipReading, IsNoneAtARail) {
+// At an end of the range the acceleration may be larger.
+TEST(TipReading, IsEmptyAtAnEndOfTheRange) {
   EXPECT_FALSE(TipReading(Frame(2047), kConfig).has_value());
   EXPECT_FALSE(TipReading(Frame(-2048), kConfig).has_value());
   EXPECT_TRUE(TipReading(Frame(2046), kConfig).has_value());

@@ -3,7 +3,7 @@
 
 failures=0
 
-# check WHAT COMMAND..: says whether COMMAND succeeded; goes on either way.
+# check WHAT COMMAND..: reports whether COMMAND succeeded; continues in both cases.
 check() {
   local what=$1
   shift
@@ -19,7 +19,7 @@ refused() { ! "$@"; }  # for a command that must fail
 equal() { [[ $1 == "$2" ]] || { echo "  got '$1', expected '$2'"; return 1; }; }
 at_least() { (($1 >= $2)) || { echo "  got $1, expected at least $2"; return 1; }; }
 
-# within SECONDS COMMAND..: until COMMAND succeeds; 1 when the time is over.
+# within SECONDS COMMAND..: repeats COMMAND until it succeeds; 1 when the time is over.
 within() {
   local end=$((SECONDS + $1))
   shift

@@ -112,8 +112,8 @@ struct Bench {
   std::int64_t longest_ns = 0;
 };
 
-// What the amplifiers see, told by another program's eyes: a second descriptor. The driver keeps
-// its subdevices to itself, so only while it does not run.
+// The voltage at the amplifiers, read through a second descriptor. The driver locks its subdevices,
+// so this works only while it is closed.
 lsampl_t OutputCode(unsigned channel) {
   comedi_t* board = comedi_open(FromEnvironment("DAQ_BOARD").c_str());
   lsampl_t code = 0;
@@ -124,7 +124,7 @@ lsampl_t OutputCode(unsigned channel) {
   return code;
 }
 
-TEST(DaqInGuest, ABoardThatIsAnotherIsRefused) {
+TEST(DaqInGuest, ABoardOfAnotherTypeIsRefused) {
   ComediBoardConfig config = Board(ComediAcquisition::kStream);
   config.board = "pci-6221";
   Bench other(config);
@@ -149,7 +149,7 @@ TEST(DaqInGuest, ABoardThatIsAnotherIsRefused) {
   EXPECT_THROW(missing.device.Open(), HalError);
 }
 
-TEST(DaqInGuest, TorquesComeOutAsVoltsAndAreReadAsCounts) {
+TEST(DaqInGuest, TorquesAreWrittenAsVoltsAndReadAsCounts) {
   Bench bench(Board(ComediAcquisition::kSingle));
   bench.device.Open();
   ASSERT_EQ(bench.Exchange({.torque_nm = {12.0, 3.0}, .enabled = true}), BusStatus::kOk);
@@ -179,12 +179,12 @@ TEST(DaqInGuest, AStreamedReadingIsAsOldAsItsOffsetSays) {
     EXPECT_EQ(bench.frame.strain[2], -1);  // 32767: the driver's 0 V
   }
   std::printf("streamed readings: time off by %.2f ms at most\n", worst_us / 1e3);
-  // ScanClock's bound: half of interval, transfer and reading. Zero would be no stamp at all: the
-  // sawtooth goes round in 100 ms, the grid in 20.
+  // The bound of ScanClock: half of interval, transfer and reading. The sawtooth has a period of
+  // 100 ms, the grid of 20 ms.
   EXPECT_LE(worst_us, 4'600.0);
 }
 
-TEST(DaqInGuest, TheLoopsCallsDoNotAllocateAndKeepTheirTime) {
+TEST(DaqInGuest, ExchangesDoNotAllocateAndKeepTheirDeclaredTime) {
   for (const auto acquisition : {ComediAcquisition::kStream, ComediAcquisition::kSingle}) {
     Bench bench(Board(acquisition));
     bench.device.Open();
@@ -208,7 +208,7 @@ TEST(DaqInGuest, TheLoopsCallsDoNotAllocateAndKeepTheirTime) {
 }
 
 // daq.sh makes the board's buffer 64 KiB: 32768 samples.
-TEST(DaqInGuest, ABufferThatRunsOverIsNamedAndReconnectReadsAgain) {
+TEST(DaqInGuest, ABufferOverflowIsNamedAndReconnectReadsAgain) {
   ComediBoardConfig config = Board(ComediAcquisition::kStream);
   config.input->scan_interval_us = 250.0;
   config.input->convert_interval_us = 30.0;
@@ -224,7 +224,7 @@ TEST(DaqInGuest, ABufferThatRunsOverIsNamedAndReconnectReadsAgain) {
   EXPECT_EQ(bench.Exchange(), BusStatus::kOk);
 }
 
-TEST(DaqInGuest, NobodyElseWritesItsOutputsAndCloseTakesTheVoltageAway) {
+TEST(DaqInGuest, ItsOutputsAreLockedAndCloseSetsThemToZero) {
   Bench bench(Board(ComediAcquisition::kStream));
   bench.device.Open();
   ASSERT_EQ(bench.Exchange({.torque_nm = {12.0, 3.0}, .enabled = true}), BusStatus::kOk);
@@ -238,7 +238,7 @@ TEST(DaqInGuest, NobodyElseWritesItsOutputsAndCloseTakesTheVoltageAway) {
   comedi_close(other);
 }
 
-// Why the amplifiers hang on the charge pump: nobody takes the voltage away.
+// The reason for the charge pump at the amplifiers: the voltage stays.
 TEST(DaqInGuest, AnOutputKeepsItsVoltageWhenTheProcessIsKilled) {
   const pid_t child = fork();
   if (child == 0) {
@@ -251,7 +251,7 @@ TEST(DaqInGuest, AnOutputKeepsItsVoltageWhenTheProcessIsKilled) {
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(OutputCode(0), 32768U + 13107U);
-  Bench(Board(ComediAcquisition::kStream)).device.Open();  // whoever comes next does
+  Bench(Board(ComediAcquisition::kStream)).device.Open();  // the next process sets it to zero
   EXPECT_EQ(OutputCode(0), 32768U);
 }
 

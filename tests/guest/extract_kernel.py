@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes the uncompressed kernel out of a bzImage: emulated, it would unpack itself for seconds.
+"""Extracts the uncompressed kernel from a bzImage: under emulation, unpacking takes seconds.
 
 usage: extract_kernel.py BZIMAGE OUTPUT
 

@@ -22,7 +22,8 @@ cache=${cache:-$root/build/guest}
 
 headers=linux-headers-rt-amd64  # depends on the headers of the current real-time kernel
 
-# What the root image holds: a small system; what flexarm's programs load; what tests look with.
+# Contents of the root image: a small system, the libraries of flexarm's programs, tools of the
+# tests.
 guest_packages=(
   base-files base-passwd bash coreutils dash findutils grep iproute2 kmod libc-bin mawk mount passwd
   perl-base procps sed util-linux
@@ -30,7 +31,7 @@ guest_packages=(
   libfmt9 libnlopt0 libspdlog1.10 libsqlite3-0 libstdc++6 libsystemd0 libtomlplusplus3
   can-utils gpiod jq libcomedi0 libgpiod2 libmodbus5 rt-tests sqlite3 stress-ng
 )
-# Modules beside gpio-sim, for the root image and for the initial RAM disk.
+# Modules in addition to gpio-sim, for the root image and for the initial RAM disk.
 root_modules=(autofs4 can can-raw comedi comedi_parport comedi_test configfs vcan)
 boot_modules=(9p 9pnet_virtio crc32c_generic ext4 virtio_blk virtio_pci virtio_rng)
 
@@ -59,7 +60,7 @@ setup() {
     "$headers" >&2
 }
 
-# The inputs of build; a cache with the same stamp is up to date.
+# A hash of the inputs of build; a cache with the same stamp is up to date.
 stamp() {
   package_version
   kernel_release
@@ -71,7 +72,7 @@ download() {  # download PACKAGE NEW_NAME
   rmdir fetch
 }
 
-# Nothing is installed on the host but the headers.
+# Only the headers are installed on the host.
 make_kernel() {
   download "linux-image-$release=$version" image.deb
   mkdir kernel
@@ -87,7 +88,7 @@ make_gpio_sim() {
   source=${source%.*}
   download "$source=$version" source.deb
   mkdir gpio-sim
-  # tar stops once it has the three files: that breaks the pipe, as expected.
+  # tar stops after the three files, which breaks the pipe, as expected.
   (set +o pipefail
    dpkg-deb --fsys-tarfile source.deb 2>/dev/null | tar xO "./usr/src/$source.tar.xz" 2>/dev/null |
      tar xJ -C gpio-sim --strip-components=3 --occurrence=1 \
@@ -121,7 +122,7 @@ apt_sources() {
   fail "neither debian.sources nor sources.list in /etc/apt says where packages come from"
 }
 
-# systemd's services that only cost time in a machine that lives for a minute.
+# Masks systemd's services that only cost time in a machine that runs for a minute.
 mask_services() {
   local unit
   for unit in systemd-{udevd,udev-trigger,hwdb-update,timesyncd,firstboot,update-utmp}.service \
@@ -132,8 +133,8 @@ mask_services() {
   done
 }
 
-# Packages are unpacked, and their scripts not run, which takes a fifth of the time: what those
-# would do, and the guest needs, follows.
+# Packages are unpacked without running their scripts, which takes a fifth of the time. The steps of
+# the scripts that the guest needs follow.
 make_root() {
   local tree=$PWD/tree file
   local packages
@@ -197,7 +198,7 @@ build() {
   if ((EUID != 0)); then  # the image's files belong to root
     exec sudo --preserve-env=XDG_CACHE_HOME "$here/guest.sh" build
   fi
-  # An archive keeps no old kernels: once the current one is newer, its headers are fetched first.
+  # An archive keeps no old kernels: if the current one is newer, its headers are installed first.
   if ! apt-cache show "linux-image-$(kernel_release)=$(package_version)" >/dev/null 2>&1; then
     setup
   fi
@@ -240,7 +241,7 @@ run() {
   mkdir -p "$out"
   rm -f "$out/status"
   printf '%q ' "$@" >"$out/command"
-  # snapshot=on: what the guest writes to its root is forgotten.
+  # snapshot=on: the guest's writes to its root are discarded.
   timeout -k 3 "$limit_s" qemu-system-x86_64 -M q35 -cpu max "${cpu[@]}" -m 1024 -nodefaults \
     -display none -no-reboot -serial stdio -kernel "$cache/vmlinux" -initrd "$cache/initrd.cpio" \
     -drive "file=$cache/root.ext4,format=raw,if=virtio,snapshot=on" \
@@ -254,7 +255,7 @@ run() {
   local status=125
   if ((qemu == 124 || qemu == 137)); then
     status=124
-  elif ((qemu == 85)) && [[ -s $out/status ]]; then  # of guest_run.sh; 0 would be a panic
+  elif ((qemu == 85)) && [[ -s $out/status ]]; then  # from guest_run.sh; 0 would be a panic
     status=$(cat "$out/status")
   fi
   if ((status == 124 || status == 125)); then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Inside the guest: the kernel interfaces that drivers are tested with are there and work. Each
-# block also shows how its interface is brought up.
+# Inside the guest: the kernel interfaces for the tests of drivers exist and work. Each block also
+# shows how to set up its interface.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/check.sh"
 
@@ -18,13 +18,13 @@ sleep 0.5
 cansend vcan0 123#DEADBEEF
 wait $listener
 check "a CAN frame arrives" grep -q '123 *\[4\]  DE AD BE EF' can.txt
-ip link set vcan0 txqueuelen 10  # as the driver wants it
+ip link set vcan0 txqueuelen 10  # as the driver requires
 check "the CAN driver's tests pass on it" /mnt/share/hal_canopen_socketcan_test >driver.txt
 grep -vE '^\[ RUN|^$' driver.txt
 check "none of them was skipped" refused grep -q SKIPPED driver.txt
 
 echo "== GPIO lines of gpio-sim"
-modprobe gpio-sim  # before the mount: configfs is there only once something uses it
+modprobe gpio-sim  # before the mount: configfs exists only after a module uses it
 mountpoint -q /sys/kernel/config || mount -t configfs none /sys/kernel/config
 device=/sys/kernel/config/gpio-sim/plc
 mkdir -p $device/bank/line3
@@ -49,11 +49,11 @@ check "a driven line is seen outside" equal "$(cat "${line}5/value")" 1
 wait
 
 echo "== comedi"
-modprobe comedi_test  # attaches itself
-check "a DAQ board answers" ls /dev/comedi0
+modprobe comedi_test  # is attached automatically
+check "a DAQ board exists" ls /dev/comedi0
 
 echo "== the kernel's log"
 dmesg >dmesg.txt
 check "was read" grep -q 'Linux version' dmesg.txt
-check "has no complaint" refused grep -E 'WARNING:|BUG:|\bOops\b|Call Trace:' dmesg.txt
+check "has no warning" refused grep -E 'WARNING:|BUG:|\bOops\b|Call Trace:' dmesg.txt
 conclude

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs everything in this folder, each in a guest of its own, and compares what the guests leave
-# with this machine. Installs nothing; builds the guest's image where it is out of date.
+# Runs every test of this folder in a guest of its own, and compares the logs of the guests with
+# runs on this machine. Installs nothing; builds the guest's image where it is out of date.
 #
 # usage: run_all.sh BUILD_FOLDER [--note FILE]     e.g. build/release, with all of it built
 set -euo pipefail
@@ -22,9 +22,9 @@ mkdir -p "$work/share/guest"
 DESTDIR=$work/share/machine cmake --install "$build" >/dev/null
 cp -r "$here"/{check.sh,interfaces.sh,daq.sh,daemon_in_guest} "$work/share/guest"
 cp "$build"/tests/{guest/guest_daq_test,hal/canopen/hal_canopen_socketcan_test} "$work/share"
-# What was installed, so that a build under way cannot change it between two comparisons.
+# Uses the installed programs, which a build in progress cannot change between two comparisons.
 bin=$(dirname "$(find "$work/share/machine" -type f -name flexarm -path '*/bin/*')")
-[[ -x $bin/flexarmd ]] || { echo "run_all: $build holds no flexarmd" >&2; exit 1; }
+[[ -x $bin/flexarmd ]] || { echo "run_all: $build contains no flexarmd" >&2; exit 1; }
 
 failed=()
 passed=0
@@ -38,8 +38,8 @@ result() {  # result NAME STATUS
   fi
 }
 
-# in_guest SCRIPT [OPTION..]: leaves its output in $work/NAME. The longest took about a minute where
-# it was written; a busy machine may be thirty times slower.
+# in_guest SCRIPT [OPTION..]: leaves its output in $work/NAME. The longest took about a minute on
+# the first machine; a busy machine may be thirty times slower.
 in_guest() {
   local name status=0 since=$SECONDS
   name=$(basename "$1" .sh)
@@ -63,7 +63,7 @@ on_host() {  # on_host NAME COMMAND..
   result "$1" $status
 }
 
-replays() {  # replays RUN: to the bit, with the safety decisions, by the same build
+replays() {  # replays RUN: replay is bit exact, with the safety decisions, by the same build
   local told
   told=$("$bin/flexarm" replay "$1" --json)
   python3 -c '
@@ -73,8 +73,8 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 ' "$told" || { echo "$1: $told"; return 1; }
 }
 
-# A guest keeps one core busy, and virtual time makes each indifferent to the other: two at a time,
-# the longest first.
+# A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
+# first.
 names=(service wire commission load hostile experiment refusal interfaces daq)
 running=0
 for name in "${names[@]}"; do
@@ -92,7 +92,8 @@ done
 wait
 for name in "${names[@]}"; do report_guest "$name"; done
 
-# In lock step, the same seed, on this machine: the guest's real-time runs are the same to the bit.
+# The guest's real-time runs must equal a lock-step run with the same seed on this machine, bit for
+# bit.
 "$bin/flexarm" simulate -c "$root/config/hil.toml" --json -o "$work/lockstep.flexarm" \
   --experiment "$root/config/experiments/square-30deg.toml" >/dev/null
 for run in experiment/guest load/loaded; do

@@ -23,7 +23,7 @@ GaugeFilter Filter(double damping) {
 
 GaugeFilter::Signals One(double value) { return GaugeFilter::Signals::Constant(1, value); }
 
-// Textbook answer of w^2 / (s^2 + 2 zeta w s + w^2) to a step at t = 0.
+// Textbook step response of w^2 / (s^2 + 2 zeta w s + w^2) at t = 0.
 double StepAnswer(double zeta, double t) {
   if (t <= 0.0) return 0.0;
   if (zeta == 1.0) return 1.0 - (1.0 + kW * t) * std::exp(-kW * t);
@@ -36,9 +36,9 @@ double StepAnswer(double zeta, double t) {
   return 1.0 - (fast * std::exp(-slow * t) - slow * std::exp(-fast * t)) / (fast - slow);
 }
 
-// The filter takes the middle of the input's jump in the first step: half a step at t = 0 and half
-// one a step later, exactly. Round-off of 200 steps: 1e-12.
-TEST(GaugeFilter, OfSecondOrderAnswersAStepAsTheTextbookSays) {
+// The filter uses the mean of the input's step in the first step: half a step at t = 0 and half one
+// step later, exactly. Round-off of 200 steps: 1e-12.
+TEST(GaugeFilter, SecondOrderStepResponseAgreesWithTheTextbook) {
   for (const double zeta : {0.3, 0.9, 1.0, 1.6}) {
     GaugeFilter filter = Filter(zeta);
     for (int k = 1; k <= 200; ++k) {
@@ -50,7 +50,7 @@ TEST(GaugeFilter, OfSecondOrderAnswersAStepAsTheTextbookSays) {
   }
 }
 
-TEST(GaugeFilter, StaysWhereItHasSettled) {
+TEST(GaugeFilter, ASettledFilterStaysConstant) {
   for (const double zeta : {0.0, 0.9}) {
     GaugeFilter filter = Filter(zeta);
     filter.Settle(One(0.7));

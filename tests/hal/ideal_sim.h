@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-/// A simulation without what rigs lose: every frame comes, at once, and all channels together.
+/// A simulation without losses and delays: every frame arrives, at once, without channel skew.
 constexpr SimConfig IdealSim(int plant_modes, double step_ms) {
   return {.plant_modes = plant_modes,
           .step_ms = step_ms,

@@ -7,8 +7,8 @@ namespace flexarm {
 /// Corner of the simulated rig's gauge filters.
 inline constexpr double kGauge_hz = 20.0;
 
-/// Sensors of the simulated rig (docs/theory/control-law.md 12.1): four encoders, ten gauges a
-/// link in the middles of ten equal parts, 12 bit over +-10 V at 5000 V per unit strain.
+/// Sensors of the simulated rig (docs/theory/control-law.md 12.1): four encoders, ten gauges per
+/// link at the middles of ten equal parts, 12 bit over +-10 V at 5000 V per unit strain.
 inline SensorConfig ThesisSensors(double noise_counts = 1.0) {
   SensorConfig sensors;
   sensors.encoder = {{.counter = 0, .counts_per_turn = 2540.0, .counter_bits = 8, .sign = 1},

@@ -1,4 +1,4 @@
-// Step on the inputs of a whole run, and on every fault, with a heap that must not be touched.
+// The control step on the inputs of a whole run, and on every fault, without any heap use.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct Case {
   void (*change)(StepInput&);
 };
 
-// What may be wrong with an input, beside the states.
+// Faults of an input, besides the states.
 constexpr Case kCases[] = {
     {"as recorded", [](StepInput&) {}},
     {"reset every tick", [](StepInput& in) { in.reset = 1; }},
@@ -49,7 +49,7 @@ constexpr Case kCases[] = {
 };
 
 TEST(ControlStepNoAlloc, HoldsOverTenThousandSamplesInEveryStateAndEveryFault) {
-  if (!kNoAllocWorks) GTEST_SKIP() << "a sanitizer owns the allocator";
+  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizer has its own allocator";
   const std::vector<StepInput> recorded =
       RecordedInputs(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"));
   for (const StepVariant& variant : StepVariants()) {

@@ -28,7 +28,7 @@ inline Eigen::MatrixXd AsMatrix(const nlohmann::json& rows) {
   return m;
 }
 
-/// max |X - G| / max |G|: the measure in which golden.json is to be compared.
+/// max |X - G| / max |G|: the relative error in which golden.json is compared.
 inline double RelativeError(const Eigen::MatrixXd& X, const Eigen::MatrixXd& G) {
   return (X - G).cwiseAbs().maxCoeff() / G.cwiseAbs().maxCoeff();
 }

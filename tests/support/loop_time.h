@@ -6,7 +6,7 @@
 
 namespace flexarm {
 
-/// A millisecond, in the unit of every clock of the loop.
+/// A millisecond, in the unit of all clocks of the loop.
 inline constexpr std::int64_t kMs = kMillisecondNs;
 
 /// The control period of every shipped rig.

@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-/// The message of the `Error` that `action` throws; "" if it throws nothing.
+/// The message of the `Error` that `action` throws; "" if it does not throw.
 template <typename Error, typename Action>
 std::string MessageOf(const Action& action) {
   try {

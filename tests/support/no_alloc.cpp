@@ -14,7 +14,7 @@ namespace {
 // constinit: reading it must not run an initialiser.
 constinit thread_local int armed = 0;
 
-// Prints without allocating, and without a backtrace, which would.
+// Prints without allocating, and without a backtrace, which would allocate.
 [[noreturn]] void Refuse(const char* function, std::size_t size) {
   armed = 0;
   char text[160] = "no_alloc: ";
@@ -29,7 +29,7 @@ constinit thread_local int armed = 0;
   std::strncat(text, " of ", 5);
   std::strncat(text, first, sizeof digits);
   std::strncat(text, " bytes on a thread that must not touch the heap\n", 60);
-  // Nothing can be done about a failing write: the process ends either way.
+  // A failing write is ignored: the process ends in both cases.
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, std::strlen(text));
   std::abort();
 }
@@ -49,7 +49,7 @@ NoAlloc::~NoAlloc() { --armed; }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// glibc's own, under the names that it keeps for replacements; and the replacements.
+// glibc's allocator under the names that it exports for replacements; and the replacements.
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-inconsistent-declaration-parameter-name):
 // the names are glibc's.
 extern "C" {

@@ -1,4 +1,4 @@
-// The guard that other tests rely on: does it see what it must?
+// Test of the heap guard that other tests rely on.
 
 #include "tests/support/no_alloc.h"
 
@@ -17,14 +17,14 @@ namespace {
 class NoAllocDeathTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (!kNoAllocWorks) GTEST_SKIP() << "a sanitizer owns the allocator";
+    if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizer has its own allocator";
   }
 };
 
-// Keeps the compiler from leaving out an allocation whose result nobody reads.
+// Keeps the compiler from removing an allocation whose result is not used.
 void Use(const void* block) { asm volatile("" : : "g"(block) : "memory"); }
 
-TEST_F(NoAllocDeathTest, SeesEveryWayToTheHeap) {
+TEST_F(NoAllocDeathTest, DetectsEveryAllocationFunction) {
   EXPECT_DEATH(
       {
         NoAlloc armed;
@@ -63,7 +63,7 @@ TEST_F(NoAllocDeathTest, SeesEveryWayToTheHeap) {
       "no_alloc: malloc of 101");
 }
 
-TEST_F(NoAllocDeathTest, SeesMemoryGivenBackAndGrown) {
+TEST_F(NoAllocDeathTest, DetectsFreeAndRealloc) {
   void* block = std::malloc(24);
   EXPECT_DEATH(
       {
@@ -80,8 +80,8 @@ TEST_F(NoAllocDeathTest, SeesMemoryGivenBackAndGrown) {
   std::free(block);
 }
 
-// Eigen's own assertion against this is gone under NDEBUG; the replaced allocator is not.
-TEST_F(NoAllocDeathTest, SeesTheTemporaryOfADynamicProduct) {
+// Eigen's own assertion against this is disabled by NDEBUG; the replaced allocator is not.
+TEST_F(NoAllocDeathTest, DetectsTheTemporaryOfADynamicProduct) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Identity(12, 12);
   EXPECT_DEATH(
       {
@@ -91,14 +91,14 @@ TEST_F(NoAllocDeathTest, SeesTheTemporaryOfADynamicProduct) {
       "no_alloc: .*malloc of 1[0-9]+ bytes");
 }
 
-TEST_F(NoAllocDeathTest, LetsFixedSizesPass) {
+TEST_F(NoAllocDeathTest, AllowsFixedSizes) {
   Eigen::Matrix<double, 12, 12> a = Eigen::Matrix<double, 12, 12>::Identity();
   const NoAlloc armed;
   a = a * a;
   Use(a.data());
 }
 
-TEST_F(NoAllocDeathTest, IsOverWithItsScopeAndNests) {
+TEST_F(NoAllocDeathTest, EndsWithItsScopeAndNests) {
   {
     const NoAlloc outer;
     const NoAlloc inner;
@@ -113,7 +113,7 @@ TEST_F(NoAllocDeathTest, IsOverWithItsScopeAndNests) {
       "no_alloc: malloc");
 }
 
-TEST_F(NoAllocDeathTest, ConcernsItsOwnThreadOnly) {
+TEST_F(NoAllocDeathTest, ChecksItsOwnThreadOnly) {
   bool done = false;
   {
     std::thread worker([&done] {

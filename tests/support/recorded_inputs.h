@@ -12,8 +12,8 @@
 
 namespace flexarm {
 
-/// Every StepInput of a simulated run of the shipped rig, from arm to disarm, in order of tick.
-/// What the control thread gets in a real run, to the byte: sensor noise, reference, states.
+/// Every StepInput of a simulated run of the shipped rig, from arm to disarm, in order of tick:
+/// identical to the input of the control thread in that run: sensor noise, reference, states.
 inline std::vector<StepInput> RecordedInputs(const RigConfig& config) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() /
                                      ("recorded-inputs-" + std::to_string(getpid()) + ".flexarm");

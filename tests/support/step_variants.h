@@ -8,17 +8,17 @@
 
 namespace flexarm {
 
-/// A law and an estimator that Step can be made of: --set of the shipped rig.
+/// A combination of law and estimator for Step: --set of the shipped rig.
 struct StepVariant {
   const char* name;
   std::vector<std::string> overrides;
-  /// A step may take no more: 20 us at a billion instructions a second, with three times that for
-  /// slower machines; of what finds the payload, 150 us.
+  /// Bound on the instructions of a step: 20 us at a billion instructions a second, with a factor
+  /// of three for slower machines; 150 us with payload estimation.
   int most_instructions = 60'000;
 };
 
 /// Every law with the shipped estimator, every estimator with the shipped law, the nominal model
-/// with the most states, and the laws that bring their estimator along.
+/// with the most states, and the laws that have their own estimator.
 inline std::vector<StepVariant> StepVariants() {
   std::vector<StepVariant> variants;
   constexpr int kMostWithPayload = 450'000;
@@ -31,7 +31,7 @@ inline std::vector<StepVariant> StepVariants() {
   }
   variants.push_back({"T16", {"controller.nominal=T16"}});
   variants.push_back({"ekf-payload", {"estimator.name=ekf-payload"}, kMostWithPayload});
-  // With a sample of delay declared, one less is possible as well.
+  // With a declared delay of a sample, one sample less is a hypothesis too.
   variants.push_back({"gain-scheduled-late",
                       {"controller.name=gain-scheduled", "loop.actuation_delay_ms=20"},
                       kMostWithPayload});

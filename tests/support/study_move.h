@@ -29,12 +29,12 @@ struct SepticMove {
     return point;
   }
 
-  /// Around a sample: the one before, it, and the next.
+  /// Three points around a sample: the one before, it, and the next.
   std::array<RigidPoint, 3> Around(int sample) const {
     return {At(sample - 1), At(sample), At(sample + 1)};
   }
 
-  /// What a plan needs that starts at a sample: from the one before to 20 samples and one after.
+  /// Reference for a plan that starts at a sample: from the one before to 20 samples and one after.
   std::vector<RigidPoint> Ahead(int sample) const {
     std::vector<RigidPoint> path;
     for (int i = sample - 1; i <= periods + 21; ++i) path.push_back(At(i));
@@ -42,8 +42,8 @@ struct SepticMove {
   }
 };
 
-/// The move of beyond-golden.json: 30/30 deg from rest at 0, 1.78 s, the shortest that the design
-/// study's rule allows with 1 kg.
+/// The move of beyond-golden.json: 30/30 deg from rest at 0 in 1.78 s, the shortest duration by the
+/// rule of the design study with 1 kg.
 inline SepticMove StudyMove() {
   return {.from_rad = Eigen::Vector2d::Zero(),
           .to_rad = Eigen::Vector2d::Constant(std::numbers::pi / 6.0),

@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// The numbers of docs/theory/payload.md 2.
+/// The settings of docs/theory/payload.md 2.
 inline EstimatorConfig StudyEstimator() {
   EstimatorConfig config = ThesisEstimator(EstimatorKind::kPayload);
   config.payload = {.process_force = {0.1, 0.02, 0.7, 0.7, 0.2, 0.2},

@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// The numbers of docs/theory/payload.md 5.
+/// The settings of docs/theory/payload.md 5.
 inline HorizonPlannerConfig StudyPlannerConfig() {
   return {.weights = {.moving = {100, 30, 0, 0, 0, 0, 1, 0.3, 0, 0, 0, 0},
                       .resting = {2e5, 6e4, 2e5, 2e5, 2e5, 2e5, 2e3, 600, 3e3, 3e3, 3e3, 3e3},

@@ -7,7 +7,7 @@ namespace flexarm {
 /// The thesis's Table 2 with its misprints corrected (E and rho, docs/theory/thesis.md 2.2),
 /// payload 0.1 kg.
 ///
-/// The digits that golden.json was made with, so that golden tests compare like with like.
+/// With the digits used for golden.json, so that golden tests compare equal parameters.
 inline ArmParameters ThesisRig() {
   constexpr double kE = 6.89e10, kRho = 2707.0;
   const BeamSection section1{.length_m = 0.8,

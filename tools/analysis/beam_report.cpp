@@ -15,7 +15,7 @@ namespace flexarm {
 namespace {
 
 constexpr std::array kPartCounts = {10, 20, 31, 50, 86, 100, 200};
-constexpr int kPoints = 200;  // of a drawn shape
+constexpr int kPoints = 200;  // points of a drawn shape
 
 std::string NameOf(const LinkBeam& beam) { return "link " + std::to_string(beam.link); }
 
@@ -58,7 +58,7 @@ void AddErrors(const LinkBeam& beam, const std::vector<BeamMode>& modes, std::os
   }
 }
 
-// Curves of all modes: columns 2.. of a data block, named by frequency or by number.
+// The curves of all modes: columns 2.. of a data block, with the frequency or the number as key.
 std::string Curves(const std::string& block, const std::vector<BeamMode>& modes, bool by_frequency,
                    const char* style) {
   std::ostringstream text;
@@ -119,7 +119,8 @@ void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector
     AddErrors(beams[i], modes[i], &script);
     script << "EOD\n";
   }
-  script << "set multiplot layout 2,2 title 'Links by themselves: shapes, and what N parts cost'\n"
+  script << "set multiplot layout 2,2 title 'Single links: mode shapes, and error of a beam in N "
+            "parts'\n"
             "set grid lc rgb '#D9D9D9'\n";
   for (std::size_t i = 0; i < beams.size(); ++i) {
     script << "unset logscale\nset format '%g'\nset xrange [*:*]\nset yrange [-1.1:1.1]\n"

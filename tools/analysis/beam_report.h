@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// One link as a beam by itself, at the root that a user asked for.
+/// One link as a single beam, with a given boundary condition at its root.
 struct LinkBeam {
   int link;  ///< 1 or 2
   std::vector<BeamSection> section;
@@ -21,13 +21,13 @@ struct LinkBeam {
 /// {"link", "base", "beta_l", "frequency_hz"}; beta_l by the first section's beta.
 nlohmann::ordered_json BeamJson(const LinkBeam& beam, const std::vector<BeamMode>& modes);
 
-/// Frequencies of the lumped transfer matrix against the exact ones, over the parts a section N,
-/// and the fit of (3.7) to the shapes of the finest: {"link", "parts", "error_percent" (a row an
-/// N), "fit_parts", "fit_rms_residual", "fit_coefficients" (mode, section, C_1..C_4)}.
+/// Error of the frequencies of the lumped transfer matrix against the exact ones, over the number
+/// of parts per section N, and the fit of (3.7) to the shapes of the largest N: {"link", "parts",
+/// "error_percent" (one row per N), "fit_parts", "fit_rms_residual", "fit_coefficients" (mode,
+/// section, C_1..C_4)}.
 nlohmann::ordered_json ConvergenceJson(const LinkBeam& beam, const std::vector<BeamMode>& modes);
 
-/// Draws shapes, frequencies and convergence of the links. @throws std::runtime_error if gnuplot
-/// fails
+/// Draws mode shapes and convergence of the links. @throws std::runtime_error if gnuplot fails
 void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector<BeamMode>>& modes,
                const std::filesystem::path& output);
 

@@ -16,7 +16,7 @@ struct ExcitationRun {
     double time_s;
     std::array<double, 2> bending_mm, joint_deg;
   };
-  std::vector<Sample> sample;  ///< one a step of the integrator
+  std::vector<Sample> sample;  ///< one per step of the integrator
   std::array<double, 2> peak_bending_mm = {0.0, 0.0};
   Eigen::Vector2d tip_m;  ///< at the end
 };
@@ -25,7 +25,8 @@ struct ExcitationRun {
 ExcitationRun RunExcitation(const ArmModel& model, double theta2_deg, const Excitation& excitation,
                             double duration_s);
 
-/// Bending of both links and angles of both joints over time, like figures 4.4 and 4.5.
+/// Draws the bending of both links and the angles of both joints over time, like figures 4.4 and
+/// 4.5.
 /// @throws std::runtime_error if gnuplot fails
 void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output);
 

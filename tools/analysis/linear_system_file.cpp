@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr Index kMostStates = 400;  // beyond, eigenvalues take minutes
+constexpr Index kMostStates = 400;  // with more states the eigenvalues take minutes
 
 std::string Size(const MatrixXd& m) {
   return std::to_string(m.rows()) + " x " + std::to_string(m.cols());
@@ -46,7 +46,7 @@ class Reader {
       if (keys.contains(key)) continue;
       std::string list;
       for (const std::string& known : keys) list += (list.empty() ? "" : ", ") + known;
-      Refuse(key, "is not a key here; expected " + list);
+      Refuse(key, " is not a key here; expected " + list);
     }
   }
 
@@ -74,7 +74,7 @@ class Reader {
     return out;
   }
 
-  /// The same, of a size that other matrices fix; 0 stands for any number.
+  /// A matrix whose size other matrices determine; 0 stands for any number.
   MatrixXd Matrix(const char* key, Index rows, Index cols) const {
     MatrixXd out = Matrix(key);
     const bool fits = (rows == 0 || out.rows() == rows) && (cols == 0 || out.cols() == cols);
@@ -108,7 +108,7 @@ bool IsSymmetric(const MatrixXd& A) {
   return (A - A.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * A.cwiseAbs().maxCoeff();
 }
 
-// Whole system with states q and q'; oscillating part with z = [q; M q'] if K is symmetric.
+// The whole system has the states q and q'; the oscillating part z = [q; M q'] if K is symmetric.
 void ReadSecondOrder(const Reader& file, LinearSystemFile* out) {
   file.AllowOnly({"name", "M", "K", "D", "B", "C"});
   const MatrixXd M = file.Matrix("M");
@@ -138,7 +138,7 @@ void ReadSecondOrder(const Reader& file, LinearSystemFile* out) {
   out->damping_left_out = !D.isZero(0.0);
 }
 
-// What keeps x' = A x + B u, y = C x from the form (6.5); empty if nothing does.
+// Why x' = A x + B u, y = C x does not have the form (6.5); empty if it has.
 std::string NotSecondOrder(const StateSpace& s) {
   const Index n = s.A.rows() / 2;
   if (s.A.rows() % 2 != 0) return "A has an odd number of states";

@@ -9,11 +9,11 @@
 
 namespace flexarm {
 
-/// A linear system read from a file, in the forms that the reductions take.
+/// A linear system read from a file, in the forms that the order reductions need.
 struct LinearSystemFile {
-  std::string name;  ///< key "name"; the file's name if there is none
+  std::string name;  ///< key "name"; without it the file's name
   StateSpace system;
-  /// Its oscillating part, damping left out; nothing if it does not have the form (6.5).
+  /// Its oscillating part without damping; empty if the system does not have the form (6.5).
   std::optional<UndampedSystem> undamped;
   std::string not_undamped;  ///< why `undamped` is missing
   bool damping_left_out;     ///< `undamped` is `system` without its damping, which is not zero

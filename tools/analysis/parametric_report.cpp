@@ -47,7 +47,7 @@ OrderedJson PointJson(const ParametricPoint& point) {
   return json;
 }
 
-// Spectra as a surface that is looked at from above, in logarithmic colours.
+// Spectra as a map with logarithmic colours.
 void DrawSpectrum(const ParametricSweep& sweep, std::size_t signal, std::ostringstream* script) {
   double most = 0.0;
   for (const ParametricPoint& point : sweep.point) {
@@ -64,7 +64,7 @@ void WriteSpectrum(const ParametricSweep& sweep, std::size_t signal, std::ostrin
     const Spectrum& spectrum = point.signal[signal].spectrum;
     for (std::size_t i = 0; i < spectrum.amplitude.size(); ++i) {
       if (spectrum.FrequencyHz(i) > kDrawn_hz) break;
-      // Logarithmic colours have no place for exactly nothing.
+      // A logarithmic colour scale cannot show zero.
       *script << spectrum.FrequencyHz(i) << ' ' << point.value << ' '
               << std::max(spectrum.amplitude[i], 1e-12) << '\n';
     }
@@ -83,7 +83,7 @@ void DrawPeaks(std::size_t first, const char* label, std::ostringstream* script)
   *script << '\n';
 }
 
-// Axes of the spectra's maps, and of the curves beside them.
+// The axes of the spectrum maps and of the curves beside them.
 std::string MapAxes(const ParametricSweep& sweep) {
   std::ostringstream axes;
   axes << std::setprecision(8) << "set xlabel 'Hz'\nset xrange [0:" << kDrawn_hz

@@ -17,7 +17,8 @@ constexpr double kSample_s = 2e-3;
 constexpr std::size_t kSpectrumSamples = 4096;  // 8.192 s: lines 0.24 Hz wide
 constexpr std::size_t kExcitedSamples = 500;    // Excitation::kPeriod_s
 constexpr std::size_t kSamples = kExcitedSamples + kSpectrumSamples;
-constexpr double kLowest_hz = 0.3;  // what is slower is the arm as a whole coming to rest
+constexpr double kLowest_hz =
+    0.3;  // slower components are the rigid-body motion of the arm coming to rest
 
 struct SweepPlan {
   std::string name, label;
@@ -33,7 +34,7 @@ std::vector<double> Multiples(double unit, std::vector<double> factors) {
   return factors;
 }
 
-// Round lengths from half to one and a half times the nominal one.
+// Rounded lengths from half to one and a half times the nominal one.
 std::vector<double> Lengths(double nominal) {
   const double magnitude = std::pow(10.0, std::floor(std::log10(nominal / 8.0)));
   const double step = std::round(nominal / 8.0 / magnitude) * magnitude;
@@ -93,7 +94,7 @@ std::vector<SweepPlan> Plans(const ArmParameters& arm) {
            }},
           BacklashPlan(arm, BacklashModel::kDeadZone, "backlash_deg", "backlash of joint 2, deg"),
           BacklashPlan(arm, BacklashModel::kThesis, "thesis_backlash_deg",
-                       "backlash of joint 2, deg, in the thesis's form"),
+                       "backlash of joint 2 in the thesis's form, deg"),
           LengthPlan(arm, 0),
           LengthPlan(arm, 1)};
 }
@@ -116,7 +117,7 @@ Samples Respond(const RigConfig& config, const ArmModel& model, const Excitation
   return samples;
 }
 
-// The thesis's form of backlash can drive an arm instead of damping it.
+// For a run that diverged: the thesis's form of backlash can add energy to the arm.
 SignalMeasures Diverged() {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const Spectrum nothing = AmplitudeSpectrum(std::vector<double>(kSpectrumSamples), kSample_s);

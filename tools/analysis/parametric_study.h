@@ -10,12 +10,12 @@
 
 namespace flexarm {
 
-/// What chapter 5 looks at: bending of the links at their tips, twist of the joints' springs.
+/// The signals of chapter 5: bending of the links at their tips, twist of the joints' springs.
 enum Signal : std::size_t { kBending1, kBending2, kTwist1, kTwist2 };
 constexpr std::size_t kSignals = 4;
 
-/// Excitation of chapter 4: one period of a square wave of 1 s, from rest, elbow straight, then
-/// nothing. The thesis does not say how strong it is.
+/// Excitation of chapter 4: one period of a square wave of 1 s, from rest with a straight elbow,
+/// then zero torque. The thesis does not state its amplitude.
 struct Excitation {
   std::array<double, 2> torque_nm = {0.4, 0.1};
   static constexpr double kPeriod_s = 1.0;
@@ -25,12 +25,12 @@ struct Excitation {
 struct SignalMeasures {
   double peak;               ///< largest magnitude of the whole run
   double spectral_peak;      ///< largest amplitude of the whole run's spectrum
-  double free_rms;           ///< about its mean, after the excitation
+  double free_rms;           ///< rms about the mean, after the excitation
   double free_frequency_hz;  ///< strongest line after the excitation
   Spectrum spectrum;         ///< of the whole run, up to kShown_hz
 };
 
-/// One value of the parameter under study.
+/// Results at one value of the varied parameter.
 struct ParametricPoint {
   double value;
   std::array<SignalMeasures, kSignals> signal;
@@ -67,18 +67,18 @@ struct ParametricStudy {
   const ParametricSweep& At(SweepPlace place) const { return sweep[place]; }
 };
 
-constexpr double kStrongExcitation = 5.0;  ///< times the torque, to see what depends on it
-constexpr double kShown_hz = 25.0;         ///< spectra are kept up to here
+constexpr double kStrongExcitation = 5.0;  ///< factor on the torque of the second study
+constexpr double kShown_hz = 25.0;         ///< spectra are stored up to this frequency
 
 /// The same excitation with kStrongExcitation times the torque.
 Excitation Strong(const Excitation& weak);
 
-/// Runs every point of every sweep on all cores.
+/// Simulates every point of every sweep on all cores.
 /// @param progress  as ParallelFor, with the number of runs done of `ParametricRuns`
 ParametricStudy RunParametricStudy(const RigConfig& config, const Excitation& excitation,
                                    const std::function<void(std::size_t)>& progress = {});
 
-/// How many runs a study is.
+/// Number of runs of a study.
 std::size_t ParametricRuns(const RigConfig& config);
 
 }  // namespace flexarm

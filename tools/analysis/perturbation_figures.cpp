@@ -10,7 +10,7 @@
 namespace flexarm {
 namespace {
 
-// th1, th2 in deg and the tips' deflections in mm: with psi(L) = 1 the sum of the coordinates.
+// th1, th2 in deg and the tip deflections in mm: with psi(L) = 1 the sum of the modal coordinates.
 void AddRow(const ArmModel& model, const Eigen::VectorXd& q, std::ostream* out) {
   *out << ' ' << kDegPerRad * q[kTheta1] << ' ' << kDegPerRad * q[kTheta2] << ' '
        << 1e3 * q.segment(kPhi1, model.mode_count().link1).sum() << ' '
@@ -30,8 +30,8 @@ void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
     AddRow(model, run.linear[i], &script);
     script << '\n';
   }
-  script << "EOD\nset multiplot layout 2,2 title 'Deviation from the motion, linear over "
-            "nonlinear'\nset grid lc rgb '#D9D9D9'\nset key top right\nset xlabel 's'\n";
+  script << "EOD\nset multiplot layout 2,2 title 'Deviation from the nominal motion, linear and "
+            "nonlinear model'\nset grid lc rgb '#D9D9D9'\nset key top right\nset xlabel 's'\n";
   int column = 2;
   for (const char* label :
        {"joint 1, deg", "joint 2, deg", "tip of link 1, mm", "tip of link 2, mm"}) {

@@ -6,8 +6,8 @@
 
 namespace flexarm {
 
-/// Draws what the thesis's figures 6.1 and 6.2 show: deviations of the tips' deflections and of the
-/// joint angles, linear over nonlinear.
+/// Draws the thesis's figures 6.1 and 6.2: deviations of the tip deflections and of the joint
+/// angles, linear and nonlinear model in the same axes.
 /// @throws std::runtime_error if gnuplot fails
 void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
                       const std::filesystem::path& output);

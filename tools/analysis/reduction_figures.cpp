@@ -19,7 +19,7 @@ struct Curve {
   double theta2_deg, theta1_rate_rad_s, theta2_rate_rad_s;
 };
 
-// Captions of figures 6.3 to 6.5, corrected by docs/theory/thesis.md 2.4.
+// The motions in the captions of figures 6.3 to 6.5, corrected by docs/theory/thesis.md 2.4.
 constexpr std::array<Curve, 3> kCurves = {{{"figure-6.3.png", 0.0, 0.0, 0.0},
                                            {"figure-6.4.png", 45.0, -1.0, 3.0},
                                            {"figure-6.5.png", 90.0, -4.0, -6.0}}};
@@ -29,7 +29,7 @@ struct Surface {
   double theta2_deg;
 };
 
-// Captions of figures 6.6 to 6.9.
+// The elbow angles in the captions of figures 6.6 to 6.9.
 constexpr std::array<Surface, 4> kSurfaces = {{{"figure-6.6.png", 0.0},
                                                {"figure-6.7.png", 28.4},
                                                {"figure-6.8.png", 61.6},
@@ -41,7 +41,7 @@ std::string Caption(double theta2_deg, const std::string& rest, ModalScaling sca
   return text.str();
 }
 
-// Curves of both links; `value` says what of column c is shown.
+// The curves of both links; `value` is the gnuplot expression of column c.
 std::string BothLinks(const std::string& value) {
   std::ostringstream curves;
   for (const int link : {1, 2}) {
@@ -74,12 +74,13 @@ void DrawCurve(const ArmModel& model, const ReductionOptions& options, const Cur
          << model.mode_count().link1 << "]\nset yrange [0:105]\nset ylabel 'contribution, %'\nplot "
          << BothLinks("(column(c))")
          << "set key top right\nset logscale y\nset format y '10^{%T}'\nset yrange [1e-8:200]\n"
-            "set ylabel 'what the other modes contribute, %'\nplot "
+            "set ylabel 'contribution of the other modes, %'\nplot "
          << BothLinks("(100-column(c))") << "unset multiplot\n";
   RunGnuplot(script.str());
 }
 
-// Two views a link, as in the thesis: from the side, which shows the least value, and at an angle.
+// Two views per link, as in the thesis: from the side, which shows the least value, and at an
+// angle.
 void DrawSurface(const ArmModel& model, const ReductionOptions& options, const Surface& surface,
                  const std::filesystem::path& output) {
   ReductionGrid grid;

@@ -32,7 +32,7 @@ const char* Name(DroppedRoot::Reason reason) {
   return "";
 }
 
-// What a reader has to know to compare the figures with others.
+// Notes that a reader needs to compare the figures with others.
 OrderedJson Notes(const OrderedJson& power) {
   OrderedJson notes = OrderedJson::array();
   notes.push_back("mu, and so each contribution, depends on how the coordinates are scaled");
@@ -45,8 +45,8 @@ OrderedJson Notes(const OrderedJson& power) {
   for (const OrderedJson& mode : power["modes"]) {
     if (!mode["rigid_origin"].get<bool>()) continue;
     notes.push_back(
-        "a rigid-body root has turned into a slow oscillation: it counts in mu; shares of rho are "
-        "among the flexible modes, without it");
+        "a rigid-body root has become a slow oscillation: it is included in mu; the shares of rho "
+        "are those among the flexible modes, without it");
     break;
   }
   return notes;
@@ -139,10 +139,10 @@ void PrintGramians(const OrderedJson& gramians) {
   for (std::size_t i = 0; i < shown; ++i) {
     std::printf(" %.4g", gramians["hankel"][i].get<double>());
   }
-  std::printf("%s\nstates kept whole: %d; others for an error bound of 1 %%: %d\n",
-              shown < gramians["hankel"].size() ? " .." : "",
-              gramians["states_kept_whole"].get<int>(),
-              gramians["states_within_one_percent"].get<int>());
+  std::printf(
+      "%s\nstates kept as slow or unstable: %d; others needed for an error bound of 1 %%: %d\n",
+      shown < gramians["hankel"].size() ? " .." : "", gramians["states_kept_whole"].get<int>(),
+      gramians["states_within_one_percent"].get<int>());
 }
 
 void PrintLinks(const OrderedJson& json) {
@@ -231,7 +231,7 @@ OrderedJson SystemReductionJson(const LinearSystemFile& file, const ReductionOpt
       json["power"]["damping_left_out"] = file.damping_left_out;
       json["power_refused"] = nullptr;
       json["notes"] = Notes(json["power"]);
-    } catch (const std::logic_error& refused) {  // neither condition holds, or equal roots
+    } catch (const std::logic_error& refused) {  // neither condition holds, or two roots are equal
       json["power_refused"] = refused.what();
     }
   }

@@ -9,22 +9,23 @@
 
 namespace flexarm {
 
-/// Power balancing and truncation by Gramians of the arm at one nominal motion.
+/// Power balancing and truncation by Gramians, for the arm at one nominal motion.
 nlohmann::ordered_json ArmReductionJson(const ArmModel& model, const NominalMotion& motion,
                                         const ReductionOptions& options);
 
-/// The same of any linear system. "power" is null, with the reason in "power_refused", if neither
+/// The same for any linear system. "power" is null, with the reason in "power_refused", if neither
 /// condition of power balancing holds.
 nlohmann::ordered_json SystemReductionJson(const LinearSystemFile& file,
                                            const ReductionOptions& options);
 
-/// Extremes over the cells of a grid, and how many had a rigid-body root that was not zero.
+/// Extremes over the cells of a grid, and the number of cells with a rigid-body root that is not
+/// zero.
 nlohmann::ordered_json GridJson(const ReductionGrid& grid, const std::vector<ReductionCell>& cells);
 
-/// The same for people, on standard output.
+/// Prints the same as text to standard output.
 void PrintReduction(const nlohmann::ordered_json& json);
 
-/// "mass", "length" or "tip", and what it means.
+/// "mass", "length" or "tip", with an explanation.
 const char* Name(ModalScaling scaling);
 
 }  // namespace flexarm

@@ -8,16 +8,17 @@
 
 namespace flexarm {
 
-/// Whether a statement of the thesis comes out of the model.
+/// Result of checking a statement of the thesis against the model.
 enum class Verdict : std::uint8_t {
   kHolds,
-  kInPart,   ///< some of what it says does
-  kDepends,  ///< on how strongly the arm is excited, which the thesis does not say
+  kInPart,   ///< only a part of the statement holds
+  kDepends,  ///< on the amplitude of the excitation, which the thesis does not state
   kDoesNot,
-  kNotTested,  ///< nothing to compare with
+  kNotTested,  ///< there is nothing to compare it with
 };
 
-/// One statement, in our words, and what the model says to it. Every number in `model` is computed.
+/// One statement of the thesis in our words, and the result of the model. Every number in `model`
+/// is computed.
 struct Statement {
   std::string section;  ///< of the thesis
   std::string thesis;
@@ -28,16 +29,17 @@ struct Statement {
 /// "holds", "holds in part", "depends on the excitation", "does not hold", "not testable".
 const char* Name(Verdict verdict);
 
-/// A number with so many significant digits, without an exponent if that is short: "8.76", "0.023".
+/// A number with the given significant digits, without an exponent if that is short: "8.76",
+/// "0.023".
 std::string Figure(double value, int digits = 3);
 
 /// A whole number as text.
 std::string Count(std::ptrdiff_t number);
 
-/// How many statements have each verdict: "holds: 40, holds in part: 3, ..", all verdicts.
+/// The number of statements with each verdict: "holds: 40, holds in part: 3, ..", for all verdicts.
 std::string Counted(const std::vector<Statement>& statements);
 
-/// An object a statement: section, thesis, model, verdict.
+/// One object per statement: section, thesis, model, verdict.
 nlohmann::ordered_json StatementsJson(const std::vector<Statement>& statements);
 
 /// The statements as a table in Markdown.

@@ -6,9 +6,9 @@
 
 namespace flexarm {
 
-// Figures of a sweep: one value a point, in the order of the points, and what their course is.
+// Values of a sweep, one per point in the order of the points, and figures of their course.
 
-/// A measure of one signal at every point.
+/// One measure of a signal at every point.
 std::vector<double> Values(const ParametricSweep& sweep, Signal signal,
                            double SignalMeasures::*measure = &SignalMeasures::peak);
 
@@ -18,36 +18,36 @@ std::vector<double> FreeFrequenciesHz(const ParametricSweep& sweep, std::size_t 
 /// The lowest frequency with the motors held, Hz.
 std::vector<double> HeldFrequenciesHz(const ParametricSweep& sweep);
 
-/// Bending that is left after the excitation, in percent of that at the first point.
+/// Bending after the excitation, in percent of that at the first point.
 std::vector<double> LeftInPercent(const ParametricSweep& sweep, Signal signal);
 
-/// The values at those points whose parameter is at least `least`.
+/// The values at the points whose parameter is at least `least`.
 std::vector<double> From(double least, const ParametricSweep& sweep,
                          const std::vector<double>& values);
 
-constexpr double kScatter = 0.005;  ///< of a measure, relative: no change below it means anything
+constexpr double kScatter = 0.005;  ///< relative; smaller changes are not significant
 
-/// Whether they rise from end to end, and on the way never fall back, but for their scatter.
+/// True if the values rise from end to end and never fall between by more than their scatter.
 bool Rises(const std::vector<double>& values);
 bool Falls(std::vector<double> values);
 
-/// The parameter at which they are largest, or smallest.
+/// The parameter at which the values are largest, or smallest.
 double ParameterOfLargest(const ParametricSweep& sweep, const std::vector<double>& values);
 double ParameterOfLeast(const ParametricSweep& sweep, const std::vector<double>& values);
 
-/// Largest less smallest, in percent of their mean.
+/// Largest minus smallest value, in percent of the mean.
 double SpreadInPercent(const std::vector<double>& values);
 
-/// How much they fall from the first to the last, in percent of the first.
+/// Decrease from the first to the last value, in percent of the first.
 double DropInPercent(const std::vector<double>& values);
 
-/// Farthest from the straight line between the ends, in percent of the ends' difference.
+/// Largest deviation from the straight line between the ends, in percent of the ends' difference.
 double BowInPercent(const ParametricSweep& sweep, const std::vector<double>& values);
 
-/// Pearson's, -1 to 1.
+/// Pearson's correlation coefficient, -1 to 1.
 double Correlation(const std::vector<double>& a, const std::vector<double>& b);
 
-/// p of values ~ parameter^p, by the ends of the sweep.
+/// Exponent p of values ~ parameter^p, from the ends of the sweep.
 double Exponent(const ParametricSweep& sweep, const std::vector<double>& values);
 
 }  // namespace flexarm

@@ -20,12 +20,12 @@ namespace flexarm {
 SweepPlan BenchmarkPlan(const RigConfig& config, const BenchmarkSet& set,
                         const std::string& laws = {}, const std::string& seeds = {});
 
-/// What a law did in a scenario.
+/// Results of one law in one scenario.
 struct BenchmarkCell {
   SweepGroup group;   ///< over the seeds
   RestFigures rests;  ///< of the same runs
-  /// 100 times the share of the shortest rest in which the tip really rests, mean over the seeds: 0
-  /// for a run that did not complete or never settled.
+  /// 100 times the share of the shortest rest in which the tip is at rest, mean over the seeds; a
+  /// run that did not complete or never settled counts 0.
   double score = 0.0;
 };
 
@@ -43,25 +43,25 @@ struct BenchmarkTable {
 };
 
 /// @param plan  of a set of this kind
-/// @param rows  of the plan, as many as there are
+/// @param rows  of the plan; points may be missing
 BenchmarkTable TableOf(BenchmarkKind kind, const SweepPlan& plan,
                        const std::vector<SweepRow>& rows);
 
 nlohmann::ordered_json BenchmarkJson(const BenchmarkTable& table);
 
-/// A table for people.
+/// A table as text.
 struct TextTable {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;
 };
 
-/// A table, and the sentence before it.
+/// A table with its introductory sentence.
 struct TablePart {
   std::string about;
   TextTable table;
 };
 
-/// What there is to say of the results, by the kind of the table.
+/// The tables that present the results, by the kind of the benchmark table.
 std::vector<TablePart> TableParts(const BenchmarkTable& table);
 /// The same in Markdown.
 std::string BenchmarkMarkdown(const BenchmarkTable& table);

@@ -39,7 +39,7 @@ std::string Pair(double a, double b, const char* format) {
   return Number(a, format) + " " + Number(b, format);
 }
 
-// What a cell says in one word: how long the tip took, or why there is no such time.
+// The settling time of a cell, or why there is none.
 std::string Settling(const BenchmarkCell& cell) {
   const SweepGroup& group = cell.group;
   std::string text = Number(group.median[kSettling], "%.2f");
@@ -49,7 +49,7 @@ std::string Settling(const BenchmarkCell& cell) {
   return text;
 }
 
-// A row a law: score, worst scenario, and the figures of the nominal one.
+// One row per law: score, worst scenario, and the figures of the nominal one.
 TextTable LawTable(const BenchmarkTable& table) {
   TextTable text{.head = {"law", "score", "lowest", "in", "completed", "settling, s", "rms, deg",
                           "final, deg", "residual, mm", "torque rms, N m"},
@@ -67,7 +67,7 @@ TextTable LawTable(const BenchmarkTable& table) {
   return text;
 }
 
-// How many runs settled in time, and what is left then; which runs that leaves out, if any.
+// How many runs settled in time, their residual, and how many completed if not all did.
 std::string InTime(const BenchmarkCell& cell) {
   const SweepGroup& group = cell.group;
   if (!group.refused.empty() && group.completed == 0) return "refused";
@@ -77,7 +77,7 @@ std::string InTime(const BenchmarkCell& cell) {
   return text;
 }
 
-// Settling, residual, motion and rms of a cell, as InTimeHead names them.
+// Settling, residual, motion and rms of a cell, for the columns of InTimeHead.
 std::vector<std::string> RestCells(const BenchmarkCell& cell) {
   const RestFigures& r = cell.rests;
   return {Share(r.settled_in_time, cell.group.runs), Number(r.latest_settling_s, "%.2f"),
@@ -95,7 +95,7 @@ std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<st
   return a;
 }
 
-// A row a law on the moves: what it did over all scenarios, and the figures of the nominal one.
+// One row per law on the moves: counts over all scenarios, and the figures of the nominal one.
 TextTable MoveLawTable(const BenchmarkTable& table) {
   TextTable text{.head = Joined({"law", "score", "completed", "settled in time, all"}, RestHead()),
                  .rows = {}};
@@ -110,7 +110,7 @@ TextTable MoveLawTable(const BenchmarkTable& table) {
   return text;
 }
 
-// A row a scenario, a column a law.
+// One row per scenario, one column per law.
 TextTable ScenarioTable(const BenchmarkTable& table, std::string (*says)(const BenchmarkCell&)) {
   TextTable text{.head = Joined({"scenario", "what"}, table.laws), .rows = {}};
   for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
@@ -125,7 +125,7 @@ TextTable ScenarioTable(const BenchmarkTable& table, std::string (*says)(const B
   return text;
 }
 
-// A row a scenario and law.
+// One row per scenario and law.
 TextTable LimitTable(const BenchmarkTable& table) {
   TextTable text{.head = Joined({"scenario", "what", "law"}, RestHead()), .rows = {}};
   for (std::size_t i = 0; i < table.scenarios.size(); ++i) {
@@ -159,7 +159,7 @@ std::vector<TablePart> TableParts(const BenchmarkTable& table) {
                ScenarioTable(table, InTime)}};
     case BenchmarkKind::kLimits:
       return {
-          {"What is left when one limit after the other is taken away: residual and motion "
+          {"The result with one limit after the other removed: residual and motion "
            "mean and largest, rms mean of joints 1 and 2:",
            LimitTable(table)}};
   }

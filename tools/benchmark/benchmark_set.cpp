@@ -12,7 +12,7 @@ namespace {
 constexpr std::array kKinds = {BenchmarkKind::kCommands, BenchmarkKind::kMoves,
                                BenchmarkKind::kLimits};
 
-// None of the sets that a law was tried on while it was made, tests included.
+// No law was tried on these seeds during its development, tests included.
 constexpr const char* kMoveSeeds = "4001..4010";
 
 }  // namespace

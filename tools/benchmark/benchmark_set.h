@@ -13,12 +13,12 @@ namespace flexarm {
 /// The tables of the benchmark (docs/benchmark.md).
 enum class BenchmarkKind : std::uint8_t {
   kCommands,  ///< the commands of config/experiments
-  kMoves,     ///< random smooth moves, for the laws that follow nothing else as well
-  kLimits,    ///< the same moves, with what limits the arm taken away
+  kMoves,     ///< random smooth moves, also for the laws that follow no other command
+  kLimits,    ///< the same moves, with the limits of the rig removed one by one
 };
 
 const char* Name(BenchmarkKind kind);  ///< "commands", "moves", "limits"
-/// @throws InputError  none of that name
+/// @throws InputError  there is no table of that name
 BenchmarkKind BenchmarkKindNamed(const std::string& name);
 
 /// What a table compares, and with which seeds unless others are asked for.
@@ -34,9 +34,9 @@ struct BenchmarkSet {
 BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const RigConfig& config,
                             const std::filesystem::path& experiments);
 
-/// The laws that take any command.
+/// The laws that accept any command.
 std::vector<std::string> CommandLaws();
-/// The laws that find the payload, and follow smooth moves only.
+/// The laws that estimate the payload; they follow smooth moves only.
 std::vector<std::string> PayloadLaws();
 
 std::vector<Scenario> CommandScenarios(const std::filesystem::path& experiments);
@@ -44,7 +44,7 @@ std::vector<Scenario> CommandScenarios(const std::filesystem::path& experiments)
 std::vector<Scenario> MoveScenarios(const RigConfig& config);
 std::vector<Scenario> LimitScenarios(const RigConfig& config);
 
-/// The set with these scenarios alone, in its own order.
+/// The set with these scenarios only, in the order of the set.
 BenchmarkSet Only(BenchmarkSet set, const std::vector<std::string>& scenarios);
 
 }  // namespace flexarm

@@ -4,7 +4,7 @@
 namespace flexarm {
 namespace {
 
-// On the rig as designed.
+// A scenario on the rig that the laws were designed for.
 struct Row {
   const char* name;
   const char* what;
@@ -13,8 +13,8 @@ struct Row {
   bool tuned_on = false;
 };
 
-// Gains and estimators were chosen on the square command with 0 to 0.2 kg; the plants that differ,
-// and all the rest, are met here for the first time.
+// Gains and estimators were chosen on the square command with 0 to 0.2 kg. Nothing was tuned on the
+// other plants and the other commands.
 std::vector<Row> Rows() {
   return {
       {.name = "nominal", .what = "0.1 kg, as designed for", .tuned_on = true},

@@ -6,7 +6,7 @@ std::vector<Disturbance> CommonDisturbances() {
   return {
       {.name = "soft-joints", .what = "joint stiffness -30 %", .variant = "soft-joints"},
       {.name = "soft-links", .what = "Young's modulus -10 %", .variant = "soft-links"},
-      {.name = "backlash", .what = "1 degree of play at the elbow", .variant = "backlash"},
+      {.name = "backlash", .what = "1 degree of backlash at the elbow", .variant = "backlash"},
       {.name = "friction-x3", .what = "Coulomb friction x 3", .variant = "friction-x3"},
       {.name = "noise-x3",
        .what = "noise of the gauges x 3",
@@ -22,7 +22,7 @@ std::vector<Disturbance> CommonDisturbances() {
        .what = "a sample more of delay, declared",
        .config = {"sim.transport_delay_ms=20", "loop.actuation_delay_ms=20"}},
       {.name = "delay-2-unknown",
-       .what = "a sample more of delay that nobody was told of",
+       .what = "one more sample of delay, undeclared",
        .plant = {"sim.transport_delay_ms=20"}},
   };
 }

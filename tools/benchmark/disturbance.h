@@ -5,16 +5,16 @@
 
 namespace flexarm {
 
-/// How a situation differs from the nominal one of its table.
+/// How a scenario differs from the nominal one of its table.
 struct Disturbance {
   const char* name;
-  const char* what;                      ///< in a user's words
+  const char* what;                      ///< description for the user
   const char* variant = "nominal";       ///< of the simulated rig alone, see PlantVariants
   std::vector<std::string> plant = {};   ///< --set of the simulated rig alone
   std::vector<std::string> config = {};  ///< --set of the rig and the controller
 };
 
-/// Those that every law meets, whatever it follows.
+/// The disturbances of both the commands and the moves.
 std::vector<Disturbance> CommonDisturbances();
 
 }  // namespace flexarm

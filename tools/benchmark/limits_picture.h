@@ -6,8 +6,8 @@
 
 namespace flexarm {
 
-/// Residual and motion of every scenario, a bar a law: the mean over the runs, with the largest as
-/// a whisker.
+/// Draws residual and motion of every scenario with one bar per law: the mean over the runs, and
+/// the largest as a whisker.
 /// @throws std::runtime_error if gnuplot fails
 void DrawLimits(const BenchmarkTable& table, const std::filesystem::path& output);
 

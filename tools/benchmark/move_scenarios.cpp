@@ -47,12 +47,12 @@ Disturbance NoFriction() {
   return {.name = "no-friction", .what = "no Coulomb friction", .plant = kNoFriction};
 }
 
-// Of the design study, beside those that are common to all tables.
+// Plants of the design study beyond those that are common to all tables.
 std::vector<Disturbance> MorePlants() {
   return {
       NoFriction(),
       {.name = "backlash-0.2",
-       .what = "0.2 degrees of play at the elbow",
+       .what = "0.2 degrees of backlash at the elbow",
        .plant = {"joint2.backlash_rad=0.00349066", "joint2.backlash_model=dead_zone"}},
       {.name = "modal-damping", .what = "modal damping 3 %", .variant = "modal-damping"},
       {.name = "modal-damping-1",
@@ -63,7 +63,7 @@ std::vector<Disturbance> MorePlants() {
        .plant = {"joint1.viscous_friction_nm_s_per_rad=0.05",
                  "joint2.viscous_friction_nm_s_per_rad=0.02"}},
       {.name = "together",
-       .what = "play, friction, softness, damping and lost frames at once",
+       .what = "backlash, friction, softness, damping and lost frames at once",
        .variant = "together"},
   };
 }

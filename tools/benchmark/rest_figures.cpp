@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kInTime_s = 0.3;
 
-// Of measure `i` over the completed runs.
+// Mean and largest value of measure `i` over the completed runs.
 struct Spread {
   double mean, largest;
 };

@@ -8,13 +8,13 @@
 namespace flexarm {
 
 void ConfigOptions::AddTo(CLI::App* verb, bool required) {
-  verb->add_option("-c,--config", file, "RigConfig of the rig, a TOML file")
+  verb->add_option("-c,--config", file, "Config of the rig, a TOML file")
       ->required(required)
       ->type_name("FILE");
   verb->add_option("--set", overrides,
                    "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
       ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);  // one value each: what follows may be a run
+      ->allow_extra_args(false);  // one value each: the next argument may be a run log
 }
 
 RigConfig ConfigOptions::Load() const {
@@ -26,7 +26,7 @@ void GridOptions::AddTo(CLI::App* verb) {
   verb->add_option("--shard", shard,
                    "Only the I-th of N parts, 1 <= I <= N; `flexarm sweep merge` joins them")
       ->type_name("I/N");
-  verb->add_option("--jobs", jobs, "Runs at a time (default: one a core)")
+  verb->add_option("--jobs", jobs, "Number of parallel runs (default: one per core)")
       ->type_name("J")
       ->check(NumberWithin(1, 1024));
 }

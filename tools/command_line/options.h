@@ -13,7 +13,7 @@ class App;
 
 namespace flexarm {
 
-/// -c/--config FILE and --set section.key=VALUE, of every verb that reads a config.
+/// The options -c/--config FILE and --set section.key=VALUE of every verb that reads a config.
 struct ConfigOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;
@@ -24,29 +24,29 @@ struct ConfigOptions {
   RigConfig Load() const;
 };
 
-/// --shard I/N and --jobs J, of every verb that runs the points of a grid.
+/// The options --shard I/N and --jobs J of every verb that runs the points of a grid.
 struct GridOptions {
-  std::string shard = "1/1";  ///< ParseShard reads it
+  std::string shard = "1/1";  ///< text for ParseShard
   std::size_t jobs = 0;       ///< runs at a time; 0: one a core
 
   void AddTo(CLI::App* verb);
 };
 
 /// `given`, or if that is empty the default experiment: experiments/square-30deg.toml beside the
-/// config, or in config/ of the present folder.
+/// config, or in config/ of the current folder.
 std::filesystem::path ExperimentFile(const std::filesystem::path& given,
                                      const std::filesystem::path& config);
 
 /// Check of a numeric option: low <= value <= high. Unlike CLI::Range it refuses a NaN.
 std::function<std::string(const std::string&)> NumberWithin(double low, double high);
 
-/// --json: one JSON object on stdout and nothing else.
+/// Adds --json: one JSON object on stdout and nothing else.
 void AddJson(CLI::App* verb, bool* json);
 
 /// @throws InputError unless the file is a .png or a .svg
 void CheckPicture(const std::filesystem::path& output);
 
-/// -o/--output FILE.
+/// Adds -o/--output FILE.
 void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what);
 
 }  // namespace flexarm

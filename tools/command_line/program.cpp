@@ -16,7 +16,7 @@ namespace {
 
 void PrintError(const std::string& text) { std::cerr << "flexarm: " << text << '\n'; }
 
-// CLI11 knows the message; what is missing is our name before it and where to read on.
+// Adds the program's name and a pointer to --help to CLI11's message.
 int BadUsage(const CLI::App& app, const CLI::ParseError& error) {
   PrintError(error.what());
   const CLI::App* verb = &app;
@@ -31,23 +31,23 @@ int BadUsage(const CLI::App& app, const CLI::ParseError& error) {
 
 int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
   Exit exit;
-  CLI::App app("Controller of a two-link flexible arm: design, simulate, replay, judge, operate.",
+  CLI::App app("Controller of a two-link flexible arm: design, simulate, replay, analyse, operate.",
                "flexarm");
   app.set_version_flag("--version", "flexarm " + ThisBuild().version + " (" + BuildId() + ")");
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
       "First steps:\n"
-      "  flexarm config check config/hil.toml      is this rig described well?\n"
-      "  flexarm simulate -c config/hil.toml       one run of the simulated arm\n"
-      "  flexarm info RUN.flexarm                  what happened in this run?\n"
-      "  flexarm plot RUN.flexarm -o run.png       a picture of it\n"
-      "  flexarm replay RUN.flexarm                does it compute the same again?\n"
+      "  flexarm config check config/hil.toml      validate the config of a rig\n"
+      "  flexarm simulate -c config/hil.toml       simulate one run\n"
+      "  flexarm info RUN.flexarm                  summarise a run\n"
+      "  flexarm plot RUN.flexarm -o run.png       draw it\n"
+      "  flexarm replay RUN.flexarm                recompute it and compare every byte\n"
       "Exit codes: 0 done; 1 a run, replay or check failed; 2 bad usage, config or input.");
   register_verbs(app, exit);
   const auto is_first = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty()) {
-    PrintError("unknown verb \"" + std::string(argv[1]) + "\"; flexarm --help names them all");
+    PrintError("unknown verb \"" + std::string(argv[1]) + "\"; flexarm --help lists all verbs");
     return Exit::kBadInput;
   }
   try {
@@ -77,7 +77,7 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
 int RunProgram(int argc, char** argv, RegisterVerbs* register_verbs) noexcept {
   try {
     return Run(argc, argv, register_verbs);
-  } catch (...) {  // what even the message could not be made for
+  } catch (...) {  // not even the message could be built
     return Exit::kFailed;
   }
 }

@@ -8,7 +8,7 @@ namespace flexarm {
 using RegisterVerbs = void(CLI::App& app, Exit& exit);
 
 /// Runs the verb that the arguments name: the main function of flexarm and of flexarm-study, which
-/// differ in their verbs. Says what was wrong on stderr. Returns what the process ends with.
+/// differ in their verbs. Prints errors to stderr. Returns the exit code of the process.
 int RunProgram(int argc, char** argv, RegisterVerbs* register_verbs) noexcept;
 
 }  // namespace flexarm

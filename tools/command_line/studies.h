@@ -9,32 +9,35 @@ class App;
 
 namespace flexarm {
 
-/// Verbs that study the model and the laws. They need neither daemon nor rig and take a compiler as
-/// long as all other verbs together, so they are a program of their own, flexarm-study, which
-/// `flexarm VERB ..` becomes.
+/// Verbs that analyse the model and compare the laws. They need neither daemon nor rig, and
+/// compiling them takes as long as all other verbs together. Therefore they are in a program of
+/// their own, flexarm-study, which `flexarm VERB ..` executes.
 struct Study {
   std::string_view verb;
-  std::string_view description;  ///< as --help of either program shows it
+  std::string_view description;  ///< shown by --help of both programs
 };
 
 inline constexpr std::array kStudies = {
-    Study{"modes", "Natural frequencies of the links and of the whole arm, undamped"},
-    Study{"analyze", "What the model says about the arm"},
-    Study{"sweep", "Simulate an experiment over a grid of values, on all cores, resumable"},
+    Study{"modes", "Undamped natural frequencies of the links and of the whole arm"},
+    Study{"analyze",
+          "Analyse the model: linearization, order reduction, parameters, claims of the thesis"},
+    Study{"sweep",
+          "Simulate an experiment over a grid of parameter values, on all cores; resumable"},
     Study{"benchmark",
-          "Every control law in the same situations: settling, errors, effort, one score"},
-    Study{"report", "Every figure and table of chapters 4 to 7 recomputed, in one HTML page"},
-    Study{"identify", "Find parameters of the rig that let the model predict a measured run"},
+          "Compare the control laws in the same scenarios: settling, errors, torque, one score"},
+    Study{"report",
+          "Recompute every figure and table of chapters 4 to 7 of the thesis, in one HTML page"},
+    Study{"identify", "Identify parameters of the rig from a measured run"},
 };
 
 bool IsStudy(std::string_view verb) noexcept;
 
 /// Adds the verb, one of kStudies, with its description.
-/// @throws std::out_of_range of any other
+/// @throws std::out_of_range for any other name
 CLI::App* AddStudy(CLI::App& app, std::string_view verb);
 
-/// Becomes flexarm-study, which stands beside this program, with the same arguments. Returns only
-/// if that cannot be: what the process ends with, the reason is on stderr.
+/// Replaces this process by flexarm-study, from the folder of this program, with the same
+/// arguments. Returns only on failure: the exit code; the reason is printed to stderr.
 int BecomeStudyProgram(char** argv);
 
 }  // namespace flexarm

@@ -6,7 +6,7 @@ class App;
 
 namespace flexarm {
 
-/// What the program ends with (the contract of every verb).
+/// Exit code of the program (a contract of every verb).
 struct Exit {
   static constexpr int kDone = 0;
   static constexpr int kFailed =
@@ -16,8 +16,8 @@ struct Exit {
   int code = kDone;
 };
 
-// One function a verb, in verb_<name>.cpp: adds the verb, which sets `exit.code` when it runs.
-// Bad input is thrown (InputError, ConfigError, Refused); main turns it into a message and
+// One function a verb, in verb_<name>.cpp: adds the verb, which sets `exit.code` when it runs. Bad
+// input is thrown (InputError, ConfigError, Refused); RunProgram turns it into a message and
 // kBadInput, and any other exception into kFailed.
 void RegisterAnalyze(CLI::App& app, Exit& exit);
 void RegisterAnalyzeCheck(CLI::App& analyze, Exit& exit);

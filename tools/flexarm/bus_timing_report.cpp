@@ -15,7 +15,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// To the microsecond, which is what the bounds are good for.
+// Rounded to the microsecond: the bounds are not more accurate.
 double Milliseconds(std::int64_t ns) { return std::round(static_cast<double>(ns) / 1e3) / 1e3; }
 
 OrderedJson BusJson(const BusCost& bus, std::int64_t available_ns) {
@@ -79,15 +79,15 @@ void PrintLine(const std::string& name, const std::string& value) {
 std::string Ms(const OrderedJson& value) { return NumberText(value.get<double>()) + " ms"; }
 
 void PrintBus(const OrderedJson& bus) {
-  PrintLine(
-      bus["kind"].get<std::string>() + " " + bus["name"].get<std::string>(),
-      Ms(bus["worst_case_ms"]) + " an exchange at worst, " + Ms(bus["spare_ms"]) + " to spare");
+  PrintLine(bus["kind"].get<std::string>() + " " + bus["name"].get<std::string>(),
+            Ms(bus["worst_case_ms"]) + " per exchange in the worst case, " + Ms(bus["spare_ms"]) +
+                " spare");
   for (const OrderedJson& channel : bus["channels"]) {
     const int shares = channel["shared_by"].get<int>();
     std::string text = Ms(channel["cost_ms"]);
     if (shares > 1) text += " for " + std::to_string(shares) + " together";
     if (channel.contains("convert_ms")) {
-      text += "; converted beforehand, in " + Ms(channel["convert_ms"]);
+      text += "; converted before the exchange, in " + Ms(channel["convert_ms"]);
     }
     PrintLine(
         "  " + channel["device"].get<std::string>() + " " + channel["channel"].get<std::string>(),
@@ -112,8 +112,8 @@ void PrintDrive(const OrderedJson& drive) {
             per + ", gear " + number("gear") + ", sign " +
                 std::to_string(drive["sign"].get<int>()) + ", range +-" +
                 number("torque_range_nm") + " N m: " + NumberText(taken) + " of " +
-                number(volts ? "range_v" : "range_per_mille") + unit + "; the loop asks for " +
-                number("torque_limit_nm") + " N m at most");
+                number(volts ? "range_v" : "range_per_mille") + unit +
+                "; torque limit of the loop " + number("torque_limit_nm") + " N m");
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ void PrintWiring(const OrderedJson& json) {
   const OrderedJson& acquisition = json["acquisition"];
   PrintLine("acquisition", Ms(acquisition["worst_case_ms"]) + " on " +
                                acquisition["slowest_bus"].get<std::string>() +
-                               ", the slowest bus, of the " + Ms(acquisition["available_ms"]) +
+                               ", the slowest bus; available " + Ms(acquisition["available_ms"]) +
                                " until the step is due");
   for (const OrderedJson& bus : acquisition["buses"]) PrintBus(bus);
   for (const OrderedJson& drive : json["drives"]) PrintDrive(drive);

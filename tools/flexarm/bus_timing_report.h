@@ -6,12 +6,12 @@
 
 namespace flexarm {
 
-/// What `config check` says of a wired rig: "acquisition", the time that every bus, device and
-/// channel takes and what there is; "drives", how torques become volts or per mille. Nothing if the
-/// rig is not wired.
+/// Adds the figures of a hardware rig to the JSON of `config check`: "acquisition", the time that
+/// every bus, device and channel takes and the time available; "drives", the scaling of torques to
+/// volts or per mille. Adds nothing if [hal] declares no devices.
 void AddWiring(const RigConfig& config, nlohmann::ordered_json* json);
 
-/// The same for people, to stdout.
+/// Prints the same as text to stdout.
 void PrintWiring(const nlohmann::ordered_json& json);
 
 }  // namespace flexarm

@@ -24,8 +24,8 @@ CLI::App* DaemonClient::AddVerb(CLI::App& app, const char* name, const char* wha
   CLI::App* verb = app.add_subcommand(name, what);
   config.AddTo(verb, false);
   verb->add_option("--socket", socket,
-                   "Socket of the daemon (default: of the config, $FLEXARM_SOCKET, or "
-                   "/run/flexarm/flexarmd.sock)")
+                   "Socket of the daemon (default: daemon.socket of --config, else "
+                   "$FLEXARM_SOCKET, else /run/flexarm/flexarmd.sock)")
       ->type_name("PATH");
   AddJson(verb, &json);
   return verb;
@@ -35,7 +35,7 @@ nlohmann::ordered_json DaemonClient::Ask(const nlohmann::ordered_json& command,
                                          double within_s) const {
   const std::string reply = AskDaemon(SocketOf(*this), command.dump(), within_s);
   nlohmann::ordered_json answer = nlohmann::ordered_json::parse(reply, nullptr, false);
-  if (!answer.is_object()) throw InputError("the daemon answered with something that is not JSON");
+  if (!answer.is_object()) throw InputError("the answer of the daemon is not JSON");
   return answer;
 }
 

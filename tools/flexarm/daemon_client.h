@@ -8,19 +8,21 @@
 
 namespace flexarm {
 
-/// What every verb that talks to the running daemon takes.
+/// Options of every verb that talks to the running daemon, and the exchange with the daemon.
 struct DaemonClient {
   ConfigOptions config;
   std::string socket;
   bool json = false;
 
-  /// A verb with --socket, -c and --json bound to this, which must outlive it.
+  /// Adds a verb whose --socket, -c and --json are bound to this object, which must outlive the
+  /// verb.
   CLI::App* AddVerb(CLI::App& app, const char* name, const char* what);
 
   /// Sends `command` and waits for the answer. @throws Refused, InputError
   nlohmann::ordered_json Ask(const nlohmann::ordered_json& command, double within_s = 5.0) const;
 
-  /// The answer as JSON if that was asked for; why it was refused, on stderr. @returns exit code
+  /// Prints the answer as JSON if --json was given, and the reason of a refusal to stderr. @returns
+  /// exit code
   int Conclude(const nlohmann::ordered_json& answer) const;
 };
 

@@ -5,7 +5,7 @@
 namespace flexarm {
 namespace {
 
-// In the order of --help: design and look, run and judge, operate.
+// The order of --help: design and analyse, simulate and evaluate, operate.
 void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterConfig(app, exit);
   AddStudy(app, "modes");

@@ -46,12 +46,14 @@ int Check(const CheckOptions& options) {
 
 void RegisterCheck(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CheckOptions>();
-  CLI::App* verb = app.add_subcommand("check", "Does a run obey the rules that every run obeys?");
+  CLI::App* verb =
+      app.add_subcommand("check", "Check a run log against the safety and consistency rules");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   AddJson(verb, &options->json);
   verb->footer(
-      "Gaps, time, torque and slew limits, torque only where allowed, safety transitions.\n"
-      "Exit code 1 if a rule was broken.\n"
+      "Rules: no missing tick, increasing time, torque and slew limits, torque only in states\n"
+      "that allow it, safety transitions as the state machine prescribes. Prints ok or FAILED for\n"
+      "each rule. Exit code 1 if a rule is broken.\n"
       "Example: flexarm check runs/today.flexarm");
   verb->callback([options, &exit] { exit.code = Check(*options); });
 }

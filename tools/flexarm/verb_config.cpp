@@ -42,8 +42,8 @@ OrderedJson ArmJson(const RigConfig& config) {
   return json;
 }
 
-// A counter unwraps without doubt while it moves by less than half its range between two readings;
-// one reading may be lost.
+// A counter unwraps uniquely while it moves by less than half its range between two readings; the
+// bound allows for one lost reading.
 OrderedJson EncoderJson(const EncoderConfig& encoder, double period_s) {
   const double rad_per_count = kTwoPi / encoder.counts_per_turn;
   const double half_range = std::ldexp(1.0, encoder.counter_bits - 1);
@@ -123,7 +123,7 @@ void PrintText(const ConfigCheckOptions& options, const OrderedJson& json) {
   line("frequencies, motors held", List(arm["motors_held_frequency_hz"]) + " Hz");
   for (const OrderedJson& encoder : json["encoders"]) {
     line("encoder " + encoder["joint"].get<std::string>(),
-         Number(encoder["resolution_deg"]) + " deg a count, unwraps below " +
+         Number(encoder["resolution_deg"]) + " deg per count, unwraps below " +
              Number(encoder["unwraps_below_rad_s"]) + " rad/s");
   }
   const OrderedJson& strain = json["strain"];
@@ -153,20 +153,24 @@ void Check(const ConfigCheckOptions& options) {
 
 void RegisterConfig(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ConfigCheckOptions>();
-  CLI::App* verb = app.add_subcommand("config", "Look at configs");
+  CLI::App* verb = app.add_subcommand("config", "Inspect configs");
   verb->require_subcommand(1);
   CLI::App* check = verb->add_subcommand(
       "check",
-      "Validate a config: every problem with its line, or what follows from the numbers; of a "
-      "wired rig also what every channel costs, and how torques become volts");
-  check->add_option("file", options->file, "RigConfig of the rig, a TOML file")
+      "Validate a config: print every problem with its line, or else the quantities derived from "
+      "it; for a hardware rig also the time of every channel and the scaling of the torques");
+  check->add_option("file", options->file, "Config of the rig, a TOML file")
       ->required()
       ->type_name("FILE");
-  check->add_option("--set", options->overrides, "Replace a value, as in the other verbs")
+  check
+      ->add_option("--set", options->overrides,
+                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   AddJson(check, &options->json);
-  check->footer("Example: flexarm config check config/thesis-rig.toml");
+  check->footer(
+      "Exit code 2 if the config is not valid.\n"
+      "Example: flexarm config check config/thesis-rig.toml");
   check->callback([options] { Check(*options); });
 }
 

@@ -27,8 +27,8 @@ struct DesignOptions {
   bool json = false;
 };
 
-/// Condition of the command generator's equation, as the model stands (psi(L) = 1) and in the
-/// coordinates in which it is solved.
+/// Condition number of the command generator's equation, in the coordinates of the model (psi(L) =
+/// 1) and in the scaled coordinates in which it is solved.
 struct Conditioning {
   double unscaled, scaled;
 };
@@ -85,10 +85,10 @@ nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& ro
 
 void PrintRobustness(const RobustnessAnalysis& robustness) {
   std::printf(
-      "\nrobustness: largest |eigenvalue| of the loop around the arm with 4 modes a link, below 1 "
+      "\nrobustness: largest |eigenvalue| of the closed loop with 4 bending modes a link; below 1 "
       "is\n"
-      "stable (!: it must be, ?: both payload and gains are off); gains as they are, x 0.7, x "
-      "1.4\n%-12s %12s %10s %10s %10s\n",
+      "stable (!: must be stable; ?: payload and gains both differ); gains x 1, x 0.7, x 1.4\n"
+      "%-12s %12s %10s %10s %10s\n",
       "payload, kg", "elbow, deg", "x 1", "x 0.7", "x 1.4");
   for (std::size_t i = 0; i + 2 < robustness.cases.size(); i += 3) {
     std::printf("%-12g %12g", robustness.cases[i].payload_kg, robustness.cases[i].theta2_deg);
@@ -109,7 +109,7 @@ void PrintText(const Design& design, const RobustnessAnalysis& robustness,
   const auto states = static_cast<int>(design.A.rows());
   std::printf(
       "nominal model %s: %d states; equation of the command generator (%d unknowns): condition\n"
-      "%.1e as the model stands, %.1e as it is scaled and solved\n\n",
+      "number %.1e in the coordinates of the model, %.1e in those in which it is solved\n\n",
       nominal.c_str(), states, states * states, conditioning.unscaled, conditioning.scaled);
   std::printf("%-34s %12s  %s\n", "check", "value", "must be");
   for (const DesignCheck& check : design.checks) {
@@ -126,7 +126,7 @@ void PrintText(const Design& design, const RobustnessAnalysis& robustness,
   if (design.sound()) std::printf("\ngains written to %s\n", file.c_str());
 }
 
-// Where the loop is unstable, if it is.
+// Names the worst required case if the loop is unstable with it; else empty.
 std::string Where(const RobustnessAnalysis& robustness) {
   const RobustnessCase& worst = robustness.worst_required();
   if (worst.spectral_radius < 1.0) return "";
@@ -138,7 +138,7 @@ std::string Where(const RobustnessAnalysis& robustness) {
 
 int Run(const DesignOptions& options) {
   RigConfig config = options.config.Load();
-  config.controller.gains_file.clear();  // a new design, whatever the config runs with
+  config.controller.gains_file.clear();  // designs also if the config names gains
   Design design = DesignController(config);
   const RobustnessAnalysis robustness = AnalyzeRobustness(config, design, options.payload_kg);
   for (const DesignCheck& check : ChecksOf(robustness)) design.checks.push_back(check);
@@ -158,7 +158,7 @@ int Run(const DesignOptions& options) {
   }
   if (!design.sound()) {
     std::cerr << "flexarm: no gains were written: failed: " << failed << Where(robustness)
-              << "; --force writes them all the same, and says so in the file\n";
+              << "; --force writes them anyway and records that in the file\n";
     return Exit::kFailed;
   }
   return Exit::kDone;
@@ -169,24 +169,27 @@ int Run(const DesignOptions& options) {
 void RegisterDesign(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<DesignOptions>();
   CLI::App* verb = app.add_subcommand(
-      "design", "Design reference model, gains and filter for a rig, check them, write them down");
+      "design",
+      "Design the reference model, gains and filter of a rig, check them and write them to a file");
   options->config.AddTo(verb, true);
   AddOutput(verb, &options->output, "Gains file to write (JSON)");
-  verb->add_option("--payload-kg", options->payload_kg,
-                   "Payloads that the gains have to hold (default: 0 0.01 0.1 0.2 0.5 1)")
+  verb->add_option(
+          "--payload-kg", options->payload_kg,
+          "Payloads with which the closed loop must be stable, kg (default: 0 0.01 0.1 0.2 0.5 1)")
       ->check(CLI::Range(0.0, 100.0))
       ->expected(1, -1);
   verb->add_flag("--force", options->force,
-                 "Write gains that fail a check too; the file and every run's log say so");
+                 "Write the gains even if a check failed; the file and every run's log record it");
   AddJson(verb, &options->json);
   verb->footer(
       "The nominal model is controller.nominal: R8, R12, T12 or T16.\n"
-      "Every check is printed with its figure; gains that fail one are not written. Beside the\n"
-      "equations, the loop is closed around the arm with four modes a link, at three elbow "
-      "angles,\n"
-      "with every payload and with the gains x 0.7 and x 1.4; its gain and delay margins count "
-      "too.\n"
-      "Run with them by [controller] gains = \"FILE\"; without that, the daemon designs at start.\n"
+      "Every check is printed with its value and its limit; gains that fail a check are not\n"
+      "written.\n"
+      "The robustness analysis closes the loop around the arm with four bending modes a link, at\n"
+      "three elbow angles, with every payload, and with the gains x 0.7 and x 1.4. The gain and\n"
+      "delay margins are checked too.\n"
+      "To run with these gains, set [controller] gains = \"FILE\" in the config. Without that key\n"
+      "the daemon designs the gains at start.\n"
       "Example: flexarm design -c config/thesis-rig.toml -o gains.json");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }

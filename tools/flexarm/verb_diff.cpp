@@ -22,7 +22,8 @@ struct DiffOptions {
 
 struct Difference {
   std::array<std::size_t, 2> ticks{};
-  std::optional<std::int64_t> first_tick;  // of the first run; where bytes differ or one run ends
+  std::optional<std::int64_t>
+      first_tick;  // of the first run: the bytes differ here, or one run ends
   std::array<double, 2> torque_asked_nm{}, torque_applied_nm{}, joint_angle_deg{};
   double estimate = 0;  // largest of any state, SI
 };
@@ -33,7 +34,7 @@ double Apart(double a, double b) {
   return std::isnan(apart) ? std::numeric_limits<double>::infinity() : apart;
 }
 
-// Runs start at different instants of their clocks: counts from the first tick of the run.
+// The clocks of two runs start at different values: ticks and times count from the first tick.
 TickRecord FromStart(TickRecord record, const TickRecord& first) {
   record.input.tick -= first.input.tick;
   record.output.tick -= first.input.tick;
@@ -103,7 +104,7 @@ void PrintText(const Difference& difference) {
   if (difference.first_tick) {
     std::cout << *difference.first_tick << '\n';
   } else {
-    std::cout << "none: the runs are identical to the bit\n";
+    std::cout << "none: the runs are identical bit for bit\n";
   }
   const auto line = [](const char* name, const std::array<double, 2>& pair, const char* unit) {
     std::cout << name << pair[0] << ", " << pair[1] << ' ' << unit << '\n';
@@ -117,12 +118,15 @@ void PrintText(const Difference& difference) {
 
 void RegisterDiff(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<DiffOptions>();
-  CLI::App* verb = app.add_subcommand("diff", "Where do two runs differ, and by how much?");
+  CLI::App* verb = app.add_subcommand(
+      "diff",
+      "Compare two run logs: first different tick, largest differences of torque and angle");
   verb->add_option("first", options->first, "Run log")->required()->type_name("RUN");
   verb->add_option("second", options->second, "Run log")->required()->type_name("RUN");
   AddJson(verb, &options->json);
   verb->footer(
-      "Ticks and times are counted from the start of each run. Exit code 1 if the runs differ.\n"
+      "Compares every recorded byte; ticks and times count from the start of each run. Exit\n"
+      "code 1 if the runs differ.\n"
       "Example: flexarm diff real-time.flexarm lock-step.flexarm");
   verb->callback([options, &exit] {
     const Difference difference =

@@ -36,22 +36,23 @@ void Export(const ExportOptions& options) {
   std::filesystem::path beside = options.output;
   beside.replace_extension(".calibration.json");
   WriteCalibration(beside, config.sensors, calibration);
-  std::cerr << "the counts are raw, and this rig was calibrated: replay them with --calibration "
-            << beside.string() << '\n';
+  std::cerr
+      << "the exported counts are raw and the rig was calibrated: replay them with --calibration "
+      << beside.string() << '\n';
 }
 
 }  // namespace
 
 void RegisterExport(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* verb = app.add_subcommand("export", "Write a run as CSV, which replay reads again");
+  CLI::App* verb = app.add_subcommand(
+      "export", "Export the samples of a run log as a CSV file that `flexarm replay` reads");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   AddOutput(verb, &options->output, "CSV file to write");
   verb->footer(
       "Columns: time_s, counter_1..4 and strain_<link>_<number> as raw counts, valid (1, 0 or a\n"
-      "mask), torque_1_nm and torque_2_nm as applied. The calibration of the run, if it had one, "
-      "is\n"
-      "written beside it, as NAME.calibration.json.\n"
+      "mask), torque_1_nm and torque_2_nm as applied. A calibration of the run is\n"
+      "written beside the CSV file, as NAME.calibration.json.\n"
       "Example: flexarm export runs/today.flexarm -o today.csv");
   verb->callback([options] { Export(*options); });
 }

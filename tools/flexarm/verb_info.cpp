@@ -52,7 +52,7 @@ std::int64_t MissingTicks(const std::vector<TickRecord>& ticks) {
          static_cast<std::int64_t>(ticks.size());
 }
 
-// From sampling instant to torque, as the drive side measured it; the longest of the run.
+// Longest loop delay of the run, from sampling instant to torque, as measured at the drives.
 OrderedJson DelayJson(const LoadedRun& run) {
   if (run.contents.tick.empty()) return nullptr;
   const auto latest = std::max_element(
@@ -117,8 +117,8 @@ void PrintLine(const std::string& name, const OrderedJson& value, const std::str
 }
 
 void PrintMetrics(const OrderedJson& metrics) {
-  std::cout << (metrics["truth"].get<bool>() ? "Figures, from the plant's true motion\n"
-                                             : "Figures, from the estimate\n");
+  std::cout << (metrics["truth"].get<bool>() ? "Metrics, from the plant's true motion\n"
+                                             : "Metrics, from the estimate\n");
   PrintLine("joint error, rms", metrics["joint_rms_error_deg"], "deg");
   PrintLine("joint error, final", metrics["joint_final_error_deg"], "deg");
   PrintLine("tip settling time", metrics["tip_settling_time_s"], "s");
@@ -160,8 +160,8 @@ void PrintText(const OrderedJson& json, const RunContents& run) {
   if (!json["metrics"].is_null()) PrintMetrics(json["metrics"]);
   if (!json["timing"].is_null()) {
     std::cout << "Timing of the loop\n";
-    PrintLine("woke late, worst", json["timing"]["late_max_us"], "us");
-    PrintLine("step took, worst", json["timing"]["took_max_us"], "us");
+    PrintLine("lateness, worst", json["timing"]["late_max_us"], "us");
+    PrintLine("step duration, worst", json["timing"]["took_max_us"], "us");
   }
   if (!run.safety.empty()) PrintSafety(run);
 }
@@ -170,10 +170,13 @@ void PrintText(const OrderedJson& json, const RunContents& run) {
 
 void RegisterInfo(CLI::App& app, Exit&) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* verb = app.add_subcommand("info", "What happened in a run: a summary and its figures");
+  CLI::App* verb = app.add_subcommand(
+      "info", "Summarise a run log: result, safety transitions, metrics, timing");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   AddJson(verb, &options->json);
-  verb->footer("Example: flexarm info runs/today.flexarm");
+  verb->footer(
+      "Metrics: tracking errors, settling time and residual of the tip, torques, bending.\n"
+      "Example: flexarm info runs/today.flexarm");
   verb->callback([options] {
     const LoadedRun run = LoadRun(options->run);
     const OrderedJson json = Info(run);

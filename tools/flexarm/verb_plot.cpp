@@ -33,13 +33,13 @@ void Plot(const PlotOptions& options) {
 
 void RegisterPlot(CLI::App& app, Exit&) {
   const auto options = std::make_shared<PlotOptions>();
-  CLI::App* verb =
-      app.add_subcommand("plot", "A picture of one run, or of several over each other");
+  CLI::App* verb = app.add_subcommand("plot", "Draw one run, or several runs in the same axes");
   verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");
   AddOutput(verb, &options->output, "Picture to write, .png or .svg");
   verb->footer(
-      "Angles against their references, torques asked and applied, tip deflections, the tip's\n"
-      "distance from where it comes to rest, the safety state, and the arm from above.\n"
+      "The picture shows the joint angles with their references, the asked and the applied\n"
+      "torques, the tip deflections, the tip's distance from its resting place, the safety state,\n"
+      "and the arm seen from above.\n"
       "Example: flexarm plot runs/today.flexarm runs/yesterday.flexarm -o compare.png");
   verb->callback([options] { Plot(*options); });
 }

@@ -40,13 +40,14 @@ Design GainsOf(const RunReader& reader, const RigConfig& config) {
   try {
     return DesignFromJson(reader.info().gains_json, config);
   } catch (const std::runtime_error& error) {
-    throw InputError(reader.file().string() + ": its gains cannot be used: " + error.what());
+    throw InputError(reader.file().string() +
+                     ": the gains in this log cannot be used: " + error.what());
   }
 }
 
 Outcome ReplayRun(const ReplayOptions& options) {
   if (!options.calibration.empty()) {
-    throw InputError("--calibration: a run log brings its own; it is for CSV files");
+    throw InputError("--calibration is for CSV files only: a run log contains its own calibration");
   }
   RunReader reader(options.source);
   const RigConfig own = ConfigOf(reader);
@@ -61,7 +62,7 @@ Outcome ReplayRun(const ReplayOptions& options) {
   return {.result = replay.Result(), .other_build = build == BuildId() ? "" : build};
 }
 
-// A CSV file has no outputs of its own. What was applied up to a row was asked one row before.
+// A CSV file has no recorded outputs. The torque applied up to a row was asked for one row before.
 Outcome ReplayCsv(const ReplayOptions& options) {
   if (!options.config.given()) {
     throw InputError(options.source.string() +
@@ -137,8 +138,8 @@ int Run(const ReplayOptions& options) {
   const bool is_run = options.source.extension() != ".csv";
   const Outcome outcome = is_run ? ReplayRun(options) : ReplayCsv(options);
   if (!outcome.other_build.empty()) {
-    std::cerr << "flexarm: another build recorded this run: " << outcome.other_build
-              << "; this one is " << BuildId() << '\n';
+    std::cerr << "flexarm: this run was recorded by another build: " << outcome.other_build
+              << "; this build is " << BuildId() << '\n';
   }
   if (options.json) {
     std::cout << ToJson(outcome).dump(2) << '\n';
@@ -155,20 +156,21 @@ int Run(const ReplayOptions& options) {
 void RegisterReplay(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<ReplayOptions>();
   CLI::App* verb = app.add_subcommand(
-      "replay", "Run recorded inputs through the loop again and compare what it asks for");
+      "replay", "Run recorded inputs through the control step again and compare the torques");
   verb->add_option("source", options->source, "Run log, or CSV file (*.csv)")
       ->required()
       ->type_name("RUN_OR_CSV");
   options->config.AddTo(verb, false);
-  verb->add_option("--calibration", options->calibration,
-                   "Of the rig that a CSV file was recorded on: what export wrote beside it")
+  verb->add_option(
+          "--calibration", options->calibration,
+          "Calibration of the rig that recorded the CSV file, as written by `flexarm export`")
       ->type_name("FILE");
   AddJson(verb, &options->json);
   verb->footer(
-      "A run log brings its own config and gains, and must give the same bytes: exit code 1 if "
-      "not.\n"
-      "With -c the loop is built from another config, and the difference is reported.\n"
-      "A CSV file is one that export wrote, or one that the table [csv] of the config describes.\n"
+      "A run log contains its config and gains; its replay must give the same bytes, else the\n"
+      "exit code is 1. With -c the loop uses that config instead, and the difference is reported.\n"
+      "A CSV file comes from `flexarm export`, or has the columns of the table [csv] of the\n"
+      "config.\n"
       "Examples: flexarm replay runs/today.flexarm\n"
       "          flexarm replay today.csv -c config/thesis-rig.toml");
   verb->callback([options, &exit] { exit.code = Run(*options); });

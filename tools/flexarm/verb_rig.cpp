@@ -79,7 +79,7 @@ int Run(const RigOptions& options) {
   const RigConfig config = options.config.Load();
   if (config.hal.empty()) {
     throw RejectedError(options.config.file.string() +
-                        ": has no wires to play; expected [[hal.canopen]], [[hal.modbus]] and "
+                        ": has no devices to emulate; expected [[hal.canopen]], [[hal.modbus]] and "
                         "[hal.gpiod], as config/hil-wire.toml");
   }
   ArmParameters arm = config.arm;
@@ -88,14 +88,14 @@ int Run(const RigOptions& options) {
                   {.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
   std::signal(SIGTERM, AskEnd);
   std::signal(SIGINT, AskEnd);
-  std::cerr << "flexarm rig: playing " << config.rig_name << "; commands on stdin\n";
+  std::cerr << "flexarm rig: emulating " << config.rig_name << "; commands on stdin\n";
 
   Commands commands;
   std::string line;
   const std::int64_t start_ns = MonotonicNow();
   const std::int64_t end_ns =
       options.run_for_s ? start_ns + std::llround(*options.run_for_s * 1e9) : INT64_MAX;
-  // A late slice is made up for: the arm's time is the wall's.
+  // A late time slice is caught up: simulated time follows wall-clock time.
   for (std::int64_t due_ns = start_ns; end_asked == 0 && due_ns < end_ns; due_ns += kSliceNs) {
     SleepUntil(due_ns);
     rig.Step(due_ns);
@@ -117,23 +117,25 @@ int Run(const RigOptions& options) {
 void RegisterRig(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<RigOptions>();
   CLI::App* verb = app.add_subcommand(
-      "rig", "Play the devices of a wired rig, with the simulated arm behind them");
+      "rig",
+      "Emulate the devices of a hardware rig on their buses, with the simulated arm as plant");
   options->config.AddTo(verb, true);
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payload of the plant, instead of the config's")
       ->check(CLI::Range(0.0, 100.0));
-  verb->add_option("--run-for", options->run_for_s, "End after this long")
+  verb->add_option("--run-for", options->run_for_s, "End after this time")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
   AddJson(verb, &options->json);
   verb->footer(
       std::string(
-          "Serves Modbus, CANopen nodes and gpio-sim lines as the config wires them; then start\n"
+          "Serves the Modbus devices, CANopen nodes and gpio-sim lines of the config; then start\n"
           "flexarmd with the same config. An amplifier with transport = \"rtu\" is served on a\n"
-          "pseudo-terminal, to which the rig puts a link at the configured `device`: any path "
-          "that\n"
-          "is free, as /tmp/strain-amplifier-1; the daemon opens that.\n"
-          "At the end it prints what the hardware saw.\n\n") +
+          "pseudo-terminal. The configured `device` becomes a link to it: choose a path that does\n"
+          "not exist yet, such as /tmp/strain-amplifier-1; the daemon opens that path.\n"
+          "At the end the verb prints the last torques, the relay, the charge pump and the time\n"
+          "with power, as the devices received them.\n"
+          "\n") +
       kRigCommands +
       "\nExamples: flexarm rig -c config/hil-wire.toml\n"
       "          mkfifo rig.in; flexarm rig -c config/hil-wire.toml <rig.in & exec 3>rig.in\n"

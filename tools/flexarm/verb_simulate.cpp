@@ -29,7 +29,7 @@ struct SimulateOptions {
   bool json = false;
 };
 
-// The short options are words for config keys: the log's config then says what was run.
+// The short options set config keys, so that the config in the log describes the run completely.
 RigConfig LoadWithOptions(const SimulateOptions& options) {
   ConfigOptions config = options.config;
   const auto set = [&config](const char* key, const std::string& value) {
@@ -90,7 +90,7 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
     std::printf("move[%zu] takes             %.2f s\n", i, result.move_duration_s[i]);
   }
   if (result.delay_found != 0) {
-    std::printf("delay found               %+d samples beyond the known one\n", result.delay_found);
+    std::printf("delay found               %+d samples more than declared\n", result.delay_found);
   }
   std::printf("real-time factor          %.0f\n", result.realtime_factor);
   if (!run.empty()) std::printf("run                       %s\n", run.c_str());
@@ -127,7 +127,7 @@ std::string LawHelp() {
 void RegisterSimulate(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* verb = app.add_subcommand(
-      "simulate", "Run an experiment with the whole stack against the simulated arm, in lock step");
+      "simulate", "Simulate an experiment: every task of the controller and the arm, in lock step");
   options->config.AddTo(verb, true);
   verb->add_option(
           "--experiment", options->experiment,
@@ -138,19 +138,22 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
   verb->add_option("--estimator", options->estimator,
                    "estimator.name: kalman, difference, polynomial, ekf-payload");
   verb->add_option("--payload-kg", options->payload_kg,
-                   "Payload that the plant carries; the design keeps the config's")
+                   "Payload of the plant, kg; the controller is designed for the config's")
       ->check(CLI::Range(0.0, 100.0));
   verb->add_option("--plant-modes", options->plant_modes, "sim.plant_modes: bending modes a link");
-  verb->add_option("--seed", options->seed, "sim.seed: of the measurement noise");
+  verb->add_option("--seed", options->seed, "sim.seed: seed of the measurement noise");
   verb->add_flag("--without-prediction", options->without_prediction,
                  "controller.prediction = false: the delay is not compensated");
-  verb->add_flag("--without-adaptation", options->without_adaptation,
-                 "controller.adaptation = false: same feedforward and feedback, fixed");
-  verb->add_option("-o,--output", options->output, "Write the run log here (must not exist)")
+  verb->add_flag(
+      "--without-adaptation", options->without_adaptation,
+      "controller.adaptation = false: the same feedforward and feedback with fixed gains");
+  verb->add_option("-o,--output", options->output, "Run log to write (must not exist)")
       ->type_name("RUN");
   AddJson(verb, &options->json);
   verb->footer(
-      "The same config and seed give the same run, tick for tick. Exit code 1 if it tripped.\n"
+      "Prints tracking errors, settling time of the tip and peak torques; `flexarm plot` draws\n"
+      "the run log. The same config and seed give the same run, tick for tick. Exit code 1 if the\n"
+      "run tripped.\n"
       "Examples: flexarm simulate -c config/hil.toml\n"
       "          flexarm simulate -c config/hil.toml --payload-kg 0.2 --seed 7 -o heavy.flexarm\n"
       "          flexarm simulate -c config/hil.toml --set controller.alpha=2 --json");

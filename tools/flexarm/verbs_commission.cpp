@@ -44,7 +44,7 @@ void PrintPluck(const Json& answer) {
   for (const Json& row : answer.value("answer", Json::array())) {
     std::printf("%-14s %10.3f %8.1f %%%s\n", row.value("channel", "").c_str(),
                 row.value("gain", 0.0), 100.0 * row.value("match", 0.0),
-                row.value("provable", true) ? "" : "   moves too little to tell");
+                row.value("provable", true) ? "" : "   response too small to judge");
   }
 }
 
@@ -60,17 +60,19 @@ int Run(const CommissionOptions& options, const Json& command) {
 
 void AddTare(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
-  CLI::App* verb = options->daemon.AddVerb(app, "tare", "Take the strain channels' zeros");
+  CLI::App* verb =
+      options->daemon.AddVerb(app, "tare", "Tare: measure the zeros of the strain channels");
   verb->footer(
-      "Only in Idle, at rest, with nothing touching the links: nothing bends them then. A channel\n"
-      "that is unsteady, missing or far from its zero is named, and nothing is changed.\n"
+      "Only in Idle, at rest, with nothing touching the links, so that they are not bent. If a\n"
+      "channel is unsteady, missing or far from its zero, it is named and no zero is changed.\n"
       "Example: flexarm tare");
   verb->callback([options, &exit] { exit.code = Run(*options, {{"command", "tare"}}); });
 }
 
 void AddZero(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
-  CLI::App* verb = options->daemon.AddVerb(app, "zero", "Say at which angles the joints stand now");
+  CLI::App* verb = options->daemon.AddVerb(
+      app, "zero", "Set the present angles of the joints, from which the encoders then count");
   verb->add_option("--angle-deg", options->angle_deg,
                    "Hub angles of joint 1 and 2, counter-clockwise positive (default 0 0)")
       ->expected(2)
@@ -87,18 +89,20 @@ void AddZero(CLI::App& app, Exit& exit) {
 
 void AddCalibrate(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
-  CLI::App* verb =
-      options->daemon.AddVerb(app, "calibrate", "Take a link's strain gains from a known load");
+  CLI::App* verb = options->daemon.AddVerb(app, "calibrate",
+                                           "Measure the strain gains of a link under a known load");
   verb->add_option("--link", options->link, "1 or 2")->required()->check(CLI::Range(1, 2));
-  verb->add_option("--force-n", options->force_n,
-                   "Force square to the link; counter-clockwise about its joint is positive")
+  verb->add_option(
+          "--force-n", options->force_n,
+          "Force perpendicular to the link, N; counter-clockwise about its joint is positive")
       ->required();
-  verb->add_option("--at-m", options->at_m, "Where it pulls, from the root of the link")
+  verb->add_option("--at-m", options->at_m,
+                   "Point of attack of the force, m from the root of the link")
       ->required();
   verb->footer(
-      "First `flexarm tare`. Then hold the joint, hang a known mass over a pulley at the end of "
-      "the\n"
-      "link (force = mass times 9.81), and call this; more loads refine the gains. Only in Idle.\n"
+      "First `flexarm tare`. Then hold the joint, hang a known mass over a pulley at the end of\n"
+      "the link (force = mass times 9.81), and run this verb; further loads refine\n"
+      "the gains. Only in Idle.\n"
       "Example: 0.5 kg at the end of link 1: flexarm calibrate --link 1 --force-n 4.905 --at-m "
       "0.8");
   verb->callback([options, &exit] {
@@ -112,26 +116,27 @@ void AddCalibrate(CLI::App& app, Exit& exit) {
 void AddPluck(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb = options->daemon.AddVerb(
-      app, "pluck", "Prove the wiring: a small torque on each joint, held against the model");
+      app, "pluck",
+      "Check the wiring: compare the motion after a small torque on each joint with the model");
   verb->footer(
       "Only from Armed; moves each joint by a few degrees, in open loop. Every drive, encoder and\n"
-      "gauge whose sign, scale or place is wrong is named. Exit 0 if all is right.\n"
+      "gauge with a wrong sign, scale or place is named. Exit code 0 if all are right.\n"
       "Example: flexarm arm && flexarm pluck");
   verb->callback([options, &exit] { exit.code = Run(*options, {{"command", "pluck"}}); });
 }
 
 void AddHome(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
-  CLI::App* verb =
-      options->daemon.AddVerb(app, "home", "Find a limit switch, and so the joint's angle");
+  CLI::App* verb = options->daemon.AddVerb(
+      app, "home", "Home a joint: move slowly to a limit switch, whose angle is known");
   verb->add_option("joint", options->joint, "1 or 2")->required()->check(CLI::Range(1, 2));
-  verb->add_option("side", options->side, "low or high: which of its switches")
+  verb->add_option("side", options->side, "Which limit switch of the joint: low or high")
       ->required()
       ->check(CLI::IsMember({"low", "high"}));
   verb->footer(
-      "Only from Armed, with the joint put near its switch by hand. It moves slowly, over\n"
-      "commissioning.home_travel_deg at most, until the switch opens, then back off it. The other\n"
-      "switches trip as ever, and so does this one if the arm stays on it.\n"
+      "Only from Armed, with the joint placed near the switch by hand. The joint moves slowly, by\n"
+      "commissioning.home_travel_deg at most, until the switch opens, and then moves off it. The\n"
+      "other switches trip as always, and so does this one if the arm stays on it.\n"
       "Example: flexarm home 1 low");
   verb->callback([options, &exit] {
     exit.code =

@@ -47,7 +47,7 @@ void PrintStatus(const Json& s) {
     std::printf("payload        %.3f kg, standard deviation %.3f kg", payload.value("kg", 0.0),
                 payload.value("sigma_kg", 0.0));
     if (const int samples = payload.value("delay_found", 0); samples != 0) {
-      std::printf("; delay found: %+d samples beyond the known one", samples);
+      std::printf("; delay found: %+d samples more than declared", samples);
     }
     for (const Json& warning : payload.value("warnings", Json::array())) {
       std::printf("; %s", warning.get<std::string>().c_str());
@@ -55,18 +55,21 @@ void PrintStatus(const Json& s) {
     std::printf("\n");
   }
   for (const Json& bus : s.value("buses", Json::array())) {
-    std::printf("%-14s %s, %u failed, %u times recovered%s%s\n", bus.value("name", "").c_str(),
-                bus.value("ok", false) ? "ok" : "lost", bus.value("failed", 0U),
-                bus.value("recovered", 0U), bus["fault"].is_string() ? "; " : "",
+    std::printf("%-14s %s, %u failed exchanges, recovered %u times%s%s\n",
+                bus.value("name", "").c_str(), bus.value("ok", false) ? "ok" : "lost",
+                bus.value("failed", 0U), bus.value("recovered", 0U),
+                bus["fault"].is_string() ? "; " : "",
                 bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
   }
   for (const Json& thread : s.value("threads", Json::array())) {
-    std::printf("%-14s %llu runs, %llu missed, %llu skipped, worst lateness %.0f us\n",
-                thread.value("name", "").c_str(),
-                static_cast<unsigned long long>(thread.value("activations", std::uint64_t{0})),
-                static_cast<unsigned long long>(thread.value("missed_deadlines", std::uint64_t{0})),
-                static_cast<unsigned long long>(thread.value("skipped_periods", std::uint64_t{0})),
-                thread.value("worst_lateness_us", 0.0));
+    std::printf(
+        "%-14s %llu activations, %llu missed deadlines, %llu skipped periods, worst lateness %.0f "
+        "us\n",
+        thread.value("name", "").c_str(),
+        static_cast<unsigned long long>(thread.value("activations", std::uint64_t{0})),
+        static_cast<unsigned long long>(thread.value("missed_deadlines", std::uint64_t{0})),
+        static_cast<unsigned long long>(thread.value("skipped_periods", std::uint64_t{0})),
+        thread.value("worst_lateness_us", 0.0));
   }
 }
 
@@ -87,7 +90,7 @@ int Status(const OperateOptions& options) {
 }
 
 int RunExperiment(const OperateOptions& options) {
-  const Experiment experiment = LoadExperiment(options.experiment);  // complains with file and line
+  const Experiment experiment = LoadExperiment(options.experiment);  // throws with file and line
   return options.daemon.Conclude(
       options.daemon.Ask({{"command", "run"},
                           {"name", options.experiment.filename().string()},
@@ -107,8 +110,10 @@ void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, c
 
 void RegisterOperate(CLI::App& app, Exit& exit) {
   const auto status = std::make_shared<OperateOptions>();
-  CLI::App* verb = status->daemon.AddVerb(app, "status", "What the running daemon is doing");
-  verb->add_flag("--watch", status->watch, "Again and again, until interrupted");
+  CLI::App* verb = status->daemon.AddVerb(
+      app, "status",
+      "Show the state of the running daemon: safety, angles, torques, delay, buses, threads");
+  verb->add_flag("--watch", status->watch, "Repeat every half second until interrupted");
   verb->footer("Example: flexarm status --watch");
   verb->callback([status, &exit] { exit.code = Status(*status); });
 
@@ -121,13 +126,14 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
       ->required()
       ->type_name("EXPERIMENT");
   verb->footer(
-      "Only from Armed. Its reference is first compared with the limits of the rig: a refusal\n"
-      "names the row, the joint, the value and the limit (docs/experiments.md).\n"
+      "Only from Armed. The daemon first compares the reference with the limits of the rig: a\n"
+      "refusal names the row, the joint, the value and the limit (docs/experiments.md).\n"
       "Example: flexarm run config/experiments/square-30deg.toml");
   verb->callback([run, &exit] { exit.code = RunExperiment(*run); });
 
-  AddCommand(app, exit, "stop", "Bring the running arm to rest, under control",
-             "The controller damps the arm, at most 3 s, then it is Armed. Example: flexarm stop");
+  AddCommand(app, exit, "stop", "End the experiment: the controller brings the arm to rest",
+             "The controller damps the arm for at most 3 s, then the state is Armed. Example: "
+             "flexarm stop");
   AddCommand(app, exit, "disarm", "Open the relay",
              "Only from Armed; stop first. Example: flexarm disarm");
   AddCommand(app, exit, "reset", "Leave Tripped for Idle",
@@ -135,7 +141,8 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
              "Example: flexarm reset");
 
   const auto sim = std::make_shared<OperateOptions>();
-  verb = sim->daemon.AddVerb(app, "sim", "Press a switch of the simulated rig");
+  verb = sim->daemon.AddVerb(
+      app, "sim", "Set a digital line of the simulated rig: a switch or the reset button");
   verb->add_option(
           "line", sim->line,
           "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop, reset-button")
@@ -146,8 +153,8 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
       ->check(CLI::Range(0, 1))
       ->type_name("LEVEL");
   verb->footer(
-      "Examples: flexarm sim emergency-stop 0    somebody hits it\n"
-      "          flexarm sim reset-button 1      and 0 again: pressed and released");
+      "Examples: flexarm sim emergency-stop 0    the emergency stop is pressed\n"
+      "          flexarm sim reset-button 1      pressed; then 0: released");
   verb->callback([sim, &exit] {
     exit.code = sim->daemon.Conclude(
         sim->daemon.Ask({{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));

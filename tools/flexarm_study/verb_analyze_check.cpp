@@ -38,11 +38,13 @@ void Analyze(const ThesisCheckOptions& options) {
 void RegisterAnalyzeCheck(CLI::App& analyze, Exit&) {
   const auto options = std::make_shared<ThesisCheckOptions>();
   CLI::App* verb = analyze.add_subcommand(
-      "check", "Which statements of the thesis come out of the model, with numbers");
+      "check", "Check the statements of the thesis against the model, with computed numbers");
   options->config.AddTo(verb, true);
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output, "Page to write, in Markdown")->type_name("FILE");
-  verb->footer("Example: flexarm analyze check -c config/thesis-rig.toml -o docs/thesis-check.md");
+  verb->add_option("-o,--output", options->output, "Markdown page to write")->type_name("FILE");
+  verb->footer(
+      "Prints a table: section, statement, result of the model, verdict.\n"
+      "Example: flexarm analyze check -c config/thesis-rig.toml -o docs/thesis-check.md");
   verb->callback([options] { Analyze(*options); });
 }
 

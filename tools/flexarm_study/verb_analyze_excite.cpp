@@ -64,8 +64,8 @@ void Excite(const ExciteOptions& options) {
 
 void RegisterAnalyzeExcite(CLI::App& analyze, Exit&) {
   const auto options = std::make_shared<ExciteOptions>();
-  CLI::App* verb =
-      analyze.add_subcommand("excite", "The arm under one period of a square wave (chapter 4)");
+  CLI::App* verb = analyze.add_subcommand(
+      "excite", "Simulate the free arm under one period of a square wave of torque (chapter 4)");
   options->config.AddTo(verb, true);
   verb->add_option("--modes", options->modes, "Bending modes a link")
       ->check(CLI::Range(1, kMaxSteppedModes))
@@ -87,7 +87,8 @@ void RegisterAnalyzeExcite(CLI::App& analyze, Exit&) {
                    "Picture of bending and joint angles, .png or .svg (figures 4.4 and 4.5)")
       ->type_name("FILE");
   verb->footer(
-      "The wave has a period of 1 s; the thesis does not state its amplitude.\n"
+      "Prints the largest bending of the links and the final position of the tip. The wave has a\n"
+      "period of 1 s; the thesis does not state its amplitude.\n"
       "Example: flexarm analyze excite -c config/thesis-rig.toml -o square-wave.png");
   verb->callback([options] { Excite(*options); });
 }

@@ -41,7 +41,7 @@ struct State {
   VectorXd q, v;
 };
 
-// Links unbent, rotors with their hubs.
+// The links are not bent, the rotors stand at the angles of their hubs.
 State StateOf(const LinearizeOptions& options, const ArmModel& model) {
   State x{VectorXd::Zero(model.dof()), VectorXd::Zero(model.dof())};
   x.q[kTheta2] = x.q[kTheta4] = options.theta2_deg * kRadPerDeg;
@@ -59,7 +59,7 @@ nlohmann::ordered_json MatrixJson(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-// One entry a root, a pair of conjugates once; by distance from zero.
+// One entry per real root or conjugate pair, in the order of their distance from zero.
 nlohmann::ordered_json RootsJson(const Eigen::MatrixXd& A) {
   const Eigen::VectorXcd values = A.eigenvalues();
   std::vector<std::complex<double>> roots(values.begin(), values.end());
@@ -132,7 +132,7 @@ void PrintLinearization(const nlohmann::ordered_json& json) {
               << root["frequency_hz"].get<double>() << std::setw(12)
               << root["damping_ratio"].get<double>() << '\n';
   }
-  std::cout << "perturbed by a square wave, linear against nonlinear: largest error over largest "
+  std::cout << "perturbation by a square wave, linear against nonlinear: largest error / largest "
                "deviation\n";
   for (const auto& [name, error] : json["perturbation"]["relative_error"].items()) {
     std::cout << "  " << std::left << std::setw(18) << name << std::right << error.get<double>()
@@ -185,7 +185,8 @@ void AddState(CLI::App* verb, LinearizeOptions* options) {
 void RegisterAnalyzeLinearize(CLI::App& analyze, Exit&) {
   const auto options = std::make_shared<LinearizeOptions>();
   CLI::App* verb = analyze.add_subcommand(
-      "linearize", "The linear model at a state, its roots, and how far it can be trusted");
+      "linearize",
+      "Linearize the model at a state: its roots, and its error against the nonlinear model");
   options->config.AddTo(verb, true);
   AddState(verb, options.get());
   verb->add_option("--delta-nm", options->delta_nm, "Torques of the perturbation test")
@@ -200,12 +201,12 @@ void RegisterAnalyzeLinearize(CLI::App& analyze, Exit&) {
                    "Picture of the perturbation test, .png or .svg (thesis's figures 6.1 and 6.2)")
       ->type_name("FILE");
   verb->footer(
-      "States: links unbent, rotors with their hubs. The perturbation test runs the arm from "
-      "there\n"
-      "without friction: with the given torques, with a small square wave on top of them, and the\n"
-      "linear model along that motion with the wave alone.\n"
-      "Example: flexarm analyze linearize -c config/thesis-rig.toml --theta2-deg 45 "
-      "--theta1-rate 1");
+      "At the state the links are not bent and the rotors stand at the angles of their hubs. The\n"
+      "perturbation test simulates the arm from there without friction, with the given torques\n"
+      "and with a small square wave added to them. It compares the difference of the two motions\n"
+      "with the linear model along the first motion, driven by the wave alone.\n"
+      "Example: flexarm analyze linearize -c config/thesis-rig.toml --theta2-deg 45 --theta1-rate "
+      "1");
   verb->callback([options] { Run(*options); });
 }
 

@@ -43,21 +43,22 @@ void Analyze(const ParametricOptions& options) {
 void RegisterAnalyzeParametric(CLI::App& analyze, Exit&) {
   const auto options = std::make_shared<ParametricOptions>();
   CLI::App* verb = analyze.add_subcommand(
-      "parametric", "What payload, stiffness, friction, backlash and lengths do to the vibrations");
+      "parametric",
+      "Effect of payload, stiffness, friction, backlash and lengths on the vibrations (chapter 5)");
   options->config.AddTo(verb, true);
-  verb->add_option(
-          "--torque-nm", options->excitation.torque_nm,
-          "Square wave of 1 s on both motors, N m; the statements are also tried with five "
-          "times as much")
+  verb->add_option("--torque-nm", options->excitation.torque_nm,
+                   "Amplitudes of the square wave of 1 s on both motors, N m; the statements are "
+                   "also checked with five times these torques")
       ->type_name("T1 T2")
       ->check(NumberWithin(1e-6, 1e3))
       ->default_str("0.4 0.1");
   AddJson(verb, &options->json);
-  verb->add_option(
-          "-o,--output", options->output,
-          "Folder for pictures like figures 5.1 to 5.5, every figure as CSV, and the table")
+  verb->add_option("-o,--output", options->output,
+                   "Folder for pictures like figures 5.1 to 5.5, all results as CSV, and the table")
       ->type_name("DIR");
-  verb->footer("Example: flexarm analyze parametric -c config/thesis-rig.toml -o parametric");
+  verb->footer(
+      "Varies one parameter at a time and prints which statements of the thesis hold.\n"
+      "Example: flexarm analyze parametric -c config/thesis-rig.toml -o parametric");
   verb->callback([options] { Analyze(*options); });
 }
 

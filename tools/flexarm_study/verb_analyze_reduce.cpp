@@ -31,10 +31,10 @@ void Check(const ReduceOptions& options) {
     throw InputError("analyze reduce: expected either --config FILE or --system FILE");
   }
   if (!options.system.empty() && (options.with_grid || !options.output.empty())) {
-    throw InputError("analyze reduce: --grid and --output are about an arm; they need --config");
+    throw InputError("analyze reduce: --grid and --output are for an arm: they need --config");
   }
   if (!(options.grid.theta2_deg[0] < options.grid.theta2_deg[1])) {
-    throw InputError("analyze reduce: --grid-theta2-deg: a grid of nothing; expected FROM < TO");
+    throw InputError("analyze reduce: --grid-theta2-deg: the grid is empty; expected FROM < TO");
   }
 }
 
@@ -90,7 +90,7 @@ void AddMotion(CLI::App* verb, ReduceOptions* options) {
 
 void AddGrid(CLI::App* verb, ReduceOptions* options) {
   verb->add_flag("--grid", options->with_grid,
-                 "Also over the whole range of elbow angle and both rates, on all cores");
+                 "Repeat it over a grid of elbow angles and both rates, on all cores");
   verb->add_option("--grid-cells", options->grid.cells, "Intervals of the grid on each axis")
       ->check(CLI::Range(1, 200))
       ->capture_default_str();
@@ -112,7 +112,8 @@ void AddGrid(CLI::App* verb, ReduceOptions* options) {
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit&) {
   const auto options = std::make_shared<ReduceOptions>();
   CLI::App* verb = analyze.add_subcommand(
-      "reduce", "How many modes matter: power balancing, and truncation by Gramians");
+      "reduce",
+      "Reduce the order: contribution of each mode by power balancing and by Gramians (chapter 6)");
   options->config.AddTo(verb, false);
   AddMotion(verb, options.get());
   AddGrid(verb, options.get());
@@ -121,7 +122,7 @@ void RegisterAnalyzeReduce(CLI::App& analyze, Exit&) {
                    "C, or A, B, C, as arrays of rows")
       ->type_name("FILE");
   verb->add_option("--rigid-below", options->reduction.rigid_below_rad2_s2,
-                   "Roots nearer to zero than this are rigid-body motions, rad^2/s^2")
+                   "Roots of smaller magnitude are rigid-body motions, rad^2/s^2")
       ->check(NumberWithin(0.0, 1e6))
       ->capture_default_str();
   AddJson(verb, &options->json);
@@ -129,6 +130,7 @@ void RegisterAnalyzeReduce(CLI::App& analyze, Exit&) {
                    "Folder for pictures like figures 6.3 to 6.9, and for the grid as CSV")
       ->type_name("DIR");
   verb->footer(
+      "Prints the share of the first k modes of each link, and the Hankel singular values.\n"
       "Example: flexarm analyze reduce -c config/thesis-rig.toml --theta2-deg 45 --theta1-rate -1\n"
       "             --theta2-rate 3 --grid -o order");
   verb->callback([options] {

@@ -42,7 +42,7 @@ void Run(const BenchmarkOptions& options) {
     std::cout << json.dump(2) << '\n';
   } else {
     std::cout << BenchmarkMarkdown(table);
-    if (missing > 0) std::cout << "\n" << missing << " runs are of other shards\n";
+    if (missing > 0) std::cout << "\n" << missing << " runs belong to other shards\n";
   }
 }
 
@@ -54,24 +54,24 @@ void RegisterBenchmark(CLI::App& app, Exit&) {
   options->config.AddTo(verb, true);
   verb->add_option("--table", options->table,
                    "commands (default): the commands of config/experiments\n"
-                   "moves: random smooth moves with payloads of 0 to 1 kg, for the laws that find "
-                   "the payload as well\n"
+                   "moves: random smooth moves with payloads of 0 to 1 kg, also for the laws that "
+                   "estimate the payload\n"
                    "limits: the same moves for those laws, with encoders, gauges and friction "
                    "made ideal")
       ->type_name("NAME");
-  verb->add_option("--laws", options->laws, "Only these, by name, with commas between")
+  verb->add_option("--laws", options->laws, "Only these laws, by name, separated by commas")
       ->type_name("NAMES");
   verb->add_option("--seeds", options->seeds,
                    "Seeds of the noise and of random moves (default: 1..3, or 4001..4010 on moves)")
       ->type_name("VALUES");
   options->grid.AddTo(verb);
-  verb->add_option("--page", options->page, "Write the tables here too, in Markdown")
+  verb->add_option("--page", options->page, "Also write the tables to this file, in Markdown")
       ->type_name("FILE");
-  AddOutput(verb, &options->output, "Results, a SQLite file; what is in it is not run again");
+  AddOutput(verb, &options->output, "Results, a SQLite file; runs that it holds are not repeated");
   AddJson(verb, &options->json);
   verb->footer(
-      "A law's score is the share of the rests, in percent, in which the tip is really at rest,\n"
-      "mean over all situations; a run that trips scores 0. docs/benchmark.md has the rules.\n"
+      "The score of a law is the share of the rests, in percent, in which the tip is at rest,\n"
+      "mean over all scenarios; a run that trips scores 0. docs/benchmark.md gives the rules.\n"
       "Example: flexarm benchmark -c config/hil.toml -o benchmark.sqlite");
   verb->callback([options] { Run(*options); });
 }

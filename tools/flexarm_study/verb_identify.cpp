@@ -25,7 +25,7 @@ struct IdentifyOptions {
   bool json = false;
 };
 
-// One run with the fits before and after.
+// One run with its fit before and after the identification.
 struct Judged {
   RunComparison run;
   Eigen::MatrixXd predicted;
@@ -108,7 +108,7 @@ void PrintIdentification(const nlohmann::ordered_json& json) {
     }
   }
   std::printf("\n%d predictions%s\n", json["predictions"].get<int>(),
-              json["converged"].get<bool>() ? "" : ", the most that were allowed: not converged");
+              json["converged"].get<bool>() ? "" : ", the limit: not converged");
 }
 
 void Write(const IdentifyOptions& options, const Identification& result,
@@ -159,22 +159,22 @@ void RegisterIdentify(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<IdentifyOptions>();
   CLI::App* verb = AddStudy(app, "identify");
   options->config.AddTo(verb, false);
-  verb->add_option("--run", options->run, "Run log or CSV file (*.csv) to find them from")
+  verb->add_option("--run", options->run, "Run log or CSV file (*.csv) to identify from")
       ->required()
       ->type_name("RUN_OR_CSV");
   verb->add_option("--free", options->free,
-                   "Number of the config to find, a key as in --set, searched by a factor of 10 "
-                   "to both sides, or between LOW and HIGH; repeatable")
+                   "Parameter to identify, a config key as in --set; searched from a tenth to ten "
+                   "times its value, or between LOW and HIGH; repeatable")
       ->required()
       ->type_name("KEY[=LOW:HIGH]")
       ->allow_extra_args(false);
-  verb->add_option("--validate", options->validate, "Another run, to judge what was found")
+  verb->add_option("--validate", options->validate, "Another run to validate the result with")
       ->type_name("RUN_OR_CSV");
   verb->add_option("--span", options->span,
                    "Use this part of --run only, in seconds; the arm should be at rest at FROM")
       ->expected(2)
       ->type_name("FROM TO");
-  verb->add_option("--validate-span", options->validate_span, "The same of --validate")
+  verb->add_option("--validate-span", options->validate_span, "The same for --validate")
       ->expected(2)
       ->type_name("FROM TO");
   AddJson(verb, &options->json);
@@ -182,10 +182,11 @@ void RegisterIdentify(CLI::App& app, Exit& exit) {
                    "Folder for identified.toml, identification.json and .png")
       ->type_name("DIR");
   verb->footer(
-      "The nonlinear model is given the torques of the run and its angles at the start, at rest;\n"
-      "fit = 100 (1 - |y - yhat| / |y - mean y|) over the whole run, of joint angles and of the\n"
-      "tips' deflections as the gauges tell them. Standard errors do not know what the model\n"
-      "lacks. Exit code 1: the search did not converge. More in docs/identification.md.\n"
+      "The nonlinear model gets the torques of the run and the joint angles at its start.\n"
+      "fit = 100 (1 - |y - yhat| / |y - mean y|) over the whole run, for the joint angles and for\n"
+      "the tip deflections measured by the gauges. The standard errors do not include effects\n"
+      "that the model lacks. Exit code 1: the search did not converge. More in\n"
+      "docs/identification.md.\n"
       "Example: flexarm identify --run a.flexarm --validate b.flexarm -o found\n"
       "             --free joint1.coulomb_friction_nm --free link1.damping_ratio=0:0.2");
   verb->callback([options, &exit] { exit.code = Run(*options); });

@@ -33,7 +33,8 @@ struct ModesOptions {
 BeamRoot RootOf(const ModesOptions& options) {
   const bool spring = options.base == "spring";
   if (spring != options.base_spring_nm_per_rad.has_value()) {
-    throw InputError("modes: --base spring and --base-spring-nm-per-rad go together");
+    throw InputError(
+        "modes: --base spring needs --base-spring-nm-per-rad, and the other way round");
   }
   if (spring) return BeamRoot::Spring(*options.base_spring_nm_per_rad);
   return options.base == "pinned" ? BeamRoot::Pinned() : BeamRoot::Clamped();
@@ -54,7 +55,7 @@ nlohmann::ordered_json ArmJson(const ModesOptions& options, const ArmModel& mode
 nlohmann::ordered_json Modes(const ModesOptions& options) {
   if (!options.output.empty()) CheckPicture(options.output);
   ArmParameters arm = options.config.Load().arm;
-  // The modes of an arm with this payload: its shapes too, or the figures would converge slower.
+  // The shapes get this payload too: the frequencies converge faster with the number of modes.
   if (options.payload_kg) arm.payload_mass_kg = arm.shape_payload_mass_kg = *options.payload_kg;
   const BeamRoot root = RootOf(options);
   const ArmModel model(arm, {options.modes, options.modes});
@@ -110,16 +111,15 @@ void PrintModes(const nlohmann::ordered_json& json) {
 }
 
 void AddBase(CLI::App* verb, ModesOptions* options) {
-  verb->add_option("--base", options->base, "What holds the roots of the links by themselves")
+  verb->add_option("--base", options->base, "Boundary condition at the root of each single link")
       ->check(CLI::IsMember({"clamped", "pinned", "spring"}))
       ->capture_default_str();
   verb->add_option("--base-spring-nm-per-rad", options->base_spring_nm_per_rad,
                    "Torsion spring of --base spring")
       ->check(NumberWithin(1e-9, 1e12));
-  verb->add_flag(
-      "--convergence", options->convergence,
-      "Also the thesis's lumped transfer matrix over its number of parts, and the fit of "
-      "its shapes");
+  verb->add_flag("--convergence", options->convergence,
+                 "Also the error of the thesis's lumped transfer matrix over its number of parts, "
+                 "and the fit of its shapes");
 }
 
 }  // namespace
@@ -134,7 +134,7 @@ void RegisterModes(CLI::App& app, Exit&) {
   verb->add_option("--theta2-deg", options->theta2_deg, "Elbow angle")
       ->check(NumberWithin(-180.0, 180.0))
       ->capture_default_str();
-  verb->add_option("--payload-kg", options->payload_kg, "Payload, instead of the config's")
+  verb->add_option("--payload-kg", options->payload_kg, "Payload instead of the config's")
       ->check(NumberWithin(0.0, 1000.0));
   AddBase(verb, options.get());
   AddJson(verb, &options->json);

@@ -40,7 +40,7 @@ void RegisterReport(CLI::App& app, Exit&) {
       ->type_name("DIR");
   AddJson(verb, &options->json);
   verb->footer(
-      "DIR/report.html needs no other file; figures/, tables/ and runs/ have the material.\n"
+      "DIR/report.html needs no other file; figures/, tables/ and runs/ hold the data behind it.\n"
       "Takes some minutes.\n"
       "Example: flexarm report -c config/hil.toml -o report");
   verb->callback([options] { Run(*options); });

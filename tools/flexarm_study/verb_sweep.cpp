@@ -46,7 +46,7 @@ void AddNamed(AxisTarget target, const std::string& values, std::vector<SweepAxi
   axes->push_back({.target = target, .key = {}, .values = ParseValues(values)});
 }
 
-// Seeds run fastest, so that every shard has its part of every group.
+// The seed varies fastest, so that every shard has runs of every group.
 std::vector<SweepAxis> AxesOf(const RunOptions& options) {
   std::vector<SweepAxis> axes;
   for (const std::string& text : options.over) {
@@ -98,7 +98,7 @@ void Run(const RunOptions& options) {
     json["results"] = options.output.string();
     std::cout << json.dump(2) << '\n';
   } else {
-    std::printf("%zu runs made, %zu were there; %zu did not complete (tripped or refused)\n",
+    std::printf("%zu runs made, %zu were in the file; %zu did not complete (tripped or refused)\n",
                 points.size(), of_shard - points.size(), failed);
     std::printf("Next: flexarm sweep show %s\n", options.output.c_str());
   }
@@ -152,25 +152,29 @@ void Show(const ShowOptions& options) {
 
 void RegisterMerge(CLI::App* sweep, Exit& exit) {
   const auto options = std::make_shared<MergeOptions>();
-  CLI::App* verb = sweep->add_subcommand("merge", "Results of the shards of one sweep in one file");
-  verb->add_option("parts", options->parts, "Results of shards")->required()->type_name("FILE");
+  CLI::App* verb =
+      sweep->add_subcommand("merge", "Merge the results of the shards of one sweep into one file");
+  verb->add_option("parts", options->parts, "Result files of the shards")
+      ->required()
+      ->type_name("FILE");
   AddOutput(verb, &options->output, "Write all results here (must not exist)");
   AddJson(verb, &options->json);
   verb->footer(
-      "Exit code 1 if points are missing: they are named, and the sweep's own command with\n"
-      "-o on the merged file runs them.\n"
+      "Exit code 1 if points are missing: they are named. The sweep's own command with -o on the\n"
+      "merged file runs them.\n"
       "Example: flexarm sweep merge part-1.sqlite part-2.sqlite -o all.sqlite");
   verb->callback([options, &exit] { exit.code = Merge(*options); });
 }
 
 void RegisterShow(CLI::App* sweep) {
   const auto options = std::make_shared<ShowOptions>();
-  CLI::App* verb = sweep->add_subcommand("show", "Medians over the seeds: a table or a picture");
+  CLI::App* verb =
+      sweep->add_subcommand("show", "Show the medians over the seeds as a table or a picture");
   verb->add_option("results", options->results, "Results of a sweep")
       ->required()
       ->type_name("FILE");
   verb->add_option("--by", options->by,
-                   "Axis to look along: it runs fastest in the table and is the x axis of the "
+                   "Axis to compare along: it varies fastest in the table and is the x axis of the "
                    "picture (default: the first with more than one value)")
       ->type_name("KEY");
   verb->add_option("-o,--output", options->output, "Write a .png, .svg or .csv instead of text")
@@ -188,9 +192,10 @@ void AddAxisOptions(CLI::App* verb, RunOptions* options) {
                    "it; repeatable")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
-  verb->add_option("--plant", options->plant,
-                   "Values of a config key for the simulated rig ALONE (arm, link1, link2, joint1, "
-                   "joint2, sensors, sim): the controller does not know of them; repeatable")
+  verb->add_option(
+          "--plant", options->plant,
+          "Values of a config key for the simulated rig ALONE (arm, link1, link2, joint1, "
+          "joint2, sensors, sim): the controller is still designed for the config's; repeatable")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
   std::string variants = "Plants by name, for the simulated rig ALONE:";
@@ -199,7 +204,7 @@ void AddAxisOptions(CLI::App* verb, RunOptions* options) {
   }
   verb->add_option("--variants", options->variants, variants)->type_name("NAMES");
   verb->add_option("--payload-kg", options->payloads,
-                   "Payloads that the simulated rig carries; the design keeps the config's")
+                   "Payloads of the simulated rig, kg; the controller is designed for the config's")
       ->type_name("VALUES");
   verb->add_option("--seeds", options->seeds, "Seeds of the measurement noise, such as 1..11")
       ->type_name("VALUES");
@@ -218,13 +223,13 @@ void RegisterSweep(CLI::App& app, Exit& exit) {
   AddAxisOptions(verb, options.get());
   options->grid.AddTo(verb);
   verb->add_option("-o,--output", options->output,
-                   "Results, a SQLite file; what is in it is not run again")
+                   "Results, a SQLite file; runs that it holds are not repeated")
       ->type_name("FILE");
   AddJson(verb, &options->json);
   verb->footer(
       "VALUES: v1,v2,..   or FROM:STEP:TO, both ends included   or FIRST..LAST, whole numbers\n"
-      "Every combination runs once. Interrupted or killed, the same command goes on where it was.\n"
-      "A run that trips, or that cannot be designed, is a result. See docs/sweep.md.\n"
+      "Every combination runs once. To continue an interrupted sweep, repeat the same command.\n"
+      "A run that trips, or whose design fails, is a result too. See docs/sweep.md.\n"
       "Examples:\n"
       "  flexarm sweep -c config/hil.toml --over controller.alpha=0:0.5:5 --seeds 1..11 -o "
       "alpha.sqlite\n"

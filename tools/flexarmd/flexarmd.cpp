@@ -26,17 +26,17 @@ struct Options {
 };
 
 void AddOptions(CLI::App* app, Options* options) {
-  app->add_option("--config", options->config, "RigConfig of the rig, a TOML file")
+  app->add_option("--config", options->config, "Config of the rig, a TOML file")
       ->required()
       ->type_name("FILE");
   app->add_option("--experiment", options->experiment,
-                  "Arm, run this once, disarm and end; simulated backend only")
+                  "Arm, run this experiment once, disarm and end; simulated backend only")
       ->type_name("FILE");
-  app->add_option("--run-for", options->run_for_s, "End safely after this long")
+  app->add_option("--run-for", options->run_for_s, "Stop, disarm and end after this time")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
   app->add_flag("--without-realtime", options->without_realtime,
-                "Run although SCHED_FIFO or locked memory is not permitted");
+                "Run even if SCHED_FIFO or locked memory is not permitted");
   app->add_option("--set", options->overrides, "Replace a value of the config; repeatable")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -55,17 +55,17 @@ RigConfig Load(const Options& options) {
   return LoadConfig(options.config, overrides);
 }
 
-// Only a simulated arm may be moved without a person who asked for it.
+// Only a simulated arm may move without a command of an operator.
 void RequireBackend(const RigConfig& config, const Options& options) {
   if (config.backend.empty()) {
     throw RejectedError(options.config.string() +
-                        ": has no [hal] section, so there is nothing to drive; use a config with "
-                        "hal.backend, as config/hil.toml");
+                        ": has no [hal] section, so there is no arm to control; use a config with "
+                        "hal.backend, such as config/hil.toml");
   }
   if (config.backend == "sim" || options.experiment.empty()) return;
   throw RejectedError(
-      "--experiment moves the arm without a person, and backend '" + config.backend +
-      "' drives a real one: start the daemon without it, then use `flexarm arm` and "
+      "--experiment moves the arm without an operator, and backend '" + config.backend +
+      "' drives a real arm: start the daemon without --experiment, then use `flexarm arm` and "
       "`flexarm run`");
 }
 
@@ -89,7 +89,7 @@ int PrintError(const std::string& text, int code) {
 
 int Main(int argc, char** argv) {
   Options options;
-  CLI::App app("The controller daemon of a two-link flexible arm. Operated with `flexarm`.",
+  CLI::App app("The controller daemon of a two-link flexible robot arm. Operate it with `flexarm`.",
                "flexarmd");
   app.set_version_flag("--version", "flexarmd " + ThisBuild().version + " (" + BuildId() + ")");
   AddOptions(&app, &options);
@@ -107,7 +107,8 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return PrintError(std::string(error.what()) + "\nTry: flexarmd --help", kBadInput);
   } catch (const RealtimeRejectedError& error) {
-    return PrintError(std::string("real time is refused.\n") + error.what(), kFailed);
+    return PrintError(std::string("real-time scheduling is not possible.\n") + error.what(),
+                      kFailed);
   } catch (const HalError& error) {
     return PrintError(std::string("a device cannot be used: ") + error.what(), kFailed);
   } catch (const ConfigError& error) {
@@ -127,7 +128,7 @@ int Main(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return flexarm::Main(argc, argv);
-  } catch (...) {  // what even the message could not be made for
+  } catch (...) {  // not even the message could be built
     return 1;
   }
 }

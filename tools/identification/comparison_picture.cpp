@@ -17,7 +17,7 @@ constexpr int kRowHeight = 240;
 
 std::string DataName(std::size_t column) { return "$run" + std::to_string(column); }
 
-// time, then measured and predicted of every signal, in degrees and millimetres.
+// Columns: time, then measured and predicted value of every signal, in degrees and millimetres.
 void WriteData(std::size_t number, const ComparisonColumn& column, std::ostringstream* script) {
   const RunComparison& run = *column.run;
   *script << DataName(number) << " << EOD\n";

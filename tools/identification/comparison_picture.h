@@ -9,14 +9,14 @@
 
 namespace flexarm {
 
-/// A run and what the model says of it, for a column of the picture.
+/// A run and its prediction by the model: one column of the picture.
 struct ComparisonColumn {
   std::string title;
   const RunComparison* run;
   Eigen::MatrixXd predicted;
 };
 
-/// Draws measured and predicted signals, one below the other, one column a run. .png or .svg.
+/// Draws measured and predicted signals below each other, one column per run. .png or .svg.
 /// @throws std::runtime_error if gnuplot is missing or fails
 void DrawComparison(const std::vector<ComparisonColumn>& column,
                     const std::filesystem::path& output);

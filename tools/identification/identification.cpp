@@ -14,12 +14,12 @@
 namespace flexarm {
 namespace {
 
-constexpr double kFactor = 10.0;      // of a range that was not given
-constexpr double kTolerance = 2e-4;   // of a parameter, in its range
-constexpr double kFirstStep = 0.03;   // the same
-constexpr double kDifference = 1e-3;  // of the central differences, the same
+constexpr double kFactor = 10.0;      // half-width factor of a range that was not given
+constexpr double kTolerance = 2e-4;   // of a parameter, relative to its range
+constexpr double kFirstStep = 0.03;   // relative to the range
+constexpr double kDifference = 1e-3;  // of the central differences, relative to the range
 constexpr double kCorrelation_s = 1.0;
-constexpr double kLost = 1e3;  // misfit of an arm that does not survive
+constexpr double kLost = 1e3;  // misfit if the simulated arm diverges
 
 double FromUnit(const FreeParameter& p, double x) {
   if (p.logarithmic) return p.low * std::pow(p.high / p.low, x);
@@ -45,8 +45,8 @@ RigConfig With(const RigConfig& config, const std::vector<FreeParameter>& free,
   return WithOverrides(config, overrides);
 }
 
-// Differences of one sample after the other, each signal weighed so that the square of it all is
-// the sum of the signals' mean squares in their spreads; 0 where nothing is compared.
+// Stacks the differences sample by sample. Each signal is weighted so that the squared norm is the
+// sum of the signals' mean squares relative to their spreads; 0 where nothing is compared.
 Eigen::VectorXd Stacked(const RunComparison& run, const Eigen::MatrixXd& difference) {
   const Eigen::ArrayXd count = run.compared().colwise().sum().transpose();
   const Eigen::VectorXd weight = (run.spread().array() * count.sqrt()).inverse();
@@ -70,7 +70,7 @@ Eigen::MatrixXd Jacobian(const RigConfig& config, const RunComparison& run,
   return J;
 }
 
-// The search as NLopt sees it: a function of numbers between 0 and 1.
+// The search for NLopt: a function of parameters scaled to 0 .. 1.
 struct Search {
   const RigConfig& config;
   const RunComparison& run;
@@ -83,7 +83,7 @@ struct Search {
     if (progress) progress(predictions);
     try {
       return Misfit(run, run.Predict(With(config, free, x)));
-    } catch (const ConfigError&) {  // each bound is allowed by itself, not every combination
+    } catch (const ConfigError&) {  // each bound is valid by itself, but not every combination
       return kLost;
     }
   }
@@ -93,7 +93,7 @@ double Objective(const std::vector<double>& x, std::vector<double>&, void* searc
   return (*static_cast<Search*>(search))(x);
 }
 
-// From *x to the best. False: the limit of predictions came first.
+// Minimises from *x. False: the limit of predictions was reached first.
 bool Minimise(Search* search, std::vector<double>* x) {
   nlopt::opt optimiser(nlopt::LN_BOBYQA, static_cast<unsigned>(x->size()));
   optimiser.set_min_objective(Objective, search);
@@ -106,7 +106,7 @@ bool Minimise(Search* search, std::vector<double>* x) {
   try {
     return optimiser.optimize(*x, misfit) != nlopt::MAXEVAL_REACHED;
   } catch (const nlopt::roundoff_limited&) {
-    return true;  // as far as doubles go; x is the best
+    return true;  // limited by round-off; x is the best point
   }
 }
 
@@ -148,7 +148,7 @@ Eigen::VectorXd StandardErrors(const RigConfig& config, const RunComparison& run
   return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
-// The rest of the config must be able to live with both ends of a range.
+// Both ends of a range must be valid with the rest of the config.
 void CheckBound(const RigConfig& config, const std::string& key, double bound) {
   try {
     WithOverrides(config, {key + "=" + NumberText(bound)});
@@ -195,7 +195,7 @@ FreeParameter ParseFreeParameter(const RigConfig& config, const std::string& tex
     free.high = ParsedNumber(colon == std::string::npos ? "" : range.substr(colon + 1), text);
     if (!(free.low < free.start && free.start < free.high)) {
       throw InputError("--free " + text + ": starts from " + NumberText(free.start) +
-                       "; expected LOW below and HIGH above that");
+                       "; expected LOW below and HIGH above this value");
     }
   }
   CheckBound(config, free.key, free.low);
@@ -221,8 +221,8 @@ Identification Identify(const RigConfig& config, const RunComparison& run,
   out.start_misfit = Misfit(run, run.Predict(config));
   if (out.start_misfit >= kLost) {
     throw InputError(run.file().string() +
-                     ": the arm of the config does not survive the run's torques; expected start "
-                     "values nearer to the rig's");
+                     ": the simulated arm diverges under the run's torques; expected start values "
+                     "nearer to the rig's");
   }
   Search search{.config = config, .run = run, .free = free, .progress = progress};
   out.converged = Minimise(&search, &x);

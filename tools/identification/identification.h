@@ -10,53 +10,54 @@
 
 namespace flexarm {
 
-/// A number of the config that the search may change.
+/// A parameter of the config that the search may change.
 struct FreeParameter {
   std::string key;   ///< dotted, as in --set
-  double start;      ///< what the config says, in the unit of the key
-  double low, high;  ///< searched between these
-  bool logarithmic;  ///< its logarithm is searched: both bounds are positive
+  double start;      ///< value of the config, in the unit of the key
+  double low, high;  ///< bounds of the search
+  bool logarithmic;  ///< the search uses its logarithm: both bounds are positive
 };
 
-/// Reads "KEY" (a factor of 10 to both sides of what the config says, by its logarithm) or
-/// "KEY=LOW:HIGH" (between these, evenly).
+/// Reads "KEY" (searched from a tenth to ten times the config's value, logarithmically) or
+/// "KEY=LOW:HIGH" (between these bounds, linearly).
 /// @throws InputError  also if a bound breaks a rule of the config
 FreeParameter ParseFreeParameter(const RigConfig& config, const std::string& text);
 
-/// What was found for one of them.
+/// Result for one parameter.
 struct FoundParameter {
   FreeParameter free;
   double found;           ///< in the unit of its key, like start and bounds
-  double standard_error;  ///< infinite if the run says nothing about it
-  bool at_bound;          ///< the run asks for more than was allowed
+  double standard_error;  ///< infinite if the run does not determine it
+  bool at_bound;          ///< the search ended at a bound of the range
 };
 
 struct Identification {
   std::vector<FoundParameter> parameter;
-  RigConfig config;             ///< with what was found
+  RigConfig config;             ///< with the identified values
   double start_misfit, misfit;  ///< Misfit() before and after, dimensionless
-  int predictions;              ///< of the whole run, that the search took
-  bool converged;               ///< else it stopped at its limit of predictions
+  int predictions;              ///< number of predictions of the whole run in the search
+  bool converged;               ///< else the search stopped at its limit of predictions
 };
 
-/// Mean over the signals of the mean square error, each in its own spread: 0 is perfect, 1 no
-/// better than the means.
+/// Mean over the signals of the mean square error relative to the signal's variance: 0 is a perfect
+/// prediction, 1 is no better than the mean of the signal.
 double Misfit(const RunComparison& run, const Eigen::MatrixXd& predicted);
 
-/// Finds the parameters that let the model predict the run best (output error, NLopt's BOBYQA).
+/// Identifies parameters by the output-error method: those that predict the run best (NLopt's
+/// BOBYQA).
 ///
-/// BOBYQA asks for no derivatives: with dry friction the prediction has kinks. Standard errors come
-/// from central differences at the end, J, and the residuals r, whose correlation in time is taken
-/// into account up to 1 s (Newey and West):
+/// BOBYQA needs no derivatives: with dry friction the prediction is not smooth. Standard errors
+/// come from central differences at the end, J, and the residuals r, whose correlation in time is
+/// taken into account up to 1 s (Newey and West):
 ///   cov = (J'J)^-1 (sum over lags of weighted J' r r' J) (J'J)^-1
-/// They know nothing of what the model lacks.
+/// They do not include errors of the model structure.
 /// @param progress  called with the number of predictions so far; may be empty
-/// @throws InputError if the arm of the start does not survive its own prediction
+/// @throws InputError if the simulated arm diverges at the start values
 Identification Identify(const RigConfig& config, const RunComparison& run,
                         const std::vector<FreeParameter>& free,
                         const std::function<void(std::size_t)>& progress = {});
 
-/// The most predictions that the search may take.
+/// Limit on the number of predictions of the search.
 std::size_t MostPredictions(std::size_t free_parameters);
 
 }  // namespace flexarm

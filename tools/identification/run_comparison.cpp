@@ -20,12 +20,13 @@ namespace {
 
 constexpr std::array<const char*, kCounters> kAngleNames = {"joint1", "joint2", "rotor1", "rotor2"};
 
-// Counts a unit strain, signed.
+// Signed counts per unit of strain.
 double CountsPerUnit(const SensorConfig& sensors, const StrainChannelConfig& row) {
   return row.face * row.gain_v_per_unit / sensors.strain_input.volts_per_count();
 }
 
-// Rows: strain channels, in counts above their offsets; columns: the arm's coordinates.
+// Maps the arm's coordinates (columns) to the counts of the strain channels above their offsets
+// (rows).
 Eigen::MatrixXd CountsOfCoordinates(const ArmModel& arm, const SensorConfig& sensors) {
   Eigen::MatrixXd counts(static_cast<Eigen::Index>(sensors.strain.size()), arm.dof());
   for (Eigen::Index j = 0; j < arm.dof(); ++j) {
@@ -61,7 +62,7 @@ Eigen::MatrixXd TipOfCounts(const RigConfig& config) {
   return tip;
 }
 
-// What the channels would show without what commissioning found.
+// The readings as they would be without the calibration from commissioning.
 Eigen::VectorXd UncalibratedCounts(const StepInput& input, const Eigen::VectorXd& offset) {
   Eigen::VectorXd counts(offset.size());
   for (Eigen::Index i = 0; i < counts.size(); ++i) {
@@ -171,14 +172,14 @@ ArmState RunComparison::Start(int dof) const {
   ArmState state(dof);
   for (std::size_t i = 0; i < counter_.size(); ++i) {
     state.q(counter_[i]) = measured_(0, static_cast<Eigen::Index>(i));
-    // A rotor without an encoder stands where its hub does.
+    // A rotor without an encoder starts at the angle of its hub.
     if (counter_[i] < 2) state.q(counter_[i] + 2) = state.q(counter_[i]);
   }
   return state;
 }
 
 Eigen::MatrixXd RunComparison::Predict(const RigConfig& candidate) const {
-  // Torques of a CSV file go through the candidate's scales and offsets.
+  // The torques of a CSV file are converted by the candidate's scales and offsets.
   const std::vector<StepInput> own =
       csv_ && candidate.csv != csv_import_ ? Inputs(candidate) : std::vector<StepInput>();
   const std::vector<StepInput>& input = own.empty() ? input_ : own;

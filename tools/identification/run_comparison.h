@@ -26,18 +26,18 @@ struct TimeSpan {
   double until_s = std::numeric_limits<double>::infinity();
 };
 
-/// A measured run beside what the nonlinear model makes of the torques that were applied in it.
+/// Compares a measured run with the prediction of the nonlinear model under the same torques.
 ///
-/// Signals: the angle of every encoder, and of every link the tip deflection that its gauges tell
-/// (least squares over the modes of the config). The model is only told the torques and the joint
-/// angles at the start, where it is at rest: nothing is corrected on the way.
+/// Signals: the angle of every encoder, and of every link the tip deflection measured by its gauges
+/// (least squares over the modes of the config). The model gets only the torques and the joint
+/// angles at the start, where it is at rest: the prediction is not corrected during the run.
 /// Thread: Predict may run on several at a time.
 class RunComparison {
  public:
-  /// @param file    a run log, which brings its own calibration, or a CSV file (*.csv)
-  /// @param config  of the rig, as it was before anything was identified: the gauges' counts are
-  ///                turned into deflections by it, measured and predicted ones alike
-  /// @param span    what of the run is used; the arm should be at rest where it begins
+  /// @param file    a run log, which contains its calibration, or a CSV file (*.csv)
+  /// @param config  of the rig before the identification: it converts the gauges' counts into
+  /// deflections, for measured and predicted signals alike
+  /// @param span    part of the run to use; the arm should be at rest at its beginning
   /// @throws InputError, ConfigError
   RunComparison(std::filesystem::path file, const RigConfig& config, TimeSpan span = {});
 
@@ -45,11 +45,11 @@ class RunComparison {
   const std::vector<ComparedSignal>& signal() const { return signal_; }
   const Eigen::VectorXd& time_s() const { return time_s_; }      ///< from the start of the run
   const Eigen::MatrixXd& measured() const { return measured_; }  ///< samples x signals
-  const Eigen::MatrixXd& compared() const { return compared_; }  ///< 1, or 0: left out
-  /// Standard deviation of each signal over what is compared, positive.
+  const Eigen::MatrixXd& compared() const { return compared_; }  ///< 1: compared, 0: left out
+  /// Standard deviation of each signal over the compared samples, positive.
   const Eigen::VectorXd& spread() const { return spread_; }
 
-  /// samples x signals; not finite if the simulated arm does not survive it.
+  /// samples x signals; not finite if the simulated arm diverges.
   /// @throws ConfigError
   Eigen::MatrixXd Predict(const RigConfig& candidate) const;
 
@@ -66,7 +66,7 @@ class RunComparison {
   std::optional<CsvImport> csv_import_;
   std::vector<StepInput> input_;
   std::vector<ComparedSignal> signal_;
-  std::vector<Eigen::Index> counter_;  // of the signals that are angles
+  std::vector<Eigen::Index> counter_;  // counters of the signals that are angles
   Eigen::MatrixXd tip_of_counts_;      // 2 x channels: tip deflection of the config's gauges
   Eigen::VectorXd count_offset_;
   Eigen::Index first_ = 0;  // input of the first row
@@ -74,7 +74,7 @@ class RunComparison {
   Eigen::MatrixXd measured_, compared_;
 };
 
-/// 100 (1 - |y - yhat| / |y - mean y|) over what is compared, per signal. 100: the same; 0: no
+/// 100 (1 - |y - yhat| / |y - mean y|) over the compared samples, per signal. 100: equal; 0: no
 /// better than the mean; can be negative.
 Eigen::VectorXd FitPercent(const RunComparison& run, const Eigen::MatrixXd& predicted);
 

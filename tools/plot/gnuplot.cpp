@@ -42,7 +42,7 @@ std::string TerminalFor(const std::filesystem::path& output, int width, int heig
 }
 
 void RunGnuplot(const std::string& script) {
-  std::signal(SIGPIPE, SIG_IGN);  // a missing gnuplot is a message, not a silent death
+  std::signal(SIGPIPE, SIG_IGN);  // a missing gnuplot must give a message, not end the process
   std::FILE* pipe = ::popen("gnuplot", "w");
   if (pipe == nullptr) throw std::runtime_error("gnuplot cannot be started");
   const bool written = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();

@@ -18,7 +18,7 @@ bool IsRunning(const TickRecord& record) {
   return record.input.safety_state == SafetyState::kRunning;
 }
 
-// Sample 0 of the experiment is when the torque of the first Running tick acts.
+// Time of sample 0 of the experiment: the torque of the first Running tick acts then.
 std::int64_t TimeZero_ns(const LoadedRun& run) {
   const auto& ticks = run.contents.tick;
   const auto first = std::find_if(ticks.begin(), ticks.end(), IsRunning);
@@ -47,7 +47,7 @@ PlotRun::Sample SampleOf(const TickRecord& record, double time_s, bool truth,
           .tip_m = truth ? plant.tip_m : EstimatedTip(geometry, x)};
 }
 
-// The place of a rest is the tip's mean over its last 0.3 s; a move looks at the rest after it.
+// The resting place is the tip's mean over the last 0.3 s of a rest; a move uses the rest after it.
 void FillDistanceFromRest(const std::vector<Rest>& rests, std::vector<PlotRun::Sample>* samples) {
   double from_s = 0;
   for (const Rest& rest : rests) {
@@ -103,7 +103,7 @@ class Skeleton {
 
  private:
   std::array<double, 2> Modes(const std::array<double, kMaxNominalStates>& x, int link) const {
-    std::array<double, 2> f{};  // a mode that the model does not have rests
+    std::array<double, 2> f{};  // a mode that the model does not have is zero
     for (int mode = 0; mode < layout_.modes_per_link; ++mode) {
       f[static_cast<std::size_t>(mode)] = x[static_cast<std::size_t>(layout_.mode(link, mode))];
     }

@@ -10,20 +10,20 @@
 
 namespace flexarm {
 
-/// What the pictures of a run show, in their units. Time 0 is the start of the experiment, or of
-/// the log if none was run.
+/// Data of the pictures of a run, in their units. Time 0 is the start of the experiment, or of the
+/// log without an experiment.
 struct PlotRun {
   struct Sample {
     double time_s;
     std::array<double, 2> reference_deg, angle_deg, asked_nm, applied_nm, deflection_mm;
-    double from_rest_mm;  ///< of the tip from where it comes to rest; NaN without an experiment
+    double from_rest_mm;  ///< distance of the tip from its resting place; NaN without an experiment
     std::array<double, 2> tip_m;
   };
   struct StateSpan {
     double from_s, until_s;
     SafetyState state;
   };
-  /// The arm as seen from above at one instant, root to tip.
+  /// The arm seen from above at one instant, root to tip.
   struct Pose {
     double time_s;
     std::vector<std::array<double, 2>> point_m;

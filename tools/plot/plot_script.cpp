@@ -111,7 +111,7 @@ class Script {
     }
   }
 
-  // The next of the panels below each other on the left, all over the same time.
+  // Adds the next panel of the left column; all panels have the same time axis.
   void Panel(const std::string& label, double height, bool last = false) {
     text_ << "unset label 2\nunset logscale\nset autoscale y\nset ytics auto\n"
           << "set lmargin at screen 0.075\nset rmargin at screen 0.60\n"
@@ -141,7 +141,7 @@ class Script {
     return curve.str();
   }
 
-  // A value as a solid line over what it should follow, of one joint.
+  // A value of one joint as a solid line over its dashed reference.
   void Pair(const char* label, int value, int wanted, int joint, const char* wanted_name) {
     Panel(label, 0.124);
     std::vector<std::string> curves;
@@ -149,7 +149,7 @@ class Script {
     const std::string kind = torque ? "steps lw 2 " : "lines lw 2 ";
     // A torque asked at a tick acts from the next one on; the applied one acted up to its tick.
     const double later_s = torque ? runs_[0].period_s : 0;
-    if (!torque || runs_.size() == 1) {  // of several runs, what was applied matters
+    if (!torque || runs_.size() == 1) {  // with several runs only the applied torque is drawn
       curves.push_back(Curve(0, wanted + joint, Quoted(wanted_name),
                              kind + "dt (6,4) lc rgb '#909090'", later_s));
     }
@@ -179,7 +179,7 @@ class Script {
   }
 
   void DistanceFromRest() {
-    Panel("Tip to its rest, mm", 0.124);
+    Panel("Tip to resting place, mm", 0.124);
     text_ << "set logscale y\nset yrange [0.1:3000]\nset ytics (0.1,1,10,100,1000)\n"
              "set label 2 '15 mm' at graph 0.995, first 21 right font ',10' textcolor rgb "
              "'#606060'\n";
@@ -220,7 +220,7 @@ class Script {
     ++*object;
   }
 
-  // What the arm and the tips reach, with a margin.
+  // Sets the axes to the range of arm and tips, with a margin.
   void SetReach() {
     std::array<double, 2> low{-0.05, -0.05}, high{0.05, 0.05};
     const auto reach = [&](const std::array<double, 2>& point) {
@@ -241,7 +241,7 @@ class Script {
     height_per_width_ = (high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin);
   }
 
-  // Strobe pictures of the first run, one a move; the tips' paths of all.
+  // Stroboscopic pictures of the first run, one per move; the tip paths of all runs.
   void FromAbove() {
     text_ << "unset logscale\nset size ratio -1\nset format x '%g'\nset ytics auto\n"
              "set xlabel ''\nset ylabel 'y, m' offset 1.5,0\nunset key\nunset label 2\n"
@@ -291,7 +291,7 @@ class Script {
     Plot(curves);
   }
 
-  // The metrics, as text below the pictures on the right.
+  // Writes the metrics as text below the pictures on the right.
   void Figures(double top) {
     int label = 900;
     double y = top;
@@ -314,7 +314,7 @@ class Script {
            ",11");
       line("peak torque " + Two(metrics.peak_torque_nm) + " N m", ",11");
     }
-    // Labels need a plot to be drawn with: an empty one.
+    // gnuplot draws labels only with a plot: this one is empty.
     text_ << "unset label 3\nunset colorbox\nunset border\nunset tics\nunset xlabel\nunset "
              "ylabel\nset xrange [0:1]\nset yrange [0:1]\nplot NaN\n";
   }

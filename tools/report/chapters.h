@@ -8,26 +8,27 @@
 
 namespace flexarm {
 
-/// What the chapters of a report share.
+/// Data shared by the chapters of a report.
 struct ReportContext {
   RigConfig config;
   std::filesystem::path experiments;
   std::filesystem::path folder;
-  std::vector<Statement> statements;  ///< of the chapters so far
+  std::vector<Statement> statements;  ///< of the chapters written so far
 
   std::filesystem::path Figure(const std::string& name) const {
     return folder / "figures" / (name + ".png");
   }
 };
 
-// One function a chapter: computes it, draws into `folder` and writes onto the page.
+// One function per chapter: computes the chapter, draws into `folder` and adds to the page.
 void Chapter3(ReportContext* context, HtmlPage* page);   ///< beams, damping, friction
 void Chapter4(ReportContext* context, HtmlPage* page);   ///< the rig, figures 4.4 and 4.5
 void Chapter5(ReportContext* context, HtmlPage* page);   ///< parameters, figures 5.1 to 5.5
 void Chapter6(ReportContext* context, HtmlPage* page);   ///< order reduction, figures 6.1 to 6.9
 void Chapter7(ReportContext* context, HtmlPage* page);   ///< control, figures 7.1 to 7.34
 void Baselines(ReportContext* context, HtmlPage* page);  ///< the benchmark of the laws
-/// The laws that find the payload, beside the others and the design study, and what limits them.
+/// The laws that estimate the payload, compared with the others and with the design study, and
+/// their limits.
 void PayloadChapter(ReportContext* context, HtmlPage* page);
 
 }  // namespace flexarm

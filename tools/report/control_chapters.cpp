@@ -21,9 +21,9 @@ std::string Kilograms(double payload_kg) {
   return text + " kg";
 }
 
-// A run with its log in the report's folder, as the pictures take it.
+// A run of the pictures, with its log in the report's folder.
 struct NamedRun {
-  std::string name;  ///< in the picture
+  std::string name;  ///< legend in the picture
   std::string file;
   std::vector<std::string> overrides;
   double payload_kg;
@@ -98,10 +98,10 @@ void AlphaAndVartheta(const ControlStudy& study, const ReportContext& context, H
   page->Table(FigureHead("alpha 3, 0.1 kg"), rows);
 }
 
-// Figures 7.4 to 7.12: the thesis's simulations know the state; here the sensors are as good as
-// they can be described, and the sample of delay stays.
+// Figures 7.4 to 7.12: the thesis's simulations know the state; here the sensors are ideal as far
+// as the config allows, and the delay of one sample stays.
 std::vector<std::string> IdealSensors(const RigConfig& config) {
-  constexpr double kFiner = 4000.0;  // 1e7 counts a turn
+  constexpr double kFiner = 4000.0;  // 1e7 counts per turn
   std::vector<std::string> overrides = QuietGauges();
   const std::vector<std::string> fine = FinerEncoders(config.sensors, kFiner);
   overrides.insert(overrides.end(), fine.begin(), fine.end());
@@ -167,8 +167,9 @@ void PayloadTable(const ControlStudy& study, HtmlPage* page) {
 void Chapter7(ReportContext* context, HtmlPage* page) {
   page->Section("Chapter 7: control");
   page->Paragraph(
-      "Both joints 30 degrees out by a doublet of 1 s, and back 2 s later. Sensors with noise and "
-      "quantisation, a sample of delay, a plant with four modes a link; medians over " +
+      "A doublet of 1 s turns both joints by 30 degrees, a second one 2 s later turns them back. "
+      "Sensors with noise and quantisation, one sample of delay, a plant with four modes a link; "
+      "medians over " +
       std::to_string(ControlStudy::kSeeds) + " seeds.");
   const ControlStudy study(context->config, ProgressBar("runs of chapter 7", ControlStudy::Runs()));
   AlphaAndVartheta(study, *context, page);

@@ -8,8 +8,8 @@
 
 namespace flexarm {
 
-/// One HTML page that needs nothing else: style and pictures are inside, no network.
-/// Every text is escaped.
+/// One HTML page that needs no other file and no network: style and pictures are embedded. Every
+/// text is escaped.
 class HtmlPage {
  public:
   explicit HtmlPage(std::string title);
@@ -19,13 +19,13 @@ class HtmlPage {
   /// A heading, with a line in the table of contents.
   void Section(const std::string& title);
   void Paragraph(const std::string& text);
-  /// The first column is left-aligned, the others too if they are words.
+  /// Adds a table. The first column is left-aligned, and so are the others if they hold words.
   void Table(const std::vector<std::string>& head,
              const std::vector<std::vector<std::string>>& rows);
-  /// A .png file, which may be gone afterwards.
+  /// Embeds a .png file, which may be deleted afterwards.
   /// @throws std::runtime_error if it cannot be read
   void Picture(const std::filesystem::path& png, const std::string& caption);
-  /// What the thesis says, what the model says, and the verdict.
+  /// Adds a table: statement of the thesis, result of the model, verdict.
   void Statements(const std::vector<Statement>& statements);
 
   /// The whole page.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kReferenceColour = 7;
 
-// Columns of the data block: time, then two a quantity.
+// Columns of the data block: time, then two columns per quantity.
 constexpr int kBending = 2, kAngle = 4, kReference = 6, kTorque = 8;
 
 struct Panel {

@@ -8,8 +8,8 @@
 
 namespace flexarm {
 
-/// Draws closed-loop runs the way chapter 7 does: bending of both links, trajectory of both joints
-/// with the reference, control effort. A curve a run.
+/// Draws closed-loop runs like the figures of chapter 7: bending of both links, trajectory of both
+/// joints with the reference, control effort. One curve per run.
 /// @throws std::runtime_error if gnuplot fails
 void DrawLoopRuns(const std::vector<PlotRun>& runs, const std::string& title,
                   const std::filesystem::path& output);

@@ -17,7 +17,7 @@ void Say(const std::vector<Statement>& statements, ReportContext* context, HtmlP
   context->statements.insert(context->statements.end(), statements.begin(), statements.end());
 }
 
-// Table 2 of the thesis beside what the rig has.
+// Table 2 of the thesis beside the parameters of the rig.
 void ParameterTable(const ArmParameters& arm, HtmlPage* page) {
   const BeamSection &first = arm.link[0].section.front(), &second = arm.link[1].section.front();
   const auto row = [](const char* name, const char* printed, double used) {
@@ -65,7 +65,7 @@ void LinearisationFigure(ReportContext* context, HtmlPage* page) {
                 "over nonlinear one.");
 }
 
-// Of figure-5.1-payload.png: "Figure 5.1 payload", and the rest.
+// "Figure 5.1 payload" and the rest, for figure-5.1-payload.png.
 std::string CaptionOf(const std::filesystem::path& file, const char* rest) {
   std::string caption("Figure");
   for (const char c : file.stem().string().substr(caption.size())) caption += c == '-' ? ' ' : c;
@@ -94,7 +94,7 @@ void Chapter4(ReportContext* context, HtmlPage* page) {
 }
 
 void Chapter5(ReportContext* context, HtmlPage* page) {
-  page->Section("Chapter 5: what the parameters do");
+  page->Section("Chapter 5: effect of the parameters");
   const Excitation weak;
   const ParametricStudy study = RunParametricStudy(context->config, weak);
   const std::vector<Statement> statements =

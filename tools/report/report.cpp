@@ -46,7 +46,7 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
             Counted(context.statements) +
             "). Every number on this page is computed by the program that wrote it (flexarm " +
             ThisBuild().version + ", " + BuildId() +
-            "); the verdicts follow from numbers by rules. The arm is the simulated one.");
+            "); every verdict follows from numbers by a rule. The arm is simulated.");
   std::filesystem::path file = request.folder / "report.html";
   WriteText(file, page.Text());
   return file;

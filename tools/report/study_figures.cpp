@@ -9,16 +9,17 @@
 namespace flexarm {
 namespace {
 
-// "No more than 20 % above the design study's": what other moves and another simulation may change.
+// "No more than 20 % above the design study's": other moves and another simulation may change
+// results by as much.
 constexpr double kReached = 1.2;
 
-// Why the tip moves more than in the design study, wherever nothing else is known: the scenario
+// Why the tip moves more than in the design study, unless a row names another cause: the scenario
 // no-friction and the table of limits show it.
 constexpr const char* kStiction =
-    "stiction holds the hubs, the shoulder above all, against the torque that would damp the "
-    "arm's slow swing; without friction the motion is a quarter";
+    "stiction holds the hubs, mostly the shoulder, against the torque that would damp the arm's "
+    "slow oscillation; without friction the motion is a quarter";
 
-/// Of a law in a scenario, as the design study gives them.
+/// Results of a law in a scenario, as the design study gives them.
 struct Measured {
   int settled_percent;  ///< runs
   double latest_s;
@@ -30,7 +31,7 @@ struct Measured {
 struct StudyRow {
   const char* scenario;
   std::optional<Measured> gain_scheduled, receding_horizon;
-  const char* cause = kStiction;  ///< of what is not reached here
+  const char* cause = kStiction;  ///< why the row is not reached here
 };
 
 std::vector<StudyRow> Study() {
@@ -48,7 +49,8 @@ std::vector<StudyRow> Study() {
       {"no-friction",
        {{100, 0.0, 0.6, 4.0}},
        {{100, 0.0, 0.7, 5.0}},
-       "a heavy payload swings until a strain limit trips: the closed form does not plan ahead"},
+       "a heavy payload oscillates until a strain limit trips: the closed form does not plan "
+       "ahead"},
       {"soft-joints", {{100, 0.0, 1.6, 3.2}}, {{100, 0.22, 1.5, 4.1}}},
       {"soft-links", {{100, 0.06, 1.5, 3.7}}, {{90, 0.46, 1.7, 5.9}}},
       {"modal-damping", {{100, 0.0, 1.0, 3.1}}, {{100, 0.0, 1.1, 2.1}}},
@@ -56,7 +58,7 @@ std::vector<StudyRow> Study() {
       {"lost-frames", {{100, 0.0, 1.2, 3.2}}, {{100, 0.0, 1.1, 2.9}}},
       {"delay-0", std::nullopt, {{100, 0.0, 1.0, 2.4}}},
       {"delay-2", std::nullopt, {{100, 0.0, 1.1, 3.4}}},
-      // Its filter finds the delay out in the first move, which suffers: 90 % at most.
+      // The filter detects the delay during the first move, which is disturbed: 90 % at most.
       {"delay-2-unknown", {{90, 0.32, 2.1, 6.2}}, {{90, 0.96, 2.5, 16.0}}},
       {"noise-x3", {{100, 0.0, 1.3, 3.5}}, {{100, 0.0, 1.2, 3.1}}},
       {"viscous", {{100, 0.0, 1.3, 2.6}}, {{100, 0.0, 1.2, 3.6}}},
@@ -80,7 +82,7 @@ std::string Cell(const std::string& settled, const Measured& m) {
          Rms(m.rms_deg);
 }
 
-// What the benchmark measured, rms only where the design study has it too.
+// Results of the benchmark, with rms only where the design study has it too.
 Measured Here(const BenchmarkCell& cell, const Measured& study) {
   const RestFigures& r = cell.rests;
   Measured here{.settled_percent = static_cast<int>(100 * r.settled_in_time / cell.group.runs),
@@ -115,8 +117,9 @@ std::size_t Find(const std::vector<Scenario>& scenarios, const std::string& name
 }  // namespace
 
 TextTable StudyComparison(const BenchmarkTable& moves) {
-  TextTable text{.head = {"scenario", "law", "study: settled, latest, motion, rms", "here", "so"},
-                 .rows = {}};
+  TextTable text{
+      .head = {"scenario", "law", "design study: settled, latest, motion, rms", "here", "so"},
+      .rows = {}};
   for (const StudyRow& row : Study()) {
     const std::size_t i = Find(moves.scenarios, row.scenario);
     if (i == moves.scenarios.size()) continue;

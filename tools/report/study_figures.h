@@ -7,10 +7,9 @@
 
 namespace flexarm {
 
-/// What the design study measured, beside what the benchmark measures
-/// here: a row a scenario and law that both have. What is out of the design study's reach has its
-/// cause.
-/// Source: docs/theory/payload.md 6.2 and 6.3.
+/// Compares the results of the design study with those of the benchmark: one row per scenario and
+/// law that both have. A row that does not reach the design study names the cause. Source:
+/// docs/theory/payload.md 6.2 and 6.3.
 TextTable StudyComparison(const BenchmarkTable& moves);
 
 }  // namespace flexarm

@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-// Torques come from sums over a period: a limit may be missed by round-off.
+// Torques are sums over a period: round-off may exceed a limit by this much.
 constexpr double kRoundOff_nm = 1e-9;
 
 std::string Number(double value) {
@@ -19,7 +19,7 @@ std::string Number(double value) {
 
 std::string At(const TickRecord& record) { return "tick " + std::to_string(record.input.tick); }
 
-// Says what is wrong with a tick, given the one before it; empty if nothing.
+// Describes what is wrong with a tick, given the one before it; empty if nothing is wrong.
 using TickRule = std::function<std::string(const TickRecord* before, const TickRecord& now)>;
 
 ConformanceCheck ForEveryTick(const std::string& name, const std::vector<TickRecord>& ticks,
@@ -44,7 +44,7 @@ std::string TimeRunsForward(const TickRecord* before, const TickRecord& now) {
 
 std::string BeginsWithReset(const TickRecord* before, const TickRecord& now) {
   if (before != nullptr || now.input.reset != 0) return "";
-  return "is the first and does not reset the loop: the log does not replay on its own";
+  return " is the first and does not reset the loop, so the log cannot be replayed";
 }
 
 std::string OutputBelongsToInput(const TickRecord*, const TickRecord& now) {
@@ -75,11 +75,11 @@ TickRule TorqueLimit(const SafetyConfig& limits) {
   };
 }
 
-// Means over neighbouring periods cannot differ by more than the slew over one period.
+// The means over neighbouring periods differ by at most the slew limit times one period.
 TickRule SlewLimit(const SafetyConfig& limits, double period_s) {
   return [limits, period_s](const TickRecord* before, const TickRecord& now) -> std::string {
     const bool neighbours = before != nullptr && now.input.tick == before->input.tick + 1;
-    // A trip may take the torque away at once.
+    // A trip may set the torque to zero at once.
     if (!neighbours || !TorqueAllowed(now.input.safety_state)) return "";
     for (std::size_t joint = 0; joint < 2; ++joint) {
       const double step =
@@ -94,7 +94,7 @@ TickRule SlewLimit(const SafetyConfig& limits, double period_s) {
   };
 }
 
-// What was applied belongs to the period before, so it may outlive the state by one tick.
+// The applied torque belongs to the period before, so it may follow the state by one tick.
 std::string NoTorqueWhereNoneIsAllowed(const TickRecord* before, const TickRecord& now) {
   if (TorqueAllowed(now.input.safety_state)) return "";
   for (std::size_t joint = 0; joint < 2; ++joint) {
@@ -116,7 +116,7 @@ ConformanceCheck SafetyReplays(const RunContents& run) {
   if (*result.safety_exact) return {"safety-replay", true, ""};
   return {"safety-replay", false,
           "the record at " + std::to_string(result.first_different_safety_ns.value_or(0)) +
-              " ns is not what its facts demand"};
+              " ns has another transition than its facts require"};
 }
 
 ConformanceCheck IsClosed(const LoadedRun& run) {

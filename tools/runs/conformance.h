@@ -7,15 +7,15 @@
 
 namespace flexarm {
 
-/// One rule that every run obeys, and whether this one did.
+/// One safety or consistency rule, and whether the run obeys it.
 struct ConformanceCheck {
   std::string name;  ///< "slew-limit"
   bool passed;
-  std::string detail;  ///< the first place where it was broken; empty if it was not
+  std::string detail;  ///< the first violation; empty if there is none
 };
 
-/// Judges what a log says about its run: no gap, time runs forward, the limits of its own config
-/// obeyed, no torque where none is allowed, the safety machine's word kept.
+/// Checks a run log: no missing tick, increasing time, the limits of its own config, no torque in
+/// states that do not allow it, safety transitions as the state machine prescribes.
 std::vector<ConformanceCheck> CheckConformance(const LoadedRun& run);
 
 }  // namespace flexarm

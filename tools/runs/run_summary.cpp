@@ -20,7 +20,8 @@ nlohmann::ordered_json NumberOrNull(double value) {
 RigConfig ConfigOf(const RunReader& reader) {
   const std::string name = reader.file().string() + " (its config)";
   if (reader.info().config_text.empty()) {
-    throw InputError(reader.file().string() + ": holds no config; expected the whole config text");
+    throw InputError(reader.file().string() +
+                     ": contains no config; expected the whole config text");
   }
   return ParseConfig(reader.info().config_text, name);
 }

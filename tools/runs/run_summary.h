@@ -10,13 +10,13 @@
 
 namespace flexarm {
 
-/// A run with what its own log says that it was made with.
+/// A run log with the config and the experiment that it holds.
 struct LoadedRun {
   std::filesystem::path file;
   bool closed = false;
   RunContents contents;
   RigConfig config;
-  std::optional<Experiment> experiment;  ///< nothing: the log names none
+  std::optional<Experiment> experiment;  ///< empty: the log has none
 
   double period_s() const { return config.loop.period_s(); }
 };
@@ -27,13 +27,13 @@ LoadedRun LoadRun(const std::filesystem::path& file);
 /// @throws InputError if the config text inside the log cannot be read
 RigConfig ConfigOf(const RunReader& reader);
 
-/// Of a run of an experiment; nothing if it had none.
+/// Metrics of a run; empty if it had no experiment.
 std::optional<RunMetrics> MetricsOf(const LoadedRun& run);
 
-/// The JSON keys of the contract. What is not known is null.
+/// The metrics with the JSON keys of the contract. Unknown values are null.
 nlohmann::ordered_json ToJson(const RunMetrics& metrics);
 
-/// The first trip of a run, and what caused it; nothing if it did not trip.
+/// The record of the first trip of a run, with its cause; empty if the run did not trip.
 std::optional<SafetyRecord> TripOf(const std::vector<SafetyRecord>& records);
 
 /// A JSON number, or null if it is not finite.

@@ -66,12 +66,12 @@ class Crew {
   std::atomic<std::size_t> next_ = 0, done_ = 0;
   std::mutex mutex_;
   std::condition_variable ended_;
-  std::size_t left_ = 0;      // workers still at it
+  std::size_t left_ = 0;      // number of workers that have not ended
   std::exception_ptr error_;  // of the first body that threw
   std::vector<std::thread> workers_;
 };
 
-// ", 3 min 20 s left": as if the rest took as long a piece as what is done.
+// ", 3 min 20 s left", extrapolated from the mean time of the pieces that are done.
 std::string TimeLeft(std::chrono::steady_clock::time_point started, std::size_t done,
                      std::size_t count) {
   if (done == 0 || done == count) return {};

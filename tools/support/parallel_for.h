@@ -7,13 +7,13 @@ namespace flexarm {
 
 /// Runs body(0) .. body(count - 1) on all cores, in no particular order.
 ///
-/// `progress` is called on the calling thread with the number done so far, now and then and at the
+/// `progress` is called on the calling thread with the number done so far, periodically and at the
 /// end; it may be empty. The first exception of a body stops the rest and is thrown again here.
-/// @param jobs  how many at a time; 0: one a core
+/// @param jobs  number of threads; 0: one per core
 void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body,
                  const std::function<void(std::size_t)>& progress = {}, std::size_t jobs = 0);
 
-/// A bar on standard error while it is a terminal, with the time left, and nothing otherwise.
+/// A progress bar with the time left on standard error if that is a terminal; otherwise no output.
 std::function<void(std::size_t)> ProgressBar(const char* what, std::size_t count);
 
 }  // namespace flexarm

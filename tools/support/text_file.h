@@ -5,8 +5,8 @@
 
 namespace flexarm {
 
-/// Writes a text file, in the place of what was there.
-/// @throws InputError  it cannot be written
+/// Writes a text file; replaces an existing one.
+/// @throws InputError  the file cannot be written
 void WriteText(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace flexarm

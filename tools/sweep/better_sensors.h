@@ -7,15 +7,15 @@
 
 namespace flexarm {
 
-// Rigs whose sensors are better than the config's, in the form of --set: for the simulated rig and
-// the controller alike, as both have to know what a count is.
+// Overrides for better sensors than the config's, in the form of --set: for the simulated rig and
+// for the controller, because both must know the size of a count.
 
-/// Every encoder `times` finer, with counters that are as much wider.
-/// @param hub1_only  that of theta_1 alone
+/// Every encoder `times` finer, with wider counters in proportion.
+/// @param hub1_only  only the encoder of theta_1
 std::vector<std::string> FinerEncoders(const SensorConfig& sensors, double times,
                                        bool hub1_only = false);
 
-/// Gauges without noise, and a converter whose counts are too small to matter.
+/// Gauges without noise, and a converter of 24 bits, whose quantisation is negligible.
 std::vector<std::string> QuietGauges();
 
 }  // namespace flexarm

@@ -54,13 +54,14 @@ std::vector<std::string> Together(const RigConfig& config) {
 const std::vector<PlantVariant>& PlantVariants() {
   static const std::vector<PlantVariant> variants = {
       {"nominal", "as the config says"},
-      {"backlash", "1 degree of play in the elbow's gears"},
+      {"backlash", "1 degree of backlash in the elbow's gears"},
       {"friction-x3", "three times the Coulomb friction in both joints"},
       {"soft-joints", "stiffness of both joints 30 % less"},
       {"soft-links", "Young's modulus of both links 10 % less"},
       {"modal-damping", "3 % damping in every bending mode"},
       {"together",
-       "half a degree of play, friction x 2, joints 15 % and links 5 % softer, 2 % damping, one "
+       "half a degree of backlash, friction x 2, joints 15 % and links 5 % softer, 2 % damping, "
+       "one "
        "frame in twenty lost"}};
   return variants;
 }
@@ -89,7 +90,8 @@ RigConfig PlantWith(const RigConfig& config, const std::vector<std::string>& ove
     bool of_plant = false;
     for (const char* section : kPlantSections) of_plant |= text.starts_with(section);
     if (of_plant) continue;
-    throw InputError(text + ": is no key of the plant; expected one of the sections arm, link1, " +
+    throw InputError(text +
+                     ": is not a key of the plant; expected one of the sections arm, link1, " +
                      "link2, joint1, joint2, sensors, sim");
   }
   return WithOverrides(config, overrides);

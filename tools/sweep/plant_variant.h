@@ -7,8 +7,8 @@
 
 namespace flexarm {
 
-/// The plants that differ from what the controller was designed for, by name.
-/// "nominal" differs in nothing.
+/// Plants by name that differ from the plant that the controller is designed for. "nominal" does
+/// not differ.
 struct PlantVariant {
   const char* name;
   const char* what;
@@ -16,8 +16,8 @@ struct PlantVariant {
 
 const std::vector<PlantVariant>& PlantVariants();
 
-/// What makes the config's plant that variant, in the form of --set.
-/// @throws InputError  no such variant
+/// The overrides that turn the config's plant into the variant, in the form of --set.
+/// @throws InputError  there is no such variant
 std::vector<std::string> VariantOverrides(const RigConfig& config, const std::string& name);
 
 /// The config of the simulated rig alone: `config` with `overrides` in the sections that describe

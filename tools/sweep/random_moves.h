@@ -11,8 +11,8 @@
 
 namespace flexarm {
 
-/// Random numbers that are the same everywhere: the generator's bits are standardised, and what is
-/// made of them is made here.
+/// Random numbers that are the same on every machine: the standard defines the generator's bits,
+/// and this class converts them to numbers.
 class UniformNumbers {
  public:
   explicit UniformNumbers(std::uint64_t seed) : random_(seed) {}
@@ -22,14 +22,14 @@ class UniformNumbers {
   std::mt19937_64 random_;
 };
 
-/// What the recipe asks of a rig: it turns the elbow by 90 degrees, the shipped soft limit, which
-/// heavy arms overshoot. As --set takes it.
+/// Overrides of a rig for random moves, in the form of --set: the elbow turns to 90 degrees, the
+/// shipped soft limit, and heavy arms overshoot it.
 inline const std::vector<std::string> kWideRig = {"limits.soft_angle_deg=[110, 110]",
                                                   "sim.switch_angle_deg=[115, 115]"};
 
 inline constexpr double kMoveGrid_s = 0.02;  ///< random moves begin and end on samples
 
-/// The next instant on that grid.
+/// The next instant on the grid of kMoveGrid_s.
 double OnMoveGrid(double time_s);
 
 inline constexpr double kRandomMovesRest_s = 1.5;  ///< after each of MakeRandomMoves
@@ -40,15 +40,15 @@ inline constexpr double kRandomMovesRest_s = 1.5;  ///< after each of MakeRandom
 double RuleDuration_s(const RigidJointArm& arm, double heaviest_kg, const Eigen::Vector2d& from_rad,
                       const Eigen::Vector2d& to_rad);
 
-/// Moves that nothing was tuned on, and what they are made with.
+/// Moves that no law was tuned on, and the payload of the run.
 struct RandomMoves {
   Experiment experiment;
   double payload_kg;
 };
 
-/// A run of the design study's recipe: moves to anywhere in +-60, +-90 deg, each 1 to 1.5 times the
-/// rule for 1 kg, with 1.5 s of rest after each; and the payload, anything from 0 to
-/// `heaviest_kg`. Source: docs/theory/payload.md 6.1, where a run has four moves.
+/// A run of the design study's recipe: moves to random targets in +-60, +-90 deg, each of 1 to 1.5
+/// times the duration of the rule for 1 kg, with 1.5 s of rest after each; and a random payload
+/// from 0 to `heaviest_kg`. Source: docs/theory/payload.md 6.1, where a run has four moves.
 RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed, double heaviest_kg,
                             int moves = 4);
 

@@ -8,18 +8,18 @@
 
 namespace flexarm {
 
-/// One situation of the benchmark: a command, a load, and what the plant and the loop are then.
+/// One scenario of the benchmark: a command, a payload, and the changes of plant and loop.
 struct Scenario {
   std::string name;
-  std::string what;  ///< in a user's words
+  std::string what;  ///< description for the user
   Experiment experiment;
-  double payload_kg;                ///< that the simulated rig carries
+  double payload_kg;                ///< of the simulated rig
   std::string variant;              ///< of the simulated rig alone, see PlantVariants
   std::vector<std::string> plant;   ///< --set of the simulated rig alone
   std::vector<std::string> config;  ///< --set of the rig and the controller
   bool tuned_on;                    ///< parameters of some law were chosen on it
-  /// In place of `experiment` and `payload_kg`: moves and a payload up to this that the run's seed
-  /// draws (MakeRandomMoves).
+  /// If set, the run's seed determines random moves and a payload up to this value
+  /// (MakeRandomMoves), in place of `experiment` and `payload_kg`.
   std::optional<double> random_up_to_kg = std::nullopt;
 };
 

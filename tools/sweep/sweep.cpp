@@ -18,7 +18,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kMostPayloadKg = 100.0;  // as `flexarm simulate` takes
+constexpr double kMostPayloadKg = 100.0;  // the limit of `flexarm simulate`
 
 double PayloadKg(const std::string& text) {
   double value = 0.0;
@@ -28,7 +28,7 @@ double PayloadKg(const std::string& text) {
   throw InputError("payload " + text + ": expected kilograms from 0 to 100");
 }
 
-// What the values of one point, or of one axis, mean.
+// The changes that the values of one point, or of one axis, stand for.
 struct Changes {
   const Scenario* scenario = nullptr;
   std::vector<std::string> config, plant;
@@ -40,7 +40,7 @@ const Scenario& ScenarioNamed(const SweepPlan& plan, const std::string& name) {
   for (const Scenario& scenario : plan.scenarios) {
     if (scenario.name == name) return scenario;
   }
-  throw InputError("scenario \"" + name + "\": there is none of that name");
+  throw InputError("scenario \"" + name + "\": there is no scenario of that name");
 }
 
 void Add(const SweepPlan& plan, const SweepAxis& axis, const std::string& value, Changes* changes) {
@@ -97,7 +97,7 @@ SimulationRequest RequestFor(const SweepPlan& plan, const Changes& changes) {
 void CheckPlan(const SweepPlan& plan) {
   for (const SimEvent& event : plan.experiment.sim_event) {
     if (event.kill)
-      throw InputError("the experiment has a kill, which would end the sweep as well");
+      throw InputError("the experiment has a kill event, which would end the sweep too");
   }
   for (const SweepAxis& axis : plan.grid.axes()) {
     for (const std::string& value : axis.values) {
@@ -133,7 +133,7 @@ SweepRow RunPoint(const SweepPlan& plan, std::size_t point) {
     row = RowOf(point, Simulate(RequestAt(plan, point)));
   } catch (const RejectedError& error) {
     row = RefusedRow(point, error.what());
-  } catch (const ConfigError& error) {  // values that are right one by one, and wrong together
+  } catch (const ConfigError& error) {  // values that are valid one by one, but not together
     row = RefusedRow(point, error.what());
   }
   row.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -152,7 +152,7 @@ std::vector<std::size_t> PointsToRun(SweepFile* file, const Shard& shard) {
 
 void RunSweep(const SweepPlan& plan, const std::vector<std::size_t>& points, SweepFile* file,
               std::size_t jobs, const std::function<void(std::size_t)>& progress) {
-  std::mutex mutex;  // of the file
+  std::mutex mutex;  // guards the file
   ParallelFor(
       points.size(),
       [&](std::size_t i) {
@@ -175,8 +175,8 @@ std::vector<std::size_t> MergeSweeps(const std::vector<std::filesystem::path>& p
     if (!identity) identity = file.identity();
     const std::string difference = DifferenceOf(*identity, file.identity());
     if (!difference.empty()) {
-      throw InputError(part.string() + ": is not of the same sweep as " + parts.front().string() +
-                       ", which " + difference);
+      throw InputError(part.string() + ": does not belong to the same sweep as " +
+                       parts.front().string() + ", which " + difference);
     }
     for (const SweepRow& row : file.Rows()) {
       if (SameOutcome(merged.try_emplace(row.point, row).first->second, row)) continue;

@@ -14,35 +14,36 @@
 
 namespace flexarm {
 
-/// Runs of one experiment over a grid.
+/// A sweep: the runs of one experiment over a grid.
 struct SweepPlan {
   RigConfig config;  ///< of every point, before its axes
   Experiment experiment;
   SweepGrid grid;
-  std::vector<Scenario> scenarios{};  ///< that an axis of kScenario names; each has its experiment
+  std::vector<Scenario> scenarios{};  ///< named by an axis of kScenario; each has its experiment
 };
 
-/// @throws InputError, ConfigError  a value of an axis that by itself is no config, payload or
-///         seed; an experiment that would kill the program
+/// @throws InputError, ConfigError  a value of an axis is not valid by itself; the experiment would
+/// kill the program
 void CheckPlan(const SweepPlan& plan);
 
 SweepIdentity IdentityOf(const SweepPlan& plan);
 
-/// What runs at a point. A scenario comes first, then config axes, then the plant's variant, then
-/// plant axes.
+/// The simulation of one point. Changes apply in this order: scenario, config axes, the plant's
+/// variant, plant axes.
 SimulationRequest RequestAt(const SweepPlan& plan, std::size_t point);
 
-/// One run. A design or an experiment that is refused there is a result, not an error.
+/// One run. A refused design or experiment is a result, not an error.
 SweepRow RunPoint(const SweepPlan& plan, std::size_t point);
 
 /// The points of a shard that the file does not have yet.
 std::vector<std::size_t> PointsToRun(SweepFile* file, const Shard& shard);
 
-/// Runs `points` and adds each to the file as it ends. Results do not depend on `jobs`.
+/// Runs `points` and adds each result to the file when its run ends. Results do not depend on
+/// `jobs`.
 void RunSweep(const SweepPlan& plan, const std::vector<std::size_t>& points, SweepFile* file,
               std::size_t jobs, const std::function<void(std::size_t)>& progress = {});
 
-/// What a merge found: points that no file has.
+/// Merges result files. @returns the points that no file has
 std::vector<std::size_t> MergeSweeps(const std::vector<std::filesystem::path>& parts,
                                      const std::filesystem::path& output);
 

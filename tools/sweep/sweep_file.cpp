@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFormat = 3;
 
-// Runs `body`; what SQLite refuses becomes a message that names the file.
+// Runs `body`; an error of SQLite becomes an InputError that names the file.
 template <typename Body>
 auto Told(const std::filesystem::path& file, const Body& body) {
   try {
@@ -26,7 +26,7 @@ std::string QuotedColumn(const std::string& name) {
   return quoted + "\"";
 }
 
-// NUMERIC: what reads as a number is one, for whoever queries; words stay words.
+// NUMERIC affinity: texts that are numbers are stored as numbers, so that queries can compare them.
 std::string RunTable(const std::vector<SweepAxis>& axes) {
   std::string sql = "CREATE TABLE run (point INTEGER PRIMARY KEY";
   for (const SweepAxis& axis : axes) sql += ", " + QuotedColumn(axis.Column()) + " NUMERIC";
@@ -71,7 +71,7 @@ void BindText(SqliteStatement* statement, int parameter, const std::string& text
 
 std::string DifferenceOf(const SweepIdentity& held, const SweepIdentity& asked) {
   if (held.build != asked.build) {
-    return "made by another build of flexarm (" + held.build + "; this is " + asked.build + ")";
+    return "was made by another build of flexarm (" + held.build + "; this is " + asked.build + ")";
   }
   if (held.axes != asked.axes) {
     return "sweeps " + AxesText(held.axes) + "; not " + AxesText(asked.axes);
@@ -92,12 +92,12 @@ SweepFile::SweepFile(std::filesystem::path path, SqliteDb db)
 SweepFile SweepFile::Resume(const std::filesystem::path& file, const SweepIdentity& identity) {
   return Told(file, [&] {
     SweepFile sweep(file, SqliteDb::OpenOrCreate(file));
-    // Without a table: new, or killed before it was anything.
+    // A file without tables is new, or its process was killed before it created them.
     if (sweep.db_.QueryInteger("SELECT count(*) FROM sqlite_master") == 0) sweep.Create(identity);
     sweep.Load();
     const std::string difference = DifferenceOf(sweep.identity_, identity);
     if (difference.empty()) return sweep;
-    throw InputError(file.string() + ": is another sweep, it " + difference +
+    throw InputError(file.string() + ": holds another sweep, which " + difference +
                      "; name another file with -o");
   });
 }
@@ -148,7 +148,7 @@ void SweepFile::Load() {
   if (db_.QueryInteger("SELECT count(*) FROM sqlite_master WHERE name IN ('sweep', 'axis', 'run')"
                        " AND type = 'table'") != 3 ||
       db_.QueryInteger("SELECT format FROM sweep") != kFormat) {
-    throw InputError(path_.string() + ": is no result of flexarm sweep");
+    throw InputError(path_.string() + ": is not a result file of flexarm sweep");
   }
   SqliteStatement sweep =
       db_.Prepare("SELECT build, config, experiment_name, experiment FROM sweep");
@@ -188,7 +188,7 @@ std::vector<SweepRow> SweepFile::Rows() {
                    .measure = {},
                    .wall_s = run.Real(5)};
       if (row.point >= grid_.size()) {
-        throw InputError(path_.string() + ": has a run that is no point of its sweep");
+        throw InputError(path_.string() + ": has a run that is not a point of its sweep");
       }
       for (std::size_t i = 0; i < row.measure.size(); ++i) {
         row.measure[i] = run.Real(6 + static_cast<int>(i));

@@ -11,7 +11,7 @@
 
 namespace flexarm {
 
-/// What makes two sweeps the same: then a point has the same result in both.
+/// The identity of a sweep: a point has the same result in two sweeps of the same identity.
 struct SweepIdentity {
   std::string build;  ///< BuildId()
   std::string config_text;
@@ -20,17 +20,17 @@ struct SweepIdentity {
   std::vector<SweepAxis> axes;
 };
 
-/// What differs, in a user's words; empty if they are the same sweep.
+/// Describes the difference for the user; empty if they are the same sweep.
 std::string DifferenceOf(const SweepIdentity& held, const SweepIdentity& asked);
 
-/// Results of a sweep, one SQLite file (docs/sweep.md has the schema). Every row is on the disk
-/// when Add returns; a process killed at any instant leaves a file that opens.
+/// Results of a sweep, one SQLite file (docs/sweep.md has the schema). Every row is on disk when
+/// Add returns; a process that is killed at any instant leaves a file that opens.
 ///
-/// All but DifferenceOf throw InputError, with the file and the cause, when the file is no such
+/// All but DifferenceOf throw InputError, with the file and the cause, if the file is not such a
 /// file or cannot be read or written. One thread at a time.
 class SweepFile {
  public:
-  /// Opens the file, or makes it. Refuses that of another sweep, and says what differs.
+  /// Opens or creates the file. Refuses the file of another sweep and names the difference.
   static SweepFile Resume(const std::filesystem::path& file, const SweepIdentity& identity);
   static SweepFile Open(const std::filesystem::path& file);
 
@@ -40,9 +40,9 @@ class SweepFile {
 
   /// In order of the points.
   std::vector<SweepRow> Rows();
-  /// A point that is there already stays as it is.
+  /// Adds a result; a point that the file already has is not changed.
   void Add(const SweepRow& row);
-  /// All at once or not at all.
+  /// Adds all results in one transaction.
   void AddAll(const std::vector<SweepRow>& rows);
 
  private:

@@ -14,7 +14,7 @@
 namespace flexarm {
 namespace {
 
-constexpr std::size_t kMostPoints = 1'000'000;  // a typing error in a range, not a sweep
+constexpr std::size_t kMostPoints = 1'000'000;  // more is a typing error in a range
 
 template <typename Number>
 std::optional<Number> NumberIn(std::string_view text) {
@@ -58,7 +58,7 @@ void CheckLength(double count, const std::string& text) {
   throw InputError(text + ": the range is empty or endless; expected a step from FROM towards TO");
 }
 
-// FROM:STEP:TO, or nothing if it is not that.
+// The values of FROM:STEP:TO; nothing if the text has another form.
 std::optional<std::vector<std::string>> StepRange(const std::string& text) {
   const std::size_t first = text.find(':'), second = text.find(':', first + 1);
   if (second == std::string::npos) return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<std::vector<std::string>> StepRange(const std::string& text) {
   const auto step = NumberIn<double>(std::string_view(text).substr(first + 1, second - first - 1));
   const auto to = NumberIn<double>(std::string_view(text).substr(second + 1));
   if (!from || !step || !to) return std::nullopt;
-  // 1e-9: what rounding takes from a decimal step such as 0.1.
+  // 1e-9 covers the rounding of a decimal step such as 0.1.
   const double steps = std::floor((*to - *from) / *step + 1e-9);
   CheckLength(steps, text);
   std::vector<std::string> values;
@@ -78,7 +78,7 @@ std::optional<std::vector<std::string>> StepRange(const std::string& text) {
   return values;
 }
 
-// FIRST..LAST, or nothing if it is not that.
+// The values of FIRST..LAST; nothing if the text has another form.
 std::optional<std::vector<std::string>> WholeRange(const std::string& text) {
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos) return std::nullopt;
@@ -123,7 +123,7 @@ std::vector<std::string> ParseValues(const std::string& text) {
   std::set<std::string> seen;
   for (const std::string& value : values) {
     if (value.empty()) throw InputError("\"" + text + "\": an empty value; expected v1,v2,..");
-    if (!seen.insert(value).second) throw InputError(text + ": " + value + " stands there twice");
+    if (!seen.insert(value).second) throw InputError(text + ": " + value + " is given twice");
   }
   return values;
 }

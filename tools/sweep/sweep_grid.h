@@ -19,7 +19,7 @@ enum class AxisTarget : std::uint8_t {
 
 const char* Name(AxisTarget target) noexcept;
 
-/// One direction of the grid. Values are kept as they were written.
+/// One axis of the grid. The values keep the text in which they were given.
 struct SweepAxis {
   AxisTarget target;
   std::string key;  ///< of kConfig and kPlant: section.key; otherwise empty
@@ -33,13 +33,13 @@ struct SweepAxis {
 
 /// "v1,v2,.." (commas inside brackets and quotes are part of a value), FROM:STEP:TO with both ends
 /// (TO only if a step falls on it), or whole numbers FIRST..LAST.
-/// @throws InputError  an empty list or value, a value twice, a range that goes nowhere
+/// @throws InputError  an empty list or value, a value twice, an empty or endless range
 std::vector<std::string> ParseValues(const std::string& text);
 
 /// "KEY=VALUES". @throws InputError
 SweepAxis ParseAxis(AxisTarget target, const std::string& text);
 
-/// Every combination of the axes' values, numbered from 0; the last axis runs fastest.
+/// Every combination of the axes' values, numbered from 0; the last axis varies fastest.
 class SweepGrid {
  public:
   SweepGrid() = default;
@@ -48,9 +48,9 @@ class SweepGrid {
 
   const std::vector<SweepAxis>& axes() const { return axes_; }
   std::size_t size() const { return size_; }
-  /// Which value of each axis; point < size().
+  /// Index of the point's value on each axis; point < size().
   std::vector<std::size_t> Indices(std::size_t point) const;
-  /// One value an axis; point < size().
+  /// The point's value on each axis; point < size().
   std::vector<std::string> Values(std::size_t point) const;
 
  private:
@@ -58,7 +58,7 @@ class SweepGrid {
   std::size_t size_ = 1;
 };
 
-/// One of `count` parts of a grid, from 1: the points whose number leaves the remainder number - 1.
+/// One of `count` parts of a grid, numbered from 1: the points with point % count == number - 1.
 struct Shard {
   std::size_t number = 1;
   std::size_t count = 1;

@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-// Which measures have a panel, and what stands beside its axis.
+// A measure with a panel of its own, and the label of its axis.
 struct Panel {
   std::size_t measure;
   const char* label;
@@ -78,9 +78,9 @@ std::string PanelScript(const Panel& panel, const std::vector<Curve>& curves, co
 
 void DrawSummary(const SweepSummary& summary, const std::filesystem::path& output) {
   if (summary.axes.empty() || summary.groups.empty()) {
-    throw InputError(output.string() +
-                     ": there is nothing to draw; the sweep has no axis but its "
-                     "seeds, or no run yet");
+    throw InputError(
+        output.string() +
+        ": there is nothing to draw: the sweep has no axis other than its seeds, or no run yet");
   }
   const SweepAxis& axis = summary.axes.back();
   const bool numbers = std::all_of(axis.values.begin(), axis.values.end(), IsNumber);

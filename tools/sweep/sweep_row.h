@@ -9,10 +9,10 @@
 
 namespace flexarm {
 
-/// A figure of a run that a sweep keeps, in the order of SweepRow::measure.
+/// A figure of a run that a sweep stores, in the order of SweepRow::measure.
 struct SweepMeasure {
-  const char* column;  ///< of results, with its unit
-  const char* title;   ///< of a table
+  const char* column;  ///< column of the results, with the unit
+  const char* title;   ///< heading in a table
 };
 
 inline constexpr std::array<SweepMeasure, 11> kSweepMeasures = {
@@ -29,7 +29,7 @@ inline constexpr std::array<SweepMeasure, 11> kSweepMeasures = {
      {"tip_motion_rms_mm", "motion mm"}}};
 inline constexpr std::size_t kRms1 = 0;
 inline constexpr std::size_t kRms2 = 1;
-inline constexpr std::size_t kSettling = 4;  ///< its NaN in a completed run: never
+inline constexpr std::size_t kSettling = 4;  ///< NaN in a completed run means: never settled
 inline constexpr std::size_t kResidual = 5;
 inline constexpr std::size_t kMotion = 10;
 
@@ -37,18 +37,19 @@ inline constexpr std::size_t kMotion = 10;
 struct SweepRow {
   std::size_t point = 0;  ///< of the grid, from 0
   bool completed = false;
-  std::string trip;     ///< name of the cause; empty: none
-  std::string refused;  ///< why the run was not made: no such design, an experiment beyond limits
+  std::string trip;  ///< name of the cause; empty: none
+  std::string
+      refused;  ///< why the run was not made: the design failed, the experiment exceeds limits
   std::int64_t ticks = 0;
   std::array<double, kSweepMeasures.size()> measure{};  ///< NaN: none
-  double wall_s = 0.0;                                  ///< what the run took, design included
+  double wall_s = 0.0;                                  ///< wall time of the run, design included
 };
 
-/// What is kept of a run; its wall time is the caller's.
+/// The row of a run; the caller sets its wall time.
 SweepRow RowOf(std::size_t point, const SimulationResult& result);
 SweepRow RefusedRow(std::size_t point, const std::string& why);
 
-/// The same run in all but the time that it took.
+/// True if two rows are equal in all but their wall time.
 bool SameOutcome(const SweepRow& a, const SweepRow& b);
 
 }  // namespace flexarm

@@ -38,7 +38,7 @@ std::vector<std::size_t> AxisOrder(const std::vector<SweepAxis>& axes, const std
   }
   if (last != axes.size()) order.push_back(last);
   if (last != axes.size() || by.empty()) return order;
-  throw InputError("--by " + by + ": is no axis of this sweep; expected one of " + known);
+  throw InputError("--by " + by + ": is not an axis of this sweep; expected one of " + known);
 }
 
 std::string NumberText(double value) {

@@ -32,7 +32,7 @@ class LumpedErrors {
     return 100.0 * (lumped[mode].frequency_rad_s / exact_[mode].frequency_rad_s() - 1.0);
   }
 
-  // Fewest parts for the claim. The error falls as their square.
+  // The smallest number of parts that satisfies the claim. The error falls with its square.
   int PartsFor(std::size_t mode) const {
     const auto enough = [&](int parts) {
       return std::abs(Percent(parts, mode)) < kClaimed_percent;
@@ -54,8 +54,9 @@ class LumpedErrors {
 
 Statement LumpedBeamError(const ArmParameters& arm) {
   constexpr int kFew = 10;
-  std::string text = "a uniform link in " + std::to_string(kFew) + " parts: modes 1 to " +
-                     std::to_string(kFirstModes) + " off by";
+  std::string text = "a uniform link in " + std::to_string(kFew) +
+                     " parts, clamped: the frequencies of modes 1 to " +
+                     std::to_string(kFirstModes) + " are off by";
   const LumpedErrors clamped(arm, BeamRoot::Clamped()), pinned(arm, BeamRoot::Pinned());
   double worst = 0.0;
   for (std::size_t i = 0; i < kFirstModes; ++i) {
@@ -67,7 +68,7 @@ Statement LumpedBeamError(const ArmParameters& arm) {
     return std::to_string(errors.PartsFor(0)) + " parts for the first mode, " +
            std::to_string(errors.PartsFor(kFirstModes - 1)) + " for " + std::to_string(kFirstModes);
   };
-  text += " % if clamped. It takes " + needed(clamped) + "; if pinned, " + needed(pinned);
+  text += " %. The claim needs " + needed(clamped) + "; if pinned, " + needed(pinned);
   return {"3.2",
           "the transfer matrix is within " + Figure(kClaimed_percent, 1) +
               " % of the exact frequencies (the number of parts is not stated)",
@@ -100,7 +101,7 @@ double FitResidual_percent(const std::vector<BeamSection>& section, bool single_
   return 100.0 * FitModeShape(fitted, shape.frequency_rad_s, shape.x_m, shape.w).rms_residual;
 }
 
-// What is below is round-off, or might as well be.
+// Below this limit a residual is round-off, or negligible.
 std::string Residual(double percent) {
   constexpr double kShown_percent = 0.001;
   return percent < kShown_percent ? "less than " + Figure(kShown_percent, 1) + " %"

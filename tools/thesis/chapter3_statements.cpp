@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kThesisRate_rad_s = 4.0;  // 6.5.2: joint 1 turns no faster
+constexpr double kThesisRate_rad_s = 4.0;  // 6.5.2: the largest rate of joint 1
 
 Statement FrictionSwitch(const ArmParameters& arm) {
   const double friction = arm.joint[0].coulomb_friction_nm;
@@ -26,8 +26,9 @@ Statement FrictionSwitch(const ArmParameters& arm) {
     const FrictionRoot root = at(amplitude_m);
     hz[i] = root.frequency_rad_s / kTwoPi;
     text += std::string(i > 0 ? "; at " : " at ") + Figure(1e3 * amplitude_m, 1) +
-            " mm of tip deflection a clamp needs " + Figure(root.clamped_moment_nm) +
-            " N m, so it " + (root.sticks ? "sticks" : "slips") + ", " + Figure(hz[i]) + " Hz";
+            " mm of tip deflection the clamped moment is " + Figure(root.clamped_moment_nm) +
+            " N m, so the joint " + (root.sticks ? "sticks" : "slips") + ", " + Figure(hz[i]) +
+            " Hz";
   }
   const bool same = std::abs(hz[0] - hz[1]) < 0.01 * hz[0];
   return {"3.2",
@@ -35,7 +36,7 @@ Statement FrictionSwitch(const ArmParameters& arm) {
           same ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
-// Of mode k of a clamped link: D / (2 m omega) with m = G / omega^2.
+// Damping ratio of mode k of a clamped link: D / (2 m omega) with m = G / omega^2.
 double ModalDampingRatio(const LinkModes& link, int k) {
   return link.D(k, k) * link.mode[static_cast<std::size_t>(k)].frequency_rad_s() /
          (2.0 * link.G(k, k));
@@ -47,7 +48,8 @@ Statement DampingRatios(ArmParameters arm) {
   arm.damping = DampingReading::kCurvatureAsPrinted;
   const ArmModel printed(arm, {2, 2});
   bool all = true;
-  std::string text = "with the density that its units need, modes 1 and 2 have";
+  std::string text =
+      "with the density that its units need, the damping ratios of modes 1 and 2 are:";
   for (const int link : {1, 2}) {
     const double xi = arm.link[static_cast<std::size_t>(link - 1)].damping_ratio;
     text += std::string(link > 1 ? "; " : " ") + "link " + std::to_string(link) +
@@ -64,7 +66,7 @@ Statement DampingRatios(ArmParameters arm) {
           all ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
-// (3.11) with a clearance, and zeta v at which it is looked at.
+// The dissipation (3.11) with a clearance, at a given zeta v.
 class ThesisBacklash {
  public:
   ThesisBacklash(ArmParameters arm, double clearance_deg) {
@@ -78,7 +80,7 @@ class ThesisBacklash {
     return backlash_.front().At(0.0, 0.0, zeta_v / kZeta).drag_nm;
   }
 
-  // Power of the drag over the energy that impacts lose, (3.10), a time between them.
+  // Power of the drag divided by the energy that impacts lose, (3.10), per time between them.
   double PowerRatio(double zeta_v) const {
     const double v = zeta_v / kZeta, e = 1.0 - zeta_v, mu = J2_ * kLoad / (J2_ + kLoad);
     const double lost = 0.5 * mu * v * v * (1.0 - e * e);
@@ -87,7 +89,8 @@ class ThesisBacklash {
   }
 
  private:
-  static constexpr double kZeta = 0.2, kLoad = 0.1;  // neither changes a ratio at a given zeta v
+  static constexpr double kZeta = 0.2,
+                          kLoad = 0.1;  // a ratio at a given zeta v does not depend on them
   double J2_ = 0.0, d_b_ = 0.0;
   std::vector<Backlash> backlash_;
 };
@@ -102,14 +105,14 @@ void AddBacklash(const ArmParameters& arm, std::vector<Statement>* out) {
                                                                            : Verdict::kDoesNot});
   const double beyond = backlash.PowerRatio(0.9);
   out->push_back({"3.4", "backlash acts as a damper",
-                  "at zeta v = 0.9 the power taken is " + Figure(beyond, 3) +
+                  "at zeta v = 0.9 the dissipated power is " + Figure(beyond, 3) +
                       " times what the impacts lose: " +
                       (beyond < 0.0 ? "it drives the joint" : "it brakes the joint"),
                   beyond < 0.0 ? Verdict::kInPart : Verdict::kHolds});
   const double times = tight.Drag_nm(0.1) / backlash.Drag_nm(0.1);
   out->push_back({"3.4", "the clearance d_b sets the loss: without clearance, no loss",
-                  "a clearance ten times smaller brakes " + Figure(times, 3) +
-                      " times as much, without bound as it vanishes",
+                  "a clearance ten times smaller dissipates " + Figure(times, 3) +
+                      " times as much, without bound as the clearance goes to zero",
                   times < 1.0 ? Verdict::kHolds : Verdict::kDoesNot});
 }
 
@@ -142,7 +145,7 @@ bool Grows(const ArmModel& model, double rate_rad_s) {
   return system.A.eigenvalues().real().maxCoeff() > 0.1;
 }
 
-// Lowest rate of joint 1 at which the linearised arm grows; nothing above 20 rad/s is tried.
+// Lowest rate of joint 1 at which the linearised arm is unstable; searched up to 20 rad/s.
 double CriticalRate_rad_s(const ArmModel& model) {
   constexpr double kMost = 20.0;
   double low = 0.0, high = kMost;
@@ -168,7 +171,7 @@ Statement Softening(ArmParameters arm) {
   return {"3.6", "a bent link keeps its length along the hub's axis (3.14), (3.16)",
           "at 4 rad/s this softens the arm's lowest frequency from " + Figure(still) + " to " +
               Figure(soft) + " Hz, and the linearised arm is unstable from " + Figure(critical, 4) +
-              " rad/s on; with links that shorten as they bend it is " + Figure(stiff) +
+              " rad/s on; with links that shorten as they bend the frequency is " + Figure(stiff) +
               " Hz at 4 rad/s, and stable up to " + Figure(never, 2) + " rad/s at least",
           std::abs(soft - stiff) < 0.05 * stiff ? Verdict::kHolds : Verdict::kDoesNot};
 }

@@ -9,8 +9,8 @@
 namespace flexarm {
 namespace {
 
-// Sideways compliance of the far end of a link: of its bending, for a uniform or stepped beam, and
-// of its joint's spring, m/N.
+// Lateral compliance at the tip of a link, m/N: from its bending, for a uniform or stepped beam,
+// and from its joint's spring.
 struct Compliance {
   double link, joint;
 };
@@ -77,7 +77,8 @@ Statement Thickness(const ArmParameters& arm) {
           std::abs(thickness_mm - 3.0) < 0.01 ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
-// Where the rigid parts' masses lie: no hub around a link is smaller than the link is thick.
+// Radii of gyration of the rigid parts: a hub around a link cannot be smaller than the thickness of
+// the link.
 Statement HubInertias(const ArmParameters& arm) {
   constexpr double kTimes = 1000.0;
   const double hub_mm = 1e3 * std::sqrt(arm.joint[1].hub_inertia_kgm2 / arm.hub2_mass_kg);
@@ -94,7 +95,7 @@ Statement HubInertias(const ArmParameters& arm) {
           "with their masses that is a radius of gyration of " + Figure(hub_mm, 2) +
               " mm for hub 2 and " + Figure(payload_mm, 2) + " mm for the payload, on a link " +
               Figure(thick_mm) + " mm thick; " + Figure(kTimes, 4) +
-              " times as much moves none of the arm's four lowest frequencies by more than " +
+              " times as much changes none of the arm's four lowest frequencies by more than " +
               Figure(100.0 * moved, 2) + " %",
           hub_mm > thick_mm && payload_mm > thick_mm ? Verdict::kHolds : Verdict::kDoesNot};
 }
@@ -114,8 +115,8 @@ Statement Table2(const ArmParameters& arm) {
   const Eigen::VectorXd right = FreeMotorFrequenciesHz(ArmModel(arm, {4, 4}), 0.0);
   const Eigen::VectorXd wrong = FreeMotorFrequenciesHz(ArmModel(tenfold, {4, 4}), 0.0);
   std::string text =
-      "ten times this rig's figures leave the bare links' frequencies as they are, but "
-      "move the arm's lowest from";
+      "ten times this rig's figures do not change the frequencies of the bare links, but change "
+      "the arm's lowest from";
   double worst = 0.0;
   for (Eigen::Index i = 0; i < 3; ++i) {
     text += (i > 0 ? ", " : " ") + Figure(right[i]) + " to " + Figure(wrong[i]);

@@ -10,7 +10,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kReductionModes = 10;  // 6.5: the M of figures 6.3 to 6.9
+constexpr int kReductionModes = 10;  // 6.5: number of modes M of figures 6.3 to 6.9
 
 constexpr double kPerturbedAt_deg = 45.0;
 constexpr int kPerturbed_s = 3;
@@ -58,7 +58,7 @@ Statement BothConditions(const ArmModel& model) {
   const bool holds = relaxed.mode.size() == symmetric.mode.size() && worst < 1e-3 &&
                      relaxed.condition == PowerCondition::kDiagonalisable;
   return {"6.3", "the relaxed condition, with a Q2 that is not symmetric, balances power as well",
-          "at rest the arm can be written both ways; no rho differs by " +
+          "at rest the arm has both forms; no rho differs by " +
               (worst < 1e-4 ? std::string("0.01 %") : Figure(100.0 * worst, 2) + " %") + " or more",
           holds ? Verdict::kHolds : Verdict::kDoesNot};
 }
@@ -129,7 +129,7 @@ Statement CellCentres() {
     const double interval = (grid.theta2_deg[1] - grid.theta2_deg[0]) / (grid.cells - 1);
     const double point = std::round(shown_deg / interval) * interval;
     if (!text.empty()) text += "; ";
-    text += Figure(shown_deg, 3) + " deg of the figures is no centre (nearest " +
+    text += Figure(shown_deg, 3) + " deg of the figures is not a centre (nearest " +
             Figure(nearest, 4) + "), but one of 20 points from end to end (" + Figure(point, 4) +
             ")";
   }
@@ -168,7 +168,7 @@ std::string OfBoth(const std::array<Range, 2>& range) {
   return "link 1 " + range[0].Text() + ", link 2 " + range[1].Text();
 }
 
-// For how many pairs of rates the first mode's share is largest at the last elbow angle.
+// The number of pairs of rates for which the first mode's share is largest at the last elbow angle.
 int LargestAtRightAngle(const ReductionGrid& grid, const std::vector<ReductionCell>& cells,
                         std::size_t link) {
   const auto cells_an_axis = static_cast<std::size_t>(grid.cells);
@@ -207,9 +207,10 @@ Statement Roots(const ArmModel& model, const std::vector<ReductionCell>& cells) 
   const ReductionCell beyond = ReduceCell(model, {120.0 * kRadPerDeg, -4.0, -6.0});
   return {"6.3", "all roots of the linearised arm are distinct and positive",
           "a rigid-body root is zero in " + Count(zero) + " of " + Count(std::ssize(cells)) +
-              " cells and left out; in " + Count(slow) + " the elbow's is a slow oscillation, in " +
-              Count(negative) + " it is negative. At 120 deg, -4 and -6 rad/s " +
-              Count(beyond.negative_roots) + " root is negative and left out",
+              " cells and left out; in " + Count(slow) +
+              " the elbow's root is a slow oscillation, in " + Count(negative) +
+              " it is negative. At 120 deg, -4 and -6 rad/s " + Count(beyond.negative_roots) +
+              " root is negative and left out",
           zero + negative == 0 ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
@@ -233,7 +234,7 @@ void AddGrid(const ArmModel& model, std::vector<Statement>* out) {
   const bool first = mass.first[1].Span() > mass.first[0].Span();
   const bool second = mass.second[1].Span() > mass.second[0].Span();
   out->push_back({"6.5.3", "the nominal motion matters more to link 2 than to link 1",
-                  "over the cells the first mode's share moves by " +
+                  "over the cells the first mode's share varies by " +
                       Figure(mass.first[0].Span(), 2) + " (link 1) and " +
                       Figure(mass.first[1].Span(), 2) + " % (link 2), the first two modes' by " +
                       Figure(mass.second[0].Span(), 2) + " and " +

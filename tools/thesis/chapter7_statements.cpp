@@ -14,8 +14,8 @@ namespace {
 
 using Overrides = std::vector<std::string>;
 
-constexpr double kSettled_s = 2.0;         // the thesis: damped within 2 seconds
-constexpr double kSame = 0.05;             // figures that differ by less are the same
+constexpr double kSettled_s = 2.0;         // the thesis: vibrations are damped within 2 seconds
+constexpr double kSame = 0.05;             // smaller relative differences count as equal
 constexpr double kVibration_rad_s = 20.0;  // half the lowest torque mode
 
 std::string Percent(double from, double to) { return Figure(100.0 * (to / from - 1.0), 2) + " %"; }
@@ -78,7 +78,7 @@ Statement WithoutAlpha(const ControlStudy& study) {
                            Figure(final_at(3.0, payload_kg), 2);
                   },
                   " deg") +
-              "; with alpha 0 " + CompletedOf(study, none),
+              "; with alpha 0, " + CompletedOf(study, none),
           bad ? (unstable ? Verdict::kHolds : Verdict::kInPart) : Verdict::kDoesNot};
 }
 
@@ -115,14 +115,14 @@ Statement LargeAlpha(const ControlStudy& study) {
               ", to 5 by " + AtPayloads([&](double payload_kg) {
                 return Percent(rms(3.2, payload_kg), rms(5.0, payload_kg));
               }) +
-              "; with alpha 5 " + CompletedOf(study, AlphaCase(5.0, 0.1).overrides),
+              "; with alpha 5, " + CompletedOf(study, AlphaCase(5.0, 0.1).overrides),
           AtAllPayloads(worse)  ? Verdict::kHolds
           : AtAnyPayload(worse) ? Verdict::kInPart
                                 : Verdict::kDoesNot};
 }
 
-// The lowest and the highest vibration of the links in the nominal closed loop, rad/s: oscillations
-// faster than what the regulator does with the joints.
+// The lowest and the highest frequency of the links' vibrations in the nominal closed loop, rad/s:
+// the oscillations faster than the joint dynamics of the regulator.
 std::array<double, 2> ClosedLoopModes(const RigConfig& config, double alpha) {
   const RigConfig at = WithOverrides(config, AlphaCase(alpha, 0.1).overrides);
   const Design design = DesignController(at);
@@ -215,7 +215,7 @@ Statement SecondLink(const ControlStudy& study) {
   return {"7.4", "link 2 performs much better than link 1",
           "rms errors of joints 1 and 2 " + AtPayloads([&](double kg) {
             return Pair(study.Of(ChangedCase({}, kg)).rms_deg);
-          }) + ", deg: joint 2 is the one that the payload moves",
+          }) + ", deg: the payload affects joint 2 most",
           AtAllPayloads(better)  ? Verdict::kHolds
           : AtAnyPayload(better) ? Verdict::kInPart
                                  : Verdict::kDoesNot};
@@ -262,7 +262,7 @@ Statement Spillover(const ControlStudy& study) {
           complete && largest < kSame ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
-// Of the models with four angles, one mode a link (12 states) and two (16).
+// Compares the models with four angles and one mode a link (12 states) or two (16).
 Statement TwelveStates(const ControlStudy& study) {
   const Overrides twelve = {"controller.nominal=T12"}, sixteen = {"controller.nominal=T16"};
   const auto rms = [&](const Overrides& model, double kg) {

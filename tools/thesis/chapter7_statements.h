@@ -7,8 +7,8 @@
 
 namespace flexarm {
 
-/// What chapter 7 says of the closed loop, against the loops of ControlStudy and the design's
-/// poles.
+/// Checks the statements of chapter 7 on the closed loop against the runs of ControlStudy and the
+/// design's poles.
 std::vector<Statement> Chapter7Statements(const ControlStudy& study);
 
 }  // namespace flexarm

@@ -66,7 +66,7 @@ Doublet Turn(double start_s, double move_deg, DoubletShape shape) {
   return {.start_s = start_s, .duration_s = 1.0, .shape = shape, .move_deg = {move_deg, move_deg}};
 }
 
-// A run that no design was found for counts as one that did not complete.
+// A run whose design failed counts as one that did not complete.
 SimulationResult RunOf(const RigConfig& config, const ControlCase& of, int seed) {
   std::vector<std::string> overrides = of.overrides;
   overrides.push_back("sim.seed=" + std::to_string(seed));

@@ -12,7 +12,8 @@
 
 namespace flexarm {
 
-/// The commands of the thesis's control experiments: 30 degrees out, and 2 s later back.
+/// The commands of the thesis's control experiments: a move by 30 degrees, and 2 s later the move
+/// back.
 Experiment ControlCommand(DoubletShape shape);
 
 /// One closed loop of chapter 7.
@@ -27,11 +28,11 @@ struct ControlCase {
   }
 };
 
-/// What it did: medians over the seeds, of the runs that completed; NaN: none did.
+/// Results of a case: medians over the seeds, of the runs that completed; NaN if none completed.
 struct ControlFigures {
   std::size_t runs = 0, completed = 0;
   std::array<double, 2> rms_deg{}, final_deg{}, peak_nm{}, torque_rms_nm{};
-  double settling_s = 0.0;  ///< infinite: never
+  double settling_s = 0.0;  ///< infinite: never settled
   double residual_mm = 0.0;
   std::array<double, 2> peak_bending_mm{};  ///< of the links' tips
 
@@ -41,18 +42,18 @@ struct ControlFigures {
   double rms_sum_deg() const { return rms_deg[0] + rms_deg[1]; }
 };
 
-/// Every closed loop that the statements of chapter 7 and the figures 7.1 to 7.3 speak of, run
-/// through the whole chain of sensors, estimator and delay.
+/// Simulates every closed loop of the statements of chapter 7 and of figures 7.1 to 7.3, with
+/// sensors, estimator and delay.
 class ControlStudy {
  public:
   static constexpr int kSeeds = 3;
 
-  /// All of them, on all cores.
+  /// Runs all cases, on all cores.
   /// @param progress  called with the number of runs done; may be empty
   explicit ControlStudy(const RigConfig& config,
                         const std::function<void(std::size_t)>& progress = {});
 
-  /// Runs of a study.
+  /// Number of runs of a study.
   static std::size_t Runs();
 
   const RigConfig& config() const { return config_; }
@@ -65,7 +66,7 @@ class ControlStudy {
   std::map<ControlCase, ControlFigures> figures_;
 };
 
-// Cases by what is changed in them. ControlStudy has those of the grids below.
+// A case with changed config values. ControlStudy has the cases of the grids below.
 ControlCase ChangedCase(const std::vector<std::string>& overrides, double payload_kg);
 ControlCase SineCase(double payload_kg);
 ControlCase AlphaCase(double alpha, double payload_kg);

@@ -14,7 +14,7 @@ struct Finding {
   std::string text;
 };
 
-// How much a signal's largest magnitude changes over a sweep.
+// Relative change of a signal's largest magnitude over a sweep.
 double PeakSpread(const ParametricSweep& sweep, Signal signal) {
   return SpreadInPercent(Values(sweep, signal));
 }
@@ -70,9 +70,9 @@ Finding PayloadActsOnJointsAlike(const ParametricStudy& s) {
 Finding StiffnessReducesTwist(const ParametricStudy& s) {
   const double p1 = Exponent(s.At(kStiffness1), Values(s.At(kStiffness1), kTwist1));
   const double p2 = Exponent(s.At(kStiffness2), Values(s.At(kStiffness2), kTwist2));
-  return {Both(p1 < -0.8, p2 < -0.8), "largest twist goes as stiffness to the power " +
-                                          Figure(p1, 3) + " (joint 1) and " + Figure(p2, 3) +
-                                          " (joint 2)"};
+  return {Both(p1 < -0.8, p2 < -0.8),
+          "the largest twist is proportional to the stiffness to the power " + Figure(p1, 3) +
+              " (joint 1) and " + Figure(p2, 3) + " (joint 2)"};
 }
 
 Finding StiffnessLowersFrequency(const ParametricStudy& s) {
@@ -111,9 +111,9 @@ Finding JointsInteractLessThanLinks(const ParametricStudy& s) {
 
 // --- friction
 
-constexpr double kLeastFriction = 0.1;  // of the rig's: below it, it is "close to zero"
+constexpr double kLeastFriction = 0.1;  // in units of the rig's friction; less is "close to zero"
 
-// The thesis leaves friction near zero out of what it says.
+// The thesis excludes friction near zero from its statements.
 std::vector<double> BeyondNearZero(const ParametricSweep& sweep,
                                    const std::vector<double>& values) {
   return From(kLeastFriction, sweep, values);
@@ -142,16 +142,16 @@ Finding FrictionRaisesFrequency(const ParametricStudy& s) {
     without += name + Figure(line.front()) + " Hz";
     with += name + Ends(beyond, "Hz");
   }
-  return {Both(raised[0], raised[1]), without + with + ": joints that stick clamp the links"};
+  return {Both(raised[0], raised[1]), without + with + ": sticking joints clamp the links"};
 }
 
 Finding FrictionIsNotLinear(const ParametricStudy& s) {
   const ParametricSweep& sweep = s.At(kFriction);
   const double b1 = BowInPercent(sweep, Values(sweep, kBending1)),
                b2 = BowInPercent(sweep, Values(sweep, kBending2));
-  return {Both(b1 > 10.0, b2 > 10.0), "the fall of the largest bending is off a straight line by " +
-                                          Percent(b1) + " (link 1) and " + Percent(b2) +
-                                          " (link 2) of the whole fall"};
+  return {Both(b1 > 10.0, b2 > 10.0),
+          "the decrease of the largest bending deviates from a straight line by " + Percent(b1) +
+              " (link 1) and " + Percent(b2) + " (link 2) of the whole decrease"};
 }
 
 Finding FrictionSparesJoints(const ParametricStudy& s) {
@@ -161,10 +161,10 @@ Finding FrictionSparesJoints(const ParametricStudy& s) {
     drop[i] = DropInPercent(Values(sweep, i));
   }
   return {Both(drop[kTwist1] < drop[kBending1], drop[kTwist2] < drop[kBending2]),
-          "twice the rig's friction takes " + Percent(drop[kBending1]) + " and " +
-              Percent(drop[kBending2]) + " off the links' largest bending, " +
+          "twice the rig's friction takes away " + Percent(drop[kBending1]) + " and " +
+              Percent(drop[kBending2]) + " of the links' largest bending, " +
               Percent(drop[kTwist1]) + " and " + Percent(drop[kTwist2]) +
-              " off the joints' largest twist"};
+              " of the joints' largest twist"};
 }
 
 // --- backlash, as a dead zone with impacts or in the thesis's form
@@ -201,7 +201,7 @@ Finding BacklashActsOnSecondMore(const ParametricStudy& s) {
   return {Both(w2 > w1, SpreadInPercent(t2) > SpreadInPercent(t1)),
           "backlash changes the bending after the excitation by up to " + Percent(w1) +
               " (link 1) and " + Percent(w2) + " (link 2), the largest twist of joint 1 from " +
-              Ends(t1, "mrad") + ", of joint 2, play included, from " + Ends(t2, "mrad")};
+              Ends(t1, "mrad") + ", of joint 2, backlash included, from " + Ends(t2, "mrad")};
 }
 
 // --- lengths
@@ -243,7 +243,8 @@ Finding LongerLink1CalmsLink2(const ParametricStudy& s) {
   const auto w2 = Values(s.At(kLength1), kBending2);
   return {Falls(w2) ? Verdict::kHolds : Verdict::kDoesNot,
           "largest bending of link 2 over the lengths of link 1: " + Ends(w2, "mm") +
-              (Falls(w2) ? ", falling all the way" : ", not falling all the way")};
+              (Falls(w2) ? ", decreasing over the whole range"
+                         : ", not decreasing over the whole range")};
 }
 
 Finding LongerLink2LowersLink1(const ParametricStudy& s) {

@@ -7,8 +7,8 @@
 
 namespace flexarm {
 
-/// What chapter 5 says, statement by statement, against two studies that differ in the strength of
-/// the excitation only. Where they disagree the verdict is kDepends, with both sets of numbers.
+/// Checks each statement of chapter 5 against two studies that differ only in the strength of the
+/// excitation. If they disagree the verdict is kDepends, with both sets of numbers.
 std::vector<Statement> ParametricStatements(const ParametricStudy& weak,
                                             const ParametricStudy& strong);
 

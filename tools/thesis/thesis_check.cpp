@@ -37,23 +37,28 @@ std::vector<Statement> ThesisStatements(const RigConfig& config,
 std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement>& statements) {
   const Excitation weak;
   return "# What the thesis says, and what the model says\n\n"
-         "Statements of chapters 3 to 7, in our words, against the model of this project with the "
+         "After reading this page you know which statements of the thesis agree with the model of "
+         "this project, and by which numbers.\n\n"
+         "The table checks statements of chapters 3 to 7, in our words, against the model with the "
          "config `" +
          config.rig_name +
-         "`. Written by `flexarm analyze check -c FILE -o docs/thesis-check.md`: every number in "
-         "the third column is computed, every verdict follows from numbers by a rule, and a test "
-         "writes the page again and compares. The model is checked by other means elsewhere "
-         "(`tests/model/`).\n\n"
-         "Chapter 5 does not say how strongly the arm was excited. Here: one period of a square "
-         "wave of " +
+         "`. `flexarm analyze check -c FILE -o docs/thesis-check.md` writes this page: every "
+         "number "
+         "in the third column is computed, every verdict follows from numbers by a rule, and a "
+         "test writes the page again and compares. The tests in `tests/model/` check the model by "
+         "other means.\n\n"
+         "Chapter 5 does not say how strongly the arm was excited. Here the excitation is one "
+         "period of a square wave of " +
          Figure(Excitation::kPeriod_s, 1) + " s, " + Figure(weak.torque_nm[0], 1) + " and " +
-         Figure(weak.torque_nm[1], 1) + " N m, elbow straight, and again with " +
+         Figure(weak.torque_nm[1], 1) + " N m, with the elbow straight, and again with " +
          Figure(kStrongExcitation, 1) +
          " times as much. Bending is the deflection of a link's tip, twist the deflection of a "
-         "joint's spring; \"largest\" is over the whole run, \"after the excitation\" the free "
-         "vibration.\n\nChapter 7 is the loop of `config/hil.toml`, sensors, noise and delay "
-         "included: " +
-         "30 degrees out by a square doublet of 1 s, and 2 s later back; medians over " +
+         "joint's spring; \"largest\" is over the whole run, \"after the excitation\" refers to "
+         "the "
+         "free vibration.\n\nThe statements of chapter 7 are checked with the loop of "
+         "`config/hil.toml`, which has sensors, noise and delay: " +
+         "a square doublet of 1 s turns the joints by 30 degrees, a second one 2 s later turns "
+         "them back; the figures are medians over " +
          std::to_string(ControlStudy::kSeeds) + " seeds.\n\n" + StatementTable(statements) + "\n" +
          Counted(statements) + ".\n";
 }

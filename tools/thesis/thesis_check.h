@@ -27,8 +27,8 @@ std::vector<Statement> Chapter6Statements(const RigConfig& config);
 std::vector<Statement> ThesisStatements(const RigConfig& config,
                                         const std::function<void(std::size_t)>& progress = {});
 
-/// The page docs/thesis-check.md: what was asked, and the table. No number in it is written by hand
-/// but those that the thesis states.
+/// The page docs/thesis-check.md: introduction and table. Every number in it is computed, except
+/// those that the thesis states.
 std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement>& statements);
 
 }  // namespace flexarm

@@ -27,12 +27,12 @@ BusHealth Bus(bool ok, const char* fault, std::uint32_t failed) {
 TEST(BusJournal, SaysWhenABusIsLostAndWhenItIsBack) {
   Journal told;
   told.Follow(0, {Bus(true, "", 0)});
-  told.Follow(20 * kMs, {Bus(false, "can0: node 2 (drive2): answers no SYNC", 2)});
-  told.Follow(40 * kMs, {Bus(false, "can0: node 2 (drive2): answers no SYNC", 3)});
+  told.Follow(20 * kMs, {Bus(false, "can0: node 2 (drive2): does not answer SYNC", 2)});
+  told.Follow(40 * kMs, {Bus(false, "can0: node 2 (drive2): does not answer SYNC", 3)});
   told.Follow(60 * kMs, {Bus(true, "", 8)});
   told.Follow(80 * kMs, {Bus(true, "", 8)});
   EXPECT_EQ(told.lines, (std::vector<std::string>{
-                            "error: lost: can0: node 2 (drive2): answers no SYNC",
+                            "error: lost: can0: node 2 (drive2): does not answer SYNC",
                             "can0: back, after 6 failed exchanges and attempts to reconnect"}));
 }
 

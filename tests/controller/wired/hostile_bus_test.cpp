@@ -290,7 +290,7 @@ TEST_P(HostileAmplifier, IsNamedDelaysNothingAndComesBack) {
 // Not kTwice, which is survived: below. Not over a serial line: kOneBehind. Its replies bear no
 // number, so a device that answers in time with the values of the period before, and has never
 // missed a reply, is one whose filter is slow. After a miss it is found out:
-// HostilePeerOver.APeerThatIsLateForEverIsNeverBelieved.
+// HostilePeerOver.RepliesOfAPeerThatIsAlwaysLateAreNeverAccepted.
 std::vector<OnWire> AllFaults() {
   using enum WireFault;
   std::vector<OnWire> all;
@@ -377,12 +377,12 @@ class HostileNode : public HostileBus {
 
 TEST_F(HostileNode, ASilentDriveIsNamedAndComesBack) {
   ExpectNamedAndBack(CanopenRole::kDrive2, {.silent = true},
-                     "vcan0: node 2 (drive2): answers no SYNC");
+                     "vcan0: node 2 (drive2): does not answer SYNC");
 }
 
 TEST_F(HostileNode, ASilentEncoderIsNamedAndComesBack) {
   ExpectNamedAndBack(CanopenRole::kHub1, {.silent = true},
-                     "vcan0: node 11 (hub1): answers no SYNC");
+                     "vcan0: node 11 (hub1): does not answer SYNC");
 }
 
 TEST_F(HostileNode, ALostHeartbeatIsNamedAndComesBack) {
@@ -392,7 +392,7 @@ TEST_F(HostileNode, ALostHeartbeatIsNamedAndComesBack) {
 
 TEST_F(HostileNode, ShortPdosAreNamedAndComeBack) {
   ExpectNamedAndBack(CanopenRole::kRotor1, {.cuts_pdos = true},
-                     "vcan0: node 13 (rotor1): sends a PDO that is none");
+                     "vcan0: node 13 (rotor1): sends a malformed PDO");
 }
 
 TEST_F(HostileNode, AnEmergencyIsNamedAndReset) {
@@ -414,7 +414,7 @@ TEST_F(HostileNode, BusOffIsNamedAndLeftWhileDisarmed) {
 TEST_F(HostileNode, ABusThatNobodyAcknowledgesIsNamedAndComesBack) {
   StartRun();
   rig_->world->wire.SetStalled(true);
-  ExpectNamed("vcan0: frames do not go out, no node acknowledges");
+  ExpectNamed("vcan0: frames are not sent, no node acknowledges");
   ExpectArmable([this] { rig_->world->wire.SetStalled(false); });
 }
 

@@ -191,18 +191,18 @@ TEST_F(WiredStackTest, ALostBusIsNamedInTheTripAndInTheHealth) {
   RunUntil(now_ns_ + 100 * kMs);
   EXPECT_EQ(permit().cause, TripCause::kBusLost) << Name(permit().cause);
   EXPECT_EQ(permit().evidence.channel, 2U);
-  EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: an answer that is none");
+  EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: malformed reply");
   const std::vector<BusHealth> health = stack_.buses();
   EXPECT_TRUE(health[0].ok);
   EXPECT_EQ(health[0].failed, 0U);
   EXPECT_FALSE(health[1].ok);
-  EXPECT_EQ(health[1].fault, "gauges: an answer that is none");
+  EXPECT_EQ(health[1].fault, "gauges: malformed reply");
   EXPECT_GE(health[1].failed, 2U);
   gauges_.status = BusStatus::kOk;
   RunUntil(now_ns_ + 100 * kMs);
   EXPECT_TRUE(stack_.buses()[1].ok);
   EXPECT_EQ(stack_.buses()[1].recovered, 1U);
-  EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: an answer that is none")
+  EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: malformed reply")
       << "the trip keeps what caused it";
 }
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Inside the guest, on virtual time: the unchanged daemon commissions `flexarm rig` over the real
-# protocols. Amplifiers whose wires are wrong are named, before the arm is ever moved under control.
+# protocols. Wrongly wired amplifiers are named before the arm moves under control.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
 
 # shellcheck source=tests/guest/daemon_in_guest/rig.sh
 . "$(dirname "$0")/rig.sh"
-# Link 2 with values of two registers each: their order matters.
+# The values of link 2 have two registers each, whose order matters.
 row='strain = %d, table = "input_register", address = %d, type = "%s"'
 for i in {0..9}; do
   # shellcheck disable=SC2059
@@ -17,7 +17,7 @@ printf '\n[commissioning]\nprove_before_run = true\n' >>wire.toml
 
 amplifier() { echo "amplifier strain-amplifier-$1 $2" >&3; sleep 0.2; }
 says() { flexarm "${@:2}" 2>&1 | tee said.txt | grep -q -- "$1"; }
-plucked() {  # plucked FAULT FINDING: with the fault the pluck test names it
+plucked() {  # plucked AMPLIFIER FAULT FINDING: with the fault the pluck test reports the finding
   amplifier "$1" "$2"
   check "a pluck test names: $3" says "$3" pluck
   amplifier "$1" well
@@ -30,13 +30,13 @@ start_daemon
 echo "== at rest"
 check "tare" flexarm tare
 check "zero" flexarm zero
-check "nothing hangs at link 1, so it cannot be calibrated" \
+check "link 1 has no load, so it cannot be calibrated" \
   refused flexarm calibrate --link 1 --force-n 5 --at-m 0.8
 
 amplifier 2 wrong-word-order
-check "words in the wrong order are out of every range" \
+check "words in the wrong order are out of range and trip" \
   within 5 grep -q -- '-> Tripped: strain-saturated: strain_2_' daemon.log
-check "and cannot be tared" refused flexarm tare
+check "then tare is refused" refused flexarm tare
 amplifier 2 well
 check "reset" press_and_reset
 sleep 1
@@ -48,26 +48,26 @@ plucked 1 "inverted 3" "strain_1_04: is inverted"
 plucked 1 "swapped 1 5" "strain_1_02, strain_1_06: are exchanged"
 plucked 2 "scaled 14 1.5" "strain_2_05: reads 1."
 plucked 2 "stuck 10" "strain_2_01: does not move"
-check "well wired, it passes" flexarm pluck
-check "and may run" flexarm run $experiment
+check "with correct wiring pluck passes" flexarm pluck
+check "then a run is allowed" flexarm run $experiment
 armed() { [[ $(state) == Armed ]]; }
 within 30 armed
 check "disarmed" flexarm disarm
-check "the hardware is dead after it" equal "$(hardware)" "$dead"
+check "the hardware has no power after it" equal "$(hardware)" "$dead"
 kill -TERM $daemon
 wait $daemon
-check "flexarmd says by 1 that it has tripped" equal $? 1
+check "flexarmd ends with 1 because it has tripped" equal $? 1
 for run in runs/*.flexarm; do
-  check "replays to the bit" equal \
+  check "replay is bit exact" equal \
     "$(flexarm replay "$run" --json | jq -c '[.bit_exact, .safety_exact]')" "[true,true]"
 done
 
-echo "== the calibration is there again"
+echo "== after a restart the calibration is read again"
 stop_rig
 start_rig
 start_daemon
 check "zeros come from the file" test -s runs/calibration.json
-check "and the wiring is to be proven again" flexarm arm
+check "armed, with the wiring not yet proven" flexarm arm
 check "no run before that" says 'flexarm pluck' run $experiment
 kill -TERM $daemon
 wait $daemon

@@ -1,31 +1,30 @@
 #!/usr/bin/env bash
-# Inside the guest, on virtual time: strain amplifiers that do everything wrong, one on TCP and one
-# on a serial line, while the arm is armed or runs. Each way ends in a trip that names the device
-# or in failures that are counted; the bus comes back without a restart; and the control thread
-# misses nothing in all of it.
+# Inside the guest, on virtual time: faulty strain amplifiers, one on TCP and one on a serial line,
+# while the arm is armed or runs. Each fault causes a trip that names the device, or counted
+# failures; the bus recovers without a restart; the control thread misses no deadline.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
 # shellcheck source=tests/guest/daemon_in_guest/rig.sh
 . "$(dirname "$0")/rig.sh"
 
 tcp=strain-amplifier-1 rtu=strain-amplifier-2
-# The second amplifier moves to a serial line: the rig makes it, the daemon opens it. The line's own
-# time takes more of the period.
+# The second amplifier is on a serial line, which the rig creates and the daemon opens. The slower
+# line needs more of the period.
 sed -i -e '/^port = 15022$/d' -e "/^name = \"$rtu\"$/,/^response/{
   s/^transport = .*/transport = \"rtu\"/
   s#^host = .*#device = \"$PWD/serial\"\nbaud = 230400\nparity = \"even\"\ndata_bits = 8\nstop_bits = 1#
   s/^response.*/response_timeout_ms = 2.0/
 }" wire.toml
 printf '[loop]\nacquire_before_ms = 14.0\nstep_deadline_ms = 4.0\n' >>wire.toml
-check "the config is one" flexarm config check wire.toml
+check "the config is valid" flexarm config check wire.toml
 start_rig || exit 1
-check "the serial line is there" test -c serial
+check "the serial line exists" test -c serial
 start_daemon
 
-# What the journal says is looked at, not asked for: to start a program takes longer than to trip.
+# Reads the journal, because starting `flexarm status` takes longer than a trip.
 said() { (($(grep -cE -- "$2" daemon.log) >= $1)); }
 
-# misbehaves NAME HOW PATTERN: armed, then mended and reset.
+# misbehaves NAME FAULT PATTERN: the fault while armed, then its end and a reset.
 round=0
 misbehaves() {
   round=$((round + 1))
@@ -40,7 +39,7 @@ misbehaves() {
   check "$1 $2: idle" within 2 said $round 'Tripped -> Idle'
 }
 
-late='no answer in time' wrong='(an answer that is none|connection lost)' gone='connection lost'
+late='no answer in time' wrong='(malformed reply|connection lost)' gone='connection lost'
 misbehaves $tcp "late 30" "$late"
 misbehaves $tcp wrong-length "$wrong"
 misbehaves $tcp one-behind "$wrong"
@@ -52,10 +51,11 @@ misbehaves $rtu wrong-unit "$wrong"
 misbehaves $rtu garbage "$wrong"
 misbehaves $rtu away "$gone"
 
-echo "== one late reply in mid-run is survived and counted"
+echo "== one late reply during a run is tolerated and counted"
 start_run
 failed=$(bus $tcp failed)
-# Well within a period, so that it meets one exchange or none: until it has met one.
+# The fault is shorter than a period and affects at most one exchange: repeated until it affects
+# one.
 for _ in $(seq 50); do
   echo "amplifier $tcp late 10" >&3
   sleep 0.004
@@ -64,14 +64,14 @@ for _ in $(seq 50); do
   if [ "$(bus $tcp failed)" -gt "$failed" ]; then break; fi
 done
 sleep 1
-check "the run goes on" refused grep -q 'Running -> ' daemon.log
+check "the run continues" refused grep -q 'Running -> ' daemon.log
 check "counted" at_least "$(bus $tcp failed)" $((failed + 1))
-check "told" grep -q "$tcp: [0-9]* failed exchanges, survived" daemon.log
+check "reported" grep -q "$tcp: [0-9]* failed exchanges, survived" daemon.log
 
-echo "== silent in mid-run"
+echo "== silent during a run"
 echo "amplifier $tcp silent" >&3
 check "tripped" within 5 said $((round + 1)) '-> Tripped'
-check "the hardware is dead" equal "$(hardware)" "$dead"
+check "the hardware has no power" equal "$(hardware)" "$dead"
 
 kill -TERM $daemon
 wait $daemon

@@ -1,10 +1,10 @@
-# Sourced inside the guest: puts the machine that `cmake --install` made over this one, as the
-# README says; two people with accounts, of whom one may operate the arm.
+# Sourced inside the guest: installs the files of `cmake --install` as the README describes, and
+# adds two user accounts, of which one may operate the arm.
 # shellcheck shell=bash
 
 cp -a /mnt/share/machine/. /
 systemd-sysusers
-systemctl -q add-wants guest.target flexarmd  # systemd forgets how a unit ended that nobody wants
+systemctl -q add-wants guest.target flexarmd  # without it systemd forgets how the unit ended
 systemctl daemon-reload
 useradd --groups flexarm member
 useradd stranger

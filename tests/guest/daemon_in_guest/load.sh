@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Inside the guest, on virtual time: the default experiment while the processor is kept busy. How
-# late the control thread wakes is shown beside cyclictest's figure, of the same priority and period
-# under the same load: the figures themselves are no machine's, the ratio is ours. Control wakes in
-# the same instant as safety and waits for it, so 1 cannot be reached. Leaves the log as
+# Inside the guest, on virtual time: the default experiment while the processor is busy. The
+# lateness of the control thread is compared with that of cyclictest at the same priority and period
+# under the same load: the times are those of the emulation, but their ratio is meaningful. Control
+# is due at the same instant as safety and waits for it, so the ratio is above 1. Leaves the log as
 # /mnt/out/loaded.flexarm.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
@@ -11,7 +11,7 @@ cp -a /mnt/share/machine/. /
 configs=/usr/local/share/flexarm/config
 idle_jiffies() { awk '$1 == "cpu" { print $5 + $6 }' /proc/stat; }
 
-# In /tmp: stress-ng does nothing in a folder that it cannot write.
+# In /tmp, because stress-ng needs a folder that it can write.
 stress-ng --quiet --cpu 2 --io 1 --vm 1 --vm-bytes 64M &
 load=$!
 sleep 1
@@ -30,7 +30,7 @@ run=$(ls runs/*.flexarm)
 check "300 of 300 samples" equal \
   "$(flexarm info "$run" --json | jq -c '[.metrics.ticks, .missing_ticks, .trip]')" "[300,0,null]"
 for thread in safety control plant; do
-  check "$thread missed and skipped nothing" \
+  check "$thread missed no deadline and skipped no period" \
     grep -q " $thread: [0-9]* activations, 0 missed deadlines, 0 skipped periods" daemon.log
 done
 cp "$run" /mnt/out/loaded.flexarm

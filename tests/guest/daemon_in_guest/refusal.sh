@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Inside the guest, with systemd: without the limits that real time takes, the daemon refuses, says
-# which is missing and what to do, and leaves nothing behind.
+# Inside the guest, with systemd: without the resource limits that real time needs, the daemon
+# refuses to start, names the missing limit and the remedy, and leaves no files.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
 # shellcheck source=tests/guest/daemon_in_guest/install.sh
@@ -26,9 +26,9 @@ plain 0 65536 --experiment $configs/experiments/square-30deg.toml
 check "exit status 1" equal $status 1
 check "names the priority" says 'SCHED_FIFO priority 90 is refused'
 check "names its limit" says 'RLIMIT_RTPRIO is 0'
-check "says what to do about it" says 'set LimitRTPRIO=.* or give --without-realtime'
+check "names the remedy" says 'set LimitRTPRIO=.* or give --without-realtime'
 check "names the memory and its limit" says 'locking the memory is refused.*RLIMIT_MEMLOCK is 65536'
-check "says what to do about that" says 'set LimitMEMLOCK=infinity'
+check "names the remedy for the memory" says 'set LimitMEMLOCK=infinity'
 check "leaves no log and no socket" equal "$(find runs socket 2>/dev/null | wc -l)" 0
 
 echo "== only one of the two is missing"
@@ -40,16 +40,16 @@ plain 95 65536 --experiment $configs/experiments/square-30deg.toml
 check "exit status 1" equal $status 1
 check "blames the memory" says 'locking the memory is refused'
 check "does not blame the priority" refused says 'SCHED_FIFO priority 90 is refused'
-# The threads' highest is 90: a limit just below it must not do.
+# The highest priority of the threads is 90: a limit of 89 must be refused.
 plain 89 unlimited --experiment $configs/experiments/square-30deg.toml
 check "a limit of 89 is too low for safety's 90" equal $status 1
 
-echo "== none missing, or asked to do without"
+echo "== no limit is missing, or --without-realtime is given"
 plain 90 unlimited --run-for 1
 check "with both limits it runs as a plain user" equal $status 0
 plain 0 65536 --run-for 1 --without-realtime
 check "with --without-realtime it runs" equal $status 0
-check "and says what that means" says 'ordinary scheduling, unlocked memory'
+check "and reports the consequences" says 'ordinary scheduling, unlocked memory'
 
 echo "== the service without its limits"
 mkdir -p /run/systemd/system/flexarmd.service.d

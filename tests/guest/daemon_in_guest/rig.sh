@@ -1,5 +1,5 @@
 # Sourced inside the guest: the machine that `cmake --install` made, a CAN interface and GPIO lines,
-# and the programs between them: `flexarm rig`, which plays the devices, and the unchanged daemon
+# and the programs between them: `flexarm rig`, which emulates the devices, and the unchanged daemon
 # with its real drivers.
 # shellcheck shell=bash disable=SC2034
 
@@ -25,7 +25,7 @@ start_rig() {
   chrt -f 75 flexarm rig -c wire.toml --json <rig.in >>rig.out 2>rig.err &
   rig=$!
   exec 3>rig.in
-  within 20 grep -q playing rig.err
+  within 20 grep -q emulating rig.err
 }
 
 stop_rig() {
@@ -46,7 +46,7 @@ start_run() {
   check "running" flexarm run $experiment
 }
 
-# What the hardware sees now: torque, relay, charge pump.
+# The present outputs at the devices: torque, relay, charge pump.
 hardware() {
   : >rig.out
   echo report >&3
@@ -55,7 +55,7 @@ hardware() {
 }
 dead='[[0,0],false,false]'
 
-# What a reset takes after a trip.
+# The steps of a reset after a trip.
 press_and_reset() {
   echo press reset-button 1 >&3
   sleep 0.1
@@ -70,7 +70,7 @@ bus_is_ok() { [[ $(bus "$1" ok) == true ]]; }
 missed_nothing() {  # missed_nothing THREAD..
   local thread
   for thread; do
-    check "$thread missed and skipped nothing" \
+    check "$thread missed no deadline and skipped no period" \
       grep -q " $thread: [0-9]* activations, 0 missed deadlines, 0 skipped periods" daemon.log
   done
 }

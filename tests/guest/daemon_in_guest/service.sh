@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Inside the guest, with systemd: the daemon as the service that is shipped. Operated by a member of
-# the group, refused to others; stopped, hung and killed in mid-run. The logs go to /mnt/out/runs.
+# Inside the guest, with systemd: the daemon as the shipped service. A member of the group operates
+# it, others are refused; it is stopped, hung and killed during a run. The logs go to /mnt/out/runs.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
 # shellcheck source=tests/guest/daemon_in_guest/install.sh
@@ -9,8 +9,8 @@
 logs=/var/lib/flexarm
 mkdir /mnt/out/runs kept
 
-# Copies the newest log, and SQLite's journal of it where there is one, for us and for the host: it
-# is looked at as it was left.
+# Copies the newest log and its SQLite journal, if there is one, for this script and for the host,
+# so that the log is checked as the daemon left it.
 keep_log() {  # keep_log NAME
   local newest file
   newest=$(find $logs -name '*.flexarm' -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d' ' -f2)
@@ -33,17 +33,17 @@ replays() {
 
 echo "== start"
 check "the service starts" systemctl start flexarmd
-check "it is active once it said that it is ready" equal "$(service ActiveState)" active
+check "it is active after its ready notification" equal "$(service ActiveState)" active
 main=$(service MainPID)
 check "it runs as flexarm" equal "$(ps -o user= -p "$main")" flexarm
-check "it has no capability but the one that restarts a CAN interface" \
+check "it has only the capability that restarts a CAN interface" \
   grep -q '^CapEff:\s*0000000000001000$' "/proc/$main/status"  # bit 12, CAP_NET_ADMIN
-check "its control thread is FIFO 80 all the same" equal \
+check "its control thread still runs as FIFO 80" equal \
   "$(ps -L -o comm=,cls=,rtprio= -p "$main" | awk '$1 == "control" { print $2, $3 }')" "FF 80"
 locked=$(awk '$1 == "VmLck:" { print $2 }' "/proc/$main/status")
 check "its memory is locked ($locked kB)" at_least "$locked" 20000  # of about 170000
 
-echo "== who may"
+echo "== permissions"
 check "a member of the group sees the state" within 5 in_state Idle
 check "systemd shows the state too" within 5 equal "$(service StatusText)" Idle
 for verb in status arm stop; do
@@ -67,7 +67,7 @@ check "state by state" equal "$(states)" "Armed Running Stopping Armed Idle"
 check "the log is closed" equal "$closed" true
 check "the log replays" replays
 
-echo "== systemctl stop in mid-run"
+echo "== systemctl stop during a run"
 start_moving
 check "systemctl stop succeeds" systemctl stop flexarmd
 check "exit status 0" equal "$(service Result) $(service ExecMainCode) $(service ExecMainStatus)" \
@@ -77,8 +77,8 @@ check "a controlled stop, state by state" equal "$(states)" "Armed Running Stopp
 check "the log is closed" equal "$closed" true
 check "the log replays" replays
 
-# What a dead process leaves. The recorder commits every half second, and a row is in flight: the
-# last row is at most 26 samples older than the last sample that anybody saw.
+# Checks the log of a killed process. The recorder commits every half second, and one row may be in
+# flight: the last row is at most 26 samples older than the last sample in the status.
 left_behind() {  # left_behind NAME LAST_TICK
   keep_log "$1"
   check "the log was not closed" equal "$closed" false
@@ -97,7 +97,7 @@ kill -STOP "$(service MainPID)"
 since=$SECONDS
 check "systemd's watchdog kills it" within 20 service_is failed
 echo "after $((SECONDS - since)) s"
-check "for that reason" equal "$(service Result)" watchdog
+check "with this reason" equal "$(service Result)" watchdog
 left_behind hung "$seen"
 sleep 2
 check "it is not started again" equal "$(service ActiveState) $(service NRestarts)" "failed 0"
@@ -109,17 +109,17 @@ start_moving
 seen=$(tick)
 kill -KILL "$(service MainPID)"
 check "systemd sees it" within 5 service_is failed
-check "for that reason" equal "$(service Result) $(service ExecMainStatus)" "signal 9"
+check "with this reason" equal "$(service Result) $(service ExecMainStatus)" "signal 9"
 left_behind killed "$seen"
 sleep 2
 check "it is not started again" equal "$(service ActiveState) $(service NRestarts)" "failed 0"
 
-echo "== and again"
+echo "== restart"
 systemctl start flexarmd
 check "it starts, idle" within 5 in_state Idle
 sleep 2
 check "nothing arms by itself" in_state Idle
 check "the old logs are all there" equal "$(find $logs -name '*.flexarm' | wc -l)" 4
 systemctl stop flexarmd
-check "idle, it stops too" equal "$(service Result)" success
+check "it also stops from Idle" equal "$(service Result)" success
 conclude

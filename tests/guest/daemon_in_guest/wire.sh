@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Inside the guest, on virtual time: the unchanged daemon with its real drivers (CANopen over
-# SocketCAN, Modbus/TCP, GPIO lines) against `flexarm rig`, which plays the devices. A whole
-# experiment, then a limit switch, a silenced drive, bus-off and a killed daemon; what the rig's
-# hardware saw afterwards is the test. Leaves the experiment's log as /mnt/out/wire.flexarm.
+# SocketCAN, Modbus/TCP, GPIO lines) against `flexarm rig`, which emulates the devices. A whole
+# experiment, then a limit switch, a silent drive, bus-off and a killed daemon; the script checks
+# the resulting outputs at the devices. Leaves the experiment's log as /mnt/out/wire.flexarm.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
 
@@ -12,13 +12,13 @@
 echo "== a whole experiment"
 start_rig
 start_daemon
-check "no other process may turn the relay's line round" refused gpioget "$chip" 6
+check "no other process may change the direction of the relay's line" refused gpioget "$chip" 6
 check "nor drive it" refused gpioset "$chip" 6=1
 check "nor take a limit switch's" refused gpioset "$chip" 0=1
 start_run
 within 30 grep -q 'Stopping -> Armed' daemon.log
 check "disarmed" flexarm disarm
-check "the hardware is dead after it" equal "$(hardware)" "$dead"
+check "the hardware has no power after it" equal "$(hardware)" "$dead"
 kill -TERM $daemon
 wait $daemon
 check "flexarmd ends with 0" equal $? 0
@@ -32,17 +32,18 @@ check "300 of 300 samples" equal "$(jq -c '[.metrics.ticks, .missing_ticks, .tri
 check "joint 1 tracks as in process: $(jq -c .metrics.joint_rms_error_deg info.json)" \
   jq -e '.metrics.joint_rms_error_deg[0] < 0.83' info.json
 check "joint 2 tracks as in process" jq -e '.metrics.joint_rms_error_deg[1] < 1.20' info.json
-check "replays to the bit" equal \
+check "replay is bit exact" equal \
   "$(flexarm replay "$run" --json | jq -c '[.bit_exact, .safety_exact]')" "[true,true]"
 cp "$run" /mnt/out/wire.flexarm
 stop_rig
 
-echo "== a limit switch opens in mid-run"
+echo "== a limit switch opens during a run"
 start_rig
 start_daemon
 start_run
 sleep 1
-# More than the kernel queues for a line, and it drops the newest: levels tell all the same.
+# More edges than the kernel queues for a line; it drops the newest, but the daemon also reads the
+# levels.
 button=/sys/bus/gpio/devices/$chip/sim_gpio5/pull
 for _ in {1..50}; do
   echo pull-up >"$button"
@@ -50,13 +51,13 @@ for _ in {1..50}; do
 done
 echo press limit-1-high 0 >&3
 check "a hundred edges, then open: trips" within 5 grep -q 'Tripped: limit-switch-1-high' daemon.log
-check "the hardware is dead" equal "$(hardware)" "$dead"
+check "the hardware has no power" equal "$(hardware)" "$dead"
 check "the trip is latched" equal "$(flexarm status --json | jq -r .state)" Tripped
 kill -TERM $daemon
 wait $daemon
 stop_rig
 
-echo "== a drive falls silent in mid-run"
+echo "== a drive becomes silent during a run"
 start_rig
 start_daemon
 start_run
@@ -64,16 +65,16 @@ sleep 1
 echo node drive2 silent >&3
 within 5 grep -q -- '-> Tripped' daemon.log
 check "the trip names the drive" \
-  grep -q -- '-> Tripped: bus-lost: vcan0: node 2 (drive2): answers no SYNC' daemon.log
-check "so does the status" equal "$(flexarm status --json | jq -r .trip.bus)" \
-  'vcan0: node 2 (drive2): answers no SYNC'
-check "the hardware is dead" equal "$(hardware)" "$dead"
+  grep -q -- '-> Tripped: bus-lost: vcan0: node 2 (drive2): does not answer SYNC' daemon.log
+check "the status names it too" equal "$(flexarm status --json | jq -r .trip.bus)" \
+  'vcan0: node 2 (drive2): does not answer SYNC'
+check "the hardware has no power" equal "$(hardware)" "$dead"
 kill -TERM $daemon
 wait $daemon
 stop_rig
 
-# As the service runs it: no root, and of all capabilities the one that restarting the bus takes.
-echo "== the CAN controller leaves the bus in mid-run"
+# With the permissions of the service: not root, and only the capability that restarts the bus.
+echo "== the CAN controller leaves the bus during a run"
 chmod 666 "/dev/$chip"
 install -d -m 777 bus-off
 start_rig
@@ -90,20 +91,20 @@ printf 'report\nbus-off vcan0\n' >&3
 within 5 grep -q -- '-> Tripped' daemon.log
 check "the trip names the bus" \
   grep -q 'Tripped: bus-lost: vcan0: the CAN controller has left the bus (bus-off)' daemon.log
-check "the arm was driven until then" jq -e '.torque_nm != [0,0]' rig.out
+check "the arm had torque until then" jq -e '.torque_nm != [0,0]' rig.out
 before=$(jq .drives_active_ms rig.out)
 sleep 0.3
-check "the hardware is dead" equal "$(hardware)" "$dead"
+check "the hardware has no power" equal "$(hardware)" "$dead"
 after=$(tail -n 1 rig.out | jq .drives_active_ms)
-# hal.canopen.master_timeout_ms, and the millisecond in which the rig looks.
+# hal.canopen.master_timeout_ms, plus the millisecond of the rig's sampling.
 check "the drives were off within their time-out ($((after - before)) ms)" \
   at_least 101 $((after - before))
-check "disarmed, the bus is taken back without a restart" within 5 bus_is_ok vcan0
+check "when disarmed, the bus recovers without a restart" within 5 bus_is_ok vcan0
 check "once" equal "$(bus vcan0 recovered)" 1
 check "nothing arms by itself" equal "$(state)" Tripped
 check "reset" press_and_reset
 check "and armed again" flexarm arm
-check "no sooner than after the trip" equal \
+check "the recovery follows the trip, the reset follows the recovery" equal \
   "$(grep -oE -- '-> Tripped|vcan0: back|Tripped -> Idle' daemon.log | paste -sd,)" \
   "-> Tripped,vcan0: back,Tripped -> Idle"
 kill -TERM $daemon
@@ -111,14 +112,14 @@ wait $daemon
 FLEXARM_SOCKET=$PWD/flexarmd.sock
 stop_rig
 
-echo "== the daemon is killed in mid-run"
+echo "== the daemon is killed during a run"
 start_rig
 start_daemon
 start_run
 sleep 1
 kill -KILL $daemon
 sleep 0.2 # drives lose their torque within master_timeout_ms = 100, the pump dies within 5 ms
-# The relay keeps its last level when the process dies; the charge pump is what stops.
+# The relay keeps its last level when the process dies; the charge pump stops.
 check "no torque and no pump" equal "$(hardware | jq -c '[.[0], .[2]]')" '[[0,0],false]'
 left=$(ls -t runs/*.flexarm | head -n 1)
 check "the log left behind replays" equal \

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Runs /mnt/out/command inside the guest, leaves its output in /mnt/out/log and its status in
-# /mnt/out/status, and ends QEMU. Either process 1 itself, or a service of systemd.
+# /mnt/out/status, and ends QEMU. Runs as process 1, or as a service of systemd.
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C
 if [ $$ = 1 ]; then
   mount -t tmpfs -o mode=755 run /run
@@ -21,6 +21,6 @@ if [ $$ != 1 ]; then journalctl -b --no-pager -o short-monotonic >/mnt/out/journ
 cut -d' ' -f1 /proc/uptime >/mnt/out/end_s
 echo $status >/mnt/out/status
 sync -f /mnt/out/status
-# isa-debug-exit ends QEMU at once with (0x2a << 1) | 1 = 85: nothing else gives that status.
+# isa-debug-exit ends QEMU at once with (0x2a << 1) | 1 = 85, which no other end of QEMU gives.
 printf '\x2a' | dd of=/dev/port bs=1 seek=$((0x501)) conv=notrunc status=none
 poweroff -f

@@ -1,8 +1,7 @@
 #!/bin/busybox sh
 # shellcheck shell=dash
-# The first process of the guest: loads what mounting takes, mounts, and hands over to the root
-# image.
-# The kernel's command line says to whom: guest.init=PROGRAM.
+# The first process of the guest: loads the modules for mounting, mounts the file systems, and
+# starts the init program of the root image, guest.init=PROGRAM of the kernel's command line.
 b=/bin/busybox
 $b mount -t proc proc /proc
 $b mount -t sysfs sys /sys

@@ -57,14 +57,14 @@ inline CanopenConfig BenchConfig() {
                    BenchEncoder(CanopenRole::kRotor1, 13), BenchEncoder(CanopenRole::kRotor2, 14)}};
 }
 
-/// A device on a bus in memory with the nodes that its config names, in virtual time.
+/// A device on a bus in memory with the nodes of its config, in virtual time.
 class CanopenBench {
  public:
   static constexpr std::size_t kNodes = 6;
   static constexpr std::int64_t kPeriod_ns = 20 * kMs;
   static constexpr BusCommand kOff{.torque_nm = {}, .enabled = false};
 
-  /// @param wired  what is really on the wire, in the order of the config's nodes
+  /// @param wired  the actual nodes on the wire, in the order of the config's nodes
   explicit CanopenBench(const CanopenConfig& config = BenchConfig(),
                         std::vector<SimulatedNodeConfig> wired = Wired(BenchConfig())) {
     for (const SimulatedNodeConfig& node : wired) {
@@ -93,7 +93,7 @@ class CanopenBench {
   SimulatedNode& node(std::size_t i) { return *nodes_[i]; }
   std::int64_t now_ns() const { return wire.now_ns(); }
 
-  /// To the next instant of the grid, then one exchange.
+  /// Advances to the next instant of the grid, then makes one exchange.
   BusStatus Exchange(const BusCommand& command) {
     NextPeriod();
     return device->Exchange(command, &frame);
@@ -104,7 +104,7 @@ class CanopenBench {
   }
   void NextPeriod() { wire.AdvanceTo((now_ns() / kPeriod_ns + 1) * kPeriod_ns); }
 
-  /// Opens and takes both drives to operation. True if that worked.
+  /// Opens the device and enables both drives. True on success.
   bool Enable(const BusCommand& command = {.torque_nm = {}, .enabled = true}) {
     device->Open();
     return EnableOpened(command);
@@ -117,14 +117,14 @@ class CanopenBench {
            node(1).state() == DriveState::kOperationEnabled;
   }
 
-  /// What Reconnect returns in the end; at most `attempts` of them.
+  /// Last result of Reconnect, after at most `attempts` calls.
   BusStatus ReconnectUntilOk(int attempts) {
     BusStatus status = BusStatus::kTimeout;
     for (int k = 0; k < attempts && status != BusStatus::kOk; ++k) status = Reconnect();
     return status;
   }
 
-  /// The frames that have been on the wire since the last call.
+  /// The frames on the wire since the last call.
   std::vector<ReceivedFrame> Heard() {
     std::vector<ReceivedFrame> heard;
     ReceivedFrame received{};

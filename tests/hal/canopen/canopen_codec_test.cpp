@@ -18,7 +18,7 @@ CanFrame Frame(std::uint32_t id, std::initializer_list<int> bytes) {
   return frame;
 }
 
-// The bytes below are written out from the protocol figures of CiA 301, not from our encoder.
+// The expected bytes are taken from the protocol figures of CiA 301, not from our encoder.
 TEST(CanopenCodec, NmtSyncAndHeartbeatAreTheBytesOfCia301) {
   EXPECT_EQ(EncodeNmt(NmtCommand::kStart, 0), Frame(0x000, {0x01, 0x00}));
   EXPECT_EQ(EncodeNmt(NmtCommand::kResetNode, 5), Frame(0x000, {0x81, 0x05}));
@@ -31,7 +31,7 @@ TEST(CanopenCodec, NmtSyncAndHeartbeatAreTheBytesOfCia301) {
   EXPECT_EQ(DecodeHeartbeat(Frame(0x705, {0x05, 0x00})), std::nullopt) << "too long";
 }
 
-TEST(CanopenCodec, NmtOrdersAreReadBackAndNonsenseIsNot) {
+TEST(CanopenCodec, NmtCommandsAreDecodedAndInvalidOnesAreNot) {
   const std::optional<NmtOrder> order = DecodeNmt(Frame(0, {0x80, 0x03}));
   ASSERT_TRUE(order.has_value());
   EXPECT_EQ(order->command, NmtCommand::kPreOperational);
@@ -66,7 +66,7 @@ TEST(CanopenCodec, TorquePdoIsControlwordThenTorqueLowByteFirst) {
   EXPECT_FALSE(DecodeDriveCommand(Frame(0x201, {0x0F, 0x00})).has_value());
 }
 
-TEST(CanopenCodec, DriveAndEncoderPdosAreReadWithTheirSigns) {
+TEST(CanopenCodec, DriveAndEncoderPdosAreDecodedWithTheirSigns) {
   // Statusword 0237h, position -2 = FFFFFFFEh, torque -5 = FFFBh.
   const CanFrame frame = Frame(0x182, {0x37, 0x02, 0xFE, 0xFF, 0xFF, 0xFF, 0xFB, 0xFF});
   const std::optional<DriveFeedback> feedback = DecodeDriveFeedback(frame);
@@ -85,8 +85,8 @@ TEST(CanopenCodec, MappingEntriesAreIndexSubIndexBits) {
   EXPECT_EQ(MappingEntry(kObjectPosition, 32), 0x60640020U);
 }
 
-// Stuffing at its worst: 55 bits without data, 135 with eight bytes (R. I. Davis et al. 2007).
-TEST(CanopenCodec, WorstCaseFrameLengthsAreThoseOfTheLiterature) {
+// Worst-case stuffing: 55 bits without data, 135 with eight bytes (R. I. Davis et al. 2007).
+TEST(CanopenCodec, WorstCaseFrameLengthsAgreeWithTheLiterature) {
   EXPECT_EQ(WorstCaseBits(0), 55);
   EXPECT_EQ(WorstCaseBits(8), 135);
   EXPECT_EQ(FrameTimeNs(8, 500'000), 270'000);
@@ -109,7 +109,7 @@ TEST(Sdo, RepliesAreValueWrittenOrAbort) {
   EXPECT_EQ(value.kind, SdoReply::Kind::kValue);
   EXPECT_EQ(value.object, (CanopenObject{0x1017, 0}));
   EXPECT_EQ(value.size, 2);
-  EXPECT_EQ(value.value, 1000U) << "bytes beyond the size do not count";
+  EXPECT_EQ(value.value, 1000U) << "bytes beyond the size are ignored";
   EXPECT_EQ(DecodeSdoReply(Frame(0x585, {0x42, 0x18, 0x10, 1, 4, 3, 2, 1})).value, 0x01020304U)
       << "size not given: four bytes";
   const SdoReply abort =
@@ -125,7 +125,7 @@ TEST(Sdo, RepliesAreValueWrittenOrAbort) {
   EXPECT_EQ(DecodeSdoReply(Frame(0x585, {0x60, 0x17, 0x10})).kind, SdoReply::Kind::kMalformed);
 }
 
-TEST(Sdo, TheServersAnswersAreWhatTheClientReads) {
+TEST(Sdo, TheClientDecodesTheServersReplies) {
   const CanopenObject object{0x1018, 2};
   const SdoReply value = DecodeSdoReply(SdoValueReply(9, object, 0xABCDEF, 3));
   EXPECT_EQ(value.value, 0xABCDEFU);
@@ -142,8 +142,8 @@ TEST(Sdo, TheServersAnswersAreWhatTheClientReads) {
       << "segmented";
 }
 
-// CiA 402, table of state coding: what does not count is set and cleared here on purpose.
-TEST(DriveState, StatuswordsAreReadByTheirPatternAlone) {
+// CiA 402, table of state coding: bits that are not part of a pattern are set and cleared here.
+TEST(DriveState, StatuswordsAreDecodedByTheirPatternOnly) {
   struct Case {
     std::uint16_t care, bits;
     DriveState state;
@@ -170,7 +170,7 @@ TEST(DriveState, StatuswordsAreReadByTheirPatternAlone) {
   for (const Case& c : cases) EXPECT_EQ(DecodeDriveState(EncodeDriveState(c.state)), c.state);
 }
 
-TEST(DriveState, ADriveIsTakenToOperationOneTransitionAtATime) {
+TEST(DriveState, ADriveIsEnabledOneTransitionAtATime) {
   using enum DriveState;
   EXPECT_EQ(ControlwordFor(kSwitchOnDisabled, DriveWish::kOn), 0x06);
   EXPECT_EQ(ControlwordFor(kReadyToSwitchOn, DriveWish::kOn), 0x07);
@@ -178,7 +178,7 @@ TEST(DriveState, ADriveIsTakenToOperationOneTransitionAtATime) {
   EXPECT_EQ(ControlwordFor(kOperationEnabled, DriveWish::kOn), 0x0F);
 }
 
-TEST(DriveState, OnlyAnExplicitResetLeavesAFaultAndOffIsOffFromEveryState) {
+TEST(DriveState, OnlyAResetLeavesAFaultAndOffWorksFromEveryState) {
   using enum DriveState;
   for (const DriveState state :
        {kUnknown, kNotReady, kSwitchOnDisabled, kReadyToSwitchOn, kSwitchedOn, kOperationEnabled,

@@ -12,10 +12,12 @@
 namespace flexarm {
 namespace {
 
-TEST(CanopenConfig, TheBenchHasNoProblems) { EXPECT_TRUE(BenchConfig().Problems("").empty()); }
+TEST(CanopenConfig, TheBenchConfigHasNoProblems) {
+  EXPECT_TRUE(BenchConfig().Problems("").empty());
+}
 
-// Each rule broken once: the key that must be named.
-TEST(CanopenConfig, EachBrokenRuleNamesItsKey) {
+// Each rule violated once: the key that must be named.
+TEST(CanopenConfig, EachViolatedRuleNamesItsKey) {
   struct Case {
     const char* key;
     void (*spoil)(CanopenConfig*);
@@ -68,7 +70,7 @@ TEST(CanopenConfig, EachBrokenRuleNamesItsKey) {
 }
 
 // A slow bus with a slow loop, and the heartbeats of six nodes every 5 ms: 62 % for them alone.
-TEST(CanopenConfig, ABusThatCannotCarryTheNodesIsRefused) {
+TEST(CanopenConfig, ABusTooSlowForItsNodesIsRejected) {
   CanopenConfig config = BenchConfig();
   config.bitrate_bps = 125'000;
   config.period_ms = 60.0;
@@ -84,18 +86,18 @@ TEST(CanopenConfig, ABusThatCannotCarryTheNodesIsRefused) {
 // By hand, at 1 Mbit/s, in microseconds: one frame that had begun 135, SYNC 55, the daemon's
 // heartbeat 65; a drive: command 95, answer 135, heartbeat 65, emergency 135; an encoder: answer
 // 95, heartbeat 65, emergency 135.
-TEST(CanopenConfig, TheWorstCaseIsTheSumOfEveryFrameAtItsLongest) {
+TEST(CanopenConfig, TheWorstCaseIsTheSumOfAllFramesAtTheirLongest) {
   const CanopenConfig config = BenchConfig();
   EXPECT_EQ(config.wire_time_ns(), (135 + 55 + 65 + 2 * 430 + 4 * 295) * 1000);
   EXPECT_EQ(config.worst_case_exchange_ns(), 6 * kMs);
 }
 
 // 50 exchanges a second of 55 + 65 + 2 (95 + 135) + 4 * 95 bits, and 20 heartbeats of 6 nodes.
-TEST(CanopenConfig, TheBusLoadIsTheSumOfWhatIsSentEverySecond) {
+TEST(CanopenConfig, TheBusLoadIsTheSumOfTheFramesPerSecond) {
   EXPECT_DOUBLE_EQ(BenchConfig().bus_load(), (50.0 * 960.0 + 20.0 * 6.0 * 65.0) / 1e6);
 }
 
-TEST(CanopenConfig, NodesFeedTheCountersOfTheFrame) {
+TEST(CanopenConfig, NodesProvideTheCountersOfTheFrame) {
   const CanopenConfig config = BenchConfig();
   EXPECT_EQ(config.node[0].counter(), -1);
   EXPECT_EQ(config.node[2].counter(), 0);

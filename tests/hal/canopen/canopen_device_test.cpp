@@ -39,20 +39,20 @@ TEST(CanopenStartUp, SixNodesAreIdentifiedConfiguredAndOperational) {
     EXPECT_EQ(node.Value(kObjectAbortConnection), kDisableVoltageOnAbort);
     EXPECT_EQ(node.Value(kObjectMaxTorque), 1200U) << "36 N m of 0.03, 7.2 of 0.006";
     EXPECT_NE(node.Value({kObjectTpdoCommunication + 1, 1}) & kPdoDisabled, 0U)
-        << "a PDO that nobody reads loads the bus";
+        << "an unused PDO loads the bus";
     EXPECT_EQ(node.state(), DriveState::kSwitchOnDisabled) << "Open enables nothing";
   }
 }
 
-TEST(CanopenStartUp, TheBoundOfAnExchangeIsDeclaredFromTheAnswerTime) {
+TEST(CanopenStartUp, TheBoundOfAnExchangeFollowsFromTheAnswerTime) {
   CanopenBench bench;
   EXPECT_EQ(bench.device->worst_case_ns(), 6 * kMs) << "5 ms of answers, 1 ms of computing";
   EXPECT_EQ(bench.device->drives(), 0b11U);
   EXPECT_STREQ(bench.device->name(), "can0");
 }
 
-// Each of them: what is wrong, and what the message must name.
-TEST(CanopenStartUp, AWrongNodeIsRefusedByNameWithFoundAndExpected) {
+// Each case: the fault, and the parts that the message must contain.
+TEST(CanopenStartUp, AWrongNodeIsRejectedByNameWithFoundAndExpected) {
   struct Case {
     const char* what;
     std::size_t node;
@@ -90,7 +90,7 @@ TEST(CanopenStartUp, AWrongNodeIsRefusedByNameWithFoundAndExpected) {
   }
 }
 
-TEST(CanopenStartUp, SwappedDrivesAreToldApartByTheirSerialNumbers) {
+TEST(CanopenStartUp, SwappedDrivesAreDistinguishedByTheirSerialNumbers) {
   CanopenConfig config = BenchConfig();
   config.node[0].serial = 8;
   CanopenBench bench(config);
@@ -98,8 +98,8 @@ TEST(CanopenStartUp, SwappedDrivesAreToldApartByTheirSerialNumbers) {
               AllOf(HasSubstr("node 1 (drive1)"), HasSubstr("1018:04"), HasSubstr("found 7")));
 }
 
-// A node that refuses or forgets what the safety of the rig rests on is not used.
-TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRefused) {
+// A node that rejects or loses a setting on which the safety of the rig depends is not used.
+TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRejected) {
   struct Case {
     const char* what;
     std::size_t node;
@@ -111,7 +111,7 @@ TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRefused) {
            0,
            {.refuses_index = kObjectRpdoMapping},
            {"node 1 (drive1)", "1600:00", "invalid value for parameter (0x06090030)"}},
-      Case{"mapping forgotten",
+      Case{"mapping not kept",
            1,
            {.forgets_index = kObjectTpdoMapping},
            {"node 2 (drive2)", "1A00:01", "found 0"}},
@@ -119,11 +119,11 @@ TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRefused) {
            2,
            {.refuses_index = kObjectTpdoMapping},
            {"node 11 (hub1)", "1A00:00", "refused"}},
-      Case{"torque mode forgotten",
+      Case{"torque mode not kept",
            0,
            {.forgets_index = 0x6060},
            {"node 1 (drive1)", "6060:00", "expected 10"}},
-      Case{"heartbeat producer forgotten",
+      Case{"heartbeat producer not kept",
            5,
            {.forgets_index = 0x1017},
            {"node 14 (rotor2)", "1017:00", "found 0 (0x0), expected 50 (0x32)"}},
@@ -131,7 +131,7 @@ TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRefused) {
            1,
            {.refuses_index = 0x1016},
            {"node 2 (drive2)", "1016:01", "refused"}},
-      Case{"heartbeat consumer forgotten",
+      Case{"heartbeat consumer not kept",
            1,
            {.forgets_index = 0x1016},
            {"node 2 (drive2)", "1016:01", "found 0"}},
@@ -139,7 +139,7 @@ TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRefused) {
            0,
            {.has_no_abort_option = true},
            {"node 1 (drive1)", "6007:00", "object does not exist"}},
-      Case{"torque range forgotten",
+      Case{"torque range not kept",
            0,
            {.forgets_index = 0x6072},
            {"node 1 (drive1)", "6072:00", "found 1000 (0x3E8), expected 1200 (0x4B0)"}},
@@ -158,7 +158,7 @@ TEST(CanopenStartUp, ANodeThatCannotBeConfiguredIsRefused) {
   }
 }
 
-TEST(CanopenStartUp, AnswersThatComeTwiceOrToNobodyDoNotDisturbIt) {
+TEST(CanopenStartUp, DuplicatedOrUnrequestedAnswersDoNotDisturbTheStartUp) {
   CanopenBench bench;
   bench.wire.SetTamper([](CanFrame* frame) {
     return MemoryWire::Fate{.copies = (frame->id & 0x780) == kCobSdoReply ? 2 : 1};
@@ -171,7 +171,7 @@ TEST(CanopenStartUp, AnswersThatComeTwiceOrToNobodyDoNotDisturbIt) {
   EXPECT_EQ(WhyNotOpened(&bench), "");
 }
 
-TEST(CanopenStartUp, AnAnswerFromBeforeTheQuestionIsNone) {
+TEST(CanopenStartUp, AnAnswerFromBeforeTheRequestIsIgnored) {
   CanopenBench bench;
   bench.wire.SetTamper([](CanFrame* frame) {
     return MemoryWire::Fate{.waited_ns = frame->id == CobId(kCobSdoReply, 2) ? kMs : 0};
@@ -188,7 +188,7 @@ TEST(CanopenStartUp, AnEncoderKeepsItsCount) {
   EXPECT_EQ(bench.frame.counter[0], 777U);
 }
 
-TEST(CanopenStartUp, ARefusedStartCanBeTriedAgain) {
+TEST(CanopenStartUp, AFailedStartCanBeRepeated) {
   CanopenBench bench;
   bench.node(1).Misbehave({.silent = true});
   EXPECT_NE(WhyNotOpened(&bench), "");
@@ -213,7 +213,7 @@ TEST(CanopenExchange, CountersAreRawAndSampledAtTheSync) {
   }
 }
 
-TEST(CanopenExchange, ADriveMayFeedTheCounterOfItsRotor) {
+TEST(CanopenExchange, ADriveMayProvideTheCounterOfItsRotor) {
   CanopenConfig config = BenchConfig();
   config.node.resize(4);
   config.node[1].position_is_rotor = true;
@@ -226,8 +226,8 @@ TEST(CanopenExchange, ADriveMayFeedTheCounterOfItsRotor) {
   EXPECT_EQ(bench.frame.counter[3], static_cast<std::uint32_t>(-77));
 }
 
-// 0.1 % of rated torque is 0.03 and 0.006 N m at the gearbox's output; drive 2 is mounted the other
-// way round; the ranges are 1200 per mille. Rounded to the nearest.
+// 0.1 % of rated torque is 0.03 and 0.006 N m at the gearbox's output; drive 2 is mounted with the
+// opposite sign; the ranges are 1200 per mille. Rounded to the nearest.
 TEST(CanopenExchange, TorqueIsPerMilleOfRatedWithSignAndRange) {
   CanopenBench bench;
   ASSERT_TRUE(bench.Enable());
@@ -251,7 +251,7 @@ TEST(CanopenExchange, TorqueIsPerMilleOfRatedWithSignAndRange) {
   EXPECT_DOUBLE_EQ(bench.device->drive_torque_nm(1), 0.6);
 }
 
-TEST(CanopenExchange, ADriveIsEnabledOnlyWhileThatIsCommanded) {
+TEST(CanopenExchange, ADriveIsEnabledOnlyWhileCommanded) {
   CanopenBench bench;
   bench.device->Open();
   for (int k = 0; k < 20; ++k) {
@@ -260,13 +260,13 @@ TEST(CanopenExchange, ADriveIsEnabledOnlyWhileThatIsCommanded) {
   }
   ASSERT_TRUE(bench.EnableOpened({.torque_nm = {9.0, 3.0}, .enabled = true}));
   EXPECT_EQ(bench.node(0).torque_per_mille(), 300);
-  // One exchange later the torque is off, whatever the torque asked for says.
+  // One exchange later the torque is off, for any commanded torque.
   ASSERT_EQ(bench.Exchange({.torque_nm = {9.0, 3.0}, .enabled = false}), BusStatus::kOk);
   EXPECT_EQ(bench.node(0).state(), DriveState::kSwitchOnDisabled);
   EXPECT_EQ(bench.node(0).torque_per_mille(), 0);
 }
 
-TEST(CanopenExchange, NoTorqueIsAskedOfADriveThatIsNotInOperation) {
+TEST(CanopenExchange, NoTorqueIsSentToADriveThatIsNotInOperation) {
   CanopenBench bench;
   bench.device->Open();
   bench.Heard();
@@ -279,7 +279,7 @@ TEST(CanopenExchange, NoTorqueIsAskedOfADriveThatIsNotInOperation) {
   }
 }
 
-TEST(CanopenExchange, TheWholePeriodFitsTheComputedTimeAndTheBusLoadTheComputedShare) {
+TEST(CanopenExchange, TheExchangeTimeAndTheBusLoadAgreeWithTheComputedOnes) {
   CanopenBench bench;
   ASSERT_TRUE(bench.Enable());
   const CanopenConfig config = BenchConfig();
@@ -293,16 +293,16 @@ TEST(CanopenExchange, TheWholePeriodFitsTheComputedTimeAndTheBusLoadTheComputedS
     longest_ns = std::max(longest_ns, bench.now_ns() - before_ns);
     for (const ReceivedFrame& f : bench.Heard()) busy_ns += FrameTimeNs(f.frame.length, 1'000'000);
   }
-  // The simulated nodes answer at once, so the wire's time alone is the bound.
+  // The simulated nodes answer immediately, so the time on the wire alone is the bound.
   EXPECT_LE(longest_ns, config.wire_time_ns());
-  EXPECT_GT(longest_ns, config.wire_time_ns() / 4) << "a bound that is too wide says nothing";
+  EXPECT_GT(longest_ns, config.wire_time_ns() / 4) << "the bound must not be too wide";
   const double load = static_cast<double>(busy_ns) / static_cast<double>(bench.now_ns() - begin_ns);
-  // 2 s hold 40 or 41 heartbeats of each node: 0.1 % of the bus is more than that leaves open.
+  // 2 s contain 40 or 41 heartbeats of each node: that uncertainty is below 0.1 % of the bus.
   EXPECT_NEAR(load, config.bus_load(), 1e-3);
 }
 
-TEST(CanopenExchange, AllocatesNothing) {
-  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizers bring their own allocator";
+TEST(CanopenExchange, DoesNotAllocate) {
+  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizers have their own allocator";
   CanopenBench bench;
   ASSERT_TRUE(bench.Enable());
   {
@@ -316,7 +316,7 @@ TEST(CanopenExchange, AllocatesNothing) {
     bench.node(2).Misbehave({});
     for (int k = 0; k < 100; ++k) static_cast<void>(bench.Reconnect());
   }
-  EXPECT_EQ(bench.Exchange(CanopenBench::kOff), BusStatus::kOk) << "it has come back by then";
+  EXPECT_EQ(bench.Exchange(CanopenBench::kOff), BusStatus::kOk) << "the bus has recovered by then";
 }
 
 TEST(CanopenExchange, CloseSwitchesTheDrivesOff) {
@@ -324,14 +324,14 @@ TEST(CanopenExchange, CloseSwitchesTheDrivesOff) {
   ASSERT_TRUE(bench.Enable());
   ASSERT_EQ(bench.Exchange({.torque_nm = {9.0, 3.0}, .enabled = true}), BusStatus::kOk);
   ASSERT_NE(bench.node(1).torque_per_mille(), 0);
-  // The master's end is closed with the frames in its queue: as the kernel sends what it has.
+  // The master's end is closed with frames in its queue, which are still sent, as by a kernel.
   bench.Heard();
   bench.device->Close();
   bench.wire.AdvanceTo(bench.now_ns() + 5 * kMs);
   EXPECT_EQ(bench.node(0).torque_per_mille(), 0);
   EXPECT_EQ(bench.node(1).torque_per_mille(), 0);
   EXPECT_EQ(bench.node(1).nmt(), NmtState::kPreOperational);
-  // Off by the drives' own way first: NMT is for what comes after.
+  // The drives are switched off by their own state machine first, then by NMT.
   const std::vector<ReceivedFrame> heard = bench.Heard();
   EXPECT_TRUE(std::any_of(heard.begin(), heard.end(),
                           [](const ReceivedFrame& f) { return f.frame.id == kCobSync; }));

@@ -10,7 +10,7 @@ namespace {
 constexpr BusCommand kTorque{.torque_nm = {9.0, 3.0}, .enabled = true};
 constexpr BusCommand kOff = CanopenBench::kOff;
 
-// Each bench checks the bound that the device declares, on every call, in virtual time.
+// Each test checks the bound that the device declares, on every call, in virtual time.
 class CanopenFaults : public testing::Test {
  protected:
   void SetUp() override {
@@ -25,7 +25,7 @@ class CanopenFaults : public testing::Test {
     const BusStatus status = device().Exchange(command, &bench_.frame);
     EXPECT_LE(bench_.now_ns() - begin_ns, device().worst_case_ns());
     if (status != BusStatus::kOk) {
-      EXPECT_EQ(bench_.frame.counter_valid, 0U) << "on failure nothing is valid";
+      EXPECT_EQ(bench_.frame.counter_valid, 0U) << "on failure no reading is valid";
     }
     return status;
   }
@@ -44,7 +44,7 @@ class CanopenFaults : public testing::Test {
     return status;
   }
 
-  // The next frame with this identifier meets this fate, the others none.
+  // Applies this fate to the next frame with this identifier, and to no other.
   void TamperOnce(std::uint32_t id, MemoryWire::Fate fate) {
     bench_.wire.SetTamper([id, fate, done = false](CanFrame* frame) mutable {
       if (done || frame->id != id) return MemoryWire::Fate{};
@@ -53,13 +53,13 @@ class CanopenFaults : public testing::Test {
     });
   }
 
-  // Nobody acknowledges any more; what has been sent so far is out.
+  // No node acknowledges any more; frames sent before are out.
   void Cut() {
     bench_.wire.AdvanceTo(bench_.now_ns() + kMs);
     bench_.wire.SetStalled(true);
   }
 
-  // A frame that some other node on the bus sends now.
+  // A frame that another node on the bus sends now.
   void SendForeign(const CanFrame& frame) {
     ASSERT_EQ(bench_.spy.Send(frame), SendResult::kSent);
     bench_.wire.AdvanceTo(bench_.now_ns() + kMs);
@@ -72,7 +72,7 @@ class CanopenFaults : public testing::Test {
   CanopenBench bench_;
 };
 
-TEST_F(CanopenFaults, OneLostFrameIsOneFailedExchangeAndNoFault) {
+TEST_F(CanopenFaults, ALostFrameIsAFailedExchangeAndNoFault) {
   for (const std::uint32_t lost : {CobId(kCobTpdo, 2), CobId(kCobTpdo, 11), kCobSync}) {
     TamperOnce(lost, {.copies = 0});
     EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout) << lost;
@@ -83,7 +83,7 @@ TEST_F(CanopenFaults, OneLostFrameIsOneFailedExchangeAndNoFault) {
   EXPECT_GE(device().counts().missed, 2U);
 }
 
-TEST_F(CanopenFaults, ALostCommandLeavesTheDriveItsLastOneForOnePeriod) {
+TEST_F(CanopenFaults, ALostCommandLeavesTheLastOneInEffectForOnePeriod) {
   TamperOnce(CobId(kCobRpdo, 1), {.copies = 0});
   EXPECT_EQ(Exchange({.torque_nm = {0.0, 0.0}, .enabled = true}), BusStatus::kOk);
   EXPECT_EQ(torque(0), 300);
@@ -91,7 +91,7 @@ TEST_F(CanopenFaults, ALostCommandLeavesTheDriveItsLastOneForOnePeriod) {
   EXPECT_EQ(torque(0), 0);
 }
 
-TEST_F(CanopenFaults, ADuplicatedAnswerIsCountedAndTheFirstIsTaken) {
+TEST_F(CanopenFaults, ADuplicatedAnswerIsCountedAndTheFirstIsUsed) {
   bench_.node(2).SetPosition(41);
   TamperOnce(CobId(kCobTpdo, 11), {.copies = 2});
   EXPECT_EQ(Exchange(kTorque), BusStatus::kOk);
@@ -99,57 +99,58 @@ TEST_F(CanopenFaults, ADuplicatedAnswerIsCountedAndTheFirstIsTaken) {
   EXPECT_EQ(device().counts().duplicated, 1U);
 }
 
-// The late one comes 12 ms after its SYNC, when the exchange is over; by the next it is old.
-TEST_F(CanopenFaults, ALateAnswerIsDroppedByItsTimeStamp) {
+// The late answer arrives 12 ms after its SYNC, after the exchange; at the next one it is old.
+TEST_F(CanopenFaults, ALateAnswerIsRejectedByItsTimeStamp) {
   bench_.node(2).SetPosition(41);
   TamperOnce(CobId(kCobTpdo, 11), {.delay_ns = 12 * kMs});
   EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
   bench_.node(2).SetPosition(42);
   EXPECT_EQ(Exchange(kTorque), BusStatus::kOk);
-  EXPECT_EQ(bench_.frame.counter[0], 42U) << "41 is of the SYNC before";
+  EXPECT_EQ(bench_.frame.counter[0], 42U) << "41 belongs to the previous SYNC";
   EXPECT_EQ(device().counts().stale, 1U);
 }
 
-// Late by just one period, less half a frame, it comes last but for the fresh one, when no time
-// stamp can tell: after a miss both are waited for, and the second counts.
-TEST_F(CanopenFaults, AnAnswerThatIsLateByOnePeriodIsNotTakenForTheNext) {
+// An answer late by one period minus half a frame arrives just before the fresh one, when no time
+// stamp can distinguish them: after a miss both are awaited, and the second is used.
+TEST_F(CanopenFaults, AnAnswerLateByOnePeriodIsNotMistakenForTheNext) {
   bench_.node(5).SetPosition(41);
   TamperOnce(CobId(kCobTpdo, 14), {.delay_ns = 20 * kMs - kMs / 25});
   EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
   bench_.node(5).SetPosition(42);
   EXPECT_EQ(Exchange(kTorque), BusStatus::kOk);
   EXPECT_EQ(bench_.frame.counter[3], 42U);
-  EXPECT_EQ(device().counts().duplicated, 1U) << "the late one came where this test wants it";
+  EXPECT_EQ(device().counts().duplicated, 1U) << "the late one arrived as this test requires";
 }
 
-// It came after the queue was emptied and before SYNC went out: only its stamp tells.
+// It arrived after the queue was emptied and before SYNC was sent: only its time stamp shows that.
 TEST_F(CanopenFaults, AnAnswerFromBeforeTheSyncIsStaleWheneverItIsRead) {
   TamperOnce(CobId(kCobTpdo, 11), {.waited_ns = 2 * kMs});
   EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
   EXPECT_EQ(device().counts().stale, 1U);
 }
 
-TEST_F(CanopenFaults, AnAnswerWithoutItsQuestionIsStale) {
+TEST_F(CanopenFaults, AnAnswerWithoutItsSyncIsStale) {
   SendForeign(EncodeEncoderPosition(11, 999));
   EXPECT_EQ(Exchange(kTorque), BusStatus::kOk);
   EXPECT_NE(bench_.frame.counter[0], 999U);
   EXPECT_EQ(device().counts().stale, 1U);
 }
 
-TEST_F(CanopenFaults, ASilentDriveIsADriveFaultAfterThreeAnswers) {
+TEST_F(CanopenFaults, ASilentDriveIsADriveFaultAfterThreeMissedAnswers) {
   bench_.node(1).Misbehave({.answers_no_sync = true});
   EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
   EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
   EXPECT_EQ(Exchange(kTorque), BusStatus::kDriveFault);
   EXPECT_EQ(fault().kind, CanopenFaultKind::kSilent);
   EXPECT_EQ(fault().node_id, 2);
-  EXPECT_EQ(CanopenFaultText(device().config(), fault()), "can0: node 2 (drive2): answers no SYNC");
+  EXPECT_EQ(CanopenFaultText(device().config(), fault()),
+            "can0: node 2 (drive2): does not answer SYNC");
   EXPECT_EQ(Exchange(kTorque), BusStatus::kDriveFault);
-  EXPECT_EQ(torque(0), 0) << "one drive's fault takes the torque of both";
-  EXPECT_EQ(torque(1), 0) << "it hears even if it does not speak";
+  EXPECT_EQ(torque(0), 0) << "one drive's fault removes the torque of both";
+  EXPECT_EQ(torque(1), 0) << "it still receives";
 }
 
-TEST_F(CanopenFaults, ASilentEncoderIsALostPeerNotADriveFault) {
+TEST_F(CanopenFaults, ASilentEncoderIsALostNodeNotADriveFault) {
   bench_.node(4).Misbehave({.silent = true});
   for (int k = 0; k < 3; ++k) static_cast<void>(Exchange(kTorque));
   EXPECT_EQ(Exchange(kTorque), BusStatus::kDisconnected);
@@ -164,7 +165,7 @@ TEST_F(CanopenFaults, AnEmergencyIsADriveFaultWithItsCodeAtTheNextExchange) {
   EXPECT_EQ(fault().code, 0x2310);
   EXPECT_EQ(CanopenFaultText(device().config(), fault()),
             "can0: node 1 (drive1): emergency message 0x2310");
-  EXPECT_EQ(torque(1), 0) << "told off in this very exchange";
+  EXPECT_EQ(torque(1), 0) << "switched off in this exchange";
 }
 
 TEST_F(CanopenFaults, TheEndOfAnEmergencyIsNoFault) {
@@ -172,7 +173,7 @@ TEST_F(CanopenFaults, TheEndOfAnEmergencyIsNoFault) {
   EXPECT_EQ(Exchange(kTorque), BusStatus::kOk);
 }
 
-TEST_F(CanopenFaults, ADriveInFaultIsSeenByItsStatuswordEvenIfTheEmergencyIsLost) {
+TEST_F(CanopenFaults, ADriveInFaultIsDetectedByItsStatuswordIfTheEmergencyIsLost) {
   TamperOnce(CobId(kCobEmergency, 2), {.copies = 0});
   bench_.node(1).RaiseFault(0x3210);
   EXPECT_EQ(Exchange(kTorque), BusStatus::kDriveFault);
@@ -182,7 +183,7 @@ TEST_F(CanopenFaults, ADriveInFaultIsSeenByItsStatuswordEvenIfTheEmergencyIsLost
 
 // node_timeout_ms is 120: the last heartbeat may be 50 ms old when it stops, so between 70 ms and
 // 120 ms and one exchange later.
-TEST_F(CanopenFaults, ALostHeartbeatIsAFaultThoughTheNodeAnswersSync) {
+TEST_F(CanopenFaults, ALostHeartbeatIsAFaultEvenIfTheNodeAnswersSync) {
   bench_.node(0).Misbehave({.no_heartbeat = true});
   int exchanges = 0;
   while (Exchange(kTorque) == BusStatus::kOk && exchanges < 100) ++exchanges;
@@ -192,12 +193,12 @@ TEST_F(CanopenFaults, ALostHeartbeatIsAFaultThoughTheNodeAnswersSync) {
   EXPECT_EQ(fault().node_id, 1);
 }
 
-TEST_F(CanopenFaults, ANodeThatBootsAnewHasLeftTheOperationalState) {
+TEST_F(CanopenFaults, ANodeThatRebootsHasLeftTheOperationalState) {
   SendForeign(EncodeNmt(NmtCommand::kResetNode, 2));
   EXPECT_EQ(Exchange(kTorque), BusStatus::kDriveFault);
   EXPECT_EQ(fault().kind, CanopenFaultKind::kNotOperational);
   EXPECT_EQ(fault().node_id, 2);
-  ASSERT_EQ(ReconnectUntilOk(100), BusStatus::kOk) << "configured anew";
+  ASSERT_EQ(ReconnectUntilOk(100), BusStatus::kOk) << "configured again";
   EXPECT_EQ(bench_.node(1).Value(kObjectModeDisplay), kCyclicTorqueMode);
   EXPECT_TRUE(bench_.EnableOpened());
 }
@@ -209,7 +210,7 @@ TEST_F(CanopenFaults, ADriveThatSwitchesItsTorqueOffByItselfIsAFault) {
   EXPECT_EQ(fault().code, 0x0217);
 }
 
-TEST_F(CanopenFaults, AStatuswordThatSticksInOperationIsAFaultOnceTheDriveShallBeOff) {
+TEST_F(CanopenFaults, AStatuswordStuckInOperationIsAFaultWhenTheDriveMustBeOff) {
   bench_.node(1).Misbehave({.statusword = EncodeDriveState(DriveState::kOperationEnabled)});
   EXPECT_EQ(Exchange(kOff), BusStatus::kOk);
   int exchanges = 1;
@@ -229,7 +230,7 @@ TEST_F(CanopenFaults, ADriveThatDoesNotEnableIsAFaultAfterASecond) {
   EXPECT_EQ(torque(1), 0);
 }
 
-TEST_F(CanopenFaults, APdoOfAnotherLengthIsMalformedAndNothingOfItIsTaken) {
+TEST_F(CanopenFaults, APdoOfAWrongLengthIsMalformedAndNotUsed) {
   bench_.node(3).Misbehave({.cuts_pdos = true});
   EXPECT_EQ(Exchange(kTorque), BusStatus::kMalformed);
   EXPECT_EQ(device().counts().malformed, 1U);
@@ -237,7 +238,7 @@ TEST_F(CanopenFaults, APdoOfAnotherLengthIsMalformedAndNothingOfItIsTaken) {
   EXPECT_EQ(Exchange(kTorque), BusStatus::kOk);
 }
 
-TEST_F(CanopenFaults, ASecondMasterOnTheBusIsRefused) {
+TEST_F(CanopenFaults, ASecondMasterOnTheBusIsAFault) {
   SendForeign(EncodeSync());
   EXPECT_EQ(Exchange(kTorque), BusStatus::kMalformed);
   EXPECT_EQ(fault().kind, CanopenFaultKind::kSecondMaster);
@@ -245,7 +246,7 @@ TEST_F(CanopenFaults, ASecondMasterOnTheBusIsRefused) {
 }
 
 // Pitfall 6.
-TEST_F(CanopenFaults, BusOffIsReportedNothingIsSentAndOnlyReconnectComesBack) {
+TEST_F(CanopenFaults, BusOffIsReportedNothingIsSentAndOnlyReconnectRecovers) {
   bench_.master->SetBusOff();
   EXPECT_EQ(Exchange(kTorque), BusStatus::kBusOff);
   bench_.wire.AdvanceTo(bench_.now_ns() + 100 * kMs);
@@ -259,12 +260,12 @@ TEST_F(CanopenFaults, BusOffIsReportedNothingIsSentAndOnlyReconnectComesBack) {
   for (int k = 0; k < 5; ++k) EXPECT_EQ(Reconnect(), BusStatus::kBusOff);
   bench_.master->SetRestartable(true);
   ASSERT_EQ(ReconnectUntilOk(100), BusStatus::kOk);
-  EXPECT_EQ(bench_.node(0).state(), DriveState::kSwitchOnDisabled) << "back, and disarmed";
+  EXPECT_EQ(bench_.node(0).state(), DriveState::kSwitchOnDisabled) << "recovered, and disarmed";
   EXPECT_TRUE(bench_.EnableOpened());
 }
 
-// Pitfall 8: with room for two frames the SYNC is refused; without SYNC no command acts.
-TEST_F(CanopenFaults, AFullTransmitQueueIsCountedAndAFaultAfterThree) {
+// Pitfall 8: with room for two frames the SYNC is rejected; without SYNC no command acts.
+TEST_F(CanopenFaults, AFullTransmitQueueIsCountedAndAFaultAfterThreeExchanges) {
   bench_.master->SetTransmitQueue(2);
   EXPECT_EQ(Exchange(kOff), BusStatus::kTimeout);
   EXPECT_EQ(bench_.master->counts().queue_full, 1U);
@@ -272,18 +273,18 @@ TEST_F(CanopenFaults, AFullTransmitQueueIsCountedAndAFaultAfterThree) {
   EXPECT_EQ(Exchange(kOff), BusStatus::kDisconnected);
   EXPECT_EQ(fault().kind, CanopenFaultKind::kTransmitStuck);
   bench_.wire.AdvanceTo(bench_.now_ns() + 2 * kMs);
-  EXPECT_EQ(torque(0), 0) << "three exchanges without heartbeat: the drives have let go";
+  EXPECT_EQ(torque(0), 0) << "three exchanges without heartbeat: the drives are off";
   bench_.master->SetTransmitQueue(16);
   EXPECT_EQ(ReconnectUntilOk(100), BusStatus::kOk);
 }
 
-// Pitfall 7. The bus is cut while the arm moves, the daemon goes on, the emergency stop is pressed,
-// and then the bus comes back.
+// Pitfall 7. The bus is interrupted while the arm moves, the daemon continues, the emergency stop
+// is pressed, and then the bus recovers.
 TEST_F(CanopenFaults, NothingThatWasQueuedBeforeAStopIsSentAfterReconnect) {
   Cut();
   EXPECT_EQ(Exchange(kTorque), BusStatus::kTimeout);
   for (int k = 0; k < 5; ++k) EXPECT_NE(Exchange(kOff), BusStatus::kOk);
-  EXPECT_TRUE(bench_.master->unsent()) << "there is something to throw away";
+  EXPECT_TRUE(bench_.master->unsent()) << "the queue is not empty";
   bench_.Heard();
   EXPECT_EQ(Reconnect(), BusStatus::kTimeout) << "empties the queue";
   bench_.wire.SetStalled(false);
@@ -295,7 +296,7 @@ TEST_F(CanopenFaults, NothingThatWasQueuedBeforeAStopIsSentAfterReconnect) {
   }
 }
 
-TEST_F(CanopenFaults, AtMostOneExchangeIsEverQueuedAndTheDriveIgnoresItWhenItComesLate) {
+TEST_F(CanopenFaults, AtMostOneExchangeIsQueuedAndTheDriveIgnoresItWhenLate) {
   Cut();
   for (int k = 0; k < 20; ++k) static_cast<void>(Exchange(kTorque));
   bench_.Heard();
@@ -314,8 +315,8 @@ TEST_F(CanopenFaults, AtMostOneExchangeIsEverQueuedAndTheDriveIgnoresItWhenItCom
 }
 
 // Pitfall 9. The time-out is 60 ms from the last heartbeat, which has the lowest priority and ends
-// at most 1 ms after its exchange; the drive looks at its timer every 0.1 ms here.
-TEST_F(CanopenFaults, TheDrivesDropTheirTorqueWithinTheirTimeOutWhenTheDaemonDies) {
+// at most 1 ms after its exchange; the drive checks its timer every 0.1 ms here.
+TEST_F(CanopenFaults, TheDrivesRemoveTheirTorqueWithinTheirTimeOutWhenTheDaemonDies) {
   ASSERT_EQ(Exchange(kTorque), BusStatus::kOk);
   const std::int64_t died_ns = bench_.now_ns();
   bench_.wire.AdvanceTo(died_ns + 50 * kMs);
@@ -328,11 +329,11 @@ TEST_F(CanopenFaults, TheDrivesDropTheirTorqueWithinTheirTimeOutWhenTheDaemonDie
 TEST_F(CanopenFaults, WithoutItsHeartbeatConsumerADriveKeepsItsTorque) {
   bench_.node(0).Misbehave({.keeps_torque = true});
   bench_.wire.AdvanceTo(bench_.now_ns() + 1000 * kMs);
-  EXPECT_EQ(torque(0), 300) << "what the test above would miss if nothing were configured";
+  EXPECT_EQ(torque(0), 300) << "shows that the test above depends on the configuration";
   EXPECT_EQ(torque(1), 0);
 }
 
-TEST_F(CanopenFaults, AFaultIsNeverResetByEnablingOnlyByReconnect) {
+TEST_F(CanopenFaults, AFaultIsResetByReconnectOnlyNotByEnabling) {
   bench_.node(0).RaiseFault(0x2310);
   bench_.Heard();
   for (int k = 0; k < 100; ++k) EXPECT_EQ(Exchange(kTorque), BusStatus::kDriveFault);
@@ -346,9 +347,9 @@ TEST_F(CanopenFaults, AFaultIsNeverResetByEnablingOnlyByReconnect) {
   EXPECT_TRUE(bench_.EnableOpened());
 }
 
-// The cause is still there at the first reset. The drive acts on the rising edge of the bit, so the
-// second attempt has to take it back.
-TEST_F(CanopenFaults, AFaultThatOutlivesOneResetIsResetAgain) {
+// The cause persists at the first reset. The drive acts on the rising edge of the bit, so the
+// second attempt has to clear the bit first.
+TEST_F(CanopenFaults, AFaultThatPersistsAfterAResetIsResetAgain) {
   bench_.node(0).RaiseFault(0x2310);
   EXPECT_EQ(Exchange(kOff), BusStatus::kDriveFault);
   bench_.node(0).Misbehave({.statusword = EncodeDriveState(DriveState::kFault)});
@@ -360,7 +361,7 @@ TEST_F(CanopenFaults, AFaultThatOutlivesOneResetIsResetAgain) {
   EXPECT_EQ(Reconnect(), BusStatus::kOk);
 }
 
-TEST_F(CanopenFaults, ANodeThatWasWithoutPowerIsConfiguredAnewWithinBoundedCalls) {
+TEST_F(CanopenFaults, ANodeThatLostPowerIsConfiguredAgainWithinBoundedCalls) {
   bench_.node(0).Misbehave({.silent = true});
   bench_.node(5).Misbehave({.silent = true});
   for (int k = 0; k < 10; ++k) static_cast<void>(Exchange(kOff));
@@ -371,16 +372,17 @@ TEST_F(CanopenFaults, ANodeThatWasWithoutPowerIsConfiguredAnewWithinBoundedCalls
   EXPECT_TRUE(bench_.EnableOpened());
 }
 
-// A node of somebody else's at full speed: with the lowest priority it costs one frame's wait; with
-// the highest nothing else gets through, which must be seen in bounded time.
-TEST_F(CanopenFaults, AFloodOfForeignFramesCostsOneFrameOrIsNamed) {
+// A foreign node at full rate: with the lowest priority it delays by one frame; with the highest
+// no other frame is sent, which must be detected in bounded time.
+TEST_F(CanopenFaults, AFloodOfForeignFramesDelaysByOneFrameOrIsNamed) {
   CanFrame foreign{.id = 0x7F0, .length = 8};
   bench_.wire.AddRunner([this, &foreign] {
     if (!bench_.spy.unsent()) static_cast<void>(bench_.spy.Send(foreign));
   });
   const std::uint64_t before = bench_.master->counts().received;
   for (int k = 0; k < 50; ++k) ASSERT_EQ(Exchange(kTorque), BusStatus::kOk);
-  EXPECT_LT(bench_.master->counts().received - before, 50U * 12U) << "foreign ids are filtered";
+  EXPECT_LT(bench_.master->counts().received - before, 50U * 12U)
+      << "foreign identifiers are filtered";
   foreign.id = 0x001;
   for (int k = 0; k < 5; ++k) EXPECT_NE(Exchange(kTorque), BusStatus::kOk);
   EXPECT_EQ(fault().kind, CanopenFaultKind::kTransmitStuck);
@@ -397,8 +399,8 @@ TEST_F(CanopenFaults, AFloodWithANodesOwnIdentifierIsBounded) {
   EXPECT_GT(device().counts().stale, 1000U);
 }
 
-// The same seed every time: a thousand exchanges on a bus that loses, repeats, delays and damages.
-// What it leads to is a failed exchange or a named fault; a reading that counts is this SYNC's.
+// Fixed seed: a thousand exchanges on a bus that loses, repeats, delays and damages frames. The
+// result is a failed exchange or a named fault; a valid reading belongs to this SYNC.
 TEST_F(CanopenFaults, ABadBusNeverGivesAReadingOfAnotherSync) {
   std::uint32_t random = 1;
   const auto Roll = [&random](std::uint32_t sides) {
@@ -428,7 +430,7 @@ TEST_F(CanopenFaults, ABadBusNeverGivesAReadingOfAnotherSync) {
     bench_.wire.SetTamper(Tamper);
   }
   EXPECT_GT(good, 500) << faults << " faults";
-  EXPECT_LT(good, 950) << "the bus was not bad enough to show anything";
+  EXPECT_LT(good, 950) << "the bus had too few faults for this test";
 }
 
 }  // namespace

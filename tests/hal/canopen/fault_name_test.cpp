@@ -2,7 +2,7 @@
 
 #include "tests/hal/canopen/canopen_bench.h"
 
-// What the journal says of a bus: each failed exchange has a name, with bus and node.
+// Fault texts in the journal: each failed exchange has a name, with bus and node.
 
 namespace flexarm {
 namespace {
@@ -13,14 +13,14 @@ class CanopenFaultNames : public testing::Test {
 
   static constexpr BusCommand kTorque{.torque_nm = {3.0, 0.0}, .enabled = true};
 
-  // One exchange, and what is said of it.
+  // One exchange, and its fault text.
   std::string After() {
     const BusStatus status = bench_.Exchange(kTorque);
     EXPECT_NE(status, BusStatus::kOk);
     return bench_.device->FaultText(bench_.device->FaultOf(status));
   }
 
-  // Attempts to come back until the text is this one; the last text.
+  // Calls Reconnect until the text is this one; returns the last text.
   std::string Reconnecting(const std::string& until) {
     std::string text;
     for (int k = 0; k < 400 && text != until; ++k) {
@@ -34,9 +34,10 @@ class CanopenFaultNames : public testing::Test {
   CanopenBench bench_;
 };
 
-TEST_F(CanopenFaultNames, ASilentDriveIsNamedFromItsFirstMissOn) {
+TEST_F(CanopenFaultNames, ASilentDriveIsNamedFromItsFirstMissedAnswerOn) {
   bench_.node(1).Misbehave({.silent = true});
-  for (int k = 0; k < 5; ++k) EXPECT_EQ(After(), "can0: node 2 (drive2): answers no SYNC") << k;
+  for (int k = 0; k < 5; ++k)
+    EXPECT_EQ(After(), "can0: node 2 (drive2): does not answer SYNC") << k;
 }
 
 TEST_F(CanopenFaultNames, ALostHeartbeatIsNamed) {
@@ -47,9 +48,9 @@ TEST_F(CanopenFaultNames, ALostHeartbeatIsNamed) {
             "can0: node 1 (drive1): heartbeat lost");
 }
 
-TEST_F(CanopenFaultNames, APdoThatIsNoneIsNamedWithItsSender) {
+TEST_F(CanopenFaultNames, AMalformedPdoIsNamedWithItsSender) {
   bench_.node(3).Misbehave({.cuts_pdos = true});
-  EXPECT_EQ(After(), "can0: node 12 (hub2): sends a PDO that is none");
+  EXPECT_EQ(After(), "can0: node 12 (hub2): sends a malformed PDO");
 }
 
 TEST_F(CanopenFaultNames, AnEmergencyIsNamedWithItsCode) {
@@ -57,21 +58,20 @@ TEST_F(CanopenFaultNames, AnEmergencyIsNamedWithItsCode) {
   EXPECT_EQ(After(), "can0: node 1 (drive1): emergency message 0x2310");
 }
 
-TEST_F(CanopenFaultNames, BusOffIsOfTheBus) {
+TEST_F(CanopenFaultNames, BusOffIsAFaultOfTheBus) {
   bench_.master->SetBusOff();
   EXPECT_EQ(After(), "can0: the CAN controller has left the bus (bus-off)");
 }
 
-// Somebody puts another drive in the place of the one that failed: it is not taken.
-TEST_F(CanopenFaultNames, AnotherProductInANodesPlaceIsRefusedByItsObject) {
+// A failed drive is replaced by another product, which is rejected.
+TEST_F(CanopenFaultNames, AnotherProductAtANodeIdIsRejectedByItsObject) {
   bench_.node(1).Misbehave({.silent = true});
   for (int k = 0; k < 3; ++k) static_cast<void>(After());
   const std::string absent =
-      "can0: node 2 (drive2): does not answer while it is configured, object";
+      "can0: node 2 (drive2): does not answer during its configuration, object";
   EXPECT_EQ(Reconnecting(absent), absent);
   bench_.node(1).Misbehave({.another_product = true});
-  const std::string refused =
-      "can0: node 2 (drive2): is not, or does not become, what the config says, object 0x1018";
+  const std::string refused = "can0: node 2 (drive2): does not match the config, object 0x1018";
   EXPECT_EQ(Reconnecting(refused), refused);
   bench_.node(1).Misbehave({});
   EXPECT_EQ(Reconnecting("ok"), "ok");

@@ -21,8 +21,8 @@
 #include "hal/canopen/can_link.h"
 #include "tests/hal/canopen/canopen_bench.h"
 
-// The kernel's own CAN. Everything here needs an interface called vcan0, up; where there is none
-// (as on most build machines) it is skipped, and the guest with a PREEMPT_RT kernel runs it.
+// The kernel's own CAN. These tests need an interface called vcan0, up; without it (as on most
+// build machines) they are skipped, and the guest with a PREEMPT_RT kernel runs them.
 
 namespace flexarm {
 namespace {
@@ -37,7 +37,7 @@ std::int64_t Realtime() noexcept { return Now(CLOCK_REALTIME); }
 constexpr CanClocks kClocks{.monotonic_ns = Monotonic, .realtime_ns = Realtime};
 constexpr const char* kInterface = "vcan0";
 
-// A raw socket of its own, which sends what no SocketCanBus would.
+// A raw socket for frames that SocketCanBus never sends.
 class RawPeer {
  public:
   RawPeer() : fd_(socket(PF_CAN, SOCK_RAW, CAN_RAW)) {
@@ -63,7 +63,7 @@ class RawPeer {
   bool bound_ = false;
 };
 
-TEST(SocketCan, AnInterfaceThatIsNotThereIsRefusedByName) {
+TEST(SocketCan, AMissingInterfaceIsRejectedByName) {
   SocketCanBus bus("nocan7", kClocks);
   const std::array<std::uint32_t, 1> ids = {0x80};
   try {
@@ -74,8 +74,8 @@ TEST(SocketCan, AnInterfaceThatIsNotThereIsRefusedByName) {
   }
 }
 
-// The loopback interface is no CAN interface: whatever the kernel can do, it must be refused.
-TEST(SocketCan, AnInterfaceThatIsNoCanBusIsRefused) {
+// The loopback interface is not a CAN interface, so it must be rejected on any kernel.
+TEST(SocketCan, AnInterfaceThatIsNoCanBusIsRejected) {
   SocketCanBus bus("lo", kClocks);
   const std::array<std::uint32_t, 1> ids = {0x80};
   EXPECT_THROW(bus.Open(ids, 1'000'000), HalError);
@@ -96,13 +96,13 @@ class VirtualCan : public testing::Test {
   }
 };
 
-TEST_F(VirtualCan, FramesArriveWithTheirTimeAndOnesOwnAsEchoes) {
+TEST_F(VirtualCan, FramesArriveWithTheirTimeStampAndOwnFramesAsEchoes) {
   SocketCanBus one(kInterface, kClocks), two(kInterface, kClocks);
   const std::array<std::uint32_t, 2> ids = {0x80, 0x181};
   one.Open(ids, 1'000'000);
   two.Open(ids, 1'000'000);
   const CanFrame frame{.id = 0x181, .length = 3, .data = {1, 2, 3}};
-  // The first stamps come after a moment in which the kernel switches stamping on.
+  // The first time stamps appear after a moment, when the kernel has switched them on.
   for (int k = 0; k < 20; ++k) {
     const std::int64_t before_ns = Monotonic();
     ASSERT_EQ(one.Send(frame), SendResult::kSent);
@@ -113,19 +113,19 @@ TEST_F(VirtualCan, FramesArriveWithTheirTimeAndOnesOwnAsEchoes) {
     EXPECT_EQ(heard.frame, frame);
     EXPECT_EQ(echo.frame, frame);
     // The two clocks are read one after the other, and one of them may be slewed: 1 ms covers a
-    // preemption in between, and a mistaken clock would be off by decades.
+    // preemption in between, and a wrong clock would differ by decades.
     EXPECT_GT(heard.at_ns, before_ns - kMs);
     EXPECT_LE(heard.at_ns, after_ns);
   }
 }
 
-// The stamp is that of the arrival, not that of reading.
-TEST_F(VirtualCan, AFrameThatHasWaitedHasItsAge) {
+// The time stamp is the arrival, not the instant of reading.
+TEST_F(VirtualCan, AFrameReadLateHasItsArrivalTime) {
   SocketCanBus one(kInterface, kClocks), two(kInterface, kClocks);
   const std::array<std::uint32_t, 1> ids = {0x181};
   one.Open({}, 1'000'000);
   two.Open(ids, 1'000'000);
-  two.WaitUntil(Monotonic() + 50 * kMs);  // until stamping is on
+  two.WaitUntil(Monotonic() + 50 * kMs);  // until time stamps are on
   ASSERT_EQ(one.Send({.id = 0x181, .length = 0}), SendResult::kSent);
   const std::int64_t sent_ns = Monotonic();
   one.WaitUntil(Monotonic() + 50 * kMs);
@@ -135,8 +135,9 @@ TEST_F(VirtualCan, AFrameThatHasWaitedHasItsAge) {
   EXPECT_LT(heard.at_ns - sent_ns, 20 * kMs);
 }
 
-// Pitfall 9: exactly the ids that are needed, extended and remote frames of the same number not.
-TEST_F(VirtualCan, TheFilterPassesExactlyTheDataFramesThatWereAskedFor) {
+// Pitfall 9: exactly the requested ids; extended and remote frames with the same number are not
+// received.
+TEST_F(VirtualCan, TheFilterPassesExactlyTheRequestedDataFrames) {
   SocketCanBus bus(kInterface, kClocks);
   const std::array<std::uint32_t, 2> ids = {0x181, 0x701};
   bus.Open(ids, 1'000'000);
@@ -160,8 +161,9 @@ TEST_F(VirtualCan, SendingNeverWaitsHoweverMuchIsSent) {
   EXPECT_FALSE(bus.unsent());
 }
 
-TEST_F(VirtualCan, AnInterfaceWithALongQueueIsRefused) {
-  if (system("ip link set vcan0 txqueuelen 1000") != 0) GTEST_SKIP() << "may not change it";
+TEST_F(VirtualCan, AnInterfaceWithALongQueueIsRejected) {
+  if (system("ip link set vcan0 txqueuelen 1000") != 0)
+    GTEST_SKIP() << "no permission to change it";
   SocketCanBus bus(kInterface, kClocks);
   try {
     bus.Open({}, 1'000'000);
@@ -174,36 +176,36 @@ TEST_F(VirtualCan, AnInterfaceWithALongQueueIsRefused) {
   EXPECT_NO_THROW(bus.Open({}, 1'000'000));
 }
 
-TEST_F(VirtualCan, AnInterfaceThatGoesDownIsSeenAndRestartBringsItBack) {
+TEST_F(VirtualCan, AnInterfaceThatGoesDownIsDetectedAndRestartRecoversIt) {
   SocketCanBus bus(kInterface, kClocks);
   const std::array<std::uint32_t, 1> ids = {0x181};
   bus.Open(ids, 1'000'000);
   EXPECT_EQ(bus.state(), CanState::kActive);
-  if (system("ip link set vcan0 down") != 0) GTEST_SKIP() << "may not change it";
+  if (system("ip link set vcan0 down") != 0) GTEST_SKIP() << "no permission to change it";
   EXPECT_EQ(bus.state(), CanState::kDown);
   EXPECT_NE(bus.Send({.id = 0x181, .length = 0}), SendResult::kSent);
   const std::int64_t begin_ns = Monotonic();
   bus.WaitUntil(begin_ns + 30 * kMs);
-  EXPECT_GE(Monotonic() - begin_ns, 30 * kMs) << "a dead interface must not make it spin";
+  EXPECT_GE(Monotonic() - begin_ns, 30 * kMs) << "an interface that is down must not make it spin";
   ASSERT_TRUE(bus.Restart());
   EXPECT_EQ(bus.state(), CanState::kActive);
   EXPECT_EQ(bus.Send({.id = 0x181, .length = 0}), SendResult::kSent);
   EXPECT_EQ(Next(&bus).frame.id, 0x181U);
 }
 
-// A USB adapter that is pulled out and plugged in again: another interface of the same name.
-TEST_F(VirtualCan, AnInterfaceThatWasRemovedIsTakenBackWhenItIsThereAgain) {
+// A USB adapter that is unplugged and plugged in again: another interface with the same name.
+TEST_F(VirtualCan, ARemovedInterfaceIsUsedAgainWhenItReturns) {
   SocketCanBus bus(kInterface, kClocks);
   const std::array<std::uint32_t, 1> ids = {0x181};
   bus.Open(ids, 1'000'000);
-  if (system("ip link del vcan0") != 0) GTEST_SKIP() << "may not remove it";
+  if (system("ip link del vcan0") != 0) GTEST_SKIP() << "no permission to remove it";
   ReceivedFrame received{};
   EXPECT_FALSE(bus.Receive(&received));
   EXPECT_EQ(bus.state(), CanState::kDown);
   EXPECT_EQ(bus.Send({.id = 0x181, .length = 0}), SendResult::kFailed);
   EXPECT_FALSE(bus.Restart());
   ASSERT_EQ(system("ip link add vcan0 type vcan"), 0);
-  EXPECT_FALSE(bus.Restart()) << "not set up yet";
+  EXPECT_FALSE(bus.Restart()) << "not configured yet";
   ASSERT_EQ(system("ip link set vcan0 txqueuelen 10 up"), 0);
   ASSERT_TRUE(bus.Restart());
   EXPECT_EQ(bus.state(), CanState::kActive);
@@ -211,7 +213,7 @@ TEST_F(VirtualCan, AnInterfaceThatWasRemovedIsTakenBackWhenItIsThereAgain) {
   EXPECT_EQ(Next(&bus).frame.id, 0x181U);
 }
 
-TEST_F(VirtualCan, TheKernelTellsWhatTheInterfaceIs) {
+TEST_F(VirtualCan, TheKernelReportsThePropertiesOfTheInterface) {
   CanLink link{};
   ASSERT_TRUE(ReadCanLink(kInterface, &link));
   EXPECT_TRUE(link.up);
@@ -220,10 +222,10 @@ TEST_F(VirtualCan, TheKernelTellsWhatTheInterfaceIs) {
   EXPECT_EQ(link.state, CanState::kActive);
 }
 
-// The whole device against the six simulated nodes, each on a socket of its own, as on the rig.
-// A machine that other work holds up for 100 ms fails exchanges, and rightly: then the test comes
-// back as the daemon would, and wants one undisturbed second of twenty exchanges. On virtual time
-// the first twenty are it.
+// The whole device against the six simulated nodes, each on its own socket, as on the rig. A
+// machine that is held up by other work for 100 ms fails exchanges, rightly: the test then
+// reconnects as the daemon would, and requires one undisturbed second of twenty exchanges. On
+// virtual time the first twenty exchanges pass.
 TEST_F(VirtualCan, ADeviceAndSixNodesRunOverTheKernelsBus) {
   CanopenConfig config = BenchConfig();
   config.interface = kInterface;

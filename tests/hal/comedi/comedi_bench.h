@@ -12,7 +12,7 @@ namespace flexarm {
 
 inline constexpr std::int64_t kMillisecond = 1'000'000;
 
-/// The thesis's kind of board, with the first link's ten gauges, both amplifiers and the hub
+/// A board of the thesis's kind, with the first link's ten gauges, both amplifiers and the hub
 /// encoders: a scan of 1 ms, 50 us from channel to channel.
 inline ComediBoardConfig BenchBoard() {
   ComediInputConfig input{.subdevice = 0,
@@ -73,7 +73,7 @@ class ComediBench {
     device = std::make_unique<ComediDevice>(config, std::move(simulated));
   }
 
-  /// At the next instant of the grid.
+  /// One exchange at the next instant of the grid.
   BusStatus Exchange(const BusCommand& command = kOff) {
     NextPeriod();
     return device->Exchange(command, &frame);
@@ -89,7 +89,7 @@ class ComediBench {
     return status;
   }
 
-  /// What Open says; "" if it opens.
+  /// Message of Open; "" if it succeeds.
   std::string OpenError() {
     return MessageOf<HalError>([this] { device->Open(); });
   }

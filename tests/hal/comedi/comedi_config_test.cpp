@@ -29,7 +29,7 @@ struct Broken {
 
 class ComediConfigRule : public testing::TestWithParam<Broken> {};
 
-TEST_P(ComediConfigRule, IsBrokenByName) {
+TEST_P(ComediConfigRule, ViolationNamesItsKey) {
   ComediBoardConfig config = BenchBoard();
   GetParam().breaks(&config);
   const std::string text = Text(config);
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"AScanLongerThanItsInterval", [](auto* c) { c->input->convert_interval_us = 101.0; },
                "input.scan_interval_us = 1000: must hold a whole scan: 10 channels at 101 us"},
         Broken{"AScanTooSlowForTheLoop", [](auto* c) { c->input->scan_interval_us = 9400.0; },
-               "input.scan_interval_us = 9400: must be short against the loop: the oldest "
+               "input.scan_interval_us = 9400: must be short compared with the loop: the oldest "
                "reading would be 10100 us old"},
         Broken{"NothingToRead", [](auto* c) { c->input->channel.clear(); }, "input.channel"},
         Broken{"NothingToDrive", [](auto* c) { c->output->drive.clear(); }, "output.drive"},
@@ -77,12 +77,12 @@ INSTANTIATE_TEST_SUITE_P(
                "line[1].channel = 5: must be used by one row only"}),
     [](const auto& broken) { return broken.param.name; });
 
-TEST(ComediConfig, TheBenchIsWellAndSoAreSingleReads) {
+TEST(ComediConfig, TheBenchConfigAndSingleReadsHaveNoProblems) {
   EXPECT_EQ(Text(BenchBoard()), "");
   EXPECT_EQ(Text(SingleReads()), "");
 }
 
-TEST(ComediConfig, ATorqueThatTakesAllTheVoltsIsAllowed) {
+TEST(ComediConfig, ATorqueThatUsesAllTheVoltsIsAllowed) {
   ComediBoardConfig config = BenchBoard();
   config.output->drive[1] = {.joint = 1,
                              .channel = 0,
@@ -93,8 +93,8 @@ TEST(ComediConfig, ATorqueThatTakesAllTheVoltsIsAllowed) {
   EXPECT_EQ(Text(config), "");
 }
 
-// Pitfall: a USB board takes 2 ms a channel by single reads.
-TEST(ComediConfig, ABoardTooSlowForItsChannelsIsRefusedByTheFirstThatDoesNotFit) {
+// Pitfall: a USB board needs 2 ms per channel by single reads.
+TEST(ComediConfig, ABoardTooSlowForItsChannelsIsRejectedNamingTheFirstThatDoesNotFit) {
   ComediBoardConfig config = SingleReads();
   config.instruction_us = 2000.0;
   const std::string text = Text(config);

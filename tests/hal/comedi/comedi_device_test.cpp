@@ -11,14 +11,14 @@
 #include "tests/hal/comedi/comedi_bench.h"
 #include "tests/support/no_alloc.h"
 
-// The driver against a simulated board, in virtual time. Codes and volts are worked out by hand.
+// The driver against a simulated board, in virtual time. Codes and volts are computed by hand.
 
 namespace flexarm {
 namespace {
 
 constexpr double kStepV = 20.0 / 4096.0;
 // Half a step of rounding, and up to one between our steps (0 V is 2^(n-1), a step 20 V / 2^n) and
-// the amplifier's, which is told by comedi's rule (10 V is 2^n - 1).
+// the amplifier's, which are read by comedi's rule (10 V is 2^n - 1).
 constexpr double kOutputToleranceV = 1.5 * kStepV;
 
 BusCommand Torque(double first_nm, double second_nm) {
@@ -57,8 +57,8 @@ TEST(ComediDevice, TakesTheNewestCompleteScan) {
   }
 }
 
-// The board shows the time itself: 20 V in 20 ms. So what a reading says can be compared with when
-// the frame says that it was taken.
+// The voltage is proportional to time: 20 V in 20 ms. So the true instant of a reading can be
+// compared with the instant in its frame.
 class ComediStamps : public testing::Test {
  protected:
   static ComediBoardConfig Fine(ComediBoardConfig config) {
@@ -73,7 +73,7 @@ class ComediStamps : public testing::Test {
       return static_cast<double>(at_ns % (20 * kMillisecond)) / 1e6 - 10.0;
     });
   }
-  // How much later the reading was taken than its frame says.
+  // Difference of the true instant of the reading and the instant in its frame.
   static double Error_ns(const SensorFrame& frame, std::size_t channel) {
     const std::int64_t said_ns = frame.sampled_at_ns + frame.strain_offset_ns[channel];
     const double shown_ns = (frame.strain[channel] + 32768) / 65536.0 * 20e6;
@@ -81,7 +81,7 @@ class ComediStamps : public testing::Test {
   }
 };
 
-TEST_F(ComediStamps, AStreamedReadingIsAsOldAsItsOffsetSays) {
+TEST_F(ComediStamps, AStreamedReadingHasTheAgeOfItsOffset) {
   for (const std::int64_t transfer_ns : {0, 100'000, 200'000}) {
     for (const std::int64_t phase_ns : {0, 250'000, 500'000, 750'000, 999'000}) {
       ComediBench bench(Fine(BenchBoard()), FineBoard(transfer_ns));
@@ -99,7 +99,7 @@ TEST_F(ComediStamps, AStreamedReadingIsAsOldAsItsOffsetSays) {
   }
 }
 
-TEST_F(ComediStamps, TheSkewOfTheChannelsIsTheirs) {
+TEST_F(ComediStamps, TheOffsetsContainTheSkewOfTheChannels) {
   ComediBench bench(Fine(BenchBoard()), FineBoard(0));
   ShowTime(&bench);
   bench.device->Open();
@@ -123,7 +123,7 @@ TEST_F(ComediStamps, SimultaneousInputsHaveOneInstant) {
   }
 }
 
-TEST_F(ComediStamps, AFastOrSlowClockOfTheBoardIsFollowed) {
+TEST_F(ComediStamps, AFastOrSlowClockOfTheBoardIsTracked) {
   for (const double pace : {0.9999, 1.0001}) {  // 100 ppm: 20 ms in 200 s
     ComediBench bench(Fine(BenchBoard()), FineBoard(0));
     ShowTime(&bench);
@@ -137,7 +137,7 @@ TEST_F(ComediStamps, AFastOrSlowClockOfTheBoardIsFollowed) {
   }
 }
 
-TEST_F(ComediStamps, ASingleReadingHasTheMiddleOfItsRead) {
+TEST_F(ComediStamps, ASingleReadingHasTheInstantOfItsMiddle) {
   ComediBench bench(Fine(SingleReads()), FineBoard(0));
   ShowTime(&bench);
   bench.device->Open();
@@ -160,7 +160,7 @@ TEST(ComediDevice, VoltsAreTorqueOverTorquePerVoltAndGear) {
   EXPECT_EQ(bench.device->drives(), 0b11U);
 }
 
-TEST(ComediDevice, ATorqueBeyondTheRangeIsClippedAndWhatIsNoNumberIsNothing) {
+TEST(ComediDevice, ATorqueBeyondTheRangeIsClippedAndNanIsZero) {
   ComediBench bench;
   bench.device->Open();
   ASSERT_EQ(bench.Exchange(Torque(1000.0, -1000.0)), BusStatus::kOk);
@@ -182,13 +182,13 @@ TEST(ComediDevice, WithoutPermissionTheVoltageIsZero) {
   EXPECT_NEAR(bench.board->output_v(0), 0.0, kOutputToleranceV);
 }
 
-TEST(ComediDevice, CloseTakesTheVoltageAway) {
+TEST(ComediDevice, CloseSetsTheVoltageToZero) {
   for (const bool by_destructor : {false, true}) {
     ComediBench bench;
     bench.device->Open();
     ASSERT_EQ(bench.Exchange(Torque(20.0, 3.0)), BusStatus::kOk);
     if (by_destructor) {
-      // The board is the device's: what its amplifiers see is looked at as it closes.
+      // The device owns the board: record its outputs as it closes.
       bench.device->Close();
       bench.device.reset();
       continue;
@@ -201,7 +201,7 @@ TEST(ComediDevice, CloseTakesTheVoltageAway) {
   }
 }
 
-TEST(ComediDevice, AsksNoMoreThanItsPlan) {
+TEST(ComediDevice, MakesNoMoreInstructionsThanItsPlan) {
   for (const ComediBoardConfig& config : {BenchBoard(), SingleReads()}) {
     ComediBench bench(config);
     bench.device->Open();
@@ -215,7 +215,7 @@ TEST(ComediDevice, AsksNoMoreThanItsPlan) {
 
 TEST(ComediDevice, AnExchangeEndsWithinItsDeclaredTime) {
   for (const ComediBoardConfig& config : {BenchBoard(), SingleReads()}) {
-    // Each instruction takes all that the config allows, and the buffer is full to the brim.
+    // Each instruction takes the longest time of the config, and the buffer is full.
     ComediBench bench(config, {.instruction_ns = 20'000, .read_ns = 20'000});
     bench.device->Open();
     for (int k = 0; k < 20; ++k) {
@@ -232,7 +232,7 @@ TEST(ComediDevice, AnExchangeEndsWithinItsDeclaredTime) {
 }
 
 TEST(ComediDevice, ExchangeAndReconnectDoNotAllocate) {
-  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizers bring their own allocator";
+  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizers have their own allocator";
   for (const ComediBoardConfig& config : {BenchBoard(), SingleReads()}) {
     ComediBench bench(config);
     bench.device->Open();

@@ -8,8 +8,8 @@
 
 #include "tests/hal/comedi/comedi_bench.h"
 
-// Boards that are another, that stop, that are late, that get stuck: each is named, nothing old
-// passes as new, and no torque goes out meanwhile.
+// Boards that differ, stop, are late or get stuck: each fault is named, no old reading is passed as
+// new, and no torque is output meanwhile.
 
 namespace flexarm {
 namespace {
@@ -26,7 +26,7 @@ struct Refusal {
 
 class ComediOpen : public testing::TestWithParam<Refusal> {};
 
-TEST_P(ComediOpen, RefusesSayingWhatItFound) {
+TEST_P(ComediOpen, RejectsABoardNamingFoundAndExpected) {
   SimulatedDaqConfig wired;
   ComediBoardConfig config = BenchBoard();
   if (GetParam().wired) GetParam().wired(&wired);
@@ -66,15 +66,15 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"AnotherClock",
                             [](auto* w) { w->clock_step_ns = 3000; },
                             {},
-                            "scan_interval_us is 999, as the board's clock has it, expected 1000"},
+                            "scan_interval_us is 999 with the board's clock, expected 1000"},
                     Refusal{"AnotherConversion",
                             [](auto* w) { w->clock_step_ns = 40'000; },
                             {},
-                            "convert_interval_us is 40, as the board's clock has it, expected 50"},
+                            "convert_interval_us is 40 with the board's clock, expected 50"},
                     Refusal{"ASmallBuffer",
                             [](auto* w) { w->buffer_samples = 900; },
                             {},
-                            "what the input buffer can hold is 4.5 periods"},
+                            "size of the input buffer is 4.5 periods"},
                     Refusal{"OneOutputOnly",
                             [](auto* w) { w->outputs = 1; },
                             {},
@@ -111,13 +111,13 @@ INSTANTIATE_TEST_SUITE_P(
                             "subdevice 9 is nothing, expected counter"}),
     [](const auto& refusal) { return refusal.param.name; });
 
-TEST(ComediOpen, RefusesABoardThatSomebodyElseUses) {
+TEST(ComediOpen, RejectsABoardUsedByAnotherProgram) {
   ComediBench bench;
   bench.board->held_subdevice = 1;
   EXPECT_NE(bench.OpenError().find("subdevice 1 is held by another program"), std::string::npos);
 }
 
-TEST(ComediOpen, RefusesAnOutputThatDoesNotTakeZeroVolts) {
+TEST(ComediOpen, RejectsAnOutputThatDoesNotReturnZeroVolts) {
   ComediBench bench;
   bench.board->outputs_ignore = true;
   EXPECT_NE(bench.OpenError().find("output 1 after writing 0 V is 0, expected 2048"),
@@ -125,11 +125,11 @@ TEST(ComediOpen, RefusesAnOutputThatDoesNotTakeZeroVolts) {
       << bench.OpenError();
 }
 
-TEST(ComediOpen, RefusesABoardThatDoesNotScan) {
+TEST(ComediOpen, RejectsABoardThatDoesNotScan) {
   ComediBench bench;
   bench.board->pace = 1e-6;
   const std::string error = bench.OpenError();
-  EXPECT_NE(error.find("no scan has come: scan late, expected one every 1000 us"),
+  EXPECT_NE(error.find("no scan has arrived: scan late, expected one every 1000 us"),
             std::string::npos)
       << error;
   ComediBench refusing;
@@ -155,7 +155,7 @@ class ComediTrouble : public testing::TestWithParam<Trouble> {
   ComediBench bench_;
 };
 
-TEST_P(ComediTrouble, IsNamedAndNothingIsValid) {
+TEST_P(ComediTrouble, IsNamedAndNoReadingIsValid) {
   const SensorFrame before = bench_.frame;
   EXPECT_EQ(bench_.Exchange(kTorque), GetParam().status);
   EXPECT_EQ(bench_.device->fault(), GetParam().fault) << Name(bench_.device->fault());
@@ -165,12 +165,12 @@ TEST_P(ComediTrouble, IsNamedAndNothingIsValid) {
   EXPECT_EQ(bench_.frame.strain, before.strain);  // the last good values
 }
 
-TEST_P(ComediTrouble, WhatLastsTakesTheTorqueAwayUntilReconnect) {
+TEST_P(ComediTrouble, ALatchedFaultRemovesTheTorqueUntilReconnect) {
   static_cast<void>(bench_.Exchange(kTorque));
   if (GetParam().ends) GetParam().ends(bench_.board);
   const BusStatus next = bench_.Exchange(kTorque);
   if (!Lasts(GetParam().fault)) {
-    EXPECT_EQ(next, BusStatus::kOk);  // it was a single one
+    EXPECT_EQ(next, BusStatus::kOk);  // a fault of a single exchange
     return;
   }
   EXPECT_EQ(next, GetParam().status);
@@ -179,7 +179,7 @@ TEST_P(ComediTrouble, WhatLastsTakesTheTorqueAwayUntilReconnect) {
   EXPECT_NEAR(bench_.board->output_v(0), 0.0, kZeroV);
 }
 
-TEST_P(ComediTrouble, ReconnectBringsItBackOnceTheTroubleIsOver) {
+TEST_P(ComediTrouble, ReconnectRecoversOnceTheFaultIsOver) {
   static_cast<void>(bench_.Exchange(kTorque));
   if (GetParam().ends) GetParam().ends(bench_.board);
   const BusStatus back = bench_.ReconnectUntilOk(5);
@@ -194,7 +194,7 @@ TEST_P(ComediTrouble, ReconnectBringsItBackOnceTheTroubleIsOver) {
   EXPECT_NEAR(bench_.board->output_v(1), 5.0, kZeroV);
 }
 
-TEST_P(ComediTrouble, EndsWithinTheDeclaredTimeAndOneStuckInstructionAnOutput) {
+TEST_P(ComediTrouble, EndsWithinTheDeclaredTimeAndOneStuckInstructionPerOutput) {
   const bool stuck = GetParam().fault == ComediFault::kSlow;
   const std::int64_t allowed_ns =
       bench_.device->worst_case_ns() + (stuck ? 2 * bench_.board->instruction_takes_ns : 0);
@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Trouble{"AnOutputIsRefused", [](auto* b) { b->refuse_writes = true; },
                             [](auto* b) { b->refuse_writes = false; }, ComediFault::kOutputRefused,
                             BusStatus::kDriveFault},
-                    // Comedi gives a stuck instruction up after a second.
+                    // Comedi aborts a stuck instruction after a second.
                     Trouble{"AnInstructionIsStuck",
                             [](auto* b) { b->instruction_takes_ns = 1'000 * kMillisecond; },
                             [](auto* b) { b->instruction_takes_ns = 15'000; }, ComediFault::kSlow,
@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(
                             BusStatus::kDisconnected}),
     [](const auto& trouble) { return trouble.param.name; });
 
-TEST(ComediFault, IsToldWithTheBoardAndTheChannel) {
+TEST(ComediFault, TextNamesTheBoardAndTheChannel) {
   ComediBench bench;
   bench.device->Open();
   bench.board->refuse_writes = true;
@@ -267,7 +267,7 @@ TEST(ComediFault, IsToldWithTheBoardAndTheChannel) {
             "/dev/comedi0: the board has stopped scanning");
 }
 
-TEST(ComediFault, EveryOneHasAName) {
+TEST(ComediFault, EveryFaultHasAName) {
   for (int i = 0; i <= static_cast<int>(ComediFault::kGone); ++i) {
     EXPECT_STRNE(Name(static_cast<ComediFault>(i)), "?") << i;
   }

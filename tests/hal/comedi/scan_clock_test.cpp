@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-// A board with a clock of its own is read at instants that jitter. Its true phase is known here.
+// A board with its own clock is read at instants that jitter. The test knows its true phase.
 
 namespace flexarm {
 namespace {
@@ -45,21 +45,21 @@ double WorstError(const Board& board, int periods, int settle) {
   return worst;
 }
 
-// Half of interval, transfer and the 10 us that the reading takes.
+// Half of interval, transfer and the 10 us of the reading.
 constexpr double kHalfWindow = (kInterval + kTransfer + 10'000) / 2.0;
 
 TEST(ScanClock, IsWithinHalfAnIntervalAndTransferFromTheFirstReading) {
   EXPECT_LE(WorstError({}, 1, 0), kHalfWindow);
 }
 
-TEST(ScanClock, StaysThereWhateverTheJitterAndTheDelay) {
+TEST(ScanClock, StaysWithinTheBoundForAnyJitterAndDelay) {
   for (const double phase_ns : {0.0, 250e3, 500e3, 750e3, 999e3}) {
     EXPECT_LE(WorstError({.phase_ns = phase_ns}, 1000, 0), kHalfWindow + 1.0) << phase_ns;
     EXPECT_LE(WorstError({.phase_ns = phase_ns, .delay_ns = 300e3}, 1000, 0), kHalfWindow + 1.0);
   }
 }
 
-TEST(ScanClock, DriftDoesNotCarryItAway) {
+TEST(ScanClock, DriftDoesNotAccumulate) {
   // 100 ppm over 200 s is 20 ms, twenty scans; over 64 readings it is 0.13 ms.
   for (const double ppm : {-100.0, 100.0}) {
     const Board board{.interval_ns = kInterval * (1.0 + ppm * 1e-6)};
@@ -67,7 +67,7 @@ TEST(ScanClock, DriftDoesNotCarryItAway) {
   }
 }
 
-TEST(ScanClock, TimeBetweenReadingsIsTheBoardsInSpiteOfJitter) {
+TEST(ScanClock, TimesBetweenReadingsFollowTheBoardDespiteJitter) {
   ScanClock clock(kInterval, kTransfer);
   const Board board;
   std::mt19937 random(7);
@@ -80,7 +80,7 @@ TEST(ScanClock, TimeBetweenReadingsIsTheBoardsInSpiteOfJitter) {
     clock.Take(begin_ns, begin_ns, scans - read);
     read = scans;
     const double error = static_cast<double>(clock.newest_end_ns()) - board.End(scans);
-    // A 64th of half the window is 10 us, and now and then a reading narrows the window: 21 us
+    // A 64th of half the window is 10 us, and sometimes a reading narrows the window: 21 us
     // measured. The reading instants alone differ by up to 400 us.
     if (k >= 100) {
       EXPECT_LE(std::abs(error - before_error), 40'000.0) << k;
@@ -93,12 +93,12 @@ TEST(ScanClock, ABoardThatStopsIsLate) {
   ScanClock clock(kInterval, kTransfer);
   clock.Take(10'000'000, 10'000'000, 5);
   clock.Take(11'200'000, 11'200'000, 0);
-  EXPECT_FALSE(clock.late());  // it may have ended just before, and the next be on its way
+  EXPECT_FALSE(clock.late());  // the scan may have ended just before, and the next may follow
   clock.Take(30'000'000, 30'000'000, 0);
   EXPECT_TRUE(clock.late());
-  EXPECT_LT(clock.newest_end_ns(), 10'100'000);  // and it stays as old as it is
+  EXPECT_LT(clock.newest_end_ns(), 10'100'000);  // and its age is kept
   clock.Take(50'000'000, 50'000'000, 20);
-  EXPECT_TRUE(clock.late());  // until it is started anew
+  EXPECT_TRUE(clock.late());  // until it is restarted
   clock.Restart(51'000'000);
   clock.Take(54'000'000, 54'000'000, 2);
   EXPECT_FALSE(clock.late());
@@ -111,13 +111,13 @@ TEST(ScanClock, ABoardThatIsTwiceAsFastIsEarly) {
   EXPECT_TRUE(clock.early());
 }
 
-TEST(ScanClock, ABoardThatNeverBeginsIsLate) {
+TEST(ScanClock, ABoardThatNeverStartsIsLate) {
   ScanClock clock(kInterval, kTransfer);
   clock.Restart(1'000'000);
   clock.Take(3'000'000, 3'000'000, 0);
   EXPECT_FALSE(clock.late());
   EXPECT_FALSE(clock.running());
-  clock.Take(106'000'000, 106'000'000, 0);  // a tenth of a second, and what the scans need
+  clock.Take(106'000'000, 106'000'000, 0);  // a tenth of a second, and the time of the scans
   EXPECT_TRUE(clock.late());
 }
 

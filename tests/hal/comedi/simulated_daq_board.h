@@ -11,7 +11,7 @@
 
 namespace flexarm {
 
-/// What a simulated board is, and how fast.
+/// Identity and timing of a simulated board.
 struct SimulatedDaqConfig {
   DaqIdentity identity{.driver = "sim", .board = "sim-16"};
   int inputs = 16;
@@ -27,15 +27,15 @@ struct SimulatedDaqConfig {
   int lines = 8;
   std::int64_t clock_step_ns = 1000;     ///< intervals of scans are multiples of it
   std::int64_t transfer_ns = 0;          ///< from a conversion until it can be read
-  std::int64_t instruction_ns = 15'000;  ///< what each single read or write takes
-  std::int64_t read_ns = 5000;           ///< what a look into the buffer takes
+  std::int64_t instruction_ns = 15'000;  ///< time of each single read or write
+  std::int64_t read_ns = 5000;           ///< time of a read of the buffer
   std::size_t buffer_samples = 32768;    ///< 64 KiB
 };
 
-/// A DAQ board in memory, in its own time, which moves while somebody waits or calls, and by
-/// AdvanceTo. Inputs see a voltage that is a function of channel and time, converted at the instant
-/// of the conversion; as on a real board the scan goes on whether it is read or not, a full buffer
-/// ends it, and outputs keep their voltage when the board is closed.
+/// A DAQ board in memory, with its own time, which advances while a caller waits or calls, and by
+/// AdvanceTo. The voltage of an input is a function of channel and time, converted at the instant
+/// of the conversion; as on a real board the scan continues whether it is read or not, a full
+/// buffer ends it, and outputs keep their voltage when the board is closed.
 /// Subdevices: 0 inputs, 1 outputs, 2 lines, 3 counters.
 class SimulatedDaqBoard final : public DaqBoard {
  public:
@@ -61,24 +61,24 @@ class SimulatedDaqBoard final : public DaqBoard {
 
   void AdvanceTo(std::int64_t instant_ns) noexcept;
 
-  // The world around it.
+  // Environment of the board.
   void SetVoltage(std::function<double(int channel, std::int64_t at_ns)> voltage);
   std::array<std::uint32_t, 4> counter{};
   std::uint32_t lines = 0;
-  /// What an amplifier sees: by comedi's rule, lowest + code / (2^bits - 1) * span.
+  /// Voltage at an amplifier: by comedi's rule, lowest + code / (2^bits - 1) * span.
   double output_v(int channel) const;
 
-  // What goes wrong.
+  // Injected faults.
   bool gone = false;
   bool refuse_reads = false;
   bool refuse_writes = false;
   bool refuse_start = false;
-  bool outputs_ignore = false;                             ///< writing 0 V has no effect
-  int held_subdevice = -1;                                 ///< by another program
-  std::int64_t instruction_takes_ns;                       ///< from the config; a stuck board: more
-  double pace = 1.0;                                       ///< of the board's clock against ours
-  void StopConverting() noexcept { converting_ = false; }  ///< the scan runs, and nothing comes
-  void EndScan() noexcept { running_ = false; }            ///< the board stops by itself
+  bool outputs_ignore = false;        ///< writing 0 V has no effect
+  int held_subdevice = -1;            ///< locked by another program
+  std::int64_t instruction_takes_ns;  ///< from the config; longer for a stuck board
+  double pace = 1.0;                  ///< rate of the board's clock relative to ours
+  void StopConverting() noexcept { converting_ = false; }  ///< the scan runs without samples
+  void EndScan() noexcept { running_ = false; }            ///< the board ends the scan
 
   bool running() const noexcept { return running_; }
   bool open() const noexcept { return open_; }
@@ -101,7 +101,7 @@ class SimulatedDaqBoard final : public DaqBoard {
   std::int64_t started_ns_ = 0;
   std::int64_t conversions_ = 0;  // since the start, of all channels
   std::vector<std::uint32_t> ring_;
-  std::size_t first_ = 0, held_ = 0;  // what waits in ring_
+  std::size_t first_ = 0, held_ = 0;  // unread samples in ring_
   int instructions_ = 0;
 };
 

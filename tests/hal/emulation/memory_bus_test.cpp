@@ -27,7 +27,7 @@ class Wire : public testing::Test {
   ReceivedFrame got_{};
 };
 
-TEST_F(Wire, AFrameTakesItsTimeAndIsHeardByAllAndAsAnEchoByItsSender) {
+TEST_F(Wire, AFrameTakesItsTimeAndReachesAllEndsAndItsSenderAsAnEcho) {
   Send(&sender_, 2);
   EXPECT_TRUE(sender_.unsent());
   wire_.AdvanceTo(kFrame_ns - 1);
@@ -41,7 +41,7 @@ TEST_F(Wire, AFrameTakesItsTimeAndIsHeardByAllAndAsAnEchoByItsSender) {
   EXPECT_FALSE(sender_.unsent());
 }
 
-TEST_F(Wire, TheLowestIdentifierGoesFirstAndFramesDoNotOverlap) {
+TEST_F(Wire, TheLowestIdentifierIsSentFirstAndFramesDoNotOverlap) {
   Send(&listener_, 3);
   Send(&sender_, 1);
   wire_.AdvanceTo(3 * kFrame_ns);
@@ -52,7 +52,7 @@ TEST_F(Wire, TheLowestIdentifierGoesFirstAndFramesDoNotOverlap) {
   EXPECT_EQ(got_.at_ns, 2 * kFrame_ns);
 }
 
-TEST_F(Wire, OnlyTheIdentifiersThatWereAskedForAreReceived) {
+TEST_F(Wire, OnlyTheRequestedIdentifiersAreReceived) {
   Send(&sender_, 7);
   wire_.AdvanceTo(2 * kFrame_ns);
   EXPECT_FALSE(listener_.Receive(&got_));
@@ -67,7 +67,7 @@ TEST_F(Wire, WaitingEndsWithAFrameOrAtItsInstant) {
   EXPECT_EQ(wire_.now_ns(), 1'000'000);
 }
 
-TEST_F(Wire, FramesAreLostRepeatedDelayedAndChangedAsToldAndNoOthers) {
+TEST_F(Wire, OnlySelectedFramesAreLostRepeatedDelayedOrChanged) {
   wire_.SetTamper([](CanFrame* frame) {
     if (frame->id == 1) return MemoryWire::Fate{.copies = 0};
     if (frame->id == 2) return MemoryWire::Fate{.copies = 2, .delay_ns = 5'000'000};
@@ -88,7 +88,7 @@ TEST_F(Wire, FramesAreLostRepeatedDelayedAndChangedAsToldAndNoOthers) {
   EXPECT_FALSE(listener_.Receive(&got_));
 }
 
-TEST_F(Wire, AFullQueueRefusesAtOnceAndCounts) {
+TEST_F(Wire, AFullQueueRejectsAtOnceAndCounts) {
   wire_.SetStalled(true);
   for (std::size_t i = 0; i < MemoryBus::kTransmitQueue; ++i) Send(&sender_, 1);
   EXPECT_EQ(sender_.Send(Empty(1)), SendResult::kQueueFull);
@@ -99,10 +99,10 @@ TEST_F(Wire, AFullQueueRefusesAtOnceAndCounts) {
   ASSERT_TRUE(sender_.Restart());
   wire_.SetStalled(false);
   wire_.AdvanceTo(200'000'000);
-  EXPECT_FALSE(listener_.Receive(&got_)) << "what was queued is thrown away";
+  EXPECT_FALSE(listener_.Receive(&got_)) << "queued frames are dropped";
 }
 
-TEST_F(Wire, AnEndThatIsBusOffNeitherSendsNorHearsUntilItIsRestarted) {
+TEST_F(Wire, AnEndInBusOffNeitherSendsNorReceivesUntilRestart) {
   listener_.SetBusOff();
   EXPECT_EQ(listener_.state(), CanState::kBusOff);
   EXPECT_EQ(listener_.Send(Empty(1)), SendResult::kQueueFull);

@@ -16,7 +16,7 @@
 #include "tests/hal/modbus/modbus_testing.h"
 #include "tests/hal/thesis_sensors.h"
 
-// What `flexarm rig` is told, and what the unchanged drivers then meet.
+// Commands of `flexarm rig`, and their effect on the unchanged drivers.
 
 namespace flexarm {
 namespace {
@@ -32,14 +32,14 @@ std::string Tell(const std::string& words, SimulatedAmplifier* amplifier) {
   return complaint;
 }
 
-// An amplifier of the rig on its wire, and the driver that finds it as the config says.
+// An amplifier of the rig on its wire, and the unchanged driver with the same config.
 class AmplifierOf : public testing::TestWithParam<ModbusTransport> {
  protected:
   void Start(ModbusDeviceConfig config) {
     config.transport = GetParam();
     config.port = 0;
     config.device = testing::TempDir() + "/flexarm-rig-" + std::to_string(getpid());
-    config.response_timeout_ms = 300.0;  // the machine may be busy
+    config.response_timeout_ms = 300.0;  // the machine may be loaded
     amplifier_ = std::make_unique<SimulatedAmplifier>(config, sensors_);
     config.port = amplifier_->server().port();
     device_ = std::make_unique<ModbusDevice>(config, MonotonicNow);
@@ -48,7 +48,7 @@ class AmplifierOf : public testing::TestWithParam<ModbusTransport> {
   }
   void SetUp() override { Start(Amplifier()); }
 
-  // Channel i shows 100 i + add.
+  // Channel i reads 100 i + add.
   void Show(std::int32_t add) {
     SensorFrame frame{};
     for (std::size_t i = 0; i < 10; ++i) {
@@ -66,7 +66,7 @@ class AmplifierOf : public testing::TestWithParam<ModbusTransport> {
     EXPECT_EQ(Tell("well"), "");
     BusStatus status = Exchange();
     for (int k = 0; k < 200 && status != BusStatus::kOk; ++k) {
-      SleepUntil(MonotonicNow() + 10'000'000);  // attempts have pauses between them
+      SleepUntil(MonotonicNow() + 10'000'000);  // reconnection attempts pause
       if (device_->Reconnect() == BusStatus::kOk) status = Exchange();
     }
     EXPECT_EQ(status, BusStatus::kOk);
@@ -95,7 +95,7 @@ TEST_P(AmplifierOf, IsReadByTheUnchangedDriver) {
   EXPECT_EQ(part_.strain_valid, 0x3FFU);
 }
 
-TEST_P(AmplifierOf, MisbehavesOnItsWireAndIsMended) {
+TEST_P(AmplifierOf, EachWireFaultIsInjectedAndRemoved) {
   const struct {
     const char* words;
     BusStatus met;
@@ -111,7 +111,7 @@ TEST_P(AmplifierOf, MisbehavesOnItsWireAndIsMended) {
   }
 }
 
-TEST_P(AmplifierOf, FreezesSticksInvertsSwapsAndScalesChannels) {
+TEST_P(AmplifierOf, ChannelFaultsAreInjectedAndRemoved) {
   const double zero = sensors_.strain[1].offset_counts;
   ASSERT_EQ(Tell("stuck 3"), "");
   Show(5);
@@ -135,12 +135,12 @@ TEST_P(AmplifierOf, FreezesSticksInvertsSwapsAndScalesChannels) {
   ASSERT_EQ(Tell("frozen"), "");
   Show(11);
   Show(12);
-  EXPECT_EQ(Reads(0), 9) << "what it showed when it froze";
+  EXPECT_EQ(Reads(0), 9) << "the reading at the freeze";
   EXPECT_EQ(part_.strain[9], 909);
 }
 
-TEST_P(AmplifierOf, PutsValuesOfTwoWordsInTheWrongOrder) {
-  EXPECT_EQ(Tell("wrong-word-order"), "this amplifier has no value of two words");
+TEST_P(AmplifierOf, SwapsTheWordsOfLongValues) {
+  EXPECT_EQ(Tell("wrong-word-order"), "this amplifier has no 32-bit value");
   device_.reset();
   amplifier_.reset();
   ModbusDeviceConfig config = Amplifier();
@@ -152,13 +152,13 @@ TEST_P(AmplifierOf, PutsValuesOfTwoWordsInTheWrongOrder) {
   EXPECT_EQ(Reads(1), 100 << 16);
 }
 
-TEST(RigCommands, SayWhatTheyDoNotUnderstand) {
+TEST(RigCommands, ReportWhatTheyDoNotUnderstand) {
   ModbusDeviceConfig config = Amplifier();
   config.port = 0;
   SimulatedAmplifier amplifier(config, ThesisSensors());
-  EXPECT_EQ(Tell("sulky", &amplifier), "no such fault of an amplifier: 'sulky'");
-  EXPECT_EQ(Tell("late", &amplifier), "expected how late, in ms");
-  EXPECT_EQ(Tell("late -3", &amplifier), "expected how late, in ms");
+  EXPECT_EQ(Tell("sulky", &amplifier), "unknown amplifier fault: 'sulky'");
+  EXPECT_EQ(Tell("late", &amplifier), "expected a delay in ms");
+  EXPECT_EQ(Tell("late -3", &amplifier), "expected a delay in ms");
   EXPECT_EQ(Tell("stuck 20", &amplifier), "expected a channel from 0 to 19");
   EXPECT_EQ(Tell("swapped 3", &amplifier), "expected a channel from 0 to 19");
   EXPECT_EQ(Tell("scaled 3 much", &amplifier), "expected a factor");
@@ -174,7 +174,7 @@ TEST(RigCommands, TheHelpNamesEveryFaultOfAWire) {
 
 class NodeOf : public testing::Test {
  protected:
-  // Tells node `i` of the bench; what the driver says within `exchanges`, in words.
+  // Sends `words` to node `i` of the bench; the driver's fault text within `exchanges`.
   std::string After(std::size_t i, const std::string& words, int exchanges = 10) {
     std::istringstream stream(words);
     EXPECT_EQ(ObeyNode(stream, &bench_.node(i)), "");
@@ -188,15 +188,15 @@ class NodeOf : public testing::Test {
   CanopenBench bench_;
 };
 
-TEST_F(NodeOf, MisbehavesAsToldAndIsMended) {
+TEST_F(NodeOf, EachNodeFaultIsInjectedAndRemoved) {
   const struct {
     std::size_t node;
     const char* words;
     const char* named;
-  } cases[] = {{1, "silent", "can0: node 2 (drive2): answers no SYNC"},
-               {3, "no-answer", "can0: node 12 (hub2): answers no SYNC"},
+  } cases[] = {{1, "silent", "can0: node 2 (drive2): does not answer SYNC"},
+               {3, "no-answer", "can0: node 12 (hub2): does not answer SYNC"},
                {0, "no-heartbeat", "can0: node 1 (drive1): heartbeat lost"},
-               {4, "short-pdo", "can0: node 13 (rotor1): sends a PDO that is none"},
+               {4, "short-pdo", "can0: node 13 (rotor1): sends a malformed PDO"},
                {0, "emcy 0x2310", "can0: node 1 (drive1): emergency message 0x2310"}};
   ASSERT_TRUE(bench_.Enable());
   for (const auto& c : cases) {
@@ -208,7 +208,7 @@ TEST_F(NodeOf, MisbehavesAsToldAndIsMended) {
   }
 }
 
-TEST_F(NodeOf, AnotherProductIsRefusedAtTheStart) {
+TEST_F(NodeOf, AnotherProductIsRejectedAtTheStart) {
   std::istringstream words("another-product");
   ASSERT_EQ(ObeyNode(words, &bench_.node(1)), "");
   try {
@@ -219,13 +219,13 @@ TEST_F(NodeOf, AnotherProductIsRefusedAtTheStart) {
   }
 }
 
-TEST_F(NodeOf, SaysWhatItDoesNotUnderstand) {
+TEST_F(NodeOf, ReportsWhatItDoesNotUnderstand) {
   for (const char* words : {"emcy", "emcy 0", "emcy 0x10000", "emcy torque"}) {
     std::istringstream stream(words);
     EXPECT_EQ(ObeyNode(stream, &bench_.node(0)), "expected a code from 0x0001 to 0xFFFF") << words;
   }
   std::istringstream stream("sulky");
-  EXPECT_EQ(ObeyNode(stream, &bench_.node(0)), "no such fault of a node: 'sulky'");
+  EXPECT_EQ(ObeyNode(stream, &bench_.node(0)), "unknown node fault: 'sulky'");
 }
 
 }  // namespace

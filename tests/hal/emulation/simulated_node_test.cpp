@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-// A drive with node id 5, talked to frame by frame.
+// A drive with node id 5, tested frame by frame.
 class SimulatedDrive : public testing::Test {
  protected:
   static constexpr int kId = 5;
@@ -66,7 +66,7 @@ class SimulatedDrive : public testing::Test {
                        .rated_torque_mnm = 400}};
 };
 
-TEST_F(SimulatedDrive, SaysThatItHasBootedAndAnswersWhoItIs) {
+TEST_F(SimulatedDrive, SendsItsBootUpMessageAndItsIdentity) {
   EXPECT_EQ(Last(0x705), EncodeHeartbeat(kId, NmtState::kBooting));
   Send(SdoReadRequest(kId, kObjectVendor));
   EXPECT_EQ(Reply().value, 1U);
@@ -74,7 +74,7 @@ TEST_F(SimulatedDrive, SaysThatItHasBootedAndAnswersWhoItIs) {
   EXPECT_EQ(Reply().value, 400U);
 }
 
-TEST_F(SimulatedDrive, RefusesWhatARealOneRefuses) {
+TEST_F(SimulatedDrive, RejectsTheRequestsThatARealDriveRejects) {
   EXPECT_EQ(Write({0x2000, 0}, 1, 1).value, kSdoAbortNoObject);
   EXPECT_EQ(Write(kObjectVendor, 1, 4).value, kSdoAbortReadOnly);
   EXPECT_EQ(Write(kObjectProducerHeartbeat, 50, 4).value, kSdoAbortWrongLength);
@@ -94,14 +94,14 @@ TEST_F(SimulatedDrive, MakesTorqueOnlyInOperationAndActsAtTheSync) {
   Send(EncodeSync());
   EXPECT_EQ(node_.torque_per_mille(), 300);
   Command(0x0F, 2000);
-  EXPECT_EQ(node_.torque_per_mille(), 1000) << "6072 as delivered";
+  EXPECT_EQ(node_.torque_per_mille(), 1000) << "default of 6072";
   Command(0x00, 300);
   EXPECT_EQ(node_.torque_per_mille(), 0);
   Command(0x0F, 300);
-  EXPECT_EQ(node_.torque_per_mille(), 0) << "no way into operation but through the states";
+  EXPECT_EQ(node_.torque_per_mille(), 0) << "operation is reached only through all states";
 }
 
-TEST_F(SimulatedDrive, AFaultIsLeftByARisingResetBitOnly) {
+TEST_F(SimulatedDrive, OnlyARisingResetBitLeavesAFault) {
   Operate();
   node_.RaiseFault(0x2310);
   EXPECT_EQ(node_.torque_per_mille(), 0);
@@ -113,11 +113,11 @@ TEST_F(SimulatedDrive, AFaultIsLeftByARisingResetBitOnly) {
   EXPECT_EQ(node_.state(), DriveState::kSwitchOnDisabled);
   node_.RaiseFault(0x2310);
   Command(0x80, 0);
-  EXPECT_EQ(node_.state(), DriveState::kFault) << "the bit has not risen";
+  EXPECT_EQ(node_.state(), DriveState::kFault) << "no rising edge";
 }
 
-// 6007: 0 nothing, 1 fault, 2 disable voltage. As delivered it is 0, and the torque stays.
-TEST_F(SimulatedDrive, DoesWhatTheAbortOptionSaysWhenItsMasterIsSilent) {
+// 6007: 0 nothing, 1 fault, 2 disable voltage. The default is 0, and the torque stays.
+TEST_F(SimulatedDrive, FollowsTheAbortOptionWhenTheMasterHeartbeatIsLost) {
   struct Case {
     std::uint32_t option;
     int torque;
@@ -139,7 +139,7 @@ TEST_F(SimulatedDrive, DoesWhatTheAbortOptionSaysWhenItsMasterIsSilent) {
   }
 }
 
-TEST_F(SimulatedDrive, TheHeartbeatOfAnotherNodeIsNotItsMasters) {
+TEST_F(SimulatedDrive, AHeartbeatOfAnotherNodeDoesNotCountAsTheMasters) {
   Write(kObjectConsumerHeartbeat, 127U << 16U | 40U, 4);
   Write(kObjectAbortConnection, 2, 2);
   Operate();

@@ -7,7 +7,7 @@
 #include "hal/gpiod/gpiod_config.h"
 #include "hal/gpiod/gpiod_lines.h"
 
-// What needs no GPIO chip; the lines themselves are tested with gpio-sim in tests/guest.
+// Tests without a GPIO chip; the lines themselves are tested with gpio-sim in tests/guest.
 
 namespace flexarm {
 namespace {
@@ -22,14 +22,14 @@ std::string KeysOf(const GpiodConfig& config) {
   return keys;
 }
 
-TEST(GpiodConfig, LinesOfTheirOwnAreAccepted) { EXPECT_EQ(KeysOf(Good()), ""); }
+TEST(GpiodConfig, DistinctLinesAreAccepted) { EXPECT_EQ(KeysOf(Good()), ""); }
 
-TEST(GpiodConfig, TwoUsesOfOneLineAreRefusedByBothNames) {
+TEST(GpiodConfig, TwoUsesOfOneLineAreRejectedByBothNames) {
   GpiodConfig config = Good();
   config.pump = config.input[4];
   ASSERT_EQ(config.Problems().size(), 1u);
   EXPECT_EQ(config.Problems()[0].key, "hal.gpiod.pump");
-  EXPECT_THAT(config.Problems()[0].rule, testing::HasSubstr("emergency_stop has it"));
+  EXPECT_THAT(config.Problems()[0].rule, testing::HasSubstr("emergency_stop uses it"));
 }
 
 TEST(GpiodConfig, OffsetsAndChipAreChecked) {
@@ -40,12 +40,12 @@ TEST(GpiodConfig, OffsetsAndChipAreChecked) {
   EXPECT_EQ(KeysOf(config), "hal.gpiod.chip hal.gpiod.limit_1_low hal.gpiod.relay ");
 }
 
-TEST(GpiodLines, AChipThatIsNotThereIsNamed) {
+TEST(GpiodLines, AMissingChipIsNamed) {
   GpiodConfig config = Good();
   config.chip = "no-such-chip";
   try {
     const GpiodLines lines(config);
-    FAIL() << "opened a chip that is not there";
+    FAIL() << "opened a chip that does not exist";
   } catch (const HalError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("gpiod no-such-chip: cannot be opened"));
   }

@@ -13,9 +13,9 @@
 
 namespace flexarm {
 
-/// The rig's server as a peer of the driver: it has the identification of Amplifier(), shows one
-/// reading in every input register and 1 in every discrete input, and misbehaves on request. Each
-/// call returns when it is in force.
+/// The rig's server as a peer of the driver: it has the identification of Amplifier(), one reading
+/// in every input register and 1 in every discrete input, and injects faults. Each call returns
+/// when its fault is in effect.
 class HostilePeer {
  public:
   /// TCP: any free port of the loopback. RTU: a pseudo-terminal behind a link.
@@ -42,14 +42,14 @@ class HostilePeer {
     frame.levels = ~LineLevels{0};
     image_.Publish(frame);
   }
-  /// Sends what kLate held back; it has left when this returns.
+  /// Sends the replies that kLate held back, before it returns.
   void ReleaseHeld() {
     server_.ReleaseLate();
     Settle();
   }
-  /// The cable is out, the device is gone: connection, listener or terminal closed.
+  /// Unplugs the device: connection, listener or terminal closed.
   void Leave() { Behave(WireFault::kAway); }
-  /// It is back, at the same place.
+  /// Plugs it in again, at the same address.
   void Return() { Behave(WireFault::kNone); }
 
   int requests() const { return static_cast<int>(server_.requests()); }

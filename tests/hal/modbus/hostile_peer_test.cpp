@@ -17,9 +17,9 @@
 #include "tests/hal/modbus/modbus_testing.h"
 #include "tests/support/no_alloc.h"
 
-// The driver against a peer that does everything wrong. For each way: the statuses, the requests
-// that were sent and the time-outs that were waited for are exact; no call takes longer than it
-// declares; nothing that is valid is stale; and the driver is well when the peer is.
+// The driver against a peer with every fault. For each fault: the statuses, the number of requests
+// and of time-outs are exact; no call takes longer than it declares; no valid reading is stale; and
+// the driver recovers when the peer does.
 
 namespace flexarm {
 
@@ -34,17 +34,17 @@ namespace {
 using enum WireFault;
 using enum BusStatus;
 
-// An ordinary thread of the build machines was seen to wake 234 ms late. A call that waits for
-// something that it should not wait for does so every time: the shortest one tells.
+// An ordinary thread of the build machines has woken 234 ms late. A call that waits where it
+// should not does so every time: the shortest one shows it.
 constexpr std::int64_t kLateWakeNs = 500'000'000;
 
-// CLOCK_MONOTONIC, moved on by what a test does not want to wait for.
+// CLOCK_MONOTONIC, advanced by the pauses that a test skips.
 std::atomic<std::int64_t> skipped_ns{0};
 std::int64_t Clock() noexcept { return MonotonicNow() + skipped_ns; }
 
 struct Met {
   WireFault how;
-  double timeout_ms;              // long where an answer is expected: the machine may be busy
+  double timeout_ms;              // long where an answer is expected: the machine may be loaded
   std::vector<BusStatus> status;  // of the first exchanges
   std::uint64_t requests;         // sent in all of them
   std::uint64_t timeouts;
@@ -67,13 +67,13 @@ ModbusDeviceConfig ConfigFor(const HostilePeer& peer, ModbusTransport transport,
   return config;
 }
 
-// Where that is permitted, this thread and those that it makes from now on go before ordinary ones.
+// Where permitted, gives this thread and the threads that it creates real-time priority.
 bool BecomeRealtime() {
   const sched_param parameters{.sched_priority = 10};
   return sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
 }
 
-// A driver, its peer, and what every call is held to.
+// A driver, its peer, and the checks of every call.
 class Judge {
  public:
   Judge(ModbusTransport transport, double timeout_ms, bool strain_only = false)
@@ -81,14 +81,14 @@ class Judge {
         peer(transport),
         device(ConfigFor(peer, transport, timeout_ms, strain_only), Clock) {}
 
-  // Opens, and has good readings: what it might take for new ones later.
+  // Opens, and gets good readings, which it could mistake for new ones later.
   void Open() {
     for (int i = 0;; ++i) {
       try {
         device.Open();
         break;
       } catch (const HalError& error) {
-        ASSERT_LT(i, 20) << error.what();  // a busy machine
+        ASSERT_LT(i, 20) << error.what();  // a loaded machine
       }
     }
     ExpectRecovery();
@@ -136,7 +136,7 @@ class Judge {
     return status;
   }
 
-  // The peer behaves again: the driver is back, and stays.
+  // The peer has no fault any more: the driver recovers, and stays connected.
   void ExpectRecovery() {
     peer.Behave(kNone);
     int good = 0;
@@ -155,7 +155,7 @@ class Judge {
     return *std::min_element(took_ns_.begin(), took_ns_.end());
   }
 
-  const bool realtime;  // times mean something
+  const bool realtime;  // time bounds can be checked
   HostilePeer peer;
   ModbusDevice device;
 
@@ -186,7 +186,7 @@ TEST_P(HostilePeerIs, BoundedNamedAndSurvived) {
     if (met.how == kLate) judge.peer.ReleaseHeld();
   }
   const ModbusCounters& after = judge.device.counters();
-  if (met.how == kFlood) {  // one, if the flood pauses just then
+  if (met.how == kFlood) {  // one request, if the flood pauses just then
     EXPECT_LE(after.requests - before.requests, 1U);
   } else {
     EXPECT_EQ(after.requests - before.requests, met.requests);
@@ -196,7 +196,7 @@ TEST_P(HostilePeerIs, BoundedNamedAndSurvived) {
   EXPECT_EQ(after.lost_links - before.lost_links, met.lost_links);
   EXPECT_LE(judge.peer.requests() - heard_before,
             static_cast<int>(after.requests - before.requests));
-  // An exchange ends with its first failure: it may take as long as one request, and no longer.
+  // An exchange ends with its first failure: it takes at most as long as one request.
   const std::int64_t request_ns = judge.device.plan().reads.front().worst_ns;
   if (judge.realtime) {
     EXPECT_LT(judge.ShortestExchange_ns(), request_ns * 3 / 2);
@@ -204,15 +204,15 @@ TEST_P(HostilePeerIs, BoundedNamedAndSurvived) {
   judge.ExpectRecovery();
 }
 
-constexpr double kSoon = 30.0;      // where no answer comes anyway
-constexpr double kPatient = 400.0;  // where the machine might make one late
+constexpr double kSoon = 30.0;      // where no answer is expected
+constexpr double kPatient = 400.0;  // where a loaded machine may delay the answer
 
 // how, time-out | statuses | requests, time-outs, mismatches, lost links
 const std::vector<Met> kOverTcp = {
     {kNone, kPatient, {kOk, kOk, kOk}, 6, 0, 0, 0},
     {kSilent, kSoon, {kTimeout, kTimeout, kTimeout, kTimeout}, 4, 4, 0, 0},
     {kLate, kSoon, {kTimeout, kTimeout, kTimeout, kTimeout}, 4, 4, 0, 0},
-    // The reply to the last request before is the first that it sends.
+    // Its first reply belongs to the previous request.
     {kOneBehind, kPatient, {kMalformed, kDisconnected, kDisconnected}, 2, 0, 2, 1},
     {kByteByByte, kSoon, {kTimeout, kTimeout, kTimeout, kTimeout}, 4, 4, 0, 0},
     {kWrongTransaction, kPatient, {kMalformed, kDisconnected, kDisconnected}, 2, 0, 2, 1},
@@ -227,8 +227,7 @@ const std::vector<Met> kOverTcp = {
     {kThreeBytes, kSoon, {kTimeout, kTimeout, kTimeout}, 3, 3, 0, 0},
     {kHalfFrame, kSoon, {kTimeout, kTimeout, kTimeout}, 3, 3, 0, 0},
     {kHalfFrameThenClose, kPatient, {kDisconnected, kDisconnected}, 1, 0, 0, 1},
-    // The first request of each exchange is answered well; the second copy is what nobody asked
-    // for.
+    // The first request of each exchange is answered correctly; the second copy is unrequested.
     {kTwice, kPatient, {kMalformed, kDisconnected, kDisconnected}, 2, 0, 2, 1},
     {kException, kPatient, {kMalformed, kMalformed, kMalformed}, 3, 0, 0, 0},
     {kFlood, kPatient, {kMalformed, kDisconnected, kDisconnected}, 0, 0, 2, 1},
@@ -236,7 +235,7 @@ const std::vector<Met> kOverTcp = {
     {kClose, kPatient, {kDisconnected, kDisconnected}, 1, 0, 0, 1},
 };
 
-// After a failure, the serial driver asks for a proof first.
+// After a failure, the serial driver checks the identity first.
 const std::vector<Met> kOverRtu = {
     {kNone, kPatient, {kOk, kOk, kOk}, 6, 0, 0, 0},
     {kSilent, kSoon, {kTimeout, kTimeout, kTimeout}, 3, 3, 0, 0},
@@ -289,23 +288,23 @@ INSTANTIATE_TEST_SUITE_P(Wire, HostilePeerOver,
                            return wire.param == ModbusTransport::kTcp ? "Tcp" : "Rtu";
                          });
 
-// libmodbus issue 255: one late reply, and every later one belongs to the request before. However
-// often the driver exchanges and reconnects, it must not believe such a reply. (A serial reply
-// bears no number; Exchange checks that what is valid is this period's.)
-TEST_P(HostilePeerOver, APeerThatIsLateForEverIsNeverBelieved) {
+// libmodbus issue 255: after one late reply, every later one belongs to the previous request. The
+// driver must not accept such a reply after any number of exchanges and reconnections. (A serial
+// reply has no transaction number; Exchange checks that valid readings are of this period.)
+TEST_P(HostilePeerOver, RepliesOfAPeerThatIsAlwaysLateAreNeverAccepted) {
   Judge judge(GetParam(), 50.0);
   judge.Open();
   judge.peer.Behave(kOneBehind);
   for (int i = 0; i < 20; ++i) {
     EXPECT_NE(judge.Exchange(), kOk);
-    if (i % 2 == 1) (void)judge.Reconnect();  // over RTU the second one meets its own proof
+    if (i % 2 == 1) (void)judge.Reconnect();  // over RTU the second one gets its own identity check
   }
   judge.ExpectRecovery();
 }
 
-// The hardest case: all requests look alike, and so do their replies. Without the proof that a
-// failure demands, the second exchange would believe the first one's reply.
-TEST(HostilePeer, ASerialReplyOfThePeriodBeforeIsNotBelieved) {
+// The hardest case: all requests are alike, and so are their replies. Without the identity check
+// after a failure, the second exchange would accept the first one's reply.
+TEST(HostilePeer, ASerialReplyOfThePreviousPeriodIsNotAccepted) {
   Judge judge(ModbusTransport::kRtu, 100.0, true);
   judge.Open();
   judge.peer.Behave(kLate);
@@ -316,7 +315,7 @@ TEST(HostilePeer, ASerialReplyOfThePeriodBeforeIsNotBelieved) {
   judge.ExpectRecovery();
 }
 
-// One reply comes late, once: a period is lost, not the link.
+// One reply arrives late, once: a period is lost, not the connection.
 TEST_P(HostilePeerOver, OneLateReplyCostsOneExchange) {
   Judge judge(GetParam(), 300.0);
   judge.Open();
@@ -329,7 +328,7 @@ TEST_P(HostilePeerOver, OneLateReplyCostsOneExchange) {
   EXPECT_EQ(judge.device.counters().lost_links, 0U);
 }
 
-TEST_P(HostilePeerOver, ADeviceThatIsUnpluggedAndComesBackIsFoundAgain) {
+TEST_P(HostilePeerOver, AnUnpluggedDeviceIsReconnectedWhenItReturns) {
   Judge judge(GetParam(), 300.0);
   judge.Open();
   EXPECT_EQ(judge.Exchange(), kOk);
@@ -342,7 +341,7 @@ TEST_P(HostilePeerOver, ADeviceThatIsUnpluggedAndComesBackIsFoundAgain) {
   judge.ExpectRecovery();
 }
 
-// Bytes of our connection to `port` that the peer has not acknowledged, as the kernel tells.
+// Bytes of our connection to `port` that the peer has not acknowledged, as the kernel reports.
 int Unacknowledged(int port) {
   std::ifstream table("/proc/net/tcp");
   std::string line;
@@ -358,10 +357,10 @@ int Unacknowledged(int port) {
   return 0;
 }
 
-// What a pulled cable does: nobody takes the requests, and the kernel stores them. No more than
-// four of 12 bytes may wait there, and the kernel must give the connection up soon instead of
-// sending a burst later.
-TEST(HostilePeer, RequestsThatDoNotLeaveAreNotPiledUp) {
+// Effect of an unplugged cable: requests are not acknowledged, and the kernel stores them. At most
+// four of 12 bytes may wait there, and the kernel must close the connection soon instead of sending
+// a burst later.
+TEST(HostilePeer, UnacknowledgedRequestsDoNotQueueUp) {
   Judge judge(ModbusTransport::kTcp, 2.0);
   judge.Open();
   judge.peer.Behave(kNeverReads);
@@ -369,7 +368,7 @@ TEST(HostilePeer, RequestsThatDoNotLeaveAreNotPiledUp) {
   std::int64_t last_sent_ns = MonotonicNow();
   int most_waiting = 0;
   for (BusStatus status = kTimeout; status == kTimeout;) {
-    ASSERT_LT(MonotonicNow(), give_up_ns) << "the kernel has not given up";
+    ASSERT_LT(MonotonicNow(), give_up_ns) << "the kernel has not closed the connection";
     const std::uint64_t sent = judge.device.counters().requests;
     status = judge.Exchange();
     if (judge.device.counters().requests != sent) last_sent_ns = MonotonicNow();
@@ -377,14 +376,14 @@ TEST(HostilePeer, RequestsThatDoNotLeaveAreNotPiledUp) {
     EXPECT_TRUE(status == kTimeout || status == kDisconnected) << status;
   }
   EXPECT_GT(judge.device.counters().stale_dropped, 0U);
-  EXPECT_GT(most_waiting, 0);  // or the figure was not found
+  EXPECT_GT(most_waiting, 0);  // otherwise the figure was not found
   EXPECT_LE(most_waiting, 48);
-  // 250 ms of TCP_USER_TIMEOUT, looked at when the kernel's probe timer runs (200 ms, doubling);
+  // 250 ms of TCP_USER_TIMEOUT, checked when the kernel's probe timer runs (200 ms, doubling);
   // without it, the kernel probes for 15 minutes.
   EXPECT_LT(MonotonicNow() - last_sent_ns, 2'000'000'000 + kLateWakeNs);
 }
 
-// Attempts to reconnect come at longer and longer intervals; between them, Reconnect does nothing.
+// Attempts to reconnect have growing intervals; between them, Reconnect does nothing.
 TEST(HostilePeer, ReconnectingBacksOff) {
   constexpr std::int64_t kStepNs = 10'000'000;
   static std::atomic<std::int64_t> now_ns{0};

@@ -9,7 +9,7 @@
 
 #include "tests/hal/modbus/modbus_testing.h"
 
-// Each rule of [[hal.modbus]] is broken once; the message must name the key.
+// Each rule of [[hal.modbus]] is violated once; the message must name the key.
 
 namespace flexarm {
 namespace {
@@ -27,23 +27,23 @@ std::string Text(const std::vector<Problem>& problems) {
   return text;
 }
 
-TEST(ModbusConfig, ARightConfigHasNoProblem) {
+TEST(ModbusConfig, AValidConfigHasNoProblem) {
   EXPECT_EQ(Text(ProblemsOf({Amplifier()})), "");
   ModbusDeviceConfig serial = SerialAmplifier("/dev/ttyS0");
-  serial.map.pop_back();  // one request and its proof fit into 15 ms
+  serial.map.pop_back();  // one request and its identity check fit into 15 ms
   serial.response_timeout_ms = 1.0;
   EXPECT_EQ(Text(ProblemsOf({serial})), "");
 }
 
 struct Broken {
-  std::string key;   // below hal.modbus[0].
+  std::string key;   // relative to hal.modbus[0].
   std::string rule;  // a part of it
   std::function<void(ModbusDeviceConfig*)> damage;
 };
 
 class ModbusConfigRule : public testing::TestWithParam<Broken> {};
 
-TEST_P(ModbusConfigRule, IsHeld) {
+TEST_P(ModbusConfigRule, ViolationNamesKeyAndRule) {
   ModbusDeviceConfig device = Amplifier();
   GetParam().damage(&device);
   const std::vector<Problem> problems = ProblemsOf({device});
@@ -84,7 +84,7 @@ const std::vector<Broken> kBroken = {
     {"response_timeout_ms", "reset-button together 8.2 ms",
      [](auto* d) { d->response_timeout_ms = 8.0; }},
     {"gap_limit", "0 .. 120", [](auto* d) { d->gap_limit = -1; }},
-    {"identification", "proves", [](auto* d) { d->identification.clear(); }},
+    {"identification", "identifies the device", [](auto* d) { d->identification.clear(); }},
     {"identification[1].table", "register",
      [](auto* d) { d->identification[1].table = ModbusTable::kCoil; }},
     {"identification[1].address", "0 .. 65535",
@@ -93,8 +93,8 @@ const std::vector<Broken> kBroken = {
      [](auto* d) { d->identification[1].address = d->identification[0].address; }},
     {"identification[0].expected", "16 bits",
      [](auto* d) { d->identification[0].expected = 65536; }},
-    {"register", "what to read", [](auto* d) { d->map.clear(); }},
-    {"register[2].strain", "there are 20", [](auto* d) { d->map[2].index = 20; }},
+    {"register", "at least one row", [](auto* d) { d->map.clear(); }},
+    {"register[2].strain", "it has rows: 20", [](auto* d) { d->map[2].index = 20; }},
     {"register[2].strain", "once only", [](auto* d) { d->map[2].index = 1; }},
     {"register[2].table", "a strain is a number",
      [](auto* d) { d->map[2].table = ModbusTable::kCoil; }},

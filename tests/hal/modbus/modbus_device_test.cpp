@@ -14,7 +14,7 @@
 #include "tests/support/no_alloc.h"
 
 // The driver against our own server, over TCP and over a pseudo-terminal. Register contents are
-// worked out by hand: what both sides share (modbus_value) has its own test.
+// computed by hand: modbus_value, which both sides share, has its own test.
 
 namespace flexarm {
 namespace {
@@ -46,13 +46,13 @@ TEST_P(ModbusDeviceOver, ReadsEveryRowOfTheMap) {
   ASSERT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   EXPECT_EQ(part.strain_valid, 0x3FFU);
   EXPECT_EQ(part.strain, shown.strain);
-  EXPECT_EQ(part.levels, LineBit(Line::kResetButton));  // the limit switch is another bus's
+  EXPECT_EQ(part.levels, LineBit(Line::kResetButton));  // the limit switch is on another bus
   EXPECT_EQ(part.counter_valid, 0U);
   EXPECT_EQ(device.strain_channels(), 0x3FFU);
   EXPECT_EQ(device.lines(), LineBit(Line::kResetButton));
 }
 
-TEST_P(ModbusDeviceOver, EachTypeComesThroughTheWire) {
+TEST_P(ModbusDeviceOver, EachTypeIsTransferred) {
   ModbusDeviceConfig config = DeviceConfig();
   config.map = {StrainRow(0, 10, ModbusType::kInt16),
                 StrainRow(1, 11, ModbusType::kUint16),
@@ -76,7 +76,7 @@ TEST_P(ModbusDeviceOver, EachTypeComesThroughTheWire) {
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(part.strain[i], expected[i]) << i;
 }
 
-TEST_P(ModbusDeviceOver, AChannelThatIsNoNumberIsNotValidAlone) {
+TEST_P(ModbusDeviceOver, ANanChannelAloneIsNotValid) {
   ModbusDeviceConfig config = DeviceConfig();
   config.map = {StrainRow(0, 0, ModbusType::kFloat32), StrainRow(1, 2, ModbusType::kFloat32)};
   ServedDevice served(config);
@@ -91,7 +91,7 @@ TEST_P(ModbusDeviceOver, AChannelThatIsNoNumberIsNotValidAlone) {
   served.image.Set(ModbusTable::kInputRegister, 0, broken);
   ASSERT_EQ(device.Exchange(kDrivesOff, &part), BusStatus::kOk);
   EXPECT_EQ(part.strain_valid, 0b10U);
-  EXPECT_EQ(part.strain[0], 10);  // the last good value, as old as it is
+  EXPECT_EQ(part.strain[0], 10);  // the last good value, with its age
   EXPECT_EQ(part.sampled_at_ns + part.strain_offset_ns[0], before.sampled_at_ns);
   EXPECT_EQ(part.strain[1], 20);
   EXPECT_EQ(device.values_refused(), 1U);
@@ -112,12 +112,12 @@ TEST_P(ModbusDeviceOver, StampsTheMiddleOfEachRequest) {
   EXPECT_EQ(part.strain_offset_ns[0], 0);
   EXPECT_GT(part.strain_offset_ns[1], 0);
   EXPECT_LT(part.sampled_at_ns + part.strain_offset_ns[1], after_ns);
-  // The middle of the second request lies behind the middle of both.
+  // The middle of the second request is later than the middle of both.
   EXPECT_LT(part.sampled_at_ns, middle_ns + (after_ns - before_ns) / 4);
   EXPECT_EQ(device.plan().reads.size(), 2U);
 }
 
-TEST_P(ModbusDeviceOver, AsksNoMoreThanItsPlan) {
+TEST_P(ModbusDeviceOver, SendsNoMoreRequestsThanItsPlan) {
   ServedDevice served(DeviceConfig());
   ModbusDevice device(served.config(), MonotonicNow);
   device.Open();
@@ -128,7 +128,7 @@ TEST_P(ModbusDeviceOver, AsksNoMoreThanItsPlan) {
 }
 
 TEST_P(ModbusDeviceOver, ExchangeAndReconnectDoNotAllocate) {
-  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizers bring their own allocator";
+  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizers have their own allocator";
   ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   ModbusDevice device(config, MonotonicNow);
@@ -161,7 +161,7 @@ std::string OpenError(const ModbusDeviceConfig& config) {
   });
 }
 
-TEST_P(ModbusDeviceOver, OpenRefusesAnotherDevice) {
+TEST_P(ModbusDeviceOver, OpenRejectsAnotherDevice) {
   ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   config.identification[1].expected = 8;
@@ -171,7 +171,7 @@ TEST_P(ModbusDeviceOver, OpenRefusesAnotherDevice) {
   }
 }
 
-TEST_P(ModbusDeviceOver, OpenRefusesRegistersThatTheDeviceDoesNotHave) {
+TEST_P(ModbusDeviceOver, OpenRejectsRegistersThatTheDeviceDoesNotHave) {
   ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   config.map.push_back(StrainRow(10, 300));
@@ -181,19 +181,19 @@ TEST_P(ModbusDeviceOver, OpenRefusesRegistersThatTheDeviceDoesNotHave) {
   }
 }
 
-TEST_P(ModbusDeviceOver, OpenRefusesAnotherUnit) {
+TEST_P(ModbusDeviceOver, OpenRejectsAnotherUnit) {
   ServedDevice served(DeviceConfig());
   ModbusDeviceConfig config = served.config();
   config.unit = 9;
-  config.response_timeout_ms = 20.0;  // over RTU nobody answers
+  config.response_timeout_ms = 20.0;  // over RTU no unit answers
   const std::string text = OpenError(config);
   EXPECT_NE(text.find("unit 9"), std::string::npos) << text;
   EXPECT_NE(text.find("holding registers 100 .. 101"), std::string::npos) << text;
 }
 
-TEST(ModbusDevice, OpenSaysThatNobodyListens) {
+TEST(ModbusDevice, OpenReportsARefusedConnection) {
   ModbusDeviceConfig config = Amplifier();
-  config.port = 1;  // tcpmux, which nobody runs
+  config.port = 1;  // tcpmux, which is not in use
   const std::string text = OpenError(config);
   EXPECT_NE(text.find("127.0.0.1:1, unit 1): cannot connect: Connection refused"),
             std::string::npos)
@@ -202,12 +202,12 @@ TEST(ModbusDevice, OpenSaysThatNobodyListens) {
   EXPECT_NE(OpenError(config).find("cannot connect: No such file"), std::string::npos);
 }
 
-TEST(ModbusDevice, ASerialPortThatCannotBeQuickIsRefused) {
+TEST(ModbusDevice, ASerialPortWithoutLowLatencyIsRejected) {
   ModbusDeviceConfig config = SerialAmplifier("/dev/null");
   EXPECT_NE(OpenError(config), "");
 }
 
-TEST(ModbusDevice, SaysWhatAnExchangeMetWithItsNamePlaceAndUnit) {
+TEST(ModbusDevice, FaultTextNamesDeviceAddressAndUnit) {
   ModbusDeviceConfig config = Amplifier();
   config.port = 1;
   ModbusDevice device(config, MonotonicNow);
@@ -221,7 +221,7 @@ TEST(ModbusDevice, SaysWhatAnExchangeMetWithItsNamePlaceAndUnit) {
             place + "answers with exception 4");
 }
 
-TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatComesBack) {
+TEST_P(ModbusDeviceOver, ReconnectsToADeviceThatReturns) {
   ModbusDeviceConfig config = DeviceConfig();
   auto served = std::make_unique<ServedDevice>(config);
   config = served->config();

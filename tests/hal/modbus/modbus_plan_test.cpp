@@ -6,7 +6,7 @@
 
 #include "tests/hal/modbus/modbus_testing.h"
 
-// Grouping and times against figures worked out by hand.
+// Grouping and times against figures computed by hand.
 
 namespace flexarm {
 namespace {
@@ -42,7 +42,7 @@ TEST(ModbusPlan, TheOrderOfTheMapDoesNotMatter) {
 TEST(ModbusPlan, AGapIsReadUpToItsLimit) {
   ModbusDeviceConfig device = Amplifier();
   device.gap_limit = 4;
-  device.map = {StrainRow(0, 0), StrainRow(1, 5)};  // 1 2 3 4 are read in vain
+  device.map = {StrainRow(0, 0), StrainRow(1, 5)};  // 1 2 3 4 are read unused
   EXPECT_EQ(Reads(device).size(), 1U);
   device.map[1].address = 6;
   EXPECT_EQ(Reads(device).size(), 2U);
@@ -53,7 +53,7 @@ TEST(ModbusPlan, AFrameHolds125Registers) {
   device.gap_limit = 120;
   device.map = {StrainRow(0, 0), StrainRow(1, 100), StrainRow(2, 124)};
   EXPECT_EQ(Reads(device).size(), 1U);
-  device.map[2].type = ModbusType::kInt32;  // would be torn by the limit: goes whole
+  device.map[2].type = ModbusType::kInt32;  // would be split by the limit: stays whole
   const std::vector<ModbusRequest> reads = Reads(device);
   ASSERT_EQ(reads.size(), 2U);
   EXPECT_EQ(reads[0].count, 101);
@@ -61,14 +61,14 @@ TEST(ModbusPlan, AFrameHolds125Registers) {
   EXPECT_EQ(reads[1].count, 2);
 }
 
-TEST(ModbusPlan, TcpTakesItsTimeouts) {
+TEST(ModbusPlan, TcpIsBoundedByItsTimeouts) {
   const ModbusPlan plan = PlanModbus(Amplifier());
   EXPECT_EQ(plan.exchange_worst_ns, 2 * (5'000'000 + kOverheadNs));
   // Connect and the one request for both identification registers.
   EXPECT_EQ(plan.reconnect_worst_ns, 2 * (5'000'000 + kOverheadNs) + kOverheadNs);
 }
 
-TEST(ModbusPlan, RtuTakesItsFramesAndTheSilenceBetweenThem) {
+TEST(ModbusPlan, RtuIsBoundedByItsFramesSilencesAndTimeout) {
   ModbusDeviceConfig device = SerialAmplifier("/dev/ttyS0");
   device.map.pop_back();
   device.baud = 9600;  // a character of 1 + 8 + 1 + 1 bits takes 1.14583.. ms
@@ -87,7 +87,7 @@ TEST(ModbusPlan, RtuTakesItsFramesAndTheSilenceBetweenThem) {
               2'864'584.0 + 2 * 1'750'000.0 + 5'200'000.0, 2.0);
 }
 
-TEST(ModbusPlan, ListsWhatEachChannelCosts) {
+TEST(ModbusPlan, ListsTheTimeOfEachChannel) {
   ModbusDeviceConfig device = Amplifier();
   device.map.push_back(StrainRow(10, 500));
   const std::vector<ModbusChannelCost> costs = ChannelCosts(device);

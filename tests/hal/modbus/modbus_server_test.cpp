@@ -17,12 +17,12 @@
 #include "hal/bus_device.h"
 #include "tests/hal/modbus/served_device.h"
 
-// Our server, read by pymodbus: a client that shares no line with us or with libmodbus.
+// Our server, read by pymodbus: a client independent of our code and of libmodbus.
 
 namespace flexarm {
 namespace {
 
-// Debian's own interpreter sees Debian's packages; another one in PATH may not.
+// Debian's own interpreter has Debian's packages; another one in PATH may not.
 const std::string kPython =
     std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
 
@@ -79,10 +79,10 @@ TEST(ModbusServer, IsUnderstoodByAnIndependentClientOverSerial) {
   EXPECT_EQ(ran.text, std::string(R"({"strain": [)") + kStrain + "], " + kRest + "}\n");
 }
 
-TEST(ModbusServer, PutsALinkToItsPseudoTerminalWhereTheConfigSays) {
+TEST(ModbusServer, CreatesTheConfiguredLinkToItsPseudoTerminal) {
   const std::string link = testing::TempDir() + "/flexarm-modbus-link";
   std::filesystem::remove(link);
-  for (int i = 0; i < 2; ++i) {  // the second finds none of the first
+  for (int i = 0; i < 2; ++i) {  // the first must leave none behind
     const ModbusDeviceConfig config = SerialAmplifier(link);
     const RegisterImage image(config);
     const ModbusServer server(config, image);
@@ -91,7 +91,7 @@ TEST(ModbusServer, PutsALinkToItsPseudoTerminalWhereTheConfigSays) {
   EXPECT_FALSE(std::filesystem::is_symlink(link));
 }
 
-TEST(ModbusServer, SaysWhereItCannotListen) {
+TEST(ModbusServer, ReportsWhereItCannotListen) {
   ServedDevice served(Amplifier());
   const RegisterImage image(served.config());
   try {
@@ -103,7 +103,7 @@ TEST(ModbusServer, SaysWhereItCannotListen) {
   }
 }
 
-// Every register of a publication shows the same number: a mixture is a torn one.
+// Every register of a publication has the same number: a mixture is a torn read.
 TEST(RegisterImage, AReaderSeesWholePublications) {
   const ModbusDeviceConfig config = Amplifier();
   RegisterImage image(config);

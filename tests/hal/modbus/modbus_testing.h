@@ -6,11 +6,11 @@
 #include "hal/bus_device.h"
 #include "hal/modbus/modbus_config.h"
 
-// Devices as the tests of this folder use them.
+// Devices for the tests of this folder.
 
 namespace flexarm {
 
-/// What a device without drives is told.
+/// Command to a device without drives.
 inline constexpr BusCommand kDrivesOff{.torque_nm = {}, .enabled = false};
 
 inline ModbusRegister StrainRow(int index, int address, ModbusType type = ModbusType::kInt16,
@@ -38,7 +38,7 @@ inline ModbusRegister InputRow(Line line, int address,
 }
 
 /// Unit 1 with ten strain gauges in int16 from input register 0 on, one reset button, and two
-/// holding registers that prove who it is: three requests a period would be two and a proof.
+/// holding registers for its identification: two requests a period, or three with identity check.
 inline ModbusDeviceConfig Amplifier() {
   ModbusDeviceConfig device{
       .name = "amplifier",
@@ -63,7 +63,7 @@ inline ModbusDeviceConfig Amplifier() {
   return device;
 }
 
-/// The same behind a serial line.
+/// The same on a serial line.
 inline ModbusDeviceConfig SerialAmplifier(const std::string& path) {
   ModbusDeviceConfig device = Amplifier();
   device.transport = ModbusTransport::kRtu;

@@ -8,7 +8,7 @@
 
 #include "tests/hal/modbus/modbus_testing.h"
 
-// Register contents worked out by hand, or from IEEE 754: 1.5f is 0x3FC00000.
+// Register contents computed by hand, or from IEEE 754: 1.5f is 0x3FC00000.
 
 namespace flexarm {
 namespace {
@@ -42,7 +42,7 @@ TEST(ModbusValue, ScalesThenShiftsThenRounds) {
   EXPECT_EQ(Counts(kInt16, kBig, {0xFFFF, 0}, 0.5, 0.0), -1);
 }
 
-TEST(ModbusValue, NoNumberIsNoReading) {
+TEST(ModbusValue, NanAndOverflowGiveNoReading) {
   EXPECT_EQ(Counts(kFloat32, kBig, {0x7FC0, 0x0000}), std::nullopt);  // NaN
   EXPECT_EQ(Counts(kFloat32, kBig, {0x7F80, 0x0000}), std::nullopt);  // infinity
   EXPECT_EQ(Counts(kFloat32, kBig, {0x4F00, 0x0000}), std::nullopt);  // 2^31: one too many

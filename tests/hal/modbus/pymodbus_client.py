@@ -1,8 +1,8 @@
-"""An independent client for our server: reads what it is told and prints it as JSON.
+"""An independent client for our server: reads the registers given below and prints them as JSON.
 
 usage: pymodbus_client.py tcp PORT | rtu PATH
 
-Three clients at once over TCP; what is refused is printed as its exception code.
+Three clients at once over TCP; a rejected request is printed as its exception code.
 """
 
 import json

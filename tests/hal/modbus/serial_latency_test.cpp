@@ -7,7 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-// An adapter without a kernel driver: these machines have none.
+// A simulated adapter: the build machines have none.
 
 namespace flexarm {
 namespace {
@@ -35,7 +35,7 @@ SerialLatency Set(const Adapter& how) {
   return result;
 }
 
-constexpr int kSpeedFlag = 0x1000;  // one that was set before
+constexpr int kSpeedFlag = 0x1000;  // a flag that was set before
 constexpr int kLowLatencyFlag = 0x2000;
 
 TEST(SerialLatency, IsSetAndReadBack) {
@@ -43,11 +43,11 @@ TEST(SerialLatency, IsSetAndReadBack) {
   EXPECT_EQ(adapter.flags, kSpeedFlag | kLowLatencyFlag);
 }
 
-TEST(SerialLatency, AnAdapterThatForgetsItIsRefused) {
+TEST(SerialLatency, AnAdapterThatDoesNotKeepTheFlagIsRejected) {
   EXPECT_EQ(Set({.keeps_the_flag = false}), SerialLatency::kRefused);
 }
 
-TEST(SerialLatency, AnAdapterThatDoesNotKnowItIsRefused) {
+TEST(SerialLatency, AnAdapterWithoutTheFlagIsRejected) {
   EXPECT_EQ(Set({.knows_the_flag = false}), SerialLatency::kRefused);
 }
 

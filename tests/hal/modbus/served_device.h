@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// Our own server on a thread of its own, and the config with which a driver finds it.
+/// Our own server on its own thread, and the config for a driver that connects to it.
 class ServedDevice {
  public:
   explicit ServedDevice(ModbusDeviceConfig config)
@@ -27,14 +27,14 @@ class ServedDevice {
 
   const ModbusDeviceConfig& config() const { return config_; }
 
-  /// In force when this returns.
+  /// In effect when this returns.
   void SetSilent(bool silent) {
     server.Behave(silent ? WireFault::kSilent : WireFault::kNone);
     while (!server.settled()) std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
 
  private:
-  // Any port, no link; and time enough for an ordinary thread on a busy machine.
+  // Any port, no link; and enough time for an ordinary thread on a loaded machine.
   static ModbusDeviceConfig Free(ModbusDeviceConfig config) {
     config.port = 0;
     config.device.clear();

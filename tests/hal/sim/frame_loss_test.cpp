@@ -14,10 +14,10 @@ std::vector<bool> Losses(double fraction, std::uint64_t seed, int frames) {
   return lost;
 }
 
-// The share of a Markov chain: between two losses lie 1 / q frames in the mean, q = p / (1 - p), so
-// a loss comes every 1 + 1/q = 1/p frames. Of 40 000 frames with p = 0.1 the count is 4000 +- 55
-// (renewal: variance n p^3 (1 - q) / q^2); five sigma.
-TEST(FrameLoss, LosesTheShareAndNeverTwoInARow) {
+// The fraction of a Markov chain: between two losses are 1 / q frames on average, q = p / (1 - p),
+// so a loss occurs every 1 + 1/q = 1/p frames. Of 40 000 frames with p = 0.1 the count is 4000 +-
+// 55 (renewal: variance n p^3 (1 - q) / q^2); five sigma.
+TEST(FrameLoss, LosesTheFractionAndNeverTwoInARow) {
   const std::vector<bool> lost = Losses(0.1, 1, 40'000);
   int count = 0;
   for (std::size_t k = 0; k < lost.size(); ++k) {
@@ -29,11 +29,11 @@ TEST(FrameLoss, LosesTheShareAndNeverTwoInARow) {
   EXPECT_NEAR(count, 4000, 5 * 55);
 }
 
-TEST(FrameLoss, LosesNothingWhenAskedForNone) {
+TEST(FrameLoss, LosesNothingAtFractionZero) {
   for (const bool lost : Losses(0.0, 1, 1000)) EXPECT_FALSE(lost);
 }
 
-TEST(FrameLoss, IsTheSameForTheSameSeedOnly) {
+TEST(FrameLoss, IsIdenticalForTheSameSeedOnly) {
   EXPECT_EQ(Losses(0.1, 3, 1000), Losses(0.1, 3, 1000));
   EXPECT_NE(Losses(0.1, 3, 1000), Losses(0.1, 4, 1000));
 }

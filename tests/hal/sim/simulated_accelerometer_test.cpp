@@ -1,4 +1,4 @@
-// The accelerometer of the simulated rig: against the tip that it is glued to, and by itself.
+// The accelerometer of the simulated rig: against the motion of the tip, and by itself.
 
 #include "hal/sim/simulated_accelerometer.h"
 
@@ -27,7 +27,7 @@ SensorConfig SensorsWith(const TipAccelerometerConfig& config) {
 
 constexpr SimConfig kFineSim = IdealSim(4, 0.1);
 
-// Where the tip's normal points, by the slopes of the rig's modes.
+// Direction of the tip's normal, by the slopes of the rig's modes.
 class Tip {
  public:
   explicit Tip(const ArmParameters& arm) : link1_(Link1Modes(arm, 4)), link2_(Link2Modes(arm, 4)) {}
@@ -43,9 +43,9 @@ class Tip {
   LinkModes link1_, link2_;
 };
 
-// Second differences of the tip's position through a filter of the test's own, the exact response
-// to a straight line through every step. They smooth over two steps of 0.1 ms, a quarter of (w h)^2
-// of a signal of w: 2e-4 of the joints' 40 Hz. The elbow turns fast enough for every term to show.
+// Second differences of the tip's position through an independent filter, the exact response to a
+// linear input in every step. They smooth over two steps of 0.1 ms, a quarter of (w h)^2 of a
+// signal of w: 2e-4 of the joints' 40 Hz. The elbow turns fast enough for every term to matter.
 TEST(SimulatedAccelerometer, ReadsTheSecondDifferenceOfTheTipsPosition) {
   const ArmParameters arm = ThesisRig();
   const Tip tip(arm);
@@ -84,7 +84,7 @@ SensorFrame Reading(SimulatedAccelerometer* sensor, double acceleration_m_s2) {
   return frame;
 }
 
-TEST(SimulatedAccelerometer, RoundsAndClipsAtItsRails) {
+TEST(SimulatedAccelerometer, RoundsAndSaturatesAtItsRange) {
   TipAccelerometerConfig config = kFine;
   config.converter_bits = 12;  // 100 / 4096 m/s^2 a count
   SimulatedAccelerometer sensor(config, 5e-4, 1);
@@ -122,7 +122,7 @@ TEST(SimulatedAccelerometer, ItsNoiseHasTheSizeOfTheConfig) {
   EXPECT_NEAR(std::sqrt(squares / kReadings), 20.0, 0.9);
 }
 
-TEST(SimulatedAccelerometer, LeavesTheOtherSensorsAsTheyAre) {
+TEST(SimulatedAccelerometer, DoesNotChangeTheOtherSensors) {
   TipAccelerometerConfig noisy = kFine;
   noisy.noise_counts = 100.0;
   SimulatedRig with(ThesisRig(), SensorsWith(noisy), kFineSim);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr SimConfig kSim = IdealSim(2, 0.5);
 
-// Link 1 behind a gauge filter of `filter_hz`, in counts fine enough (24 bits) to see its shape.
+// Link 1 behind a gauge filter of `filter_hz`, in counts fine enough (24 bits) for its response.
 SensorConfig FineGauge(double filter_hz) {
   SensorConfig sensors = ThesisSensors(0.0);
   sensors.strain_input.converter_bits = 24;
@@ -26,12 +26,12 @@ SensorConfig FineGauge(double filter_hz) {
   return sensors;
 }
 
-// The filter against 1 - exp(-t/T) cannot be had by itself: it reads a moving arm. So the same run
-// is filtered here by an independent recursion, the exact response to a straight line through every
-// step (first-order hold): x1 = e x0 + u0 (b - e) + u1 (1 - b), b = (1 - e) T / h.
-// The rig's rule takes the middle of the step: per step it errs by the line's curvature only,
-// relative (h/T)^2 / 12 = 3e-4 of what moves in a step; measured 3e-6 of the peak. A filter that
-// used the step's end would be half a step late: 0.25 ms of 8 ms, 1 % and more.
+// The filter's step response 1 - exp(-t/T) cannot be isolated: its input is a moving arm. So the
+// same run is filtered here by an independent recursion, the exact response to a linear input in
+// every step (first-order hold): x1 = e x0 + u0 (b - e) + u1 (1 - b), b = (1 - e) T / h.
+// The rig's rule uses the middle of the step: per step it errs by the curvature only, relative
+// (h/T)^2 / 12 = 3e-4 of the change in a step; measured 3e-6 of the peak. A filter that used the
+// step's end would be half a step late: 0.25 ms of 8 ms, 1 % and more.
 TEST(SimulatedRig, GaugeFilterIsFirstOrderAtItsCorner) {
   SimulatedRig behind(ThesisRig(), FineGauge(20.0), kSim), bare(ThesisRig(), FineGauge(0.0), kSim);
   const double h = 5e-4, T = 1.0 / (2.0 * std::numbers::pi * 20.0);
@@ -52,11 +52,11 @@ TEST(SimulatedRig, GaugeFilterIsFirstOrderAtItsCorner) {
   EXPECT_LT(worst, 1e-3 * peak);
 }
 
-// The lag is read from the rotors' first half millisecond: a rotor at rest is accelerated by its
-// torque alone, over its own inertia J, as long as its spring has not wound: (K/J)^(1/2) is 267 and
-// 232 rad/s, so by then the spring has taken (267 * 5e-4)^2 / 12 = 0.15 % of it. Velocity gained:
-// int u (1 - exp(-t/T)) dt / J; rotor 2 turns absolutely, with the end of link 1. 1 % allowed; a
-// lag of another 10 % is off by 9 %.
+// The lag is measured in the rotors' first half millisecond: a rotor at rest is accelerated by its
+// torque alone, over its own inertia J, until its spring is twisted: (K/J)^(1/2) is 267 and
+// 232 rad/s, so after that time the spring has removed (267 * 5e-4)^2 / 12 = 0.15 % of the rate.
+// Rate gained: int u (1 - exp(-t/T)) dt / J; rotor 2 turns absolutely, with the end of link 1. 1 %
+// allowed; a lag that differs by 10 % gives 9 %.
 TEST(SimulatedRig, DriveFollowsItsSetPointWithTheElectricalLag) {
   SimConfig fine = kSim;
   fine.step_ms = 0.01;
@@ -84,7 +84,7 @@ TEST(SimulatedRig, WithoutLagTheTorqueActsAtOnce) {
   SimulatedRig rig(arm, ThesisSensors(), direct);
   rig.SetTorque({1.0, 0.0});
   rig.Step();
-  // One step of 10 us from rest: torque * h / J, less (267 * 1e-5)^2 / 2.
+  // One step of 10 us from rest: torque * h / J, minus (267 * 1e-5)^2 / 2.
   EXPECT_NEAR(rig.state().v(kTheta3), 1e-5 / arm.joint[0].rotor_inertia_kgm2, 1e-5 * 1e-3);
 }
 
@@ -97,7 +97,7 @@ TEST(SimulatedRig, RestsAtZeroWithEverySwitchClosed) {
   EXPECT_EQ(rig.truth().tip_m[1], 0.0);
 }
 
-TEST(SimulatedRig, TheTipIsWhereTheArmModelSaysItIs) {
+TEST(SimulatedRig, TheTipAgreesWithTheArmModel) {
   SimulatedRig rig(ThesisRig(), ThesisSensors(), kSim);
   for (int k = 0; k < 600; ++k) {
     rig.SetTorque({4.0, -0.6});
@@ -105,12 +105,12 @@ TEST(SimulatedRig, TheTipIsWhereTheArmModelSaysItIs) {
   }
   const ArmModel model(ThesisRig(), ModeCount{.link1 = 2, .link2 = 2});
   const Eigen::Vector2d tip = model.TipPosition(rig.state().q);
-  EXPECT_GT(std::abs(rig.state().q(kPhi1)), 0.01) << "too straight to tell anything";
+  EXPECT_GT(std::abs(rig.state().q(kPhi1)), 0.01) << "deflection too small for this test";
   EXPECT_NEAR(rig.truth().tip_m[0], tip(0), 1e-12);
   EXPECT_NEAR(rig.truth().tip_m[1], tip(1), 1e-12);
 }
 
-// A switch is a level: open beyond its angle, closed inside, one for each end of each joint.
+// A switch is a level: open beyond its angle, closed inside, one at each end of each joint.
 TEST(SimulatedRig, LimitSwitchesOpenBeyondTheirAngleAndOnlyThere) {
   SimConfig near = kSim;
   near.switch_angle_deg = {2.0, 3.0};
@@ -131,9 +131,9 @@ TEST(SimulatedRig, LimitSwitchesOpenBeyondTheirAngleAndOnlyThere) {
       const bool beyond = std::abs(rig.truth().hub_angle_rad[c.joint]) > limit;
       opened = (rig.levels() & LineBit(c.line)) == 0;
       EXPECT_EQ(opened, beyond);
-      EXPECT_EQ(rig.Sample(0).levels, rig.levels()) << "the frame carries the levels";
+      EXPECT_EQ(rig.Sample(0).levels, rig.levels()) << "the frame contains the levels";
     }
-    EXPECT_TRUE(opened) << "the arm never got there";
+    EXPECT_TRUE(opened) << "the arm did not reach the switch";
   }
 }
 
@@ -163,7 +163,7 @@ TEST(SimulatedRig, ASwitchForcedClosedStillOpensByTheArmsOwnAngle) {
 }
 
 // A multiplexed rig against one that samples all channels after each of its steps of 0.5 ms:
-// channel i of the first is the second's reading at 0.25 ms times i, for odd i the middle of two of
+// channel i of the first is the second's reading at 0.25 ms times i, for odd i the mean of two of
 // them. Each of them is rounded to half a count, and so is the result: one count.
 TEST(SimulatedRig, AMultiplexedFrameIsSampledWhileTheArmMoves) {
   SimConfig skewed = kSim;
@@ -184,8 +184,8 @@ TEST(SimulatedRig, AMultiplexedFrameIsSampledWhileTheArmMoves) {
     after.push_back(all.Sample(0));
     frame = rig.TakeFrame();
   }
-  EXPECT_EQ(steps, 10) << "the last of twenty channels comes 4.75 ms after the first";
-  EXPECT_FALSE(rig.TakeFrame().has_value()) << "a frame is taken once";
+  EXPECT_EQ(steps, 10) << "the last of twenty channels is sampled 4.75 ms after the first";
+  EXPECT_FALSE(rig.TakeFrame().has_value()) << "a frame can be taken once";
   EXPECT_EQ(frame->sampled_at_ns, 7'000'000);
   EXPECT_EQ(frame->counter, after[0].counter);
   double largest = 0.0, moved = 0.0;
@@ -197,11 +197,11 @@ TEST(SimulatedRig, AMultiplexedFrameIsSampledWhileTheArmMoves) {
     EXPECT_NEAR(frame->strain[i], expected, 1.0) << i;
     EXPECT_EQ(frame->strain_offset_ns[i], static_cast<std::int32_t>(250'000 * i));
   }
-  EXPECT_GT(moved, 1e-2 * largest) << "the arm stands still: the test says nothing";
+  EXPECT_GT(moved, 1e-2 * largest) << "the arm moves too little for this test";
   EXPECT_EQ(frame->strain_valid, 0xfffffu);
 }
 
-TEST(SimulatedRig, WithoutSkewAFrameIsThereAtOnceAndTheSame) {
+TEST(SimulatedRig, WithoutSkewAFrameIsCompleteAtOnceAndIdentical) {
   SimulatedRig rig(ThesisRig(), ThesisSensors(), kSim), same(ThesisRig(), ThesisSensors(), kSim);
   for (SimulatedRig* each : {&rig, &same}) {
     each->SetTorque({3.0, -0.4});

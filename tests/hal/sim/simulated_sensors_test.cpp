@@ -91,10 +91,10 @@ TEST_F(SimulatedSensorsTest, StrainChannelsReadGainFaceAndOffset) {
     EXPECT_NEAR(frame.strain[i], volts * 4096.0 / 20.0 + row.offset_counts, 0.5 + 1e-9) << i;
   }
   EXPECT_EQ(frame.strain_valid, (1u << 20) - 1u);
-  EXPECT_GT(std::abs(frame.strain[0]), 50) << "too small a bend to tell anything";
+  EXPECT_GT(std::abs(frame.strain[0]), 50) << "deflection too small for this test";
 }
 
-TEST_F(SimulatedSensorsTest, StrainClipsAtTheRailsOfTheConverter) {
+TEST_F(SimulatedSensorsTest, StrainSaturatesAtTheRangeOfTheConverter) {
   SimulatedSensors sensors(arm_, ThesisSensors(0.0), 1);
   ArmVector filtered = Unbent();
   filtered(0) = 2.0;  // metres: far beyond 2000 microstrain at the root
@@ -104,8 +104,8 @@ TEST_F(SimulatedSensorsTest, StrainClipsAtTheRailsOfTheConverter) {
 }
 
 // 4000 frames of 20 channels with one count of noise and the rounding's own 1/12. Mean: standard
-// error 1.04 / sqrt(4000) = 0.016 counts a channel, five of them 0.082; a truncation instead of a
-// rounding would show 0.5. Deviation: its standard error is 1.04 / sqrt(8000) = 0.012.
+// error 1.04 / sqrt(4000) = 0.016 counts per channel, five of them 0.082; truncation instead of
+// rounding would give 0.5. Deviation: its standard error is 1.04 / sqrt(8000) = 0.012.
 TEST_F(SimulatedSensorsTest, NoiseHasZeroMeanAndTheStatedDeviation) {
   SimulatedSensors sensors(arm_, ThesisSensors(1.0), 7);
   constexpr int kFrames = 4000;
@@ -126,7 +126,7 @@ TEST_F(SimulatedSensorsTest, NoiseHasZeroMeanAndTheStatedDeviation) {
     EXPECT_NEAR(sum[i] / kFrames, 0.0, 0.082) << i;
     EXPECT_NEAR(std::sqrt(squares[i] / kFrames), deviation, 0.06) << i;
   }
-  // Neither between channels nor in time: standard error 1.08 / sqrt(4000) = 0.017.
+  // Uncorrelated between channels and in time: standard error 1.08 / sqrt(4000) = 0.017.
   EXPECT_NEAR(product / kFrames, 0.0, 0.085);
   EXPECT_NEAR(successive / kFrames, 0.0, 0.085);
 }

@@ -9,7 +9,7 @@
 #include "tests/hal/comedi/comedi_bench.h"
 #include "tests/hal/modbus/modbus_testing.h"
 
-// Costs against the bounds that the drivers declare and keep, drives against their data sheets.
+// Times against the bounds that the drivers declare and keep, drives against their data sheets.
 
 namespace flexarm {
 namespace {
@@ -22,7 +22,7 @@ HalConfig Mixed() {
   return hal;
 }
 
-TEST(Acquisition, EveryBusAddsUpToWhatItsDriverDeclares) {
+TEST(Acquisition, EveryBusAddsUpToTheBoundOfItsDriver) {
   for (const BusCost& bus : AcquisitionCosts(Mixed())) {
     std::int64_t sum_ns = bus.other_ns;
     std::set<int> counted;
@@ -46,7 +46,7 @@ TEST(Acquisition, EveryChannelIsNamedOnce) {
   EXPECT_EQ(costs[3].channel[15].device, "subdevice 2");
 }
 
-TEST(Acquisition, ANodeCostsItsFramesOnTheWire) {
+TEST(Acquisition, ANodeTakesTheTimeOfItsFramesOnTheWire) {
   // CiA 301, 11-bit identifiers, every stuff bit, 1 Mbit/s: 47 + 8 n + (33 + 8 n) / 4 bits. An
   // encoder: 4 bytes of position, a heartbeat of 1, an emergency of 8: 95 + 65 + 135. A drive: 8 of
   // feedback instead of 4, and 4 of command.
@@ -55,7 +55,7 @@ TEST(Acquisition, ANodeCostsItsFramesOnTheWire) {
   EXPECT_EQ(costs[0].channel[0].cost_ns, 430'000);
 }
 
-TEST(Acquisition, DrivesAreTheThesissGears) {
+TEST(Acquisition, DrivesHaveTheGearsOfTheThesis) {
   HalConfig hal;
   hal.canopen = {BenchConfig()};
   hal.canopen[0].node = {BenchDrive(CanopenRole::kDrive2, 2)};

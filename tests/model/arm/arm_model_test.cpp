@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Two sections on link 1, a payload other than the shapes', and a payload inertia that counts.
+// Two sections on link 1, a payload other than the shapes', and a large payload inertia.
 ArmParameters Awkward(bool foreshortening) {
   ArmParameters p = ThesisRig();
   BeamSection root = p.link[0].section[0], end = root;
@@ -42,7 +42,7 @@ VectorXd Rates() {
   return v;
 }
 
-// Whether links get shorter as they bend.
+// Parameter: with or without foreshortening.
 class Arm : public testing::TestWithParam<bool> {
  protected:
   const ArmModel arm_{Awkward(GetParam()), {2, 3}};
@@ -61,8 +61,8 @@ INSTANTIATE_TEST_SUITE_P(Links, Arm, testing::Bool(), [](const auto& shown) {
 });
 
 // (3.19) summed over every mass point, with velocities from differentiated positions. Shares the
-// positions with the model, but neither its frames nor its integrals. The central difference leaves
-// 1e-10; the smallest term, the payload's inertia, is 1e-3 of the whole.
+// positions with the model, but neither its frames nor its integrals. The central difference has an
+// error of 1e-10; the smallest term, the payload's inertia, is 1e-3 of the whole.
 TEST_P(Arm, KineticEnergyEqualsTheSumOverMassPoints) {
   const ArmParameters& p = arm_.parameters();
   const auto speed2 = [&](int link, double u) {
@@ -102,7 +102,7 @@ TEST_P(Arm, PotentialEnergyEqualsTheIntegralOverTheLinks) {
   EXPECT_NEAR(arm_.PotentialEnergy(q_) / U, 1.0, 1e-12);
 }
 
-TEST_P(Arm, MassMatrixIsSymmetricPositiveDefiniteAndBlindToTheBase) {
+TEST_P(Arm, MassMatrixIsSymmetricPositiveDefiniteAndIndependentOfTheBase) {
   const MatrixXd M = arm_.MassMatrix(q_);
   EXPECT_EQ(M, M.transpose());
   EXPECT_GT(M.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
@@ -117,14 +117,14 @@ TEST_P(Arm, MassMatrixIsSymmetricPositiveDefiniteAndBlindToTheBase) {
   EXPECT_LT((arm_.TipPosition(turned) - expected).norm(), 1e-14);
 }
 
-// Lagrange: bias = Mdot v - 1/2 grad(v'Mv). Central differences with h = 1e-5 leave 1e-9 of the
-// largest entry; a missing centrifugal term leaves 1e-3 and more.
-TEST_P(Arm, BiasIsWhatLagrangeMakesOfTheMassMatrix) {
+// Lagrange: bias = Mdot v - 1/2 grad(v'Mv). Central differences with h = 1e-5 err by 1e-9 of the
+// largest entry; a missing centrifugal term by 1e-3 and more.
+TEST_P(Arm, BiasFollowsFromTheMassMatrixByLagrange) {
   const double h = 1e-5;
   const MatrixXd M_dot = (arm_.MassMatrix(q_ + h * v_) - arm_.MassMatrix(q_ - h * v_)) / (2.0 * h);
   VectorXd gradient(arm_.dof());
   for (int i = 0; i < arm_.dof(); ++i) {
-    // A metre of a second mode is a slope of 100: its step must be as much smaller.
+    // A metre of a second mode is a slope of 100: its step must be smaller by that factor.
     const double h_i = i < kPhi1 ? h : 0.01 * h;
     const VectorXd step = h_i * VectorXd::Unit(arm_.dof(), i);
     gradient[i] =
@@ -158,7 +158,7 @@ TEST_P(Arm, PointVelocityIsTheDerivativeOfThePoint) {
   }
 }
 
-// Sign of thesis B.2: face +1 reads +(h/2) w''. The second difference leaves 1e-8.
+// Sign of thesis B.2: face +1 reads +(h/2) w''. The second difference errs by 1e-8.
 TEST_P(Arm, StrainIsHalfTheThicknessTimesCurvature) {
   VectorXd q = VectorXd::Zero(arm_.dof());
   q[6] = 0.01;
@@ -169,7 +169,7 @@ TEST_P(Arm, StrainIsHalfTheThicknessTimesCurvature) {
   EXPECT_GT(arm_.Strain(2, x, q), 0.0);
 }
 
-// Stiff links leave the textbook two-link arm: M11 = I1 + I2 + m2 (L1^2 + 2 L1 r c2), and so on.
+// With stiff links the model is the textbook two-link arm: M11 = I1 + I2 + m2 (L1^2 + 2 L1 r c2)..
 TEST(RigidLimit, MassMatrixIsTheTextbookTwoLinkArm) {
   const ArmModel arm(ThesisRig(), {1, 1});
   VectorXd q = VectorXd::Zero(6), v = VectorXd::Zero(6);
@@ -190,8 +190,8 @@ TEST(RigidLimit, MassMatrixIsTheTextbookTwoLinkArm) {
   EXPECT_NEAR(bias[1], S_2 * L1 * s * 1.3 * 1.3, 1e-13);
 }
 
-// The recursion of forces and the assembled matrix are written apart; together they must be one
-// model: forces at unit acceleration are the columns of M.
+// The recursion of forces and the assembled matrix are separate code for one model: forces at unit
+// acceleration must be the columns of M.
 TEST_P(Arm, ForcesAtUnitAccelerationAreTheColumnsOfTheMassMatrix) {
   const MatrixXd M = arm_.MassMatrix(q_);
   for (int i = 0; i < arm_.dof(); ++i) {
@@ -201,8 +201,8 @@ TEST_P(Arm, ForcesAtUnitAccelerationAreTheColumnsOfTheMassMatrix) {
   }
 }
 
-// Shapes only span the motion: with six modes a 0.5 kg arm rings the same whether its shapes were
-// computed for 0.5 or for 0.1 kg (3e-6 measured). Tip terms of the wrong payload are off by 10 %.
+// Shapes only span the motion: with six modes a 0.5 kg arm vibrates the same whether its shapes
+// were computed for 0.5 or for 0.1 kg (3e-6 measured). Tip terms of the wrong payload err by 10 %.
 TEST(ShapePayload, ArmDoesNotDependOnThePayloadOfItsShapes) {
   ArmParameters p = ThesisRig();
   p.payload_mass_kg = 0.5;
@@ -212,7 +212,7 @@ TEST(ShapePayload, ArmDoesNotDependOnThePayloadOfItsShapes) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(foreign[i] / own[i], 1.0, 1e-5) << i;
 }
 
-TEST(ArmParametersProblems, EveryBrokenRuleIsReportedAtOnce) {
+TEST(ArmParametersProblems, EveryViolatedRuleIsReportedAtOnce) {
   ArmParameters p = ThesisRig();
   EXPECT_TRUE(p.Problems().empty());
   p.joint[0].stiffness_nm_per_rad = 0.0;
@@ -225,9 +225,9 @@ TEST(ArmParametersProblems, EveryBrokenRuleIsReportedAtOnce) {
   EXPECT_THROW(ArmModel(p, {2, 2}), std::invalid_argument);
 }
 
-// Between hub and base: link 2's base is the end of link 1, which feels the reaction by th2 being
-// relative to it. So nothing else is damped.
-TEST(ArmModel, ViscousFrictionTakesTheHubsRatesTimesItself) {
+// Friction acts between hub and base: link 2's base is the end of link 1, and th2 is relative to
+// it, so the reaction is included. No other coordinate is damped.
+TEST(ArmModel, ViscousFrictionActsOnTheHubRatesOnly) {
   for (const bool foreshortening : {false, true}) {
     ArmParameters p = Awkward(foreshortening);
     const ArmModel without(p, {2, 3});

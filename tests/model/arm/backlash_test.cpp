@@ -27,7 +27,7 @@ ArmParameters WithPlay(BacklashModel model, double clearance, double zeta) {
   return p;
 }
 
-TEST(Backlash, SpringWithPlayHasADeadZoneOfTheWholeClearance) {
+TEST(Backlash, SpringWithBacklashHasADeadZoneOfTheWholeClearance) {
   const Backlash joint(WithPlay(BacklashModel::kDeadZone, kPlay, 0.0), 0.15);
   EXPECT_EQ(joint.At(0.0099, 3.0, 3.0).spring_nm, 0.0);
   EXPECT_EQ(joint.At(-0.0099, 3.0, 3.0).stiffness_nm_per_rad, 0.0);
@@ -35,8 +35,8 @@ TEST(Backlash, SpringWithPlayHasADeadZoneOfTheWholeClearance) {
   EXPECT_NEAR(joint.At(-0.0110, 0.0, 0.0).spring_nm, -497.96 * 0.001, 1e-12);
 }
 
-// Teeth cannot pull: however fast they part, the torque does not change its sign.
-TEST(Backlash, TeethNeverPull) {
+// Teeth cannot pull: the torque does not change its sign at any separation rate.
+TEST(Backlash, ContactTorqueIsNeverAttractive) {
   const Backlash joint(WithPlay(BacklashModel::kDeadZone, kPlay, 0.3), 0.15);
   for (double rate = -20.0; rate <= 20.0; rate += 0.5) {
     EXPECT_GE(joint.At(0.013, rate, 0.0).spring_nm, 0.0) << rate;
@@ -44,7 +44,7 @@ TEST(Backlash, TeethNeverPull) {
   }
 }
 
-// A mass against one flank: m x'' = -torque. It must come back with e = 1 - zeta v (Hunt and
+// A mass against one flank: m x'' = -torque. It must rebound with e = 1 - zeta v (Hunt and
 // Crossley), to first order in zeta v: the next term is about (zeta v)^2.
 TEST(Backlash, ImpactHasTheRestitutionOfTheThesis) {
   constexpr double kZeta = 0.2, kInertia = 0.01;
@@ -58,7 +58,7 @@ TEST(Backlash, ImpactHasTheRestitutionOfTheThesis) {
       v = middle - 0.5 * h * joint.At(x, middle, middle).spring_nm / kInertia;
     } while (x > 0.5 * kPlay);
     EXPECT_NEAR(-v / speed, 1.0 - kZeta * speed, std::pow(kZeta * speed, 2)) << speed;
-    EXPECT_LT(-v / speed, 1.0 - 0.8 * kZeta * speed) << "an impact must lose";
+    EXPECT_LT(-v / speed, 1.0 - 0.8 * kZeta * speed) << "an impact must lose energy";
   }
 }
 
@@ -101,8 +101,8 @@ TEST(Backlash, ThesisFormIsTheDerivativeOfItsDissipation) {
   }
 }
 
-// Faults of the thesis's form that its header states.
-TEST(Backlash, ThesisFormFeedsEnergyInAboveItsLimitAndDiverges) {
+// Errors of the thesis's form that the header states.
+TEST(Backlash, ThesisFormAddsEnergyAboveItsLimitAndDiverges) {
   const Backlash joint(WithPlay(BacklashModel::kThesis, kPlay, 0.2), 0.15);
   EXPECT_GT(joint.At(0.0, 0.0, 3.9).drag_nm, 0.0);
   EXPECT_LT(joint.At(0.0, 0.0, 4.1).drag_nm, 0.0) << "0.8 / zeta = 4 rad/s";
@@ -110,7 +110,7 @@ TEST(Backlash, ThesisFormFeedsEnergyInAboveItsLimitAndDiverges) {
   EXPECT_NEAR(narrow.At(0, 0, 1.0).drag_nm / joint.At(0, 0, 1.0).drag_nm, 1e6, 1.0);
 }
 
-TEST(Backlash, WithoutPlayJointTwoIsItsSpring) {
+TEST(Backlash, WithoutBacklashJointTwoIsItsSpring) {
   for (const BacklashModel model : {BacklashModel::kDeadZone, BacklashModel::kThesis}) {
     const ArmModel none(WithPlay(model, 0.0, 0.3), {2, 2});
     EXPECT_FALSE(none.constants().backlash.active());
@@ -120,7 +120,7 @@ TEST(Backlash, WithoutPlayJointTwoIsItsSpring) {
   }
 }
 
-// A swinging arm that shakes its elbow's gears through both flanks.
+// A swinging arm whose elbow gears hit both flanks.
 ArmState Shaking(const ArmModel& model) {
   ArmState x(model.dof());
   x.v[kTheta4] = 2.0;
@@ -156,9 +156,9 @@ Swing SwingOf(const ArmParameters& p, double h) {
   return out;
 }
 
-// Both flanks are met, the joint is free for a good part of the time, and without loss the energy
-// stays. Midpoint errs where a flank is met inside a step: 1e-3 in 2 s at 0.1 ms, measured.
-TEST(Backlash, ConservativePlayKeepsEnergyThroughImpacts) {
+// Both flanks are hit, the joint is free for a good part of the time, and without loss the energy
+// is conserved. Midpoint errs where a flank is hit inside a step: 1e-3 in 2 s at 0.1 ms, measured.
+TEST(Backlash, LosslessBacklashConservesEnergyThroughImpacts) {
   const Swing swing = SwingOf(WithPlay(BacklashModel::kDeadZone, kPlay, 0.0), 1e-4);
   EXPECT_LT(swing.lowest_nm, -0.1);
   EXPECT_GT(swing.highest_nm, 0.1);
@@ -166,23 +166,23 @@ TEST(Backlash, ConservativePlayKeepsEnergyThroughImpacts) {
   EXPECT_NEAR(swing.energy_ratio, 1.0, 4e-3);
 }
 
-// Measured: 0.970 left after 2 s; growth in a step 2e-5, where a flank is met inside it.
-TEST(Backlash, ImpactLossOnlyTakesEnergy) {
+// Measured: 0.970 of the energy left after 2 s; growth in a step 2e-5, where a flank is hit in it.
+TEST(Backlash, ImpactLossNeverAddsEnergy) {
   const Swing swing = SwingOf(WithPlay(BacklashModel::kDeadZone, kPlay, 0.2), 1e-4);
   EXPECT_LT(swing.energy_ratio, 0.98);
   EXPECT_LT(swing.largest_growth, 1e-4);
 }
 
-// Measured: 0.942 left; growth in a step 3e-6, midpoint's own ripple at 0.5 ms.
-TEST(Backlash, ThesisFormTakesEnergyBelowItsLimit) {
+// Measured: 0.942 left; growth in a step 3e-6, the ripple of the midpoint rule at 0.5 ms.
+TEST(Backlash, ThesisFormDissipatesBelowItsLimit) {
   const Swing swing = SwingOf(WithPlay(BacklashModel::kThesis, 3.5e-3, 0.2), 5e-4);
   EXPECT_LT(swing.energy_ratio, 0.95);
   EXPECT_LT(swing.largest_growth, 1e-5);
 }
 
-// The step against the equations in dense form, both models, both kernels, inside the play and on
-// a flank: what is left over the largest force: the round-off of (v1 - v0) / h. Newton on joint 2
-// converges with the other passes.
+// The step against the equations in dense form, both models, both kernels, within the clearance and
+// on a flank: residual over the largest force, which is the round-off of (v1 - v0) / h. Newton on
+// joint 2 converges with the other passes.
 TEST(Backlash, StepSolvesTheMidpointEquations) {
   for (const BacklashModel backlash : {BacklashModel::kDeadZone, BacklashModel::kThesis}) {
     for (const bool foreshortening : {false, true}) {
@@ -233,7 +233,7 @@ TEST(Backlash, SimulatorConvergesToTheReferenceOnAFlank) {
   EXPECT_NEAR(error(4e-6) / error(2e-6), 4.0, 0.4);
 }
 
-TEST(Backlash, LinearisedArmHasNoSpringInsideThePlay) {
+TEST(Backlash, LinearisedArmHasNoSpringWithinTheClearance) {
   const ArmModel model(WithPlay(BacklashModel::kDeadZone, kPlay, 0.0), {2, 2});
   const ArmModel tight(WithPlay(BacklashModel::kDeadZone, 0.0, 0.0), {2, 2});
   VectorXd q = VectorXd::Zero(8);
@@ -241,11 +241,11 @@ TEST(Backlash, LinearisedArmHasNoSpringInsideThePlay) {
   const auto A = [&](const ArmModel& arm) { return Linearize(arm, q, v, Vector2d::Zero()).A; };
   EXPECT_EQ(A(model)(8 + kTheta4, kTheta4), 0.0);
   EXPECT_LT(A(tight)(8 + kTheta4, kTheta4), -1e4);
-  q[kTheta4] = 0.012;  // on a flank the spring is whole again
+  q[kTheta4] = 0.012;  // on a flank the full spring acts
   EXPECT_LT((A(model) - A(tight)).cwiseAbs().maxCoeff(), 1e-9 * A(tight).cwiseAbs().maxCoeff());
 }
 
-TEST(Backlash, BrokenParametersAreReported) {
+TEST(Backlash, InvalidParametersAreReported) {
   ArmParameters p = WithPlay(BacklashModel::kDeadZone, -0.1, std::nan(""));
   ASSERT_EQ(p.Problems().size(), 2u);
   EXPECT_EQ(p.Problems()[0].key, "joint2.backlash_rad");

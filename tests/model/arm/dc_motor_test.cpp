@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-// (3.24): C i (1 - e^(-t/T)) at the ends of the steps, exactly; its middle is second order.
+// (3.24): C i (1 - e^(-t/T)) at the ends of the steps, exactly; the middle is of second order.
 TEST(DcMotor, StepResponseIsThatOfTheThesis) {
   const double h = 5e-4, T = 2e-3;
   DcMotor motor(h, T);

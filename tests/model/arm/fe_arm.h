@@ -8,13 +8,13 @@
 
 namespace flexarm {
 
-/// The arm at rest by finite elements, linear: an oracle for the assumed modes that shares nothing
-/// with them but the parameters. Hermite elements with consistent mass.
+/// Finite-element model of the arm at rest, linear: a reference for the assumed modes that shares
+/// nothing with them but the parameters. Hermite elements with consistent mass.
 ///
-/// Unknowns: turning of hub 1; deflection and slope of link 1's further nodes, across link 1 at
-/// rest; turning of hub 2; deflection and slope of link 2's further nodes, across link 2; both
-/// rotors, that of motor 2 against the end of link 1. All are absolute but the last, so no mode
-/// shape, no elbow angle and no quadratic term occurs as in the model.
+/// Unknowns: rotation of hub 1; deflection and slope of link 1's further nodes, across link 1 at
+/// rest; rotation of hub 2; deflection and slope of link 2's further nodes, across link 2; both
+/// rotors, that of motor 2 against the end of link 1. All but the last are absolute, so it contains
+/// no mode shape, no elbow angle and no quadratic term of the model.
 class FeArm {
  public:
   FeArm(const ArmParameters& p, double theta2_rad, int elements_per_section)
@@ -62,7 +62,7 @@ class FeArm {
     return FreeFrequenciesHz(Eigen::MatrixXd::Identity(dof(), dof()));
   }
 
-  /// The same for an arm that moves by the columns of `basis` only.
+  /// The same for an arm restricted to the columns of `basis`.
   Eigen::VectorXd FreeFrequenciesHz(const Eigen::MatrixXd& basis) const {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
         basis.transpose() * K_ * basis, basis.transpose() * M_ * basis, Eigen::EigenvaluesOnly);

@@ -27,16 +27,16 @@ ArmParameters RigCarrying(double payload) {
   return p;
 }
 
-// The oracle itself: exact dynamic stiffness of the whole arm (docs/theory/plant.md 6.2); it says
-// that 40 elements agree to 4e-6.
+// Check of the reference itself: exact dynamic stiffness of the whole arm (docs/theory/plant.md
+// 6.2), which 40 elements match to 4e-6.
 TEST(FeArm, HasTheExactFrequenciesOfTheReference) {
   const double exact[] = {6.620644715, 8.758385487, 16.67434804, 17.35428850};
   const VectorXd fe = FeArm(RigCarrying(0.1), 0.0, kElements).FreeFrequenciesHz();
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(fe[i] / exact[i], 1.0, 4e-6) << i;
 }
 
-// Six modes a link, six frequencies of the arm, five elbow angles, four payloads. What is left is
-// the assumed modes' own error, from above: 1.6e-5 at worst, measured.
+// Six modes a link, six frequencies of the arm, five elbow angles, four payloads. The difference is
+// the error of the assumed modes, from above: 1.6e-5 at worst, measured.
 TEST(FeArm, SixModesGiveTheFirstSixFrequencies) {
   for (const double degrees : {0.0, 30.0, 60.0, 90.0, 135.0}) {
     for (const double payload : {0.0, 0.1, 0.5, 1.0}) {
@@ -51,9 +51,9 @@ TEST(FeArm, SixModesGiveTheFirstSixFrequencies) {
   }
 }
 
-// Which shapes link 1 bends in: those for a tip mass alone have psi''(L) = 0, cannot carry the
-// moment of motor 2's inertia, and are 2.9 % off in f2 with two modes and converge like 1/M; those
-// for the inertia too are off by 0.106 % (docs/theory/plant.md 6.3, to its digits).
+// Shapes of link 1: those for a tip mass alone have psi''(L) = 0, cannot carry the moment of motor
+// 2's inertia, err by 2.9 % in f2 with two modes and converge like 1/M; those for the inertia too
+// err by 0.106 % (docs/theory/plant.md 6.3, to its digits).
 TEST(FeArm, ShapesForATipMassAloneConvergeSlowly) {
   const ArmParameters p = RigCarrying(0.1);
   const FeArm fe(p, 0.0, kElements);
@@ -82,7 +82,7 @@ TEST(FeArm, SteppedLinksAgreeToo) {
 }
 
 // A small force at the tip, rotors held: elements are exact here, assumed modes converge from below
-// (what they cannot bend into is stiffness too much).
+// (deflections that they do not contain make the arm too stiff).
 TEST(FeArm, StaticDisplacementOfTheTipAgrees) {
   for (const double degrees : {0.0, 45.0, 90.0}) {
     const double theta2 = degrees * M_PI / 180.0;

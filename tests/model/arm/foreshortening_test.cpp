@@ -41,7 +41,7 @@ TEST(Foreshortening, BentLinkKeepsItsLength) {
   EXPECT_LT(arm.TipPosition(q).x(), 0.8 + 0.9 - 1.5e-3);
 }
 
-TEST(Foreshortening, TipShorteningIsThatOfThePoints) {
+TEST(Foreshortening, TipShorteningAgreesWithThePoints) {
   const ArmModel arm(Shortening(), {3, 3});
   VectorXd q = VectorXd::Zero(10);
   q.segment<3>(4) << 0.02, -0.003, 0.0004;
@@ -54,8 +54,8 @@ TEST(Foreshortening, TipShorteningIsThatOfThePoints) {
               1.7 - arm.TipPosition(straight1).x(), 1e-14);
 }
 
-// At rest and straight, the products of modal coordinates vanish: nothing that is designed there
-// (gains, frequencies) may change.
+// At rest and straight, the products of modal coordinates vanish: a design at that state (gains,
+// frequencies) must not change.
 TEST(Foreshortening, ChangesNothingAtRest) {
   ArmParameters thesis = Shortening();
   thesis.foreshortening = false;
@@ -70,7 +70,7 @@ TEST(Foreshortening, ChangesNothingAtRest) {
 }
 
 // A cantilever of unit mass and length that turns at `rate` about its root: the block of phi1 of
-// the linearised arm with everything outboard next to massless and joint 1's motion prescribed.
+// the linearised arm with everything outboard nearly massless and joint 1's motion prescribed.
 VectorXd TurningBeam(double rate, bool foreshortening) {
   ArmParameters p = Shortening();
   p.foreshortening = foreshortening;
@@ -108,7 +108,7 @@ TEST(Foreshortening, TurningCantileverHasThePublishedFrequencies) {
     EXPECT_NEAR(std::hypot(omega[0], row.rate) / row.first, 1.0, 3e-4) << row.rate;
     EXPECT_NEAR(std::hypot(omega[1], row.rate) / row.second, 1.0, 3e-4) << row.rate;
   }
-  // The thesis's kinematics lose rate^2 instead of gaining: at 2 the first mode is down to 2.89.
+  // In the thesis's kinematics rate^2 has the other sign: at 2 the first mode is down to 2.89.
   EXPECT_NEAR(TurningBeam(2.0, false)[0], std::sqrt(3.5160 * 3.5160 - 4.0), 1e-3);
 }
 
@@ -120,8 +120,8 @@ double Growth(const ArmParameters& p, double rate, double theta2) {
   return Linearize(arm, q, v, Vector2d::Zero()).A.eigenvalues().real().maxCoeff();
 }
 
-// Where the thesis's kinematics turn unstable (docs/theory/plant.md 6.4: th1' = 5.228 rad/s), the
-// stiffened arm does not, at that rate or any other up to 60 rad/s. Bars: round-off of the double
+// Where the thesis's kinematics become unstable (docs/theory/plant.md 6.4: th1' = 5.228 rad/s), the
+// stiffened arm does not, at that rate or any other up to 60 rad/s. Bounds: round-off of the double
 // zero roots on one side, 1.57 1/s on the other.
 TEST(Foreshortening, StraightArmStaysStableAtAnySpeed) {
   ArmParameters thesis = Shortening();
@@ -132,9 +132,9 @@ TEST(Foreshortening, StraightArmStaysStableAtAnySpeed) {
   }
 }
 
-// Without dissipation the energy of a fast-turning arm stays, so the equations are those of one
-// Lagrangian. At 6 rad/s the arm of the thesis's kinematics runs away.
-TEST(Foreshortening, FastArmKeepsItsEnergy) {
+// Without dissipation the energy of a fast-turning arm is constant, so the equations are those of
+// one Lagrangian. At 6 rad/s the arm with the thesis's kinematics diverges.
+TEST(Foreshortening, FastArmConservesItsEnergy) {
   const ArmModel arm(Shortening(), {2, 2});
   VectorXd q = VectorXd::Zero(8), v = q;
   v[kTheta1] = v[kTheta3] = 6.0;

@@ -1,4 +1,4 @@
-// The model against numbers that other programs computed: tests/golden/golden.json and
+// The model against numbers of other programs: tests/golden/golden.json and
 // oracles.json.
 
 #include <gtest/gtest.h>
@@ -17,9 +17,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Both sides carry round-off only; the bar that the golden data's authors set is 1e-8 of the
-// largest entry. Measured: see each line. The smallest misprint of Appendix A moves an entry by
-// 1e-3.
+// Both sides have round-off only; the bound set with the golden data is 1e-8 of the largest entry.
+// Measured: see each line. The smallest misprint of Appendix A changes an entry by 1e-3.
 constexpr double kGolden = 1e-8;
 
 class Golden : public testing::Test {
@@ -83,7 +82,7 @@ TEST_F(Golden, RiccatiSolutionAndGainAgree) {
   const MatrixXd Q = weight.asDiagonal() * 0.5, R = MatrixXd::Identity(2, 2);
   const MatrixXd P = SolveDare(a * A, a * B, Q, R);
   EXPECT_LT(RelativeError(a * a * P, AsMatrix(golden_["R12_P"])), kGolden);
-  // The gain divides by B'PB and loses two more digits: the bar for gains is 1e-6.
+  // The gain divides by B'PB and loses two more digits: the bound for gains is 1e-6.
   EXPECT_LT(RelativeError(DareGain(a * A, a * B, R, P), AsMatrix(golden_["R12_K"])), 1e-6);
 }
 
@@ -108,7 +107,7 @@ class Oracle : public testing::TestWithParam<std::size_t> {
     return x;
   }
 
-  // A force does work on a coordinate, so it scales the other way.
+  // The work of a force on a coordinate is invariant, so it scales inversely.
   VectorXd MassNormalisedForce(VectorXd x) const { return TipNormalised(std::move(x)); }
 
   const nlohmann::json oracles_ = GoldenFile("oracles.json");

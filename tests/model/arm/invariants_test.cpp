@@ -1,4 +1,4 @@
-// What every motion of the arm must keep, whatever the numbers: power, symmetry, limits.
+// Invariants of every motion of the arm: power, symmetry, limits.
 
 #include <gtest/gtest.h>
 
@@ -36,16 +36,16 @@ INSTANTIATE_TEST_SUITE_P(Links, Invariants, testing::Bool(), [](const auto& show
   return shown.param ? "Foreshortened" : "AsTheThesis";
 });
 
-// Energy at the end less that at the start against the work of motors, friction and damping, summed
-// at the middle of every step, with all three at work. @returns what does not balance, over the
-// energy turned over.
+// Energy at the end minus that at the start against the work of motors, friction and damping,
+// summed at the middle of every step, with all three active. @returns the imbalance over the
+// exchanged energy.
 double Imbalance(bool foreshortening, double h) {
   const ArmModel model(Rig(foreshortening), {2, 2});
   ArmSimulator simulator(model, {.passes = 5});
   ArmState x = SwingingArm(model);
   const double E0 = Energy(model, x);
   double work = 0.0, turned_over = 0.0;
-  // While both hubs slide: the impulse that stops a hub takes energy outside of the sum.
+  // While both hubs slide: the impulse that stops a hub dissipates energy outside of the sum.
   for (int i = 0; i < static_cast<int>(std::lround(0.25 / h)); ++i) {
     const Vector2d torque(3.0, -1.0);
     const ArmState before = x;
@@ -63,15 +63,15 @@ double Imbalance(bool foreshortening, double h) {
 }
 
 // Second order: a sixteenth at a quarter of the step (measured, both arms), 4e-7 at the default
-// one. A friction or damping term left out of the step leaves 0.05 and more.
+// step. A friction or damping term missing in the step leaves 0.05 and more.
 TEST_P(Invariants, PowerOfMotorsFrictionAndDampingBalances) {
   const double coarse = Imbalance(GetParam(), 5e-4), fine = Imbalance(GetParam(), 1.25e-4);
   EXPECT_LT(coarse, 2e-6);
   EXPECT_LT(fine, 0.12 * coarse);
 }
 
-// Without dissipation the film runs backwards: all rates turned round, the arm comes back to where
-// it started. Midpoint is symmetric in time, so with its passes converged only round-off is left
+// Without dissipation the motion is reversible: with all rates negated, the arm returns to its
+// start. Midpoint is symmetric in time, so with its passes converged only round-off remains
 // (1e-12 rad and 3e-11 rad/s measured).
 TEST_P(Invariants, TimeCanBeReversed) {
   const ArmModel model(Conservative(GetParam()), {2, 2});
@@ -89,7 +89,7 @@ TEST_P(Invariants, TimeCanBeReversed) {
   EXPECT_LT((x.v + start.v).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST_P(Invariants, WholeMotionsDoNotKnowWhereTheBasePoints) {
+TEST_P(Invariants, MotionsDoNotDependOnTheBaseAngle) {
   const ArmModel model(Rig(GetParam()), {3, 3});
   const double turn = 1.234;
   ArmSimulator simulator(model);
@@ -126,8 +126,8 @@ struct RigidArm {
   }
 };
 
-// Links and joints ten thousand times as stiff; rotors next to massless, for the textbook has none.
-// The bending that is left turns the links by 5e-6 rad (measured); a wrong rigid term shows in the
+// Links and joints ten thousand times as stiff; rotors nearly massless, as the textbook has none.
+// The remaining bending turns the links by 5e-6 rad (measured); a wrong rigid term changes the
 // first digit.
 TEST_P(Invariants, StiffArmMovesAsTheTextbookTwoLinkArm) {
   ArmParameters p = Rig(GetParam());
@@ -145,7 +145,7 @@ TEST_P(Invariants, StiffArmMovesAsTheTextbookTwoLinkArm) {
   ArmState x(model.dof());
   x.q[kTheta2] = x.q[kTheta4] = 0.5;
   Vector2d q(0.0, 0.5), v(0.0, 0.0);
-  for (int i = 0; i < 4000; ++i) {  // pushed smoothly, so that little rings
+  for (int i = 0; i < 4000; ++i) {  // smooth torque, so that vibrations stay small
     const double t = (i + 0.5) * 2.5e-4;
     const Vector2d torque = std::pow(std::sin(M_PI * t), 2) * Vector2d(6.0, -1.5);
     simulator.Step(x, torque, 2.5e-4);

@@ -15,9 +15,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Away from any equilibrium: rates, bending, torque. Differences of fourth order, accelerations of
-// 1e4 with a mass matrix of condition 4e4 behind them: 1e-6 of the largest entry of a column is
-// what round-off leaves; a forgotten dM/dq a leaves 1e-2.
+// Away from any equilibrium: rates, bending, torque. Differences of fourth order of accelerations
+// of 1e4 with a mass matrix of condition 4e4: round-off is 1e-6 of the largest entry of a column;
+// a missing dM/dq a leaves 1e-2.
 class AnyArm : public testing::TestWithParam<bool> {};
 
 INSTANTIATE_TEST_SUITE_P(Links, AnyArm, testing::Bool(), [](const auto& shown) {
@@ -29,7 +29,7 @@ TEST_P(AnyArm, JacobiansMatchCentralDifferencesAtAMovingState) {
   const double k = GetParam() ? 0.7 : 0.0;  // of tanh(k th'), s/rad
   if (GetParam()) {
     p.foreshortening = true;
-    p.joint2_backlash = {BacklashModel::kDeadZone, 0.01, 0.2};  // on a flank, 0.015 rad inside
+    p.joint2_backlash = {BacklashModel::kDeadZone, 0.01, 0.2};  // on a flank, by 0.015 rad
   }
   const ArmModel arm(p, {2, 2});
   const Eigen::Index n = arm.dof();
@@ -103,7 +103,7 @@ TEST(Frequencies, FreeMotorsConvergeToTheExactArm) {
         const double exact = row.hz[i];
         EXPECT_NEAR(four[i] / exact, 1.0, 1.2e-5) << exact;
         EXPECT_NEAR(two[i] / exact, 1.0, 5.5e-3) << exact;
-        EXPECT_GT(four[i], exact * (1.0 - 5e-6)) << "Rayleigh and Ritz come from above";
+        EXPECT_GT(four[i], exact * (1.0 - 5e-6)) << "Rayleigh-Ritz converges from above";
         EXPECT_NEAR(mirrored[i] / four[i], 1.0, 1e-10) << "th2 and 180 - th2 coincide";
       }
     }
@@ -112,7 +112,7 @@ TEST(Frequencies, FreeMotorsConvergeToTheExactArm) {
 
 // docs/theory/plant.md 6.3: error of f1..f4 of the assumed modes against the exact arm, in percent
 // as printed: M = 1 and M = 2 to the digits given, M = 3 and 4 by their bounds.
-TEST(Frequencies, AssumedModesConvergeAsTheReferenceSays) {
+TEST(Frequencies, AssumedModesConvergeAsInTheReference) {
   ArmParameters p = ThesisRig();
   p.link1_tip_inertia = Link1TipInertia::kMotor;
   const double exact[] = {6.620644715, 8.758385487, 16.67434804, 17.35428850};
@@ -134,7 +134,7 @@ TEST(Frequencies, AssumedModesConvergeAsTheReferenceSays) {
 TEST(Frequencies, ShapesForATipMassAloneCarryNoMoment) {
   ArmParameters p = ThesisRig();
   p.link1_tip_inertia = Link1TipInertia::kMotor;
-  ArmParameters massless = p;  // the same arm on shapes that do not know I_r2
+  ArmParameters massless = p;  // the same arm with shapes computed without I_r2
   massless.motor2_inertia_kgm2 = 0.0;
   const LinkModes shapes = Link1Modes(massless, 2), own = Link1Modes(p, 2);
   EXPECT_NEAR(shapes.mode[0].Curvature(0.8), 0.0, 1e-9);
@@ -153,10 +153,10 @@ TEST(Frequencies, HeldMotorsMatchTheReference) {
   }
 }
 
-// Without foreshortening the model softens with speed: docs/theory/plant.md 6.4 finds the
-// linearised arm unstable from th1' = 5.228 rad/s on (th2 = 0). A documented limit of the thesis's
+// Without foreshortening the model softens with speed: in docs/theory/plant.md 6.4 the linearised
+// arm is unstable from th1' = 5.228 rad/s on (th2 = 0). A documented limit of the thesis's
 // kinematics.
-TEST(Linearize, ArmTurnsUnstableWhereTheReferenceSays) {
+TEST(Linearize, ArmBecomesUnstableAtTheRateOfTheReference) {
   ArmParameters p = ThesisRig();
   p.damping = DampingReading::kNone;
   const ArmModel arm(p, {4, 4});

@@ -1,4 +1,4 @@
-// A load that is dropped or picked up while the arm moves: what leaves with it, and what stays.
+// A payload that is lost or picked up while the arm moves: what changes, and what is conserved.
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 
 constexpr ModeCount kModes{.link1 = 4, .link2 = 3};  // unequal: one link is padded
 
-// With all that a payload has a part in: the play's drag takes the inertia of the load, and a hub
-// that friction stops takes an impulse.
+// With all effects that involve the payload: the backlash drag depends on the load inertia, and a
+// hub stopped by friction gets an impulse.
 ArmParameters Rig(bool foreshortening, double payload_kg) {
   ArmParameters p = ThesisRig();
   p.foreshortening = foreshortening;
@@ -32,7 +32,7 @@ ArmParameters Rig(bool foreshortening, double payload_kg) {
   return p;
 }
 
-// Its links swing too: the rates of their bending count in what the load takes along.
+// Its links vibrate too: the rates of their bending contribute to the lost momentum.
 ArmState Swinging(const ArmModel& model) {
   ArmState x = SwingingArm(model);
   x.v[kPhi1 + 1] = 0.05;
@@ -40,7 +40,7 @@ ArmState Swinging(const ArmModel& model) {
   return x;
 }
 
-// @returns how often a hub was stopped
+// @returns number of stops of a hub
 int SwingOn(ArmSimulator* simulator, ArmState* x, int steps) {
   int stops = 0;
   for (int i = 0; i < steps; ++i) {
@@ -66,12 +66,12 @@ INSTANTIATE_TEST_SUITE_P(Links, PayloadChange, testing::Bool(), [](const auto& s
   return shown.param ? "Foreshortened" : "AsTheThesis";
 });
 
-// A point mass m at the tip has the momenta m v'dr/dq, and r and v are the tip's by kinematics,
-// which know no mass; the momentum of q = (th1 and th3) alike is the one about the shoulder. What
-// is compared are sums of a dozen numbers of order 1: 1e-12 is their round-off, and the quadrature
-// of foreshortening. The payload's own inertia left out or taken away with it changes the energy
-// by 1e-3 of the mass's.
-TEST_P(PayloadChange, WhatLeavesIsThePointMassWithTheVelocityOfTheTip) {
+// A point mass m at the tip has the momenta m v'dr/dq, where r and v are the tip's, by kinematics
+// without any mass; the momentum of q = (th1 and th3) is that about the shoulder. Sums of a dozen
+// numbers of order 1 are compared: 1e-12 is their round-off, and the quadrature of foreshortening.
+// The payload's own inertia, if omitted or removed as well, changes the energy by 1e-3 of the
+// mass's.
+TEST_P(PayloadChange, TheLostMomentumIsThatOfAPointMassAtTheTip) {
   const double m = 0.7, left = 0.1;
   ArmModel model(Rig(GetParam(), left + m), kModes);
   const ArmState x = Swinging(model);
@@ -93,7 +93,7 @@ TEST_P(PayloadChange, WhatLeavesIsThePointMassWithTheVelocityOfTheTip) {
               m * (tip.x() * tip_velocity.y() - tip.y() * tip_velocity.x()), 1e-12);
   EXPECT_NEAR(energy - model.KineticEnergy(q, v), 0.5 * m * tip_velocity.squaredNorm(), 1e-12);
   EXPECT_EQ(model.PotentialEnergy(q), wound);
-  EXPECT_GT(tip_velocity.norm(), 1.0) << "hardly moves: the test says little";
+  EXPECT_GT(tip_velocity.norm(), 1.0) << "the tip is too slow for this test";
 }
 
 TEST_P(PayloadChange, TheSamePayloadChangesNothing) {
@@ -109,8 +109,8 @@ TEST_P(PayloadChange, TheSamePayloadChangesNothing) {
   EXPECT_TRUE(SameBytes(x, same));
 }
 
-// Up and down and up again: nothing is left of what was carried in between.
-TEST_P(PayloadChange, AfterItTheArmIsOneMadeWithThatPayload) {
+// Payload up, down and up again: no trace of the intermediate payloads is left.
+TEST_P(PayloadChange, TheArmThenEqualsOneConstructedWithThatPayload) {
   ArmModel model(Rig(GetParam(), 0.1), kModes);
   ArmSimulator simulator(model);
   ArmState x = Swinging(model);
@@ -121,7 +121,7 @@ TEST_P(PayloadChange, AfterItTheArmIsOneMadeWithThatPayload) {
     const ArmState start = x;
     model.CarryPayload(payload_kg);
     simulator.CarryPayloadOf(model);
-    EXPECT_TRUE(SameBytes(x, start)) << "it jumped";
+    EXPECT_TRUE(SameBytes(x, start)) << "the state jumped";
     stops += SwingOn(&simulator, &x, 200);
 
     const ArmModel anew(Rig(GetParam(), payload_kg), kModes),
@@ -140,7 +140,7 @@ TEST_P(PayloadChange, AfterItTheArmIsOneMadeWithThatPayload) {
   EXPECT_GT(stops, 0) << "no hub was stopped";
 }
 
-TEST_P(PayloadChange, TakesNoHeap) {
+TEST_P(PayloadChange, DoesNotAllocate) {
   ArmModel model(Rig(GetParam(), 0.1), kModes);
   ArmSimulator simulator(model);
   ArmState x = Swinging(model);

@@ -26,7 +26,7 @@ Eigen::Vector2d TipAt(const std::array<double, 2>& angle_rad) {
 }
 
 // Round-off of a metre through acos: 1e-16 / sin th2, and near the straight arm its square root.
-TEST(StraightArm, ForwardKinematicsOfItsAnglesIsThePosition) {
+TEST(StraightArm, ForwardKinematicsOfItsAnglesGivesThePosition) {
   for (const double x : {-1.1, -0.3, 0.0, 0.6, 1.2}) {
     for (const double y : {-1.0, -0.2, 0.4, 1.1}) {
       for (const ElbowSide elbow : {ElbowSide::kLeft, ElbowSide::kRight}) {
@@ -41,7 +41,7 @@ TEST(StraightArm, ForwardKinematicsOfItsAnglesIsThePosition) {
 
 // The elbow is at L1 (cos th1, sin th1): left of the line to the tip when the cross product of tip
 // and elbow is positive.
-TEST(StraightArm, TheElbowIsOnTheSideThatWasAskedFor) {
+TEST(StraightArm, TheElbowIsOnTheRequestedSide) {
   const std::array<double, 2> tip = {0.7, 0.9};
   for (const ElbowSide elbow : {ElbowSide::kLeft, ElbowSide::kRight}) {
     const auto angles = StraightArmAngles(kLengths_m, tip, elbow).value();
@@ -51,7 +51,7 @@ TEST(StraightArm, TheElbowIsOnTheSideThatWasAskedFor) {
   }
 }
 
-TEST(StraightArm, OutOfReachIsNothing) {
+TEST(StraightArm, APositionOutOfReachGivesNoAngles) {
   for (const double r : {1.701, 0.099, 0.0}) {
     EXPECT_FALSE(StraightArmAngles(kLengths_m, {0.0, r}, ElbowSide::kLeft).has_value()) << r;
   }

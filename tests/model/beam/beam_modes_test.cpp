@@ -25,7 +25,7 @@ std::vector<BeamSection> CutInto(const BeamSection& whole, const std::vector<dou
 }
 
 // Roots of 1 + cos z cosh z = 0 to 16 digits (docs/theory/plant.md 2.5). The search stops at
-// round-off of w, and z goes as its square root: 1e-12 leaves three digits of room.
+// round-off of w, and z is its square root: 1e-12 has a margin of three digits.
 TEST(BeamModes, BareCantileverHasTheRootsOfTheClosedForm) {
   const auto mode = ClampedModes({Strip(0.9)}, {0.0, 0.0}, 3);
   EXPECT_NEAR(mode[0].beta_length(), 1.875104068711961, 1e-12);
@@ -63,9 +63,9 @@ TEST(BeamModes, RigLinksMatchTheReferenceTable) {
   }
 }
 
-// A uniform beam stays what it is when it is described in pieces, long ones and slivers, in both
-// bases. 1e-11: matching 5 sections costs a digit or two of round-off.
-TEST(BeamModes, CuttingAUniformBeamChangesNothing) {
+// A uniform beam does not change when it is divided into sections, long ones and very short ones,
+// in both bases. 1e-11: matching 5 sections loses a digit or two to round-off.
+TEST(BeamModes, DividingAUniformBeamChangesNothing) {
   const BeamTip tip{0.1, 1e-4};
   const auto whole = ClampedModes({Strip(0.9)}, tip, 10);
   const auto cut = ClampedModes(CutInto(Strip(0.9), {0.3, 0.001, 0.4, 0.149, 0.05}), tip, 10);
@@ -77,7 +77,7 @@ TEST(BeamModes, CuttingAUniformBeamChangesNothing) {
   }
 }
 
-// Every shape satisfies what defines it: clamp, continuity, both tip conditions.
+// Every shape satisfies its defining conditions: clamp, continuity, both tip conditions.
 TEST(BeamModes, SteppedBeamSatisfiesItsConditions) {
   std::vector<BeamSection> section = {Strip(0.25), Strip(0.35), Strip(0.3)};
   section[0].second_moment_m4 *= 4.0;
@@ -104,8 +104,8 @@ TEST(BeamModes, SteppedBeamSatisfiesItsConditions) {
   }
 }
 
-// Two equal strips joined by a link so soft that both halves ring almost alone: roots in pairs
-// that a sign search on a grid would step over. Counting cannot miss one.
+// Two equal strips joined by a link so soft that the halves vibrate almost independently: pairs of
+// close roots that a sign search on a grid would miss. Counting cannot miss one.
 TEST(BeamModes, CloseRootsAreAllFound) {
   std::vector<BeamSection> section = {Strip(0.5), Strip(1e-3), Strip(0.5)};
   section[1].youngs_modulus_pa *= 1e-6;
@@ -118,8 +118,8 @@ TEST(BeamModes, CloseRootsAreAllFound) {
   }
 }
 
-// A heavy tip makes the link a massless spring: w^2 -> 3EI / ((m_t + 33/140 m) L^3), Rayleigh's
-// estimate, good to 8e-8 at m_t = 100 m. Leaving out the 33/140 is off by 1.2e-3.
+// With a heavy tip the link is a massless spring: w^2 -> 3EI / ((m_t + 33/140 m) L^3), Rayleigh's
+// estimate, accurate to 8e-8 at m_t = 100 m. Without the 33/140 the error is 1.2e-3.
 TEST(BeamModes, HeavyTipMassRecoversTheMasslessSpring) {
   const BeamSection s = Strip(0.9);
   const double mass = s.mass_per_length_kg_m() * 0.9;
@@ -142,8 +142,8 @@ TEST(BeamModes, PinnedBeamHasTheRootsOfTheClosedForm) {
 }
 
 // A bare uniform beam on a root spring k: z (sin z cosh z - cos z sinh z) = k L/(EI) (1 + cos z
-// cosh z), from the free end's conditions by hand. Both sides over cosh z: a slip of 1e-11 in z
-// shows.
+// cosh z), from the free end's conditions by hand. Both sides over cosh z: an error of 1e-11 in z
+// is detected.
 TEST(BeamModes, BeamOnARootSpringSatisfiesTheClosedForm) {
   const BeamSection s = Strip(0.9);
   for (const double k : {0.01, 1.0, 50.0, 3000.0}) {
@@ -161,7 +161,7 @@ TEST(BeamModes, BeamOnARootSpringSatisfiesTheClosedForm) {
 }
 
 // The two ends of the spring's range. First order in 1/k and k: 1e-9 of the range's middle.
-TEST(BeamModes, RootSpringGoesFromPinnedToClamped) {
+TEST(BeamModes, RootSpringRangesFromPinnedToClamped) {
   const BeamTip tip{0.1, 1e-4};
   const auto clamped = ClampedModes({Strip(0.9)}, tip, 3);
   const auto pinned = NaturalModes({Strip(0.9)}, tip, BeamRoot::Pinned(), 3);
@@ -176,7 +176,7 @@ TEST(BeamModes, RootSpringGoesFromPinnedToClamped) {
   EXPECT_LT(soft[0].frequency_rad_s(), 1e-3) << "nearly a rigid body on a soft spring";
 }
 
-// The example of docs/theory/plant.md 2.4, its digits being the tolerance: link 1 with I_r2 at its
+// The example of docs/theory/plant.md 2.4, its digits are the tolerance: link 1 with I_r2 at its
 // tip, 0.16 N m.
 TEST(FrictionRootMode, RigExampleSlipsAtFiveMillimetresAndSticksAtOne) {
   const ArmParameters p = ThesisRig();
@@ -192,7 +192,7 @@ TEST(FrictionRootMode, RigExampleSlipsAtFiveMillimetresAndSticksAtOne) {
   EXPECT_THROW(FrictionRootMode(p.link[0].section, tip, 1, 0.0, 0.16), std::invalid_argument);
 }
 
-TEST(BeamModes, BrokenBeamsAreRefused) {
+TEST(BeamModes, InvalidBeamsAreRejected) {
   EXPECT_THROW(ClampedModes({}, {0.0, 0.0}, 1), std::invalid_argument);
   EXPECT_THROW(ClampedModes({Strip(0.9)}, {0.0, 0.0}, 0), std::invalid_argument);
   EXPECT_THROW(ClampedModes({Strip(0.9)}, {-0.1, 0.0}, 1), std::invalid_argument);
@@ -202,7 +202,7 @@ TEST(BeamModes, BrokenBeamsAreRefused) {
 }
 
 // Distinct clamped modes are orthogonal in mass (with the tip) and in stiffness, and w^2 is their
-// ratio: three facts that tie shapes, integrals and frequencies together. 1e-9 is round-off of the
+// ratio: three relations between shapes, integrals and frequencies. 1e-9 is round-off of the
 // tip-normalised shapes (max psi is 70 on link 1); a wrong tip term leaves 0.1 and more.
 TEST(LinkModes, ModesAreOrthogonalInMassAndStiffness) {
   const ArmParameters p = ThesisRig();
@@ -258,7 +258,7 @@ TEST(LinkModes, DampingReadingsGiveTheirStatedRatios) {
 
 // docs/theory/plant.md 5: zeta_k = xi (beta_k L)^2 / 2; link 1 (I_r2 at its tip) 0.008, 0.119, link
 // 2 0.032, 0.256.
-TEST(LinkModes, DampingOfTheRigIsThatOfTheReference) {
+TEST(LinkModes, DampingOfTheRigAgreesWithTheReference) {
   ArmParameters p = ThesisRig();
   p.link1_tip_inertia = Link1TipInertia::kMotor;
   const LinkModes links[] = {Link1Modes(p, 2), Link2Modes(p, 2)};

@@ -21,7 +21,7 @@ const BeamTip kBare{0.0, 0.0};
 
 std::vector<BeamSection> Link2() { return ThesisRig().link[1].section; }
 
-// Three sections, a tip that counts.
+// Three sections, with tip mass and inertia.
 std::vector<BeamSection> Stepped() {
   const BeamSection s = Link2()[0];
   std::vector<BeamSection> section = {s, s, s};
@@ -56,14 +56,14 @@ TEST(LumpedBeam, ClaimOfTheThesisNeedsTheStatedNumberOfParts) {
   EXPECT_LT(std::fabs(ErrorPercent(86, 4)), 0.05);
 }
 
-TEST(LumpedBeam, SlabInertiaMakesItWorse) {
+TEST(LumpedBeam, SlabInertiaIncreasesTheError) {
   for (int order = 1; order <= 4; ++order) {
     EXPECT_LT(ErrorPercent(20, order, LumpInertia::kSlab), ErrorPercent(20, order)) << order;
   }
 }
 
-// The two solvers share no equation but the beam's: as N doubles, the difference is a quarter. 5 %
-// of 4 allows for the next term (N^-4) at N = 80; modes of a stepped beam with tip, on every root.
+// The two solvers share only the beam equation: as N doubles, the difference is a quarter. 5 % of 4
+// allow for the next term (N^-4) at N = 80; modes of a stepped beam with tip, for every root.
 TEST(LumpedBeam, ConvergesToTheExactModesAsTheSquareOfN) {
   const BeamTip tip{0.2, 1e-3};
   for (const BeamRoot root : {BeamRoot::Clamped(), BeamRoot::Pinned(), BeamRoot::Spring(15.0)}) {
@@ -79,7 +79,7 @@ TEST(LumpedBeam, ConvergesToTheExactModesAsTheSquareOfN) {
   }
 }
 
-TEST(LumpedBeam, ShapesAreThoseOfTheExactModes) {
+TEST(LumpedBeam, ShapesAgreeWithTheExactModes) {
   const BeamTip tip{0.2, 1e-3};
   const auto exact = NaturalModes(Stepped(), tip, BeamRoot::Spring(15.0), 4);
   const auto lumped = LumpedBeam(Stepped(), tip, BeamRoot::Spring(15.0), 100).Modes(4);
@@ -96,7 +96,7 @@ TEST(LumpedBeam, ShapesAreThoseOfTheExactModes) {
   }
 }
 
-// Pivots and transfer matrices are two ways to the same frequencies of the same lumped beam.
+// Pivots and transfer matrices are independent methods for the frequencies of the lumped beam.
 TEST(LumpedBeam, DeterminantChangesSignExactlyWhereTheCountSteps) {
   const LumpedBeam beam(Stepped(), {0.2, 1e-3}, BeamRoot::Spring(15.0), 12);
   double before = beam.EndDeterminant(0.5);
@@ -110,8 +110,8 @@ TEST(LumpedBeam, DeterminantChangesSignExactlyWhereTheCountSteps) {
   EXPECT_GE(changes, 6);
 }
 
-// Ten modes of a beam whose plain transfer matrix would lose all digits (cosh of 30).
-TEST(LumpedBeam, LongBeamsKeepTheirDigits) {
+// Ten modes of a beam whose plain transfer matrix loses all digits (cosh of 30).
+TEST(LumpedBeam, LongBeamsLoseNoDigits) {
   const auto exact = ClampedModes(Link2(), kBare, 10);
   const auto lumped = LumpedBeam(Link2(), kBare, BeamRoot::Clamped(), 800).Modes(10);
   for (std::size_t i = 0; i < 10; ++i) {

@@ -40,9 +40,9 @@ double Printed(const std::array<double, 4>& C, double z) {
   return C[0] * std::sin(z) + C[1] * std::sinh(z) + C[2] * std::cos(z) + C[3] * std::cosh(z);
 }
 
-// Sampled exactly, a shape comes back: residual and shape at round-off (1e-10 of a shape of size
+// An exactly sampled shape is reproduced: residual and shape at round-off (1e-10 of a shape of size
 // 1..10), in both bases (mode 1 has beta l < 2 in a section, mode 6 far above).
-TEST(ModeShapeFit, ExactShapesComeBack) {
+TEST(ModeShapeFit, ExactShapesAreReproduced) {
   const auto section = TwoSections();
   for (const BeamMode& mode : ClampedModes(section, kTip, 6)) {
     const Samples s = ExactSamples(mode);
@@ -60,8 +60,8 @@ TEST(ModeShapeFit, ExactShapesComeBack) {
   }
 }
 
-// Alternating noise of size d that no smooth shape follows stays in the residual.
-TEST(ModeShapeFit, ResidualIsWhatDoesNotFit) {
+// Alternating noise of size d, which no smooth shape follows, stays in the residual.
+TEST(ModeShapeFit, NoiseStaysInTheResidual) {
   const BeamMode mode = ClampedModes(TwoSections(), kTip, 2).back();
   const Samples s = ExactSamples(mode, 0.01);
   const ModeShapeFit fit = FitModeShape(TwoSections(), mode.frequency_rad_s(), s.x, s.w);
@@ -69,7 +69,7 @@ TEST(ModeShapeFit, ResidualIsWhatDoesNotFit) {
   EXPECT_GE(fit.max_residual, fit.rms_residual);
 }
 
-// The thesis's single beta on a link with a step: a residual that one beta per section has not.
+// The thesis's single beta on a stepped link leaves a residual; one beta per section does not.
 TEST(ModeShapeFit, SingleBetaDoesNotFitASteppedLink) {
   const BeamMode mode = ClampedModes(TwoSections(), kTip, 3).back();
   const Samples s = ExactSamples(mode);
@@ -81,8 +81,8 @@ TEST(ModeShapeFit, SingleBetaDoesNotFitASteppedLink) {
   EXPECT_LT(each.rms_residual, 1e-9);
 }
 
-// What the thesis does: shapes of the lumped beam, compressed into (3.7). With N parts the samples
-// are off by N^-2, and so is the fit.
+// The method of the thesis: shapes of the lumped beam, fitted by (3.7). With N parts the samples
+// err by N^-2, and so does the fit.
 TEST(ModeShapeFit, LumpedShapesFitToTheirOwnError) {
   const BeamMode exact = ClampedModes(TwoSections(), kTip, 2).back();
   const auto error = [&](int parts) {
@@ -96,7 +96,7 @@ TEST(ModeShapeFit, LumpedShapesFitToTheirOwnError) {
   EXPECT_NEAR(error(40) / error(80), 4.0, 0.4);
 }
 
-TEST(ModeShapeFit, TooFewSamplesAreRefused) {
+TEST(ModeShapeFit, TooFewSamplesAreRejected) {
   const BeamMode mode = ClampedModes(TwoSections(), kTip, 1).back();
   EXPECT_THROW(FitModeShape(TwoSections(), mode.frequency_rad_s(),
                             {0.0, 0.1, 0.2, 0.5, 0.6, 0.7, 0.9}, {0, 0, 0, 0, 0, 0, 0}),

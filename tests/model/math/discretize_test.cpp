@@ -21,9 +21,9 @@ TEST(ZeroOrderHold, DoubleIntegratorIsExact) {
   EXPECT_NEAR(d.B(1, 0), 0.02, 1e-17);
 }
 
-// An oscillator turns: cos and sin of w T. Period 0.3 s and 250 rad/s make 12 full turns, so
+// An oscillator rotates: cos and sin of w T. Period 0.3 s and 250 rad/s make 12 full turns, so
 // the exponential must scale and square; 1e-12 is round-off after about seven squarings.
-TEST(ZeroOrderHold, OscillatorTurnsByItsAngle) {
+TEST(ZeroOrderHold, OscillatorRotatesByItsAngle) {
   const double w = 250.0, T = 0.3;
   MatrixXd A(2, 2), B(2, 1);
   A << 0.0, 1.0, -w * w, 0.0;
@@ -34,7 +34,7 @@ TEST(ZeroOrderHold, OscillatorTurnsByItsAngle) {
   EXPECT_NEAR(d.B(0, 0) * w * w, 1.0 - std::cos(w * T), 1e-12);
 }
 
-// Mixed units must cost no digits: scaling a state by 1e6 only scales the answer.
+// Mixed units must lose no digits: scaling a state by 1e6 only scales the result.
 TEST(MatrixExponential, UnitsOfTheStatesDoNotMatter) {
   MatrixXd A(3, 3);
   A << -1.0, 0.3, 0.2, 0.5, -2.0, 0.1, 0.0, 0.7, -0.5;
@@ -44,7 +44,7 @@ TEST(MatrixExponential, UnitsOfTheStatesDoNotMatter) {
   EXPECT_LT((back - MatrixExponential(A)).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(ZeroOrderHold, WrongSizesAndPeriodsAreRefused) {
+TEST(ZeroOrderHold, WrongSizesAndPeriodsAreRejected) {
   const MatrixXd A = MatrixXd::Zero(2, 2), B = MatrixXd::Zero(2, 1);
   EXPECT_THROW(ZeroOrderHold(A, B, 0.0), std::invalid_argument);
   EXPECT_THROW(ZeroOrderHold(A, MatrixXd::Zero(3, 1), 0.1), std::invalid_argument);

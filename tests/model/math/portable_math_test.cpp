@@ -1,4 +1,4 @@
-// Portable functions against libm in long double (64-bit mantissa: eleven bits to spare).
+// Portable functions against libm in long double (64-bit mantissa: eleven more bits).
 
 #include "model/math/portable_math.h"
 
@@ -22,7 +22,7 @@ double Ulps(double value, long double exact) {
   return static_cast<double>(std::fabs(static_cast<long double>(value) - exact)) / ulp;
 }
 
-// A grid that hits neighbourhoods of every multiple of pi/4 in 16 turns, and random angles of the
+// A grid that contains neighbourhoods of every multiple of pi/4 in 16 turns, and random angles of
 // whole range.
 std::vector<double> Angles() {
   std::vector<double> angles;
@@ -39,7 +39,7 @@ std::vector<double> Angles() {
   return angles;
 }
 
-// Measured: 1.105 ulp. The argument's last part left out: 2.0 ulp, near multiples of pi/2 far more.
+// Measured: 1.105 ulp. Without the argument's last part: 2.0 ulp, near multiples of pi/2 far more.
 TEST(PortableMath, SineAndCosineAreWithinTheirBound) {
   double worst = 0.0, at = 0.0;
   for (const double x : Angles()) {
@@ -82,7 +82,7 @@ TEST(PortableMath, TanhIsOddAndEndsAtOne) {
   EXPECT_EQ(PortableMath::Tanh(1e300), 1.0);
 }
 
-TEST(PortableMath, SaysNaNBeyondItsRangeAndOfNaN) {
+TEST(PortableMath, ReturnsNanBeyondItsRangeAndForNan) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const double beyond = std::nextafter(PortableMath::kMaxAngle_rad, infinity);

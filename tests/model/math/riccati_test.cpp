@@ -25,7 +25,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// SLICOT's generalised Schur method: shares nothing with doubling.
+// SLICOT's generalised Schur method: independent of doubling.
 MatrixXd SlicotDare(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R) {
   const int n = static_cast<int>(A.rows()), m = static_cast<int>(B.cols()), p = 0, one = 1;
   const int wide = 2 * n + m, two_n = 2 * n, work = 64 * (wide + 16);
@@ -61,8 +61,8 @@ class Random {
 };
 
 // 60 random systems of 1 to 16 states, half of them unstable, with rank-deficient Q. The two
-// methods agree to round-off times the condition of the problem: 1e-12 typical, 1e-8 leaves room
-// for the worst. A wrong term anywhere gives another matrix altogether.
+// methods agree to round-off times the condition of the problem: 1e-12 typical, 1e-8 allows
+// for the worst. Any wrong term gives a quite different matrix.
 TEST(SolveDare, AgreesWithSlicotOnRandomSystems) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     Random random(seed);
@@ -82,7 +82,7 @@ TEST(SolveDare, AgreesWithSlicotOnRandomSystems) {
   }
 }
 
-// Two integrators in a row (eigenvalues on the circle) are fine as long as Q sees them.
+// Two integrators in series (eigenvalues on the circle) are allowed if Q weights them.
 TEST(SolveDare, DoubleIntegratorHasAStabilisingSolution) {
   MatrixXd A(2, 2), B(2, 1);
   A << 1.0, 0.02, 0.0, 1.0;
@@ -92,10 +92,11 @@ TEST(SolveDare, DoubleIntegratorHasAStabilisingSolution) {
   EXPECT_LT((P - SlicotDare(A, B, Q, R)).cwiseAbs().maxCoeff(), 1e-9 * P.maxCoeff());
 }
 
-TEST(SolveDare, HopelessProblemsAreRefused) {
+TEST(SolveDare, ProblemsWithoutSolutionAreRejected) {
   const MatrixXd one = MatrixXd::Identity(1, 1), zero = MatrixXd::Zero(1, 1);
   EXPECT_THROW(SolveDare(2.0 * one, zero, one, one), std::runtime_error) << "not stabilisable";
-  EXPECT_THROW(SolveDare(one, one, zero, one), std::runtime_error) << "integrator unseen by Q";
+  EXPECT_THROW(SolveDare(one, one, zero, one), std::runtime_error)
+      << "integrator not weighted by Q";
   EXPECT_THROW(SolveDare(one, one, one, -one), std::invalid_argument);
   EXPECT_THROW(SolveDare(one, MatrixXd::Zero(2, 1), one, one), std::invalid_argument);
 }
@@ -106,7 +107,7 @@ TEST(SolveStein, ResidualIsRoundOffOnRandomProblems) {
     const int n = 1 + static_cast<int>(seed % 12), m = 1 + static_cast<int>(seed % 7);
     const MatrixXd A = random.Matrix(n, n), B = random.Matrix(m, m), C = random.Matrix(n, m);
     const MatrixXd X = SolveStein(A, B, C);
-    // Random products may come near 1 and make X large: measured against X.
+    // Random products may be near 1 and make X large: relative to X.
     EXPECT_LT((X - A * X * B - C).cwiseAbs().maxCoeff(), 1e-11 * (1.0 + X.cwiseAbs().maxCoeff()))
         << "seed " << seed;
   }
@@ -122,7 +123,7 @@ TEST(SolveStein, EigenvaluesOnTheUnitCircleAreAllowed) {
   EXPECT_LT((X - A * X * B - C).cwiseAbs().maxCoeff(), 1e-13);
 }
 
-TEST(SolveStein, ReciprocalEigenvaluesAreRefused) {
+TEST(SolveStein, ReciprocalEigenvaluesAreRejected) {
   const MatrixXd A = Eigen::Vector2d(2.0, 0.3).asDiagonal(), B = 0.5 * MatrixXd::Identity(1, 1);
   EXPECT_THROW(SolveStein(A, B, MatrixXd::Ones(2, 1)), std::runtime_error);
   EXPECT_THROW(SolveStein(A, B, MatrixXd::Ones(1, 1)), std::invalid_argument);

@@ -11,7 +11,7 @@ namespace {
 template <int Rows, int Columns>
 using FixedMatrix = Eigen::Matrix<double, Rows, Columns>;
 
-// Of the cases that the arm has: sizes on both sides of a panel's four columns, and several panels.
+// Cases of the arm: sizes on both sides of a panel's four columns, and several panels.
 template <int N>
 void ExpectBitsOfEigen() {
   SCOPED_TRACE(N);
@@ -41,8 +41,8 @@ void ExpectBitsOfEigen() {
   }
 }
 
-// Eigen is the independent program. Where it has a fused multiply-add it rounds once less often.
-TEST(SmallCholesky, GivesTheBitsOfEigensGeneralAlgorithm) {
+// Reference: Eigen. Where it has a fused multiply-add it rounds once less often.
+TEST(SmallCholesky, IsBitIdenticalToEigensGeneralAlgorithm) {
 #ifdef EIGEN_VECTORIZE_FMA
   GTEST_SKIP() << "Eigen uses fused multiply-add on this processor";
 #endif
@@ -63,7 +63,7 @@ TEST(SmallCholesky, SolvesAKnownSystem) {
   EXPECT_EQ(small.Solve(Eigen::Vector2d(6.0, 12.0)), Eigen::Vector2d(1.0, 1.0));
 }
 
-TEST(SmallCholesky, GivesNanOfAMatrixThatIsNotPositiveDefinite) {
+TEST(SmallCholesky, GivesNanForAMatrixThatIsNotPositiveDefinite) {
   const SmallCholesky<2> small(Eigen::Matrix2d{{1.0, 2.0}, {2.0, 1.0}});
   EXPECT_TRUE(std::isnan(small.Solve(Eigen::Vector2d(1.0, 1.0))[1]));
 }

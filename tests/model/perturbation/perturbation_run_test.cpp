@@ -13,10 +13,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Figures 6.1 and 6.2: a small square wave on top of a moving arm. What the linear model leaves out
-// is of second order: ten times the perturbation, ten times the relative error (2.3 % measured at
-// the smaller one, whose torques are 0.4 % of the nominal ones).
-TEST(Perturb, LinearModelAlongAMotionIsRightToFirstOrder) {
+// Figures 6.1 and 6.2: a small square wave added to a moving arm. The linear model neglects terms
+// of second order: ten times the perturbation, ten times the relative error (2.3 % measured at the
+// smaller one, whose torques are 0.4 % of the nominal ones).
+TEST(Perturb, LinearModelAlongAMotionIsCorrectToFirstOrder) {
   ArmParameters p = ThesisRig();
   p.joint[0].coulomb_friction_nm = p.joint[1].coulomb_friction_nm = 0.0;
   p.damping = DampingReading::kNone;

@@ -26,7 +26,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// SLICOT: real Schur forms, other swaps, other Lyapunov solver.
+// SLICOT: real Schur forms, different swaps and Lyapunov solver.
 struct SlicotReduction {
   VectorXd hankel;
   StateSpace reduced;
@@ -74,7 +74,7 @@ TEST(GramianFactor, SolvesTheLyapunovEquation) {
 }
 
 // x' = -a x + b u, y = c x: the one Hankel value is |b c| / (2 a).
-TEST(BalancedTruncation, OneStateComesOutAsByHand) {
+TEST(BalancedTruncation, OneStateAgreesWithTheClosedForm) {
   const MatrixXd one = MatrixXd::Identity(1, 1);
   const BalancedSystem b = BalanceGramians({-4.0 * one, 3.0 * one, -2.0 * one}, 1e-3);
   ASSERT_EQ(b.hankel.size(), 1);
@@ -93,7 +93,7 @@ TEST(BalancedTruncation, AgreesWithSlicotOnRandomSystemsStableOrNot) {
     const SlicotReduction slicot = Slicot(s, -1e-3, rest + order);
     ASSERT_EQ(balanced.hankel.size(), slicot.hankel.size()) << "seed " << seed;
     if (balanced.hankel.size() == 0) continue;
-    // Relative to the largest: what SLICOT's own solver keeps.
+    // Relative to the largest: the accuracy of SLICOT's own solver.
     EXPECT_LT((balanced.hankel - slicot.hankel).cwiseAbs().maxCoeff(), 1e-8 * slicot.hankel[0])
         << "seed " << seed;
     const StateSpace reduced = Truncated(balanced, order);
@@ -110,7 +110,7 @@ StateSpace Arm(int modes) {
   return DampedArm(arm, {0.5, 0.0, 0.0});
 }
 
-// Rigid-body motions are two Jordan blocks at zero: four states that no truncation touches.
+// Rigid-body motions are two Jordan blocks at zero: four states that no truncation changes.
 TEST(BalancedTruncation, ArmAgreesWithSlicotAndKeepsItsRigidBody) {
   const StateSpace s = Arm(4);
   const BalancedSystem balanced = BalanceGramians(s, 1e-2);
@@ -118,15 +118,15 @@ TEST(BalancedTruncation, ArmAgreesWithSlicotAndKeepsItsRigidBody) {
   EXPECT_LT(balanced.rest.A.eigenvalues().cwiseAbs().maxCoeff(), 1e-4);
   const SlicotReduction slicot = Slicot(s, -1e-2, 10);
   for (Index i = 0; i < 8; ++i) EXPECT_NEAR(slicot.hankel[i] / balanced.hankel[i], 1.0, 1e-6) << i;
-  // At zero frequency the rigid body's gain is infinite; from 1 rad/s on, both are good to 1e-8 of
-  // the flexible part's largest value.
+  // At zero frequency the rigid body's gain is infinite; from 1 rad/s on, both are accurate to 1e-8
+  // of the flexible part's largest value.
   const StateSpace reduced = Truncated(balanced, 6);
   for (const double omega : {1.0, 10.0, 41.0, 55.0, 105.0, 1000.0}) {
     EXPECT_LT(GainOfDifference(reduced, slicot.reduced, omega), 1e-6 * Gain(s, omega)) << omega;
   }
 }
 
-// Glover's and Enns's bound, at 1400 frequencies, at every order, with the rigid body in.
+// Glover's and Enns's bound, at 1400 frequencies, at every order, including the rigid body.
 TEST(BalancedTruncation, ErrorOfTheArmStaysBelowItsBoundAtEveryFrequency) {
   const StateSpace s = Arm(4);
   const BalancedSystem balanced = BalanceGramians(s, 1e-2);
@@ -137,13 +137,13 @@ TEST(BalancedTruncation, ErrorOfTheArmStaysBelowItsBoundAtEveryFrequency) {
     for (double omega = 1.0; omega < 1e6; omega *= 1.01) {
       worst = std::fmax(worst, GainOfDifference(s, reduced, omega));
     }
-    // What round-off leaves where the rigid body's gain is 1/omega^2 / (0.1 kg m^2).
+    // Round-off where the rigid body's gain is 1/omega^2 / (0.1 kg m^2).
     EXPECT_LT(worst, bound + 1e-9) << "order " << order;
-    EXPECT_GT(worst, 0.01 * bound) << "a bound that nothing comes near tests nothing";
+    EXPECT_GT(worst, 0.01 * bound) << "the error must come near the bound";
   }
 }
 
-TEST(BalancedTruncation, AllStatesGiveTheWholeSystemBack) {
+TEST(BalancedTruncation, AllStatesReproduceTheWholeSystem) {
   const StateSpace s = RandomSystem(7);
   const BalancedSystem balanced = BalanceGramians(s, 1e-3);
   const StateSpace whole = Truncated(balanced, static_cast<int>(balanced.stable.A.rows()));

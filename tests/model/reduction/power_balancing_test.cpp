@@ -17,8 +17,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Two unit masses, springs k to the wall and c between them; push the first, watch the second.
-// By hand: omega^2 = k and k + 2c, both shapes reached and seen with weight 1/2.
+// Two unit masses, springs k to the wall and c between them; force on the first, output at the
+// second. By hand: omega^2 = k and k + 2c, both shapes with input and output weight 1/2.
 UndampedSystem TwoMasses(double k, double c) {
   UndampedSystem s{MatrixXd::Identity(2, 2), MatrixXd(2, 2), MatrixXd(2, 1), MatrixXd(1, 2)};
   s.Q2 << k + c, -c, -c, k + c;
@@ -33,7 +33,7 @@ UndampedSystem Skewed(const UndampedSystem& s, const MatrixXd& S) {
   return {s.Q1, inverse * s.Q2 * S, inverse * s.B0, s.C0 * S};
 }
 
-TEST(PowerBalancing, TwoMassesComeOutAsByHand) {
+TEST(PowerBalancing, TwoMassesAgreeWithTheClosedForm) {
   const PowerBalance balance = BalancePower(TwoMasses(4.0, 2.5));
   EXPECT_EQ(balance.condition, PowerCondition::kSymmetric);
   ASSERT_EQ(balance.mode.size(), 2u);
@@ -69,8 +69,8 @@ TEST(PowerBalancing, RelaxedConditionFindsTheSameModesInSkewedCoordinates) {
   }
 }
 
-// The definition (6.17) by stepping the impulse responses. Over 2000 s the cross terms have died to
-// (difference of frequencies * time)^-1 = 5e-4.
+// The definition (6.17) by stepping the impulse responses. Over 2000 s the cross terms have decayed
+// to (difference of frequencies * time)^-1 = 5e-4.
 TEST(PowerBalancing, PowerElementsAreTimeAverages) {
   MatrixXd S(2, 2);
   S << 1.0, 0.7, -0.2, 3.0;
@@ -103,8 +103,8 @@ UndampedSystem RandomUndamped(unsigned seed, bool symmetric) {
   return s;
 }
 
-// Appendix D's claim, without its proof: L takes the system to the balanced one, and the mean of
-// twice eta eta' over the impulse responses is diag(rho) from the input's side and from the
+// Appendix D's statement, without its proof: L transforms the system to the balanced one, and the
+// mean of twice eta eta' over the impulse responses is diag(rho) from the input's side and from the
 // output's. The means are exact: by the modal form, not by time.
 TEST(PowerBalancing, TransformedSystemIsInternallyPowerBalanced) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -156,7 +156,7 @@ TEST(PowerBalancing, RigidAndGrowingRootsAreDroppedByName) {
   EXPECT_EQ(fluttering.dropped[0].reason, DroppedRoot::Reason::kComplex);
 }
 
-TEST(PowerBalancing, WhatCannotBeBalancedIsRefused) {
+TEST(PowerBalancing, SystemsThatCannotBeBalancedAreRejected) {
   EXPECT_THROW(BalancePower(TwoMasses(4.0, 0.0)), std::domain_error) << "equal roots";
   UndampedSystem neither = TwoMasses(4.0, 2.5);
   neither.Q1(0, 1) = 0.5;
@@ -192,7 +192,7 @@ struct TableRow {
 };
 
 // docs/theory/plant.md 8.2, M = 10: printed with two decimals.
-TEST(ArmReduction, ContributionsAreThoseOfTheReference) {
+TEST(ArmReduction, ContributionsAgreeWithTheReference) {
   const TableRow rows[] = {
       {Motion(0, 0, 0), ModalScaling::kMass, {99.50, 99.99}, {99.23, 99.99}},
       {Motion(0, 0, 0), ModalScaling::kLength, {95.37, 99.44}, {98.18, 99.98}},
@@ -214,8 +214,8 @@ TEST(ArmReduction, ContributionsAreThoseOfTheReference) {
   EXPECT_NEAR(straight, 99.505, 5e-4);
 }
 
-// At rest: two zeros. In motion the elbow's becomes a small positive root that would take 93 % of
-// the sum of rho (docs/theory/plant.md 8.1). Beyond 90 degrees it turns negative.
+// At rest: two zeros. In motion the elbow's zero becomes a small positive root that would be 93 %
+// of the sum of rho (docs/theory/plant.md 8.1). Beyond 90 degrees it turns negative.
 TEST(ArmReduction, RigidBodyRootsAreFoundAndMarked) {
   const ArmModel arm = ReferenceArm();
   const auto at = [&](const NominalMotion& motion) {
@@ -250,9 +250,9 @@ TEST(ArmReduction, BothConditionsAgreeOnTheArmAtRest) {
 }
 
 // docs/theory/plant.md 8.2: 60 s of the impulse response give the same mu to 0.07 %. Measured:
-// 0.0750 % for link 2's second mode (roots at 16.7 and 17.4 Hz beat slowly), 0.023 % at most for
-// the others; a step of 2e-5 s changes nothing. The rigid motions grow in the angles only, so the
-// modal coordinates can be compared as they are.
+// 0.0750 % for link 2's second mode (slow beat of the roots at 16.7 and 17.4 Hz), at most 0.023 %
+// for the others; a step of 2e-5 s changes nothing. The rigid motions grow in the angles only, so
+// the modal coordinates can be compared directly.
 TEST(ArmReduction, SixtySecondsOfImpulseResponseGiveTheSamePowerElements) {
   const ArmModel arm = ReferenceArm();
   const UndampedSystem system = UndampedArm(arm, Motion(0, 0, 0));

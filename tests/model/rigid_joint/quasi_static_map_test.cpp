@@ -1,5 +1,5 @@
-// The bend of an arm that does not vibrate: against another program's numbers, the balance of
-// forces it stands for, and the simulated arm that it drives.
+// The deflection of an arm that does not vibrate: against another program's numbers, against the
+// balance of forces, and on the simulated arm.
 
 #include "model/rigid_joint/quasi_static_map.h"
 
@@ -64,7 +64,7 @@ TEST_F(QuasiStaticMap, TheTorqueOfASampleIsTheMeanOfItsEnds) {
   EXPECT_GT(next[0] - now[0], 0.1);
 }
 
-// The reference that asks no payload: the hubs of 0.15 kg.
+// The reference independent of the payload: the hubs of 0.15 kg.
 TEST_F(QuasiStaticMap, HubsOf150GramsAreTheGoldenReference) {
   const MatrixXd golden_r = AsMatrix(GoldenFile("beyond-golden.json")["r"]);
   const OutboardBody body = arm_.Outboard(0.15);
@@ -75,8 +75,8 @@ TEST_F(QuasiStaticMap, HubsOf150GramsAreTheGoldenReference) {
   EXPECT_LT(RelativeError(r, golden_r), 1e-8);
 }
 
-// The elastic forces hold the links against the inertial ones, the torque the hubs, and Y is where
-// the definition puts it.
+// The elastic forces balance the inertial ones of the links, the torque those of the hubs, and Y
+// agrees with its definition.
 TEST_F(QuasiStaticMap, BalancesTheForcesOfTheStraightArm) {
   const RigidPoint point{.angle_rad = {0.3, -1.1},
                          .rate_rad_s = {1.2, -2.0},
@@ -110,8 +110,9 @@ TEST_F(QuasiStaticMap, AnArmAtRestIsStraight) {
   EXPECT_EQ(sample.torque_nm, Vector2d::Zero());
 }
 
-// Its torque alone, on the frictionless arm: what is left when the move ends is the inertia of f
-// and the geometry of the bent arm, which the map leaves out: 1.5 mrad and 1.0 mm at most.
+// Its torque alone, on the frictionless arm: the residual motion at the end of the move is due to
+// the inertia of f and the geometry of the bent arm, which the map neglects: at most 1.5 mrad and
+// 1.0 mm.
 TEST_F(QuasiStaticMap, ItsTorqueMovesTheArmAlongThePath) {
   const RigidJointStepper stepper(arm_, kPeriod_s, 20.0);
   for (const double payload_kg : {0.0, 0.15, 0.37}) {

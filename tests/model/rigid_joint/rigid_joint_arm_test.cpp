@@ -1,4 +1,4 @@
-// The loop's small model against the off-line one, and against another program's numbers.
+// The small model of the loop against the off-line one, and against another program's numbers.
 
 #include "model/rigid_joint/rigid_joint_arm.h"
 
@@ -23,7 +23,7 @@ static_assert(noexcept(std::declval<const RigidJointArm&>().Outboard(0.1)));
 ArmParameters RigWith(double payload_kg) {
   ArmParameters p = ThesisRig();
   p.payload_mass_kg = payload_kg;
-  p.payload_inertia_kgm2 = 2e-4;  // large enough to be seen
+  p.payload_inertia_kgm2 = 2e-4;  // large enough to have an effect
   return p;
 }
 
@@ -43,7 +43,7 @@ Vector Random(std::mt19937* random, const Vector& size) {
   return out.cwiseProduct(size);
 }
 
-// Measured: 1.1e-15, round-off. Rotor 2 left out of the body on hub 2 gives 0.8.
+// Measured: 1.1e-15, round-off. Rotor 2 missing in the body on hub 2 gives 0.8.
 template <typename Math>
 void ExpectTheReducedModel() {
   const MatrixXd T_r = RigidJoints();
@@ -52,7 +52,7 @@ void ExpectTheReducedModel() {
   const Vector v_size = {8.0, 10.0, 2.0, 0.05, 2.0, 0.05};
   for (const double payload_kg : {0.0, 0.1, 0.37, 1.0}) {
     const ArmModel full(RigWith(payload_kg), {2, 2});
-    const RigidJointArm arm(RigWith(0.2));  // its own payload does not count
+    const RigidJointArm arm(RigWith(0.2));  // its own payload has no effect
     for (int i = 0; i < 50; ++i) {
       const Vector q = Random(&random, q_size), v = Random(&random, v_size);
       const auto terms = arm.At<Math>(arm.Outboard(payload_kg), q, v);
@@ -80,7 +80,7 @@ TEST(RigidJointArm, AgreesWithTheGoldenMassMatrixAndBias) {
   EXPECT_LT(RelativeError(terms.bias, AsVector(golden["bias"])), 1e-8);
 }
 
-TEST(RigidJointArm, RefusesParametersThatMakeNoModel) {
+TEST(RigidJointArm, RejectsInvalidParameters) {
   ArmParameters p = ThesisRig();
   p.link[1].section.clear();
   EXPECT_THROW(RigidJointArm{p}, std::invalid_argument);

@@ -44,7 +44,7 @@ class RigidJointSample : public testing::Test {
   const double payload_kg_ = golden_["m"];
 };
 
-// 1.8e-9 measured, all of it at joint 2, whose friction the other program finds by iteration.
+// 1.8e-9 measured, at joint 2 only, whose friction the other program finds by iteration.
 TEST_F(RigidJointSample, AgreesWithTheGoldenStep) {
   const GaugedState start{.q = q_, .v = v_, .phi_f = 0.9 * q_.tail<4>()};
   const GaugedState end = stepper_.Advance(start, {.torque_nm = AsVector(golden_["step_u"]),
@@ -54,15 +54,15 @@ TEST_F(RigidJointSample, AgreesWithTheGoldenStep) {
   EXPECT_LT(RelativeError(end.phi_f, AsVector(golden_["step_xf"])), 1e-8);
 }
 
-// 2.5e-9 and 8.8e-9 measured: forward differences of 1e-6 leave that.
+// 2.5e-9 and 8.8e-9 measured: the error of forward differences of 1e-6.
 TEST_F(RigidJointSample, TransitionAgreesWithTheGoldenMatrices) {
   const Transition t = TransitionOver(stepper_, payload_kg_, q_, v_, a_);
   EXPECT_LT(RelativeError(t.Phi, AsMatrix(golden_["Phi16"])), 1e-8);
   EXPECT_LT(RelativeError(t.G, AsMatrix(golden_["G16"])), 1e-8);
 }
 
-// The elastic arm in steps 25 times as small, with joints 100 times as stiff and rotors as they
-// are, comes to the same motion. Left: torsion (1 % of the rig's), and the long steps' own error.
+// The elastic arm in steps 25 times as small, with joints 100 times as stiff and unchanged rotors,
+// has the same motion. Difference: torsion (1 % of the rig's), and the error of the long steps.
 TEST_F(RigidJointSample, FollowsTheElasticArmWithStiffJoints) {
   ArmParameters p = ThesisRig();
   p.payload_mass_kg = payload_kg_;
@@ -96,7 +96,7 @@ TEST_F(RigidJointSample, HubsAtRestDoNotMoveBelowBreakaway) {
 }
 
 // At rest and without friction the sample is linear: exp of the model with the gauges' filters.
-// Midpoint steps of 2.5 ms turn a mode of 18 Hz by 0.7 % too little: 1e-2 of a sample's matrix.
+// Midpoint steps of 2.5 ms rotate a mode of 18 Hz by 0.7 % too little: 1e-2 of a sample's matrix.
 TEST_F(RigidJointSample, TransitionAtRestIsTheMatrixExponential) {
   const RigidJointArm& arm = stepper_.arm();
   const Vector rest = Vector::Zero();
@@ -115,7 +115,7 @@ TEST_F(RigidJointSample, TransitionAtRestIsTheMatrixExponential) {
   EXPECT_LT(RelativeError(t.Phi, exact.A), 2e-2);
   EXPECT_LT(RelativeError(t.G, exact.B), 2e-2);
 
-  // Smaller steps come closer as their square: a sample of 2 ms is ten times finer.
+  // The error falls with the square of the step: a sample of 2 ms is ten times finer.
   const RigidJointStepper fine(arm, 0.1 * kPeriod_s, kGauge_hz);
   const Transition part = TransitionOver(fine, payload_kg_, rest, rest, rest);
   MatrixXd ten = MatrixXd::Identity(16, 16);
@@ -123,8 +123,8 @@ TEST_F(RigidJointSample, TransitionAtRestIsTheMatrixExponential) {
   EXPECT_LT(RelativeError(ten.topLeftCorner(12, 12), exact.A.topLeftCorner(12, 12)), 2e-4);
 }
 
-// Left: what one linear model of the sample's middle misses of its curvature. It falls with the
-// square of the motion's size. The golden matrices hold the small terms of dg/dq and dg/dv.
+// Difference: one linear model of the sample's middle neglects its curvature. It falls with the
+// square of the motion's size. The golden matrices contain the small terms of dg/dq and dg/dv.
 TEST_F(RigidJointSample, TransitionIsTheDerivativeOfAdvance) {
   const auto advance = [&](const VectorXd& x) {
     return Stacked(stepper_.Advance(
@@ -149,8 +149,8 @@ TEST_F(RigidJointSample, TransitionIsTheDerivativeOfAdvance) {
   EXPECT_LT(RelativeError(t.Phi, differences), 2e-3);
 }
 
-// Midpoint steps: half as long, a quarter of the error, in the state and in its derivatives.
-TEST_F(RigidJointSample, MoreStepsComeCloserAsTheirSquare) {
+// Midpoint steps: half the step, a quarter of the error, in the state and in its derivatives.
+TEST_F(RigidJointSample, TheErrorFallsWithTheSquareOfTheStep) {
   const auto end = [&](int steps) {
     const RigidJointStepper stepper(stepper_.arm(), kPeriod_s, kGauge_hz, steps);
     const GaugedState x = stepper.Advance(

@@ -1,4 +1,4 @@
-// The tip's acceleration against its position, which is other code.
+// The tip's acceleration against its position, which is independent code.
 
 #include "model/rigid_joint/tip_acceleration.h"
 
@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// A bent arm in the middle of everything: each term of the formula is 0.05 m/s^2 and more.
+// A bent, moving arm: each term of the formula is 0.05 m/s^2 and more.
 struct Motion {
   VectorXd q = VectorXd::Zero(8), v = VectorXd::Zero(8), a = VectorXd::Zero(8);
 };
@@ -35,7 +35,7 @@ ArmModel Model(bool foreshortening) {
 }
 
 // Second differences: their error grows with the square of the step, 0.01 m/s^2 measured at 1e-4 s;
-// round-off, 4e-16 / 4e-10, is far less than what this one leaves.
+// round-off, 4e-16 / 4e-10, is far smaller.
 double Differenced(const ArmModel& model, const Motion& m) {
   constexpr double kStep_s = 2e-5;
   const auto tip = [&](double t) -> Vector2d {
@@ -59,10 +59,10 @@ TEST(TipAcceleration, IsTheSecondDifferenceOfTheTipsPosition) {
   EXPECT_GT(std::fabs(TipAcceleration(Model(true), m.q, m.v, m.a) -
                       TipAcceleration(Model(false), m.q, m.v, m.a)),
             0.05)
-      << "the links hardly get shorter";
+      << "the foreshortening is too small for this test";
 }
 
-TEST(TipAcceleration, OfTheSmallModelIsThatOfTheArmWithRigidJoints) {
+TEST(TipAcceleration, SmallModelAgreesWithTheArmWithRigidJoints) {
   const ArmModel model = Model(false);
   const RigidJointArm small(ThesisRig());
   const auto reduced = [](const VectorXd& x) {
@@ -75,8 +75,8 @@ TEST(TipAcceleration, OfTheSmallModelIsThatOfTheArmWithRigidJoints) {
               TipAcceleration(model, m.q, m.v, m.a), 1e-10);
 }
 
-// Straight at rest: the shoulder swings the tip on 1.7 m, the elbow on 0.9 m, a link that bends up
-// lifts it; turning steadily pulls along the link and does not show.
+// Straight at rest: the shoulder moves the tip with a lever of 1.7 m, the elbow with 0.9 m, a
+// deflection moves it along +y; a constant rate accelerates it along the link only.
 TEST(TipAcceleration, IsPositiveCounterClockwise) {
   const ArmModel model = Model(false);
   const VectorXd none = VectorXd::Zero(8);

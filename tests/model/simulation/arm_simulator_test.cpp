@@ -43,7 +43,7 @@ ArmState EnergyTestStart(const ArmModel& model) {
   return x;
 }
 
-// A state of the size met in the base command, every coordinate busy.
+// A state of the size that occurs in the base command, with every coordinate non-zero.
 ArmState BusyState(const ArmModel& model) {
   ArmState x(model.dof());
   x.q.head<4>() << 0.3, -0.4, 0.31, -0.42;
@@ -56,9 +56,9 @@ ArmState BusyState(const ArmModel& model) {
   return x;
 }
 
-// The structured solver against the equations in dense form: what is left of
-// M a + bias + D v + K q - force at the midpoint, over the largest force. What is left after 12
-// passes is the round-off of (v1 - v0) / h: 8e-11 at worst. Dropping the payload's I_p leaves 1e-6.
+// The structured solver against the equations in dense form: the residual of
+// M a + bias + D v + K q - force at the midpoint, over the largest force. After 12 passes it is the
+// round-off of (v1 - v0) / h: 8e-11 at worst. Without the payload's I_p it is 1e-6.
 class AnyArm : public testing::TestWithParam<bool> {};
 
 INSTANTIATE_TEST_SUITE_P(Links, AnyArm, testing::Bool(), [](const auto& shown) {
@@ -71,7 +71,7 @@ TEST_P(AnyArm, StepSolvesTheMidpointEquationsForAnyModeCount) {
       ArmParameters p = Frictionless();
       p.joint[0].viscous_friction_nm_s_per_rad = 0.7;
       p.joint[1].viscous_friction_nm_s_per_rad = 0.2;
-      p.payload_inertia_kgm2 = 1e-3;  // large enough to be seen
+      p.payload_inertia_kgm2 = 1e-3;  // large enough to have an effect
       p.payload_mass_kg = 0.3;        // not the shapes' payload
       p.foreshortening = GetParam();
       const ArmModel model(p, {m1, m2});
@@ -93,11 +93,11 @@ TEST_P(AnyArm, StepSolvesTheMidpointEquationsForAnyModeCount) {
   }
 }
 
-// docs/theory/plant.md 7.5: E0 = 1.2124174220779 J. Midpoint keeps energy to 1.5e-6 with two modes
-// and to 2.5e-4 with four, whose undamped 570 Hz has 3.5 steps a period (measured; second order in
-// h). The bar for the default integrator is 2e-5 with two modes. Leaving out a Coriolis term gives
-// 1e-2.
-TEST(ArmSimulator, KeepsEnergyForTenSecondsWithoutDissipation) {
+// docs/theory/plant.md 7.5: E0 = 1.2124174220779 J. Midpoint conserves energy to 1.5e-6 with two
+// modes and to 2.5e-4 with four, whose undamped 570 Hz has 3.5 steps a period (measured; second
+// order in h). The bound for the default integrator is 2e-5 with two modes. A missing Coriolis term
+// gives 1e-2.
+TEST(ArmSimulator, ConservesEnergyForTenSecondsWithoutDissipation) {
   for (const auto& [modes, bar] : {std::pair{2, 4e-6}, std::pair{4, 4e-4}}) {
     const ArmModel model(Conservative(), {modes, modes});
     ArmSimulator simulator(model);
@@ -122,7 +122,7 @@ VectorXd ForcedRun(const ArmModel& model, double h, SimulatorOptions options) {
 }
 
 // Error against the reference after 0.2 s falls by 4 when h is halved. 3.5 to 4.5 allows for the
-// next term of the expansion; a first-order slip anywhere gives 2.
+// next term of the expansion; a first-order error anywhere gives 2.
 TEST(ArmSimulator, IsOfSecondOrder) {
   const ArmModel model(Frictionless(), {2, 2});
   const ReferenceIntegrator reference(model);
@@ -141,9 +141,9 @@ TEST(ArmSimulator, SubstepsEqualSmallerSteps) {
   EXPECT_EQ(ForcedRun(model, 2e-4, {.substeps = 2}), ForcedRun(model, 1e-4, {}));
 }
 
-// Turning the base is a symmetry: p_th1 + p_th3 stays what it is without torque at joint 1.
-// Measured: 6e-10 of its size after 2 s; a base moment left out of one equation gives 1e-3.
-TEST(ArmSimulator, KeepsAngularMomentumAboutTheBase) {
+// Rotation of the base is a symmetry: p_th1 + p_th3 is constant without torque at joint 1.
+// Measured: 6e-10 of its size after 2 s; a base moment missing in one equation gives 1e-3.
+TEST(ArmSimulator, ConservesAngularMomentumAboutTheBase) {
   const ArmModel model(Frictionless(), {3, 3});
   ArmSimulator simulator(model);
   ArmState x = EnergyTestStart(model);
@@ -153,14 +153,14 @@ TEST(ArmSimulator, KeepsAngularMomentumAboutTheBase) {
   };
   const double before = momentum();
   for (int i = 0; i < 4000; ++i) {
-    const double torque2 = i % 1000 < 500 ? 0.3 : -0.3;  // joint 2 may push: it is inside
+    const double torque2 = i % 1000 < 500 ? 0.3 : -0.3;  // joint 2 may act: its torque is internal
     simulator.Step(x, Vector2d(0.0, torque2), ArmSimulator::kDefaultStep_s);
   }
   EXPECT_NEAR(momentum(), before, 1e-8 * std::fabs(before));
 }
 
-// The rotors spin up against their springs, and an undamped spring reaches twice the static torque:
-// 0.45 of the friction stays below it, and the hubs do not move by one bit.
+// The rotors accelerate against their springs, and an undamped spring reaches twice the static
+// torque: 0.45 of the friction stays below it, and the hubs do not move by one bit.
 TEST(ArmSimulator, HubsAtRestDoNotMoveBelowBreakaway) {
   const ArmModel model(ThesisRig(), {4, 4});
   ArmSimulator simulator(model);
@@ -172,7 +172,7 @@ TEST(ArmSimulator, HubsAtRestDoNotMoveBelowBreakaway) {
   }
   EXPECT_EQ(x.q[kTheta1], 0.0);
   EXPECT_EQ(x.q[kTheta2], 0.0);
-  EXPECT_GT(x.q[kTheta3], 1e-6);  // the springs are wound
+  EXPECT_GT(x.q[kTheta3], 1e-6);  // the springs are twisted
 }
 
 TEST(ArmSimulator, HubsBreakAwayAboveTheFriction) {
@@ -187,9 +187,9 @@ TEST(ArmSimulator, HubsBreakAwayAboveTheFriction) {
   }
 }
 
-// A moving arm without torque: friction may only take energy. Largest growth in a step, measured:
-// 4e-15 of the start. Without the impulse that settles a stopped hub, its velocity would flip.
-TEST(ArmSimulator, FrictionNeverFeedsEnergyAndStopsTheHubsExactly) {
+// A moving arm without torque: friction may only dissipate. Largest growth in a step, measured:
+// 4e-15 of the start. Without the impulse at a stopped hub, its velocity would be reversed.
+TEST(ArmSimulator, FrictionNeverAddsEnergyAndStopsTheHubsExactly) {
   ArmParameters p = ThesisRig();
   p.damping = DampingReading::kNone;
   const ArmModel model(p, {2, 2});
@@ -218,12 +218,12 @@ TEST(ArmSimulator, StepsOfTenMicrosecondsAgreeWithTheDefaultStep) {
     for (int i = 0; i < steps; ++i) simulator.Step(x, Vector2d(6.645, 0.966), h);
     return VectorXd(x.q);
   };
-  // 15 deg of motion; measured difference 0.0013 deg. The bar for a closed loop is 0.25 deg.
+  // 15 deg of motion; measured difference 0.0013 deg. The bound for a closed loop is 0.25 deg.
   EXPECT_LT((run(5e-4) - run(1e-5)).head<2>().norm(), 0.005 * M_PI / 180.0);
 }
 
 TEST(ArmSimulator, StepDoesNotAllocate) {
-  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizer brings its own allocator";
+  if (!kNoAllocWorks) GTEST_SKIP() << "the sanitizer has its own allocator";
   const ArmModel model(ThesisRig(), {4, 3});
   ArmSimulator simulator(model);
   ArmState x(model.dof());
@@ -239,7 +239,7 @@ TEST(ArmSimulator, RepeatedRunsAreIdentical) {
   ArmSimulator simulator(model);
   ArmState a = BusyState(model), b = a;
   for (int i = 0; i < 100; ++i) simulator.Step(a, Vector2d(1.0, 0.1), 5e-4);
-  simulator.Step(a, Vector2d(1.0, 0.1), 1e-4);  // another step in between leaves no trace
+  simulator.Step(a, Vector2d(1.0, 0.1), 1e-4);  // another step in between has no effect
   a = b;
   for (int i = 0; i < 100; ++i) simulator.Step(a, Vector2d(1.0, 0.1), 5e-4);
   ArmSimulator fresh(model);
@@ -248,7 +248,7 @@ TEST(ArmSimulator, RepeatedRunsAreIdentical) {
   EXPECT_EQ(a.v, b.v);
 }
 
-TEST(ArmSimulator, RefusesOptionsOutOfBounds) {
+TEST(ArmSimulator, RejectsOptionsOutOfBounds) {
   const ArmModel model(ThesisRig(), {1, 1});
   EXPECT_THROW(ArmSimulator(model, {.passes = 0}), std::invalid_argument);
   EXPECT_THROW(ArmSimulator(model, {.substeps = 0}), std::invalid_argument);

@@ -28,9 +28,9 @@ Case RandomCase(std::mt19937* engine) {
   return out;
 }
 
-// A quarter of a million cases: the answer must satisfy Coulomb's law (3.12) and the equation of
+// A quarter of a million cases: the solution must satisfy Coulomb's law (3.12) and the equation of
 // motion. 1e-9 is round-off of the reaction; accelerations reach 1e4.
-TEST(CoulombFrictionLcp, EveryAnswerObeysCoulombsLaw) {
+TEST(CoulombFrictionLcp, EverySolutionSatisfiesCoulombsLaw) {
   std::mt19937 engine(1);
   int stuck = 0, forward = 0;
   for (int i = 0; i < 250000; ++i) {

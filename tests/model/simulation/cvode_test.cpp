@@ -1,4 +1,4 @@
-// Whole trajectories against CVODE (SUNDIALS), a variable-order solver that others wrote.
+// Whole trajectories against CVODE (SUNDIALS), an independent variable-order solver.
 
 #include <cvode/cvode.h>
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ void Require(int flag) {
   if (flag < 0) throw std::runtime_error("CVODE failed");
 }
 
-// Stiff solver (BDF, dense Newton) started anew at every edge of the torque.
+// Stiff solver (BDF, dense Newton) restarted at every edge of the torque.
 class Cvode {
  public:
   Cvode(const ArmModel& model, double relative)
@@ -95,7 +95,7 @@ ArmParameters Frictionless(DampingReading damping) {
 }
 
 // Chapter 4's square wave to 1.5 s, undamped, two modes: the two must agree to their tolerances.
-// CVODE at 1e-10 a step leaves 5e-10 after 300 periods of the fastest mode (measured).
+// CVODE at 1e-10 a step accumulates 5e-10 over 300 periods of the fastest mode (measured).
 TEST(Cvode, AgreesWithTheReferenceIntegrator) {
   const ArmModel arm(Frictionless(DampingReading::kNone), {2, 2});
   const Vector2d push(0.4, 0.1);

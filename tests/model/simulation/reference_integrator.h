@@ -6,11 +6,11 @@
 
 namespace flexarm {
 
-/// Explicit integrator of high order for the arm without friction: an oracle, not for speed.
+/// Explicit integrator of high order for the arm without friction: a reference for tests, not fast.
 ///
 /// Gragg's modified midpoint rule with 2, 4, .. 2k substeps, extrapolated to step zero: order 2k.
 /// It shares the equations with ArmSimulator but neither its linear solver nor its scheme.
-/// Stable roughly while h * omega_max < k: with four columns h = 5e-4 s serves up to 4 modes a
+/// Stable for about h * omega_max < k: with four columns h = 5e-4 s is sufficient up to 4 modes a
 /// link. Source: Hairer, Norsett, Wanner, Solving ODEs I, section II.9. Real-time: start-up only
 /// (allocates).
 class ReferenceIntegrator {

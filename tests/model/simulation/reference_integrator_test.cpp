@@ -43,8 +43,8 @@ VectorXd After(const ArmModel& arm, int columns, double h) {
   return x.q;
 }
 
-// Halving h divides the error by 2^order or, in an oscillation, a little more. One wrong weight of
-// the extrapolation drops the order to 2.
+// Halving h divides the error by 2^order or, in an oscillation, slightly more. One wrong weight of
+// the extrapolation reduces the order to 2.
 TEST(ReferenceIntegrator, ErrorFallsWithItsOrder) {
   const ArmModel arm(Conservative(), {2, 2});
   const VectorXd truth = After(arm, 7, 2e-4);
@@ -67,10 +67,10 @@ INSTANTIATE_TEST_SUITE_P(Modes, EnergyDrift,
                                          Drift{.modes = 4, .columns = 6, .h = 2.5e-4}),
                          [](const auto& shown) { return std::to_string(shown.param.modes); });
 
-// docs/theory/plant.md 7.5: an 8th-order integrator keeps E0 = 1.2124174220779 J to 8e-13 over 10
-// s. Ours keeps it to 2e-10 (two modes) and 3e-10 (four, whose fastest rings three times as fast),
-// under the bar of 1e-9, which a slip in the equations' energy breaks at once. Shapes of modes 3
-// and 4 start at rest, so E0 is the same.
+// docs/theory/plant.md 7.5: an 8th-order integrator conserves E0 = 1.2124174220779 J to 8e-13 over
+// 10 s. This one conserves it to 2e-10 (two modes) and 3e-10 (four, whose fastest has three times
+// the frequency), below the bound of 1e-9, which any error in the equations' energy exceeds. Shapes
+// of modes 3 and 4 start at rest, so E0 is the same.
 TEST_P(EnergyDrift, StaysBelowOneInABillionForTenSeconds) {
   const auto [modes, columns, h] = GetParam();
   const ArmModel arm(Conservative(), {modes, modes});
@@ -89,7 +89,7 @@ TEST_P(EnergyDrift, StaysBelowOneInABillionForTenSeconds) {
 
 // docs/theory/plant.md 7.1: the fastest undamped frequencies, 1207 rad/s at M = 2 and 3584 at M =
 // 4, to their digits.
-TEST(ReferenceIntegrator, FastestFrequenciesAreThoseOfTheReference) {
+TEST(ReferenceIntegrator, FastestFrequenciesAgreeWithTheReference) {
   for (const auto& [modes, expected] : {std::pair{2, 1207.0}, std::pair{4, 3584.0}}) {
     const VectorXd hz =
         FreeMotorFrequenciesHz(ArmModel(Conservative(), {modes, modes}), M_PI / 3.0);
@@ -97,9 +97,9 @@ TEST(ReferenceIntegrator, FastestFrequenciesAreThoseOfTheReference) {
   }
 }
 
-// docs/theory/plant.md 7.5: classical Runge-Kutta at 0.25 ms keeps the energy to 4e-5 over the same
-// 10 s.
-TEST(ReferenceIntegrator, RungeKuttaDriftsAsTheReferenceSays) {
+// docs/theory/plant.md 7.5: classical Runge-Kutta at 0.25 ms conserves the energy to 4e-5 over the
+// same 10 s.
+TEST(ReferenceIntegrator, RungeKuttaDriftsAsInTheReference) {
   const ArmModel arm(Conservative(), {2, 2});
   Motion x = EnergyTestStart(2);
   const VectorXd none = VectorXd::Zero(arm.dof());
@@ -145,7 +145,7 @@ Chapter4 SquareWave(int modes, double h) {
 }
 
 // Tip at 3 s and peak deflections from docs/theory/plant.md 7.5, printed to 1e-9 m and 0.01 mm. Its
-// peaks are those of samples 10 ms apart: link 2 really reaches 15.06 mm between two of them.
+// peaks are those of samples 10 ms apart: between two of them link 2 reaches 15.06 mm.
 TEST(ReferenceIntegrator, Chapter4SquareWaveMatchesTheReferenceWithTwoModes) {
   const Chapter4 two = SquareWave(2, 5e-4);
   EXPECT_NEAR(two.tip.x(), 1.690807100, 2e-9);

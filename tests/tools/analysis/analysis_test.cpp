@@ -20,8 +20,9 @@ std::vector<double> Sinusoid(double amplitude, double hz, double offset) {
   return values;
 }
 
-// Lines lie 0.1221 Hz apart. On a line the amplitude is exact; halfway between, a Hann window loses
-// 15 %. The frequency comes out either way, to what the line's mirror image below 0 Hz leaves.
+// Lines lie 0.1221 Hz apart. On a line the amplitude is exact; halfway between two lines a Hann
+// window loses 15 %. The frequency is correct in both cases, up to the leakage of the mirror image
+// below 0 Hz.
 TEST(AmplitudeSpectrum, SinusoidShowsItsAmplitudeAndFrequency) {
   const double line_hz = 1.0 / (4096 * 2e-3);
   for (const double lines : {40.0, 40.25, 40.5, 100.7}) {
@@ -37,7 +38,7 @@ TEST(AmplitudeSpectrum, SinusoidShowsItsAmplitudeAndFrequency) {
   }
 }
 
-TEST(AmplitudeSpectrum, MeanIsLeftOutAndBadInputRefused) {
+TEST(AmplitudeSpectrum, MeanIsRemovedAndBadInputIsRefused) {
   const Spectrum spectrum = AmplitudeSpectrum(std::vector<double>(64, 5.0), 0.1);
   for (const double amplitude : spectrum.amplitude) EXPECT_NEAR(amplitude, 0.0, 1e-14);
   EXPECT_THROW(AmplitudeSpectrum(std::vector<double>(7), 0.1), std::invalid_argument);
@@ -45,7 +46,7 @@ TEST(AmplitudeSpectrum, MeanIsLeftOutAndBadInputRefused) {
   EXPECT_THROW(static_cast<void>(spectrum.Largest(100.0)), std::invalid_argument);
 }
 
-TEST(Figure, HasTheAskedDigits) {
+TEST(Figure, HasTheRequestedDigits) {
   EXPECT_EQ(Figure(8.7584), "8.76");
   EXPECT_EQ(Figure(0.02345, 2), "0.023");
   EXPECT_EQ(Figure(-123.4, 2), "-123");
@@ -54,7 +55,7 @@ TEST(Figure, HasTheAskedDigits) {
   EXPECT_EQ(Figure(std::nan("")), "no finite number");
 }
 
-TEST(Counted, NamesEveryVerdict) {
+TEST(Counted, ListsEveryVerdict) {
   const Statement holds{"3.4", "a", "1", Verdict::kHolds};
   const Statement not_tested{"3.4", "b", "2", Verdict::kNotTested};
   EXPECT_EQ(Counted({holds, not_tested, holds}),
@@ -62,7 +63,7 @@ TEST(Counted, NamesEveryVerdict) {
             "not testable: 1");
 }
 
-TEST(StatementTable, EscapesWhatWouldEndACell) {
+TEST(StatementTable, EscapesCharactersThatWouldEndACell) {
   const std::string table = StatementTable({{"3.4", "a|b", "1", Verdict::kDoesNot}});
   EXPECT_NE(table.find("| 3.4 | a\\|b | 1 | does not hold |"), std::string::npos);
 }
@@ -80,7 +81,7 @@ const ParametricStudy& WeakStudy() {
   return kStudy;
 }
 
-// The nominal value of every parameter is the same arm: seven sweeps, one run.
+// The nominal value of every parameter describes the same arm: seven sweeps have one run in common.
 TEST(ParametricStudy, SweepsMeetAtTheNominalArm) {
   const ParametricStudy& study = WeakStudy();
   ASSERT_EQ(study.sweep.size(), std::size_t{kSweeps});
@@ -93,24 +94,24 @@ TEST(ParametricStudy, SweepsMeetAtTheNominalArm) {
       if (peak == 0.0) peak = point.signal[kBending1].peak;
       EXPECT_NEAR(point.signal[kBending1].peak / peak, 1.0, 1e-9) << sweep.name;
     }
-    EXPECT_TRUE(met) << sweep.name << " leaves its nominal value out";
+    EXPECT_TRUE(met) << sweep.name << " does not include its nominal value";
   }
 }
 
-// A spring that carries a torque twists by torque / K. Joint 1 held by its friction, no torque at
-// joint 2: rotor 1 rings about that value, and nothing else moves.
+// A spring that carries a torque twists by torque / K. Joint 1 sticks and joint 2 has no torque:
+// rotor 1 oscillates about that value, and nothing else moves.
 TEST(ParametricStudy, StuckJointTwistsByTorqueOverStiffness) {
   RigConfig config = ThesisConfig();
   config.arm.joint[0].coulomb_friction_nm = config.arm.joint[1].coulomb_friction_nm = 10.0;
   const ParametricStudy study = RunParametricStudy(config, {.torque_nm = {0.4, 0.0}});
   const ParametricSweep& sweep = study.At(kStiffness1);
   for (const ParametricPoint& point : sweep.point) {
-    // A step on an undamped spring swings to twice the static value; reversed at any phase, to at
-    // most four times it.
+    // A step on an undamped spring reaches twice the static value; reversed at any phase, at most
+    // four times that value.
     const double static_mrad = 1e3 * 0.4 / point.value;
     EXPECT_GE(point.signal[kTwist1].peak, 1.99 * static_mrad);
     EXPECT_LE(point.signal[kTwist1].peak, 4.01 * static_mrad);
-    EXPECT_NEAR(point.signal[kBending1].peak, 0.0, 1e-6) << "nothing reaches a stuck link";
+    EXPECT_NEAR(point.signal[kBending1].peak, 0.0, 1e-6) << "a sticking joint moves no link";
   }
 }
 
@@ -121,7 +122,7 @@ const Statement& About(const std::vector<Statement>& statements, const std::stri
   throw std::out_of_range(words);
 }
 
-// docs/theory/plant.md 9 on chapter 5: what comes out of a correct model, and what does not.
+// docs/theory/plant.md 9 on chapter 5: which statements a correct model confirms, and which not.
 TEST(ParametricStatements, AgreeWithTheReferenceList) {
   const std::vector<Statement> s = ParametricStatements(WeakStudy(), WeakStudy());
   for (const char* words : {"payload lowers", "oscillates dramatically less",

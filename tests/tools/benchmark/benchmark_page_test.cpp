@@ -1,4 +1,4 @@
-// The tables for people.
+// The text tables of the benchmark.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace flexarm {
 namespace {
 
-TEST(BenchmarkPage, SaysNeverAndHowManyCompleted) {
+TEST(BenchmarkPage, ShowsNeverAndTheNumberOfCompletedRuns) {
   const SweepPlan plan = Plan("sobel", "1..2");
   std::vector<SweepRow> rows = {Made(0, std::nan("")), Made(1, std::nan(""))};
   rows[1].completed = false;
@@ -22,8 +22,8 @@ TEST(BenchmarkPage, SaysNeverAndHowManyCompleted) {
   EXPECT_NE(page.find("never (1/2)"), std::string::npos) << page;
 }
 
-// The rests of random moves last 1.5 s: settling at once and after 0.3 and 0.32 s.
-TEST(BenchmarkPage, OfTheMovesCountsWhatSettledInTime) {
+// The rests of random moves last 1.5 s; the runs settle at once, after 0.3 and after 0.32 s.
+TEST(BenchmarkPage, OfTheMovesCountsTheRunsThatSettledInTime) {
   const SweepPlan plan = Plan("sobel", "1..5", BenchmarkKind::kMoves);
   const BenchmarkTable table = Table(plan, FiveRuns(), BenchmarkKind::kMoves);
   EXPECT_NEAR(table.cell[0][0].score, 100.0 * (1.0 + 1.18 / 1.5 + 1.2 / 1.5) / 5.0, 1e-12);
@@ -35,7 +35,7 @@ TEST(BenchmarkPage, OfTheMovesCountsWhatSettledInTime) {
 
 using Cells = std::vector<std::string>;
 
-TEST(BenchmarkPage, OfTheCommandsHasARowALawAndARowAScenario) {
+TEST(BenchmarkPage, OfTheCommandsHasARowPerLawAndARowPerScenario) {
   const SweepPlan plan = Plan("sobel,pd", "1");
   const BenchmarkTable table = Table(plan, OneEach(plan));
   const std::vector<TablePart> parts = TableParts(table);
@@ -66,11 +66,11 @@ TEST(BenchmarkPage, OfTheCommandsHasARowALawAndARowAScenario) {
       << page;
 }
 
-// Only what settles within 0.3 s is in time: nothing here.
+// Only runs that settle within 0.3 s are in time: none of these.
 TEST(BenchmarkPage, OfTheMovesAndTheLimitsHasTheFiguresOfTheRests) {
   const SweepPlan moves = Plan("sobel,pd", "1", BenchmarkKind::kMoves);
   std::vector<SweepRow> rows = OneEach(moves);
-  for (std::size_t i = 1; i < 3; ++i) rows[i].measure[kSettling] = 0.2;  // in two of sobel's
+  for (std::size_t i = 1; i < 3; ++i) rows[i].measure[kSettling] = 0.2;  // two runs of sobel
   const std::vector<TablePart> parts = TableParts(Table(moves, rows, BenchmarkKind::kMoves));
   ASSERT_EQ(parts.size(), 2U);
   const std::string all = std::to_string(moves.scenarios.size());
@@ -99,15 +99,15 @@ TEST(BenchmarkPage, OfTheMovesAndTheLimitsHasTheFiguresOfTheRests) {
                                  "1.40", "16.0 16.0", "21.0 21.0", "11.00 12.00"}));
 }
 
-// A reason that one seed was refused for does not hide what the others did.
-TEST(BenchmarkPage, SaysWhatTheOtherSeedsDidWhereOneWasRefused) {
+// The refusal of one seed does not hide the results of the others.
+TEST(BenchmarkPage, ShowsTheOtherSeedsIfOneWasRefused) {
   const SweepPlan plan = Plan("sobel", "1..2", BenchmarkKind::kMoves);
   const std::string page = BenchmarkMarkdown(
       Table(plan, {RefusedRow(0, "a move is too short"), Made(1, 0.1)}, BenchmarkKind::kMoves));
   EXPECT_NE(page.find("| nominal | 0 to 1 kg | 1/2, 1.0 (1/2) |"), std::string::npos) << page;
 }
 
-TEST(BenchmarkPage, SaysRefusedWhereNoRunWasMade) {
+TEST(BenchmarkPage, ShowsRefusedIfNoRunWasMade) {
   const SweepPlan plan = Plan("sobel", "1", BenchmarkKind::kMoves);
   const std::string page =
       BenchmarkMarkdown(Table(plan, {RefusedRow(0, "a move is too short")}, BenchmarkKind::kMoves));

@@ -7,7 +7,7 @@
 
 #include "tools/benchmark/benchmark.h"
 
-// Tables of the benchmark for the shipped rig, and rows that no run was made for.
+// Tables of the benchmark for the shipped rig, and invented rows of results.
 
 namespace flexarm {
 
@@ -28,7 +28,7 @@ inline BenchmarkTable Table(const SweepPlan& plan, const std::vector<SweepRow>& 
   return TableOf(kind, plan, rows);
 }
 
-/// A run that completed; every measure but one is 1.
+/// A completed run; every measure except the settling time is 1.
 inline SweepRow Made(std::size_t point, double settling_s) {
   SweepRow row{.point = point, .completed = true, .trip = {}, .refused = {}, .ticks = 801};
   row.measure.fill(1.0);
@@ -36,7 +36,7 @@ inline SweepRow Made(std::size_t point, double settling_s) {
   return row;
 }
 
-/// Five runs: at once, late, never, one that tripped, and one at the limit.
+/// Five runs: settled at once, late, never, tripped, and settled at the limit.
 inline std::vector<SweepRow> FiveRuns() {
   std::vector<SweepRow> rows = {Made(0, 0.0), Made(1, 0.32), Made(2, std::nan("")), Made(3, 0.0),
                                 Made(4, 0.3)};
@@ -50,9 +50,9 @@ inline std::vector<SweepRow> FiveRuns() {
   return rows;
 }
 
-/// A run each of two laws. The first settles after 0.7 s, and trips in the fourth scenario; the
-/// second after 1.4 s, but in the tenth, `waypoints` of the commands, after three quarters of its
-/// rest of 6.4 s. The measures of the first are 1, 2, .., of the second 11, 12, .. .
+/// One run of each of two laws. The first settles after 0.7 s, and trips in the fourth scenario;
+/// the second after 1.4 s, but in the tenth, `waypoints` of the commands, after three quarters of
+/// its rest of 6.4 s. The measures of the first are 1, 2, .., of the second 11, 12, .. .
 inline std::vector<SweepRow> OneEach(const SweepPlan& plan) {
   std::vector<SweepRow> rows;
   for (std::size_t point = 0; point < plan.grid.size(); ++point) {

@@ -35,20 +35,21 @@ TEST(BenchmarkPlan, RunsEveryLawInEveryScenarioWithEverySeed) {
               HasSubstr("expected one of commands, moves, limits"));
 }
 
-TEST(BenchmarkPlan, ALawThatThereIsNotIsRefusedBeforeARunIsMade) {
+TEST(BenchmarkPlan, AnUnknownLawIsRefusedBeforeARunIsMade) {
   EXPECT_THROW(Plan("pid", "1"), ConfigError);
 }
 
-TEST(BenchmarkPlan, WithoutWishesTakesTheSetsLawsAndSeeds) {
+TEST(BenchmarkPlan, UsesTheLawsAndSeedsOfTheSetByDefault) {
   const SweepPlan commands = Plan("", ""), moves = Plan("", "", BenchmarkKind::kMoves);
   EXPECT_EQ(commands.grid.axes()[0].values, CommandLaws());
   EXPECT_EQ(commands.grid.axes()[2].values, (std::vector<std::string>{"1", "2", "3"}));
-  EXPECT_EQ(commands.experiment.name, "benchmark-square") << "that of the nominal scenario";
+  EXPECT_EQ(commands.experiment.name, "benchmark-square")
+      << "the experiment of the nominal scenario";
   EXPECT_EQ(moves.grid.axes()[2].values.front(), "4001");
   EXPECT_EQ(moves.grid.axes()[2].values.size(), 10U);
 }
 
-TEST(BenchmarkSet, OfSomeScenariosHasThoseOnly) {
+TEST(BenchmarkSet, OfSelectedScenariosHasOnlyThose) {
   const BenchmarkSet set = Only(BenchmarkSetOf(BenchmarkKind::kMoves, Rig(), kExperiments),
                                 {"viscous", "nominal", "no such"});
   ASSERT_EQ(set.scenarios.size(), 2U);
@@ -56,13 +57,13 @@ TEST(BenchmarkSet, OfSomeScenariosHasThoseOnly) {
   EXPECT_EQ(set.scenarios[1].name, "viscous");
 }
 
-TEST(BenchmarkSet, OfTheLimitsTakesThemAwayOneByOneAndAllAtLast) {
+TEST(BenchmarkSet, OfTheLimitsRemovesThemOneByOneAndAllAtTheEnd) {
   const auto limits = BenchmarkSetOf(BenchmarkKind::kLimits, Rig(), kExperiments).scenarios;
   EXPECT_EQ(limits.front().name, "nominal");
   EXPECT_EQ(limits.back().name, "all");
 }
 
-TEST(BenchmarkPlan, ComparesTheLawsThatFindThePayloadOnMovesWithAllTheOthers) {
+TEST(BenchmarkPlan, ComparesTheLawsThatEstimateThePayloadOnMovesWithAllOthers) {
   const auto laws = [](BenchmarkKind kind) {
     const auto names = BenchmarkSetOf(kind, Rig(), kExperiments).laws;
     return std::set<std::string>(names.begin(), names.end());
@@ -75,8 +76,8 @@ TEST(BenchmarkPlan, ComparesTheLawsThatFindThePayloadOnMovesWithAllTheOthers) {
   EXPECT_EQ(laws(BenchmarkKind::kMoves), all);
 }
 
-// Each scenario is another run than the nominal one, and what differs is where it says.
-TEST(BenchmarkPlan, EveryScenarioIsAnotherSituation) {
+// Each scenario differs from the nominal one, and only in the part that it names.
+TEST(BenchmarkPlan, EveryScenarioDiffersFromTheNominalOne) {
   for (const BenchmarkKind kind : kKinds) {
     const SweepPlan plan = Plan("sobel", "4001", kind);
     const SweepRow nominal = RunPoint(plan, 0);
@@ -90,7 +91,7 @@ TEST(BenchmarkPlan, EveryScenarioIsAnotherSituation) {
   }
 }
 
-// "Same moves, same noise": what a seed draws depends on nothing else.
+// "Same moves, same noise": the seed alone determines them.
 TEST(BenchmarkPlan, EveryLawHasTheSameMovesPayloadAndNoise) {
   const SweepPlan plan = Plan("sobel,gain-scheduled", "4001..4002", BenchmarkKind::kMoves);
   const std::size_t of_law = plan.scenarios.size() * 2;
@@ -108,8 +109,8 @@ TEST(BenchmarkPlan, EveryLawHasTheSameMovesPayloadAndNoise) {
   }
 }
 
-// Of the first two seeds of the nominal scenario, and of the light one.
-TEST(BenchmarkPlan, ASeedDrawsTheMovesAndThePayload) {
+// For the first two seeds of the nominal scenario and of the light one.
+TEST(BenchmarkPlan, TheSeedDeterminesTheMovesAndThePayload) {
   const SweepPlan plan = Plan("sobel", "4001..4002", BenchmarkKind::kMoves);
   const SimulationRequest first = RequestAt(plan, 0), second = RequestAt(plan, 1);
   EXPECT_NE(first.payload_kg, second.payload_kg);
@@ -120,7 +121,8 @@ TEST(BenchmarkPlan, ASeedDrawsTheMovesAndThePayload) {
   EXPECT_EQ(light.experiment.move[0].to_deg, first.experiment.move[0].to_deg);
 }
 
-// A count of a finer encoder is told to the controller; friction that is gone is not.
+// The controller knows the size of a count of a finer encoder; it does not know that friction is
+// removed.
 TEST(BenchmarkPlan, TheControllerKnowsItsSensorsAndNotThePlant) {
   const SweepPlan plan = Plan("gain-scheduled", "4001", BenchmarkKind::kLimits);
   for (std::size_t point = 0; point < plan.grid.size(); ++point) {
@@ -151,13 +153,13 @@ SimulationRequest RequestOf(const SweepPlan& plan, const std::string& name) {
   throw InputError("no scenario " + name);
 }
 
-// The rig that is simulated in a scenario.
+// The simulated rig of a scenario.
 RigConfig PlantOf(const SweepPlan& plan, const std::string& name) {
   const SimulationRequest request = RequestOf(plan, name);
   return request.plant ? *request.plant : request.config;
 }
 
-// A name with another plant behind it would be another situation too.
+// Also fails if a name stands for another plant than it says.
 TEST(BenchmarkPlan, AScenarioIsWhatItsNameSays) {
   const SweepPlan plan = Plan("sobel", "1");
   const RigConfig& rig = Rig();
@@ -222,9 +224,9 @@ TEST(BenchmarkPlan, AScenarioChangesThePlantAndNotTheController) {
   }
 }
 
-// The rests of benchmark-square last 7 s: settling in 1.4 s is 80 % of rest; a trip and a tip that
-// never rests are none.
-TEST(BenchmarkTable, TheScoreIsTheShareOfTheRestInWhichTheTipRests) {
+// The rests of benchmark-square last 7 s: settling in 1.4 s gives 80 %; a trip or a tip that never
+// settles gives 0.
+TEST(BenchmarkTable, TheScoreIsTheShareOfTheRestAfterSettling) {
   const SweepPlan plan = Plan("sobel", "1..4");
   std::vector<SweepRow> rows = {Made(0, 1.4), Made(1, 0.0), Made(2, std::nan("")), Made(3, 0.7)};
   rows[3].completed = false;
@@ -238,20 +240,20 @@ TEST(BenchmarkTable, TheScoreIsTheShareOfTheRestInWhichTheTipRests) {
   EXPECT_EQ(cell.group.median[kSettling], 1.4);  // of 0, 1.4 and never
   EXPECT_EQ(table.Completed(0), 3U);
   EXPECT_EQ(table.Runs(0), 4U);
-  // Every other scenario has no run: 0.
+  // The other scenarios have no run and count 0.
   EXPECT_NEAR(table.Score(0), cell.score / static_cast<double>(plan.scenarios.size()), 1e-12);
   EXPECT_NE(table.WorstScenario(0), 0U);
 }
 
-// A score never falls below 0: the rests of benchmark-waypoints last 6.4 s, and a longer one than
-// the shortest may take longer to settle.
-TEST(BenchmarkTable, ARestThatTakesLongerThanTheShortestCountsNothing) {
+// A score is never negative: the shortest rest of benchmark-waypoints lasts 6.4 s, and the settling
+// time of a longer rest may exceed it.
+TEST(BenchmarkTable, ASettlingTimeBeyondTheShortestRestScoresZero) {
   const SweepPlan plan = Plan("sobel", "1..2");
   const BenchmarkTable table = Table(plan, {Made(0, 7.7), Made(1, 0.0)});
   EXPECT_NEAR(table.cell[0][0].score, (0.0 + 100.0) / 2.0, 1e-12);
 }
 
-TEST(BenchmarkJson, HasEveryRunAtItsLawAndScenario) {
+TEST(BenchmarkJson, HasEveryRunUnderItsLawAndScenario) {
   const SweepPlan plan = Plan("sobel,pd", "1");
   const std::size_t scenarios = plan.scenarios.size();
   ASSERT_EQ(plan.scenarios[9].name, "waypoints");
@@ -274,7 +276,7 @@ TEST(BenchmarkJson, HasEveryRunAtItsLawAndScenario) {
   EXPECT_NEAR(pd["score"].get<double>(), sum / static_cast<double>(scenarios), 1e-12);
 }
 
-TEST(BenchmarkJson, TellsATripFromARefusal) {
+TEST(BenchmarkJson, DistinguishesTripsFromRefusals) {
   std::vector<SweepRow> rows = {Made(0, 1.4), Made(1, 1.4)};
   rows[0].completed = rows[1].completed = false;
   rows[0].trip = "strain-limit";
@@ -297,11 +299,11 @@ TEST(RestFigures, AreOverTheCompletedRuns) {
   EXPECT_NEAR(figures.rms_mean_deg[1], 12.0 / 4.0, 1e-12);
 }
 
-TEST(RestFigures, HaveTheLatestOfAllSettlingTimes) {
+TEST(RestFigures, HaveTheLongestOfAllSettlingTimes) {
   EXPECT_EQ(RestFiguresOf({Made(0, 0.1), Made(1, 0.5), Made(2, 0.0)}).latest_settling_s, 0.5);
 }
 
-TEST(RestFigures, OfNoCompletedRunAreNone) {
+TEST(RestFigures, WithoutACompletedRunAreNaN) {
   SweepRow refused = Made(0, 0.0);
   refused.completed = false;
   const RestFigures figures = RestFiguresOf({refused});
@@ -326,15 +328,15 @@ TEST(BenchmarkJson, HasTheFiguresOfTheRests) {
   EXPECT_EQ(nominal["rms_mean_deg"], nlohmann::ordered_json({1.5, 3.0}));
 }
 
-// The design study: nominal 100 %, motion 1.1 mm, rms 0.89 2.14 deg, of which 20 % more still
-// count.
-TEST(StudyComparison, SaysWhatIsReachedAndWhatIsNot) {
+// The design study: nominal 100 %, motion 1.1 mm, rms 0.89 2.14 deg; up to 20 % more counts as
+// reached.
+TEST(StudyComparison, MarksRowsAsReachedOrNotReached) {
   const SweepPlan plan = Plan("gain-scheduled,sobel", "1..5", BenchmarkKind::kMoves);
   BenchmarkTable table = Table(plan, {}, BenchmarkKind::kMoves);
   BenchmarkCell& cell = table.cell[0][0];
   cell.group.runs = 5;
   cell.rests = {.settled_in_time = 5, .motion_mean_mm = 1.31, .rms_mean_deg = {1.0, 2.5}};
-  table.cell[1][0] = cell;  // of a law that the design study did not make
+  table.cell[1][0] = cell;  // of a law that the design study does not have
   const auto verdict = [&table] {
     const TextTable text = StudyComparison(table);
     EXPECT_EQ(text.rows.size(), 1U) << "scenarios without runs have no row";

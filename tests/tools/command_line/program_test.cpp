@@ -1,4 +1,4 @@
-// The program as its users see it: exit codes, what goes to stdout, what goes to stderr.
+// The program as its users see it: exit codes, standard output, standard error.
 
 #include <sys/wait.h>
 
@@ -50,7 +50,7 @@ class ProgramTest : public RunLogTest {
     EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
   }
 
-  // An arm at rest that the loop holds for `ticks` ticks, recorded as the recorder would.
+  // A log of an arm at rest that the loop holds for `ticks` ticks, as the recorder writes it.
   void WriteRun(const std::string& name, int ticks, std::int32_t strain_of_last_tick = 0) {
     const RigConfig config = LoadConfig(kRig);
     const Design design = DesignFor(config);
@@ -78,7 +78,7 @@ class ProgramTest : public RunLogTest {
   }
 };
 
-TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
+TEST_F(ProgramTest, HelpAndVersionExitWithZero) {
   EXPECT_EQ(Run("--help").code, 0);
   EXPECT_NE(Run("--version").out.find("flexarm 0."), std::string::npos);
   for (const char* verb :
@@ -98,7 +98,7 @@ TEST_F(ProgramTest, BadUsageIsExitCodeTwo) {
   ExpectBadInput("modes -c '" + kRig + "' --modes 7", "--modes");
 }
 
-TEST_F(ProgramTest, AStudyAnswersToItsVerb) {
+TEST_F(ProgramTest, AStudyRunsUnderItsVerb) {
   for (const Study& study : kStudies) {
     const std::string verb(study.verb);
     const Answer help = Run(verb + " --help");
@@ -109,7 +109,7 @@ TEST_F(ProgramTest, AStudyAnswersToItsVerb) {
   }
 }
 
-TEST_F(ProgramTest, AStudyWhoseProgramIsMissingSaysHowToBuildIt) {
+TEST_F(ProgramTest, AMissingStudyProgramGivesTheCommandThatBuildsIt) {
   std::filesystem::copy_file(FLEXARM_PROGRAM, File("flexarm"));
   const std::string command =
       "cd '" + folder_.string() + "' && ./flexarm modes -c '" + kRig + "' >out 2>err </dev/null";
@@ -138,7 +138,7 @@ TEST_F(ProgramTest, ABadConfigNamesFileAndLine) {
   ExpectBadInput("config check '" + kRig + "' --set loop.perid_ms=20", "perid_ms");
 }
 
-TEST_F(ProgramTest, ConfigCheckPrintsWhatFollowsFromTheNumbers) {
+TEST_F(ProgramTest, ConfigCheckPrintsDerivedQuantities) {
   EXPECT_EQ(Run("config check '" + kRig + "'").code, 0);
   const Json json = RunJson("config check '" + kRig + "'");
   EXPECT_EQ(json["valid"], true);
@@ -150,7 +150,7 @@ TEST_F(ProgramTest, ConfigCheckPrintsWhatFollowsFromTheNumbers) {
   EXPECT_EQ(json["strain"]["channels"], Json({10, 10}));
 }
 
-TEST_F(ProgramTest, ConfigCheckSaysWhatEveryChannelOfAWiredRigCosts) {
+TEST_F(ProgramTest, ConfigCheckGivesTheTimeOfEveryChannelOfAHardwareRig) {
   const std::string daq = FLEXARM_SOURCE_DIR "/config/daq-rig.toml";
   const Json json = RunJson("config check '" + daq + "'");
   const Json& acquisition = json["acquisition"];
@@ -170,7 +170,7 @@ TEST_F(ProgramTest, ConfigCheckSaysWhatEveryChannelOfAWiredRigCosts) {
   EXPECT_NE(text.find("subdevice 5 hub1        0.05 ms"), std::string::npos) << text;
 }
 
-TEST_F(ProgramTest, ConfigCheckSaysHowTorquesBecomeVoltsOrPerMille) {
+TEST_F(ProgramTest, ConfigCheckGivesTheScalingOfTorquesToVoltsOrPerMille) {
   const Json volts = RunJson("config check '" FLEXARM_SOURCE_DIR "/config/daq-rig.toml'")["drives"];
   ASSERT_EQ(volts.size(), 2U);
   EXPECT_NEAR(volts[0]["torque_per_volt_nm"].get<double>(), 3.0, 1e-12);
@@ -184,7 +184,7 @@ TEST_F(ProgramTest, ConfigCheckSaysHowTorquesBecomeVoltsOrPerMille) {
   EXPECT_EQ(wire["drives"][0]["range_per_mille"], 1000.0);
 }
 
-TEST_F(ProgramTest, ConfigCheckRefusesInJsonToo) {
+TEST_F(ProgramTest, ConfigCheckGivesItsProblemsAsJsonToo) {
   const Answer answer = Run("config check '" FLEXARM_SOURCE_DIR
                             "/config/daq-rig.toml' --json --set "
                             "'hal.comedi[0].instruction_us=3000.0'");
@@ -229,7 +229,7 @@ TEST_F(ProgramTest, ReplayOfARunIsBitExact) {
   EXPECT_TRUE(json["first_gap_tick"].is_null());
 }
 
-TEST_F(ProgramTest, ReplayUnderAnotherConfigComparesNoBytes) {
+TEST_F(ProgramTest, ReplayWithAnotherConfigComparesNoBytes) {
   WriteRun("run.flexarm", 20);
   EXPECT_EQ(RunJson("replay run.flexarm -c '" + kRig + "'")["bit_exact"], true);
   const Json other = RunJson("replay run.flexarm -c '" + kRig + "' --set controller.alpha=2.5");
@@ -247,7 +247,7 @@ TEST_F(ProgramTest, AReplayThatDiffersIsExitCodeOne) {
   EXPECT_EQ(json["first_different_tick"], 4);
 }
 
-TEST_F(ProgramTest, WhatExportWritesReplayReads) {
+TEST_F(ProgramTest, ReplayReadsTheCsvFileOfExport) {
   WriteRun("run.flexarm", 20);
   EXPECT_EQ(Run("export run.flexarm -o data.csv").code, 0);
   const Json json = RunJson("replay data.csv -c '" + kRig + "'");
@@ -259,14 +259,15 @@ TEST_F(ProgramTest, WhatExportWritesReplayReads) {
   ExpectBadInput("replay bad.csv -c '" + kRig + "'", "bad.csv:1: found no column");
 }
 
-TEST_F(ProgramTest, IdentifyFindsThePayloadOfAShortRun) {
+TEST_F(ProgramTest, IdentifyEstimatesThePayloadFromAShortRun) {
   const std::string rig = "'" FLEXARM_SOURCE_DIR "/config/hil.toml'";
   ASSERT_EQ(Run("simulate -c " + rig + " --seed 3 -o run.flexarm").code, 0);
   const Json json = RunJson(
       "identify --run run.flexarm --validate run.flexarm --span 0 3 --validate-span 3 6 "
       "--set arm.payload_mass_kg=0.2 --free arm.payload_mass_kg=0:1 -o found");
   EXPECT_EQ(json["converged"], true);
-  // The rig has 0.1 kg; 20 channels of one count and encoders of 0.14 degrees let it see to 10 g.
+  // The rig has 0.1 kg; 20 channels with noise of one count and encoders of 0.14 degrees determine
+  // it to 10 g.
   EXPECT_NEAR(json["parameters"][0]["found"].get<double>(), 0.1, 0.01);
   EXPECT_EQ(json["identification"]["fit"].size(), 6U);
   EXPECT_EQ(json["validation"]["fit"][0]["signal"], "joint1");
@@ -288,7 +289,7 @@ TEST_F(ProgramTest, IdentifyRefusesBadInput) {
   ExpectBadInput("identify --run missing.flexarm" + free, "No such file");
 }
 
-TEST_F(ProgramTest, InfoTellsTheRun) {
+TEST_F(ProgramTest, InfoSummarisesTheRun) {
   WriteRun("run.flexarm", 20);
   const Json json = RunJson("info run.flexarm");
   EXPECT_EQ(json["ticks"], 20);
@@ -298,7 +299,7 @@ TEST_F(ProgramTest, InfoTellsTheRun) {
   EXPECT_NE(Run("info run.flexarm").out.find("Idle -> Armed"), std::string::npos);
 }
 
-TEST_F(ProgramTest, CheckIsExitCodeOneWhenARuleIsBroken) {
+TEST_F(ProgramTest, CheckIsExitCodeOneIfARuleIsViolated) {
   WriteRun("run.flexarm", 20);
   EXPECT_EQ(RunJson("check run.flexarm")["passed"], true);
   ASSERT_EQ(

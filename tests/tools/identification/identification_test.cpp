@@ -1,4 +1,4 @@
-// Identification on a simulated rig: it must find what the rig was built with, from its counts.
+// Identification on a simulated rig: it must find the true parameters from the counts.
 
 #include "tools/identification/identification.h"
 
@@ -16,7 +16,7 @@ const std::string kRig = FLEXARM_SOURCE_DIR "/config/quanser-2dsfl.toml";
 
 class IdentificationTest : public RunLogTest {
  protected:
-  // The rig at rest, then torques there and back on both joints, as one CSV file of ours.
+  // Simulates the rig from rest under doublets of torque on both joints, and writes a CSV file.
   std::filesystem::path Record(const std::string& name, const RigConfig& truth, double seconds) {
     SimulatedRig rig(truth.arm, truth.sensors, truth.sim);
     std::ofstream file(File(name), std::ios::binary);
@@ -69,10 +69,11 @@ const std::vector<std::string> kFree = {"joint1.coulomb_friction_nm",
 
 const std::vector<double> kTruth = {0.35, 3.0, 0.06, 0.9, 0.03, 0.04, 6500.0, 9500.0, 80.0, 2.7};
 
-// Starts are 20 to 200 % off. What is left is the counts' rounding and noise (2 counts of some
-// thousand, over 1000 samples; standard errors of 1 % at most) and where the search stops (2e-4 of
-// its ranges). Allowed: 2 %, and 4 standard errors beside the search's tolerance.
-TEST_F(IdentificationTest, FindsWhatASimulatedRigWasBuiltWith) {
+// The start values are wrong by 20 to 200 %. The remaining error is the counts' rounding and noise
+// (2 counts of some thousand, over 1000 samples; standard errors of 1 % at most) and the tolerance
+// of the search (2e-4 of its ranges). Allowed: 2 %, and 4 standard errors plus the tolerance of the
+// search.
+TEST_F(IdentificationTest, FindsTheParametersOfASimulatedRig) {
   const RigConfig start = LoadConfig(
       kRig, {"joint1.coulomb_friction_nm=0.5", "joint1.viscous_friction_nm_s_per_rad=4",
              "joint2.coulomb_friction_nm=0.1", "joint2.viscous_friction_nm_s_per_rad=1.5",
@@ -98,13 +99,13 @@ TEST_F(IdentificationTest, FindsWhatASimulatedRigWasBuiltWith) {
   }
   EXPECT_GT(FitPercent(run, run.Predict(found.config)).minCoeff(), 99.0);
   EXPECT_LT(FitPercent(run, run.Predict(start)).minCoeff(), 90.0);
-  // On a run that the search has not seen, from another seed of the noise.
+  // Validation with a run that the search did not use, with another seed of the noise.
   const RigConfig other = WithOverrides(rig, {"sim.seed=7"});
   const RunComparison validation(Record("other.csv", other, 3.0), start);
   EXPECT_GT(FitPercent(validation, validation.Predict(found.config)).minCoeff(), 99.0);
 }
 
-TEST_F(IdentificationTest, SaysWhichParametersTheRunTellsNothingAbout) {
+TEST_F(IdentificationTest, NamesTheParametersThatTheRunDoesNotDetermine) {
   const RigConfig start = LoadConfig(kRig);
   const RunComparison run(Record("run.csv", start, 2.0), start);
   const Identification found = Identify(
@@ -113,7 +114,7 @@ TEST_F(IdentificationTest, SaysWhichParametersTheRunTellsNothingAbout) {
   EXPECT_TRUE(std::isinf(found.parameter[1].standard_error));
 }
 
-TEST_F(IdentificationTest, FitIsHundredForTheDataAndZeroForItsMean) {
+TEST_F(IdentificationTest, FitIsHundredForTheDataAndZeroForTheirMean) {
   const RigConfig rig = LoadConfig(kRig);
   const RunComparison run(Record("run.csv", rig, 2.0), rig, {.from_s = 0.5, .until_s = 1.7});
   ASSERT_EQ(run.signal().size(), 4U);
@@ -125,22 +126,24 @@ TEST_F(IdentificationTest, FitIsHundredForTheDataAndZeroForItsMean) {
   EXPECT_NEAR((FitPercent(run, y).array() - 100.0).abs().maxCoeff(), 0.0, 1e-12);
   const Eigen::RowVectorXd mean = y.colwise().mean();
   EXPECT_NEAR(FitPercent(run, mean.replicate(y.rows(), 1)).cwiseAbs().maxCoeff(), 0.0, 1e-9);
-  // Off by the spread itself, and twice.
+  // An error of one spread, and of two.
   EXPECT_NEAR(Misfit(run, y + 2.0 * run.spread().transpose().replicate(y.rows(), 1)), 4.0, 1e-9);
 }
 
-// A part of a run is compared as if it were all of it: times stay, and the arm starts where it was.
-TEST_F(IdentificationTest, ASpanStartsFromTheAnglesThatWereReached) {
+// A part of a run is compared like a whole run: times do not change, and the arm starts at its
+// angles of that time.
+TEST_F(IdentificationTest, ASpanStartsFromTheAnglesAtItsBeginning) {
   const RigConfig rig = LoadConfig(kRig);
   const std::filesystem::path file = Record("run.csv", rig, 6.0);
   const RunComparison rest(file, rig, {.from_s = 1.9, .until_s = 6.0});
-  // By 1.9 s the first moves are over; what still swings then is all that the prediction lacks.
+  // The first moves end before 1.9 s; the prediction lacks only the oscillation that remains then.
   EXPECT_GT(FitPercent(rest, rest.Predict(rig)).minCoeff(), 80.0);
   EXPECT_GT(std::abs(rest.measured()(0, 0)), 0.01);
 }
 
-// Measured runs of the real arm, which are not part of the project: expected beside it.
-TEST(MeasuredArm, IsPredictedAsWellAsTheDocsSay) {
+// Measured runs of the real arm, which are not part of the project; they are expected beside its
+// folder.
+TEST(MeasuredArm, IsPredictedWithTheFitOfTheDocs) {
   const std::filesystem::path data = FLEXARM_SOURCE_DIR "/../shared/data/quanser-2dsfl";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no measured runs at " << data;
   const RigConfig rig = LoadConfig(kRig);
@@ -150,7 +153,7 @@ TEST(MeasuredArm, IsPredictedAsWellAsTheDocsSay) {
   EXPECT_LT((fit - documented).cwiseAbs().maxCoeff(), 0.5) << fit.transpose();
 }
 
-TEST_F(IdentificationTest, ARunInWhichNothingMovesIsRefused) {
+TEST_F(IdentificationTest, ARunWithoutMotionIsRefused) {
   const RigConfig rig = LoadConfig(kRig);
   std::string still =
       "time_s,counter_1,counter_2,strain_1_01,strain_2_01,valid,torque_1_nm,"

@@ -1,4 +1,4 @@
-// Each rule of `flexarm check` fails on a run that breaks it, and only that one.
+// A run that violates one rule of `flexarm check` fails that rule and no other.
 
 #include "tools/runs/conformance.h"
 
@@ -43,11 +43,11 @@ std::vector<std::string> Broken(const std::function<void(LoadedRun*)>& damage) {
 
 using Names = std::vector<std::string>;
 
-TEST(Conformance, AGoodRunBreaksNothing) {
+TEST(Conformance, ACorrectRunViolatesNoRule) {
   EXPECT_EQ(Broken([](LoadedRun*) {}), Names{});
 }
 
-TEST(Conformance, EachRuleSeesItsOwnDamage) {
+TEST(Conformance, EachRuleDetectsItsOwnViolation) {
   const auto tick = [](LoadedRun* run, int number) -> TickRecord& {
     return run->contents.tick[static_cast<std::size_t>(number) - 1];
   };

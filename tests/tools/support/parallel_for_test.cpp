@@ -22,17 +22,18 @@ TEST(ParallelFor, RunsEachOnceAndReportsTheEnd) {
   EXPECT_EQ(told, 1000u);
 }
 
-TEST(ParallelFor, NothingToDoIsDone) {
+TEST(ParallelFor, AcceptsACountOfZero) {
   ParallelFor(0, [](std::size_t) { FAIL(); });
 }
 
-TEST(ParallelFor, FirstExceptionEndsTheWorkAndIsThrownAgain) {
+TEST(ParallelFor, TheFirstExceptionEndsTheWorkAndIsRethrown) {
   std::atomic<int> runs = 0;
   const auto body = [&](std::size_t i) {
     ++runs;
     if (i == 3) throw std::runtime_error("three");
   };
-  // One worker at a time: of several, another may run all the rest before the exception is caught.
+  // One worker only: with several, another worker may run all the rest before the exception is
+  // caught.
   EXPECT_THROW(ParallelFor(100000, body, {}, 1), std::runtime_error);
   EXPECT_EQ(runs, 4);
   EXPECT_THROW(ParallelFor(100000, body), std::runtime_error);

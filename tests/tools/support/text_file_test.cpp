@@ -11,14 +11,14 @@
 namespace flexarm {
 namespace {
 
-TEST(WriteText, ReplacesWhatWasThere) {
+TEST(WriteText, ReplacesAnExistingFile) {
   const TempFolder folder;
   const std::filesystem::path file = folder.Write("page.md", "a longer text\n");
   WriteText(file, "short\n");
   EXPECT_EQ(FileText(file), "short\n");
 }
 
-TEST(WriteText, SaysWhichFileCannotBeWritten) {
+TEST(WriteText, NamesTheFileThatCannotBeWritten) {
   EXPECT_EQ(MessageOf<InputError>([] { WriteText("/no/such/folder/page.md", "text"); }),
             "/no/such/folder/page.md: cannot be written");
 }

@@ -27,7 +27,7 @@ bool WithinAPeriodAfter(double from_s, double time_s) {
   return time_s >= from_s - kRoundOff_s && time_s <= from_s + kPeriod_s + kRoundOff_s;
 }
 
-TEST(RandomMoves, KeepToTheRecipe) {
+TEST(RandomMoves, FollowTheRecipe) {
   const RigidJointArm arm = Arm();
   double furthest1_deg = 0.0, furthest2_deg = 0.0, heaviest_kg = 0.0, longest = 0.0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -45,7 +45,7 @@ TEST(RandomMoves, KeepToTheRecipe) {
       EXPECT_TRUE(WithinAPeriodAfter(free_s, move.start_s)) << move.start_s;
       const double ticks = *move.duration_s / kPeriod_s;
       EXPECT_NEAR(ticks, std::round(ticks), 1e-9);
-      // One period for the rounding up to a sample.
+      // One period of tolerance for the rounding up to a sample.
       const double rule_s = RuleDuration_s(arm, 1.0, from_deg * kRad, to_deg * kRad);
       EXPECT_GE(*move.duration_s, rule_s);
       EXPECT_LE(*move.duration_s, 1.5 * rule_s + kPeriod_s);
@@ -55,7 +55,7 @@ TEST(RandomMoves, KeepToTheRecipe) {
     }
     EXPECT_TRUE(WithinAPeriodAfter(free_s, moves.experiment.duration_s));
   }
-  // 400 draws reach the ends of their ranges.
+  // 400 samples reach the ends of their ranges.
   EXPECT_TRUE(furthest1_deg > 59.0 && furthest1_deg <= 60.0) << furthest1_deg;
   EXPECT_TRUE(furthest2_deg > 89.0 && furthest2_deg <= 90.0) << furthest2_deg;
   EXPECT_TRUE(heaviest_kg > 0.29 && heaviest_kg <= 0.3) << heaviest_kg;
@@ -67,7 +67,7 @@ TEST(RandomMoves, KeepToTheRecipe) {
 TEST(RandomMoves, AreTheSameOnEveryMachine) {
   const RandomMoves moves = MakeRandomMoves(Arm(), 1, 1.0);
   EXPECT_NEAR(moves.payload_kg, 2469588189546311528.0 / 0x1p64, 1e-15);
-  // Then the elbow's target, then the shoulder's: scores of other machines speak of these.
+  // First the elbow's target, then the shoulder's: published scores depend on this order.
   std::mt19937_64 random(1);
   random.discard(1);
   const double second = static_cast<double>(random()), third = static_cast<double>(random());
@@ -75,16 +75,16 @@ TEST(RandomMoves, AreTheSameOnEveryMachine) {
   EXPECT_NEAR(moves.experiment.move[0].to_deg[0], 120.0 * third / 0x1p64 - 60.0, 1e-12);
 }
 
-TEST(RandomMoves, AreAsManyAsAskedForAndBeginAlike) {
+TEST(RandomMoves, HaveTheRequestedNumberAndTheSameBeginning) {
   const RandomMoves four = MakeRandomMoves(Arm(), 1, 1.0),
                     seven = MakeRandomMoves(Arm(), 1, 1.0, 7);
   ASSERT_EQ(seven.experiment.move.size(), 7U);
   EXPECT_EQ(seven.experiment.move[3].to_deg, four.experiment.move[3].to_deg);
 }
 
-// Small angles of the heavy elbow: two limits by hand. At rest M_tt is symmetric; 7.51 = the
-// largest acceleration of s(t) = 35 t^4 - 84 t^5 + 70 t^6 - 20 t^7, 2.19 its largest rate.
-TEST(RuleDuration, IsWhatTorqueAndSpeedAllow) {
+// Small angles of the heavy elbow: two limits computed by hand. At rest M_tt is symmetric; 7.51 =
+// the largest acceleration of s(t) = 35 t^4 - 84 t^5 + 70 t^6 - 20 t^7, 2.19 its largest rate.
+TEST(RuleDuration, IsTheShortestThatTorqueAndSpeedAllow) {
   const RigidJointArm arm = Arm();
   const Eigen::Vector2d zero(0.0, 0.0), by(1.0, 0.0);
   RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
@@ -93,14 +93,16 @@ TEST(RuleDuration, IsWhatTorqueAndSpeedAllow) {
   EXPECT_NEAR(RuleDuration_s(arm, 1.0, zero, by), of_torque_s, 1e-12);
   EXPECT_GT(of_torque_s, 2.19 / 4.0) << "the rate would have been the limit";
   EXPECT_EQ(RuleDuration_s(arm, 1.0, zero, 1e-6 * by), 0.4) << "the shortest of all";
-  // Of turns that nobody makes the rate decides: torque asks for the root of the angle only.
+  // For very large angles the rate decides: the duration that the torque needs grows only with the
+  // root of the angle.
   EXPECT_NEAR(RuleDuration_s(arm, 0.0, zero, -40.0 * by), 2.19 * 40.0 / 4.0, 1e-12);
   EXPECT_NEAR(RuleDuration_s(arm, 0.0, zero, {0.0, -60.0}), 2.19 * 60.0 / 6.0, 1e-12);
 }
 
-// Of both joints, wherever the elbow is on its way: a straight arm is the heaviest for the
-// shoulder, and what the shoulder's turn asks of the elbow's motor grows as it bends the other way.
-TEST(RuleDuration, IsThatOfTheWorstOfFivePointsOfTheWay) {
+// The rule takes the worst of both joints over the elbow angles of the path: a straight arm has the
+// largest inertia for the shoulder, and the torque at the elbow due to the shoulder's motion grows
+// as the elbow bends to the other side.
+TEST(RuleDuration, IsThatOfTheWorstOfFivePointsOfThePath) {
   const RigidJointArm arm = Arm();
   const RigidJointArm::Vector at_rest = RigidJointArm::Vector::Zero();
   std::array<int, 2> decides{};

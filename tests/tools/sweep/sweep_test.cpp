@@ -26,7 +26,7 @@ SweepPlan Plan(std::vector<SweepAxis> axes) {
           .grid = SweepGrid(std::move(axes))};
 }
 
-// A result that tells its point, without a run.
+// An invented result that identifies its point.
 SweepRow Made(std::size_t point) {
   SweepRow row{.point = point, .completed = true, .trip = {}, .refused = {}, .ticks = 301};
   row.measure.fill(static_cast<double>(point) + 0.1);
@@ -57,7 +57,7 @@ TEST(SweepValues, AreListsOrRangesWithBothEnds) {
   EXPECT_EQ(ParseValues("-1..1"), (Texts{"-1", "0", "1"}));
 }
 
-TEST(SweepValues, WithoutSenseAreRefused) {
+TEST(SweepValues, InvalidOnesAreRefused) {
   for (const char* text : {"", "1,,2", "1,2,1", "0:1:-1", "0:0:1", "3..1", "1:nan:2", "0:1e-9:1"}) {
     EXPECT_THROW(ParseValues(text), InputError) << text;
   }
@@ -65,7 +65,7 @@ TEST(SweepValues, WithoutSenseAreRefused) {
   EXPECT_THROW(SweepGrid({Axis("a.b=1"), Axis("a.b=2")}), InputError);
 }
 
-TEST(SweepGrid, HasEveryCombinationOnceAndTheLastAxisRunsFastest) {
+TEST(SweepGrid, HasEveryCombinationOnceAndTheLastAxisVariesFastest) {
   const SweepGrid grid({Axis("a.a=1,2"), Axis("b.b=x,y,z"), Axis("c.c=5,6")});
   ASSERT_EQ(grid.size(), 12U);
   std::set<Texts> seen;
@@ -122,7 +122,7 @@ TEST(SweepPlan, EveryVariantIsAnotherPlantAndChangesTheRun) {
   }
 }
 
-TEST(SweepPlan, ValuesThatCannotBeAreRefusedBeforeAnyRun) {
+TEST(SweepPlan, InvalidValuesAreRefusedBeforeAnyRun) {
   EXPECT_THROW(CheckPlan(Plan({Axis("controller.alfa=1")})), ConfigError);
   EXPECT_THROW(CheckPlan(Plan({Axis("controller.alpha=1.0,two")})), ConfigError);
   EXPECT_THROW(CheckPlan(Plan({ParseAxis(AxisTarget::kPlant, "controller.alpha=1.0")})),
@@ -135,8 +135,8 @@ TEST(SweepPlan, ValuesThatCannotBeAreRefusedBeforeAnyRun) {
   EXPECT_THROW(CheckPlan(deadly), InputError);
 }
 
-// The oracle is flexarm simulate's own path: the same config from its overrides, one run.
-TEST_F(SweepFiles, HoldWhatSingleRunsGiveWhateverTheNumberOfJobs) {
+// The oracle is the code of flexarm simulate: the same config from its overrides, one run.
+TEST_F(SweepFiles, HoldTheResultsOfSingleRunsForAnyNumberOfJobs) {
   const SweepPlan plan =
       Plan({Axis("controller.alpha=2.0,3.0"), {AxisTarget::kSeed, "", {"1", "2"}}});
   SweepFile one = SweepFile::Resume(File("one"), IdentityOf(plan));
@@ -157,7 +157,7 @@ TEST_F(SweepFiles, HoldWhatSingleRunsGiveWhateverTheNumberOfJobs) {
   EXPECT_TRUE(PointsToRun(&one, {}).empty());
 }
 
-TEST_F(SweepFiles, OfAnotherSweepAreRefusedAndSayWhatDiffers) {
+TEST_F(SweepFiles, OfAnotherSweepAreRefusedAndTheDifferenceIsNamed) {
   const SweepIdentity held = IdentityOf(Plan({Axis("controller.alpha=2.0,3.0")}));
   SweepFile::Resume(File("a"), held);
   EXPECT_NO_THROW(SweepFile::Resume(File("a"), held));
@@ -179,7 +179,7 @@ TEST_F(SweepFiles, OfAnotherSweepAreRefusedAndSayWhatDiffers) {
   EXPECT_NE(refusal(other).find("another build"), std::string::npos);
 }
 
-TEST_F(SweepFiles, MergeJoinsShardsAndSaysWhatIsMissing) {
+TEST_F(SweepFiles, MergeJoinsShardsAndNamesMissingPoints) {
   const SweepIdentity identity = IdentityOf(Plan({Axis("controller.alpha=1:1:7")}));
   for (std::size_t number = 1; number <= 3; ++number) {
     SweepFile part = SweepFile::Resume(File(std::to_string(number)), identity);

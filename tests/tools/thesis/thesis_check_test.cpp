@@ -10,8 +10,8 @@
 namespace flexarm {
 namespace {
 
-// The basis in which the reference numbers below were computed, by other code than ours: exact
-// section matching and dynamic stiffness, and the closed forms of (3.8) to (3.11).
+// The config for which independent code computed the reference numbers below: exact section
+// matching and dynamic stiffness, and the closed forms of (3.8) to (3.11).
 RigConfig ReferenceConfig() {
   RigConfig config{};
   config.arm = ThesisRig();
@@ -34,7 +34,7 @@ void ExpectSaid(const Statement& statement, const std::vector<std::string>& figu
   }
 }
 
-TEST(Chapter3Statements, SayTheReferenceNumbers) {
+TEST(Chapter3Statements, GiveTheReferenceNumbers) {
   const std::vector<Statement> s = Chapter3Statements(ReferenceConfig());
   // Link 1, mode 1: 0.0858 N m at 1 mm; 0.42905 N m and, slipping, 0.52121 Hz at 5 mm.
   ExpectSaid(About(s, "clamped moment"), {"0.0858 N m", "0.429 N m", "0.521 Hz"});
@@ -43,14 +43,14 @@ TEST(Chapter3Statements, SayTheReferenceNumbers) {
   // (4 - 5 s) / (2 - 2 s) at s = zeta v = 0.1, 0.5 and 0.9.
   ExpectSaid(About(s, "(3.11) takes"), {"1.94 times", "1.50 times"});
   ExpectSaid(About(s, "as a damper"), {"-2.50 times"});
-  // The linearised arm grows from 5.22735 rad/s on with M = 2 and 4 and either linearisation; the
-  // reference list says 5.228.
+  // The linearised arm is unstable from 5.22735 rad/s on with M = 2 and 4 and either linearisation;
+  // the reference list says 5.228.
   ExpectSaid(About(s, "keeps its length"), {"6.62 to", "5.227 rad/s"});
-  // M = 2 against M = 12; the exact frequencies give .019 .106 .490 .048 %.
+  // M = 2 compared with M = 12; comparison with the exact frequencies gives .019 .106 .490 .048 %.
   ExpectSaid(About(s, "the M that are kept"), {"0.019, 0.11, 0.49, 0.048 %"});
 }
 
-TEST(BeamStatements, SayTheReferenceNumbers) {
+TEST(BeamStatements, GiveTheReferenceNumbers) {
   const std::vector<Statement> s = BeamStatements(ReferenceConfig().arm);
   // Bare link 2 with N = 10: -0.457 -1.564 -2.550 -3.565 %; the claim needs N >= 31, 86 for four.
   ExpectSaid(About(s, "transfer matrix"),
@@ -59,7 +59,7 @@ TEST(BeamStatements, SayTheReferenceNumbers) {
   EXPECT_EQ(About(s, "one beta").verdict, Verdict::kDoesNot);
 }
 
-TEST(Chapter4Statements, SayTheReferenceNumbers) {
+TEST(Chapter4Statements, GiveTheReferenceNumbers) {
   const std::vector<Statement> s = Chapter4Statements(ReferenceConfig());
   // Uniform beam: (L^3 / 3EI) / (L^2 / K) = K L / 3EI.
   ExpectSaid(About(s, "equally flexible"), {"11.1 times", "27.1 times"});
@@ -69,14 +69,14 @@ TEST(Chapter4Statements, SayTheReferenceNumbers) {
   ExpectSaid(About(s, "agree well"), {"0.056 mm apart"});
 }
 
-TEST(Chapter6Statements, HoldWhereTheReferenceDoes) {
+TEST(Chapter6Statements, HoldWhereTheReferenceHolds) {
   const std::vector<Statement> s = Chapter6Statements(ReferenceConfig());
   for (const char* words : {"small perturbations", "relaxed condition", "mean power",
                             "stronger than any other", "two modes a link dominate"}) {
     EXPECT_EQ(About(s, words).verdict, Verdict::kHolds) << words;
   }
   EXPECT_NE(About(s, "right angles").verdict, Verdict::kHolds);
-  // Contribution of the first mode at rest, by mass and by length.
+  // Contribution of the first mode at rest, with modes scaled by mass and by length.
   ExpectSaid(About(s, "physical meaning"),
              {"99.50 % with modes of 1 kg", "95.37 % with int psi^2"});
 }
