@@ -14,13 +14,14 @@ namespace flexarm {
 namespace {
 
 constexpr double kSteadySigmas = 6.0;
-constexpr double kQuantisation = 0.29;  // 1/sqrt(12) counts, of a converter that stands still
+constexpr double kQuantisation = 0.29;  // 1/sqrt(12) counts, quantisation noise of a converter
 constexpr double kLargestZero = 0.25;   // of the converter's range to either side
-constexpr double kStill_deg = 0.1;  // that a joint may creep while it is zeroed; one count at least
+constexpr double kStill_deg =
+    0.1;  // largest motion of a joint while it is zeroed; at least one count
 constexpr double kSmallestStrain_counts = 20.0;
 constexpr double kLargestGainError = 0.3;
 
-// Every problem on a line of its own, or nothing.
+// Collects problems, one per line.
 class Findings {
  public:
   explicit Findings(std::string what) : what_(std::move(what)) {}
@@ -36,7 +37,7 @@ class Findings {
   std::string text_;
 };
 
-// Missing or unsteady: true if the channel can be used.
+// Checks for missing and unsteady readings. True if the channel can be used.
 bool CheckSteady(const SensorConfig& sensors, const RestReadings& readings, std::size_t i,
                  const std::string& name, Findings* findings) {
   if (readings.strain_missing[i] > 0) {
@@ -78,11 +79,10 @@ Calibration Tare(const SensorConfig& sensors, const RestReadings& readings, Cali
     if (!CheckSteady(sensors, readings, i, names[i], &findings)) continue;
     const double zero = readings.strain_mean[i] - sensors.strain[i].offset_counts;
     if (std::fabs(zero) > largest) {
-      findings.Add(
-          names[i],
-          fmt::format("stands {:.0f} counts from its zero, more than {:.0f}: a gauge under "
-                      "load, a broken bridge, or a wrong word order",
-                      zero, largest));
+      findings.Add(names[i],
+                   fmt::format("is {:.0f} counts from its zero, more than {:.0f}: a gauge under "
+                               "load, a broken bridge, or a wrong word order",
+                               zero, largest));
     }
     before.strain_zero_counts[i] = static_cast<float>(zero);
   }
@@ -97,11 +97,11 @@ Calibration Zero(const SensorConfig& sensors, const RestReadings& readings,
     const auto i = static_cast<std::size_t>(encoder.counter);
     const double allowed = std::max(1.0, kStill_deg / 360.0 * encoder.counts_per_turn);
     if ((readings.counters_good >> i & 1u) == 0) {
-      findings.Add(CounterName(encoder.counter), "was not read all the time");
+      findings.Add(CounterName(encoder.counter), "was not read in every sample");
     } else if (static_cast<double>(readings.travel_counts[i]) > allowed) {
       findings.Add(
           CounterName(encoder.counter),
-          fmt::format("moved by {:.0f} counts; at rest {:.0f} are allowed",
+          fmt::format("moved by {:.0f} counts; at rest at most {:.0f} are allowed",
                       static_cast<double>(readings.travel_counts[i]), std::floor(allowed)));
     }
     const double counts_at_angle =
@@ -137,8 +137,8 @@ Calibration GainCalibration::Add(const StaticLoad& load, const RestReadings& rea
     sums[i].expected_times_measured += expected * measured;
     const double error = sums[i].expected_times_measured / sums[i].expected_squared - 1.0;
     if (std::fabs(error) > kLargestGainError) {
-      findings.Add(names[i], fmt::format("reads {:.0f} counts where the load explains {:.0f}",
-                                         measured, expected));
+      findings.Add(names[i], fmt::format("reads {:.0f} counts, but the load gives {:.0f}", measured,
+                                         expected));
     }
     before.strain_gain_error[i] = static_cast<float>(error);
     learned = true;
@@ -146,7 +146,7 @@ Calibration GainCalibration::Add(const StaticLoad& load, const RestReadings& rea
   findings.RefuseIfAny();
   if (!learned) {
     throw RejectedError("this load strains no channel of link " + std::to_string(load.link) +
-                        " by 20 counts: use a larger one, or further out");
+                        " by 20 counts: use a larger load, or apply it further from the joint");
   }
   sums_ = sums;
   return before;

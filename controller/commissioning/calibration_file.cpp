@@ -46,7 +46,7 @@ OrderedJson ToJson(const SensorConfig& sensors, const Calibration& calibration) 
   return json;
 }
 
-// The rows of another rig must not pass for this one's: all but what was measured is compared.
+// The file of another rig must be rejected: everything except the measured values is compared.
 template <typename Number>
 void Take(const std::filesystem::path& file, const OrderedJson& row, const char* name,
           Number* value) {
@@ -67,7 +67,8 @@ void CheckSensors(const std::filesystem::path& file, OrderedJson found, OrderedJ
   }
   if (found == expected) return;
   Fail(file,
-       "was made for other sensors than the config's [sensors]: remove it, then `flexarm tare` and "
+       "was made for other sensors than the config's [sensors]: remove it, then run `flexarm tare` "
+       "and "
        "`flexarm zero`");
 }
 

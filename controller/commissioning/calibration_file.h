@@ -9,13 +9,13 @@
 
 namespace flexarm {
 
-/// Replaces the file in one step, so that a power cut leaves the old one or the new one.
+/// Replaces the file atomically, so that a power failure leaves the old one or the new one.
 /// @throws InputError if it cannot be written
 void WriteCalibration(const std::filesystem::path& file, const SensorConfig& sensors,
                       const Calibration& calibration);
 
 /// Nothing if there is no such file.
-/// @throws InputError saying where and what was expected; also if it was made for other sensors
+/// @throws InputError naming the place and what was expected; also if the file is for other sensors
 std::optional<Calibration> ReadCalibration(const std::filesystem::path& file,
                                            const SensorConfig& sensors);
 

@@ -17,14 +17,14 @@ using Json = nlohmann::json;
 
 void RequireIdle(const std::string& command, SafetyState state) {
   if (state == SafetyState::kIdle) return;
-  throw RejectedError(command + " needs the arm in Idle, and it is " + Name(state) +
-                      ": `flexarm disarm`, or `flexarm reset` after a trip");
+  throw RejectedError(command + " needs the state Idle, but the state is " + Name(state) +
+                      ": run `flexarm disarm`, or `flexarm reset` after a trip");
 }
 
 void RequireArmed(const std::string& command, SafetyState state) {
   if (state == SafetyState::kArmed) return;
-  throw RejectedError(command + " moves the arm, so it needs Armed, and it is " + Name(state) +
-                      ": `flexarm arm`");
+  throw RejectedError(command + " moves the arm and needs the state Armed, but the state is " +
+                      Name(state) + ": run `flexarm arm`");
 }
 
 double Number(const Json& command, const char* key) {
@@ -67,7 +67,7 @@ Json EncoderJson(const SensorConfig& sensors, const Calibration& calibration) {
 
 }  // namespace
 
-// Exactly one of the two ends is set.
+// Exactly one of the two continuations is set.
 struct Commissioner::Job {
   std::string command;
   RestMeter rest{1};
@@ -100,19 +100,21 @@ bool Commissioner::Knows(const std::string& command) {
 
 std::string Commissioner::WhyNoRun() const {
   if (config_.commissioning.prove_before_run && !proven_) {
-    return "The wiring has not been proven since the daemon started. First `flexarm pluck`.";
+    return "The wiring has not been tested since the daemon started. Run `flexarm pluck` first.";
   }
   for (std::size_t joint = 0; joint < 2; ++joint) {
     if (angle_known_[joint]) continue;
     return "The angle of joint " + std::to_string(joint + 1) +
-           " is not known since the daemon started. First `flexarm zero`, or `flexarm home`.";
+           " has been unknown since the daemon started. Run `flexarm zero` or `flexarm home` "
+           "first.";
   }
   return {};
 }
 
 CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) {
   if (busy())
-    throw RejectedError("busy with " + job_->command + ": wait for its end, or `flexarm stop`");
+    throw RejectedError("busy with " + job_->command +
+                        ": wait until it ends, or run `flexarm stop`");
   const std::string name = command.value("command", "");
   if (name == "pluck") return StartPluck(state);
   if (name == "home") return StartHome(command, state);
@@ -123,7 +125,8 @@ CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) 
   } else {
     StartRest(name, state, [this](const RestReadings& readings) {
       Adopt(Tare(config_.sensors, readings, calibration_));
-      gains_ = GainCalibration(config_.arm, config_.sensors);  // loads count from their own zero
+      gains_ =
+          GainCalibration(config_.arm, config_.sensors);  // loads are measured from the new zeros
       return Json{{"strain", StrainJson(config_.sensors, calibration_, readings)}};
     });
   }
@@ -191,7 +194,7 @@ CommissioningMotion Commissioner::StartHome(const Json& command, SafetyState sta
   RequireArmed("home", state);
   if (config_.commissioning.prove_before_run && !proven_) {
     throw RejectedError(
-        "homing is a controlled motion, and the wiring is not proven: `flexarm pluck`");
+        "homing is a controlled motion, but the wiring has not been tested: run `flexarm pluck`");
   }
   const auto joint = static_cast<std::size_t>(OneOrTwo(command, "joint") - 1);
   const std::string side = command.value("side", "");
@@ -229,7 +232,7 @@ Json Commissioner::Pluck(const std::vector<TickRecord>& run) {
   }
   if (!verdict.passed()) {
     answer["ok"] = false;
-    answer["error"] = "the wiring is not what the config says:" + text;
+    answer["error"] = "the wiring differs from the config:" + text;
   }
   return answer;
 }
@@ -251,9 +254,9 @@ Json Commissioner::Home(const std::vector<TickRecord>& run, std::size_t joint, L
             {"contact_before_deg", tick.output.angle_rad[joint] / kRadPerDeg},
             {"contact_deg", switch_deg}};
   }
-  throw RejectedError(std::string(Name(line)) + " did not open: put the joint within " +
+  throw RejectedError(std::string(Name(line)) + " did not open: move the joint to within " +
                       std::to_string(config_.commissioning.home_travel_deg) +
-                      " deg of it by hand, and see that the switch works");
+                      " deg of it by hand, and check the switch");
 }
 
 void Commissioner::Take(const TickRecord& tick) {
@@ -264,7 +267,8 @@ void Commissioner::Take(const TickRecord& tick) {
   try {
     if (job_->from_rest) {
       if (state != SafetyState::kIdle) {
-        throw RejectedError("the arm left Idle while it was measured; ask again");
+        throw RejectedError(
+            "the arm left the state Idle during the measurement; repeat the command");
       }
       if (!job_->rest.Take(tick)) return;
       answer = job_->from_rest(job_->rest.Result());

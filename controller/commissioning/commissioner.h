@@ -16,14 +16,15 @@
 
 namespace flexarm {
 
-/// A motion that a commissioning command asks for, to be run like an experiment.
+/// A motion for a commissioning command, to be run like an experiment.
 struct CommissioningMotion {
   std::unique_ptr<PlannedExperiment> planned;
-  LineLevels may_open;  ///< the limit switch that it looks for
+  LineLevels may_open;  ///< the limit switch that the motion searches for
 };
 
-/// Proves the wiring of a rig and calibrates its sensors: tare, zero, calibrate, pluck, home. One
-/// command at a time; each ends in one JSON answer. Keeps the calibration file.
+/// Commissioning: tests the wiring of a rig and calibrates its sensors: tare, zero, calibrate,
+/// pluck, home. One command at a time; each ends in one JSON answer. Maintains the calibration
+/// file.
 ///
 /// Commands, as JSON: {"command": "tare"}, {"command": "zero", "angle_deg": [a, b]},
 /// {"command": "calibrate", "link": 1, "force_n": F, "at_m": x}, {"command": "pluck"},
@@ -32,31 +33,31 @@ struct CommissioningMotion {
 class Commissioner {
  public:
   /// Reads the calibration file, if there is one.
-  /// @throws InputError if it is not for these sensors
+  /// @throws InputError if the file is for other sensors
   explicit Commissioner(const RigConfig& config);
   ~Commissioner();
 
   static bool Knows(const std::string& command);
 
-  /// What the loop shall use now.
+  /// The calibration for the loop.
   const Calibration& calibration() const { return calibration_; }
 
-  /// Why no experiment may run yet, and what to do; empty: it may.
+  /// Why no experiment may run yet, and what to do; empty if one may.
   std::string WhyNoRun() const;
 
   bool busy() const { return job_ != nullptr; }
 
-  /// Begins a command. A motion, if any, is the caller's to run.
-  /// @throws Refused if it cannot be done now, or makes no sense
+  /// Begins a command. The caller runs the motion, if there is one.
+  /// @throws RejectedError if the command is not possible now, or not valid
   CommissioningMotion Start(const nlohmann::json& command, SafetyState state);
 
-  /// Every step of the loop, in order.
+  /// Takes every step of the loop, in order.
   void Take(const TickRecord& tick);
 
-  /// The motion was not permitted.
+  /// Ends the command: its motion was not permitted.
   void Abort();
 
-  /// The answer of a command that has ended; once.
+  /// The answer of a command that has ended; returned once.
   std::optional<nlohmann::json> TakeAnswer();
 
  private:
@@ -72,7 +73,7 @@ class Commissioner {
   nlohmann::json Home(const std::vector<TickRecord>& run, std::size_t joint, Line line,
                       double switch_deg);
   nlohmann::json Pluck(const std::vector<TickRecord>& run);
-  /// Saves, and from now on gives, `calibration`.
+  /// Saves `calibration` and returns it from then on.
   void Adopt(const Calibration& calibration);
 
   RigConfig config_;

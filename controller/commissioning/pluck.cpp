@@ -12,12 +12,12 @@
 namespace flexarm {
 namespace {
 
-constexpr double kLead_s = 0.2;            // still, for the zero of every channel
-constexpr double kProvable_counts = 8.0;   // a channel that moves less proves nothing
+constexpr double kLead_s = 0.2;            // at rest, for the zero of every channel
+constexpr double kProvable_counts = 8.0;   // a smaller motion is not conclusive
 constexpr double kSilent = 0.15;           // of the expected motion
-constexpr double kGoodMatch = 0.8;         // of the motion is explained: it is this channel's
-constexpr double kHubAgainstRotor = 0.06;  // of each other: they differ by the joint's torsion only
-constexpr double kLinkShare = 0.01;        // of a link's largest strain: what noise leaves open
+constexpr double kGoodMatch = 0.8;         // share explained: the motion belongs to this channel
+constexpr double kHubAgainstRotor = 0.06;  // relative: they differ by the torsion of the joint only
+constexpr double kLinkShare = 0.01;        // of a link's largest strain: allowance for noise
 
 struct Answer {
   double gain = 0.0;
@@ -54,8 +54,8 @@ class Judge {
     const auto size = static_cast<Eigen::Index>(run.size());
     for (Eigen::Index joint = 0; joint < 2; ++joint) {
       const Eigen::Index first = std::min(lead + joint * (pulse_ + rest), size);
-      // The swing after a pulse says as much as the pulse, but friction and damping, which no
-      // config knows well, add up in it: half a pulse is enough.
+      // The oscillation after a pulse carries as much information as the pulse, but friction and
+      // damping, which are not known well, accumulate in it: half a pulse is enough.
       window_[static_cast<std::size_t>(joint)] = {
           first, std::min(first + pulse_ + std::min(pulse_ / 2, rest), size) - first};
       complete_[static_cast<std::size_t>(joint)] = size >= first + pulse_;
@@ -63,14 +63,14 @@ class Judge {
     measured_ = MeasuredMotion(config, run);
     expected_ = ExpectedMotion(config, run, false);
     if (DrivesExchanged(run)) {
-      Find("drive1, drive2", "are exchanged: each turns the other's joint");
+      Find("drive1, drive2", "are exchanged: each drives the other joint");
       expected_ = ExpectedMotion(config, run, true);
     }
   }
 
   PluckVerdict Run() {
-    // A drive that is wrong moves the arm in a way that the model did not: what follows its pulse
-    // says nothing about the sensors.
+    // A faulty drive moves the arm differently from the model, so the motion after its pulse
+    // contains no information about the sensors.
     while (sound_drives_ < 2 && JudgeDrive(sound_drives_)) ++sound_drives_;
     JudgeEncoders();
     for (int link = 1; link <= 2; ++link) JudgeLink(link);
@@ -112,7 +112,7 @@ class Judge {
            kProvable_counts;
   }
 
-  // The channels that answer to a joint's own pulse: its hub, its rotor, its link's gauges.
+  // The channels that respond to a joint's own pulse: its hub, its rotor, the gauges of its link.
   std::vector<Eigen::Index> Witnesses(std::size_t joint) const {
     std::vector<Eigen::Index> columns;
     for (const EncoderConfig& encoder : config_.sensors.encoder) {
@@ -145,11 +145,11 @@ class Judge {
     return exchanged > kGoodMatch && exchanged > as_wired;
   }
 
-  // One vote for the hub, one for the rotor, one for the link's gauges together: a channel that is
-  // wrong is outvoted.
+  // Median of three gains: hub, rotor, and all gauges of the link together. One faulty channel does
+  // not change the result much.
   bool JudgeDrive(std::size_t joint) {
     const std::string drive = "drive" + std::to_string(joint + 1);
-    if (!complete_[joint]) Find(drive, "was not plucked: the test ended before its pulse did");
+    if (!complete_[joint]) Find(drive, "was not tested: the test ended before its pulse");
     if (2 * window_[joint].count < pulse_) return false;
     std::vector<double> votes, gauges;
     double match = 0.0;
@@ -169,24 +169,25 @@ class Judge {
     } else if (votes.size() == 2 && votes[0] * votes[1] < 0.0) {
       Find(CounterName(static_cast<int>(joint)) + std::string(", strain_") +
                std::to_string(joint + 1) + "_*",
-           "contradict each other: one of them is inverted");
+           "contradict each other: one of them has the wrong sign");
     } else if (std::fabs(gain) < kSilent) {
-      Find(drive, "nothing moves: no power, no torque, or the joint is blocked");
+      Find(drive, "does not move the joint: no power, no torque, or a blocked joint");
     } else if (gain < 0.0) {
-      Find(drive, "pushes the wrong way: its sign is inverted");
+      Find(drive, "moves the joint in the wrong direction: its sign is inverted");
     } else if (std::fabs(gain - 1.0) > limits_.motion_tolerance) {
-      Find(drive,
-           fmt::format(
-               "moves the arm {:.2f} times as far as the model (tolerance {:.2f}): torque per "
-               "volt or per mille, gear, or payload",
-               gain, limits_.motion_tolerance));
+      Find(
+          drive,
+          fmt::format(
+              "moves the arm {:.2f} times as far as the model (tolerance {:.2f}): check torque per "
+              "volt or per mille, gear, or payload",
+              gain, limits_.motion_tolerance));
     } else {
       return true;
     }
     return false;
   }
 
-  // Gain of a channel beyond that of its drive, which is sound.
+  // Gain of a channel relative to that of its drive, which has passed.
   double Relative(const Answer& answer, std::size_t joint) const {
     return answer.gain / drive_gain_[joint];
   }
@@ -214,8 +215,9 @@ class Judge {
       if (std::fabs(ratio - 1.0) <= kHubAgainstRotor) continue;
       const bool rotor = std::fabs(relative[joint + 2] - 1.0) > std::fabs(relative[joint] - 1.0);
       Find(CounterName(static_cast<int>(rotor ? joint + 2 : joint)),
-           fmt::format("turns {:.3f} times as far as the joint's other encoder: counts_per_turn",
-                       rotor ? ratio : 1.0 / ratio));
+           fmt::format(
+               "turns {:.3f} times as far as the joint's other encoder: check counts_per_turn",
+               rotor ? ratio : 1.0 / ratio));
     }
   }
 
@@ -223,25 +225,27 @@ class Judge {
     const char* name = CounterName(encoder.counter);
     const int other = OtherEncoder(encoder.counter);
     if (other >= 0 && answer.match < kGoodMatch) {
-      Find(name, std::string("reads what ") + CounterName(other) + " should: exchanged");
+      Find(name,
+           std::string("reads what ") + CounterName(other) + " should: the two are exchanged");
     } else if (std::fabs(relative) < kSilent) {
       Find(name, "does not move: not connected, or the wrong counter");
     } else if (relative < 0.0) {
-      Find(name, "counts the wrong way: its sign is inverted");
+      Find(name, "counts in the wrong direction: its sign is inverted");
     } else if (answer.match < kGoodMatch) {
       Find(name,
            fmt::format("does not follow the motion ({:.0f} % explained)", 100.0 * answer.match));
     } else if (std::fabs(relative - 1.0) > limits_.motion_tolerance) {
       Find(name,
-           fmt::format("turns {:.2f} times as far as the model (tolerance {:.2f}): counts_per_turn",
-                       relative, limits_.motion_tolerance));
+           fmt::format(
+               "turns {:.2f} times as far as the model (tolerance {:.2f}): check counts_per_turn",
+               relative, limits_.motion_tolerance));
     } else {
       return true;
     }
     return false;
   }
 
-  // The encoder of the other joint whose expected motion over both pulses this one shows, or -1.
+  // The encoder of the other joint whose expected motion over both pulses matches, or -1.
   int OtherEncoder(int counter) const {
     for (const EncoderConfig& candidate : config_.sensors.encoder) {
       if (candidate.counter % 2 == counter % 2) continue;
@@ -254,7 +258,7 @@ class Judge {
   struct Gauge {
     std::size_t channel = 0;
     double amplitude = 0.0;  // rms of the expected motion
-    double relative = 0.0;   // gain beyond the drive's
+    double relative = 0.0;   // gain relative to the drive's
     bool suspect = false;
   };
 
@@ -278,19 +282,19 @@ class Judge {
     JudgeFamily(link, Median(gains), &gauges);
   }
 
-  // What can be said of one gauge without the others. True if something was found.
+  // Checks one gauge without the others. True if a fault was found.
   bool JudgeGauge(std::size_t i, const Answer& answer, double relative) {
     const int link = config_.sensors.strain[i].link;
     if (answer.match < kGoodMatch && ReadsOtherLink(i)) {
-      Find(names_[i],
-           "bends with link " + std::to_string(3 - link) + ": exchanged with a channel there");
+      Find(names_[i], "bends with link " + std::to_string(3 - link) +
+                          ": exchanged with a channel of that link");
     } else if (std::fabs(relative) < kSilent) {
       Find(names_[i], "does not move with its link: not connected, or the wrong channel");
     } else if (answer.match < kGoodMatch) {
       Find(names_[i],
            fmt::format("does not follow its link ({:.0f} % explained)", 100.0 * answer.match));
     } else if (relative < 0.0) {
-      Find(names_[i], "is inverted: its face, or the polarity of its bridge");
+      Find(names_[i], "is inverted: check its face and the polarity of its bridge");
     } else {
       return false;
     }
@@ -307,13 +311,13 @@ class Judge {
     return false;
   }
 
-  // A link's gauges against each other: bending falls along the link in a way that every one knows.
+  // Compares the gauges of a link: the ratios of their strains follow from their positions alone.
   void JudgeFamily(int link, double family, std::vector<Gauge>* gauges) {
     if (gauges->empty()) return;
     if (std::fabs(family - 1.0) > limits_.motion_tolerance) {
       Find("strain_" + std::to_string(link) + "_*",
            fmt::format(
-               "all read {:.2f} times what the model does (tolerance {:.2f}): the amplifier's gain",
+               "all read {:.2f} times the model (tolerance {:.2f}): check the amplifier's gain",
                family, limits_.motion_tolerance));
     }
     double largest = 0.0;
@@ -333,8 +337,8 @@ class Judge {
         Find(names_[g.channel] + ", " + names_[partner->channel], "are exchanged");
       } else {
         Find(names_[g.channel],
-             fmt::format("reads {:.2f} times what the rest of its link says (tolerance "
-                         "{:.2f}): gain, position, or wrong channel",
+             fmt::format("reads {:.2f} times what the other gauges of its link imply (tolerance "
+                         "{:.2f}): check its gain, its position and its channel",
                          g.relative / family, limits_.gauge_tolerance));
       }
       g.suspect = false;
@@ -345,7 +349,7 @@ class Judge {
   const CommissioningConfig& limits_;
   std::vector<std::string> names_;
   Eigen::Index pulse_ = 0;
-  std::size_t sound_drives_ = 0;  // of the first joints
+  std::size_t sound_drives_ = 0;  // drives that passed, from joint 1 on
   std::array<Window, 2> window_;
   std::array<bool, 2> complete_{};
   std::array<double, 2> drive_gain_{};

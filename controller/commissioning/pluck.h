@@ -10,22 +10,22 @@
 
 namespace flexarm {
 
-// The pluck test proves the wiring: a small torque on one joint, then on the other, in open loop,
-// and what every encoder and gauge says to it is held against the model. Not real-time.
+// The pluck test checks the wiring: a small open-loop torque on one joint, then on the other; the
+// responses of every encoder and gauge are compared with the model. Not real-time.
 
 /// The torques of the test, sample by sample: rest, a pulse each way on joint 1, rest, the same on
-/// joint 2, rest. Each pair of pulses has zero area, so the arm ends at rest near where it began.
+/// joint 2, rest. Each pair of pulses has zero area, so the arm ends at rest near its start.
 std::vector<std::array<double, 2>> PluckTorques(const CommissioningConfig& config, double period_s);
 
-/// How one channel answered.
+/// Response of one channel to the test.
 struct PluckAnswer {
   std::string channel;  ///< "hub1", "strain_1_01", "drive1" (the median of its joint's channels)
-  double gain;          ///< measured over expected motion: 1 is right
-  double match;         ///< share of the motion that `gain` times the expected one explains
-  bool provable;        ///< the test moves this channel enough to say anything
+  double gain;          ///< measured over expected motion, nominally 1
+  double match;         ///< share of the motion that `gain` times the expected motion explains
+  bool provable;        ///< the test moves this channel enough for a result
 };
 
-/// A channel that is wired wrong, and how.
+/// A channel with a wiring fault, and the fault.
 struct PluckFinding {
   std::string channel;
   std::string problem;
@@ -33,7 +33,7 @@ struct PluckFinding {
 
 struct PluckVerdict {
   std::vector<PluckAnswer> answer;    ///< drives, encoders, strain channels
-  std::vector<PluckFinding> finding;  ///< empty: the wiring is proven
+  std::vector<PluckFinding> finding;  ///< empty: the wiring is correct
   bool passed() const { return finding.empty(); }
 };
 

@@ -9,8 +9,8 @@
 namespace flexarm {
 namespace {
 
-constexpr int kModes = 4;      // a link: half a per mille in the arm's first four frequencies
-constexpr int kBaseTicks = 5;  // the still samples at the start
+constexpr int kModes = 4;      // per link: error of 0.05 % in the arm's first four frequencies
+constexpr int kBaseTicks = 5;  // samples at rest at the start
 
 double UnitPerCount(const SensorConfig& sensors, std::size_t i, const Calibration& calibration) {
   const StrainChannelConfig& row = sensors.strain[i];

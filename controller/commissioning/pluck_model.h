@@ -8,15 +8,15 @@
 
 namespace flexarm {
 
-/// Motion of every channel over a pluck test, from where it stood at first. Rows are samples;
+/// Motion of every channel over a pluck test, relative to its first samples. Rows are samples;
 /// columns the four joint angles (rad), then the strain channels in config order (unit strain).
 using PluckMotion = Eigen::MatrixXd;
 
-/// As the sensors say, with the signs, scales and calibration of config and run.
+/// The measured motion, with the signs, scales and calibration of config and run.
 PluckMotion MeasuredMotion(const RigConfig& config, const std::vector<TickRecord>& run);
 
-/// As the model says: the arm of the config, from rest at the elbow angle of the first sample,
-/// under the torques that were really applied.
+/// The expected motion by the model: the arm of the config, from rest at the elbow angle of the
+/// first sample, under the torques that were applied.
 /// @param exchanged  the two drives' torques act on each other's joint
 PluckMotion ExpectedMotion(const RigConfig& config, const std::vector<TickRecord>& run,
                            bool exchanged);

@@ -8,24 +8,24 @@
 
 namespace flexarm {
 
-/// What the sensors of a still arm read, averaged over some samples. Raw counts.
+/// Sensor readings of an arm at rest, averaged over some samples.
 struct RestReadings {
   int ticks;
   std::array<double, kMaxStrainChannels> strain_mean;   ///< raw counts
   std::array<double, kMaxStrainChannels> strain_sigma;  ///< standard deviation
   std::array<int, kMaxStrainChannels> strain_missing;   ///< samples without a valid reading
   std::array<std::int64_t, kCounters> counts;           ///< unwrapped, of the last sample
-  std::array<std::int64_t, kCounters> travel_counts;    ///< largest less smallest
-  std::uint32_t counters_good;                          ///< bit i: good in every sample
+  std::array<std::int64_t, kCounters> travel_counts;    ///< largest minus smallest
+  std::uint32_t counters_good;                          ///< bit i: valid in every sample
 };
 
-/// Collects RestReadings. Not real-time safe only because nobody needs it to be.
+/// Collects RestReadings. Not designed as real-time safe, because no caller needs it.
 class RestMeter {
  public:
   /// @param ticks  to average over, at least 2
   explicit RestMeter(int ticks) : wanted_(ticks) {}
 
-  /// True if this was the last one that was needed.
+  /// True if this was the last sample that was needed.
   bool Take(const TickRecord& tick);
 
   bool started() const { return ticks_ > 0; }

@@ -42,7 +42,8 @@ CommandGenerator SolveCommandGenerator(const TrackingProblem& problem) {
   const double condition = svd.singularValues()(0) / svd.singularValues()(n + m - 1);
   if (!(condition < 1e12)) {
     throw std::runtime_error(
-        "command generator: the plant has an invariant zero at z = 1, no steady state follows the "
+        "command generator: the plant has an invariant zero at z = 1, so no steady state follows "
+        "the "
         "reference");
   }
   const Eigen::MatrixXd Omega = system.inverse();

@@ -4,14 +4,14 @@
 
 namespace flexarm {
 
-/// The discrete plant and the reference model whose output it shall follow: C_p x = C_m x_m.
+/// Tracking problem: the discrete plant shall follow the reference model's output, C_p x = C_m x_m.
 struct TrackingProblem {
   Eigen::MatrixXd A, B, Cp;    ///< plant
   Eigen::MatrixXd Am, Bm, Cm;  ///< reference model
-  Eigen::VectorXd scale;  ///< x = scale .* z: the solve is done in z, where it is well conditioned
+  Eigen::VectorXd scale;       ///< x = scale .* z: solved in z, for its condition number
 };
 
-/// Command generator tracker: the plant trajectory on which the outputs agree exactly.
+/// Command generator tracker (CGT): the plant trajectory whose output is that of the model.
 ///   x* = S11 x_m + S12 u_m,  u* = S21 x_m + S22 u_m
 /// Source: thesis 7.3 and docs/theory/control-law.md 4.
 struct CommandGenerator {
@@ -23,8 +23,8 @@ struct CommandGenerator {
 CommandGenerator SolveCommandGenerator(const TrackingProblem& problem);
 
 /// Condition number of the equation for S11 written as one linear system of n^2 unknowns, in the
-/// coordinates of `scale`: how much larger than round-off its solution's error may be. Infinity
-/// when round-off takes it for singular.
+/// coordinates of `scale`: bounds the ratio of the solution's error to round-off. Infinity when the
+/// system is numerically singular.
 ///   (I - (A_m - I)' (x) Omega_11) vec S11 = vec(Omega_12 C_m)
 double SteinCondition(const TrackingProblem& problem);
 

@@ -26,8 +26,8 @@ namespace {
 
 double SpectralRadius(const Eigen::MatrixXd& A) { return A.eigenvalues().cwiseAbs().maxCoeff(); }
 
-// Q weighs hub angles and rates only, if the config does not say otherwise: weights on elastic
-// energy make the regulator fight modes that the nominal model does not have.
+// Default Q weights hub angles and rates only: weights on elastic energy make the regulator act
+// against modes that the nominal model does not contain.
 Eigen::MatrixXd StateWeight(const ControllerConfig& controller) {
   const StateLayout& layout = controller.nominal;
   if (!controller.state_weight.empty()) {
@@ -42,8 +42,8 @@ Eigen::MatrixXd StateWeight(const ControllerConfig& controller) {
   return q.asDiagonal();
 }
 
-// LQR without prescribed degree of stability: slower, and calm where the tracking gains keep an arm
-// with another payload in a limit cycle with its friction.
+// LQR without prescribed degree of stability: slower, and without the limit cycle that friction
+// causes under the tracking gains with another payload.
 Eigen::MatrixXd CalmGain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                          const Eigen::MatrixXd& Q) {
   const Eigen::Matrix2d I2 = Eigen::Matrix2d::Identity();
@@ -72,9 +72,9 @@ void DesignRegulator(const ControlConfig& config, Design* design) {
       {"regulator-riccati-residual", DareResidual(a * A, a * B, Q, I2, P), 1e-9, true});
 }
 
-// Coordinates in which the CGT equation is well conditioned: unit modal mass, and rates measured
-// against the torque modes. Link 1's second shape has its node at the heavy tip, so that with
-// psi(L) = 1 its modal mass is 410 kg.
+// Coordinates in which the CGT equation is well conditioned: unit modal mass, and rates scaled by
+// the torque modes. Link 1's second shape has its node at the heavy tip, so with psi(L) = 1 its
+// modal mass is 410 kg.
 Eigen::VectorXd TrackingScale(const NominalModel& nominal) {
   const Eigen::Index dof = nominal.M.rows();
   const double rate = nominal.torque_mode_rad_s(0);
@@ -117,8 +117,8 @@ double SmallestEigenvalue(double a, double d, const std::complex<double>& b) {
   return 0.5 * (a + d) - std::hypot(0.5 * (a - d), std::abs(b));
 }
 
-// Smallest eigenvalue of S + S* on the unit circle, S(z) = J + K (zI - A_c)^-1 B: the lemma says
-// that it is positive, this looks.
+// Smallest eigenvalue of S + S* on the unit circle, S(z) = J + K (zI - A_c)^-1 B. The lemma (7.16)
+// says that it is positive; this checks it numerically.
 double PositiveRealMargin(const Design& design) {
   constexpr int kFrequencies = 720;
   const Eigen::MatrixXcd A_c = (design.A - design.B * design.K).cast<std::complex<double>>();

@@ -10,7 +10,7 @@ namespace flexarm {
 /// @throws std::runtime_error naming the equation that has no solution
 Design DesignController(const ControlConfig& config);
 
-/// The command generator's problem of a design, in the coordinates in which it is solved.
+/// The tracking problem of a design's command generator, in the coordinates of its solution.
 TrackingProblem TrackingProblemOf(const ControlConfig& config, const Design& design);
 
 }  // namespace flexarm

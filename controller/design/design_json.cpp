@@ -61,7 +61,7 @@ void AddArm(const ArmParameters& arm, Digest* digest) {
           << static_cast<double>(arm.damping) << static_cast<double>(arm.link1_tip_inertia);
 }
 
-// The members of a design by name, so that writer and reader cannot disagree.
+// The members of a design by name: one list for writer and reader.
 template <typename D, typename F>
 void ForEachMatrix(D& design, F&& visit) {
   visit("A", design.A);
@@ -115,7 +115,7 @@ void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name,
     }
     for (std::size_t j = 0; j < rows[i].size(); ++j) {
       if (!rows[i][j].is_number()) {
-        throw RejectedError("gains file: '" + name + "' holds something that is not a number");
+        throw RejectedError("gains file: '" + name + "' contains an element that is not a number");
       }
       read(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j].get<double>();
     }
@@ -145,7 +145,7 @@ void MatrixFromJson(const nlohmann::ordered_json& rows, const std::string& name,
   *matrix = read;
 }
 
-// A knot is 2 x 12, row by row.
+// A knot is a 2 x 12 matrix, row by row.
 nlohmann::ordered_json KnotsToJson(const GainTable& table) {
   auto out = nlohmann::ordered_json::array();
   for (const GainTable::Gain& gain : table.knots()) out.emplace_back(MatrixToJson(gain));
@@ -159,14 +159,14 @@ std::vector<GainTable::Gain> KnotsFromJson(const nlohmann::ordered_json& in,
     Eigen::MatrixXd gain;
     MatrixFromJson(knot, name, &gain);
     if (gain.rows() != 2 || gain.cols() != 12) {
-      throw RejectedError("gains file: '" + name + "' holds a matrix that is not 2 x 12");
+      throw RejectedError("gains file: '" + name + "' contains a matrix that is not 2 x 12");
     }
     knots.emplace_back(gain);
   }
   return knots;
 }
 
-// What the laws that know the payload need.
+// Members of the laws that use the payload.
 nlohmann::ordered_json PayloadToJson(const Design& design) {
   nlohmann::ordered_json out{{"model", design.payload_model}};
   if (!design.scheduled) return out;
@@ -181,12 +181,12 @@ nlohmann::ordered_json PayloadToJson(const Design& design) {
   return out;
 }
 
-// What is at `key` of the table 'payload'.
+// The member `key` of the table 'payload'.
 const nlohmann::ordered_json& NeededAt(const nlohmann::ordered_json& payload, const char* key) {
   if (payload.contains(key)) return payload.at(key);
   throw RejectedError(
       std::string("gains file: 'payload.") + key +
-      "' is missing, which the law or the estimator of this config needs; run `flexarm "
+      "' is missing; the law or the estimator of this config needs it: run `flexarm "
       "design` again");
 }
 
@@ -194,7 +194,7 @@ std::vector<double> NumbersAt(const nlohmann::ordered_json& payload, const char*
   return NeededAt(payload, key).get<std::vector<double>>();
 }
 
-// All that the config needs, and nothing else: a gain table too many would change the law.
+// Reads only what the config needs: an additional gain table would change the law.
 void PayloadFromJson(const nlohmann::ordered_json& in, const ControlConfig& config,
                      Design* design) {
   try {
@@ -213,13 +213,13 @@ void PayloadFromJson(const nlohmann::ordered_json& in, const ControlConfig& conf
     if (!PlansAhead(config.controller.kind)) return;
     design->scheduled->start_gains = table("start_gain");
   } catch (const nlohmann::ordered_json::exception&) {
-    throw RejectedError("gains file: a member of 'payload' is not numbers");
+    throw RejectedError("gains file: a member of 'payload' does not consist of numbers");
   } catch (const std::invalid_argument& error) {
     throw RejectedError(std::string("gains file: 'payload': ") + error.what());
   }
 }
 
-// The text at `key`, or what stands for a missing one; of another type it is not ours.
+// The text at `key`, `missing` if there is none; the JSON of a value that is not a string.
 std::string TextAt(const nlohmann::ordered_json& in, const char* key, const char* missing) {
   const auto found = in.find(key);
   if (found == in.end()) return missing;
@@ -238,14 +238,14 @@ DesignCheck CheckFromJson(const nlohmann::ordered_json& in) {
 StateLayout LayoutFromJson(const nlohmann::ordered_json& in) {
   const std::string name = TextAt(in, "nominal", "missing");
   const std::optional<StateLayout> layout = LayoutNamed(name);
-  if (!layout) throw RejectedError("gains file: 'nominal' names no model: " + name);
+  if (!layout) throw RejectedError("gains file: 'nominal' is not the name of a model: " + name);
   return *layout;
 }
 
-// Every product that the loop forms must have matching shapes.
+// All products that the loop computes must have matching shapes.
 void RequireShapes(const Design& d) {
   const Eigen::Index n = d.layout.states(), outputs = d.layout.outputs();
-  const Eigen::Index nf = d.filter_A.rows();  // with the states of a gauge filter of either order
+  const Eigen::Index nf = d.filter_A.rows();  // includes the states of the gauge filters, any order
   const auto require = [](const char* name, const Eigen::MatrixXd& m, Eigen::Index rows,
                           Eigen::Index cols) {
     if (m.rows() == rows && m.cols() == cols) return;
@@ -329,11 +329,11 @@ Design DesignFromJson(const std::string& text, const ControlConfig& config) {
   const nlohmann::ordered_json in = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!in.is_object() || TextAt(in, "format", "") != kFormat) {
     throw RejectedError(std::string("not a gains file: expected JSON with \"format\": \"") +
-                        kFormat + "\", as `flexarm design` writes it");
+                        kFormat + "\"; write it with `flexarm design`");
   }
   const std::string expected_hash = DesignHash(config);
   if (TextAt(in, "config_hash", "") != expected_hash) {
-    throw RejectedError("gains file: designed for another config (hash " +
+    throw RejectedError("gains file: it was designed for another config (hash " +
                         TextAt(in, "config_hash", "missing") + ", this config has " +
                         expected_hash + "); run `flexarm design` again");
   }

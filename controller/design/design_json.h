@@ -7,14 +7,14 @@
 
 namespace flexarm {
 
-/// Digest of what a design depends on: arm, sensors, estimator, controller, period. 16 hex digits.
+/// Digest of all settings of a design: arm, sensors, estimator, controller, period. 16 hex digits.
 std::string DesignHash(const ControlConfig& config);
 
 /// A design as JSON text, doubles in 17 digits, with the digest of its config.
 std::string DesignToJson(const Design& design, const std::string& config_hash);
 
-/// Reads what DesignToJson wrote, with all that the laws and the estimator of `config` need.
-/// @throws Refused naming what is missing or misshapen, or that it was designed for another config
+/// Reads a design from DesignToJson, with all that the law and the estimator of `config` need.
+/// @throws RejectedError naming what is missing or malformed, or that the config was another one
 Design DesignFromJson(const std::string& text, const ControlConfig& config);
 
 }  // namespace flexarm

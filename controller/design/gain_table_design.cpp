@@ -12,7 +12,7 @@
 namespace flexarm {
 namespace {
 
-// At rest and unbent the model is linear: M q'' + D q' + K q = [u; 0].
+// Linear model at rest with straight links: M q'' + D q' + K q = [u; 0].
 DiscreteModel SampledAt(const RigidJointArm& arm, double payload_kg, double theta2_rad,
                         double period_s) {
   constexpr Eigen::Index n = RigidJointArm::kDof;

@@ -14,16 +14,17 @@ namespace {
 
 struct Oscillation {
   double half_period;  // samples
-  double decay;        // K: what is left of it after that
+  double decay;        // K: amplitude ratio after half a period
 };
 
-// A real pole has angle 0 (or pi: it alternates with the samples, and no shaper is finer).
+// A real pole has angle 0, or pi if it alternates with the samples, which no shaper can cancel.
 std::vector<Oscillation> SlowestTwo(const Eigen::MatrixXd& closed) {
   std::vector<std::complex<double>> poles;
   for (const std::complex<double> z : closed.eigenvalues()) {
     if (std::arg(z) > 1e-6 && std::arg(z) < kPi - 1e-6) poles.push_back(z);
   }
-  if (poles.size() < 2) throw std::runtime_error("input shaper: fewer than two oscillations");
+  if (poles.size() < 2)
+    throw std::runtime_error("input shaper: the closed loop has fewer than two oscillatory modes");
   std::sort(poles.begin(), poles.end(),
             [](const auto& a, const auto& b) { return std::arg(a) < std::arg(b); });
   std::vector<Oscillation> slowest;
@@ -40,7 +41,7 @@ Eigen::RowVectorXd Convolve(const Eigen::RowVectorXd& a, const Eigen::RowVectorX
   return out;
 }
 
-// Impulses 1 and K, half a period apart: annihilates the oscillation.
+// Impulses 1 and K, half a period apart, cancel the oscillation.
 Eigen::RowVectorXd ZeroVibration(const Oscillation& oscillation) {
   const double whole = std::floor(oscillation.half_period);
   const double share = oscillation.half_period - whole;

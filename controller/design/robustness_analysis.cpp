@@ -28,18 +28,18 @@ constexpr std::array<double, 3> kElbow_deg = {0.0, 45.0, 90.0};
 constexpr std::array<double, 3> kGains = {1.0, 0.7, 1.4};
 constexpr Index kMaxDelayPeriods = 5;
 
-// The margins that a design must have: the factors that the robustness itself tries, and more delay
-// than the motor's lag and the age of a reading that nobody has told the loop about.
+// The required margins: the gain factors that the analysis applies, and more delay than the lag of
+// the motor and the unmodelled latency of a sensor.
 constexpr double kGainUp = 1.4;
 constexpr double kGainDown = 0.7;
 constexpr double kDelay_ms = 4.0;
 
-/// Plant with its gauges' filters: x = [q; q'; filters], y = [th1 th2 th3 th4 modes as fitted].
+/// Plant with the filters of its gauges: x = [q; q'; filters], y = [th1 th2 th3 th4, fitted modes].
 struct Plant {
   MatrixXd A, B, C;
 };
 
-// Strain of every channel for a unit of every modal coordinate, weighted as the fit does.
+// Strain of every channel per unit of every modal coordinate, weighted as in the fit.
 MatrixXd StrainShape(const ArmModel& model, const SensorConfig& sensors) {
   const Index flex = model.dof() - 4;
   MatrixXd shape(static_cast<Index>(sensors.strain.size()), flex);
@@ -54,7 +54,7 @@ MatrixXd StrainShape(const ArmModel& model, const SensorConfig& sensors) {
   return shape;
 }
 
-// What the fit of few modes makes of the plant's many, in the rows of those that the law knows.
+// Map from the plant's modal coordinates to the fitted ones, rows of the modes that the law uses.
 MatrixXd FitOf(const ArmModel& plant, const ControlConfig& config) {
   const Index modes = config.estimator.modes_per_link;
   const Index known = config.controller.nominal.modes_per_link;
@@ -89,8 +89,8 @@ Plant PlantAt(const ControlConfig& config, double payload_kg, double theta2_deg)
   return plant;
 }
 
-/// The delay that the loop knows of itself, beyond one period: whole periods, -1 for a torque that
-/// is put out at once, and the rest of it.
+/// Delay that the loop compensates, beyond one period: whole periods, -1 for a torque that is
+/// output at once, and the remainder.
 struct OwnDelay {
   Index whole;
   double rest_s;
@@ -105,7 +105,7 @@ OwnDelay OwnDelayOf(const LoopConfig& loop) {
 }
 
 /// The estimator as a linear system: z(k) = A z(k-1) + B [y(k); u; u'],
-/// x_hat(k) = C z(k-1) + D [y(k); u; u'], u and then u' the torques of the last period.
+/// x_hat(k) = C z(k-1) + D [y(k); u; u'], u, then u' the torques of the last period.
 struct LinearEstimator {
   MatrixXd A, B, C, D;
 };
@@ -165,8 +165,8 @@ class Loop {
         first_u_(plant.A.rows() + estimator_.A.rows()),
         inputs_(2 * (kMaxDelayPeriods + 2 + std::max(own_.whole, Index{0}))) {}
 
-  // State [x; z; u_0; u_1; ..], u_i the torque computed at step k-1-i. It acts, seen from k Ts, at
-  // (whole - i) Ts + rest with the delay that the loop knows of, and delay_s later in truth.
+  // State [x; z; u_0; u_1; ..], u_i the torque computed at step k-1-i. Relative to k Ts it acts at
+  // (whole - i) Ts + rest with the compensated delay, and delay_s later in the plant.
   double SpectralRadius(double gain, double delay_s) const {
     const Index nx = plant_.A.rows(), nz = estimator_.A.rows();
     MatrixXd loop = MatrixXd::Zero(first_u_ + inputs_, first_u_ + inputs_);
@@ -191,7 +191,7 @@ class Loop {
     return row;
   }
 
-  // [y; u; u'], y = C x, to rigid joints without [0; u'/K; 0]: the torsion in the rotors' readings.
+  // [y; u; u'], y = C x. For rigid joints minus [0; u'/K; 0], the torsion in the rotor readings.
   MatrixXd Seen() const {
     const Index outputs = plant_.C.rows();
     MatrixXd seen = MatrixXd::Zero(outputs + 4, first_u_ + inputs_);
@@ -214,12 +214,12 @@ class Loop {
     return x_hat;
   }
 
-  // The torque of one step takes over from that of the one before within the period.
+  // Within the period the torque of one step replaces that of the step before.
   void AddPlant(double late_s, const MatrixXd& asked, MatrixXd* loop) const {
     const Index nx = plant_.A.rows();
     const double period_s = config_.loop.period_s();
     const Index periods = std::min(static_cast<Index>(late_s / period_s), kMaxDelayPeriods);
-    const Index newest = own_.whole + periods;  // -1: the one that is asked now
+    const Index newest = own_.whole + periods;  // -1: the torque of the present step
     late_s -= static_cast<double>(periods) * period_s;
     const DiscreteModel rest = ZeroOrderHold(plant_.A, plant_.B, period_s - late_s);
     loop->topRows(nx) = rest.B * (newest < 0 ? asked : Torque(newest));
@@ -242,8 +242,8 @@ class Loop {
   Index inputs_;
 };
 
-// Where a loop that is stable at `stable` stops being so on the way to `end`, to 1 %: walks, then
-// halves. `end` if it never does.
+// Stability boundary between `stable`, where the loop is stable, and `end`, to 1 %: search in
+// steps, then bisection. `end` if the loop is stable up to there.
 template <typename Radius>
 double Edge(double stable, double end, const Radius& radius) {
   constexpr int kSteps = 40, kHalvings = 8;

@@ -17,7 +17,7 @@ Design ReadDesign(const ControlConfig& config) {
   std::ifstream file(name);
   if (!file) {
     throw RejectedError(name +
-                        ": cannot be read (controller.gains); write it with `flexarm design`");
+                        ": cannot be read (controller.gains); create it with `flexarm design`");
   }
   std::stringstream text;
   text << file.rdbuf();

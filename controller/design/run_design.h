@@ -6,7 +6,7 @@
 namespace flexarm {
 
 /// The design to run with: the one in `controller.gains`, or a new one.
-/// @throws Refused when there is none, or a check of it failed
+/// @throws RejectedError if there is none, or if one of its checks failed
 Design DesignFor(const ControlConfig& config);
 
 }  // namespace flexarm

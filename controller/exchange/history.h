@@ -6,12 +6,12 @@
 
 namespace flexarm {
 
-/// The last N values of a signal with the instants from which they hold.
+/// History buffer: the last N values of a signal, each with the instant from which it holds.
 ///
 /// A task publishes its history through LatestValue; a reader asks for the value that held at a
-/// logical instant. So what a task sees depends on the time grid alone, not on which thread woke
-/// first: a real-time run in which every task publishes before the instant from which its value
-/// holds sees exactly what the lock-step run sees.
+/// logical instant. So the values that a task reads depend on the time grid alone and not on the
+/// order in which threads woke: a real-time run in which every task publishes each value before the
+/// instant from which it holds reads the same values as the lock-step run.
 /// Real-time: safe. Trivially copyable if T is.
 template <typename T, int N>
 class History {
@@ -25,13 +25,13 @@ class History {
     entries_.fill(Entry{.from_ns = INT64_MIN, .value = initial});
   }
 
-  /// Instants must not go back.
+  /// Instants must not decrease.
   void Push(std::int64_t from_ns, const T& value) noexcept {
     newest_ = (newest_ + 1) % N;
     entries_[static_cast<std::size_t>(newest_)] = Entry{.from_ns = from_ns, .value = value};
   }
 
-  /// The value that holds at `now_ns`; the oldest one kept if all are newer.
+  /// The value that holds at `now_ns`; the oldest stored one if all are newer.
   const Entry& At(std::int64_t now_ns) const noexcept {
     for (int back = 0; back < N - 1; ++back) {
       const Entry& entry = entries_[static_cast<std::size_t>((newest_ + N - back) % N)];

@@ -7,11 +7,12 @@
 
 namespace flexarm {
 
-/// Hands the newest value from one writer thread to one reader thread. Older values are dropped.
+/// Wait-free triple buffer: passes the newest value from one writer thread to one reader thread.
+/// Older values are dropped.
 ///
 /// Real-time safe on both sides: wait-free, no allocation, no system call; each call copies one T.
-/// Three buffers: the writer owns one, the reader owns one, the third waits in `shared_`. The
-/// acq_rel exchange publishes the bytes of T; nothing else synchronises.
+/// Three buffers: the writer owns one, the reader owns one, `shared_` has the index of the third.
+/// The acq_rel exchange publishes the bytes of T; nothing else synchronises.
 template <typename T>
 class LatestValue {
   static_assert(std::is_trivially_copyable_v<T>, "a copy of T must not allocate or throw");
@@ -43,9 +44,9 @@ class LatestValue {
   static constexpr std::uint8_t kFresh = 0b100;
 
   std::array<T, 3> buffers_;
-  alignas(64) std::uint8_t write_ = 0;                // the writer's own
-  alignas(64) std::uint8_t read_ = 1;                 // the reader's own
-  alignas(64) std::atomic<std::uint8_t> shared_ = 2;  // index of the waiting buffer, plus kFresh
+  alignas(64) std::uint8_t write_ = 0;                // owned by the writer
+  alignas(64) std::uint8_t read_ = 1;                 // owned by the reader
+  alignas(64) std::atomic<std::uint8_t> shared_ = 2;  // index of the third buffer, plus kFresh
 };
 
 }  // namespace flexarm

@@ -19,8 +19,9 @@ void AnnotateIgnoreWritesEnd(const char* file, int line);
 
 namespace flexarm {
 
-/// Hands every value from one producer thread to one consumer thread, in order. Never allocates
-/// after construction: what does not fit is dropped and counted, so a gap is never silent.
+/// Single-producer single-consumer queue: passes every value from one thread to another, in order.
+/// Never allocates after construction: a value that does not fit is dropped and counted, so a gap
+/// is never silent.
 ///
 /// Real-time: safe on both sides, wait-free. Not copyable, not movable.
 template <typename T>
@@ -42,7 +43,7 @@ class SpscQueue {
     return false;
   }
 
-  /// Consumer thread only. False if there is nothing.
+  /// Consumer thread only. False if the queue is empty.
   bool Pop(T* value) noexcept {
     bool found = false;
     {
@@ -53,10 +54,10 @@ class SpscQueue {
     return found;
   }
 
-  /// Any thread. Values that did not fit, ever.
+  /// Any thread. Number of values that did not fit since construction.
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
-  /// Any thread. How many values wait, or waited a moment ago.
+  /// Any thread. Number of waiting values, approximate while the other thread is active.
   std::size_t size() const noexcept {
     const Unchecked unchecked;
     return queue_.size_approx();
@@ -64,8 +65,8 @@ class SpscQueue {
 
  private:
 #if defined(__SANITIZE_THREAD__)
-  // The queue orders its memory with fences, which the thread sanitizer does not understand. So it
-  // gets told of the order by hand, and does not look inside.
+  // The queue orders its memory accesses by fences, which the thread sanitizer does not model. The
+  // annotations state this order and exclude the inside of the queue from the check.
   struct Unchecked {
     Unchecked() noexcept {
       AnnotateIgnoreReadsBegin(__FILE__, __LINE__);
@@ -80,7 +81,7 @@ class SpscQueue {
   void Acquire() noexcept { __tsan_acquire(this); }
 #else
   struct Unchecked {
-    Unchecked() noexcept {}  // user-provided: not an unused variable
+    Unchecked() noexcept {}  // user-provided, so that the variable does not count as unused
   };
   void Release() noexcept {}
   void Acquire() noexcept {}

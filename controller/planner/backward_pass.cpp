@@ -18,7 +18,7 @@ void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const Pla
   const auto slope = [&](std::size_t k) -> PlanState {
     return targets.StateWeight(k).cwiseProduct(track.x[k] - targets.Reference(k));
   };
-  // Cost to go from sample k + 1: dx'V dx / 2 + v'dx.
+  // Cost-to-go from sample k + 1: dx'V dx / 2 + v'dx.
   Matrix12 V = targets.StateWeight(stages).asDiagonal();
   PlanState v = slope(stages);
   for (std::size_t k = stages; k-- > 0;) {
@@ -47,7 +47,8 @@ void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const Pla
     v = slope(k) + A.transpose().lazyProduct(v_next) +
         Q_ux.transpose().lazyProduct(policy->step_nm[k]);
     const Matrix12 W = A.transpose().lazyProduct(VA) + Q_ux.transpose().lazyProduct(K);
-    V = 0.5 * (W + W.transpose());  // symmetric but for round-off, which the sweep would amplify
+    V = 0.5 *
+        (W + W.transpose());  // removes round-off asymmetry, which the recursion would amplify
     V.diagonal() += targets.StateWeight(k);
   }
 }

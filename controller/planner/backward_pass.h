@@ -8,16 +8,16 @@
 
 namespace flexarm {
 
-/// How to leave a trajectory for a cheaper one: u = u_track + a step + K (x - x_track). Large.
+/// Affine policy for improving a trajectory: u = u_track + a step + K (x - x_track). Large.
 struct PlanPolicy {
   std::array<Eigen::Vector2d, HorizonPlan::kMaxStages> step_nm;
   std::array<Eigen::Matrix<double, 2, 12>, HorizonPlan::kMaxStages> K;
 };
 
-/// One backward Riccati sweep along a trajectory, Gauss-Newton: the model linearised at every
-/// sample by TransitionOver, without its gauges; the cost as it is, a quadratic.
+/// Backward pass of iterative LQR, a Riccati recursion along a trajectory (Gauss-Newton): the model
+/// is linearised at every sample by TransitionOver, without gauges; the cost is quadratic.
 ///
-/// R > 0 and Q >= 0 make every step's Hessian positive definite: nothing is regularised.
+/// R > 0 and Q >= 0 make the Hessian of every step positive definite: no regularisation.
 /// Source: docs/theory/payload.md 5.2. Real-time: safe.
 /// @param track  a motion of the model, targets.stages() long
 void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const PlanCost& targets,

@@ -8,10 +8,10 @@
 
 namespace flexarm {
 
-/// The model's motion from track->x[0] under a law, its torque clipped; without friction, which the
-/// loop's law adds where the torque is issued.
+/// Forward rollout: the model's motion from track->x[0] under a law with limited torque, without
+/// friction, which the loop's law compensates when the torque is issued.
 ///
-/// Source: docs/theory/payload.md 5.3: the design study's plan has no friction in it.
+/// Source: docs/theory/payload.md 5.3: the design study plans without friction.
 /// Real-time: safe if the law is.
 /// @param law  torque by sample and state, N m: Eigen::Vector2d(std::size_t k, const PlanState& x)
 template <typename Law>

@@ -10,7 +10,7 @@ namespace flexarm {
 namespace {
 
 constexpr int kRollOutSteps = 4;
-constexpr double kAnyGauge_hz = 1.0;  // a plan reads no gauges
+constexpr double kAnyGauge_hz = 1.0;  // no gauges in a plan; any value
 constexpr std::array<double, 3> kShares = {1.0, 0.4, 0.1};
 constexpr int kColdRounds = 2, kWarmRounds = 1;
 
@@ -58,8 +58,8 @@ bool HorizonPlanner::MayContinue(const HorizonPlan& previous,
   return IsFor(previous, problem.payload_kg) && previous.At(problem.first_tick).has_value();
 }
 
-// Beyond the previous plan's end, and without one: the quasi-static motion. The table is read at
-// its elbow angle.
+// Beyond the end of the previous plan, and without a previous plan: the quasi-static motion. The
+// gain table is read at its elbow angle.
 void HorizonPlanner::RollOutStart(const PlanProblem& problem,
                                   const HorizonPlan* previous) noexcept {
   const PlanTrack& quasi_static = targets_.quasi_static();
@@ -75,7 +75,7 @@ void HorizonPlanner::RollOutStart(const PlanProblem& problem,
   RollOut(rolling_, problem.payload_kg, targets_.stages(), torque_limit_nm_, law, &track_);
 }
 
-// The largest share of the sweep's step that costs less.
+// Line search: the largest share of the backward pass's step that reduces the cost.
 bool HorizonPlanner::Improve(double payload_kg) noexcept {
   trial_.x[0] = track_.x[0];
   for (const double share : kShares) {
@@ -95,9 +95,9 @@ bool HorizonPlanner::Improve(double payload_kg) noexcept {
 }
 
 // The design study's rule "rejected if it raises sum |u - u_prev| / u_max above .5 and above the
-// old plan's" is read as the largest change from sample to sample, joints added. A sum over the
-// horizon would be above .5 in every healthy move, and would refuse each plan for a payload found
-// heavier.
+// old plan's" is read as the largest change from sample to sample, both joints added. A sum over
+// the horizon would be above .5 in every normal move, and would reject each plan after an increase
+// of the estimated payload.
 bool HorizonPlanner::IsSmooth(const PlanProblem& problem,
                               const HorizonPlan* previous) const noexcept {
   const auto change = [this](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {

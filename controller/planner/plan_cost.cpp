@@ -5,7 +5,7 @@
 namespace flexarm {
 namespace {
 
-constexpr std::size_t kPathBeyondStages = 3;  // before the first, and two after the last
+constexpr std::size_t kPathBeyondStages = 3;  // one before the first stage, two after the last
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void PlanCost::Set(const RigidJointArm& arm, double period_s, const PlanWeights&
     return {QuasiStaticAt(arm, body, problem.path[i]),
             QuasiStaticAt(arm, reference, problem.path[i])};
   };
-  // Path and samples are one apart. Each pose is worked out once and passed on.
+  // Path index and sample index differ by one. Each pose is computed once and reused.
   std::array<QuasiStaticPose, 2> before = both(0), now = both(1);
   for (std::size_t k = 0; k <= stages_; ++k) {
     const std::array<QuasiStaticPose, 2> next = both(k + 2);

@@ -13,26 +13,26 @@ namespace flexarm {
 
 using PlanState = Eigen::Matrix<double, 12, 1>;
 
-/// What is to be planned.
+/// Planning problem: initial state, payload and path.
 struct PlanProblem {
   std::int64_t first_tick;
   PlanState x;                       ///< at first_tick, [q; q'], rad and m, and per second
   double payload_kg;                 ///< as estimated now
   Eigen::Vector2d torque_before_nm;  ///< issued for the sample before first_tick, without friction
-  /// The rigid coordinate, sample by sample from first_tick - 1: its size is that of the horizon
-  /// and 3 more. docs/theory/payload.md 5.1: to 20 samples after the move's end.
+  /// The rigid coordinate, sample by sample from first_tick - 1: the size is the length of the
+  /// horizon plus 3. docs/theory/payload.md 5.1: to 20 samples after the move's end.
   std::span<const RigidPoint> path;
   std::size_t move_samples;  ///< from first_tick to the end of the move
 };
 
-/// Weights of a plan's cost, 1 by the squares of SI units. The design study's values:
+/// Weights of a plan's cost, 1 over squares of SI units. The design study's values:
 /// docs/theory/payload.md 5.1.
 struct PlanWeights {
-  std::array<double, 12> moving;   ///< Q of a deviation from the reference, of an empty hand
-  std::array<double, 12> resting;  ///< Q from the move's end on, whatever the payload
+  std::array<double, 12> moving;   ///< Q of a deviation from the reference, without payload
+  std::array<double, 12> resting;  ///< Q from the end of the move on, for any payload
   std::array<double, 2> torque;    ///< R of a deviation from the quasi-static torque
-  double light_kg;                 ///< Q while moving falls as 1 / (1 + (payload / this)^2)
-  double reference_payload_kg;     ///< the reference: hubs of an arm bent with this payload
+  double light_kg;                 ///< Q during a move decreases as 1 / (1 + (payload / this)^2)
+  double reference_payload_kg;     ///< reference: hub angles of an arm bent by this payload
 };
 
 /// A trajectory: stages + 1 states, stages torques. Large.
@@ -41,20 +41,20 @@ struct PlanTrack {
   std::array<Eigen::Vector2d, HorizonPlan::kMaxStages> torque_nm;
 };
 
-/// What a plan is drawn to, and what it costs to stay away. Large.
+/// Quadratic cost of a plan: deviations from a reference and from the quasi-static torque. Large.
 ///
 ///   J = sum over the stages of (x - r)'Q(x - r) + (u - u_ps)'R(u - u_ps), + (x - r)'Q(x - r)
 ///   at the horizon's end
 ///
-/// r has the hubs of the reference payload and straight links; x_ps, u_ps are those of
+/// r has the hub angles of the reference payload and straight links; x_ps, u_ps are those of
 /// QuasiStaticAt with the present payload, u_ps at the instant of the sample. The weight at the end
-/// and u_ps of the instant are this program's: with them the plan of the design study is
-/// reproduced.
+/// and the instant of u_ps are choices of this program: they reproduce the plan of the design
+/// study.
 /// Source: docs/theory/payload.md 5.1. Real-time: safe.
 class PlanCost {
  public:
-  /// A path longer than HorizonPlan::kMaxStages is planned that far only; one too short for a stage
-  /// gives none.
+  /// A path longer than HorizonPlan::kMaxStages is cut to that; a path too short for one stage
+  /// gives zero stages.
   void Set(const RigidJointArm& arm, double period_s, const PlanWeights& weights,
            const PlanProblem& problem) noexcept;
 

@@ -5,15 +5,16 @@
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #elif !defined(__aarch64__)
-#error "this processor's way to flush denormals is not known"
+#error "no way to flush denormals is implemented for this processor"
 #endif
 
 namespace flexarm {
 
-/// Flushes denormals to zero (results and operands) on this thread while it lives; then restores.
+/// RAII guard: flushes denormal numbers to zero (results and operands) on this thread during its
+/// lifetime, then restores the previous mode.
 ///
-/// Both executors run tasks like this: a denormal would cost a hundred times an ordinary number,
-/// and the two must compute the same bits.
+/// Both executors run tasks in this mode: arithmetic with denormals is about a hundred times
+/// slower, and both must compute the same bits.
 class FlushDenormals {
  public:
   FlushDenormals() noexcept : before_(Read()) { Write(before_ | kFlush); }

@@ -16,13 +16,13 @@
 namespace flexarm {
 namespace {
 
-constexpr std::size_t kStackBytes = std::size_t{2} << 20;  // a sanitizer keeps 1 MiB for itself
+constexpr std::size_t kStackBytes = std::size_t{2} << 20;  // a sanitizer uses 1 MiB of it
 constexpr std::size_t kPrefaultBytes = std::size_t{256} << 10;
 constexpr std::size_t kPageBytes = 4096;
 
 template <typename T>
 void Increase(std::atomic<T>& counter, T amount) noexcept {
-  // One writer: no read-modify-write needed.
+  // Only one thread writes, so no atomic read-modify-write is needed.
   counter.store(counter.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
 }
 
@@ -30,11 +30,11 @@ void Raise(std::atomic<std::int64_t>& worst, std::int64_t value) noexcept {
   if (value > worst.load(std::memory_order_relaxed)) worst.store(value, std::memory_order_relaxed);
 }
 
-// Writes to each page that the task may use later, so that none faults then.
+// Writes to each stack page that the task may use later, to avoid page faults then.
 [[gnu::noinline]] void PrefaultStack() noexcept {
   std::array<unsigned char, kPrefaultBytes> stack;
   for (std::size_t i = 0; i < kPrefaultBytes; i += kPageBytes) stack[i] = 0;
-  asm volatile("" : : "r"(stack.data()) : "memory");  // the writes must happen
+  asm volatile("" : : "r"(stack.data()) : "memory");  // keeps the compiler from removing the writes
 }
 
 [[noreturn]] void ThrowRefused(const Task::Traits& traits, bool fifo, int error) {
@@ -42,7 +42,7 @@ void Raise(std::atomic<std::int64_t>& worst, std::int64_t value) noexcept {
   if (fifo) text += " with SCHED_FIFO priority " + std::to_string(traits.priority);
   text += std::string(": ") + std::strerror(error);
   if (fifo && error == EPERM) {
-    text += "; allow it (LimitRTPRIO=99 in the systemd unit, or root) or give --without-realtime";
+    text += "; set LimitRTPRIO=99 in the systemd unit, run as root, or use --without-realtime";
   }
   throw std::runtime_error(text);
 }
@@ -93,7 +93,7 @@ void RealtimeExecutor::StartThread(Thread& thread) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, kStackBytes);
-  // Explicit in both cases: never what the starting thread happens to have.
+  // Explicit in both cases, so that nothing is inherited from the starting thread.
   pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
   pthread_attr_setschedpolicy(&attributes, fifo ? SCHED_FIFO : SCHED_OTHER);
   const sched_param parameters{.sched_priority = fifo ? thread.traits.priority : 0};
@@ -106,7 +106,8 @@ void RealtimeExecutor::StartThread(Thread& thread) {
 
 void* RealtimeExecutor::Main(void* argument) noexcept {
   auto& thread = *static_cast<Thread*>(argument);
-  pthread_setname_np(pthread_self(), thread.traits.name);  // fails harmlessly above 15 letters
+  pthread_setname_np(pthread_self(),
+                     thread.traits.name);  // no effect for names above 15 characters
   prctl(PR_SET_TIMERSLACK, 1UL);
   PrefaultStack();
   const FlushDenormals flush;
@@ -124,11 +125,11 @@ void RealtimeExecutor::Loop(Thread& thread) noexcept {
     if (stop_.load(std::memory_order_relaxed)) return;
     const std::int64_t woke_ns = MonotonicNow() - epoch_ns_;
 
-    // A task that was still running when it was due again did not wake late.
+    // A task that was still running at its due instant was not late to wake.
     const std::int64_t lateness_ns =
         std::max<std::int64_t>(woke_ns - std::max(due_ns, finished_ns), 0);
 
-    // Whole periods that have passed are lost; the one under way is run, late.
+    // Whole periods that have passed are skipped; the current one is run late.
     const std::int64_t behind = std::max<std::int64_t>((woke_ns - due_ns) / traits.period_ns, 0);
     if (behind > 0) {
       due_ns += behind * traits.period_ns;

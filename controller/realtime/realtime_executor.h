@@ -14,44 +14,47 @@
 
 namespace flexarm {
 
-/// How a task did so far. Lateness is how long after its due instant it woke, or, if it was still
-/// running then, how long after it finished it ran again.
+/// Timing statistics of a task. Lateness is the time from the due instant to the wake-up; if the
+/// task was still running at the due instant, the time from its end to its next start.
 struct TaskStatistics {
   const char* name;
   std::uint64_t activations;
   std::uint64_t missed_deadlines;  ///< finished after the deadline
-  std::uint64_t skipped_periods;   ///< not run at all
+  std::uint64_t skipped_periods;   ///< periods without an activation
   std::int64_t worst_lateness_ns;
   double mean_lateness_ns;
-  std::int64_t worst_run_ns;  ///< longest stay in Run
+  std::int64_t worst_run_ns;  ///< longest duration of Run
 };
 
-/// Gives each task a thread that runs it on an absolute grid of CLOCK_MONOTONIC: epoch + phase + n
-/// period. A task that is behind skips whole periods, which are counted; the grid stays.
+/// Periodic-task executor: gives each task a thread that runs it on an absolute grid of
+/// CLOCK_MONOTONIC: epoch + phase + n period. A late task skips whole periods, which are counted;
+/// the grid does not shift.
 ///
 /// A task of priority 1..98 gets SCHED_FIFO, the smallest timer slack, a pre-faulted stack and
-/// flushed denormals; one of priority 0 is an ordinary thread. The memory of the process is the
-/// business of PrepareRealtime (realtime_setup.h).
+/// flushed denormals; one of priority 0 gets ordinary scheduling. PrepareRealtime
+/// (realtime_setup.h) prepares the memory of the process.
 class RealtimeExecutor {
  public:
-  /// @param fifo  false: every thread is ordinary, whatever its priority (--without-realtime)
+  /// @param fifo  false: ordinary scheduling for every thread (--without-realtime)
   explicit RealtimeExecutor(bool fifo);
   ~RealtimeExecutor();  ///< stops and joins
   RealtimeExecutor(const RealtimeExecutor&) = delete;
   RealtimeExecutor& operator=(const RealtimeExecutor&) = delete;
 
-  /// Before Start. `task` and `timing` outlive the executor. Each activation leaves a record in
-  /// `timing`, if there is one, with its number on the grid; the task's thread is its producer.
+  /// Before Start. `task` and `timing` outlive the executor. Each activation adds a record to
+  /// `timing`, if given, with its number on the grid; the task's thread is the producer.
   /// @throws std::invalid_argument for a period, phase or priority out of range
   void Add(Task& task, SpscQueue<TimingRecord>* timing = nullptr);
 
   /// Starts all threads; instant 0 of the loop is `epoch_ns` of CLOCK_MONOTONIC, best some 10 ms
-  /// ahead. Activations due at `end_ns` (in the clock of the loop) or later do not run. Once only.
-  /// @throws std::runtime_error  naming task, cause and remedy, with no thread left, if a thread or
-  ///   its priority is refused. Never ordinary scheduling instead.
+  /// ahead. Activations due at `end_ns` (in the clock of the loop) or later do not run. Call once
+  /// only.
+  /// @throws std::runtime_error  naming task, cause and remedy, with no thread left running, if a
+  ///   thread or its priority is refused. Never falls back to ordinary scheduling.
   void Start(std::int64_t epoch_ns, std::int64_t end_ns = INT64_MAX);
 
-  /// Each thread ends after its present or next activation instant, without running it. Any thread.
+  /// Each thread ends after its present activation, or at its next one without running it. Any
+  /// thread.
   void RequestStop() noexcept;
 
   /// Waits for all threads to end.
@@ -59,11 +62,11 @@ class RealtimeExecutor {
 
   std::size_t size() const noexcept { return threads_.size(); }
 
-  /// Of the task added as number `index`. Any thread, at any time.
+  /// Statistics of the task that was added as number `index`. Any thread, at any time.
   TaskStatistics statistics(std::size_t index) const noexcept;
 
  private:
-  // Written by the task's thread alone, read by any.
+  // Written by the task's thread only, read by any thread.
   struct alignas(64) Counters {
     std::atomic<std::uint64_t> activations{0};
     std::atomic<std::uint64_t> missed_deadlines{0};

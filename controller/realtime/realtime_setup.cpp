@@ -49,13 +49,13 @@ std::string LimitText(std::uint64_t limit, const char* unit) {
 std::string FifoRefusal(const RealtimeHost& host) {
   return "SCHED_FIFO priority " + std::to_string(host.fifo_priority) + " is refused (" +
          std::strerror(host.fifo_error) + "; RLIMIT_RTPRIO is " + LimitText(host.rtprio_limit, "") +
-         "): set LimitRTPRIO=99 in the systemd unit, or run as root, or give --without-realtime";
+         "): set LimitRTPRIO=99 in the systemd unit, run as root, or use --without-realtime";
 }
 
 std::string LockRefusal(const RealtimeHost& host, int error) {
   return std::string("locking the memory is refused (") + std::strerror(error) +
          "; RLIMIT_MEMLOCK is " + LimitText(host.memlock_limit_bytes, " bytes") +
-         "): set LimitMEMLOCK=infinity in the systemd unit, or run as root, or give "
+         "): set LimitMEMLOCK=infinity in the systemd unit, run as root, or use "
          "--without-realtime";
 }
 
@@ -93,13 +93,14 @@ std::vector<std::string> RealtimeFindings(const RealtimeHost& host) {
   } else {
     findings.push_back("real-time throttling: " + std::to_string(host.throttle_runtime_us) +
                        " us of each 1 s (" + kThrottleFile +
-                       "); harmless unless a thread runs away");
+                       "); affects only a thread that needs more");
   }
-  findings.push_back(host.rttime_limit_us == RealtimeHost::kUnlimited
-                         ? "RLIMIT_RTTIME: unlimited"
-                         : "RLIMIT_RTTIME: " + std::to_string(host.rttime_limit_us) +
-                               " us without a sleep ends the process: set LimitRTTIME=infinity in "
-                               "the systemd unit");
+  findings.push_back(
+      host.rttime_limit_us == RealtimeHost::kUnlimited
+          ? "RLIMIT_RTTIME: unlimited"
+          : "RLIMIT_RTTIME: " + std::to_string(host.rttime_limit_us) +
+                " us of CPU time without sleeping ends the process: set LimitRTTIME=infinity in "
+                "the systemd unit");
   return findings;
 }
 
@@ -108,11 +109,12 @@ std::vector<std::string> PrepareRealtime(int fifo_priority) {
   std::vector<std::string> refusals;
   if (host.fifo_error != 0) refusals.push_back(FifoRefusal(host));
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) refusals.push_back(LockRefusal(host, errno));
-  // Freed memory stays in the process, and large blocks come from the locked heap: no page fault.
+  // Freed memory stays in the process, and large blocks come from the locked heap, so that later
+  // allocations cause no page fault.
   if (mallopt(M_TRIM_THRESHOLD, -1) != 1 || mallopt(M_MMAP_MAX, 0) != 1) {
     refusals.push_back(
         "malloc does not accept M_TRIM_THRESHOLD and M_MMAP_MAX: run with the C library's own "
-        "malloc, or give --without-realtime");
+        "malloc, or use --without-realtime");
   }
   if (!refusals.empty()) {
     std::string text;

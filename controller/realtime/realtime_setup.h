@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// What the kernel grants this process, as far as real time depends on it.
+/// Real-time permissions of this process on this kernel.
 struct RealtimeHost {
   static constexpr std::uint64_t kUnlimited = UINT64_MAX;
 
@@ -15,29 +15,30 @@ struct RealtimeHost {
   int fifo_priority;                  ///< priority that was tried
   std::uint64_t rtprio_limit;         ///< RLIMIT_RTPRIO
   std::uint64_t memlock_limit_bytes;  ///< RLIMIT_MEMLOCK
-  std::uint64_t rttime_limit_us;      ///< RLIMIT_RTTIME; kUnlimited is right
-  std::int64_t throttle_runtime_us;   ///< of 1 s; -1: no throttling; INT64_MIN: not readable
-  std::string kernel_version;         ///< uname -v
+  std::uint64_t rttime_limit_us;      ///< RLIMIT_RTTIME; should be kUnlimited
+  std::int64_t
+      throttle_runtime_us;     ///< run time per 1 s; -1: no throttling; INT64_MIN: not readable
+  std::string kernel_version;  ///< uname -v
 };
 
-/// The host does not permit real time; what() says each cause and its remedy, one a line.
+/// The host does not permit real time; what() gives each cause and its remedy, one per line.
 class RealtimeRejectedError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Starts and joins one SCHED_FIFO thread of `fifo_priority` to see whether it may.
+/// Starts and joins one SCHED_FIFO thread of `fifo_priority` to test whether it is permitted.
 RealtimeHost ReadRealtimeHost(int fifo_priority);
 
-/// One line a finding, good and bad, for the log. Never refuses.
+/// One line per finding, good and bad, for the log. Never throws RealtimeRejectedError.
 std::vector<std::string> RealtimeFindings(const RealtimeHost& host);
 
-/// Makes the process fit for real time, once, from the main thread, before any other is started:
+/// Prepares the process for real time, once, from the main thread, before any other is started:
 /// checks SCHED_FIFO up to `fifo_priority`, locks all memory present and future, and keeps malloc
-/// from giving memory back.
+/// from returning memory to the kernel.
 /// @returns RealtimeFindings of this host
-/// @throws RealtimeRejectedError  if anything is not permitted. Nothing is done then but memory
-/// locked.
+/// @throws RealtimeRejectedError  if anything is not permitted. Then nothing has changed except
+/// that the memory is locked.
 std::vector<std::string> PrepareRealtime(int fifo_priority);
 
 }  // namespace flexarm

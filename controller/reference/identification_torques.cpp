@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTaper = 0.1;  // of the duration, at each end
 
-// Taps of a primitive polynomial for each number of bits: bit i - 1 stands for x^i.
+// Taps of a primitive polynomial for each number of bits: bit i - 1 is the coefficient of x^i.
 constexpr std::array<std::uint32_t, 13> kTaps = {0,    0,    0x3,   0x6,   0xC,   0x14, 0x30,
                                                  0x60, 0xB8, 0x110, 0x240, 0x500, 0x829};
 

@@ -9,26 +9,26 @@
 
 namespace flexarm {
 
-/// The first limit that a reference breaks.
+/// The first violation of a limit by a reference.
 struct BrokenLimit {
-  int sample;        ///< k, when it first does
-  std::string text;  ///< what, of which joint or link, reaches how much: and the limit
+  int sample;        ///< first sample beyond the limit
+  std::string text;  ///< quantity, joint or link, largest value, limit
 };
 
-/// Follows a reference sample by sample and compares with `share` of every limit:
+/// Checks a reference sample by sample against `share` of every limit:
 ///
-///   |th|, |th'|                     of x_m, the hubs'; the angle with the whole soft limit
-///   |u_m| + K_F + b |th'|           against the torque limit: friction at its worst
-///   |u_m(k) - u_m(k-1)|             against what the gate lets pass in four periods
+///   |th|, |th'|                     of x_m, the hubs'; the angle against the full soft limit
+///   |u_m| + K_F + b |th'|           against the torque limit, with the largest friction
+///   |u_m(k) - u_m(k-1)|             against the slew limit of the gate over four periods
 ///   |sum_j (h/2) psi_j'' f_j|       of x_m, against the strain limit
 ///
-/// Four periods: the law hands on about half of a jump of u_m at once ((7.24): vartheta Ufu +
-/// (1 - vartheta) S22 = 0.50), and the gate may be late by two periods, as old as a command may be.
-/// The thesis's doublets jump by 13.3 N m, 1.3 times what passes in one period, and run.
-/// @param states  of the reference model
+/// Four periods: the law passes about half of a jump of u_m immediately ((7.24): vartheta Ufu + (1
+/// - vartheta) S22 = 0.50), and the gate may be late by two periods, the largest age of a command.
+/// The thesis's doublets jump by 13.3 N m, 1.3 times the slew limit of one period, and run.
+/// @param states  number of states of the reference model
 /// @param share   0 .. 1
-/// @param first   number of the sample reference[0]; one beyond 0 is there for the jump of the
-///                torque after it and not judged
+/// @param first   number of the sample reference[0]; if above 0, this sample is not checked itself
+///                and only gives the change of torque to the next
 std::optional<BrokenLimit> FirstBrokenLimit(std::span<const ReferenceSample> reference, int states,
                                             const MotionLimits& limits, double share,
                                             double period_s, int first = 0);

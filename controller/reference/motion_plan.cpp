@@ -48,11 +48,11 @@ std::array<double, 2> AnglesOfTip(const Move& move, const std::string& row,
   const bool left_fits = Within(*left, limits), right_fits = Within(*right, limits);
   const std::string both = "elbow left " + DegText(*left) + ", right " + DegText(*right);
   if (!left_fits && !right_fits) {
-    throw RejectedError(key + ": no angles within limits.soft_angle_deg reach it: " + both);
+    throw RejectedError(key + ": no joint angles within limits.soft_angle_deg reach it: " + both);
   }
   if (left_fits && right_fits && *left != *right) {
     throw RejectedError(key +
-                        " is reached by two poses: say elbow = \"left\" or \"right\": " + both);
+                        " is reached by two poses: set elbow = \"left\" or \"right\": " + both);
   }
   return left_fits ? *left : *right;
 }
@@ -64,14 +64,14 @@ std::array<double, 2> GoalOf(const Move& move, const std::string& row, const Mot
   return {goal(0), goal(1)};
 }
 
-// Where it begins, for a message that goes on with "to".
+// Start of a move, for a message that continues with "to".
 std::string BeginText(const PlannedMove& move) {
   if (!move.takes_over) return "the move goes from " + DegText(move.from.angle_rad);
-  return "the move takes over at " + DegText(move.from.angle_rad) + " and " +
-         DegText(move.from.rate_rad_s) + " a second, and goes";
+  return "the move retargets at " + DegText(move.from.angle_rad) + " and " +
+         DegText(move.from.rate_rad_s) + " per second, and goes";
 }
 
-// The last of `moves`, which is all but its periods, and those before it.
+// The number of periods of the last of `moves`, whose other members are set.
 int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Design& design,
               double period_s, const MotionLimits& limits) {
   const PlannedMove& planned = moves.back();
@@ -84,7 +84,7 @@ int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Des
   }
   const auto periods = ShortestPeriods(moves, design, period_s, limits, limits.plan_fraction);
   if (periods) return *periods;
-  throw RejectedError(key + ": none up to " + NumberText(kLongestChosen_s) +
+  throw RejectedError(key + ": no duration up to " + NumberText(kLongestChosen_s) +
                       " s keeps limits.plan_fraction of the limits: " + BeginText(planned) +
                       " to " + DegText(planned.to_rad));
 }
@@ -96,11 +96,11 @@ void RequireTakeOver(const PlannedMove& planned, const PlannedMove& above, const
                       ".start_s = " + NumberText(InSeconds(planned.first, period_s)) +
                       " s: must not begin before the move above it ends, at " +
                       NumberText(InSeconds(above.first + above.periods, period_s)) +
-                      " s; only a law that follows a path takes over a move that lasts: "
+                      " s; only a law that follows a path can retarget during a move: "
                       "controller.name = \"gain-scheduled\" or \"receding-horizon\"");
 }
 
-// The last of `moves` lasts when a move begins at sample `first`.
+// Whether a move that begins at sample `first` begins before the last of `moves` ends.
 bool TakesOver(const std::vector<PlannedMove>& moves, int first) {
   return !moves.empty() && first < moves.back().first + moves.back().periods;
 }
@@ -182,7 +182,7 @@ Experiment WithChosenDurations(const Experiment& experiment, const std::vector<P
   const std::vector<Problem> problems = chosen.Problems();
   if (problems.empty()) return chosen;
   throw RejectedError(problems[0].key + " = " + problems[0].value + ": " + problems[0].rule +
-                      " (the durations of moves without duration_s were chosen)");
+                      " (with the durations chosen for moves without duration_s)");
 }
 
 }  // namespace flexarm

@@ -10,33 +10,33 @@
 
 namespace flexarm {
 
-/// Samples between two rests of a path: one move, or several that took over from each other.
+/// Samples between two rests of a path: one move, or several that retarget each other.
 struct MotionSegment {
   int first;  ///< sample at which it begins
-  int end;    ///< at which it rests again
+  int end;    ///< at which the path is at rest again
 };
 
 /// @param moves  in order of time
 std::vector<MotionSegment> MotionSegmentsOf(const std::vector<PlannedMove>& moves);
 
-/// Decides the moves of an experiment that starts from rest at `start_rad`.
+/// Motion planner: fixes all moves of an experiment that starts from rest at `start_rad`.
 ///
-/// A position of the tip becomes angles of the straight arm. A move that begins before the one
-/// above it ends takes over, if the law follows a path. A move without duration gets the shortest,
-/// in whole periods, whose reference keeps limits.plan_fraction of every limit.
-/// @throws Refused naming the move that is off the grid, too short, out of reach, begins while the
-///         one above it lasts, or has no duration that keeps the limits
+/// A position of the tip becomes joint angles of the straight arm. A move that begins before the
+/// one above it ends retargets, if the law follows a path. A move without duration gets the
+/// shortest one, in whole periods, whose reference keeps limits.plan_fraction of every limit.
+/// @throws RejectedError naming the move that is off the grid, too short, out of reach, begins
+///         while the one above it lasts, or has no duration that keeps the limits
 std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& design,
                                    double period_s, const std::array<double, 2>& start_rad,
                                    const MotionLimits& limits);
 
-/// Where the reference rests just before `start_s`, with `moves` planned so far.
+/// Joint angles of the reference at rest just before `start_s`, with the `moves` planned so far.
 std::array<double, 2> PlaceBefore(const Experiment& experiment,
                                   const std::vector<PlannedMove>& moves,
                                   const std::array<double, 2>& start_rad, double start_s);
 
-/// The experiment with the durations that were chosen, in the rows and in its text.
-/// @throws Refused if a move overlaps a row of another kind now, or ends after the experiment
+/// The experiment with the chosen durations, in its rows and in its text.
+/// @throws RejectedError if a move now overlaps a row of another kind, or ends after the experiment
 Experiment WithChosenDurations(const Experiment& experiment, const std::vector<PlannedMove>& moves,
                                double period_s);
 

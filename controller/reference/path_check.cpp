@@ -35,7 +35,7 @@ PathCheck::PathCheck(const Design& design, const MotionLimits& limits, double sh
       period_s_(period_s) {}
 
 std::optional<BrokenLimit> PathCheck::First(const RigidPath& path, int first, int last) const {
-  const int from = std::max(first - 1, 0);  // for the jump of the torque
+  const int from = std::max(first - 1, 0);  // the sample before, for the change of the torque
   auto heavy = FirstBrokenLimit(QuasiStaticReference(path, arm_, max_kg_, period_s_, from, last),
                                 states_, limits_, share_, period_s_, from);
   auto rigid = FirstBrokenLimit(RigidReference(path, states_, from, last), states_, limits_, share_,

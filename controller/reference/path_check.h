@@ -9,19 +9,19 @@
 
 namespace flexarm {
 
-/// Compares a path with the limits, whatever the payload that follows it.
+/// Checks a path against the limits for every payload up to the largest.
 ///
-/// FirstBrokenLimit of two arms: bent by the heaviest payload that moves are planned for, and
-/// rigid, whose hubs are at Y. The hubs lead the tip, the more the heavier it is: where a move
-/// speeds up the heavy arm's go farther than Y, where it turns round they stay behind, and a
-/// light arm's are between. Torque and strain are those of the heavy one.
+/// Applies FirstBrokenLimit to two arms: one bent by the largest payload that moves are planned
+/// for, and a rigid one, whose hubs are at Y. The hubs lead the tip, by more for a heavier payload:
+/// where a move accelerates, the hubs of the heavy arm go beyond Y, where it turns round they stay
+/// behind, and those of a light arm are between. Torque and strain are those of the heavy arm.
 class PathCheck {
  public:
   /// @param design  for a law that follows a path
   /// @param share   of the limits, 0 .. 1
   PathCheck(const Design& design, const MotionLimits& limits, double share, double period_s);
 
-  /// The first of the samples `first` to `last` that breaks a limit.
+  /// The first violation of a limit in the samples `first` to `last`.
   std::optional<BrokenLimit> First(const RigidPath& path, int first, int last) const;
 
  private:

@@ -12,16 +12,16 @@
 
 namespace flexarm {
 
-/// The way of planned moves, sample by sample.
+/// Rigid-body path of planned moves, sample by sample.
 class RigidPath {
  public:
-  /// From the `first` of a move to that of the next, the path is that move's.
-  /// @param moves      in order of time; what is before them rests at `start_rad`
+  /// From its `first` sample until that of the next move the path is that of the move.
+  /// @param moves      in order of time; before them the path rests at `start_rad`
   /// @param periods    of the experiment
   RigidPath(std::span<const PlannedMove> moves, const std::array<double, 2>& start_rad, int periods,
             double period_s);
 
-  /// Y, k periods after the start; before it the rest at the start, after the end the rest there.
+  /// Y, k periods after the start; before the start and after the end the path is at rest.
   /// Real-time: safe.
   const RigidPoint& At(int k) const noexcept;
 
@@ -34,8 +34,8 @@ class RigidPath {
   std::vector<RigidPoint> point_;
 };
 
-/// The reference of the laws that know the payload: an arm that is bent along the path without
-/// vibrating, x_m and u_m by QuasiStaticOver, of the samples from `first` to `last`.
+/// The reference of the laws that use the estimated payload: an arm bent quasi-statically along the
+/// path, without vibration; x_m and u_m by QuasiStaticOver for the samples `first` to `last`.
 std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,
                                                   double payload_kg, double period_s, int first,
                                                   int last);

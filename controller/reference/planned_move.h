@@ -10,24 +10,24 @@
 
 namespace flexarm {
 
-/// A move with everything decided: on the grid, between joint angles.
+/// A planned move: on the grid, between joint angles.
 ///
-/// One that takes over begins while the move before it lasts; from its `first` on the path is its
-/// own, whatever the move before it still had to do.
+/// A move that retargets begins while the move before it lasts; from its `first` sample on the path
+/// is its own, and the rest of the move before it is dropped.
 struct PlannedMove {
   std::size_t row;               ///< of [[move]]
   int first;                     ///< sample at which it begins
-  int periods;                   ///< n: it rests at its end from sample first + n on
-  bool takes_over;               ///< the arm moves when it begins
-  RigidPoint from;               ///< Y at sample `first`: at rest, or of the move taken over
+  int periods;                   ///< n: the path is at rest from sample first + n on
+  bool takes_over;               ///< the move retargets: the arm moves when it begins
+  RigidPoint from;               ///< Y at sample `first`: at rest, or of the move that it replaces
   std::array<double, 2> to_rad;  ///< th1, th2
-  MoveProfile profile;           ///< from rest; what takes over is SepticToRest
+  MoveProfile profile;           ///< from rest; a move that retargets is SepticToRest
 
-  /// Y and its derivatives, `sample` periods after the experiment's start, of this move; analytic.
+  /// Y and its derivatives of this move, `sample` periods after the experiment's start; analytic.
   ///
-  /// From rest it takes n - 1 periods, half a period behind `first`, as the reference model's rigid
-  /// angles do (ProfileAccelerations). What takes over begins at sample `first` itself, where the
-  /// path of the move before it is matched, and takes all n. Before `first` it is `from`.
+  /// A move from rest takes n - 1 periods, half a period after `first`, as the reference model's
+  /// rigid angles do (ProfileAccelerations). A move that retargets begins at sample `first` itself,
+  /// where it matches the path before it, and takes all n. Before `first` Y is `from`.
   /// Real-time: safe.
   RigidPoint At(double sample, double period_s) const noexcept;
 };

@@ -21,9 +21,9 @@
 namespace flexarm {
 namespace {
 
-constexpr double kHighestShareOfSampling = 0.25;  // of a chirp: four samples a cycle
+constexpr double kHighestShareOfSampling = 0.25;  // of a chirp: four samples per oscillation
 
-// Unit doublet over n samples: each value is held for one period, the sum is zero.
+// Unit doublet over n samples: each value is held for one period, and the values sum to zero.
 std::vector<double> Shape(DoubletShape shape, int n) {
   std::vector<double> values(static_cast<std::size_t>(n));
   for (int k = 0; k < n; ++k) {
@@ -34,7 +34,7 @@ std::vector<double> Shape(DoubletShape shape, int n) {
   return values;
 }
 
-// Displacement of a unit inertia from rest under `shape`, at its end.
+// Displacement of a unit inertia from rest at the end of `shape`.
 double Displacement(const std::vector<double>& shape, double period_s) {
   double displacement = 0.0;
   for (std::size_t k = 0; k < shape.size(); ++k) {
@@ -47,7 +47,7 @@ Eigen::Vector2d Radians(const std::array<double, 2>& deg) {
   return {RadFromDeg(deg[0]), RadFromDeg(deg[1])};
 }
 
-/// Adds the torques of one row after another to the samples of an experiment.
+/// Adds the torques of the rows, one after another, to the samples of an experiment.
 class RowWriter {
  public:
   RowWriter(const Design& design, double period_s, std::vector<ReferenceSample>* samples)
@@ -101,7 +101,7 @@ class RowWriter {
     const auto angle_rad = TrajectoryOnGrid(csv, from_rad, period_s_);
     const std::size_t end = static_cast<std::size_t>(first) + angle_rad[0].size();
     if (end >= samples_->size()) {
-      throw RejectedError(csv.file + ": ends one period after its last row, at " +
+      throw RejectedError(csv.file + ": the trajectory ends one period after its last row, at " +
                           NumberText(static_cast<double>(end) * period_s_) +
                           " s: the experiment must last that long");
     }
@@ -125,7 +125,7 @@ void AddRows(const std::vector<Row>& rows, const std::string& kind, RowWriter* w
   }
 }
 
-// The row that acted last before `time_s`.
+// The row that began last before `time_s`.
 std::string RowAt(const Experiment& experiment, double time_s) {
   std::string row = "duration_s";
   for (const Motion& motion : experiment.Motions()) {
@@ -135,15 +135,15 @@ std::string RowAt(const Experiment& experiment, double time_s) {
   return row;
 }
 
-// What else its duration could be, if another one would keep the limits in its place.
-// @param moves  the one that breaks a limit, and those before it
+// Text with the duration that would keep the limits, if there is one.
+// @param moves  the moves up to and including the one that breaks a limit
 std::string Remedy(std::span<const PlannedMove> moves, const Design& design, double period_s,
                    const MotionLimits& limits) {
   const PlannedMove& move = moves.back();
   const auto shortest = ShortestPeriods(moves, design, period_s, limits, 1.0);
   if (!shortest) {
     return std::string("; no duration_s up to ") + NumberText(kLongestChosen_s) +
-           " keeps the limits" + (move.takes_over ? " where it takes over" : "");
+           " keeps the limits" + (move.takes_over ? " where the move retargets" : "");
   }
   if (!move.takes_over && *shortest <= move.periods) return {};
   return std::string("; the shortest duration_s within the limits is ") +
@@ -159,7 +159,7 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
   samples_.resize(static_cast<std::size_t>(periods) + 1);
-  // A law that follows the path needs one that rests, too.
+  // A law that follows a path needs one at rest as well.
   if (design.scheduled || !moves_.empty()) path_.emplace(moves_, start_rad, periods, period_s);
   if (design.scheduled) {
     FollowPath(planned, design, period_s);
@@ -189,7 +189,7 @@ void ReferenceTable::FollowPath(const Experiment& planned, const Design& design,
     if (motion.row.starts_with("move[")) continue;
     throw RejectedError(
         motion.row +
-        ": a law that finds the payload follows [[move]] rows only, whose acceleration "
+        ": a law that estimates the payload follows [[move]] rows only, whose acceleration "
         "is continuous; use another controller.name, or moves");
   }
   samples_ = QuasiStaticReference(*path_, MakeRigidJointArm(design), design.scheduled->reference_kg,
@@ -212,8 +212,8 @@ void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design
   throw RejectedError(row + ": " + broken->text + remedy);
 }
 
-// Weights that sum to one and are not negative: the shaped reference stays between the extremes of
-// the unshaped one, so its limits hold.
+// The weights sum to one and are not negative: the shaped reference stays between the extremes of
+// the unshaped one and keeps the same limits.
 void ReferenceTable::Shape(const Eigen::RowVectorXd& shaper, double period_s) {
   const auto moving = std::find_if(samples_.rbegin(), samples_.rend(), [](const auto& sample) {
     return sample.u_m_nm[0] != 0.0 || sample.u_m_nm[1] != 0.0;

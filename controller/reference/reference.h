@@ -13,10 +13,10 @@
 
 namespace flexarm {
 
-/// The reference of one experiment, computed when it is accepted and never changed after.
+/// The reference of one experiment, computed when it is accepted, then constant.
 ///
-/// Sample k holds at k Ts after the experiment's start; there is one more than the experiment has
-/// periods, with u_m = 0: what comes after the end.
+/// Sample k holds at k Ts after the experiment's start. There is one sample more than the
+/// experiment has periods, with u_m = 0: it holds after the end.
 class ReferenceTable {
  public:
   /// Runs the reference model over the experiment's rows, from rest at `start_rad`.
@@ -27,34 +27,35 @@ class ReferenceTable {
   ///    sampled shape (T^2/4 for a square, thesis 7.5); its area is zero
   ///  - a move's are M_r (to - from) times ProfileAccelerations, a chirp's and a CSV trajectory's
   ///    HeldAccelerations of their angles
-  /// so the reference model, a double integrator, ends at rest. A design with a shaper convolves
-  /// all that with its weights: every row then ends as much later as the shaper is long.
-  /// A design for a law that knows the payload has QuasiStaticReference instead, for the payload of
-  /// its reference; limits are judged by PathCheck, and all rows must be moves, which may take
-  /// each other over.
-  /// @throws Refused naming the row and key whose times do not lie on the grid of `period_s`, the
-  ///         row, joint, instant and limit that the reference would break (FirstBrokenLimit), or
-  ///         that the shaped rows would end after the experiment
+  /// so the reference model, a double integrator, ends at rest. A design with an input shaper
+  /// convolves all that with its weights: every row then ends later by the length of the shaper.
+  /// A design for a law that uses the estimated payload has QuasiStaticReference instead, for the
+  /// reference payload; PathCheck checks the limits, and all rows must be moves, which may retarget
+  /// each other.
+  /// @throws RejectedError naming the row and key whose times do not lie on the grid of `period_s`,
+  ///         the row, joint, instant and limit that the reference would break (FirstBrokenLimit),
+  ///         or that the shaped rows would end after the experiment
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
                  const std::array<double, 2>& start_rad, const MotionLimits& limits);
 
-  /// Torques without a reference model, for LoopMode::kOpenLoop.
+  /// Open-loop torques without a reference model, for LoopMode::kOpenLoop.
   /// @param torque_nm  sample by sample, not empty; zero follows
   explicit ReferenceTable(const std::vector<std::array<double, 2>>& torque_nm);
 
   int periods() const noexcept { return static_cast<int>(samples_.size()) - 1; }
 
-  /// The moves as data, in order of time; the path is that of the last that has begun.
+  /// The moves as data, in order of time; the path is that of the last move that has begun.
   const std::vector<PlannedMove>& moves() const noexcept { return moves_; }
 
-  /// Where the moves begin and end, in order of time. Real-time: safe.
+  /// Where the path moves, in order of time. Real-time: safe.
   const std::vector<MotionSegment>& segments() const noexcept { return segments_; }
 
-  /// Sample k; before 0 the rest at the start, after the end the last one. Real-time: safe.
+  /// Sample k; before 0 the state of rest at the start, after the end the last sample. Real-time:
+  /// safe.
   const ReferenceSample& At(int k) const noexcept;
 
-  /// The rigid coordinate at k - 1, k and k + 1, as the moves lead it whatever the law; other rows
-  /// are not in it. Zero if there is no move and no law that follows a path. Real-time: safe.
+  /// The rigid coordinate at k - 1, k and k + 1 by the moves, for any law; other rows are not
+  /// included. Zero if there is no move and no law that follows a path. Real-time: safe.
   std::array<RigidPoint, 3> PathAround(int k) const noexcept {
     return path_ ? path_->Around(k) : std::array<RigidPoint, 3>{};
   }

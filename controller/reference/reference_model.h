@@ -10,7 +10,7 @@
 namespace flexarm {
 
 /// Adds amplitude(i) shape[k], held for one period each, to u_m from sample `first` on.
-/// The samples must reach so far.
+/// The range must lie within the samples.
 void AddTorques(const Eigen::Vector2d& amplitude_nm, const std::vector<double>& shape, int first,
                 std::vector<ReferenceSample>* samples);
 

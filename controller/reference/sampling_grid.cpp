@@ -8,7 +8,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kGridTolerance = 1e-6;  // of a period: decimal times added in binary
+constexpr double kGridTolerance = 1e-6;  // of a period: round-off of sums of decimal times
 
 }  // namespace
 

@@ -11,11 +11,11 @@
 namespace flexarm {
 namespace {
 
-constexpr int kDecayPeriods = 10;  // the links of the reference go on straightening that long
+constexpr int kDecayPeriods = 10;  // duration in which the links of the reference straighten
 
 int MostPeriods(double period_s) { return static_cast<int>(kLongestChosen_s / period_s); }
 
-// Whether a move from rest keeps the limits, alone.
+// Whether a move from rest keeps the limits, without regard to other moves.
 bool FitsFromRest(PlannedMove move, int periods, const Design& design, double period_s,
                   const MotionLimits& limits, double share) {
   move.first = 0;
@@ -46,17 +46,18 @@ std::optional<int> ShortestByHalving(int most, const Fits& fits) {
   return enough;
 }
 
-// Tries durations of a move that takes over.
+// Tests durations of a move that retargets.
 class TakeOver {
  public:
   TakeOver(std::span<const PlannedMove> moves, const PathCheck& check, double period_s)
       : moves_(moves.begin(), moves.end()), check_(check), period_s_(period_s) {
-    // Two samples before it are enough of the path that it takes over.
+    // Two samples of the previous path are enough.
     const int earlier = moves_.back().first - kFirst;
     for (PlannedMove& move : moves_) move.first -= earlier;
   }
 
-  // What a duration breaks the next one mostly breaks too, and a little later: looked at first.
+  // A limit that one duration breaks is mostly broken by the next one too, a little later: that
+  // part of the path is checked first.
   bool Fits(int periods) {
     moves_.back().periods = periods;
     const int last = kFirst + periods + 1;

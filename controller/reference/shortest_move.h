@@ -9,16 +9,16 @@
 
 namespace flexarm {
 
-inline constexpr int kFewestPeriods = 10;         ///< of a move: fewer are no smooth profile
-inline constexpr double kLongestChosen_s = 60.0;  ///< no longer one is looked for
+inline constexpr int kFewestPeriods = 10;  ///< of a move: with fewer the profile is not smooth
+inline constexpr double kLongestChosen_s = 60.0;  ///< end of the search
 
-/// The fewest periods in which the last of `moves` keeps `share` of every limit; nothing if a
-/// minute is not enough. What its own `periods` are does not matter.
+/// Minimum-time planning: the fewest periods in which the last of `moves` keeps `share` of every
+/// limit; nothing if a minute is not enough. The `periods` of the last move are ignored.
 ///
-/// From rest a longer move is a gentler one, and halving finds it. One that takes over an arm
-/// that moves can also be too long, as it goes on farther before it turns round: all durations are
-/// tried, from the shortest.
-/// @param moves  in order of time, not empty; those before the last say what that takes over
+/// From rest a longer move has smaller peaks, so bisection finds the shortest. A move that
+/// retargets can also be too long, as the arm goes on farther before it turns round: all durations
+/// are tried, from the shortest.
+/// @param moves  in order of time, not empty; those before the last define what it replaces
 std::optional<int> ShortestPeriods(std::span<const PlannedMove> moves, const Design& design,
                                    double period_s, const MotionLimits& limits, double share);
 

@@ -13,16 +13,16 @@
 
 namespace flexarm {
 
-// Records are logged as their bytes: a version, then the struct, little-endian.
+// Records are logged as raw bytes: a version, then the struct, little-endian.
 static_assert(std::endian::native == std::endian::little, "run logs are little-endian");
 
-/// Versions of the BLOBs. Raise when the struct changes its layout or the meaning of a field.
+/// Versions of the BLOBs. Increase when the layout of the struct or the meaning of a field changes.
 inline constexpr std::uint32_t kStepInputVersion = 5;
 inline constexpr std::uint32_t kStepOutputVersion = 3;
 static_assert(sizeof(StepInput) == 1296, "the layout changed: raise kStepInputVersion");
 static_assert(sizeof(StepOutput) == 592, "the layout changed: raise kStepOutputVersion");
 
-/// A logged struct with the version before it.
+/// A logged struct, preceded by its version.
 template <typename T>
 using BlobBytes = std::array<std::byte, sizeof(std::uint32_t) + sizeof(T)>;
 
@@ -36,7 +36,7 @@ BlobBytes<T> EncodeBlob(std::uint32_t version, const T& value) {
   return bytes;
 }
 
-/// @returns what is wrong with the bytes, empty if nothing; `value` is set only then
+/// @returns the error in the bytes; empty if none, and only then `value` is set
 template <typename T>
 std::string DecodeBlob(std::span<const std::byte> bytes, std::uint32_t version, T* value) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -53,7 +53,7 @@ std::string DecodeBlob(std::span<const std::byte> bytes, std::uint32_t version, 
   return {};
 }
 
-/// True if both have the same bytes: tells -0.0 from 0.0, and NaN equals itself.
+/// True if both have the same bytes: -0.0 differs from 0.0, and NaN equals itself.
 template <typename T>
 bool SameBytes(const T& a, const T& b) {
   static_assert(std::is_trivially_copyable_v<T>);

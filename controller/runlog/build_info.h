@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-/// Which build this program is. Two builds with the same id compute the same bytes.
+/// Identity of this build. Two builds with the same id compute the same bytes.
 struct BuildInfo {
   std::string version;     ///< of the project, from CMakeLists.txt
   std::string git_hash;    ///< 12 digits, "-dirty" when the tree had changes; "unknown" without git

@@ -39,7 +39,7 @@ std::string ValidText(const SensorFrame& frame, std::size_t channels, std::uint6
   return "0x" + std::string(text.begin(), end);
 }
 
-// One CSV file of ours being read, row by row.
+// Reads one CSV file of our own format, row by row.
 class Reader {
  public:
   Reader(const std::filesystem::path& file, const SensorConfig& sensors, double period_s)

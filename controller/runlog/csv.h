@@ -11,17 +11,18 @@
 
 namespace flexarm {
 
-// Plain data of a run:
+// CSV format of the inputs of a run:
 //   time_s, counter_1..counter_4, strain_1_01.., strain_2_01.., valid, torque_1_nm, torque_2_nm
-// and, of a rig that has the sensor, tip_acceleration before `valid`. Counters, strain channels and
-// the accelerometer are raw counts; torques are what was applied up to the sample. `valid` is 1 if
-// every reading is good, 0 if none is, otherwise a mask in hexadecimal: bits 0..3 are the counters,
-// bit 4 + i is strain channel i in the order of the config, the next one the accelerometer.
+// and, for a rig with that sensor, tip_acceleration before `valid`. Counters, strain channels and
+// the accelerometer are raw counts; torques are those applied up to the sample. `valid` is 1 if
+// every reading is valid, 0 if none is, otherwise a mask in hexadecimal: bits 0..3 are the
+// counters, bit 4 + i is strain channel i in the order of the config, the next one the
+// accelerometer.
 
 /// Names of the strain columns in the order of the config: link, then number within the link.
 std::vector<std::string> StrainColumns(const SensorConfig& sensors);
 
-/// Writes inputs as CSV. Numbers read back exactly.
+/// Writes inputs as CSV. Numbers are written with full precision.
 class CsvWriter {
  public:
   /// Writes the header. @param start_ns  time_s = 0, in the clock of the loop
@@ -32,18 +33,18 @@ class CsvWriter {
   std::ostream* out_;
   std::vector<std::string> strain_columns_;
   bool has_tip_;
-  std::uint64_t readings_;  // bits of `valid` when everything was read
+  std::uint64_t readings_;  // bits of `valid` if all sensors were read
   std::int64_t start_ns_;
 };
 
-inline constexpr double kLongestCsv_s = 1e8;  ///< three years; beyond, nanoseconds lose meaning
+inline constexpr double kLongestCsv_s = 1e8;  ///< three years; beyond, nanoseconds are lost
 
-/// A row of a CSV file at time_s as an input without readings: state Running, references zero; the
-/// first one resets the loop. The tick is the time since the first row in periods, rounded.
+/// A row of a CSV file at time_s as an input without readings: state Running, zero references; the
+/// first input resets the loop. The tick is the time since the first row in periods, rounded.
 StepInput CsvInput(double time_s, double period_s, const std::vector<StepInput>& before);
 
-/// Reads such a file, in any order of columns; more columns are ignored. Inputs are
-/// CsvInput's. Lines that begin with # are skipped.
+/// Reads such a file; the order of the columns is free, and unknown columns are ignored. Inputs are
+/// those of CsvInput. Lines that begin with # are skipped.
 /// @param period_s  of the loop
 /// @throws InputError "file:line: column: found .., expected .."
 std::vector<StepInput> ReadCsv(const std::filesystem::path& file, const SensorConfig& sensors,

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<const char*, kCounters> kCounterTargets = {"hub1", "hub2", "rotor1", "rotor2"};
 constexpr std::array<const char*, 2> kTorqueTargets = {"torque_1", "torque_2"};
 
-// Every target that a file for this rig must have a column for.
+// All targets for which a file for this rig must have a column.
 std::vector<std::string> NeededTargets(const SensorConfig& sensors) {
   std::vector<std::string> needed = {"time", kTorqueTargets[0], kTorqueTargets[1]};
   for (std::size_t i = 0; i < kCounterTargets.size(); ++i) {
@@ -27,7 +27,7 @@ std::vector<std::string> NeededTargets(const SensorConfig& sensors) {
   return needed;
 }
 
-// The rows of one file, in SI.
+// Reads the rows of one file, in SI units.
 class ForeignReader {
  public:
   ForeignReader(const std::filesystem::path& file, const CsvImport& import,
@@ -95,12 +95,13 @@ class ForeignReader {
       const auto i = static_cast<std::size_t>(encoder.counter);
       const double counts = encoder.sign * Value(kCounterTargets[i]) * encoder.counts_per_turn /
                             (2.0 * std::numbers::pi);
-      if (std::abs(counts) > 1e15) {  // beyond it a double no longer holds every whole number
-        table_.FailCell(ColumnOf(kCounterTargets[i]).column, "an angle of this encoder");
+      if (std::abs(counts) > 1e15) {  // above this a double does not represent every integer
+        table_.FailCell(ColumnOf(kCounterTargets[i]).column,
+                        "an angle within the range of this encoder");
       }
       const std::int64_t modulus = std::int64_t{1} << encoder.counter_bits;
       if (input->reset != 0)
-        input->counts_before[i] = std::llround(counts);  // the file knows turns
+        input->counts_before[i] = std::llround(counts);  // the file includes whole turns
       const std::int64_t raw = std::llround(counts) % modulus;
       frame->counter[i] = static_cast<std::uint32_t>(raw < 0 ? raw + modulus : raw);
       frame->counter_valid |= std::uint32_t{1} << i;
@@ -127,7 +128,7 @@ class ForeignReader {
 
 std::vector<Problem> ProblemsOf(const CsvImport& import, const SensorConfig& sensors) {
   ProblemList list("csv.");
-  list.Within("decimation", import.decimation, 1, 10000, "rows a period of the loop");
+  list.Within("decimation", import.decimation, 1, 10000, "rows per period of the loop");
   const std::vector<std::string> needed = NeededTargets(sensors);
   std::string all;
   for (const std::string& target : needed) all += " " + target;

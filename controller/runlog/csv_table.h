@@ -15,12 +15,12 @@ namespace flexarm {
 
 /// A CSV file with a header, read row by row. Lines that are empty or begin with # are skipped.
 ///
-/// Whatever is not as it should be is an InputError: "file:line: column: found .., expected ..".
+/// Every error is an InputError: "file:line: column: found .., expected ..".
 class CsvTable {
  public:
   /// Opens the file and reads its header.
   explicit CsvTable(const std::filesystem::path& file);
-  /// The same of a text that is in memory; `file` stands for it in messages.
+  /// The same for a text in memory; `file` is its name in messages.
   CsvTable(std::string file, const std::string& text);
 
   bool Has(std::string_view column) const { return column_.find(column) != column_.end(); }
@@ -30,10 +30,10 @@ class CsvTable {
   /// Goes to the next row; false at the end of the file.
   bool Next();
 
-  // Of the present row, in a column that the header has.
+  // Values of the present row, in a column that the header has.
   std::string_view Cell(std::string_view column) const;
   double Number(std::string_view column) const;  ///< finite
-  /// A whole number that T can hold, after `skip` characters of the cell.
+  /// An integer within the range of T, after `skip` characters of the cell.
   template <typename T>
   T Whole(std::string_view column, const std::string& expected, int base = 10,
           std::size_t skip = 0) const;

@@ -4,8 +4,8 @@
 
 namespace flexarm {
 
-/// A file that somebody gave us is not what it should be. what() says the file, what was found and
-/// what was expected. Tools end with exit code 2.
+/// An input file is not valid. what() gives the file, what was found and what was expected. Tools
+/// end with exit code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -8,7 +8,8 @@
 
 namespace flexarm {
 
-/// Hands events from the operator thread to the recorder. Allocates: not for real-time threads.
+/// Single-producer single-consumer queue of events, from the operator thread to the recorder.
+/// Allocates: not for real-time threads.
 class EventQueue {
  public:
   explicit EventQueue(std::size_t capacity) : queue_(capacity) {}
@@ -27,7 +28,7 @@ class EventQueue {
     return true;
   }
 
-  /// Recorder thread only. False if there is nothing.
+  /// Recorder thread only. False if the queue is empty.
   bool Pop(RunEvent* event) {
     RunEvent* found = nullptr;
     if (!queue_.Pop(&found)) return false;

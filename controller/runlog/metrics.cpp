@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kFinalWindow_s = 0.3;
 constexpr double kSettledWithin_m = 0.015;
-constexpr double kSettleBy_s = 0.3;  // the goal: after the end of a move
+constexpr double kSettleBy_s = 0.3;  // goal: settled this long after the end of a move
 
-// What the metrics look at in one tick.
+// Values of one tick that the metrics use.
 struct Sample {
   double time_s;  // after sample 0 of the experiment
   std::array<double, 2> error_deg;
@@ -54,7 +54,8 @@ std::vector<Sample> Samples(std::span<const TickRecord> ticks, double period_s, 
   return samples;
 }
 
-// Half a period of slack on the borders: times are multiples of the period but for round-off.
+// Half a period of tolerance at the borders: times are multiples of the period except for
+// round-off.
 std::span<const Sample> Between(std::span<const Sample> samples, double after_s, double until_s,
                                 double slack_s) {
   const auto before = [](double limit) {
@@ -82,7 +83,8 @@ std::array<double, 2> MeanTip(std::span<const Sample> window) {
   return mean;
 }
 
-// @returns the time after the start of the rest from which on the tip stays; nothing if it does not
+// @returns the time after the start of the rest from which the tip stays within the bound; nothing
+// if it does not
 std::optional<double> SettlingTime(std::span<const Sample> rest, double start_s,
                                    const std::array<double, 2>& place) {
   std::size_t settled = rest.size();

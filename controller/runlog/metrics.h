@@ -12,43 +12,43 @@
 
 namespace flexarm {
 
-/// How well a run did (docs: "Metrics"). A figure that the run was too short for is NaN.
+/// Performance metrics of a run (docs: "Metrics"). A metric for which the run was too short is NaN.
 struct RunMetrics {
   std::int64_t ticks = 0;                         ///< in state Running
   std::array<double, 2> joint_rms_error_deg{};    ///< against the reference model, all ticks
   std::array<double, 2> joint_final_error_deg{};  ///< largest over the rests of |mean, last 0.3 s|
-  /// Largest over the rests: from the move's end until the tip stays within 15 mm of its mean over
-  /// the last 0.3 s. Nothing: never.
+  /// Settling time, largest over the rests: from the end of the move until the tip stays within
+  /// 15 mm of its mean over the last 0.3 s. Nothing: never.
   std::optional<double> tip_settling_time_s;
-  double tip_residual_rms_mm = 0;  ///< largest over the rests: rms about that mean
+  double tip_residual_rms_mm = 0;  ///< largest over the rests: rms about that mean, last 0.3 s
   /// Mean over the rests: the tip's rms about its mean from 0.3 s after the move's end to the end
-  /// of the rest (the motion of docs/theory/payload.md 6.1), so slow swings count too.
+  /// of the rest (the motion of docs/theory/payload.md 6.1), so slow oscillations count too.
   double tip_motion_rms_mm = 0;
   std::array<double, 2> peak_torque_nm{};   ///< after the gate
   std::array<double, 2> torque_rms_nm{};    ///< after the gate, all ticks
   std::array<double, 2> peak_bending_mm{};  ///< largest deflection of each link's tip
-  bool truth = false;  ///< angles and tip are the plant's own; otherwise estimated
+  bool truth = false;  ///< angles and tip are the plant's true ones; otherwise estimated
 };
 
-/// A stretch without a move, in seconds after sample 0 of the experiment.
+/// An interval without a move, in seconds after sample 0 of the experiment.
 struct Rest {
   double start_s;
   double end_s;
 };
 
 /// From the end of each move to the start of the next, or to `run_end_s`. Rests that the run did
-/// not reach are left out; a move that the next one takes over has none.
+/// not reach are left out; a move that the next one retargets has none.
 std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s);
 
-/// What an estimated tip position needs: where the state has what, rigid geometry, and the tip
-/// slopes of link 1's modes.
+/// Data for an estimated tip position: the layout of the state, rigid geometry, and the tip slopes
+/// of link 1's modes.
 struct TipGeometry {
   StateLayout layout;
   std::array<double, 2> length_m;
   std::array<double, 2> tip_slope_per_m;  ///< psi_1j'(L1), j = 1, 2
 };
 
-/// @param layout  of the state that it is for
+/// @param layout  of the estimated state
 TipGeometry TipGeometryOf(const ArmParameters& arm, const StateLayout& layout);
 
 /// Elastic tip deflection of each link, m: the sum of its modal coordinates, as psi(L) = 1.
@@ -59,8 +59,8 @@ std::array<double, 2> EstimatedDeflection_m(const StateLayout& layout,
 std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
                                    const std::array<double, kMaxNominalStates>& x);
 
-/// Judges the first stretch of ticks in state Running. Sample 0 of the experiment is the sampling
-/// instant after the first of them.
+/// Computes the metrics of the first interval of ticks in state Running. Sample 0 of the experiment
+/// is the sampling instant after the first of them.
 RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& experiment,
                           double period_s, const TipGeometry& geometry);
 

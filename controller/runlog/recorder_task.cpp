@@ -54,7 +54,7 @@ void RecorderTask::AddTruth(TickRecord* record) {
   }
 }
 
-// At one instant: events first (they announce), then safety, tick, timing.
+// At one instant: events first (they announce an experiment), then safety, tick, timing.
 void RecorderTask::Merge(std::int64_t horizon_ns) {
   const auto take = [](auto* pending, auto hand_over) {
     hand_over(pending->front());
@@ -82,7 +82,7 @@ void RecorderTask::Merge(std::int64_t horizon_ns) {
   recording_->Until(horizon_ns);
 }
 
-// Waits its turn like any other event: the run that it belongs to may not be open yet.
+// Queued like any other event: the run that it belongs to may not be open yet.
 void RecorderTask::NoteDropped(std::int64_t now_ns) {
   const std::uint64_t dropped = channels_.ticks->dropped() + channels_.safety->dropped() +
                                 channels_.timing->dropped() + channels_.events->dropped();
@@ -92,7 +92,7 @@ void RecorderTask::NoteDropped(std::int64_t now_ns) {
   events_.push_back({.time_ns = now_ns,
                      .kind = "gap",
                      .name = "dropped",
-                     .text = count + " records were dropped: the recorder fell behind.",
+                     .text = count + " records were dropped: the recorder was too slow.",
                      .value_json = "{\"records\":" + count + "}"});
 }
 

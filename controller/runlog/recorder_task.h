@@ -11,7 +11,7 @@
 
 namespace flexarm {
 
-/// What the recorder reads. Everything outlives the task.
+/// Queues that the recorder reads. Everything outlives the task.
 struct RecorderChannels {
   SpscQueue<TickRecord>* ticks;
   SpscQueue<SafetyRecord>* safety;
@@ -20,11 +20,12 @@ struct RecorderChannels {
   SpscQueue<TruthRecord>* truth = nullptr;  ///< of a simulated arm; null: there is none
 };
 
-/// The recorder thread's body: drains the queues every 50 ms into the log of the run.
+/// Recorder task: drains the queues every 50 ms into the log of the run.
 ///
-/// Records of the four queues are merged by their own instants, held back by 100 ms so that all of
-/// an instant have arrived. So which records are in a log depends on the time grid alone, and both
-/// executors write the same log. Commits every 0.25 s: a killed process loses at most 0.4 s.
+/// Records of the four queues are merged in order of their instants, delayed by 100 ms so that all
+/// records of an instant have arrived. So the set of records in a log depends on the time grid
+/// alone, and both executors write the same log. Commits every 0.25 s: a killed process loses at
+/// most 0.4 s.
 /// Not real-time safe. Thread: its own, or the lock-step executor's.
 class RecorderTask final : public Task {
  public:
@@ -36,12 +37,12 @@ class RecorderTask final : public Task {
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
 
-  /// Records everything that is left and closes the run. When no other task runs any more.
+  /// Records all remaining data and closes the run. Call when no other task runs any more.
   void Finish() noexcept;
 
  private:
   void Drain();
-  /// Hands over everything up to `horizon_ns` in order of time.
+  /// Passes all records up to `horizon_ns` to the recording, in order of time.
   void Merge(std::int64_t horizon_ns);
   /// Adds what the simulated arm did at the record's tick.
   void AddTruth(TickRecord* record);

@@ -11,7 +11,7 @@
 namespace flexarm {
 namespace {
 
-// A NaN on one side only is an infinite difference: it must not hide in a maximum.
+// A NaN on one side only counts as an infinite difference: std::max would ignore a NaN.
 double Difference(double a, double b) {
   if (std::isnan(a) && std::isnan(b)) return 0;
   const double difference = std::abs(a - b);
@@ -32,8 +32,7 @@ void Replay::Tick(const TickRecord& record) {
   previous_tick_ = tick;
   ++result_.ticks;
 
-  const FlushDenormals
-      flush;  // as in the control thread: the same bytes ask for the same arithmetic
+  const FlushDenormals flush;  // as in the control thread: equal bytes need equal arithmetic
   const StepOutput output = step_(record.input);
   for (std::size_t joint = 0; joint < 2; ++joint) {
     double& largest = result_.max_torque_difference_nm[joint];

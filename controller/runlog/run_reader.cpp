@@ -17,7 +17,7 @@ constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 
 constexpr const char* kSelectTick =
     "SELECT tick, truth_known, truth_hub_1_rad, truth_hub_2_rad, truth_tip_x_m, truth_tip_y_m,"
-    " truth_deflection_1_m, truth_deflection_2_m, input, output FROM tick ORDER BY tick";
+    " truth_deflection_1_m, truth_deflection_2_m, input, output, ";
 
 std::filesystem::path WalOf(const std::filesystem::path& file) { return file.string() + "-wal"; }
 
@@ -40,7 +40,7 @@ T ParseInteger(const std::string& text) {
   return value;
 }
 
-// The beginning of a file as it may be shown in a message.
+// The first bytes of a file, printable, for a message.
 std::string Beginning(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text(16, '\0');
@@ -61,7 +61,7 @@ bool LooksLikeSqlite(const std::filesystem::path& file) {
   return stream.good() && std::string_view(found.data(), found.size()) == kSqliteMagic;
 }
 
-/// The log and its -wal file in a folder of their own, where SQLite may write beside them.
+/// The log and its -wal file in a temporary folder, where SQLite can create its -shm file.
 class RunReader::TemporaryCopy {
  public:
   explicit TemporaryCopy(const std::filesystem::path& original) {
@@ -97,7 +97,7 @@ void RunReader::Guarded(Action action) {
     action();
   } catch (const SqliteError& error) {
     Fail(std::string("damaged or cut short: found \"") + error.what() +
-         "\", expected a whole run log");
+         "\", expected a complete run log");
   }
 }
 
@@ -122,13 +122,13 @@ void RunReader::TryOpen(const std::filesystem::path& file, bool immutable) {
   db_.QueryInteger("SELECT count(*) FROM sqlite_master");  // SQLite opens the file at first use
 }
 
-// A log in WAL mode needs a -shm file beside it. Where that cannot be made, a log without a -wal
-// file is read as it is, and one with it is read from a copy.
+// A log in WAL mode needs a -shm file beside it. Where that cannot be created, a log without a -wal
+// file is read in place, and one with a -wal file is read from a copy.
 void RunReader::OpenFile() {
   try {
     TryOpen(file_, false);
     return;
-  } catch (const SqliteError&) {  // the next attempt says what is wrong
+  } catch (const SqliteError&) {  // the next attempt reports the error
   }
   Guarded([&] {
     if (!HasWal(file_)) {
@@ -153,7 +153,7 @@ void RunReader::CheckIdentity() {
   const std::int64_t version = db_.QueryInteger("PRAGMA user_version");
   if (version < 1 || version > kRunLogSchemaVersion) {
     Fail("has schema version " + std::to_string(version) + ", expected at most " +
-         std::to_string(kRunLogSchemaVersion) + "; a newer flexarm wrote it");
+         std::to_string(kRunLogSchemaVersion) + "; it was written by a newer flexarm");
   }
   SqliteStatement mode = db_.Prepare("PRAGMA journal_mode");
   closed_ = mode.Step() && mode.Text(0) != "wal";
@@ -180,9 +180,18 @@ void RunReader::ReadInfo() {
   while (row.Step()) SetInfo(row.Text(0), row.Text(1));
 }
 
+bool RunReader::HasGateColumn() {
+  SqliteStatement row =
+      db_.Prepare("SELECT count(*) FROM pragma_table_info('tick') WHERE name = 'gate'");
+  return row.Step() && row.Integer(0) != 0;
+}
+
 void RunReader::ForEachTick(const std::function<void(const TickRecord&)>& visit) {
   Guarded([&] {
-    SqliteStatement row = db_.Prepare(kSelectTick);
+    std::string select = kSelectTick;
+    select.append(HasGateColumn() ? "gate" : "0");  // an older log has no such column
+    select.append(" FROM tick ORDER BY tick");
+    SqliteStatement row = db_.Prepare(select.c_str());
     while (row.Step()) {
       TickRecord record;
       const std::string where = "tick " + std::to_string(row.Integer(0)) + ": ";
@@ -194,6 +203,7 @@ void RunReader::ForEachTick(const std::function<void(const TickRecord&)>& visit)
         Fail(where + "input belongs to tick " + std::to_string(record.input.tick));
       }
       record.truth = ReadTruth(row);
+      record.gate_reasons = static_cast<std::uint32_t>(row.Integer(10));
       visit(record);
     }
   });

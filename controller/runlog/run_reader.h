@@ -12,10 +12,10 @@
 
 namespace flexarm {
 
-/// Reads one run log, also while it is being written, or as the death of its process left it (the
-/// committed rows wait in the -wal file), or where nothing may be written.
+/// Reads one run log, also while it is being written, after its process was killed (the committed
+/// rows are in the -wal file), or from a read-only folder.
 ///
-/// Never writes to the log. Every method throws InputError if the file is not what it should be.
+/// Never writes to the log. Every method throws InputError if the file is not valid.
 class RunReader {
  public:
   /// @throws InputError: missing, not SQLite, another application's, a newer schema, damaged
@@ -26,7 +26,7 @@ class RunReader {
 
   const std::filesystem::path& file() const { return file_; }
   const RunInfo& info() const { return info_; }
-  /// False: the run is still open, or its process died.
+  /// False: the run is still open, or its process was killed.
   bool closed() const { return closed_; }
 
   // In the order of time. BLOBs are checked for size and version.
@@ -46,6 +46,7 @@ class RunReader {
   void TryOpen(const std::filesystem::path& file, bool immutable);
   void CheckIdentity();
   void ReadInfo();
+  bool HasGateColumn();
   void SetInfo(const std::string& key, const std::string& value);
   [[noreturn]] void Fail(const std::string& what) const;
 

@@ -39,8 +39,8 @@ RunEvent GapEvent(std::int64_t time_ns, std::int64_t first, std::int64_t count) 
   return {.time_ns = time_ns,
           .kind = "gap",
           .name = "ticks",
-          .text = "No record of " + std::to_string(count) + " ticks from " + std::to_string(first) +
-                  " on.",
+          .text = "There are no records of " + std::to_string(count) + " ticks from tick " +
+                  std::to_string(first) + " on.",
           .value_json = value.dump()};
 }
 
@@ -82,8 +82,8 @@ void RunRecording::CountError(const std::string& what) noexcept {
   ++errors_;
   sink_.reset();
   try {
-    if (report_) report_(true, what + "; this run is not recorded any further");
-  } catch (const std::exception&) {  // counted; there is nobody left to tell
+    if (report_) report_(true, what + "; the recording of this run has ended");
+  } catch (const std::exception&) {  // counted; the report itself failed
   }
 }
 

@@ -12,41 +12,41 @@
 
 namespace flexarm {
 
-/// Makes the place for a run that begins. @throws RunLogError
+/// Creates the sink of a run that begins. @throws RunLogError
 using OpenSink = std::function<std::unique_ptr<RunSink>(const RunInfo&)>;
 
-OpenSink RunsInDirectory(const std::filesystem::path& directory);  ///< NewRunFile a run
-OpenSink RunInFile(const std::filesystem::path& file);             ///< the one run; must not exist
+OpenSink RunsInDirectory(const std::filesystem::path& directory);  ///< NewRunFile for each run
+OpenSink RunInFile(const std::filesystem::path& file);             ///< for one run; must not exist
 OpenSink RunInMemory(RunContents* contents);
 
-inline constexpr std::int64_t kAfterTripNs = 5'000'000'000;  ///< what a run records of a trip
+inline constexpr std::int64_t kAfterTripNs = 5'000'000'000;  ///< recorded after a trip
 
-/// Which records belong to a run, and the events that follow from them.
+/// Assigns the records to runs, and derives events from them.
 ///
-/// A run lasts from Idle -> Armed until Idle, or kAfterTripNs after a trip. Its first tick is the
-/// one in which the loop was reset, so that it replays on its own. Records must come in order of
+/// A run lasts from Idle -> Armed until Idle, or until kAfterTripNs after a trip. Its first tick is
+/// that in which the loop was reset, so that it replays on its own. Records must come in order of
 /// time. Disk errors end the recording of the run; they are reported and counted, never thrown.
 class RunRecording {
  public:
   /// For the journal. Called on the recorder's thread.
   using Report = std::function<void(bool is_error, const std::string& text)>;
 
-  /// @param info  what every run has in common; start and experiment are filled in
+  /// @param info  common to all runs; start and experiment are filled in
   RunRecording(RunInfo info, OpenSink open, Report report);
 
   void Safety(const SafetyRecord& record) noexcept;
   void Tick(const TickRecord& record) noexcept;
   void Timing(const TimingRecord& record) noexcept;
-  /// Kind "experiment" announces what is to run next: `name`, and `text` the whole file.
+  /// Kind "experiment" announces the next experiment: its `name`, and its file as `text`.
   void Event(const RunEvent& event) noexcept;
 
-  /// Nothing older than this will come any more: closes a run that has ended by then.
+  /// No older record will follow: closes a run that has ended by then.
   void Until(std::int64_t time_ns) noexcept;
   void Commit() noexcept;
   /// Closes the run that is open, if any.
   void Finish() noexcept;
 
-  /// Something outside went wrong: counts and reports it, and ends the recording of the run.
+  /// An error outside the recording: counts and reports it, and ends the recording of the run.
   void CountError(const std::string& what) noexcept;
 
   bool is_open() const { return sink_ != nullptr; }
@@ -67,7 +67,7 @@ class RunRecording {
   std::string sink_name_;
   std::int64_t errors_ = 0;
 
-  // Of the open run.
+  // State of the open run.
   std::optional<std::int64_t> end_ns_;  // it ends after this instant
   std::optional<std::int64_t> last_tick_;
   std::int64_t ticks_ = 0;

@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// Where the records of one run go: a file (RunWriter), or memory (RunMemory).
+/// Destination of the records of one run: a file (RunWriter), or memory (RunMemory).
 /// Thread: the recorder's. Not real-time safe.
 class RunSink {
  public:
@@ -20,9 +20,9 @@ class RunSink {
   virtual void Timing(const TimingRecord& record) = 0;
   virtual void Safety(const SafetyRecord& record) = 0;
   virtual void Event(const RunEvent& event) = 0;
-  /// The experiment that is about to run. The first of a run is the one that metrics judge.
+  /// The next experiment to run. Metrics use the first experiment of a run.
   virtual void SetExperiment(const std::string& name, const std::string& text) = 0;
-  /// Makes what was written so far safe against the death of the process.
+  /// Makes all data so far safe against a crash of the process.
   virtual void Commit() = 0;
   /// Ends the run. Nothing may follow.
   virtual void Close(const std::string& result_json) = 0;
@@ -37,7 +37,7 @@ struct RunContents {
   std::vector<RunEvent> event;
 };
 
-/// Keeps a run in `contents`, which must outlive it: for metrics when there is no log.
+/// Keeps a run in `contents`, which must outlive it: for metrics without a log.
 class RunMemory : public RunSink {
  public:
   explicit RunMemory(RunContents* contents) : contents_(contents) {}

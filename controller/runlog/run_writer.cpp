@@ -3,20 +3,16 @@
 #include <array>
 #include <cctype>
 #include <ctime>
-#include <limits>
 #include <utility>
+#include <variant>
 
 #include "controller/runlog/blob.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/schema.h"
-#include "model/units.h"
+#include "controller/runlog/tick_columns.h"
 
 namespace flexarm {
 namespace {
-
-constexpr const char* kInsertTick =
-    "INSERT INTO tick VALUES "
-    "(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 
 std::string Utc(const char* format) {
   const std::time_t now = std::time(nullptr);
@@ -46,35 +42,8 @@ class Row {
   int next_ = 1;
 };
 
-void BindReadable(Row& row, const TickRecord& record) {
-  const StepInput& input = record.input;
-  const StepOutput& output = record.output;
-  row << std::string_view(Name(input.safety_state));
-  for (const double angle : output.angle_rad) row << angle * kDegPerRad;
-  for (std::size_t joint = 0; joint < 2; ++joint) {
-    row << input.reference_now.x_m[joint] * kDegPerRad;
-  }
-  for (const double torque : output.torque_nm) row << torque;
-  for (const double torque : input.applied_torque_nm) row << torque;
-  for (const double modal : output.modal_m) row << modal;
-  row << output.adaptive_gain_change << output.lyapunov_nm2;
-  for (const double seconds : output.saturated_s) row << seconds;
-  row << output.payload_kg << output.payload_sigma_kg;
-  for (const double torque : output.friction_nm) row << torque;
-  row << output.mean_nis << std::int64_t{output.delay_found} << std::int64_t{input.planned};
-  for (const std::uint32_t count : input.frame.counter) row << std::int64_t{count};
-  row << static_cast<std::int64_t>(output.faults) << std::int64_t{output.limits};
-}
-
-void BindTruth(Row& row, const PlantTruth& truth) {
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
-  row << std::int64_t{truth.known ? 1 : 0};
-  for (const auto& pair : {truth.hub_angle_rad, truth.tip_m, truth.tip_deflection_m}) {
-    for (const double value : pair) row << (truth.known ? value : nothing);
-  }
-}
-
-// While somebody reads the run, SQLite keeps the -wal file; all is committed, so that is no error.
+// While another process reads the run, SQLite keeps the -wal file. All rows are committed, so this
+// is no error.
 void LeaveOneFile(SqliteDb* db) {
   try {
     db->Execute("PRAGMA wal_checkpoint(TRUNCATE)");
@@ -115,9 +84,9 @@ RunWriter::RunWriter(std::filesystem::path file, const RunInfo& info)
       start_ns_(info.start_ns),
       has_experiment_(!info.experiment_text.empty()) {
   if (std::filesystem::exists(file_)) {
-    throw RunLogError(file_.string() + ": exists already; a run is never overwritten");
+    throw RunLogError(file_.string() + ": already exists; a run is never overwritten");
   }
-  std::error_code ignored;  // opening the file says what is wrong with the folder
+  std::error_code ignored;  // opening the file reports what is wrong with the folder
   if (file_.has_parent_path()) std::filesystem::create_directories(file_.parent_path(), ignored);
   Guarded([&] {
     db_ = SqliteDb::CreateNew(file_);
@@ -136,7 +105,7 @@ RunWriter::~RunWriter() {
 
 void RunWriter::CreateTables() {
   db_.Execute("PRAGMA journal_mode=WAL");
-  // A commit survives the process; a power cut may cost the last commits but not the file.
+  // A commit survives the process; a power failure may lose the last commits but not the file.
   db_.Execute("PRAGMA synchronous=NORMAL");
   db_.Execute("BEGIN IMMEDIATE");
   const std::string id = std::to_string(kRunLogApplicationId);
@@ -144,13 +113,14 @@ void RunWriter::CreateTables() {
   db_.Execute(("PRAGMA application_id=" + id).c_str());
   db_.Execute(("PRAGMA user_version=" + version).c_str());
   db_.Execute(kRunLogSchema);
+  db_.Execute(CreateTickTable().c_str());
   db_.Execute(kSafetyTable);
   in_transaction_ = true;
 }
 
 void RunWriter::PrepareStatements() {
   set_key_ = db_.Prepare("INSERT OR REPLACE INTO run VALUES (?,?)");
-  insert_tick_ = db_.Prepare(kInsertTick);
+  insert_tick_ = db_.Prepare(InsertTick());
   insert_timing_ = db_.Prepare("INSERT INTO timing VALUES (?,?,?,?,?,?)");
   insert_safety_ = db_.Prepare(kInsertSafety);
   insert_event_ = db_.Prepare("INSERT INTO event VALUES (NULL,?,?,?,?,?,?)");
@@ -196,8 +166,9 @@ void RunWriter::Tick(const TickRecord& record) {
     const auto output = EncodeBlob(kStepOutputVersion, record.output);
     Row row(&insert_tick_);
     row << record.input.tick << SinceStart(record.input.sampling_instant_ns);
-    BindReadable(row, record);
-    BindTruth(row, record.truth);
+    for (const TickColumn& column : TickColumns()) {
+      std::visit([&row](auto value) { row << value; }, column.value(record));
+    }
     row << std::span<const std::byte>(input) << std::span<const std::byte>(output);
     insert_tick_.Execute();
   });

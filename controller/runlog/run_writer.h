@@ -12,15 +12,15 @@ namespace flexarm {
 
 /// Writes one run into one SQLite file.
 ///
-/// While open the file is in WAL mode: readers never wait, and the death of the process loses only
-/// what was not committed. Close() leaves the one file and nothing beside it.
+/// While open the file is in WAL mode: readers never wait, and a crash of the process loses only
+/// uncommitted rows. Close() leaves one file and no auxiliary files.
 /// Thread: one at a time. Not real-time safe: it allocates and waits for the disk.
 class RunWriter : public RunSink {
  public:
-  /// Creates `file`, its folder if need be, and its tables.
+  /// Creates `file`, its folder if necessary, and its tables.
   /// @throws RunLogError if it exists already, or cannot be written
   RunWriter(std::filesystem::path file, const RunInfo& info);
-  /// Closes without a result if Close was not called; an error is then lost.
+  /// Closes without a result if Close was not called; an error is then not reported.
   ~RunWriter() override;
 
   // Each throws RunLogError naming file and cause; rows since the last Commit may then be lost.
@@ -56,7 +56,7 @@ class RunWriter : public RunSink {
 std::string UtcNow();
 
 /// "<directory>/20261120T134506Z-<name>.flexarm", with "-2", "-3", .. before the suffix if that
-/// exists. An empty name is "manual"; what a file name should not hold becomes "_".
+/// exists. An empty name becomes "manual"; characters unfit for a file name become "_".
 std::filesystem::path NewRunFile(const std::filesystem::path& directory, const std::string& name);
 
 }  // namespace flexarm

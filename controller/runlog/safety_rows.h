@@ -11,7 +11,7 @@ namespace flexarm {
 inline constexpr std::uint32_t kSafetyRecordVersion = 1;
 static_assert(sizeof(SafetyRecord) == 64, "the layout changed: raise kSafetyRecordVersion");
 
-/// Table `safety`: one row a change of the safety facts or state.
+/// Table `safety`: one row per change of the safety facts or state.
 inline constexpr const char* kSafetyTable = R"sql(
 CREATE TABLE safety (
   number INTEGER PRIMARY KEY,
@@ -34,7 +34,7 @@ inline constexpr const char* kSelectSafety = "SELECT number, record FROM safety 
 /// Executes a prepared kInsertSafety.
 void InsertSafety(SqliteStatement* insert, const SafetyRecord& record, std::int64_t start_ns);
 
-/// Reads the current row of kSelectSafety. @returns what is wrong with it, empty if nothing
+/// Reads the current row of kSelectSafety. @returns the error in it, empty if none
 std::string ReadSafety(const SqliteStatement& row, SafetyRecord* record);
 
 /// Machine names of the causes in a set, separated by a space.

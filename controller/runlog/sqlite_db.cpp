@@ -25,7 +25,7 @@ std::string Cause(sqlite3* connection, int result) {
   return cause + " (SQLite code " + std::to_string(result) + ")";
 }
 
-// SQLite's URI syntax: only ?, # and % mean something in a path.
+// SQLite's URI syntax: only ?, # and % are special in a path.
 std::string Uri(const std::filesystem::path& file) {
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(file).string()) {
@@ -105,7 +105,7 @@ void SqliteStatement::Execute() {
 }
 
 void SqliteStatement::Reset() {
-  sqlite3_reset(statement_);  // repeats the error of the last Step, which was thrown already
+  sqlite3_reset(statement_);  // returns the error of the last Step again, which was already thrown
   sqlite3_clear_bindings(statement_);
 }
 
@@ -147,7 +147,7 @@ SqliteDb SqliteDb::Open(const std::string& name, int flags) {
 }
 
 SqliteDb SqliteDb::CreateNew(const std::filesystem::path& file) {
-  // SQLite cannot create exclusively, so the name is claimed first: a run is never overwritten.
+  // SQLite cannot create exclusively, so the file is created first: a run is never overwritten.
   const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
   if (descriptor < 0) throw SqliteError(SQLITE_CANTOPEN, std::strerror(errno));
   ::close(descriptor);
@@ -188,7 +188,8 @@ std::int64_t SqliteDb::QueryInteger(std::string_view sql) {
 }
 
 void SqliteDb::Close() {
-  sqlite3_close_v2(std::exchange(connection_, nullptr));  // waits for open statements by itself
+  sqlite3_close_v2(
+      std::exchange(connection_, nullptr));  // deferred by SQLite until all statements are closed
 }
 
 }  // namespace flexarm

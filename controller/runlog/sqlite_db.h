@@ -12,7 +12,7 @@ struct sqlite3_stmt;
 
 namespace flexarm {
 
-/// What SQLite refused. what() has the cause only; callers add the file.
+/// An error of SQLite. what() has the cause only; callers add the file.
 class SqliteError : public std::runtime_error {
  public:
   SqliteError(int error_code, const std::string& cause)
@@ -68,9 +68,9 @@ class SqliteDb {
   SqliteDb() = default;
   /// Creates a new file. @throws SqliteError, also if the file exists
   static SqliteDb CreateNew(const std::filesystem::path& file);
-  /// Opens a file for reading and writing; makes an empty one if there is none.
+  /// Opens a file for reading and writing; creates an empty one if there is none.
   static SqliteDb OpenOrCreate(const std::filesystem::path& file);
-  /// @param immutable  the file cannot change: no lock and no -shm file is needed
+  /// @param immutable  the file does not change: no lock and no -shm file needed
   static SqliteDb OpenReadOnly(const std::filesystem::path& file, bool immutable);
   ~SqliteDb();
   SqliteDb(SqliteDb&& other) noexcept;

@@ -7,25 +7,28 @@ const char* WrongStateText(RequestKind request, SafetyState state) noexcept {
   using enum SafetyState;
   if (state == kStarting) return "The daemon is still starting. Try again in a moment.";
   if (state == kTripped && request != RequestKind::kReset) {
-    return "The arm has tripped. Remove the cause, press the reset button, then `flexarm reset`.";
+    return "The arm has tripped. Remove the cause, press the reset button, then run `flexarm "
+           "reset`.";
   }
   switch (request) {
     case RequestKind::kNone:
       break;
     case RequestKind::kArm:
-      return "The arm is armed already.";
+      return "The arm is already armed.";
     case RequestKind::kRun:
-      return state == kIdle ? "The arm is not armed. First `flexarm arm`."
-                            : "An experiment is running. First `flexarm stop`, and wait for Armed.";
+      return state == kIdle
+                 ? "The arm is not armed. Run `flexarm arm` first."
+                 : "An experiment is running. Run `flexarm stop` first and wait for Armed.";
     case RequestKind::kStop:
-      return "Nothing is running that could be stopped.";
+      return "No experiment is running.";
     case RequestKind::kDisarm:
-      return state == kIdle ? "The arm is not armed."
-                            : "An experiment is running. First `flexarm stop`, and wait for Armed.";
+      return state == kIdle
+                 ? "The arm is not armed."
+                 : "An experiment is running. Run `flexarm stop` first and wait for Armed.";
     case RequestKind::kReset:
-      return "Nothing has tripped: there is nothing to reset.";
+      return "There is no trip to reset.";
   }
-  return "The daemon does not know this request.";
+  return "Unknown request.";
 }
 
 }  // namespace
@@ -75,18 +78,19 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
     case Refusal::kWrongState:
       return WrongStateText(request, state);
     case Refusal::kNotAtRest:
-      return "The arm moves. Wait until it is at rest, then ask again.";
+      return "The arm is moving. Wait until it is at rest, then repeat the request.";
     case Refusal::kCauseRemains:
-      return "A cause of a trip is still present: see `flexarm status`. Remove it, then ask again.";
+      return "A cause of a trip is still present: see `flexarm status`. Remove it, then repeat the "
+             "request.";
     case Refusal::kNoReset:
-      return "The reset button has not been pressed since the trip. Press it at the rig, then ask "
-             "again.";
+      return "The reset button has not been pressed since the trip. Press it at the rig, then "
+             "repeat the request.";
     case Refusal::kUnhealthy:
       return "A cause of a trip is present, or a task has not reported yet: see `flexarm status`.";
     case Refusal::kCancelled:
-      return "A stop, a disarm or a trip came before this planned request. Ask again.";
+      return "A stop, a disarm or a trip cancelled this planned request. Repeat the request.";
   }
-  return "The daemon gave a refusal that is not known here.";
+  return "Unknown reason of refusal.";
 }
 
 }  // namespace flexarm

@@ -11,21 +11,21 @@
 
 namespace flexarm {
 
-/// Everything that the safety machine may depend on in one safety tick. Logged on every change, and
-/// replayed: no padding. Flags are 0 or 1; any other value counts as set.
+/// All inputs of the safety state machine in one safety tick. Logged on every change and replayed:
+/// no padding. Flags are 0 or 1; any other value counts as set.
 struct SafetyFacts {
-  TripCauses present;                    ///< all causes present now, but kStopTimeout
-  std::uint8_t all_reported;             ///< every task has reported once
-  std::uint8_t at_rest;                  ///< fresh word of the loop that the arm is at rest
-  std::uint8_t experiment_done;          ///< the reference of this run has ended
-  std::uint8_t stop_expired;             ///< Stopping has lasted longer than it may
-  std::uint8_t reset_pressed;            ///< the reset button went down after the trip
-  RequestKind request;                   ///< what the operator asks for in this tick
+  TripCauses present;            ///< all causes present now, except kStopTimeout
+  std::uint8_t all_reported;     ///< every task has reported once
+  std::uint8_t at_rest;          ///< a fresh report of the loop says that the arm is at rest
+  std::uint8_t experiment_done;  ///< the reference of this run has ended
+  std::uint8_t stop_expired;     ///< Stopping has lasted longer than permitted
+  std::uint8_t reset_pressed;    ///< the reset button was pressed after the trip
+  RequestKind request;           ///< request of the operator in this tick
   std::array<std::uint8_t, 2> reserved;  ///< zero
 };
 static_assert(std::has_unique_object_representations_v<SafetyFacts>, "no padding: it is logged");
 
-/// Where the machine is. `cause` is kNone but in Tripped.
+/// State of the safety state machine. `cause` is kNone except in Tripped.
 struct SafetyStatus {
   SafetyState state;
   TripCause cause;
@@ -33,7 +33,7 @@ struct SafetyStatus {
   friend constexpr bool operator==(const SafetyStatus&, const SafetyStatus&) = default;
 };
 
-/// Where the machine goes, and what became of the request (kNone also when there was none).
+/// Next state, and the answer to the request (kNone also without a request).
 struct SafetyDecision {
   SafetyStatus status;
   Refusal refusal;
@@ -41,19 +41,19 @@ struct SafetyDecision {
   friend constexpr bool operator==(const SafetyDecision&, const SafetyDecision&) = default;
 };
 
-/// The cause that latches when several are present: the lowest number. A set with no known cause in
-/// it is corrupt, and reads as kStateNotFinite.
+/// The cause that latches when several are present: the lowest number. A set without a known cause
+/// is corrupt and counts as kStateNotFinite.
 constexpr TripCause LowestCause(TripCauses causes) noexcept {
   const int lowest = std::countr_zero(causes);
   return lowest > 0 && lowest < kTripCauses ? static_cast<TripCause>(lowest)
                                             : TripCause::kStateNotFinite;
 }
 
-/// The whole safety logic: a pure function of status and facts. No clock, no I/O, no memory.
+/// Safety state machine: a pure function of status and facts. No clock, no I/O, no memory.
 ///
-/// A cause that is present trips from every state. A trip is left only by the operator's reset
-/// after the physical one, at rest, with no cause present, and only towards Idle. Torque becomes
-/// possible only by `run` from Armed. At most one transition a tick. Real-time: safe.
+/// A cause that is present trips from every state. Tripped is left only towards Idle, by the
+/// operator's reset after the physical reset button, at rest, with no cause present. Torque becomes
+/// possible only by `run` from Armed. At most one transition per tick. Real-time: safe.
 constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts& facts) noexcept {
   using enum SafetyState;
   const RequestKind request = facts.request;
@@ -69,7 +69,7 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
   }
 
   if (status.state == kTripped) {
-    // Latched: what tripped first stays, whatever comes after.
+    // Latched: the first cause is kept until the reset.
     const bool known =
         status.cause != TripCause::kNone && static_cast<int>(status.cause) < kTripCauses;
     const SafetyStatus latched{kTripped, known ? status.cause : TripCause::kStateNotFinite};
@@ -118,7 +118,7 @@ const char* Name(RequestKind request) noexcept;
 /// Machine name of a refusal, as in JSON: "wrong-state".
 const char* Name(Refusal refusal) noexcept;
 
-/// Why the request was refused in `state` and what to do, one sentence or two. "" if it was not.
+/// Text for the operator: why the request was refused in `state` and what to do. "" if accepted.
 const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state) noexcept;
 
 }  // namespace flexarm

@@ -83,7 +83,7 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
 
   all_reported_ = all_reported_ || (ControlReported(in) && DriveReported(in));
   facts.all_reported = Flag(all_reported_);
-  // Stopping must not end on the word of a step that did not know of the run.
+  // A report from before the stop must not end Stopping.
   const bool heard_here =
       in.state != SafetyState::kStopping || in.control.due_ns > in.state_since_ns;
   facts.at_rest = Flag(control_alive && in.control.at_rest && heard_here);

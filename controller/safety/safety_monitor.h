@@ -11,28 +11,29 @@ namespace flexarm {
 struct SafetyConfig;
 struct LoopConfig;
 
+/// Time limits of the safety monitor.
 struct SupervisorLimits {
   std::int64_t heartbeat_timeout_ns;  ///< two control periods, for control and drive side
   std::int64_t stop_timeout_ns;       ///< safety.stop_timeout_s
   int missed_deadlines_to_trip;       ///< safety.missed_deadlines_to_trip
-  std::int64_t homing_contact_ns;     ///< how long homing may stand on its switch
+  std::int64_t homing_contact_ns;     ///< how long homing may stay on its switch
 };
 
 SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConfig& loop);
 
-/// Which of several buses is meant when the drive side as a whole is in trouble, from 1, and what
-/// it met. 0: none, or the drive side is no bus.
+/// The bus behind a fault of the drive side, numbered from 1, and its fault. 0: none, or the drive
+/// side has no bus.
 struct DriveTroubles {
   struct Trouble {
     std::uint32_t bus = 0;
     BusFault fault{};
   };
-  Trouble lost{};                ///< the first that is lost
-  Trouble drive{};               ///< the first with a drive's fault
-  std::uint32_t oldest_bus = 0;  ///< whose newest report is the oldest
+  Trouble lost{};                ///< the first bus that is lost
+  Trouble drive{};               ///< the first bus with a drive fault
+  std::uint32_t oldest_bus = 0;  ///< the bus whose newest report is the oldest
 };
 
-/// What one safety tick got to see.
+/// Inputs of one safety tick.
 struct SafetyInputs {
   std::int64_t due_ns;
   LineLevels levels;
@@ -45,37 +46,38 @@ struct SafetyInputs {
   SafetyState state;  ///< before this tick
   std::int64_t state_since_ns;
   std::int64_t running_since_ns;  ///< INT64_MIN: never
-  LineLevels may_open;            ///< limit switches that a homing run looks for
+  LineLevels may_open;            ///< limit switches that a homing run searches for
 };
 
-/// Turns what a safety tick sees into the facts of the safety machine: every judgement about time,
-/// levels and freshness. Remembers the reset button, and since when homing stands on its switch,
-/// nothing else; reads no clock.
+/// Safety monitor: derives the inputs of the safety state machine from line levels and task
+/// reports, with all checks of time, levels and freshness. Its only memory is the reset button, the
+/// first reports, and since when homing has been on its switch. Reads no clock.
 ///
-/// A report counts only while its sender is alive; before the first report of a task, nothing is
-/// said about it. Word of rest and of the experiment's end counts only if the step that gave it was
-/// due after the machine came to its state, so the last run cannot end the next one. The switch
-/// that a homing run looks for may open while it runs, for a bounded time; the others trip as ever.
+/// A report counts only while its sender is alive; no cause is derived from a task before its first
+/// report. While Stopping, `at_rest` counts only from a step that was due after the stop, and
+/// `experiment_done` only from a step that was due after the run began, so the last run cannot end
+/// the next one. The switch that a homing run searches for may open during that run, for a bounded
+/// time; the other switches trip as always.
 /// Real-time: safe.  Thread: safety.
 class SafetyMonitor {
  public:
   explicit SafetyMonitor(const SupervisorLimits& limits) noexcept : limits_(limits) {}
 
-  /// Once a tick, in order of time.
+  /// Once per tick, in order of time.
   SafetyFacts Judge(const SafetyInputs& in) noexcept;
 
-  /// The values behind a cause that Judge found present in `in`, or behind kStopTimeout. Times in
-  /// s.
+  /// Value and limit behind a cause that Judge found present in `in`, or behind kStopTimeout. Times
+  /// in s.
   Evidence EvidenceOf(TripCause cause, const SafetyInputs& in) const noexcept;
 
  private:
-  /// True while homing stands on the switch that it looks for, and has not for too long.
+  /// True while homing is on the switch that it searches for, within the permitted time.
   bool HomingContact(const SafetyInputs& in) noexcept;
 
   SupervisorLimits limits_;
   std::int64_t contact_since_ns_ = INT64_MAX;
   bool all_reported_ = false;
-  bool button_was_down_ = true;  // a button that is down from the start has not been pressed
+  bool button_was_down_ = true;  // a button that is down from the start does not count
   bool reset_pressed_ = false;
 };
 

@@ -9,10 +9,10 @@
 
 namespace flexarm {
 
-/// One change of the safety facts or state, as the recorder logs it and replay runs it again.
+/// One change of the safety facts or state, as the recorder logs it and replay repeats it.
 ///
-/// Between two records neither facts nor status changed and there was no request, so
-/// NextSafetyState(before, facts) == {after, refusal} over the records is the whole story.
+/// Between two records neither facts nor status changed and there was no request, so the records
+/// with NextSafetyState(before, facts) == {after, refusal} describe the whole run.
 struct SafetyRecord {
   std::int64_t due_ns;  ///< safety tick
   SafetyFacts facts;

@@ -42,7 +42,7 @@ GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
     const double reached =
         std::clamp(within, in.previous_nm[joint] - step, in.previous_nm[joint] + step);
     if (reached != within) result.why |= joint == 0 ? kGateSlew1 : kGateSlew2;
-    // The torque limit has the last word: `previous` may lie outside it.
+    // The torque limit is applied last: `previous` may lie outside it.
     result.torque_nm[joint] = std::clamp(reached, -limit, limit);
   }
   return result;

@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// What the design of the controller and its step depend on.
+/// The configuration that the controller design and the control step use.
 struct ControlConfig {
   ArmParameters arm;
   SensorConfig sensors;
@@ -18,7 +18,7 @@ struct ControlConfig {
   SafetyConfig safety;
   LoopConfig loop;
 
-  /// Whether the state comes from `ekf-payload`.
+  /// Whether the state estimator is `ekf-payload`.
   bool uses_payload_estimator() const {
     return estimator.kind == EstimatorKind::kPayload || IsScheduled(controller.kind);
   }

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kDriftsAway =
     "without weight the joint's double integrator is not controlled";
 
-constexpr std::size_t kMostKnots = 32;  // each takes a millisecond of the start
+constexpr std::size_t kMostKnots = 32;  // each takes a millisecond at start-up
 
 void CheckGrid(const std::string& key, const std::vector<double>& grid, double last,
                ProblemList* list) {
@@ -30,7 +30,7 @@ void CheckGrid(const std::string& key, const std::vector<double>& grid, double l
 void CheckPayload(const PayloadLawConfig& p, ProblemList* list) {
   list->Positive("payload.max_kg", p.max_kg, 100.0, "moves are planned for this payload");
   list->Within("payload.reference_kg", p.reference_kg, 0.0, 100.0,
-               "the reference is the way of an arm with this payload");
+               "the reference is the motion of an arm with this payload");
   CheckGrid("payload.gain_payload_kg", p.gain_payload_kg, 100.0, list);
   CheckGrid("payload.gain_elbow_deg", p.gain_elbow_deg, 180.0, list);
 }
@@ -39,18 +39,21 @@ void CheckPlan(const PlanAheadConfig& p, ProblemList* list) {
   list->EachWithin("plan.moving_weight", p.moving_weight, 0.0, 1e9, "a weight, never negative");
   list->EachWithin("plan.resting_weight", p.resting_weight, 0.0, 1e9, "a weight, never negative");
   list->EachPositive("plan.torque_weight", p.torque_weight, 1e6,
-                     "without it a plan asks for any torque");
-  list->Positive("plan.light_kg", p.light_kg, 100.0, "the weights of a move fall beyond it");
+                     "without it the cost does not limit the torque");
+  list->Positive("plan.light_kg", p.light_kg, 100.0,
+                 "the weights during a move decrease for payloads of about this and above");
   list->Positive("plan.torque_share", p.torque_share, 1.0,
-                 "of the torque limits; the rest is left to the feedback");
+                 "share of the torque limits; the rest is reserved for the feedback");
   list->Within("plan.start_alpha", p.start_alpha, 0.0, 10.0, "1/s; as controller.alpha");
-  list->Within("plan.every_periods", p.every_periods, 1, 100, "how often a plan is made");
+  list->Within("plan.every_periods", p.every_periods, 1, 100, "periods from one plan to the next");
   list->Within("plan.ready_periods", p.ready_periods, 2, kMostReadyPeriods,
-               "a plan is made between two steps and holds from a later one on");
-  list->Within("plan.rest_periods", p.rest_periods, 1, 100, "planned after the move's end");
-  list->Positive("plan.roughness", p.roughness, 10.0, "change of torque from sample to sample");
+               "periods from the request of a plan to its first sample");
+  list->Within("plan.rest_periods", p.rest_periods, 1, 100,
+               "periods planned after the end of the move");
+  list->Positive("plan.roughness", p.roughness, 10.0,
+                 "largest change of torque from sample to sample, share of the limits");
   list->Positive("plan.payload_change_kg", p.payload_change_kg, 100.0,
-                 "a plan for another payload is no start for the next");
+                 "with a larger change a plan is no warm start for the next");
   list->Within("plan.payload_change_share", p.payload_change_share, 0.0, 1.0,
                "or this share of the plan's payload");
 }
@@ -60,9 +63,10 @@ void CheckPlan(const PlanAheadConfig& p, ProblemList* list) {
 std::vector<Problem> ControllerConfig::Problems() const {
   ProblemList list("controller.");
   list.Within("alpha", alpha, 0.0, 10.0,
-              "1/s; beyond this the prescribed stability asks more than the samples can give");
+              "1/s; a larger degree of stability is too fast for the sampling rate");
   list.Within("vartheta", vartheta, 0.0, 1.0, "a weight between two feedforwards");
-  list.Within("sigma", sigma, 0.0, 1.0, "the share of the adapted gain that leaks a sample");
+  list.Within("sigma", sigma, 0.0, 1.0,
+              "leakage: the share of the adapted change that is removed per sample");
   list.EachPositive("hub_angle_weight", hub_angle_weight, 1e6, kDriftsAway);
   list.EachWithin("hub_rate_weight", hub_rate_weight, 0.0, 1e6, "a weight, never negative");
   for (std::size_t i = 0; i < state_weight.size(); ++i) {
@@ -77,14 +81,14 @@ std::vector<Problem> ControllerConfig::Problems() const {
   list.Positive("passivity_margin", passivity_margin, 1e4,
                 "G = J + margin I must exceed J, or the adaptive loop is not passive");
   list.EachPositive("pd_stiffness_nm_per_rad", pd_stiffness_nm_per_rad, 1e4,
-                    "a hub without stiffness goes where it likes");
+                    "without stiffness the hub angle is not controlled");
   list.EachWithin("pd_damping_nms_per_rad", pd_damping_nms_per_rad, 0.0, 1e3,
-                  "a negative one feeds the vibration");
-  list.Within("adaptation_gain", adaptation_gain, 0.0, 100.0, "0 adapts nothing");
+                  "negative damping excites vibration");
+  list.Within("adaptation_gain", adaptation_gain, 0.0, 100.0, "0 disables the adaptation");
   list.Within("adaptation_dead_zone_nm", adaptation_dead_zone_nm, 0.0, 100.0,
-              "a smaller y_e = C_p (x_m - x) does not adapt; 0: every one does");
+              "no adaptation while y_e = C_p (x_m - x) is smaller; 0: no dead zone");
   list.Positive("adaptation_bound", adaptation_bound, 1e6,
-                "the gains stay within this distance of those they start with");
+                "the largest distance of the gains from their initial values");
   if (payload) CheckPayload(*payload, &list);
   if (plan) CheckPlan(*plan, &list);
   return list.Take();

@@ -17,29 +17,29 @@ enum class FeedforwardSign : std::uint8_t {
   kCorrected,  ///< the sign that follows from the derivation
 };
 
-/// Table [controller.payload]: of the laws that know the payload.
+/// Table [controller.payload]: settings of the laws that use the estimated payload.
 struct PayloadLawConfig {
   double max_kg;                        ///< heaviest payload that moves are planned for
-  double reference_kg;                  ///< the reference is the way of an arm with this payload
+  double reference_kg;                  ///< the reference is the motion of an arm with this payload
   std::vector<double> gain_payload_kg;  ///< grid of the gain table, ascending from 0
   std::vector<double> gain_elbow_deg;   ///< |theta2|, ascending from 0
 };
 
 inline constexpr int kMostReadyPeriods = 20;  ///< 0.4 s: shortest move, docs/theory/payload.md 3.1
 
-/// Table [controller.plan]: how the rest of a move is planned while it lasts; plan_targets.h has
-/// the cost.
+/// Table [controller.plan]: settings of the receding-horizon planner;
+/// controller/planner/plan_cost.h has the cost.
 struct PlanAheadConfig {
-  std::array<double, 12> moving_weight;   ///< diagonal of Q while the path moves, of an empty hand
-  std::array<double, 12> resting_weight;  ///< from the move's end on
+  std::array<double, 12> moving_weight;   ///< diagonal of Q during a move, without payload
+  std::array<double, 12> resting_weight;  ///< diagonal of Q from the end of the move on
   std::array<double, 2> torque_weight;    ///< diagonal of R
-  double light_kg;                        ///< Q while moving falls as 1 / (1 + (payload / this)^2)
-  double torque_share;                    ///< a plan keeps within this share of the limits
-  double start_alpha;  ///< degree of stability of the gains of a first guess, 1/s
-  int every_periods;   ///< a plan is made this often
-  int ready_periods;   ///< and holds this much later
-  int rest_periods;    ///< it goes on for so long after the move's end
-  double roughness;    ///< see HorizonPlannerConfig, as the next two
+  double light_kg;      ///< Q during a move decreases as 1 / (1 + (payload / this)^2)
+  double torque_share;  ///< share of the torque limits that a plan may use
+  double start_alpha;   ///< degree of stability of the gains for a cold start, 1/s
+  int every_periods;    ///< from one plan to the next
+  int ready_periods;    ///< from the request of a plan to its first sample
+  int rest_periods;     ///< part of a plan after the end of the move
+  double roughness;     ///< see HorizonPlannerConfig, also for the next two
   double payload_change_kg;
   double payload_change_share;
 };
@@ -47,33 +47,32 @@ struct PlanAheadConfig {
 /// Section [controller]. Symbols as in the thesis, chapter 7.
 struct ControllerConfig {
   ControllerKind kind;  ///< key `name`
-  StateLayout nominal;  ///< the model that law and filter are designed on, by its name: "R12"
+  StateLayout nominal;  ///< nominal model for law and filter, by its name: "R12"
   double alpha;         ///< prescribed degree of stability, 1/s, 0..10; see design_alpha
   double vartheta;      ///< weight of (7.24) against the CGT feedforward, 0..1
-  double sigma;         ///< leak of the adaptive gains a sample, 0..1
+  double sigma;         ///< leakage of the adaptive gains per sample, 0..1
   FeedforwardSign feedforward_sign;
   std::array<double, 2> hub_angle_weight;  ///< Q on th1 th2
   std::array<double, 2> hub_rate_weight;   ///< Q on their rates
-  /// Key `state_weight`, optional: the diagonal of Q, one number a state, in place of the two
-  /// above.
+  /// Key `state_weight`, optional: the diagonal of Q, one number per state; replaces the two above.
   std::vector<double> state_weight;
   double torque_weight;                           ///< R = rho I
   double passivity_margin;                        ///< G = J + margin I, > 0
   double adaptation_gain;                         ///< T = Tbar = gain I_16, >= 0
-  double adaptation_dead_zone_nm;                 ///< |y_e| below this teaches nothing, >= 0
+  double adaptation_dead_zone_nm;                 ///< no adaptation while |y_e| is below this, >= 0
   double adaptation_bound;                        ///< largest |K_I - K_I(0)|, Frobenius, > 0
   std::array<double, 2> pd_stiffness_nm_per_rad;  ///< of the PD laws, on th1 th2
   std::array<double, 2> pd_damping_nms_per_rad;   ///< on their rates
   bool prediction;                                ///< one-sample open-loop prediction
   bool adaptation;  ///< false: u = u* + y_e, the same feedforward and feedback
 
-  /// The alpha that the law is designed with: 0 for sobel-original and lqg.
+  /// The degree of stability used in the design: 0 for sobel-original and lqg.
   double design_alpha() const {
     return kind == ControllerKind::kSobelOriginal || kind == ControllerKind::kLqg ? 0.0 : alpha;
   }
 
-  std::optional<PayloadLawConfig> payload{};  ///< needed by the laws that know it only
-  std::optional<PlanAheadConfig> plan{};      ///< needed by `receding-horizon` only
+  std::optional<PayloadLawConfig> payload{};  ///< only for the laws that use the payload
+  std::optional<PlanAheadConfig> plan{};      ///< only for `receding-horizon`
 
   std::string
       gains_file;  ///< key `gains`, optional: written by `flexarm design`; empty: design at start

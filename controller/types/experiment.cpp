@@ -56,8 +56,8 @@ std::vector<Act> ActsOf(const Experiment& e) {
   return acts;
 }
 
-// A row against the one above it of the same kind. A move may begin while that one lasts: PlanMoves
-// knows whether the law can take over.
+// A row against the one above it of the same kind. A move may begin while the one above it lasts:
+// PlanMoves decides whether the law can retarget.
 void CheckOrder(const Act& act, const Act& above, ProblemList* list) {
   if (act.kind == "move") {
     list->Require(act.start_s > above.start_s + kRoundingS, act.row + ".start_s",
@@ -97,14 +97,14 @@ void CheckTimes(const std::vector<Act>& acts, std::size_t i, double experiment_s
 
 void CheckDoublet(const Doublet& doublet, const std::string& row, ProblemList* list) {
   list->Positive(row + ".duration_s", doublet.duration_s, 3600.0,
-                 "half of it pushes, half of it brakes");
+                 "half of it accelerates, half of it decelerates");
   list->EachWithin(row + ".move_deg", doublet.move_deg, -360.0, 360.0, "of th1 and th2");
 }
 
 void CheckMove(const Move& move, const std::string& row, ProblemList* list) {
   if (move.duration_s) {
     list->Positive(row + ".duration_s", *move.duration_s, 3600.0,
-                   "half of it pushes, half of it brakes");
+                   "half of it accelerates, half of it decelerates");
   }
   list->EachWithin(row + ".to_deg", move.to_deg, -360.0, 360.0, "th1 and th2 at the end");
   if (move.to_tip_m) {
@@ -113,17 +113,19 @@ void CheckMove(const Move& move, const std::string& row, ProblemList* list) {
 }
 
 void CheckChirp(const Chirp& chirp, const std::string& row, ProblemList* list) {
-  list->Positive(row + ".duration_s", chirp.duration_s, 3600.0, "how long the sweep takes");
-  list->Within(row + ".from_hz", chirp.from_hz, 0.0, 1000.0, "where the sweep begins");
-  list->Positive(row + ".to_hz", chirp.to_hz, 1000.0, "where the sweep ends");
+  list->Positive(row + ".duration_s", chirp.duration_s, 3600.0, "the duration of the sweep");
+  list->Within(row + ".from_hz", chirp.from_hz, 0.0, 1000.0, "the frequency at the start");
+  list->Positive(row + ".to_hz", chirp.to_hz, 1000.0, "the frequency at the end");
   list->EachWithin(row + ".amplitude_deg", chirp.amplitude_deg, -90.0, 90.0, "of th1 and th2");
 }
 
 void CheckPrbs(const Prbs& prbs, const std::string& row, ProblemList* list) {
-  list->Positive(row + ".hold_s", prbs.hold_s, 60.0, "how long the torque keeps its sign at least");
+  list->Positive(row + ".hold_s", prbs.hold_s, 60.0,
+                 "the shortest time of constant sign of the torque");
   list->Within(row + ".bits", prbs.bits, 2, kMostBits, "the sequence has 2^bits - 1 pulses");
   if (prbs.bits >= 2 && prbs.bits <= kMostBits) {
-    list->Within(row + ".seed", prbs.seed, 1, prbs.pulses(), "the first state of the register");
+    list->Within(row + ".seed", prbs.seed, 1, prbs.pulses(),
+                 "the initial state of the shift register");
   }
   list->EachWithin(row + ".torque_nm", prbs.torque_nm, -1000.0, 1000.0, "of joint 1 and 2");
 }
@@ -140,7 +142,7 @@ void CheckSimEvent(const Experiment& experiment, std::size_t i, ProblemList* lis
                 "must have exactly one of line (with level), freeze, kill = true, payload_kg");
   if (event.payload_kg) {
     list->Within(row + ".payload_kg", *event.payload_kg, 0.0, 100.0,
-                 "what the plant carries from then on");
+                 "the payload of the plant from then on");
   }
   list->Require(event.level == 0 || event.level == 1, row + ".level", NumberText(event.level),
                 "must be 0 (open) or 1 (closed)");
@@ -162,7 +164,7 @@ std::vector<Problem> Experiment::Problems() const {
                                      [](char c) { return static_cast<unsigned char>(c) >= 32; });
   list.Require(!name.empty() && name.size() <= 64 && printable, "name", name,
                "must be 1 to 64 printable characters: it names the run in the log");
-  list.Positive("duration_s", duration_s, 3600.0, "the run ends then");
+  list.Positive("duration_s", duration_s, 3600.0, "the duration of the run");
   CheckRows(doublet, "doublet", CheckDoublet, &list);
   CheckRows(move, "move", CheckMove, &list);
   CheckRows(chirp, "chirp", CheckChirp, &list);

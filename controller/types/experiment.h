@@ -16,7 +16,7 @@ namespace flexarm {
 
 enum class DoubletShape : std::uint8_t { kSquare, kSine };
 
-/// One torque doublet of zero area, [[doublet]]: it moves the joints and leaves them at rest.
+/// A torque doublet of zero area, [[doublet]]: displaces the joints and leaves them at rest.
 struct Doublet {
   double start_s;
   double duration_s;               ///< T: +a for T/2, -a for T/2
@@ -24,14 +24,14 @@ struct Doublet {
   std::array<double, 2> move_deg;  ///< of th1, th2 in the reference model
 };
 
-/// A smooth move of both joints to a set-point, [[move]]: at rest when it ends, and when it begins
-/// unless the move before it still lasts (PlannedMove).
+/// A smooth move of both joints to a target, [[move]]: at rest at its end, and at its start unless
+/// it retargets the move before it (PlannedMove).
 struct Move {
   double start_s;
-  std::optional<double> duration_s{};  ///< none: the shortest that the limits allow, see PlanMoves
-  std::array<double, 2> to_deg{};      ///< th1 and th2 at the end, whatever they were before
+  std::optional<double> duration_s{};  ///< none: the shortest within the limits, see PlanMoves
+  std::array<double, 2> to_deg{};      ///< th1 and th2 at the end, absolute
   std::optional<std::array<double, 2>> to_tip_m{};  ///< x, y of the tip instead, base frame
-  std::optional<ElbowSide> elbow{};                 ///< with to_tip_m, when both would do
+  std::optional<ElbowSide> elbow{};                 ///< with to_tip_m, if both sides are possible
   MoveProfile profile = MoveProfile::kQuintic;
 };
 
@@ -47,7 +47,7 @@ struct Chirp {
 /// A pseudo-random binary torque, [[prbs]]: from rest to rest at the same place.
 struct Prbs {
   double start_s;
-  double hold_s;                    ///< how long the torque keeps its sign at least
+  double hold_s;                    ///< shortest time of constant sign of the torque
   int bits;                         ///< of the shift register: 2^bits - 1 pulses
   int seed;                         ///< its start, 1 .. 2^bits - 1
   std::array<double, 2> torque_nm;  ///< amplitudes
@@ -73,28 +73,28 @@ struct CsvTrajectory {
 
 enum class FreezeTarget : std::uint8_t { kNone, kPlant, kControl };
 
-/// A thing that happens to the simulated rig, [[sim_event]]. Real backends refuse it.
+/// An event on the simulated rig, [[sim_event]]. Real backends reject it.
 struct SimEvent {
   double at_s;                         ///< after the start of the experiment
   std::optional<Line> line;            ///< with `level`
   int level;                           ///< 0 or 1, as in LineLevels
   FreezeTarget freeze;                 ///< that task stops running
   bool kill;                           ///< the process kills itself with SIGKILL
-  std::optional<double> payload_kg{};  ///< the plant carries this from then on
+  std::optional<double> payload_kg{};  ///< payload of the plant from then on
 };
 
-/// When a row acts: doublet, move, chirp, prbs or csv. A move that the next one takes over acts
-/// until that begins, whatever its duration.
+/// Duration of a row: doublet, move, chirp, prbs or csv. A move that the next one retargets lasts
+/// until that one begins.
 struct Motion {
   std::string row;  ///< its name in messages: "move[2]"
   double start_s;
   double duration_s;  ///< 0 for a move whose duration is not chosen yet
 };
 
-/// What one run does, config/experiments/*.toml.
+/// An experiment: what one run does, config/experiments/*.toml.
 struct Experiment {
   std::string name;
-  std::string text;  ///< the file as it was read, and what was attached to it: for the log
+  std::string text;  ///< the file as read, with appended text: for the log
   double duration_s;
   std::vector<Doublet> doublet;  ///< the rows of a kind in order of time; only moves overlap
   std::vector<SimEvent> sim_event;

@@ -3,7 +3,7 @@
 namespace flexarm {
 namespace {
 
-// Frames further apart than this have nothing to say together; well within what an offset holds.
+// Frames further apart than this are not merged; an offset can represent more.
 constexpr std::int64_t kJoinableNs = 1'000'000'000;
 
 template <typename Raw, std::size_t N>
@@ -30,7 +30,7 @@ void Join(const FramePacket& part, FramePacket* packet) noexcept {
   }
   packet->gate_reasons |= part.gate_reasons;
   const std::int64_t apart_ns = part.frame.sampled_at_ns - frame.sampled_at_ns;
-  if (apart_ns > kJoinableNs) frame = part.frame;  // the other bus has long been silent
+  if (apart_ns > kJoinableNs) frame = part.frame;  // the other bus has been silent for too long
   if (apart_ns > kJoinableNs || apart_ns < -kJoinableNs) return;
   const auto shift_ns = static_cast<std::int32_t>(apart_ns);
   JoinReadings(part.frame.counter, part.frame.counter_offset_ns, part.frame.counter_valid, shift_ns,

@@ -9,16 +9,16 @@
 
 namespace flexarm {
 
-/// What a plan asks for at one sample: u = torque + K (x - x_plan).
+/// Entry of a plan for one sample, an affine feedback: u = torque + K (x - x_plan).
 struct PlanEntry {
   Eigen::Matrix<double, 12, 1> x;  ///< [q; q'] of RigidJointArm, rad and m, and per second
-  Eigen::Vector2d torque_nm;       ///< held from this sample to the next, without friction
-  Eigen::Matrix<double, 2, 12> K;  ///< N m for a deviation from x
+  Eigen::Vector2d torque_nm;       ///< held for one period, without friction compensation
+  Eigen::Matrix<double, 2, 12> K;  ///< feedback gain: N m per deviation from x
 };
 
-/// A motion of the arm with the torque that makes it, sample by sample.
+/// Planned trajectory: states, torques and feedback gains, sample by sample.
 ///
-/// Plain bytes, so that one thread can hand it to another; 150 kB, so keep it off the stacks.
+/// Trivially copyable, to pass it between threads; 150 kB, so keep it off the stacks.
 /// Real-time: safe.
 class HorizonPlan {
  public:
@@ -31,7 +31,7 @@ class HorizonPlan {
     size_ = 0;
   }
 
-  /// The entry of the next sample; a full plan takes none.
+  /// Appends the entry of the next sample; no effect if the plan is full.
   void Append(const PlanEntry& entry) noexcept {
     if (size_ == kMaxStages) return;
     Row& row = rows_[size_++];
@@ -42,9 +42,11 @@ class HorizonPlan {
 
   std::int64_t first_tick() const noexcept { return first_tick_; }
   std::size_t size() const noexcept { return size_; }
-  double payload_kg() const noexcept { return payload_kg_; }  ///< that it was made for
+  double payload_kg() const noexcept {
+    return payload_kg_;
+  }  ///< payload of the model that it was planned with
 
-  /// The entry of a sample; nothing before and after the plan.
+  /// The entry of a sample; nothing before or after the plan.
   std::optional<PlanEntry> At(std::int64_t tick) const noexcept {
     if (tick < first_tick_ || tick - first_tick_ >= static_cast<std::int64_t>(size_)) return {};
     const Row& row = rows_[static_cast<std::size_t>(tick - first_tick_)];
@@ -66,6 +68,6 @@ class HorizonPlan {
   std::array<Row, kMaxStages> rows_{};
 };
 
-static_assert(std::is_trivially_copyable_v<HorizonPlan>, "handed from thread to thread");
+static_assert(std::is_trivially_copyable_v<HorizonPlan>, "passed between threads");
 
 }  // namespace flexarm

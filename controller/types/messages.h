@@ -10,37 +10,37 @@
 #include "controller/types/trip_cause.h"
 #include "hal/bus_fault.h"
 
-// What the tasks tell each other. Every value is stamped with the instant from which it holds
-// (History), so that who sees what depends on the time grid and not on the scheduler.
+// Messages between tasks. Every value is stamped with the instant from which it is valid (History),
+// so that the values read depend on the time grid and not on the scheduler.
 
 namespace flexarm {
 
-/// The values that caused a trip.
+/// Evidence: the values that caused a trip.
 struct Evidence {
-  double value;           ///< what was measured
-  double limit;           ///< what it broke
+  double value;           ///< measured value
+  double limit;           ///< limit that it exceeded
   std::uint32_t channel;  ///< joint, counter, strain row or bus, 1-based; 0: none
   std::uint32_t detail;   ///< of a bus: its BusFault, as bits; else 0
 };
 
-/// Control task -> drive. Holds from the instant at which it shall act.
+/// Control task -> drive. Valid from the instant at which it acts.
 struct TorqueCommand {
   std::array<double, 2> torque_nm;
   std::int64_t tick;
 };
 
-/// Safety task -> drive, control, operator: what is allowed, renewed every safety tick.
+/// Safety task -> drive, control, operator: permission, renewed every safety tick.
 struct Permit {
   SafetyState state;
   TripCause cause;                ///< latched while Tripped
   std::int64_t renewed_ns;        ///< safety tick that wrote it
   std::int64_t running_since_ns;  ///< instant of the last change to Running; INT64_MIN: never
   Evidence evidence;              ///< of `cause`
-  LineLevels levels;              ///< digital inputs, as that tick read them
+  LineLevels levels;              ///< digital inputs as read in that tick
 };
 
-/// Control task -> safety: its heartbeat, and what only the loop can see. Holds from the deadline
-/// of the step on.
+/// Control task -> safety: heartbeat, and facts that only the loop can detect. Valid from the
+/// deadline of the step on.
 struct ControlReport {
   std::int64_t tick;    ///< -1: none yet
   std::int64_t due_ns;  ///< when that step was due
@@ -51,48 +51,48 @@ struct ControlReport {
   int missed_in_a_row;
 };
 
-/// Drive side (plant task, or the buses) -> safety and control: its heartbeat, and what it did.
+/// Drive side (plant task, or the buses) -> safety and control: heartbeat and status.
 struct DriveReport {
   std::int64_t due_ns;  ///< of its last run
   bool bus_ok;
   bool drive_ok;
-  BusFault fault{};                    ///< of the last exchange; none if it went well
-  std::uint32_t failed = 0;            ///< exchanges that failed, and attempts to reconnect
-  std::uint32_t recovered = 0;         ///< how often the bus was lost and came back
-  LineLevels levels = kHealthyLevels;  ///< as the buses read them last; healthy where they do not
+  BusFault fault{};                    ///< of the last exchange; none if it succeeded
+  std::uint32_t failed = 0;            ///< failed exchanges and attempts to reconnect
+  std::uint32_t recovered = 0;         ///< recoveries of a lost bus
+  LineLevels levels = kHealthyLevels;  ///< last read by the buses; healthy for other lines
 };
 
 enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };
 
-/// Operator -> safety. `not_before_ns` lets an unattended run plan its requests on the time grid.
+/// Operator -> safety. `not_before_ns` lets an unattended run schedule its requests on the grid.
 struct OperatorRequest {
   RequestKind kind;
   std::uint32_t number;  ///< echoed in the answer
   std::int64_t not_before_ns;
-  LineLevels may_open = 0;  ///< of a homing run: the limit switch that it looks for
+  LineLevels may_open = 0;  ///< of a homing run: the limit switch that it searches for
 };
 
 enum class Refusal : std::uint8_t {
   kNone,          ///< accepted
   kWrongState,    ///< the state does not allow it
-  kNotAtRest,     ///< the arm moves
+  kNotAtRest,     ///< the arm is moving
   kCauseRemains,  ///< the trip's cause is still there
   kNoReset,       ///< the physical reset button has not been pressed since the trip
   kUnhealthy,     ///< a fact that would trip is present, or a task has not reported yet
-  kCancelled,     ///< a planned arm or run, overtaken by a stop, a disarm or a trip
+  kCancelled,     ///< a planned arm or run, cancelled by a stop, a disarm or a trip
 };
 
-/// Safety -> operator: what became of a request.
+/// Safety -> operator: answer to a request.
 struct RequestAnswer {
   std::uint32_t number;
   RequestKind kind;
   Refusal refusal;
-  SafetyState state;   ///< when it was judged
+  SafetyState state;   ///< when the request was judged
   TripCauses present;  ///< causes present then
 };
 
-/// How the messages travel: one channel a reader, with as many entries as the slowest reader that
-/// meets its deadline may be late.
+/// Channels of the messages: one channel per reader, with enough entries for the slowest reader
+/// that meets its deadline.
 using PermitHistory = History<Permit, 24>;
 using ControlReportHistory = History<ControlReport, 4>;
 using DriveReportHistory = History<DriveReport, 4>;
@@ -100,7 +100,7 @@ using PermitChannel = LatestValue<PermitHistory>;
 using ControlReportChannel = LatestValue<ControlReportHistory>;
 using DriveReportChannel = LatestValue<DriveReportHistory>;
 
-/// What the channels hold before the first message.
+/// Values of the channels before the first message.
 inline constexpr Permit kNoPermit{.state = SafetyState::kStarting,
                                   .cause = TripCause::kNone,
                                   .renewed_ns = INT64_MIN,

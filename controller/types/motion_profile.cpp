@@ -25,7 +25,7 @@ ProfilePoint Septic(double x) noexcept {
 ProfilePoint ProfileAt(MoveProfile profile, double x) noexcept {
   const double within = std::clamp(x, 0.0, 1.0);
   ProfilePoint point = profile == MoveProfile::kSeptic ? Septic(within) : Quintic(within);
-  if (x != within) point.ddds = 0.0;  // of a quintic it does not end at 0
+  if (x != within) point.ddds = 0.0;  // the jerk of a quintic is not 0 at its ends
   return point;
 }
 

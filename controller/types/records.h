@@ -14,7 +14,7 @@ struct TruthRecord {
   PlantTruth truth;
 };
 
-/// One sample as the control task hands it to the recorder.
+/// Record of one sample, from the control task to the recorder.
 struct TickRecord {
   StepInput input;
   StepOutput output;
@@ -23,30 +23,30 @@ struct TickRecord {
   PlantTruth truth;  ///< of the simulated stack: the recorder adds it
 };
 
-/// Something that happened: a trip, a refusal, an operator's command, a gap in the log.
+/// Event: a trip, a refusal, a command of the operator, a gap in the log.
 struct RunEvent {
   std::int64_t time_ns = 0;  ///< in the clock of the loop
   std::string kind;          ///< "command", "refusal", "trip", "gap", "experiment", ...
   std::string name;          ///< short machine name within the kind
-  std::string text;          ///< for people
+  std::string text;          ///< for the operator
   std::string value_json;    ///< one JSON object, or empty
 };
 
-/// What a run was made with: everything that replay needs besides the records.
+/// Metadata of a run: everything that replay needs besides the records.
 struct RunInfo {
   std::string start_utc;      ///< ISO 8601, set by the writer if empty
   std::int64_t start_ns = 0;  ///< time 0 of the log, in the clock of the loop
-  std::string version;        ///< of the program, and
-  std::string build_id;       ///< its build: set by the writer if empty
+  std::string version;        ///< version of the program
+  std::string build_id;       ///< build of the program; set by the writer if empty
   std::string rig_name;
   std::string clock;  ///< "monotonic" or "simulated"
   std::string backend;
   std::uint64_t seed = 0;
-  std::string config_text;      ///< whole
-  std::string experiment_name;  ///< empty: none was run
+  std::string config_text;      ///< complete
+  std::string experiment_name;  ///< empty: no experiment was run
   std::string experiment_text;
   std::string gains_json;   ///< full precision
-  std::string result_json;  ///< empty until the run was closed
+  std::string result_json;  ///< empty until the run is closed
 };
 
 }  // namespace flexarm

@@ -4,8 +4,8 @@
 
 namespace flexarm {
 
-/// What was asked for cannot be done with this rig: gains that do not fit, a design that fails its
-/// checks, an experiment beyond the limits. what() says why and what was expected. Tools end with
+/// A request that this rig cannot carry out: gains that do not fit, a design that fails its checks,
+/// an experiment beyond the limits. what() gives the reason and what was expected. Tools end with
 /// exit code 2.
 class RejectedError : public std::runtime_error {
  public:

@@ -11,14 +11,14 @@
 
 namespace flexarm {
 
-/// A rig: everything that one config file says. Each struct belongs to the folder that uses it and
-/// owns its rules.
+/// Configuration of a rig: the contents of one config file. Each struct belongs to the folder that
+/// uses it and checks its own rules.
 struct RigConfig : ControlConfig {
   SimConfig sim;
   HalConfig hal;
   CommissioningConfig commissioning;
   DaemonConfig daemon;
-  std::optional<CsvImport> csv;  ///< table [csv]: how to read what another recorder wrote
+  std::optional<CsvImport> csv;  ///< table [csv]: how to read CSV files of another recorder
   std::string rig_name;          ///< key rig.name
   std::string backend;           ///< key hal.backend: "sim", "wired", or "" when there is no [hal]
   /// The merged, overridden file as TOML: reading it again gives the same RigConfig. Logged.

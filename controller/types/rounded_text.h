@@ -6,8 +6,8 @@
 
 namespace flexarm {
 
-/// A number for a message, rounded: "1.37", "1.9e+03". Allocates: start-up only.
-/// @param digits  that count, or with `fixed` those behind the point
+/// Formats a number for a message, rounded: "1.37", "1.9e+03". Allocates: start-up only.
+/// @param digits  significant digits, or with `fixed` digits after the decimal point
 inline std::string RoundedText(double value, int digits, bool fixed = false) {
   std::array<char, 64> text{};
   const auto format = fixed ? std::chars_format::fixed : std::chars_format::general;

@@ -8,17 +8,19 @@ namespace flexarm {
 
 std::vector<Problem> LoopConfig::Problems() const {
   ProblemList list("loop.");
-  list.Within("period_ms", period_ms, 5.0, 100.0,
-              "a slower grid cannot see the arm bend at 9 Hz, the buses do not serve a faster one");
+  list.Within(
+      "period_ms", period_ms, 5.0, 100.0,
+      "a slower grid undersamples the bending at 9 Hz, the buses are too slow for a faster one");
   list.Within("acquire_before_ms", acquire_before_ms, 0.0, 100.0,
-              "the time that the buses need to bring a frame");
+              "the time that the buses need to deliver a frame");
   list.Positive("step_deadline_ms", step_deadline_ms, 100.0,
-                "a command later than this after its release missed its deadline");
+                "a command later than this after its due instant misses its deadline");
   list.Within("output_after_ms", output_after_ms, 0.0, 100.0,
-              "when a torque that is put out at once leaves for the drives");
+              "from the sampling instant to the output of a torque, with output = \"at_once\"");
   list.Within("actuation_delay_ms", actuation_delay_ms, 0.0, 200.0,
-              "what bus and drive need from the output to the torque");
-  if (!list.empty()) return list.Take();  // rules between values need sound values
+              "the delay of bus and drive from the output to the torque");
+  if (!list.empty())
+    return list.Take();  // the rules between values assume that each value is valid
   list.Require(acquire_before_ms + step_deadline_ms < period_ms, "step_deadline_ms",
                NumberText(step_deadline_ms),
                "must leave acquire_before_ms + step_deadline_ms below period_ms: " +
@@ -30,15 +32,15 @@ std::vector<Problem> LoopConfig::Problems() const {
       "output_after_ms", NumberText(output_after_ms),
       "must lie in acquire_before_ms + step_deadline_ms .. period_ms = " +
           NumberText(acquire_before_ms + step_deadline_ms) + " .. " + NumberText(period_ms) +
-          ": a step has its deadline, then its torque is put out");
+          ": a torque is output after the deadline of its step");
   list.Require(actuation_delay_ms <= 2.0 * period_ms, "actuation_delay_ms",
                NumberText(actuation_delay_ms),
-               "must be at most two periods of the loop: the prediction remembers no further");
+               "must be at most two periods of the loop: the prediction stores no older torques");
   return list.Take();
 }
 
 std::vector<Problem> DaemonConfig::Problems() const {
-  constexpr std::size_t kLongestSocket = 107;  // sockaddr_un::sun_path less its final zero
+  constexpr std::size_t kLongestSocket = 107;  // sockaddr_un::sun_path without its terminating zero
   ProblemList list("");
   list.Require(!socket.empty() && socket.size() <= kLongestSocket, "daemon.socket", socket,
                "must be a path of 1 to 107 bytes: a Unix socket's address holds no more");

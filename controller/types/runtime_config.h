@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// When a torque leaves for the drives.
+/// Instant at which a torque is output to the drives.
 enum class OutputTiming : std::uint8_t {
   kNextTick,  ///< "next_tick": at the next sampling instant, with the exchange of the buses
   kAtOnce,    ///< "at_once": output_after_ms after the sampling instant that it was computed from
@@ -18,11 +18,11 @@ enum class OutputTiming : std::uint8_t {
 /// Section [loop]: timing of the control grid.
 struct LoopConfig {
   double period_ms;          ///< Ts; sampling instants are at k Ts
-  double acquire_before_ms;  ///< the control task runs this long after the sampling instant's grid
-  double
-      step_deadline_ms;  ///< a Step published later than this after its release missed its deadline
+  double acquire_before_ms;  ///< a control step is due this long after its sampling instant
+  double step_deadline_ms;   ///< a step published later than this after its due instant misses its
+                             ///< deadline
   OutputTiming output;
-  double output_after_ms;     ///< of kAtOnce; not before a Step is due and its deadline over
+  double output_after_ms;     ///< of kAtOnce; not before the deadline of the step
   double actuation_delay_ms;  ///< known latency of drive and bus, from output to torque
 
   double period_s() const { return period_ms * 1e-3; }

@@ -10,15 +10,15 @@ namespace {
 
 void CheckLimits(const SafetyConfig& c, ProblemList* list) {
   list->EachPositive("limits.torque_limit_nm", c.torque_limit_nm, 1000.0,
-                     "the gate clips at +-this, at the gearbox output");
+                     "the torque gate limits to +-this, at the gearbox output");
   list->EachPositive("limits.slew_limit_nm_per_s", c.slew_limit_nm_per_s, 1e6,
-                     "the gate lets the torque change no faster");
+                     "the torque gate limits the rate of change to this");
   list->EachPositive("limits.soft_angle_deg", c.soft_angle_deg, 360.0,
                      "a hub angle beyond +-this trips");
   list->EachPositive("limits.hub_rate_rad_s", c.hub_rate_rad_s, 100.0,
                      "an estimated hub rate beyond this trips");
   list->EachPositive("limits.strain_limit", c.strain_limit, 0.01,
-                     "unit strain; no metal link survives 1 %");
+                     "unit strain; a metal link fails below 1 %");
   list->Positive("limits.plan_fraction", c.plan_fraction, 1.0,
                  "a move without duration_s is planned within this share of every limit");
 }
@@ -29,7 +29,7 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
   list->Positive("safety.rest_strain_rate_per_s", c.rest_strain_rate_per_s, 1.0,
                  "at rest both root strain rates are below this");
   list->Within("safety.rest_time_s", c.rest_time_s, 0.05, 10.0,
-               "how long the arm must be still; a swing pauses at its turning point");
+               "the duration of rest; an oscillation is slow at its turning points");
   list->Within("safety.stop_timeout_s", c.stop_timeout_s, 0.1, 60.0,
                "Stopping for longer than this trips");
   list->Within("safety.permit_timeout_ms", c.permit_timeout_ms, 2.0, 20.0,
@@ -37,7 +37,7 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
   list->Within("safety.missed_deadlines_to_trip", c.missed_deadlines_to_trip, 1, 10,
                "consecutive deadlines of the control task");
   list->Within("safety.homing_contact_s", c.homing_contact_s, 0.1, 10.0,
-               "how long a homing run may stand on the switch that it looks for");
+               "how long homing may stay on the switch that it searches for");
 }
 
 }  // namespace
@@ -46,7 +46,8 @@ std::vector<Problem> SafetyConfig::Problems() const {
   ProblemList list("");
   CheckLimits(*this, &list);
   CheckSafety(*this, &list);
-  if (!list.empty()) return list.Take();  // rules between values need sound values
+  if (!list.empty())
+    return list.Take();  // the rules between values assume that each value is valid
   for (std::size_t i = 0; i < hub_rate_rad_s.size(); ++i) {
     list.Require(rest_hub_rate_rad_s < hub_rate_rad_s[i], "safety.rest_hub_rate_rad_s",
                  NumberText(rest_hub_rate_rad_s),

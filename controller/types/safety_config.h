@@ -15,15 +15,15 @@ struct SafetyConfig {
   std::array<double, 2> soft_angle_deg;  ///< |hub angle| beyond this trips
   std::array<double, 2> hub_rate_rad_s;  ///< |estimated hub rate| beyond this on two ticks trips
   std::array<double, 2> strain_limit;    ///< |fitted surface strain at the root| beyond this trips
-  double plan_fraction;  ///< share of each limit that a move of chosen duration may use, 0 to 1
+  double plan_fraction;  ///< share of each limit for a move without duration_s, 0 to 1
   // [safety]
   double rest_hub_rate_rad_s;     ///< at rest: both hub rates below this
   double rest_strain_rate_per_s;  ///< at rest: both root strain rates below this
-  double rest_time_s;             ///< for this long
+  double rest_time_s;             ///< for at least this long
   double stop_timeout_s;          ///< Stopping longer than this trips
   double permit_timeout_ms;       ///< a permit older than this means zero torque
   int missed_deadlines_to_trip;   ///< consecutive missed deadlines of the control task
-  double homing_contact_s;        ///< homing may stand on its switch this long, then it trips
+  double homing_contact_s;        ///< homing that stays longer on its switch trips
 
   std::vector<Problem> Problems() const;
 };

@@ -4,17 +4,17 @@
 
 namespace flexarm {
 
-/// States of the daemon's safety machine (docs/safety.md). The value is logged: never renumber.
+/// States of the safety state machine (docs/safety.md). The value is logged: never renumber.
 enum class SafetyState : std::uint8_t {
   kStarting = 0,  ///< until every task has reported once
   kIdle = 1,      ///< relay open
   kArmed = 2,     ///< relay closed, zero torque
   kRunning = 3,   ///< the experiment
-  kStopping = 4,  ///< the controller damps the arm
+  kStopping = 4,  ///< the controller damps the motion of the arm
   kTripped = 5,   ///< latched: relay open, zero torque
 };
 
-/// Torque may flow only in these states.
+/// Torque is allowed only in these states.
 constexpr bool TorqueAllowed(SafetyState state) noexcept {
   return state == SafetyState::kRunning || state == SafetyState::kStopping;
 }

@@ -14,47 +14,48 @@ namespace flexarm {
 inline constexpr int kMaxNominalStates = 16;  ///< R12 uses 12 of them: estimator/state_layout.h
 inline constexpr int kMaxFilterOutputs = 8;
 
-/// The reference model at one sample.
+/// State and command of the reference model at one sample.
 struct ReferenceSample {
   std::array<double, 2> u_m_nm;               ///< command torque u_m held from this sample on
   std::array<double, kMaxNominalStates> x_m;  ///< state of the reference model, SI, psi(L) = 1
 };
 
-/// What a plan asks for when the torque acts (horizon_plan.h): the motion, not the gains.
+/// A plan's state and torque at the instant at which the torque acts (horizon_plan.h), no gains.
 struct PlanSample {
   std::array<double, 12> x;         ///< [q; q'] of RigidJointArm, rad and m, and per second
-  std::array<double, 2> torque_nm;  ///< that makes it, without friction
+  std::array<double, 2> torque_nm;  ///< feedforward torque, without friction
 };
 
-/// What the torque follows while it is allowed. The value is logged: never renumber.
+/// Source of the torque while torque is allowed. The value is logged: never renumber.
 enum class LoopMode : std::uint8_t {
   kFollow = 0,    ///< the law follows the reference model; Stopping damps the arm
-  kOpenLoop = 1,  ///< reference_next.u_m, whatever the sensors say; Stopping: no torque
-  kRegulate = 2,  ///< a slow goal, reference_next.x_m, by the regulator that Stopping has
+  kOpenLoop = 1,  ///< reference_next.u_m without feedback; Stopping: no torque
+  kRegulate = 2,  ///< stop regulator towards the slow goal reference_next.x_m
 };
 
-/// Everything that one Step may depend on, beyond what it remembers since its Reset.
+/// All inputs of one control step: its output depends only on them and on its state since the last
+/// reset.
 ///
-/// Recorded whole before use; replay feeds the same bytes again. No padding.
+/// Recorded completely before use; replay uses the same bytes again. No padding.
 struct StepInput {
   std::int64_t tick;                 ///< k: the frame belongs to the sampling instant k Ts
-  std::int64_t now_ns;               ///< scheduled release of this step, in the clock of the loop
-  std::int64_t sampling_instant_ns;  ///< k Ts, in the same clock: when the frame should be from
+  std::int64_t now_ns;               ///< due instant of this step, in the clock of the loop
+  std::int64_t sampling_instant_ns;  ///< k Ts, in the same clock: nominal instant of the frame
   SensorFrame frame;
   std::array<double, 2> applied_torque_nm;  ///< after the gate: mean over [k-1, k] Ts
   std::int64_t acted_late_ns;  ///< torque k-1 began to act this long after k Ts, as far as is known
   std::int64_t acts_late_ns;   ///< torque k will act this long after (k+1) Ts; negative: before it
   ReferenceSample reference_now;   ///< at k Ts
-  ReferenceSample reference_next;  ///< when the torque computed now acts, as found
-  std::array<RigidPoint, 3> path;  ///< one period before that, then, and one after; of a path
-  PlanSample plan;                 ///< of the law `receding-horizon`, then; see `planned`
-  std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts known before a reset
-  Calibration calibration;                            ///< taken over at a reset
+  ReferenceSample reference_next;  ///< when the torque computed now acts, with the delay found
+  std::array<RigidPoint, 3> path;  ///< a period before that, at it, a period after; of a path
+  PlanSample plan;  ///< of the law `receding-horizon`, at that instant; see `planned`
+  std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts from before a reset
+  Calibration calibration;                            ///< adopted at a reset
   SafetyState safety_state;
-  std::uint8_t reset;  ///< 1: forget everything but counts_before (just armed, or calibrated)
+  std::uint8_t reset;  ///< 1: clear all state but counts_before (just armed, or calibrated)
   std::uint8_t reference_ended;  ///< 1: reference_next is the last sample of the experiment
   LoopMode mode;
-  std::uint8_t planned;  ///< 1: there is a plan; 0: the closed form takes its place
+  std::uint8_t planned;  ///< 1: `plan` is valid; 0: the law uses its closed form
   std::array<std::uint8_t, 3> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
@@ -63,7 +64,7 @@ static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 32 + 2 * sizeof(Re
                                        sizeof(std::int64_t) * kCounters + sizeof(Calibration) + 8,
               "no padding: the bytes are logged and compared");
 
-/// Why Step asked for less than the law computed. Bits of StepOutput::limits.
+/// Why the step limited the torque of the law. Bits of StepOutput::limits.
 enum LimitBit : std::uint32_t {
   kLimitTorque1 = 1,
   kLimitTorque2 = 2,
@@ -71,12 +72,12 @@ enum LimitBit : std::uint32_t {
   kPredictionOff = 8,
 };
 
-/// What one Step decided, and what it knew. No padding.
+/// Result of one control step, and the internal signals behind it. No padding.
 struct StepOutput {
   std::int64_t tick;
-  std::uint64_t faults;  ///< TripCauses that only the loop can see
+  std::uint64_t faults;  ///< TripCauses that only the loop can detect
   std::array<double, 2>
-      torque_nm;  ///< asked torque, to act acts_late after (k+1) Ts; 0 unless TorqueAllowed
+      torque_nm;  ///< requested torque, acts acts_late after (k+1) Ts; 0 unless TorqueAllowed
   std::array<double, kCounters> angle_rad;       ///< th1 th2 th3 th4 from the counters
   std::array<double, 4> modal_m;                 ///< fitted f11 f12 f21 f22
   std::array<double, kMaxNominalStates> x_hat;   ///< state at k Ts
@@ -86,11 +87,11 @@ struct StepOutput {
   std::array<double, 2> root_strain;   ///< fitted surface strain at the root of each link
   std::array<double, 2> fit_residual;  ///< rms of the strain fit, unit strain
   double adaptive_gain_change;         ///< Frobenius norm of K_I - K_I(0)
-  double lyapunov_nm2;                 ///< V of the law (tracking_law.h); NaN: it has none
-  std::array<double, 2> saturated_s;   ///< time at the torque limit since the reset, a joint
-  double payload_kg;                   ///< as found; this and the next four of `ekf-payload` only
+  double lyapunov_nm2;                 ///< V of the law (tracking_law.h); NaN: the law has none
+  std::array<double, 2> saturated_s;   ///< time at the torque limit since the reset, per joint
+  double payload_kg;                   ///< estimate; this and the next four only of `ekf-payload`
   double payload_sigma_kg;
-  std::array<double, 2> friction_nm;  ///< Coulomb levels as found
+  std::array<double, 2> friction_nm;  ///< estimated Coulomb friction
   double mean_nis;                    ///< normalised innovation squared, smoothed; 8 expected
   double fault_value;                 ///< of the lowest fault: the value that broke the limit,
   double fault_limit;                 ///< the limit,
@@ -103,7 +104,7 @@ struct StepOutput {
   std::uint8_t at_rest;  ///< hub and strain rates within their bounds for rest_time
   std::uint8_t experiment_done;    ///< the reference has ended
   std::uint32_t payload_warnings;  ///< PayloadWarningBit
-  std::int8_t delay_found;         ///< samples by which torques act later than known, as found
+  std::int8_t delay_found;         ///< samples by which torques act later than known, estimated
   std::array<std::uint8_t, 3> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);

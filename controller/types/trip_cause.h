@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-/// Why the arm was stopped. The numbers are logged and documented: never renumber.
+/// Causes of a trip. The numbers are logged and documented: never renumber.
 enum class TripCause : std::uint8_t {
   kNone = 0,
   kLimitSwitch1Low = 1,
@@ -45,7 +45,7 @@ constexpr TripCauses CauseBit(TripCause cause) noexcept {
 /// Short machine name, as in JSON and in the log: "limit-switch-1-low". "none" for kNone.
 const char* Name(TripCause cause) noexcept;
 
-/// What an operator should know and do, one sentence or two.
+/// Text for the operator: what happened, what it means, what to do.
 const char* OperatorText(TripCause cause) noexcept;
 
 }  // namespace flexarm

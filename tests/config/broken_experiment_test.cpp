@@ -284,7 +284,7 @@ const BrokenText kBroken[] = {
     {"UnknownFreeze", "freeze = \"control\"", "freeze = \"safety\"", "sim_event[1].freeze",
      "one of \"plant\" \"control\""},
     {"PayloadBelowNothing", "payload_kg = 0.25", "payload_kg = -0.1", "sim_event[3].payload_kg",
-     "0 .. 100: what the plant carries"},
+     "0 .. 100: the payload of the plant"},
     {"PayloadOfNoArm", "payload_kg = 0.25", "payload_kg = 101.0", "sim_event[3].payload_kg",
      "0 .. 100"},
     {"PayloadThatIsNoNumber", "payload_kg = 0.25", "payload_kg = nan", "sim_event[3].payload_kg",

@@ -26,7 +26,7 @@ PayloadFilter::Estimate Found(double payload_kg, double sigma_kg) {
   return found;
 }
 
-/// A path that moves for a sample and then rests, with this standard deviation at its end.
+/// One sample of motion, then rest, with this standard deviation at the end of the motion.
 std::uint32_t DoubtsAfterAMove(double sigma_kg, PayloadMonitor* supervisor) {
   supervisor->Judge(Found(0.3, kMoveSigma_kg), kRightNis, true);
   return supervisor->Judge(Found(0.3, sigma_kg), kRightNis, false).warnings;

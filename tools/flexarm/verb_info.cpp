@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "controller/safety/safety_machine.h"
+#include "controller/safety/torque_gate.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
@@ -61,6 +62,19 @@ OrderedJson DelayJson(const LoadedRun& run) {
   return 1e3 * run.period_s() + 1e-6 * static_cast<double>(latest->input.acted_late_ns);
 }
 
+// Samples of state Running before which the gate changed the torque, by reason.
+OrderedJson GateJson(const std::vector<TickRecord>& ticks) {
+  OrderedJson json = OrderedJson::object();
+  for (const GateReason& reason : kGateReasons) {
+    const auto count = std::count_if(ticks.begin(), ticks.end(), [&](const TickRecord& record) {
+      return record.input.safety_state == SafetyState::kRunning &&
+             (record.gate_reasons & reason.bit) != 0;
+    });
+    if (count > 0) json[reason.name] = count;
+  }
+  return json;
+}
+
 OrderedJson Info(const LoadedRun& run) {
   const RunInfo& info = run.contents.info;
   const auto& ticks = run.contents.tick;
@@ -87,6 +101,7 @@ OrderedJson Info(const LoadedRun& run) {
                             ? OrderedJson(nullptr)
                             : OrderedJson(Name(run.contents.safety.back().after.state));
   json["trip"] = TripJson(run);
+  json["gate"] = GateJson(ticks);
   json["result"] = OrderedJson::parse(info.result_json, nullptr, false);
   if (json["result"].is_discarded()) json["result"] = nullptr;
   const std::optional<RunMetrics> metrics = MetricsOf(run);

@@ -51,7 +51,7 @@ LAYERS = {
     "config": "model hal hal/wired estimator controller/types controller/runlog",
     "tools/support": "controller/runlog",
     "tools/runs": "controller/runlog config",
-    "tools/plot": "model model/beam tools/runs",
+    "tools/plot": "model model/beam controller/safety tools/runs",
     "tools/command_line": "controller/types controller/runlog config",
     "tools/analysis": "model model/math model/beam model/beam_methods model/arm model/simulation "
                       "model/perturbation model/reduction controller/runlog config tools/support "

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "controller/safety/torque_gate.h"
 #include "model/beam/link_modes.h"
 #include "model/units.h"
 
@@ -29,6 +30,19 @@ std::int64_t TimeZero_ns(const LoadedRun& run) {
 
 std::array<double, 2> Scaled(double factor, double a, double b) { return {factor * a, factor * b}; }
 
+// Of a sample of state Running.
+std::array<double, 2> Gated(const TickRecord& record) {
+  std::array<double, 2> gated_nm = record.input.applied_torque_nm;
+  constexpr std::array<std::uint32_t, 2> kOfJoint = {kGateZeroed | kGateTorque1 | kGateSlew1,
+                                                     kGateZeroed | kGateTorque2 | kGateSlew2};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!IsRunning(record) || (record.gate_reasons & kOfJoint[i]) == 0) {
+      gated_nm[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return gated_nm;
+}
+
 PlotRun::Sample SampleOf(const TickRecord& record, double time_s, bool truth,
                          const TipGeometry& geometry) {
   const auto& x = record.output.x_hat;
@@ -43,6 +57,7 @@ PlotRun::Sample SampleOf(const TickRecord& record, double time_s, bool truth,
           .applied_nm = record.input.applied_torque_nm,
           .deflection_mm = truth ? Scaled(1e3, plant.tip_deflection_m[0], plant.tip_deflection_m[1])
                                  : Scaled(1e3, deflection_m[0], deflection_m[1]),
+          .gated_nm = Gated(record),
           .from_rest_mm = std::numeric_limits<double>::quiet_NaN(),
           .tip_m = truth ? plant.tip_m : EstimatedTip(geometry, x)};
 }

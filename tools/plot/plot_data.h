@@ -16,6 +16,7 @@ struct PlotRun {
   struct Sample {
     double time_s;
     std::array<double, 2> reference_deg, angle_deg, asked_nm, applied_nm, deflection_mm;
+    std::array<double, 2> gated_nm;  ///< applied, where the gate changed it; NaN elsewhere
     double from_rest_mm;  ///< distance of the tip from its resting place; NaN without an experiment
     std::array<double, 2> tip_m;
   };

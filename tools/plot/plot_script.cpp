@@ -38,6 +38,7 @@ enum Column : int {
   kFromRest = 12,
   kTipX = 13,
   kTipY = 14,
+  kGated = 15,
 };
 
 class Script {
@@ -98,7 +99,8 @@ class Script {
              {s.reference_deg, s.angle_deg, s.asked_nm, s.applied_nm, s.deflection_mm}) {
           text_ << ' ' << pair[0] << ' ' << pair[1];
         }
-        text_ << ' ' << s.from_rest_mm << ' ' << s.tip_m[0] << ' ' << s.tip_m[1] << '\n';
+        text_ << ' ' << s.from_rest_mm << ' ' << s.tip_m[0] << ' ' << s.tip_m[1] << ' '
+              << s.gated_nm[0] << ' ' << s.gated_nm[1] << '\n';
       }
       text_ << "EOD\n$pose" << i << " << EOD\n";
       for (const PlotRun::Pose& pose : runs_[i].pose) {
@@ -158,10 +160,21 @@ class Script {
       curves.push_back(Curve(run, value + joint, NameOf(run, alone),
                              (torque ? "f" : "") + kind + "lc rgb '" + Colour(run) + "'"));
     }
+    if (torque && runs_.size() == 1 && IsGated(joint)) {
+      curves.push_back(Curve(0, kGated + joint, Quoted("changed by the gate"),
+                             "points pt 7 ps 0.4 lc rgb '#C03028'"));
+    }
     if (joint == 1 || torque) text_ << "set key top right\n";
     if (joint == 1 && runs_.size() > 1) text_ << "set key off\n";
     Plot(curves);
     text_ << "set key on top right\n";
+  }
+
+  bool IsGated(int joint) const {
+    const auto& samples = runs_[0].sample;
+    return std::any_of(samples.begin(), samples.end(), [joint](const PlotRun::Sample& sample) {
+      return !std::isnan(sample.gated_nm[static_cast<std::size_t>(joint)]);
+    });
   }
 
   void Deflections() {

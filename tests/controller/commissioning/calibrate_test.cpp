@@ -40,7 +40,7 @@ class CalibrateTest : public testing::Test {
   const RigConfig config_ = ShippedRig();
 };
 
-// The mean of 50 samples of one count of noise is good to 0.14 counts; four times that.
+// The mean of 50 samples with noise of one count is accurate to 0.14 counts; four times that.
 constexpr double kMeanTolerance_counts = 0.6;
 
 TEST_F(CalibrateTest, TareTakesTheMeanOfEveryChannelAsItsZero) {
@@ -53,7 +53,7 @@ TEST_F(CalibrateTest, TareTakesTheMeanOfEveryChannelAsItsZero) {
   }
 }
 
-TEST_F(CalibrateTest, TareNamesEveryChannelThatCannotBeRightAndNoOther) {
+TEST_F(CalibrateTest, TareNamesExactlyTheImplausibleChannels) {
   RestReadings readings = StillArm(config_.sensors, Flat(0.0));
   readings.strain_missing[2] = 3;
   readings.strain_sigma[7] = 40.0;    // a loose contact
@@ -61,7 +61,7 @@ TEST_F(CalibrateTest, TareNamesEveryChannelThatCannotBeRightAndNoOther) {
   const std::string told = MessageOf<RejectedError>([&] { Tare(config_.sensors, readings, {}); });
   EXPECT_THAT(told, HasSubstr("strain_1_03: 3 of 50 readings are missing"));
   EXPECT_THAT(told, HasSubstr("strain_1_08: varies by 40.0"));
-  EXPECT_THAT(told, HasSubstr("strain_2_06: stands 1900"));
+  EXPECT_THAT(told, HasSubstr("strain_2_06: is 1900"));
   EXPECT_THAT(told, Not(HasSubstr("strain_1_01")));
 }
 
@@ -83,7 +83,7 @@ TEST_F(CalibrateTest, ZeroRefusesAnEncoderThatMovesOrIsNotRead) {
   EXPECT_THAT(told, Not(HasSubstr("hub1")));
 }
 
-// The modes of the arm model solve the same beam another way: K phi = Q with a unit force at the
+// The modes of the arm model solve the same beam independently: K phi = Q with a unit force at the
 // tip, where every shape is 1. A concentrated force needs infinitely many modes; with six the
 // strain over the inner half of the link agrees to 3 %.
 TEST_F(CalibrateTest, StaticStrainAgreesWithTheModesOfTheArm) {
@@ -126,7 +126,7 @@ TEST_F(CalibrateTest, SeveralLoadsGiveTheGainsByLeastSquares) {
   EXPECT_EQ(found.strain_gain_error[12], 0.0f) << "link 2 was not loaded";
 }
 
-TEST_F(CalibrateTest, AGainThatCannotBeRightIsRefusedWithTheChannel) {
+TEST_F(CalibrateTest, AnImplausibleGainIsRefusedWithItsChannel) {
   const StaticLoad load{.link = 2, .force_n = 1.0, .at_m = 0.9};
   std::vector<double> counts = Loaded(load);
   counts[11] *= -1.0;
@@ -137,12 +137,12 @@ TEST_F(CalibrateTest, AGainThatCannotBeRightIsRefusedWithTheChannel) {
   EXPECT_THAT(told, Not(HasSubstr("strain_2_01")));
 }
 
-TEST_F(CalibrateTest, ALoadThatStrainsNothingIsRefused) {
+TEST_F(CalibrateTest, ALoadWithoutMeasurableStrainIsRefused) {
   GainCalibration gains(config_.arm, config_.sensors);
   const StaticLoad load{.link = 1, .force_n = 0.01, .at_m = 0.8};
   EXPECT_THAT(MessageOf<RejectedError>(
                   [&] { gains.Add(load, StillArm(config_.sensors, Loaded(load)), {}); }),
-              HasSubstr("use a larger one"));
+              HasSubstr("use a larger load"));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ RigConfig CommissionedRig(std::vector<std::string> overrides) {
   return ShippedRig(overrides);
 }
 
-// The operator's side of the stack, reduced to commissioning.
+// The stack with an operator who only sends commissioning commands.
 class Bench {
  public:
   explicit Bench(const std::vector<std::string>& overrides = {})
@@ -59,7 +59,7 @@ class Bench {
     Ask(RequestKind::kRun, motion.may_open);
   }
 
-  /// Begins the command and runs until its answer.
+  /// Starts the command and runs until its answer.
   Json Do(const Json& command, double within_s = 40.0) {
     Begin(command);
     const std::int64_t end_ns = now_ns_ + std::llround(within_s * 1e9);
@@ -104,13 +104,13 @@ class Bench {
   std::int64_t now_ns_ = 0;
 };
 
-// Switches within the travel of a search, and the soft limits within them.
+// Switches within the travel of a search, with the soft limits inside them.
 const std::vector<std::string> kNearSwitches = {
     "sim.switch_angle_deg=[25.0, 25.0]", "limits.soft_angle_deg=[20.0, 20.0]",
     "commissioning.switch_angle_deg=[-125.0, 25.0, -25.0, 25.0]",
     "commissioning.home_back_deg=10.0"};
 
-TEST(Commissioner, TareTakesAwayWhatTheAmplifiersAddAndKeepsIt) {
+TEST(Commissioner, TareRemovesAndSavesTheAmplifierOffsets) {
   Bench bench;
   const Json answer = bench.Do({{"command", "tare"}});
   EXPECT_TRUE(answer["ok"]) << answer;
@@ -119,7 +119,7 @@ TEST(Commissioner, TareTakesAwayWhatTheAmplifiersAddAndKeepsIt) {
   EXPECT_EQ(again.calibration(), bench.commissioner().calibration());
 }
 
-TEST(Commissioner, ZeroMakesTheAnglesWhatTheOperatorSays) {
+TEST(Commissioner, ZeroSetsTheAnglesOfTheCommand) {
   Bench bench;
   const Json answer = bench.Do({{"command", "zero"}, {"angle_deg", {10.0, -15.0}}});
   EXPECT_TRUE(answer["ok"]) << answer;
@@ -138,7 +138,7 @@ TEST(Commissioner, PluckProvesTheWiringAndEndsArmed) {
   EXPECT_EQ(bench.commissioner().WhyNoRun(), "");
 }
 
-TEST(Commissioner, HomeFindsTheSwitchAndWithItTheAngle) {
+TEST(Commissioner, HomingFindsTheSwitchAndTheAngle) {
   Bench bench(kNearSwitches);
   bench.Ask(RequestKind::kArm);
   const Json answer = bench.Do({{"command", "home"}, {"joint", 2}, {"side", "high"}});
@@ -146,11 +146,11 @@ TEST(Commissioner, HomeFindsTheSwitchAndWithItTheAngle) {
   EXPECT_EQ(bench.state(), SafetyState::kArmed);
   EXPECT_NEAR(answer["contact_before_deg"].get<double>(), 25.0, 0.5);
   EXPECT_NEAR(bench.truth_deg(1), 15.0, 2.0) << "back off the switch";
-  // What a sample at 5 deg/s and a count leave open.
+  // Tolerance: the motion in one sample at 5 deg/s, and one count.
   EXPECT_NEAR(bench.angle_deg(1), bench.truth_deg(1), 0.3);
 }
 
-TEST(Commissioner, HomeGivesTheAngleOfAnArmThatWasLost) {
+TEST(Commissioner, HomingFindsAnUnknownAngle) {
   std::vector<std::string> overrides = kNearSwitches;
   overrides.push_back("commissioning.angles_at_start=lost");
   Bench bench(overrides);
@@ -162,7 +162,7 @@ TEST(Commissioner, HomeGivesTheAngleOfAnArmThatWasLost) {
   EXPECT_THAT(bench.commissioner().WhyNoRun(), HasSubstr("angle of joint 2"));
 }
 
-TEST(Commissioner, HomeThatFindsNoSwitchSaysSo) {
+TEST(Commissioner, HomingReportsThatNoSwitchOpened) {
   Bench bench({"commissioning.home_travel_deg=5.0"});
   bench.Ask(RequestKind::kArm);
   const Json answer = bench.Do({{"command", "home"}, {"joint", 1}, {"side", "low"}});
@@ -172,7 +172,7 @@ TEST(Commissioner, HomeThatFindsNoSwitchSaysSo) {
   EXPECT_EQ(bench.commissioner().calibration(), Calibration{});
 }
 
-TEST(Commissioner, HomeOntoAnotherSwitchTrips) {
+TEST(Commissioner, HomingOntoAnotherSwitchTrips) {
   Bench bench(kNearSwitches);
   bench.Ask(RequestKind::kArm);
   bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
@@ -184,7 +184,7 @@ TEST(Commissioner, HomeOntoAnotherSwitchTrips) {
   EXPECT_EQ(bench.trip(), TripCause::kLimitSwitch2High);
 }
 
-TEST(Commissioner, HomeThatDoesNotComeOffItsSwitchTrips) {
+TEST(Commissioner, HomingThatStaysOnItsSwitchTrips) {
   Bench bench({"commissioning.home_back_deg=60.0", "safety.homing_contact_s=1.0"});
   bench.Ask(RequestKind::kArm);
   bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
@@ -197,7 +197,7 @@ TEST(Commissioner, HomeThatDoesNotComeOffItsSwitchTrips) {
   EXPECT_EQ(bench.trip(), TripCause::kLimitSwitch1Low);
 }
 
-TEST(Commissioner, RefusesWhatTheStateDoesNotAllow) {
+TEST(Commissioner, RefusesCommandsThatTheStateForbids) {
   Bench bench;
   Commissioner& commissioner = bench.commissioner();
   const auto told = [&](const Json& command) {
@@ -207,11 +207,11 @@ TEST(Commissioner, RefusesWhatTheStateDoesNotAllow) {
   EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "low"}}), HasSubstr("flexarm arm"));
   bench.Ask(RequestKind::kArm);
   for (const char* name : {"tare", "zero"}) {
-    EXPECT_THAT(told({{"command", name}}), HasSubstr("needs the arm in Idle")) << name;
+    EXPECT_THAT(told({{"command", name}}), HasSubstr("needs the state Idle")) << name;
   }
 }
 
-TEST(Commissioner, RefusesWhatMakesNoSense) {
+TEST(Commissioner, RefusesInvalidArguments) {
   Bench bench;
   const auto told = [&](const Json& command) {
     return MessageOf<RejectedError>(
@@ -225,7 +225,7 @@ TEST(Commissioner, RefusesWhatMakesNoSense) {
   EXPECT_THAT(told({{"command", "zero"}, {"angle_deg", {1}}}), HasSubstr("two numbers"));
 }
 
-TEST(Commissioner, DoesOneThingAtATime) {
+TEST(Commissioner, RefusesASecondCommandWhileBusy) {
   Bench bench;
   bench.commissioner().Start({{"command", "tare"}}, bench.state());
   EXPECT_THAT(MessageOf<RejectedError>([&] {
@@ -234,7 +234,7 @@ TEST(Commissioner, DoesOneThingAtATime) {
               HasSubstr("busy with tare"));
 }
 
-TEST(Commissioner, HomingNeedsProvenWires) {
+TEST(Commissioner, HomingNeedsAPassedPluckTest) {
   Bench bench({"commissioning.prove_before_run=true"});
   bench.Ask(RequestKind::kArm);
   EXPECT_THAT(MessageOf<RejectedError>([&] {

@@ -1,4 +1,4 @@
-// The pluck test on the simulated arm: right wires pass, wrong ones are named.
+// The pluck test on the simulated arm: correct wiring passes, each wiring fault is named.
 
 #include "controller/commissioning/pluck.h"
 
@@ -26,7 +26,7 @@ PluckVerdict Judged(const Miswiring& wrong = {}, const RigConfig& config = Shipp
   return JudgePluck(config, PluckedRun(wrong, config));
 }
 
-TEST(PluckTorques, PulsesHaveNoAreaAndTheJointsTakeTurns) {
+TEST(PluckTorques, PulsesHaveZeroAreaAndActOnOneJointAtATime) {
   const RigConfig config = ShippedRig();
   std::array<double, 2> area{}, largest{};
   for (const std::array<double, 2>& torque : PluckTorques(config.commissioning, 0.02)) {
@@ -40,16 +40,16 @@ TEST(PluckTorques, PulsesHaveNoAreaAndTheJointsTakeTurns) {
   EXPECT_EQ(largest, config.commissioning.pluck_torque_nm);
 }
 
-TEST(Pluck, ARigThatIsWiredAsItsConfigSaysPasses) {
+TEST(Pluck, ARigWiredAsConfiguredPasses) {
   const PluckVerdict verdict = Judged();
   EXPECT_TRUE(verdict.passed()) << Told(verdict);
   EXPECT_EQ(verdict.answer.size(), 2u + 4u + 20u);
   for (const PluckAnswer& a : verdict.answer) EXPECT_TRUE(a.provable) << a.channel;
 }
 
-// The model of the test knows neither payload nor friction exactly: what it says must not hang on
-// them.
-TEST(Pluck, PayloadAndFrictionThatTheConfigDoesNotKnowPass) {
+// The model of the test has neither the true payload nor the true friction: the result must not
+// depend on them.
+TEST(Pluck, PassesWithOtherPayloadAndFrictionThanConfigured) {
   const auto real = [](double payload_kg, double friction) {
     return Miswiring{.real = [=](RigConfig& c) {
       c.arm.payload_mass_kg = payload_kg;
@@ -103,7 +103,7 @@ TEST_P(WrongWireTest, IsNamed) {
   EXPECT_FALSE(verdict.passed());
   EXPECT_THAT(Told(verdict),
               HasSubstr(std::string(GetParam().channel) + ": " + GetParam().problem));
-  // Nobody innocent is named: one line, or one for each of two that are exchanged.
+  // No other channel is named: one line, or one for each of two exchanged channels.
   EXPECT_LE(verdict.finding.size(), 2u) << Told(verdict);
 }
 
@@ -142,11 +142,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongWire{"HubInverted",
                   {.frame = [](SensorFrame& f) { f.counter[1] = Negated(f.counter[1], 8); }},
                   "hub2",
-                  "counts the wrong way"},
+                  "counts in the wrong direction"},
         WrongWire{"RotorInverted",
                   {.frame = [](SensorFrame& f) { f.counter[2] = Negated(f.counter[2], 8); }},
                   "rotor1",
-                  "counts the wrong way"},
+                  "counts in the wrong direction"},
         WrongWire{"HubsExchanged",
                   {.frame = [](SensorFrame& f) { std::swap(f.counter[0], f.counter[1]); }},
                   "hub1",
@@ -158,11 +158,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongWire{"DriveInverted", Torque([](const std::array<double, 2>& u) {
                     return std::array<double, 2>{u[0], -u[1]};
                   }),
-                  "drive2", "pushes the wrong way"},
+                  "drive2", "moves the joint in the wrong direction"},
         WrongWire{"DriveWithoutPower", Torque([](const std::array<double, 2>& u) {
                     return std::array<double, 2>{0.0, u[1]};
                   }),
-                  "drive1", "nothing moves"},
+                  "drive1", "does not move the joint"},
         WrongWire{"DriveTooStrong", Torque([](const std::array<double, 2>& u) {
                     return std::array<double, 2>{2.0 * u[0], u[1]};
                   }),
@@ -173,18 +173,18 @@ INSTANTIATE_TEST_SUITE_P(
                   "drive1, drive2", "are exchanged"}),
     [](const auto& param) { return param.param.name; });
 
-// A fault of the loop ends the test early: what was not plucked is said, and is not passed.
+// A fault of the loop ends the test early: an untested drive is reported, and the test has failed.
 TEST(Pluck, ATestThatEndsEarlyIsNotPassed) {
   const RigConfig config = ShippedRig();
   std::vector<TickRecord> run = PluckedRun({}, config);
   run.resize(40);
   const PluckVerdict verdict = JudgePluck(config, run);
-  EXPECT_THAT(Told(verdict), HasSubstr("drive2: was not plucked"));
+  EXPECT_THAT(Told(verdict), HasSubstr("drive2: was not tested"));
   EXPECT_FALSE(JudgePluck(config, {}).passed());
 }
 
-// An arm of one strain channel a link and no rotor encoders is as good as another.
-TEST(Pluck, ARigWithFewSensorsPassesAndIsJudged) {
+// The test also works with one strain channel per link and without rotor encoders.
+TEST(Pluck, ARigWithFewSensorsPassesAndItsFaultsAreFound) {
   RigConfig config = ShippedRig();
   config.sensors.encoder.resize(2);
   config.sensors.strain = {config.sensors.strain[0], config.sensors.strain[10]};

@@ -12,17 +12,17 @@
 
 namespace flexarm {
 
-/// How a rig is wired, where that differs from what its config says.
+/// A rig whose wiring or arm differs from its config.
 struct Miswiring {
-  std::function<void(RigConfig&)> real = [](RigConfig&) {
-  };  ///< what the sensors and the arm really are
-  std::function<void(SensorFrame&)> frame = [](SensorFrame&) {};  ///< what arrives of a frame
+  std::function<void(RigConfig&)> real = [](RigConfig&) {};  ///< the actual sensors and arm
+  std::function<void(SensorFrame&)> frame = [](SensorFrame&) {
+  };  ///< changes each frame before the loop gets it
   std::function<std::array<double, 2>(const std::array<double, 2>&)> torque =
-      [](const std::array<double, 2>& t) { return t; };  ///< what the joints get
+      [](const std::array<double, 2>& t) { return t; };  ///< torques at the joints
 };
 
-/// The pluck test on the simulated arm behind wrong wires: the real step, sample by sample, until
-/// its end or the first fault.
+/// The pluck test on the simulated arm with a wiring fault: the real control step, sample by
+/// sample, until its end or the first fault.
 inline std::vector<TickRecord> PluckedRun(const Miswiring& wrong, const RigConfig& config) {
   RigConfig real = config;
   wrong.real(real);

@@ -9,7 +9,7 @@
 
 namespace flexarm {
 
-/// One second of a still arm: every strain channel reads `counts` with the noise of the config,
+/// One second of an arm at rest: every strain channel reads `counts` with the noise of the config,
 /// every counter its entry of `counters`.
 inline RestReadings StillArm(const SensorConfig& sensors, const std::vector<double>& counts,
                              const std::array<std::int64_t, kCounters>& counters = {}) {

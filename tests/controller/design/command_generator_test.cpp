@@ -35,8 +35,8 @@ class CommandGeneratorTest : public testing::Test {
                                  .scale = Scale()};
 };
 
-// golden.json solved the same equations another way (Kronecker products). Bars: 1e-8 for what maps
-// states, 1e-6 for what maps to torques.
+// golden.json has a solution of the same equations by Kronecker products. Tolerances: 1e-8 for
+// matrices that give states, 1e-6 for those that give torques.
 TEST_F(CommandGeneratorTest, OnTheGoldenModelsGivesTheGoldenSolution) {
   const CommandGenerator generator = SolveCommandGenerator(problem_);
   EXPECT_LT(RelativeError(generator.S11, Golden("R12_S11")), 1e-8);
@@ -61,7 +61,7 @@ TEST_F(CommandGeneratorTest, SolvesItsFourEquations) {
   EXPECT_LT(TrackingResidual(problem_, g), 1e-8);
 }
 
-TEST_F(CommandGeneratorTest, TheResidualSeesEachOfTheFourMatrices) {
+TEST_F(CommandGeneratorTest, TheResidualDependsOnEachOfTheFourMatrices) {
   const CommandGenerator exact = SolveCommandGenerator(problem_);
   for (int which = 0; which < 4; ++which) {
     CommandGenerator wrong = exact;
@@ -72,8 +72,8 @@ TEST_F(CommandGeneratorTest, TheResidualSeesEachOfTheFourMatrices) {
   }
 }
 
-// What it is for: a plant that starts on x* and gets u* follows the reference's output for ever.
-// 300 samples of a command that changes; A is a double integrator, so errors would grow.
+// The purpose: a plant that starts on x* and gets u* follows the output of the reference model. 300
+// samples of a varying command; A is a double integrator, so errors would grow.
 TEST_F(CommandGeneratorTest, APlantOnTheGeneratedTrajectoryFollowsTheOutputExactly) {
   const CommandGenerator g = SolveCommandGenerator(problem_);
   Eigen::VectorXd x_m = Eigen::VectorXd::Zero(12), x = Eigen::VectorXd::Zero(12);
@@ -93,7 +93,7 @@ TEST_F(CommandGeneratorTest, APlantOnTheGeneratedTrajectoryFollowsTheOutputExact
 
 TEST_F(CommandGeneratorTest, AnInvariantZeroAtOneIsRefused) {
   TrackingProblem problem = problem_;
-  // Outputs that are rates only: in any constant state of the hubs they vanish.
+  // Outputs that are rates only vanish in every constant state of the hubs.
   problem.Cp.setZero();
   problem.Cp(0, 6) = problem.Cp(1, 7) = 1.0;
   EXPECT_THROW(SolveCommandGenerator(problem), std::runtime_error);

@@ -26,7 +26,7 @@ bool SameBits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
-// What the loop and the checks use, all of it.
+// Compares everything that the loop and the checks use.
 void ExpectSameBits(const Design& a, const Design& b) {
   EXPECT_TRUE(SameBits(a.A, b.A) && SameBits(a.B, b.B));
   EXPECT_TRUE(SameBits(a.Am, b.Am) && SameBits(a.Bm, b.Bm));
@@ -57,7 +57,7 @@ nlohmann::json ShippedJson() {
   return nlohmann::json::parse(JsonOf(ShippedDesign(), ShippedRig()));
 }
 
-TEST(DesignJson, ComesBackBitForBit) {
+TEST(DesignJson, RoundTripIsBitExact) {
   const Design back = DesignFromJson(ShippedJson().dump(), ShippedRig());
   ExpectSameBits(back, ShippedDesign());
   ASSERT_EQ(back.checks.size(), ShippedDesign().checks.size());
@@ -69,7 +69,7 @@ TEST(DesignJson, ComesBackBitForBit) {
   }
 }
 
-TEST(DesignJson, TheGainsOfALawThatPlansComeBackToo) {
+TEST(DesignJson, RoundTripKeepsTheGainsOfTheRecedingHorizonLaw) {
   const RigConfig config = ShippedRig({"controller.name=receding-horizon"});
   const Design design = DesignController(config);
   const Design back = DesignFromJson(JsonOf(design, config), config);
@@ -84,8 +84,8 @@ TEST(DesignJson, TheGainsOfALawThatPlansComeBackToo) {
   EXPECT_GT((gains[0] - start[0]).norm(), 1.0) << "of another alpha";
 }
 
-// Members of 'payload' that a law or its estimator cannot do without.
-TEST(DesignJson, WhatALawNeedsForThePayloadIsAskedForByName) {
+// Members of 'payload' that a law or its estimator needs.
+TEST(DesignJson, AMissingPayloadMemberIsNamed) {
   struct Case {
     const char* law;
     std::vector<std::string> needs;
@@ -117,15 +117,15 @@ TEST(DesignJson, WhatALawNeedsForThePayloadIsAskedForByName) {
   }
 }
 
-TEST(DesignJson, ATableWithAKnotTooFewIsRefused) {
+TEST(DesignJson, ATableWithAMissingKnotIsRefused) {
   const RigConfig config = ShippedRig({"controller.name=receding-horizon"});
   nlohmann::json json = nlohmann::json::parse(JsonOf(DesignController(config), config));
   json["payload"]["start_gain"].erase(0);
   EXPECT_THAT(RefusalOf(json.dump(), config), HasSubstr("'payload'"));
 }
 
-// Gains of the payload in the file of a law that does not take them must not make it another law.
-TEST(DesignJson, WhatAConfigDoesNotNeedIsLeftInTheFile) {
+// Payload gains in the file of a law that does not use them must not change the law.
+TEST(DesignJson, MembersThatTheConfigDoesNotNeedAreIgnored) {
   const RigConfig path = ShippedRig({"controller.name=receding-horizon"});
   const nlohmann::json of_path = nlohmann::json::parse(JsonOf(DesignController(path), path));
   nlohmann::json json = ShippedJson();
@@ -140,7 +140,7 @@ TEST(DesignJson, WhatAConfigDoesNotNeedIsLeftInTheFile) {
   EXPECT_FALSE(read.scheduled);
 }
 
-TEST(DesignJson, AnotherConfigsGainsAreRefusedWithBothHashes) {
+TEST(DesignJson, GainsOfAnotherConfigAreRefusedWithBothHashes) {
   EXPECT_THAT(RefusalOf(DesignToJson(ShippedDesign(), "aaaa")),
               AllOf(HasSubstr("another config"), HasSubstr("aaaa"),
                     HasSubstr(DesignHash(ShippedRig())), HasSubstr("flexarm design")));
@@ -165,7 +165,7 @@ TEST(DesignJson, AWrongShapeIsNamedWithWhatWasExpected) {
   EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("rigid_inertia"), HasSubstr("2 x 2")));
 }
 
-TEST(DesignJson, TheNominalModelIsReadAndItsShapesAreAskedFor) {
+TEST(DesignJson, TheNominalModelIsReadAndDeterminesTheShapes) {
   nlohmann::json json = ShippedJson();
   json["nominal"] = "T16";
   EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("12 x 12"), HasSubstr("expected 16 x 16")));
@@ -175,7 +175,7 @@ TEST(DesignJson, TheNominalModelIsReadAndItsShapesAreAskedFor) {
   EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'nominal'"), HasSubstr("missing")));
 }
 
-// A gauge filter of second order has two states a mode: its gains come back as they went.
+// A gauge filter of second order has two states per mode: such gains are read back unchanged.
 TEST(DesignJson, GainsBehindASecondOrderFilterAreReadBack) {
   const RigConfig config = ShippedRig({"sensors.strain_input.filter_damping=0.9"});
   const Design design = DesignController(config);
@@ -202,16 +202,15 @@ TEST(DesignJson, ABrokenMatrixIsNamed) {
   EXPECT_THAT(RefusalOf(json.dump()), AllOf(HasSubstr("'P'"), HasSubstr("not a matrix")));
 }
 
-// Every one of these is a file that somebody may hand in by mistake: one clear refusal, no other
-// exception.
-TEST(DesignJson, WhatIsNoGainsFileIsRefusedAsSuch) {
+// Each of these files could be passed by mistake: one clear refusal, no other exception.
+TEST(DesignJson, AFileThatIsNotAGainsFileIsRefused) {
   for (const char* text : {"", "hello", "[1, 2]", "{}", "{\"format\": \"other\"}",
                            "{\"format\": 5}", "{\"A\": [[1", "null"}) {
     EXPECT_THAT(RefusalOf(text), HasSubstr("not a gains file")) << text;
   }
 }
 
-TEST(DesignJson, FieldsOfTheWrongTypeAreRefusedNotCrashedOn) {
+TEST(DesignJson, FieldsOfTheWrongTypeAreRefused) {
   nlohmann::json json = ShippedJson();
   json["config_hash"] = 12;
   EXPECT_NE(RefusalOf(json.dump()), "");
@@ -250,12 +249,12 @@ TEST_F(GainsFile, OfAnotherAlphaIsRefused) {
   EXPECT_THROW(DesignFor(RigWithGains()), RejectedError);
 }
 
-TEST_F(GainsFile, ThatIsNotThereIsRefusedByName) {
+TEST_F(GainsFile, IfMissingIsRefusedByName) {
   EXPECT_THAT(MessageOf<RejectedError>([&] { DesignFor(RigWithGains()); }),
               AllOf(HasSubstr(path_), HasSubstr("flexarm design")));
 }
 
-TEST_F(GainsFile, WithoutWhatItsLawNeedsIsRefusedByFileAndKey) {
+TEST_F(GainsFile, WithoutAMemberOfItsLawIsRefusedByFileAndKey) {
   const std::vector<std::string> plans = {"controller.name=receding-horizon"};
   Design design = DesignController(ShippedRig(plans));
   design.scheduled->start_gains.reset();
@@ -283,8 +282,8 @@ TEST_F(GainsFile, WithAFailedCheckThatWasWaivedIsUsed) {
   EXPECT_FALSE(read.checks[1].waived);
 }
 
-// The hash covers what a design depends on, and nothing else.
-TEST(DesignHash, ChangesWithWhatADesignDependsOn) {
+// The hash covers the settings of a design, and no others.
+TEST(DesignHash, ChangesExactlyWithTheSettingsOfADesign) {
   const std::string shipped = DesignHash(ShippedRig());
   for (const char* changed : {"controller.alpha=2.9",
                               "controller.torque_weight=2.1",

@@ -1,4 +1,4 @@
-// The design against golden.json (another program's), and against the lemma that it rests on.
+// The design against golden.json (from an independent program), and against the lemma (7.16).
 // Compared as max |X - G| / max |G|; bars of the design study: 1e-8, gains 1e-6.
 
 #include "controller/law/design.h"
@@ -43,9 +43,9 @@ TEST_F(DesignTest, FilterAgreesWithTheGoldenOne) {
   ExpectGolden("KF", {{"L", design_.filter_L}}, kGain);
 }
 
-// The golden reference model has its torque modes rounded to four decimals (1e-6 of them), ours are
-// exact; all that follows from it differs by as much.
-TEST_F(DesignTest, ReferenceAndFeedforwardAgreeToTheGoldenReferencesRounding) {
+// The golden reference model has its torque modes rounded to four decimals (relative 1e-6), this
+// one exact modes; all derived values differ by as much.
+TEST_F(DesignTest, ReferenceAndFeedforwardAgreeWithinTheRoundingOfTheGoldenOnes) {
   ExpectGolden("R12",
                {{"Am", design_.Am},
                 {"Bm", design_.Bm},
@@ -77,7 +77,7 @@ TEST_F(DesignTest, TheLemmaHoldsWithTheClosedFormOfP) {
 }
 
 // Smallest eigenvalue of S + S*, S = J + K (zI - A_c)^-1 B, on the circle: 1.8 in the design study.
-// Looked at on another grid than the design's own check, which must say the same.
+// Evaluated on another grid than that of the design's own check, which must agree.
 TEST_F(DesignTest, TheClosedLoopIsPositiveReal) {
   const MatrixXcd A_c = (design_.A - design_.B * design_.K).cast<std::complex<double>>();
   double smallest = 1e9;
@@ -146,7 +146,7 @@ TEST_F(DesignTest, EveryCheckOfTheShippedDesignPassed) {
   }
 }
 
-TEST_F(DesignTest, AFailedCheckOrOneOnNotANumberIsNotSound) {
+TEST_F(DesignTest, ADesignWithAFailedOrNanCheckIsNotSound) {
   Design design = design_;
   design.checks.front().value = 1.0;
   EXPECT_FALSE(design.sound());
@@ -154,7 +154,7 @@ TEST_F(DesignTest, AFailedCheckOrOneOnNotANumberIsNotSound) {
   EXPECT_FALSE(design.sound());
 }
 
-// The printed rig is ten times as stiff and heavy: another design, sound as well.
+// The printed rig is ten times as stiff and heavy: another design, also sound.
 TEST_F(DesignTest, ThePrintedRigHasASoundDesign) {
   const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/thesis-rig-printed.toml");
   EXPECT_TRUE(DesignController(config).sound());

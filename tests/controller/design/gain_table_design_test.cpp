@@ -1,5 +1,5 @@
-// Gains by payload and elbow angle: against another program's numbers, and around an arm with four
-// modes a link and elastic joints.
+// Gain table over payload and elbow angle: against the numbers of an independent program, and in a
+// loop with an arm with four modes a link and elastic joints.
 
 #include "controller/design/gain_table_design.h"
 
@@ -32,8 +32,8 @@ const GainTable& StudyTable() {
   return table;
 }
 
-// Largest |z| of the arm with four modes a link, held by K at a payload and an elbow angle. Of the
-// modes K knows the first two of each link.
+// Largest |z| of the loop of K and the arm with four modes a link, at a payload and an elbow angle.
+// K uses the first two modes of each link.
 double SpectralRadius(const GainTable::Gain& K, double payload_kg, double theta2_rad) {
   ArmParameters p = ThesisRig();
   p.payload_mass_kg = payload_kg;
@@ -75,7 +75,7 @@ TEST(GainTable, IsConstantBeyondItsBorders) {
 
 // docs/theory/payload.md 4.2: max |z| on the 4-mode plant is .885-.894, on and off the grid. These
 // are far from every knot.
-TEST(GainTable, HoldsTheArmWithFourModesBetweenItsKnots) {
+TEST(GainTable, StabilizesTheArmWithFourModesBetweenItsKnots) {
   for (const double payload_kg : {0.02, 0.14, 0.28, 0.43, 0.62, 0.9}) {
     for (const double theta2_deg : {10.0, 50.0, 90.0, 135.0}) {
       const double theta2_rad = theta2_deg * kRadPerDeg;
@@ -86,7 +86,7 @@ TEST(GainTable, HoldsTheArmWithFourModesBetweenItsKnots) {
 }
 
 // The reason for SchedulingPayload, docs/theory/payload.md 4.3.
-TEST(GainTable, GainsOf150GramsHoldEveryPayloadThoseOfAKilogramDoNot) {
+TEST(GainTable, GainsOf150GramsStabilizeEveryPayloadThoseOfAKilogramDoNot) {
   for (const double theta2_deg : {0.0, 60.0, 120.0}) {
     const double theta2_rad = theta2_deg * kRadPerDeg;
     const auto robust = StudyTable().At(0.15, theta2_rad);
@@ -99,7 +99,7 @@ TEST(GainTable, GainsOf150GramsHoldEveryPayloadThoseOfAKilogramDoNot) {
   EXPECT_GT(SpectralRadius(StudyTable().At(0.5, 0.0), 0.05, 0.0), 1.0);
 }
 
-TEST(GainTable, RefusesAGridThatIsNone) {
+TEST(GainTable, RefusesAnInvalidGrid) {
   const std::vector<GainTable::Gain> knots(4, GainTable::Gain::Zero());
   EXPECT_THROW(GainTable({.payload_kg = {0, 0}, .theta2_rad = {0, 1}}, knots),
                std::invalid_argument);
@@ -114,17 +114,18 @@ TEST(GainTable, DoesNotAllocate) {
   EXPECT_GT(table.At(0.37, 0.5)(0, 0), 0.0);
 }
 
-TEST(SchedulingPayload, IsTheEstimateWhenItIsSure) {
+TEST(SchedulingPayload, IsTheEstimateWhenItIsCertain) {
   EXPECT_EQ(SchedulingPayload(0.8, 0.0, 8.0, 0.0), 0.8);
   EXPECT_EQ(SchedulingPayload(0.8, 0.0, 20.0, 0.5), 0.8);
   EXPECT_EQ(SchedulingPayload(0.05, 0.3, 200.0, 2.0), 0.05) << "light gains are not made heavier";
 }
 
-TEST(SchedulingPayload, FallsTo150GramsWithDoubt) {
+TEST(SchedulingPayload, FallsTo150GramsWithUncertainty) {
   EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 8.0, 0.0), 0.55 - 0.25 * 0.40);
   EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.4, 8.0, 0.0), 0.15);
   EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 40.0, 0.0), 0.35);
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 40.0, 0.0), 0.35) << "the greater doubt counts";
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 40.0, 0.0), 0.35)
+      << "the greater uncertainty counts";
   EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 100.0, 0.0), 0.15);
   EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 8.0, 0.51), 0.15);
 }

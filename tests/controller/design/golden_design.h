@@ -14,7 +14,7 @@ struct NamedMatrix {
   const Eigen::MatrixXd& matrix;
 };
 
-/// Holds each matrix to golden.json's MODEL_NAME: max |X - G| / max |G| is below `bar`.
+/// Compares each matrix with golden.json's MODEL_NAME: max |X - G| / max |G| is below `bar`.
 inline void ExpectGolden(const std::string& model, const std::vector<NamedMatrix>& matrices,
                          double bar) {
   static const nlohmann::json golden = GoldenFile("golden.json");

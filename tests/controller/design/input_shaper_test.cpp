@@ -23,7 +23,7 @@ std::complex<double> Discrete(const Pole& pole) {
   return std::exp(kPeriod_s * w * std::complex<double>(-zeta, std::sqrt(1.0 - zeta * zeta)));
 }
 
-// A loop with these oscillations and one real pole.
+// A loop with these oscillatory poles and one real pole.
 Eigen::MatrixXd Loop(const std::vector<Pole>& poles) {
   const auto size = static_cast<Eigen::Index>(2 * poles.size() + 1);
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size);
@@ -36,8 +36,8 @@ Eigen::MatrixXd Loop(const std::vector<Pole>& poles) {
   return A;
 }
 
-// What is left of an oscillation that every weight starts anew, over what one unit leaves: |W(z)|
-// with W(z) = sum w_i z^-i, brought to the instant of the last weight.
+// Residual vibration of an oscillation that all weights excite, relative to that of one unit
+// impulse: |W(z)| with W(z) = sum w_i z^-i, at the instant of the last weight.
 double Residual(const Eigen::RowVectorXd& weights, const Pole& pole) {
   const std::complex<double> z = Discrete(pole);
   std::complex<double> sum = 0.0;
@@ -51,9 +51,9 @@ const std::vector<Pole> kPoles = {{.frequency_hz = 0.69, .damping_ratio = 0.03},
                                   {.frequency_hz = 2.06, .damping_ratio = 0.1},
                                   {.frequency_hz = 10.0, .damping_ratio = 0.05}};
 
-// An impulse between two samples is shared by them: an error of (w Ts)^2 / 8 of it at most, w the
-// frequency; 0.9e-3 and 8.4e-3 here, of impulses of half the command.
-TEST(InputShaper, LeavesNothingOfTheTwoSlowestOscillations) {
+// An impulse between two samples is divided between them: an error of (w Ts)^2 / 8 of it at most, w
+// the frequency; 0.9e-3 and 8.4e-3 here, of impulses of half the command.
+TEST(InputShaper, CancelsTheTwoSlowestOscillations) {
   for (const int derivatives : {1, 2}) {
     const Eigen::RowVectorXd weights = DesignInputShaper(Loop(kPoles), derivatives);
     EXPECT_NEAR(weights.sum(), 1.0, 1e-14);
@@ -63,9 +63,9 @@ TEST(InputShaper, LeavesNothingOfTheTwoSlowestOscillations) {
   }
 }
 
-// The textbook's vibration of a ZV shaper at a frequency that is off by 10 %: cos(pi/2 1.1) = 0.156
-// without damping; a ZVD shaper has its square.
-TEST(InputShaper, TheDerivativeMakesItRobustToTheFrequency) {
+// Textbook residual of a ZV shaper at a frequency error of 10 %: cos(pi/2 1.1) = 0.156 without
+// damping; that of a ZVD shaper is its square.
+TEST(InputShaper, ZvdIsMoreRobustToFrequencyErrorsThanZv) {
   const std::vector<Pole> free = {{.frequency_hz = 0.5, .damping_ratio = 0.0},
                                   {.frequency_hz = 5.0, .damping_ratio = 0.0}};
   const Pole other = {.frequency_hz = 0.55, .damping_ratio = 0.0};
@@ -77,7 +77,7 @@ TEST(InputShaper, TheDerivativeMakesItRobustToTheFrequency) {
 }
 
 // Half a period of each oscillation, rounded up; twice that with the derivative.
-TEST(InputShaper, IsAsLongAsHalfAPeriodOfEach) {
+TEST(InputShaper, LastsHalfAPeriodOfEachOscillation) {
   const double samples = 0.5 / 0.69 / kPeriod_s + 0.5 / 2.06 / kPeriod_s;
   EXPECT_NEAR(static_cast<double>(DesignInputShaper(Loop(kPoles), 1).size()), samples, 4.0);
   EXPECT_NEAR(static_cast<double>(DesignInputShaper(Loop(kPoles), 2).size()), 2 * samples, 8.0);

@@ -40,9 +40,9 @@ TEST_P(NominalDesign, IsSound) {
   EXPECT_TRUE(design.sound());
 }
 
-// Where the rotor hardly moves against the hub, springs in the joints change little: for two modes
-// a link, K answers a rigid turn of either joint as without springs, within 5 %.
-TEST(T16, AnswersARigidTurnAsR12Does) {
+// Where rotors hardly move relative to the hubs, joint springs change little: with two modes a
+// link, K responds to a rigid rotation of either joint as without springs, within 5 %.
+TEST(T16, RespondsToARigidRotationAsR12) {
   const Design t16 = DesignController(RigWith("T16", 0.0));
   const Design r12 = DesignController(RigWith("R12", 0.0));
   for (int joint = 0; joint < 2; ++joint) {
@@ -55,7 +55,7 @@ TEST(T16, AnswersARigidTurnAsR12Does) {
   }
 }
 
-// docs/theory/control-law.md 12.2, T12*: the weights that a search found. Its reference model has
+// docs/theory/control-law.md 12.2, T12*: weights found by a search. Its reference model has
 // rounded torque modes, so that what follows from it agrees to 1e-6 only.
 TEST(T12WithSearchedWeights, AgreesWithTheGoldenDesign) {
   const Design design = DesignController(
@@ -80,7 +80,7 @@ VectorXd StudyScale(const StateLayout& layout) {
 
 // docs/theory/control-law.md 4.3: the Kronecker matrix has cond 1e9 (T12), 1e14 (R12), 1.7e16
 // (T16), with the design study's scaling 2e6, 2e6, 6e9. One digit each, so half of it either way;
-// 1.7e16 is beyond what doubles can tell from a singular matrix.
+// 1.7e16 is numerically singular in double precision.
 TEST(CommandGeneratorEquation, IsConditionedAsInTheStudy) {
   struct Figures {
     const char* nominal;
@@ -107,8 +107,8 @@ TEST(CommandGeneratorEquation, IsConditionedAsInTheStudy) {
   }
 }
 
-// The nominal state in the plant's, modal coordinates by a fit of as many modes a link as the model
-// has to the rig's gauges.
+// Map from the plant's state to the nominal state; modal coordinates by a fit of the model's number
+// of modes a link to the rig's gauges.
 MatrixXd NominalOf(const RigConfig& config, const ArmModel& plant) {
   const StateLayout& layout = config.controller.nominal;
   const Index dof = plant.dof(), modes = (dof - 4) / 2;
@@ -137,7 +137,7 @@ MatrixXd NominalOf(const RigConfig& config, const ArmModel& plant) {
 }
 
 // Largest |eigenvalue| of the loop around the linear arm with four modes a link, friction and
-// filters left out, the state known, one sample of delay predicted over by the nominal model.
+// filters left out, the state known, one sample of delay compensated by the nominal model.
 double KnownStateRadius(const std::string& nominal, double alpha) {
   const RigConfig config = RigWith(nominal, alpha);
   const Design d = DesignController(config);
@@ -156,7 +156,7 @@ double KnownStateRadius(const std::string& nominal, double alpha) {
 
 // docs/theory/control-law.md 12.2: T12 linear |z| .934 at alpha 3, .957 at 3.2, 1.04 at 4. The
 // design study does not say which loop it closed: this one is within 0.03 of its figures (.909,
-// .938, 1.035), with one of them just as unstable.
+// .938, 1.035), and unstable for the same alpha.
 TEST(KnownState, T12LosesStabilityWithAlphaAsInTheStudy) {
   EXPECT_NEAR(KnownStateRadius("T12", 3.0), 0.934, 0.03);
   EXPECT_NEAR(KnownStateRadius("T12", 3.2), 0.957, 0.03);
@@ -164,10 +164,11 @@ TEST(KnownState, T12LosesStabilityWithAlphaAsInTheStudy) {
   EXPECT_GT(KnownStateRadius("T12", 4.0), 1.0);
 }
 
-// A second mode a link cures it, springs or none. A cheap regulator with degree of stability alpha
-// reflects poles at e^(alpha Ts): the double integrators end at e^(-2 alpha Ts), 0.887 and 0.819 at
-// 3 and 5, but for what the modes above cost: 0.014 at 5, 0.02 allowed.
-TEST(KnownState, TwoModesALinkHoldThePrescribedStability) {
+// A second mode per link restores stability, with joint springs or without. A cheap regulator with
+// degree of stability alpha reflects poles at e^(alpha Ts): the double integrators end at
+// e^(-2 alpha Ts), 0.887 and 0.819 at 3 and 5, apart from the effect of the higher modes: 0.014 at
+// 5, 0.02 allowed.
+TEST(KnownState, TwoModesALinkReachThePrescribedStability) {
   for (const char* nominal : {"R12", "T16"}) {
     for (const double alpha : {3.0, 4.0, 5.0}) {
       EXPECT_LT(KnownStateRadius(nominal, alpha), std::exp(-2.0 * alpha * 0.02) + 0.02)

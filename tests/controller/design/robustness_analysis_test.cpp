@@ -25,8 +25,8 @@ namespace {
 using testing::Contains;
 using testing::Field;
 
-/// The loop in time: the nonlinear arm without friction, a thousandth of a degree off its rest, the
-/// law's own parts around it. Nothing of it comes from the robustness.
+/// Time-domain loop: the nonlinear arm without friction, a thousandth of a degree from rest, with
+/// the parts of the real law. Independent of the robustness analysis.
 class LoopInTime {
  public:
   LoopInTime(const RigConfig& config, Design design, double payload_kg, double theta2_rad,
@@ -55,14 +55,14 @@ class LoopInTime {
     filter_.Settle(GaugeFilter::Signals::Zero(20));
   }
 
-  // |x_hat| after so many periods.
+  // |x_hat| after `periods` periods.
   double Run(int periods) {
     double size = 0.0;
     for (int k = 0; k < periods; ++k) {
       const StateVector x = estimator_.Update(Counters(), Modes(), {before_(0), before_(1)}).x;
       const Eigen::VectorXd next = design_.A * x + design_.B * now_;
       before_ = now_;
-      for (int i = 0; i < kSteps; ++i) {  // the plant's torque comes late_steps_ after it is due
+      for (int i = 0; i < kSteps; ++i) {  // the torque of the plant is late by late_steps_
         pipeline_.push_back(before_);
         const auto due = static_cast<std::ptrdiff_t>(pipeline_.size()) - 1 - late_steps_;
         Step(due < 0 ? Eigen::Vector2d(Eigen::Vector2d::Zero())
@@ -104,7 +104,7 @@ class LoopInTime {
     counters.good = 0b1111;
     return counters;
   }
-  // The loop's own fit counts in steps of the converter: this one is exact.
+  // The loop's own fit is quantised in counts of the converter: this one is exact.
   static Eigen::MatrixXd Fit(const RigConfig& config) {
     const ArmModel known(config.arm, ModeCount{.link1 = 2, .link2 = 2});
     Eigen::MatrixXd shape(20, 4);
@@ -138,9 +138,9 @@ class LoopInTime {
   Eigen::Vector2d now_ = Eigen::Vector2d::Zero(), before_ = Eigen::Vector2d::Zero();
 };
 
-// An independent look: how fast the loop in time grows or dies is its largest |eigenvalue|. The
-// mean over many periods hides the phase of the oscillation: ln(2) / 250 periods at most, 0.3 %.
-TEST(RobustnessAnalysis, TheSpectralRadiusIsTheGrowthOfTheLoopInTime) {
+// Independent check: the growth rate of the time-domain loop is its largest |eigenvalue|. The mean
+// over many periods hides the phase of the oscillation: ln(2) / 250 periods at most, 0.3 %.
+TEST(RobustnessAnalysis, TheSpectralRadiusIsTheGrowthRateInTheTimeDomain) {
   const RigConfig config = ShippedRig({"controller.name=lqr-cgt"});
   const Design& design = ShippedDesign();
   const RobustnessAnalysis robustness = AnalyzeRobustness(config, design, {0.0, 1.0});
@@ -160,7 +160,7 @@ TEST(RobustnessAnalysis, TheSpectralRadiusIsTheGrowthOfTheLoopInTime) {
   }
 }
 
-TEST(RobustnessAnalysis, TheShippedGainsHoldWhatTheyHaveTo) {
+TEST(RobustnessAnalysis, TheShippedGainsAreStableInEveryRequiredCase) {
   const RobustnessAnalysis robustness =
       AnalyzeRobustness(ShippedRig(), ShippedDesign(), {0.0, 0.01, 0.2, 0.5, 1.0});
   EXPECT_EQ(robustness.cases.size(), 54u) << "five payloads and the design's own";
@@ -168,16 +168,16 @@ TEST(RobustnessAnalysis, TheShippedGainsHoldWhatTheyHaveTo) {
   for (const DesignCheck& check : ChecksOf(robustness)) {
     EXPECT_TRUE(check.passed()) << check.name << " " << check.value;
   }
-  // What is reported and not asked for: an empty hand, the elbow square, 40 % too much gain.
+  // The worst case is reported and not required: no payload, elbow at 90 deg, gains x 1.4.
   EXPECT_EQ(robustness.worst().payload_kg, 0.0);
   EXPECT_EQ(robustness.worst().theta2_deg, 90.0);
   EXPECT_EQ(robustness.worst().gain, 1.4);
   EXPECT_NEAR(robustness.worst().spectral_radius, 1.020, 0.001);
 }
 
-// The design study's runs of the real pipeline: without prediction 0.01 kg diverges, with alpha = 3
-// and differences behind the gauge filter every run does.
-TEST(RobustnessAnalysis, WhatTheStudySawDivergeIsFoundUnstable) {
+// In the design study's runs of the whole loop 0.01 kg diverges without prediction, and every run
+// diverges with alpha = 3 and differences behind the gauge filter.
+TEST(RobustnessAnalysis, TheDivergingLoopsOfTheStudyAreUnstable) {
   for (const char* change : {"controller.prediction=false", "estimator.name=difference"}) {
     const RigConfig config = ShippedRig({change});
     const RobustnessAnalysis robustness =
@@ -189,8 +189,8 @@ TEST(RobustnessAnalysis, WhatTheStudySawDivergeIsFoundUnstable) {
   }
 }
 
-// A loop whose gains are those of its margin neither grows nor dies.
-TEST(RobustnessAnalysis, AtTheGainMarginTheLoopIsOnTheEdge) {
+// With the gains at its margin the loop neither grows nor decays.
+TEST(RobustnessAnalysis, AtTheGainMarginTheLoopIsOnTheStabilityBoundary) {
   const RigConfig config = ShippedRig();
   const LoopMargins margins = AnalyzeRobustness(config, ShippedDesign(), {}).margins;
   Design scaled = ShippedDesign();
@@ -198,9 +198,9 @@ TEST(RobustnessAnalysis, AtTheGainMarginTheLoopIsOnTheEdge) {
   EXPECT_NEAR(AnalyzeRobustness(config, scaled, {}).cases[0].spectral_radius, 1.0, 1e-3);
 }
 
-// Delay that the loop does not know of, 0.3 ms to either side of the margin: with 0.2 ms a step
-// of the loop in time, the next delays that are surely beyond and surely within.
-TEST(RobustnessAnalysis, TheDelayMarginIsThatOfTheLoopInTime) {
+// Undeclared delay, 0.3 ms to either side of the margin: with time steps of 0.2 ms the nearest
+// delays that are certainly beyond and certainly within.
+TEST(RobustnessAnalysis, TheDelayMarginIsThatOfTheTimeDomainLoop) {
   const RigConfig config = ShippedRig();
   const double margin_s = AnalyzeRobustness(config, ShippedDesign(), {}).margins.delay_s;
   const auto growth = [&config](double delay_s) {
@@ -212,10 +212,10 @@ TEST(RobustnessAnalysis, TheDelayMarginIsThatOfTheLoopInTime) {
   EXPECT_GT(growth(margin_s + 0.0003), 1.0);
 }
 
-// A torque that acts a microsecond before or after a sampling instant is another case of the
-// robustness's bookkeeping, and the same loop: radius and margin join. A loop that predicts a
-// period further bears less on top. Measured: 27.2, 27.3 and 27.3 ms, with 20 ms declared 9.1 ms.
-TEST(RobustnessAnalysis, TheMarginsOfADeclaredDelayJoinWherePeriodsEnd) {
+// A torque that acts a microsecond before or after a sampling instant is another case in the
+// analysis, but the same loop: radius and margin are continuous. A loop with a longer prediction
+// tolerates less additional delay. Measured: 27.2, 27.3 and 27.3 ms, with 20 ms declared 9.1 ms.
+TEST(RobustnessAnalysis, TheMarginsAreContinuousWhereTheDelayPassesAWholePeriod) {
   const auto with = [](double late_ms) {
     RigConfig config = ShippedRig();
     config.loop.output = late_ms < 0.0 ? OutputTiming::kAtOnce : OutputTiming::kNextTick;
@@ -229,7 +229,7 @@ TEST(RobustnessAnalysis, TheMarginsOfADeclaredDelayJoinWherePeriodsEnd) {
   const auto own = with(0.0), before = with(-kShort_ms), after = with(kShort_ms);
   for (const auto& near : {before, after}) {
     EXPECT_NEAR(own.first, near.first, 1e-3);
-    EXPECT_NEAR(own.second, near.second, 2e-2 * own.second);  // the edge is found to 1 %
+    EXPECT_NEAR(own.second, near.second, 2e-2 * own.second);  // the boundary is found to 1 %
   }
   EXPECT_LT(with(20.0).second, own.second);
 }

@@ -27,13 +27,13 @@ TEST(History, GivesTheValueThatHeldAtAnInstant) {
   EXPECT_EQ(history.Newest().from_ns, 200);
 }
 
-TEST(History, KeepsTheLastNAndGivesTheOldestForWhatIsOlder) {
+TEST(History, KeepsTheLastNAndGivesTheOldestForEarlierInstants) {
   History<int, 3> history(-1);
   for (int i = 1; i <= 10; ++i) history.Push(i * 100, i);
   EXPECT_EQ(history.At(1000).value, 10);
   EXPECT_EQ(history.At(900).value, 9);
   EXPECT_EQ(history.At(800).value, 8);
-  EXPECT_EQ(history.At(700).value, 8) << "700 itself is forgotten";
+  EXPECT_EQ(history.At(700).value, 8) << "700 itself is no longer stored";
 }
 
 TEST(History, TheLaterOfTwoValuesOfOneInstantHolds) {
@@ -49,12 +49,13 @@ TEST(LatestValue, GivesTheInitialValueUntilOneIsPublishedAndThenTheNewest) {
   channel.Publish(1);
   channel.Publish(2);
   EXPECT_EQ(channel.Read(), 2);
-  EXPECT_EQ(channel.Read(), 2) << "nothing newer: the same again";
+  EXPECT_EQ(channel.Read(), 2) << "no newer value: the same again";
   channel.Publish(3);
   EXPECT_EQ(channel.Read(), 3);
 }
 
-// Every word of a value carries its number: a torn copy shows. Run under the thread sanitizer too.
+// Every word of a value carries its number, so a torn copy is detected. Run with the thread
+// sanitizer too.
 TEST(LatestValue, TwoThreadsNeverSeeATornOrAnOlderValue) {
   using Wide = std::array<std::uint64_t, 64>;
   constexpr std::uint64_t kLast = 50'000;
@@ -80,7 +81,7 @@ TEST(LatestValue, TwoThreadsNeverSeeATornOrAnOlderValue) {
   EXPECT_EQ(older, 0u);
 }
 
-TEST(LatestValue, AHistoryReachesTheOtherThreadWhole) {
+TEST(LatestValue, TwoThreadsNeverSeeATornHistory) {
   using Squares = History<std::int64_t, 8>;
   constexpr std::int64_t kLast = 20'000;
   LatestValue<Squares> channel{Squares(0)};

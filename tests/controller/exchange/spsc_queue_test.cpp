@@ -10,7 +10,7 @@
 namespace flexarm {
 namespace {
 
-TEST(SpscQueue, GivesBackInOrderWhatWasPutIn) {
+TEST(SpscQueue, ReturnsValuesInOrder) {
   SpscQueue<int> queue(8);
   int value = 0;
   EXPECT_FALSE(queue.Pop(&value));
@@ -24,7 +24,7 @@ TEST(SpscQueue, GivesBackInOrderWhatWasPutIn) {
   EXPECT_EQ(queue.dropped(), 0u);
 }
 
-TEST(SpscQueue, DropsAndCountsWhatDoesNotFitAndGoesOn) {
+TEST(SpscQueue, DropsAndCountsValuesThatDoNotFit) {
   SpscQueue<int> queue(4);
   int pushed = 0;
   while (queue.Push(pushed)) ++pushed;
@@ -45,8 +45,8 @@ TEST(SpscQueue, DropsAndCountsWhatDoesNotFitAndGoesOn) {
   EXPECT_FALSE(queue.Pop(&value));
 }
 
-// The payload behind the pointer is not in the queue: passing it on must order it as well. Run
-// under the thread sanitizer too.
+// The data behind the pointer is not in the queue: the queue must order accesses to it as well. Run
+// with the thread sanitizer too.
 TEST(SpscQueue, TwoThreadsLoseAndTearNothing) {
   struct Item {
     std::array<std::uint64_t, 16> words;

@@ -23,7 +23,7 @@ ControllerConfig GainConfig(double dead_zone_nm, double bound) {
 }
 
 // 0.1 * 1 * 2 in each of the first row's six entries: |change| = 0.2 sqrt(6).
-TEST(AdaptiveGain, LearnsTheOuterProduct) {
+TEST(AdaptiveGain, AdaptsByTheOuterProduct) {
   AdaptiveGain gain(Initial(), GainConfig(0.0, 100.0));
   gain.Update({1.0, 0.0}, Large());
   EXPECT_NEAR(gain.change(), 0.2 * std::sqrt(6.0), 1e-15);
@@ -33,7 +33,7 @@ TEST(AdaptiveGain, LearnsTheOuterProduct) {
   EXPECT_NEAR(gain.Torque(Large())(1), 6.0, 1e-14);
 }
 
-TEST(AdaptiveGain, InsideTheDeadZoneItOnlyForgets) {
+TEST(AdaptiveGain, InsideTheDeadZoneItOnlyLeaks) {
   AdaptiveGain gain(Initial(), GainConfig(0.1, 100.0));
   gain.Update({1.0, 0.0}, Large());
   const double learnt = gain.change();
@@ -46,10 +46,10 @@ TEST(AdaptiveGain, IsScaledBackToItsBound) {
   gain.Update({1.0, 0.0}, Large());
   EXPECT_NEAR(gain.change(), 0.1, 1e-15);
   EXPECT_NEAR(gain.Torque(Large())(0), 6.0 + 12.0 * 0.1 / std::sqrt(6.0), 1e-14);
-  EXPECT_NEAR(gain.Torque(Large())(1), 6.0, 1e-14) << "the other row learnt nothing";
+  EXPECT_NEAR(gain.Torque(Large())(1), 6.0, 1e-14) << "the other row did not adapt";
 }
 
-TEST(AdaptiveGain, ResetForgetsAll) {
+TEST(AdaptiveGain, ResetRestoresTheInitialGain) {
   AdaptiveGain gain(Initial(), GainConfig(0.0, 100.0));
   gain.Update({1.0, 1.0}, Large());
   gain.Reset();

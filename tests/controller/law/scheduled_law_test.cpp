@@ -1,4 +1,4 @@
-// The law that knows the payload, and the reference that it follows.
+// The gain-scheduled law, and the reference that it follows.
 
 #include "controller/law/scheduled_law.h"
 
@@ -59,7 +59,7 @@ constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
                                      .mean_nis = 8.0,
                                      .warnings = 0};
 
-TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
+TEST(PathReference, GoesFromRestToRestBentByTheReferencePayload) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0), {0.1, -0.2});
   const std::array<double, 2> to_rad = {30 * kRadPerDeg, -20 * kRadPerDeg};
   const RigidJointArm arm = MakeRigidJointArm(ShippedPathDesign());
@@ -76,10 +76,10 @@ TEST(PathReference, LeadsFromRestToRestBentByTheReferencePayload) {
     }
     bent_m = std::fmax(bent_m, std::fabs(table.At(k).x_m[2]));
   }
-  EXPECT_GT(bent_m, 0.01) << "an arm that does not bend: the test says nothing";
+  EXPECT_GT(bent_m, 0.01) << "an arm that does not bend: the test is inconclusive";
 }
 
-TEST(PathReference, ThePathIsTheMovesWithWhatIsAroundTheSample) {
+TEST(PathReference, ThePathAroundASampleIsThatOfTheMoves) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0));
   for (const int k : {-3, 0, 10, 11, 60, 109, 110, 111, 400, 500}) {
     const auto path = table.PathAround(k);
@@ -91,7 +91,7 @@ TEST(PathReference, ThePathIsTheMovesWithWhatIsAroundTheSample) {
   }
 }
 
-// A law that follows the path must not be led to zero because nothing moves.
+// Without moves the reference of a law that follows the path must not become zero.
 TEST(PathReference, AnExperimentWithoutMovesRestsWhereItStarts) {
   Experiment nothing = OneMove({0, 0}, 1.0);
   nothing.move.clear();
@@ -102,7 +102,7 @@ TEST(PathReference, AnExperimentWithoutMovesRestsWhereItStarts) {
   }
 }
 
-TEST(PathReference, LawsThatDoNotFollowThePathKnowIt) {
+TEST(PathReference, ThePathIsAlsoGivenToLawsThatDoNotFollowIt) {
   const Experiment experiment = OneMove({30, -20}, 2.0);
   const ReferenceTable table(experiment, ShippedDesign(), kPeriod_s, {0.1, -0.2}, ShippedLimits());
   const ReferenceTable scheduled = ScheduledTable(experiment, {0.1, -0.2});
@@ -114,7 +114,7 @@ TEST(PathReference, LawsThatDoNotFollowThePathKnowIt) {
   }
 }
 
-TEST(PathReference, AMoveTooFastForTheHeaviestPayloadIsRefusedWithTheDurationThatWouldDo) {
+TEST(PathReference, AMoveTooFastForTheHeaviestPayloadIsRefusedWithTheShortestDuration) {
   const std::string message = MessageOf<RejectedError>([] {
     ScheduledTable(OneMove({60, 80}, 1.0));
   });
@@ -136,7 +136,7 @@ TEST(PathReference, AMoveWithoutDurationKeepsTheShareOfTheLimitsWithTheHeaviestP
   EXPECT_NO_THROW(ReferenceTable(limit, ShippedPathDesign(), kPeriod_s, {0.0, 0.0}, share));
 }
 
-TEST(PathReference, WhatIsNoMoveIsRefused) {
+TEST(PathReference, RowsOtherThanMovesAreRefused) {
   Experiment doublet = OneMove({10, 10}, 1.0);
   doublet.doublet = {
       {.start_s = 4.0, .duration_s = 1.0, .shape = DoubletShape::kSquare, .move_deg = {5, 5}}};
@@ -144,13 +144,13 @@ TEST(PathReference, WhatIsNoMoveIsRefused) {
               AllOf(HasSubstr("doublet[0]"), HasSubstr("[[move]] rows only")));
 }
 
-TEST(ScheduledLaw, AtRestOnItsPathItAsksForNothing) {
+TEST(ScheduledLaw, AtRestOnItsPathTheTorqueIsZero) {
   const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const ScheduledLaw::State x = ScheduledLaw::State::Zero();
   EXPECT_EQ(AskedOf(x, kKnown, path, 1.0), Vector2d(0.0, 0.0));
 }
 
-TEST(ScheduledLaw, AsksForTheForceOfTheBentArmItsFrictionAndTheGainsOfItsPayload) {
+TEST(ScheduledLaw, TheTorqueIsQuasiStaticPlusFrictionPlusScheduledFeedback) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0));
   const RigidJointArm arm = MakeRigidJointArm(ShippedPathDesign());
   const GainTable& gains = ShippedPathDesign().scheduled->gains;
@@ -168,8 +168,9 @@ TEST(ScheduledLaw, AsksForTheForceOfTheBentArmItsFrictionAndTheGainsOfItsPayload
   }
 }
 
-// A payload in doubt gets the gains that hold every payload, and so does an arm that rests.
-TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
+// An uncertain payload gets the gains that are stable for every payload, and so does an arm at
+// rest.
+TEST(ScheduledLaw, AnUncertainPayloadGetsTheRobustGains) {
   const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const ScheduledLaw::State x = -0.01 * ScheduledLaw::State::Unit(0);
   PayloadKnowledge heavy = kKnown;
@@ -177,7 +178,7 @@ TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
   const Vector2d sure = AskedOf(x, heavy, path, 0.0);
   const GainTable& gains = ShippedPathDesign().scheduled->gains;
   const Vector2d robust = gains.At(0.15, 0.0) * -x;
-  EXPECT_GT((sure - robust).norm(), 0.01) << "the same gains: the test says nothing";
+  EXPECT_GT((sure - robust).norm(), 0.01) << "the same gains: the test is inconclusive";
   EXPECT_LT((AskedOf(x, heavy, path, 3.0) - robust).norm(), 1e-12);
   heavy.payload_sigma_kg = 0.2;
   EXPECT_LT((AskedOf(x, heavy, path, 0.0) - robust).norm(), 1e-12);
@@ -186,22 +187,22 @@ TEST(ScheduledLaw, InDoubtItsGainsAreTheRobustOnes) {
   EXPECT_LT((AskedOf(x, heavy, path, 0.0) - robust).norm(), 1e-12);
   heavy.mean_nis = 8.0;
   heavy.warnings = kPayloadModelMismatch | kPayloadNotObservable;
-  EXPECT_EQ(AskedOf(x, heavy, path, 0.0), sure) << "these are in its NIS and sigma";
+  EXPECT_EQ(AskedOf(x, heavy, path, 0.0), sure) << "NIS and sigma contain these already";
   heavy.warnings = kPayloadAtBound;
   EXPECT_LT((AskedOf(x, heavy, path, 0.0) - robust).norm(), 1e-12)
-      << "it may be heavier, however sure the filter is";
+      << "the payload may be heavier, however small sigma is";
 }
 
-// 0.7 of the friction at a feedback that is much, 0.76 of that (tanh 1) at one of half the
-// friction; three quarters of it half a second after the move, and none while a move lasts or two
-// seconds after.
-TEST(ScheduledLaw, AfterAMoveTheFeedbackIsHelpedOverTheFriction) {
+// 0.7 of the friction for a large feedback torque, 0.76 of that (tanh 1) for one of half the
+// friction; three quarters of it half a second after the move, and none during a move or later than
+// two seconds after it.
+TEST(ScheduledLaw, AfterAMoveTheFrictionOfTheFeedbackIsCompensated) {
   const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const Vector2d friction_nm(0.16, 0.01);
   for (const double off_rad : {-0.02, 1e-4}) {
     const ScheduledLaw::State x = off_rad * ScheduledLaw::State::Unit(0);
     PayloadKnowledge slippery = kKnown;
-    slippery.payload_kg = 0.1;  // the robust gains' own range: K is the same at rest
+    slippery.payload_kg = 0.1;  // in the range of the robust gains: K is the same at rest
     slippery.friction_nm = {0.0, 0.0};
     PayloadKnowledge rough = slippery;
     rough.friction_nm = {friction_nm[0], friction_nm[1]};
@@ -214,25 +215,25 @@ TEST(ScheduledLaw, AfterAMoveTheFeedbackIsHelpedOverTheFriction) {
                   0.75 * 0.7 * friction_nm[i] * std::tanh(feedback_nm[i] / (0.5 * friction_nm[i])),
                   1e-12);
     }
-    EXPECT_GT(std::fabs(help(0.5)[0]), 1e-4) << "nothing: the test says nothing";
+    EXPECT_GT(std::fabs(help(0.5)[0]), 1e-4) << "no compensation: the test is inconclusive";
     for (const double rested_s : {0.0, 2.0, 5.0, std::numeric_limits<double>::infinity()}) {
       EXPECT_EQ(help(rested_s), Vector2d(0.0, 0.0)) << rested_s;
     }
   }
 }
 
-TEST(MotionState, TellsTheBeginOfEachMoveAndSinceWhenThePathRests) {
+TEST(MotionState, DetectsTheStartOfEachMoveAndTheTimeAtRest) {
   MotionState watch;
   RigidPoint rest{}, moving{};
   moving.rate_rad_s[1] = 0.1;
   EXPECT_FALSE(watch.Take(rest, kPeriod_s));
   EXPECT_TRUE(std::isinf(watch.rested_s())) << "nothing has moved yet";
   EXPECT_TRUE(watch.Take(moving, kPeriod_s));
-  EXPECT_FALSE(watch.Take(moving, kPeriod_s)) << "said already";
+  EXPECT_FALSE(watch.Take(moving, kPeriod_s)) << "already reported";
   EXPECT_EQ(watch.rested_s(), 0.0);
   for (int k = 0; k < 5; ++k) EXPECT_FALSE(watch.Take(rest, kPeriod_s));
   EXPECT_NEAR(watch.rested_s(), 0.1, 1e-12);
-  EXPECT_TRUE(watch.Take(moving, kPeriod_s)) << "the next one";
+  EXPECT_TRUE(watch.Take(moving, kPeriod_s)) << "the next move";
   watch.Reset();
   EXPECT_TRUE(std::isinf(watch.rested_s()));
 }

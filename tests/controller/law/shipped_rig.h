@@ -10,24 +10,24 @@
 
 namespace flexarm {
 
-/// The rig of config/hil.toml: the one that golden.json speaks of.
+/// The rig of config/hil.toml: golden.json is for this rig.
 inline RigConfig ShippedRig(const std::vector<std::string>& overrides = {}) {
   return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", overrides);
 }
 
-/// Its design, made once.
+/// Its design, computed once.
 inline const Design& ShippedDesign() {
   static const Design design = DesignController(ShippedRig());
   return design;
 }
 
-/// Its design for a law that follows a path, made once.
+/// Its design for a law that follows a path, computed once.
 inline const Design& ShippedPathDesign() {
   static const Design design = DesignController(ShippedRig({"controller.name=gain-scheduled"}));
   return design;
 }
 
-/// What its references must keep.
+/// The limits of its references.
 inline const MotionLimits& ShippedLimits() {
   static const MotionLimits limits = MotionLimitsOf(ShippedRig());
   return limits;

@@ -14,9 +14,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr std::array<double, 2> kWide = {1e9, 1e9};  // limits that are never met
+constexpr std::array<double, 2> kWide = {1e9, 1e9};  // limits that are never reached
 
-// A state a few degrees and millimetres off a reference in full motion.
+// A state a few degrees and millimetres away from a moving reference.
 struct Sample {
   StateVector x = StateVector::Zero(12);
   ReferenceSample reference{};
@@ -64,8 +64,8 @@ MatrixXd KI0() {
   return K_I;
 }
 
-// The loop as the thesis writes it, with the torque on both sides: z = F e + G (u* + K_e C_p e - u)
-// and u = K_I r + z (r' Tbar r). Returns what is left of the second when u is put into the first.
+// The loop as in the thesis, with the torque on both sides: z = F e + G (u* + K_e C_p e - u) and
+// u = K_I r + z (r' Tbar r). Returns the residual of the second equation with the first inserted.
 Vector2d LoopMismatch(const Sample& s, const MatrixXd& K_I, const ControllerConfig& config,
                       const Vector2d& u) {
   const Design& d = ShippedDesign();
@@ -76,8 +76,8 @@ Vector2d LoopMismatch(const Sample& s, const MatrixXd& K_I, const ControllerConf
   return K_I * s.r() + rho * z - u;
 }
 
-// The mismatch is round-off times G rho, about 1e2; a loop solved with the last u misses by
-// newtons.
+// The residual is round-off times G rho, about 1e2; a loop solved with the previous u has residuals
+// of newton metres.
 TEST(TrackingLaw, TheTorqueSatisfiesItsOwnAlgebraicLoop) {
   for (const double gain : {1e-4, 0.01, 1.0}) {
     for (const FeedforwardSign sign : {FeedforwardSign::kPrinted, FeedforwardSign::kCorrected}) {
@@ -108,7 +108,7 @@ TEST(TrackingLaw, TheGainAdaptsByTheOuterProductAndLeaks) {
           config.adaptation_gain * v * s.r().transpose();
     EXPECT_NEAR(law.adaptive_gain_change(), (K_I - KI0()).norm(), 1e-9);
   }
-  EXPECT_GT(law.adaptive_gain_change(), 1e-3) << "nothing adapted: the test says nothing";
+  EXPECT_GT(law.adaptive_gain_change(), 1e-3) << "nothing adapted: the test is inconclusive";
 }
 
 // T = Tbar = 0 leaves K_I(0) r, whatever vartheta is: LQR around the command generator's
@@ -129,7 +129,7 @@ TEST(TrackingLaw, WithoutAdaptationGainItIsLqrWithCgt) {
 }
 
 // u = feedforward + feedback, written out here for each law that does not adapt.
-TEST(TrackingLaw, EveryFixedLawIsItsFeedforwardAndItsFeedback) {
+TEST(TrackingLaw, EveryNonAdaptiveLawIsFeedforwardPlusFeedback) {
   const Sample s;
   const Design& d = ShippedDesign();
   ControllerConfig config = Controller();
@@ -180,8 +180,8 @@ TEST(TrackingLaw, WithAdaptationOffItIsTheSameFeedforwardAndFeedback) {
   EXPECT_EQ(law.adaptive_gain_change(), 0.0);
 }
 
-// rho -> infinity: u -> u* + (I + G^-1) C_p e, from v -> 0 in the loop. The rest falls as 1 / rho:
-// at a gain of 1e8 it is 1e-8 of some newton metres.
+// rho -> infinity: u -> u* + (I + G^-1) C_p e, from v -> 0 in the loop. The remainder falls as 1 /
+// rho: at a gain of 1e8 it is 1e-8 of some newton metres.
 TEST(TrackingLaw, TheProportionalPartRaisesTheLoopGainUpToOnePlusOneOverG) {
   ControllerConfig config = Controller();
   config.adaptation_gain = 1e8;
@@ -194,8 +194,8 @@ TEST(TrackingLaw, TheProportionalPartRaisesTheLoopGainUpToOnePlusOneOverG) {
   EXPECT_LT((u - limit).norm(), 1e-5 * limit.norm());
 }
 
-// At rest on a reference at rest at zero r vanishes: nothing but the leak is left.
-TEST(TrackingLaw, TheLeakReturnsTheGainToItsStart) {
+// At rest on a zero reference r vanishes: only the leakage remains.
+TEST(TrackingLaw, TheLeakageReturnsTheGainToItsInitialValue) {
   const ControllerConfig config = Controller();
   TrackingLaw law = LawWith(config);
   const Sample s;
@@ -210,7 +210,8 @@ TEST(TrackingLaw, TheLeakReturnsTheGainToItsStart) {
   }
 }
 
-// An error just below the dead zone teaches nothing, the leak goes on; just above it does.
+// An error just below the dead zone does not adapt, the leakage continues; one just above it
+// adapts.
 TEST(TrackingLaw, AnErrorInsideTheDeadZoneDoesNotAdapt) {
   const Sample s;
   const double y_e = s.r().head(2).norm();
@@ -223,8 +224,8 @@ TEST(TrackingLaw, AnErrorInsideTheDeadZoneDoesNotAdapt) {
   }
 }
 
-// Driven by the same error for ever the gain stays on the ball around its start, and its direction
-// is that of the update without a bound.
+// Under a constant error the gain stays on the ball around its initial value, in the direction of
+// the update without a bound.
 TEST(TrackingLaw, TheGainNeverLeavesItsBound) {
   const Sample s;
   ControllerConfig config = Controller();
@@ -238,11 +239,12 @@ TEST(TrackingLaw, TheGainNeverLeavesItsBound) {
     bounded.Compute(s.x, s.reference, true);
     largest = std::max(largest, bounded.adaptive_gain_change());
   }
-  EXPECT_NEAR(largest, config.adaptation_bound, 1e-12) << "the bound was never met, or left";
+  EXPECT_NEAR(largest, config.adaptation_bound, 1e-12)
+      << "the bound was not reached, or was exceeded";
 }
 
-// Sobel's theorem on the nominal plant, where u_c is the ideal torque: V of (7.11) falls in every
-// sample. T = 1, a hundred times the shipped one, so that the gains take part of it.
+// Sobel's theorem on the nominal plant, where u_c is the ideal torque: V of (7.11) decreases in
+// every sample. T = 1, a hundred times the shipped one, so that the gains take part of it.
 TEST(TrackingLaw, TheLyapunovFunctionFallsOnTheNominalPlant) {
   const Design& d = ShippedDesign();
   ControllerConfig config = Controller();
@@ -269,7 +271,7 @@ TEST(TrackingLaw, TheLyapunovFunctionFallsOnTheNominalPlant) {
     x = d.A * x + d.B * Torque(result);
     x_m = d.Am * x_m + d.Bm * u_m;
   }
-  EXPECT_GT(law.adaptive_gain_change(), 1e-3) << "nothing adapted: the test says little";
+  EXPECT_GT(law.adaptive_gain_change(), 1e-3) << "nothing adapted: the test is inconclusive";
   EXPECT_LT(before, 0.2 * first);
 }
 

@@ -1,4 +1,4 @@
-// What an accelerometer at the tip brings to the law that finds the payload: the same moves,
+// Effect of an accelerometer at the tip on the law that estimates the payload: the same moves,
 // payloads and seeds with and without it.
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ namespace {
 
 using Overrides = std::vector<std::string>;
 
-// 5 g in 14 bits, 6 mm/s^2 a count; 24 mm/s^2 of noise: an ordinary MEMS part, 0.1 to 0.2 mg in a
-// root of a hertz, up to 200 Hz.
+// 5 g in 14 bits, 6 mm/s^2 a count; 24 mm/s^2 of noise: an ordinary MEMS part, 0.1 to 0.2 mg per
+// root hertz, up to 200 Hz.
 const Overrides kSensor = {
     "sensors.tip_accelerometer={range_m_s2=50, converter_bits=14, noise_counts=4, filter_hz=200}",
     "estimator.payload.tip_extra_sigma_m_s2=0.2"};
@@ -100,17 +100,17 @@ class TipAccelerometer : public testing::Test {
   const RigConfig rig_ = ShippedRig();
 };
 
-// What it is for: 0.4 s after the start of the first move the payload is known at least twice as
-// well, whatever the plant; at 0.2 s the filters of the gauges have hardly answered, and it shows
-// already. As designed for, the error that is left is a fourth.
-TEST_F(TipAccelerometer, FindsThePayloadSooner) {
+// The purpose: 0.4 s after the start of the first move the error of the payload is at most half of
+// that without the sensor, for every plant; at 0.2 s the filters of the gauges have hardly
+// responded, and the effect is visible already. On the nominal plant the error is a fourth.
+TEST_F(TipAccelerometer, EstimatesThePayloadSooner) {
   for (const char* name : {"nominal", "friction-x3", "soft-links", "backlash"}) {
     const Compared found = Compare(name, VariantOverrides(rig_, name));
     EXPECT_LT(found.with.payload_error_kg[1], 0.9 * found.without.payload_error_kg[1]) << name;
     EXPECT_LT(found.with.payload_error_kg[2], 0.5 * found.without.payload_error_kg[2]) << name;
     EXPECT_EQ(found.with.tripped, 0) << name;
-    // What it is not for: the tip comes to rest as before. The mean of 24 other
-    // seeds differs by 0.15 mm; twice that is allowed.
+    // The settling at the end does not change: the tip comes to rest as before. The mean of 24
+    // other seeds differs by 0.15 mm; twice that is allowed.
     EXPECT_GE(found.with.in_time, found.without.in_time - 2) << name;
     EXPECT_NEAR(found.with.residual_mm, found.without.residual_mm, 0.3) << name;
   }

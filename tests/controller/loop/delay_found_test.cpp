@@ -1,5 +1,5 @@
-// A delay of whole samples that nobody declared, found by the estimator `ekf-payload` and reckoned
-// with from then on; and that none is found where there is none. All figures: docs/timing.md.
+// An undeclared delay of whole samples, estimated by `ekf-payload` and compensated from then on;
+// and none is found where there is none. All figures: docs/timing.md.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ struct Undeclared {
   std::vector<std::string> config;
 };
 
-// The simulated transport takes what the loop is not told of.
+// The simulated transport has the delay that is not declared to the loop.
 const Undeclared kMore{"OneMore", 1, {"sim.transport_delay_ms=20"}};
 const Undeclared kLess{"OneLess", -1, {"loop.actuation_delay_ms=20"}};
 const Undeclared kTwoMore{"TwoMore", 2, {"sim.transport_delay_ms=40"}};
@@ -94,7 +94,7 @@ DelayOutcome RunOf(const Undeclared& rig, const std::string& law, std::uint64_t 
   return out;
 }
 
-// Of all runs: what is counted, and the latest.
+// Counts over all runs, and the extreme instants.
 struct Summary {
   int found = 0, found_in_first = 0, changes = 0, tripped = 0, settled = 0, settled_later = 0;
   double earliest_s = std::numeric_limits<double>::infinity(), found_s = 0.0;
@@ -135,15 +135,16 @@ TEST_P(UndeclaredDelay, IsFoundAndTheLaterMovesSettleInTime) {
   const auto& [law, rig] = GetParam();
   const Summary all = RunAll(rig, law, true), blind = RunAll(rig, law, false);
   EXPECT_EQ(all.found, kDelayRuns);
-  // Torques that act earlier do little harm, and show as little.
+  // Torques that act earlier do little harm, and have little effect on the innovations.
   EXPECT_GE(all.found_in_first, rig.samples > 0 ? kDelayRuns : 16);
-  EXPECT_EQ(all.changes, kDelayRuns) << "one a run: none is taken back";
+  EXPECT_EQ(all.changes, kDelayRuns) << "one per run: none is reversed";
   EXPECT_EQ(all.tripped, 0);
   EXPECT_GE(all.settled, kDelayRuns - 1);
   EXPECT_EQ(all.settled_later, kDelayRuns);
   EXPECT_EQ(blind.changes, 0);
   if (rig.samples > 0) {
-    EXPECT_LT(blind.settled_later, kDelayRuns) << "a delay that does no harm shows nothing";
+    EXPECT_LT(blind.settled_later, kDelayRuns)
+        << "this delay does no harm: the test is inconclusive";
   }
 }
 
@@ -156,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(LawsAndDelays, UndeclaredDelay,
                                   std::string(std::get<1>(of.param).name);
                          });
 
-// A minute of rest with noise and a hold on the last set-point, with and without play.
+// A minute of rest with noise at the last set-point, with and without backlash.
 TEST(UnknownDelay, IsNotFoundAtRest) {
   Experiment rest = ShippedExperiment("benchmark-waypoints");
   rest.move = {{.start_s = 60.0, .duration_s = 2.0, .to_deg = {0.0, 0.1}}};
@@ -176,7 +177,7 @@ TEST(UnknownDelay, IsNotFoundAtRest) {
   }
 }
 
-// By how many samples a plan has gone on between two steps, by its own rates.
+// Number of samples by which a plan advances between two steps, by its own rates.
 double SamplesOn(const PlanSample& before, const PlanSample& now) {
   using Joints = Eigen::Matrix<double, 6, 1>;
   const Joints by = Joints::Map(now.x.data()) - Joints::Map(before.x.data());
@@ -192,9 +193,9 @@ INSTANTIATE_TEST_SUITE_P(Laws, DelayFound, testing::Values("gain-scheduled", "re
                                                                 : "RecedingHorizon";
                          });
 
-// Found, the reference and the plan are read off a sample later, and what was recorded replays to
-// the bit. The payload is that which the estimator begins with: with a heavy one the plan that the
-// new delay reads is another than the one before, and tells nothing.
+// Once the delay is found, the reference and the plan are read one sample later, and the record
+// replays bit by bit. The payload is the initial value of the estimator: with a heavy one the plan
+// after the change differs from the one before, and the comparison is inconclusive.
 TEST_P(DelayFound, MovesTheReferenceAndReplays) {
   StackRun run(RigWith(kMore.config, GetParam()), ShippedExperiment("benchmark-waypoints"), 0.2);
   run.Run(9'000'000'000);
@@ -208,13 +209,13 @@ TEST_P(DelayFound, MovesTheReferenceAndReplays) {
     ASSERT_EQ(std::memcmp(&output, &record.output, sizeof(output)), 0) << record.input.tick;
     if (found_at == 0 && record.output.delay_found == 1) found_at = k;
     if (k == 0 || !IsRunning(record) || !IsRunning(run.tick[k - 1])) continue;
-    // From one sample to the next the path goes on by one; once by two.
+    // From one sample to the next the path advances by one sample; once by two.
     const StepInput &before = run.tick[k - 1].input, &now = record.input;
     if (std::memcmp(&now.path[0], &before.path[1], sizeof(RigidPoint)) == 0) continue;
     ++apart;
     EXPECT_EQ(k, found_at + 1);
     EXPECT_EQ(std::memcmp(&now.path[0], &before.path[2], sizeof(RigidPoint)), 0);
-    EXPECT_EQ(now.acts_late_ns, before.acts_late_ns) << "what is known stays what it is";
+    EXPECT_EQ(now.acts_late_ns, before.acts_late_ns) << "the declared delay does not change";
     if (GetParam() != "receding-horizon") continue;
     EXPECT_EQ(now.planned, 1);
     EXPECT_NEAR(SamplesOn(before.plan, now.plan), 2.0, 0.2);
@@ -224,8 +225,8 @@ TEST_P(DelayFound, MovesTheReferenceAndReplays) {
   EXPECT_GT(found_at, 0u);
 }
 
-// It is a finding of one arming: the next begins with what is known.
-TEST(UnknownDelay, IsForgottenWhenTheArmIsArmedAgain) {
+// The result belongs to one arming: the next begins with the declared delay.
+TEST(UnknownDelay, IsResetWhenTheArmIsArmedAgain) {
   Experiment experiment = ShippedExperiment("benchmark-waypoints");
   StackRun run(RigWith(kMore.config, "gain-scheduled"), experiment, 0.3);
   run.Run(5'000'000'000);
@@ -233,7 +234,7 @@ TEST(UnknownDelay, IsForgottenWhenTheArmIsArmedAgain) {
   ASSERT_EQ(run.Ask(RequestKind::kStop), Refusal::kNone);
   while (run.permit().state == SafetyState::kStopping) run.Run(run.now_ns() + 20'000'000, false);
   ASSERT_EQ(run.permit().state, SafetyState::kArmed);
-  EXPECT_EQ(run.tick.back().output.delay_found, 1) << "a second run would go on with it";
+  EXPECT_EQ(run.tick.back().output.delay_found, 1) << "a second run would keep it";
   ASSERT_EQ(run.Ask(RequestKind::kDisarm), Refusal::kNone);
   ASSERT_EQ(run.Ask(RequestKind::kArm), Refusal::kNone);
   run.Run(run.now_ns() + 100'000'000, false);

@@ -1,5 +1,5 @@
-// The loop with its torque at other instants than the next sampling instant: put out at once, or
-// delayed by bus and drive, declared to the prediction or not. All figures: docs/timing.md.
+// The loop with torques that act at other instants than the next sampling instant: output at once,
+// or delayed by bus and drive, declared to the prediction or not. All figures: docs/timing.md.
 
 #include <gtest/gtest.h>
 
@@ -24,11 +24,11 @@ Runs Delayed(double payload_kg, int delay_ms, int declared_ms) {
 
 class DeclaredDelay : public testing::TestWithParam<int> {};  // ms: 0.3, 0.7, 1 and 1.7 samples
 
-// With the payload of the design the model knows what the torques on their way will do: what is
-// left is that friction and noise are seen later. Measured, rms th1 at 0, 6, 14, 20 and 34 ms:
+// With the payload of the design the model predicts the effect of the torques on their way: what
+// remains is a later reaction to friction and noise. Measured, rms th1 at 0, 6, 14, 20 and 34 ms:
 // 0.75, 0.79, 0.80, 0.80, 0.86 deg, th2 1.09, 1.10, 1.10, 1.11, 1.25; not declared 0.81,
 // 0.96, 1.20, 1.96 and 1.05, 1.15, 1.37, 2.29.
-TEST_P(DeclaredDelay, IsPredictedAway) {
+TEST_P(DeclaredDelay, IsCompensatedByPrediction) {
   const Runs none = Delayed(0.1, 0, 0), declared = Delayed(0.1, GetParam(), GetParam());
   EXPECT_EQ(declared.tripped, 0);
   EXPECT_LE(Median(declared.rms1_deg), 1.2 * Median(none.rms1_deg));
@@ -42,16 +42,16 @@ TEST_P(DeclaredDelay, IsPredictedAway) {
 INSTANTIATE_TEST_SUITE_P(Milliseconds, DeclaredDelay, testing::Values(6, 14, 20, 34));
 
 // A tenth of the payload, rms th1 and residual: 1.23 deg and 3.1 mm, not declared 1.74 and 17.9.
-TEST(Delay, OfOneSampleUnknownShakesALightArmAndDeclaredDoesNot) {
+TEST(Delay, OfOneSampleUndeclaredExcitesALightArmAndDeclaredDoesNot) {
   const Runs declared = Delayed(0.01, 20, 20), unknown = Delayed(0.01, 20, 0);
   EXPECT_EQ(declared.tripped, 0);
   EXPECT_GT(Median(unknown.rms1_deg), 1.3 * Median(declared.rms1_deg));
   EXPECT_GT(Median(unknown.residual_mm), 3.0 * Median(declared.residual_mm));
 }
 
-// Earlier torques can only help; the reference stays with the torques, so the tracking is judged at
-// the right instants. Measured, rms th1 and th2 at 0.01 kg: 1.08 0.71 at the next tick, 0.95 0.39
-// after 5 ms; at 0.2 kg 0.94 2.66 and 0.96 2.14.
+// Earlier torques can only help; the reference is aligned with the torques, so the tracking error
+// is evaluated at the right instants. Measured, rms th1 and th2 at 0.01 kg: 1.08 0.71 at the next
+// tick, 0.95 0.39 after 5 ms; at 0.2 kg 0.94 2.66 and 0.96 2.14.
 TEST(OutputAtOnce, TracksAtLeastAsWellAsTheNextTick) {
   for (const double payload_kg : {0.01, 0.2}) {
     const Runs next_tick = RunSeeds(payload_kg),
@@ -68,7 +68,7 @@ TEST(OutputAtOnce, TracksAtLeastAsWellAsTheNextTick) {
 }
 
 // Twenty channels a quarter of a millisecond apart: the bars of the loop at 0.1 kg still hold.
-TEST(Skew, OfAMultiplexerIsTakenOut) {
+TEST(Skew, OfAMultiplexerIsCompensated) {
   const Runs runs = RunSeeds(0.1, {"sim.channel_skew_us=250"});
   std::printf("  skew: rms %.3f %.3f  residual %.2f mm\n", Median(runs.rms1_deg),
               Median(runs.rms2_deg), Median(runs.residual_mm));

@@ -1,4 +1,5 @@
-// Same config and seed, same bytes; and the recorded inputs alone give the outputs again.
+// The same config and seed give the same bytes, and the recorded inputs alone give the same
+// outputs.
 
 #include <gtest/gtest.h>
 
@@ -54,8 +55,8 @@ void ExpectReplays(const std::vector<std::string>& overrides) {
 
 TEST(Determinism, RecordedInputsThroughAFreshStepGiveTheSameBytes) { ExpectReplays({}); }
 
-// Its design goes through the log's text: the filter's model is not computed again. Plans come from
-// the recorded inputs: the planner is not asked again.
+// The design passes through the log's text: the filter's model is not computed again. Plans come
+// from the recorded inputs: the planner does not run again.
 void ExpectThePayloadReplays(const std::vector<std::string>& overrides, bool plans) {
   constexpr std::int64_t kTwoMovesNs = 11'000'000'000;
   StackRun run(ShippedRig(overrides), ShippedExperiment("benchmark-waypoints"));
@@ -74,13 +75,13 @@ void ExpectThePayloadReplays(const std::vector<std::string>& overrides, bool pla
   EXPECT_EQ(planned > 100, plans) << planned;
 }
 
-TEST(Determinism, SoDoTheLawsThatFindThePayload) {
+TEST(Determinism, RecordedInputsReplayWithThePayloadLawsToo) {
   ExpectThePayloadReplays({"controller.name=gain-scheduled"}, false);
   ExpectThePayloadReplays({"controller.name=receding-horizon"}, true);
 }
 
-// Lost frames too: they have no reading of the accelerometer either.
-TEST(Determinism, SoDoesItWithAnAccelerometerAtTheTip) {
+// With lost frames as well: these have no reading of the accelerometer either.
+TEST(Determinism, RecordedInputsReplayWithATipAccelerometerToo) {
   ExpectThePayloadReplays({"controller.name=gain-scheduled", "sim.lost_frame_fraction=0.1",
                            "sensors.tip_accelerometer={range_m_s2=50, converter_bits=14, "
                            "noise_counts=4, filter_hz=200}",
@@ -103,7 +104,7 @@ TEST(Determinism, RecordedInputsReplayWithOtherOutputsAndSkewToo) {
                  "sim.channel_skew_us=250", "sim.lost_frame_fraction=0.1"});
 }
 
-// The design in the log is what replay runs with: it must be the same after a trip through JSON.
+// Replay uses the design in the log: it must not change on the way through JSON.
 TEST(Determinism, RecordedInputsReplayWithTheDesignFromItsJson) {
   const auto run = Recorded();
   const std::string json = DesignToJson(run->design(), DesignHash(run->config()));

@@ -1,4 +1,4 @@
-// A minute of moves without a pause: the adaptation must not wander off.
+// A minute of moves without a pause: the adapted gains must not drift.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ Experiment Cycling() {
 }
 
 // The base command ten times over. The design study's bars: |K_I - K_I(0)| < 0.3 (here after every
-// cycle: in the midst of a move its own trace goes beyond that), and the rms error of the last
+// cycle: during a move it is larger), and the rms error of the last
 // cycle within 10 % of the first's. Measured: 0.05 at most after a cycle, 0.55 within one; rms
 // 0.753 and 0.748, 1.104 and 1.103 deg.
 TEST(Endurance, AMinuteOfMovesLeavesTheGainsAndTheErrorsAsTheyWere) {

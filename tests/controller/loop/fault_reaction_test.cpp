@@ -1,5 +1,5 @@
-// Switches, emergency stop, and frozen threads while the arm runs: how fast, by what name, and that
-// nothing comes back by itself.
+// Switches, emergency stop and frozen threads while the arm runs: the reaction time, the name of
+// the cause, and no recovery without the operator.
 //
 // Torque is observed at the frames: their applied torque is the mean over 20 slices of 1 ms, and
 // the command is constant over a period, so mean / command * 20 is the number of milliseconds with
@@ -52,7 +52,7 @@ const SafetyRecord& Trip(const StackRun& run) {
   return found != run.safety.end() ? *found : run.safety.back();
 }
 
-// Tripped at the end with the cause it tripped with, and never left in between.
+// Tripped at the end with the first cause, and never left in between.
 void ExpectLatched(StackRun* run, TripCause cause) {
   const SafetyRecord& trip = Trip(*run);
   EXPECT_STREQ(Name(trip.after.cause), Name(cause));
@@ -87,9 +87,9 @@ struct SwitchCase {
 
 class SwitchReaction : public testing::TestWithParam<SwitchCase> {};
 
-// The level changes at 0.317 s, between two frames. Relay and permit are written in the safety
-// task's same tick, so the record of the trip is the relay's instant.
-TEST_P(SwitchReaction, OpensTheRelayAtTheNextTickAndTakesTheTorqueWithinTwoMilliseconds) {
+// The level changes at 0.317 s, between two frames. The safety task writes relay and permit in the
+// same tick, so the instant of the trip record is that of the relay.
+TEST_P(SwitchReaction, OpensTheRelayAtTheNextTickAndRemovesTheTorqueWithinTwoMilliseconds) {
   EventRun run(ShippedRig(), LineEvent(0.317, GetParam().line));
   ExpectLatched(&run, GetParam().cause);
   EXPECT_EQ(Trip(run).due_ns, run.event_ns() + kMs);
@@ -118,9 +118,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 class FreezePhase : public testing::TestWithParam<int> {};  // ms into the control period
 
-// A frozen plant sends neither frames nor reports. Who notices first, the safety task (stale
-// frame) or the loop (two periods without a reading), depends on the phase; both within two periods
-// and 2 ms.
+// A frozen plant sends neither frames nor reports. Whether the safety task (stale frame) or the
+// loop (two periods without a reading) detects it first depends on the phase; both react within two
+// periods and 2 ms.
 TEST_P(FreezePhase, OfThePlantTripsWithinTwoPeriodsAndTwoMilliseconds) {
   const double at_s = 0.3 + 1e-3 * GetParam();
   EventRun run(ShippedRig(), FreezeEvent(at_s, FreezeTarget::kPlant));
@@ -135,7 +135,7 @@ TEST_P(FreezePhase, OfThePlantTripsWithinTwoPeriodsAndTwoMilliseconds) {
   ExpectLatched(&run, trip.after.cause);
 }
 
-// A frozen control thread is noticed by its heartbeat, and its last command dies of age.
+// A frozen control thread is detected by its heartbeat, and its last command expires.
 TEST_P(FreezePhase, OfTheControlTaskTripsWithinTwoPeriodsAndTwoMilliseconds) {
   const double at_s = 0.3 + 1e-3 * GetParam();
   EventRun run(ShippedRig(), FreezeEvent(at_s, FreezeTarget::kControl));
@@ -152,9 +152,9 @@ TEST_P(FreezePhase, OfTheControlTaskTripsWithinTwoPeriodsAndTwoMilliseconds) {
 INSTANTIATE_TEST_SUITE_P(Milliseconds, FreezePhase, testing::Values(0, 1, 7, 9, 10, 11, 19));
 
 // The cause has gone, the arm is at rest, the button is pressed: still only the operator's reset
-// leaves Tripped, and it leads to Idle. Each of the two keys alone is refused with its reason.
+// leaves Tripped, towards Idle. Each of the two resets alone is refused with its reason.
 TEST(TripReset, NeedsTheButtonAndTheOperatorAndLeadsToIdle) {
-  // At 2.6 s, in the rest between the moves: the arm stops soon without torque.
+  // At 2.6 s, in the rest between the moves: the arm soon comes to rest without torque.
   EventRun run(ShippedRig(), LineEvent(2.6, Line::kEmergencyStop));
   ExpectLatched(&run, TripCause::kEmergencyStop);
 
@@ -172,20 +172,20 @@ TEST(TripReset, NeedsTheButtonAndTheOperatorAndLeadsToIdle) {
   EXPECT_EQ(run.permit().state, SafetyState::kIdle) << "nothing arms by itself";
   EXPECT_EQ(run.tick.back().input.applied_torque_nm[0], 0.0);
 
-  // And the arm can be used again.
+  // The arm can be used again.
   EXPECT_EQ(run.Ask(RequestKind::kArm), Refusal::kNone);
   EXPECT_EQ(run.permit().state, SafetyState::kArmed);
 }
 
-// Put out at once or a period and a half later, a torque is taken away as fast.
+// The torque is removed equally fast if it is output at once or a period and a half later.
 class OutputTimingReaction : public testing::TestWithParam<std::vector<std::string>> {};
 
-TEST_P(OutputTimingReaction, ASwitchTakesTheTorqueWithinTwoMilliseconds) {
+TEST_P(OutputTimingReaction, ASwitchRemovesTheTorqueWithinTwoMilliseconds) {
   EventRun run(ShippedRig(GetParam()), LineEvent(0.317, Line::kEmergencyStop));
   ExpectLatched(&run, TripCause::kEmergencyStop);
   EXPECT_EQ(Trip(run).due_ns, run.event_ns() + kMs);
-  // The mean of the period in which it fell is that of its milliseconds until two after the event;
-  // then there is none.
+  // The mean over the period of the event includes the milliseconds until two after the event;
+  // later means are zero.
   const std::int64_t period_ns = run.grid().period_ns;
   for (const TickRecord& record : run.tick) {
     if (record.input.sampling_instant_ns < run.event_ns() + 2 * kMs + period_ns) continue;

@@ -1,5 +1,5 @@
-// What the design study reports not to work must not work here either: a loop that survives these
-// is another loop than the one that was studied.
+// What does not work in the design study must not work here either: a loop that survives these
+// cases is another loop than the one studied.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ int Failures(const Runs& runs, double bar1_deg, double bar2_deg) {
   return failures;
 }
 
-// One sample of delay that nobody predicts: at 0.01 kg every seed diverges, that is trips or at
+// One sample of delay without prediction: at 0.01 kg every seed diverges, that is trips or at
 // least doubles its rms. (Study: 5 of 12 trip, the others end at 16 and 13 deg; here
 // all 11 trip on the bending of link 1, rms 3.4 and 2.1 deg until then.)
 TEST(NegativeResults, WithoutPredictionTheLightArmDiverges) {

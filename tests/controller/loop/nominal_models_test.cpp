@@ -13,7 +13,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kFewSeeds = 3;  // what is told apart here differs by far more than seeds do
+constexpr int kFewSeeds = 3;  // the differences here are far larger than those between seeds
 
 Runs RunsWith(const std::string& nominal, double payload_kg,
               std::vector<std::string> overrides = {}) {
@@ -39,9 +39,9 @@ TEST(T16, PerformsLikeR12) {
 }
 
 // Finding 2: T12 is fragile at alpha = 3, most with little payload, where it bends link 1 to its
-// limit (2 of 3 runs; T16 1.24 deg). With 0.1 kg it gets through, at nearly three times R12's
+// limit (2 of 3 runs; T16 1.24 deg). With 0.1 kg it completes, at nearly three times R12's
 // error.
-TEST(T12, AtAlphaThreeTripsWithLittlePayloadAndIsPoorWithItsOwn) {
+TEST(T12, AtAlphaThreeTripsWithLittlePayloadAndTracksItsOwnPoorly) {
   const Runs light = RunsWith("T12", 0.01);
   EXPECT_GE(light.tripped, 1);
   EXPECT_NE(std::count(light.trip.begin(), light.trip.end(), TripCause::kBendingStrain1), 0);
@@ -49,7 +49,7 @@ TEST(T12, AtAlphaThreeTripsWithLittlePayloadAndIsPoorWithItsOwn) {
   EXPECT_GT(Median(RunsWith("T12", 0.1).rms2_deg), 2.0 * Median(RunsWith("R12", 0.1).rms2_deg));
 }
 
-// Finding 4: T12 is best at alpha 1.5 .. 2.5. There it carries what it does not at 3.
+// Finding 4: T12 is best at alpha 1.5 .. 2.5, where it completes with payloads that trip it at 3.
 TEST(T12, AtAlphaTwoCarriesEveryPayloadOfTheThesis) {
   for (const double payload_kg : {0.01, 0.1, 0.2}) {
     EXPECT_EQ(RunsWith("T12", payload_kg, {"controller.alpha=2.0"}).tripped, 0) << payload_kg;
@@ -57,8 +57,8 @@ TEST(T12, AtAlphaTwoCarriesEveryPayloadOfTheThesis) {
 }
 
 // Finding 2, T12*: with sensors and delay it survives alpha = 3 only behind a slow Kalman filter
-// that trusts its model: here every force on the links a hundredth of the shipped filter's.
-TEST(T12WithSearchedWeights, NeedsAFilterThatTrustsItsModel) {
+// with little process noise: here every force on the links is a hundredth of the shipped filter's.
+TEST(T12WithSearchedWeights, NeedsAFilterWithLittleProcessNoise) {
   const std::vector<std::string> searched = {
       "controller.torque_weight=4.5",
       "controller.state_weight=[28.5, 22, 0, 0, 0, 0.12, 0.28, 0.16, 0, 0, 14.8, 0]"};
@@ -71,7 +71,7 @@ TEST(T12WithSearchedWeights, NeedsAFilterThatTrustsItsModel) {
   EXPECT_LT(Median(runs.rms2_deg), 3.0) << "the design study's figure";
 }
 
-// One mode a link without springs: fewer states, and worse where the payload is not the design's.
+// One mode a link without joint springs: fewer states, and worse with other payloads than designed.
 TEST(R8, CarriesEveryPayloadWithoutATrip) {
   for (const double payload_kg : {0.0, 0.1, 1.0}) {
     EXPECT_EQ(RunsWith("R8", payload_kg).tripped, 0) << payload_kg;

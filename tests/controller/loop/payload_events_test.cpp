@@ -1,6 +1,6 @@
-// A load picked up or dropped, at rest and in mid-move, and moves without a pause: under the laws
-// that find the payload, on moves, payloads and seeds that nothing was tuned on
-// (docs/theory/payload.md 6.1). The numbers in the comments are gain-scheduled's, unless they say
+// A load picked up or dropped, at rest and during a move, and moves without a pause: under the laws
+// that estimate the payload, on moves, payloads and seeds that were not used for tuning
+// (docs/theory/payload.md 6.1). The numbers in the comments are for gain-scheduled unless stated
 // otherwise.
 
 #include <gtest/gtest.h>
@@ -25,21 +25,21 @@ namespace {
 constexpr double kSettled_s = 0.3;
 constexpr double kSettledWithin_m = 0.015;
 
-/// A run before it runs.
+/// Settings of a run.
 struct Scene {
   Experiment experiment{};
-  double payload_kg = 0.0;  // that the arm carries at first
+  double payload_kg = 0.0;  // initial payload of the arm
   std::uint64_t seed = 0;
 };
 
-/// What became of it.
+/// Result of a run.
 struct EventOutcome {
   TripCause trip = TripCause::kNone;
   bool completed = false;
   bool finite = true;
   bool torque_after_trip = false;
   double last_rate_rad_s = 0.0;  // of the hubs, over the last half second that was simulated
-  double farthest_deg = 0.0;     // that a hub ever was from zero
+  double farthest_deg = 0.0;     // largest angle of a hub from zero
   double settling_s = 0.0;       // t15, the largest over the rests
   std::uint32_t warnings = 0;
   std::vector<TickRecord> running;  // from sample -1 of the experiment on
@@ -98,12 +98,12 @@ EventOutcome PayloadEvents::RunOne(const Scene& scene) const {
     }
     if (record.input.safety_state == SafetyState::kRunning) {
       if ((record.output.payload_warnings & kPayloadModelMismatch) != 0) {
-        EXPECT_EQ(record.output.payload_kg, 0.0) << "taken for dropped";
+        EXPECT_EQ(record.output.payload_kg, 0.0) << "the payload is assumed lost";
       }
       out.warnings |= record.output.payload_warnings;
       out.running.push_back(record);
     }
-    // The frame after the trip still holds the torque of before it.
+    // The first frame after the trip still contains the torque before it.
     tripped = record.input.safety_state == SafetyState::kTripped ? tripped + 1 : 0;
     if (tripped > 2 && record.input.applied_torque_nm != std::array{0.0, 0.0}) {
       out.torque_after_trip = true;
@@ -132,7 +132,7 @@ void Print(const char* what, const Scene& scene, double load_kg, const EventOutc
   if (out.completed) {
     std::printf("t15 %.2f s", out.settling_s);
   } else {
-    std::printf("trips %s, a hub swings to %.0f deg", Name(out.trip), out.farthest_deg);
+    std::printf("trips %s, a hub reaches %.0f deg", Name(out.trip), out.farthest_deg);
   }
   std::printf("%s; %.3f kg found\n",
               (out.warnings & kPayloadModelMismatch) != 0 ? ", payload-model-mismatch" : "",
@@ -150,8 +150,8 @@ int Completed(const std::vector<EventOutcome>& outcomes) {
                                         [](const EventOutcome& out) { return out.completed; }));
 }
 
-// Completed, or tripped by name with the arm at rest and without torque; never out of numbers, and
-// never beyond the limit switches of kWideRig: a real arm meets its end stops there.
+// Completed, or tripped with a named cause, at rest and without torque; always finite, and never
+// beyond the limit switches of kWideRig, where a real arm has its end stops.
 void ExpectEnded(const EventOutcome& out) {
   constexpr double kSwitch_deg = 115.0;
   EXPECT_TRUE(out.finite);
@@ -162,8 +162,8 @@ void ExpectEnded(const EventOutcome& out) {
   EXPECT_LT(out.farthest_deg, kSwitch_deg);
 }
 
-// Both laws settle at the end of every move, picked up or dropped.
-TEST_P(PayloadEvents, ALoadThatChangesAtRestIsFoundOnTheNextMove) {
+// Both laws settle at the end of every move, after a pick-up and after a drop.
+TEST_P(PayloadEvents, ALoadChangedAtRestIsEstimatedOnTheNextMove) {
   std::vector<Scene> scenes;
   for (int i = 0; i < 16; ++i) {
     const bool picked_up = i < 8;
@@ -187,9 +187,9 @@ TEST_P(PayloadEvents, ALoadThatChangesAtRestIsFoundOnTheNextMove) {
   }
 }
 
-// All complete, settled in time. The sensors contradict the model from 0.25 kg on, 0.1 s after the
-// drop, and never below; the load is taken for dropped then.
-TEST_P(PayloadEvents, ALoadDroppedInMidMoveIsNoticed) {
+// All complete and settle in time. From 0.25 kg on the sensors contradict the model, 0.1 s after
+// the drop, and never below; the estimator then assumes that the load is lost.
+TEST_P(PayloadEvents, ALoadDroppedDuringAMoveIsDetected) {
   std::vector<Scene> scenes;
   for (int i = 0; i < 20; ++i) {
     Scene scene{.payload_kg = 0.05 * (i + 1), .seed = 6001 + static_cast<std::uint64_t>(i)};
@@ -211,9 +211,9 @@ TEST_P(PayloadEvents, ALoadDroppedInMidMoveIsNoticed) {
   EXPECT_GE(SettledInTime(outcomes), 19);
 }
 
-// At any time of a move, from a tenth to nine tenths of it: all of 100 complete, 95 in time and the
+// At any time of a move, from a tenth to nine tenths of it: all of 100 complete, 95 in time, the
 // latest after 0.38 s (receding-horizon: 97, 0.52 s).
-TEST_P(PayloadEvents, ALoadDroppedAtAnyTimeOfAMoveTripsNothing) {
+TEST_P(PayloadEvents, ALoadDroppedAtAnyTimeOfAMoveCausesNoTrip) {
   constexpr int kRuns = 100;
   std::vector<Scene> scenes;
   for (int i = 0; i < kRuns; ++i) {
@@ -236,9 +236,9 @@ TEST_P(PayloadEvents, ALoadDroppedAtAnyTimeOfAMoveTripsNothing) {
   EXPECT_GE(SettledInTime(outcomes), 90);
 }
 
-// All complete, settled after 1.12 s at most: the half of the move that is left is too short to
-// find the load and to lead it. Nothing contradicts the model.
-TEST_P(PayloadEvents, ALoadPickedUpInMidMoveIsCarriedOn) {
+// All complete and settle after 1.12 s at most: the remaining half of the move is too short for
+// estimating the load and moving it to rest. Nothing contradicts the model.
+TEST_P(PayloadEvents, ALoadPickedUpDuringAMoveCausesNoTrip) {
   std::vector<Scene> scenes;
   for (int i = 0; i < 8; ++i) {
     Scene scene{.seed = 7001 + static_cast<std::uint64_t>(i)};
@@ -283,7 +283,7 @@ std::array<double, 2> StraightTip_m(const ArmParameters& arm, const std::array<d
   return {L1 * std::cos(th1) + L2 * std::cos(gamma), L1 * std::sin(th1) + L2 * std::sin(gamma)};
 }
 
-// What a run believes, over some of its moves.
+// Estimates of a run over some of its moves.
 struct Belief {
   double payload_kg = 0.0;
   std::array<double, 2> friction_nm{};
@@ -304,9 +304,9 @@ Belief MeanBelief(const std::vector<TickRecord>& ends, std::size_t first, std::s
 // The next move begins at once, so t15 is 0 where the tip is within 15 mm of where the arm would
 // rest at the instant at which a move ends, and counts as usual after the last. Measured: 3.7 mm at
 // most. The payload is known to 0.03 kg after every move but the first; from the first ten moves
-// after that to the last ten the means shift by 0.012 kg, 0.01 and 0.005 N m, which is what they
-// scatter by, so twice that is allowed. 70 to 79 s.
-TEST_P(PayloadEvents, ThirtyMovesWithoutAPauseDoNotWearItOut) {
+// after that to the last ten the means shift by 0.012 kg, 0.01 and 0.005 N m, as much as they
+// scatter, so twice that is allowed. 70 to 79 s.
+TEST_P(PayloadEvents, ThirtyMovesWithoutAPauseCauseNoDrift) {
   constexpr std::size_t kMoves = 30, kSome = 10;
   std::vector<Scene> scenes;
   for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Targets that change in flight, through the real sensor chain, with payloads that nobody tells.
+// Targets that change during a move, through the real sensor chain, with undeclared payloads.
 
 #include <gtest/gtest.h>
 
@@ -28,9 +28,10 @@ RigConfig RigFor(const std::string& law) {
   return ShippedRig(overrides);
 }
 
-// Twice from rest to anywhere in +-60, +-90 deg, in 1 to 1.5 times the rule for 1 kg; and at 30 to
-// 70 % of that time to anywhere else, as fast as limits.plan_fraction permits with 1 kg. A target
-// that is refused there, about one in sixty, is drawn again. 1.5 s of rest after each pair.
+// Pairs of moves: from rest to anywhere in +-60, +-90 deg, in 1 to 1.5 times the duration rule for
+// 1 kg; and at 30 to 70 % of that time to anywhere else, as fast as limits.plan_fraction permits
+// with 1 kg. A target that is refused there, about one in sixty, is drawn again. 1.5 s of rest
+// after each pair.
 class RandomRetargets {
  public:
   RandomRetargets(const RigConfig& config, const Design& design, std::uint64_t seed)
@@ -92,7 +93,7 @@ class RandomRetargets {
 
 class RetargetRuns : public testing::TestWithParam<const char*> {};
 
-// The bar of the issue, and the design study's figure: settled when the move ends, 8 of 8.
+// The acceptance limit, and the design study's result: settled when the move ends, 8 of 8.
 TEST_P(RetargetRuns, TheTipIsAtRestWhenTheLastMoveEnds) {
   const RigConfig config = RigFor(GetParam());
   const Design design = DesignController(config);

@@ -1,5 +1,5 @@
-// The laws that find the payload, through the real sensor chain, on moves, payloads and seeds that
-// nothing was tuned on; and the laws of the thesis on the same moves.
+// The laws that estimate the payload, through the real sensor chain, on moves, payloads and seeds
+// that were not used for tuning; and the laws of the thesis on the same moves.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, FindsThePayload,
                                                                 : "RecedingHorizon";
                          });
 
-// The bars of the issue.
+// The acceptance limits.
 TEST_P(FindsThePayload, TheTipIsAtRestWhenTheMoveEnds) {
   const BenchmarkCell cell = RunMoves(GetParam(), "nominal", 1001, kLongSet);
   EXPECT_EQ(cell.group.completed, 24U);
@@ -59,7 +59,7 @@ TEST_P(FindsThePayload, TheTipIsAtRestWhenTheMoveEnds) {
 }
 
 // They settle in time in 4 and 1 of 24 runs (the design study: 4 % and 8 %).
-TEST(TheLawsOfTheThesis, AreNotAtRestByThenOnTheSameMoves) {
+TEST(TheLawsOfTheThesis, DoNotSettleInTimeOnTheSameMoves) {
   for (const char* law : {"sobel", "lqr-cgt"}) {
     EXPECT_LT(RunMoves(law, "nominal", 1001, kLongSet).rests.settled_in_time, 12U) << law;
   }
@@ -77,7 +77,7 @@ TEST_P(FindsThePayload, LightPayloadsStayOnTheReference) {
 }
 
 // The 15 plants of docs/theory/payload.md 6.3.
-TEST_P(FindsThePayload, OnPlantsThatItDoesNotKnow) {
+TEST_P(FindsThePayload, OnPlantsThatDifferFromTheModel) {
   std::size_t settled = 0, all = 0;
   for (const char* scenario :
        {"nominal", "backlash-0.2", "backlash", "friction-x3", "no-friction", "soft-joints",
@@ -113,36 +113,36 @@ Doubted DoubtsOf(double payload_kg, const Experiment& experiment,
   return out;
 }
 
-TEST(GainScheduled, APayloadWithinItsRangeIsFoundWithoutDoubt) {
+TEST(GainScheduled, APayloadWithinItsRangeIsEstimatedWithoutWarning) {
   const Doubted found = DoubtsOf(0.35, ShippedExperiment("benchmark-waypoints"));
   EXPECT_EQ(found.warnings, 0u);
   EXPECT_NEAR(found.payload_kg, 0.35, 0.03);
 }
 
-TEST(GainScheduled, APayloadBeyondItsRangeIsNamed) {
+TEST(GainScheduled, APayloadBeyondItsRangeRaisesAWarning) {
   const Doubted found =
       DoubtsOf(0.35, ShippedExperiment("benchmark-waypoints"), {"estimator.payload.max_kg=0.25"});
   EXPECT_EQ(found.warnings & kPayloadAtBound, kPayloadAtBound);
   EXPECT_LE(found.payload_kg, 0.25);
 }
 
-// Half a degree in two seconds: hardly as fast as the rate from which on the payload is learnt.
-TEST(GainScheduled, AMoveThatShowsNothingOfThePayloadIsNamed) {
+// Half a degree in two seconds: hardly as fast as the rate from which the payload is estimated.
+TEST(GainScheduled, AnUninformativeMoveRaisesAWarning) {
   Experiment creeping = ShippedExperiment("benchmark-waypoints");
   creeping.move = {{.start_s = 0.0, .duration_s = 2.0, .to_deg = {0.5, 0.5}}};
   const Doubted found = DoubtsOf(0.35, creeping);
   EXPECT_EQ(found.warnings, static_cast<std::uint32_t>(kPayloadNotObservable));
 }
 
-// The payload's walk takes sigma past that with which a move begins; nothing is wrong with that.
-TEST(GainScheduled, ALongRestRaisesNoDoubt) {
+// The random walk of the payload takes sigma past that at the start of a move; this is no fault.
+TEST(GainScheduled, ALongRestRaisesNoWarning) {
   Experiment resting = ShippedExperiment("benchmark-waypoints");
   resting.duration_s = 32.0;
   resting.move = {{.start_s = 0.0, .duration_s = 1.6, .to_deg = {30, 30}}};
   const Doubted found = DoubtsOf(0.35, resting, {}, 35'000'000'000);
   EXPECT_EQ(found.warnings, 0u);
-  EXPECT_GT(found.sigma_kg, kPayloadUncertain_kg) << "too short a rest: the test says nothing";
-  EXPECT_NEAR(found.payload_kg, 0.35, 0.03) << "flickering counts drag it";
+  EXPECT_GT(found.sigma_kg, kPayloadUncertain_kg) << "too short a rest: the test is inconclusive";
+  EXPECT_NEAR(found.payload_kg, 0.35, 0.03) << "flickering counts must not change it";
 }
 
 }  // namespace

@@ -12,17 +12,17 @@
 #include "controller/types/trip_cause.h"
 #include "tests/controller/law/shipped_rig.h"
 
-// Runs of the whole stack (Simulate), and what the bars are held against.
+// Runs of the complete stack (Simulate), and the quantities with acceptance limits (bars).
 
 namespace flexarm {
 
-inline constexpr int kSeeds = 11;  // the bars speak of seeds 1 to 11
+inline constexpr int kSeeds = 11;  // the bars are for seeds 1 to 11
 
 inline Experiment ShippedExperiment(const std::string& name = "square-30deg") {
   return LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/" + name + ".toml");
 }
 
-/// The simulated arm carries `payload_kg` from then on.
+/// Sets the payload of the simulated arm from `at_s` on.
 inline SimEvent PayloadEvent(double at_s, double payload_kg) {
   return {.at_s = at_s,
           .line = {},

@@ -15,12 +15,12 @@
 
 namespace flexarm {
 
-/// The stack in lock step with an operator that a test writes down, and everything it recorded.
+/// The stack in lock step with a scripted operator, and all its records.
 class StackRun {
  public:
   explicit StackRun(const RigConfig& config, const Experiment& experiment, double payload_kg = 0.1)
       : StackRun(config, config, experiment, payload_kg) {}
-  /// @param plant  the simulated rig, where that is not what the loop was designed for
+  /// @param plant  the simulated rig, if it differs from the rig of the design
   StackRun(const RigConfig& config, const RigConfig& plant, const Experiment& experiment,
            double payload_kg)
       : config_(config),
@@ -45,7 +45,7 @@ class StackRun {
     }
   }
 
-  /// Asks, waits 20 ms and returns the answer's refusal.
+  /// Sends a request, waits 20 ms and returns the refusal in the answer.
   Refusal Ask(RequestKind kind) {
     stack_.requests().Push({.kind = kind, .number = ++asked_, .not_before_ns = 0});
     Run(now_ns_ + 20'000'000, false);

@@ -1,5 +1,5 @@
-// What nothing was tuned on, against what the parameters were chosen on: the base command with
-// 0.01, 0.1 and 0.2 kg and seeds 1 to 11. The bar is 20 %.
+// Cases that were not used for tuning, compared with those that were: the base command with 0.01,
+// 0.1 and 0.2 kg and seeds 1 to 11. The acceptance limit is 20 %.
 //
 // Measured, rms of joints 1 and 2: with seeds 101 to 111 within 2 % of those of 1 to 11; 0.83 0.52
 // deg at 0.05 kg and 0.79 1.87 at 0.15 kg, against 1.08 1.09 and 0.94 2.66 of the payloads around
@@ -46,7 +46,7 @@ void ExpectWithin(const char* what, const std::array<double, 2>& unseen,
   for (std::size_t i = 0; i < 2; ++i) EXPECT_LE(unseen[i], kBar * seen[i]) << what;
 }
 
-TEST(Unseen, SeedsThatNothingWasTunedOnGiveTheSame) {
+TEST(Unseen, SeedsNotUsedForTuningGiveTheSame) {
   for (const double payload_kg : {0.01, 0.1, 0.2}) {
     const auto seen = Rms(payload_kg, 1, ShippedExperiment()),
                unseen = Rms(payload_kg, 101, ShippedExperiment());
@@ -56,7 +56,7 @@ TEST(Unseen, SeedsThatNothingWasTunedOnGiveTheSame) {
 }
 
 // Between two payloads that were tuned on, no worse than the worse of them.
-TEST(Unseen, PayloadsBetweenThoseTunedOnAreNoWorse) {
+TEST(Unseen, PayloadsBetweenThoseUsedForTuningAreNoWorse) {
   struct Between {
     double payload_kg, lighter_kg, heavier_kg;
   };
@@ -69,7 +69,7 @@ TEST(Unseen, PayloadsBetweenThoseTunedOnAreNoWorse) {
   }
 }
 
-// Another command bends the links less or more; its error is judged by the degrees that it turns.
+// Another command bends the links less or more; its error is scaled by the angle of the move.
 TEST(Unseen, AnotherCommandTracksAsWellForItsSize) {
   const auto seen = Rms(0.1, 1, ShippedExperiment());
   for (const std::array<double, 2> by_deg : {std::array{25.0, -20.0}, std::array{20.0, 35.0}}) {

@@ -28,10 +28,10 @@ TEST(LoopVariants, SobelTracksJointOneAQuarterBetterThanLqrWithCgt) {
   EXPECT_LE(Median(sobel.rms1_deg), 0.75 * Median(lqr.rms1_deg));
 }
 
-// The baselines, at the payload that they are designed for and beside it. Which law is better is
-// the benchmark's business; here each runs through the same loop to its end, and tracks. Measured,
-// rms th1 and th2 at 0.1 kg: sobel-original 0.76 1.00, lqg 5.3 3.7, pd 1.0 1.5 deg; lqr-um bends
-// link 1 beyond its strain limit at 0.1 kg (a trip), and gives 2.0 3.1 at 0.2 kg.
+// The baseline laws, at the payload of their design and next to it. The benchmark compares the
+// laws; here each completes in the same loop, and tracks. Measured, rms th1 and th2 at 0.1 kg:
+// sobel-original 0.76 1.00, lqg 5.3 3.7, pd 1.0 1.5 deg; lqr-um bends link 1 beyond its strain
+// limit at 0.1 kg (a trip), and gives 2.0 3.1 at 0.2 kg.
 TEST(LoopVariants, EveryLawRunsThroughTheSameLoop) {
   for (const char* law : {"sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd"}) {
     const Runs runs = RunSeeds(0.2, {std::string("controller.name=") + law}, 3);
@@ -43,7 +43,7 @@ TEST(LoopVariants, EveryLawRunsThroughTheSameLoop) {
 }
 
 // The thesis's estimator, without the gauge filter that makes its differences unstable (alpha 2, as
-// in the design study's table): the polynomial's way to the modes costs 3 % of the rms, measured.
+// in the design study's table): the polynomial fit increases the rms by 3 %, measured.
 TEST(LoopVariants, ThePolynomialFitTracksAsTheDirectOneDoes) {
   const auto runs = [](const char* estimator) {
     return RunSeeds(0.1, {std::string("estimator.name=") + estimator,
@@ -60,7 +60,7 @@ TEST(LoopVariants, ThePolynomialFitTracksAsTheDirectOneDoes) {
 // The base moves with seven seconds of rest after each: a shaped move ends 2.4 (ZV) and 4.7 s (ZVD)
 // later. Measured at 0.2 kg, rms th2 from the law's own reference: 4.2, 1.9 and 1.5 deg; peak
 // torque of joint 1 7.2, 3.2 and 2.9 N m.
-TEST(LoopVariants, ShapingTheReferenceKeepsAPdFromShakingTheLinks) {
+TEST(LoopVariants, ShapingTheReferenceReducesTheVibrationUnderPd) {
   Experiment slow = ShippedExperiment();
   slow.duration_s = 16.0;
   slow.doublet[1].start_s = 8.0;
@@ -79,8 +79,8 @@ TEST(LoopVariants, ShapingTheReferenceKeepsAPdFromShakingTheLinks) {
   EXPECT_LT(zvd, zv);
 }
 
-// The design study's bar: stable, rms 25 % up at most. Every tenth frame holds no reading; the
-// estimator goes on with its model. Measured, rms th1 and th2 with all frames and without a tenth:
+// The design study's bar: stable, rms 25 % up at most. Every tenth frame has no reading; the
+// estimator predicts with its model. Measured, rms th1 and th2 with all frames and without a tenth:
 // 1.08 0.71 and 1.21 0.83 at 0.01 kg, 0.75 1.09 and 0.76 1.10 at 0.1 kg, 0.94 2.66 and 0.96 2.78 at
 // 0.2 kg.
 TEST(LoopVariants, OneFrameInTenMayBeLost) {
@@ -93,7 +93,7 @@ TEST(LoopVariants, OneFrameInTenMayBeLost) {
     EXPECT_EQ(lossy.tripped, 0) << payload_kg;
     EXPECT_LE(Median(lossy.rms1_deg), 1.25 * Median(all.rms1_deg)) << payload_kg;
     EXPECT_LE(Median(lossy.rms2_deg), 1.25 * Median(all.rms2_deg)) << payload_kg;
-    EXPECT_NE(lossy.rms1_deg, all.rms1_deg) << "no frame was lost: the test says nothing";
+    EXPECT_NE(lossy.rms1_deg, all.rms1_deg) << "no frame was lost: the test is inconclusive";
   }
 }
 
@@ -101,7 +101,7 @@ TEST(LoopVariants, OneFrameInTenMayBeLost) {
 // must not be the same run. Measured, rms th1 and th2 with and without: 1.08 0.70 and 1.06 0.89 at
 // 0.01 kg, 0.75 1.10 and 0.83 1.07 at 0.1 kg, 0.94 2.66 and 0.99 2.91 at 0.2 kg, 2.43 10.8 and 2.35
 // 12.2 at 1 kg; final error of joint 2 at 1 kg 3.4 and 5.7 deg.
-TEST(LoopVariants, AdaptationOffStillRunsAndIsReportedSideBySide) {
+TEST(LoopVariants, RunsWithAndWithoutAdaptation) {
   for (const double payload_kg : {0.01, 0.1, 0.2, 1.0}) {
     const Runs with = RunSeeds(payload_kg, {}, 3),
                without = RunSeeds(payload_kg, {"controller.adaptation=false"}, 3);
@@ -114,8 +114,8 @@ TEST(LoopVariants, AdaptationOffStillRunsAndIsReportedSideBySide) {
   }
 }
 
-// A controller that knows two modes a link must not mind what the plant has: rms within 5 % (the
-// design study's bar) of the four-mode plant. Measured: within 0.6 %.
+// The loop with a controller of two modes a link must not depend on the plant's number of modes:
+// rms within 5 % (the design study's bar) of the four-mode plant. Measured: within 0.6 %.
 TEST(LoopVariants, RmsDoesNotDependOnThePlantsModes) {
   const Runs four = RunSeeds(0.1);
   Print("4 modes", four);
@@ -157,9 +157,9 @@ TEST(LoopVariants, TheWayPointsAreReachedAndTheArmRestsThere) {
   }
 }
 
-// The design study: 7.5 and 1.5 N m lose nothing. The rms bars at 0.1 kg hold as they are, and the
-// limits are really reached. Measured: rms 0.77 and 1.10 deg.
-TEST(LoopVariants, QuarterTorqueLimitsLoseNothing) {
+// The design study: 7.5 and 1.5 N m do not degrade the motion. The rms bars at 0.1 kg hold as they
+// are, and the limits are really reached. Measured: rms 0.77 and 1.10 deg.
+TEST(LoopVariants, QuarterTorqueLimitsKeepTheBars) {
   const Runs runs = RunSeeds(0.1, {"limits.torque_limit_nm=[7.5, 1.5]"});
   Print("7.5 and 1.5 N m", runs);
   EXPECT_EQ(runs.tripped, 0);
@@ -167,13 +167,13 @@ TEST(LoopVariants, QuarterTorqueLimitsLoseNothing) {
   EXPECT_LE(Median(runs.rms2_deg), 1.35);
   EXPECT_LE(Largest(runs.peak1_nm), 7.5);
   EXPECT_LE(Largest(runs.peak2_nm), 1.5);
-  EXPECT_GT(Largest(runs.peak1_nm), 7.4) << "the limit was never reached: the test says nothing";
+  EXPECT_GT(Largest(runs.peak1_nm), 7.4) << "the limit was never reached: the test is inconclusive";
 }
 
-// docs/theory/control-law.md 12.6: one degree of play, friction x 3, joint springs -30 %, Young's
-// modulus -10 %, 3 % modal damping, which the controller does not know. Stable, and at rest after
-// it. With play the arm rattles under any feedback: it comes to rest because a stop lets it go in
-// the end.
+// docs/theory/control-law.md 12.6: one degree of backlash, friction x 3, joint springs -30 %,
+// Young's modulus -10 %, 3 % modal damping, unknown to the controller. Stable, and at rest at the
+// end. With backlash the arm has a limit cycle under any feedback: it comes to rest because a stop
+// ramps the torque to zero.
 TEST(LoopVariants, PlantsThatDifferFromTheDesignAreStable) {
   for (const PlantVariant& variant : PlantVariants()) {
     const RigConfig config = ShippedRig();
@@ -193,7 +193,7 @@ TEST(LoopVariants, PlantsThatDifferFromTheDesignAreStable) {
   }
 }
 
-// The prescribed degree of stability is what removes the final error. Measured: 0.45 against 0.04
+// The prescribed degree of stability removes the final error. Measured: 0.45 against 0.04
 // deg (design study: 1.2 against 0.15).
 TEST(LoopVariants, WithoutPrescribedStabilityTheFinalErrorIsFourTimesLarger) {
   const std::vector<std::string> corrected = {"controller.feedforward_sign=corrected",

@@ -1,4 +1,4 @@
-// Plans: against another program's, and against what a plan is for.
+// Plans: against an independent program, and against the purpose of a plan.
 
 #include "controller/planner/horizon_planner.h"
 
@@ -29,7 +29,7 @@ PlanState RestAt(const Vector2d& angles_rad) {
   return x;
 }
 
-// From rest at the path's first point, with the arm already bent for it.
+// From rest at the first point of the path, with the arm bent quasi-statically for it.
 PlanProblem ProblemAt(const std::vector<RigidPoint>& path, int sample, int periods,
                       double payload_kg) {
   return {.first_tick = 1000 + sample,
@@ -42,7 +42,8 @@ PlanProblem ProblemAt(const std::vector<RigidPoint>& path, int sample, int perio
 
 PlanEntry EntryAt(const HorizonPlan& plan, std::int64_t tick) { return plan.At(tick).value(); }
 
-// The heavy swing: elbow from one side to the other. 2.6 s is the design study's rule for 1 kg.
+// A wide move with a heavy payload: the elbow goes from one side to the other. 2.6 s is the design
+// study's duration rule for 1 kg.
 const SepticMove kWideSwing{.from_rad = {0.0, -60.0 * kRadPerDeg},
                             .to_rad = {40.0 * kRadPerDeg, 85.0 * kRadPerDeg},
                             .periods = 130};
@@ -54,11 +55,11 @@ class Planner : public testing::Test {
                                next_ = std::make_unique<HorizonPlan>();
 };
 
-// The description of the design study alone does not give this plan. These readings do, and each of
-// the others is off by 1e-7 or more, most by 1e-4: no friction in the model; rollouts in 4 steps a
-// sample, the sweep with 8; torques of the quasi-static map at the instants; the start's gains at
-// the elbow angles of the path; the horizon's end weighted as the samples before it; the rates of
-// the first sample one-sided, which a mirrored point before the path gives here.
+// The description of the design study alone does not determine this plan. These choices reproduce
+// it; each alternative is off by 1e-7 or more, most by 1e-4: no friction in the model; rollouts in
+// 4 steps a sample, the backward pass with 8; torques of the quasi-static map at the instants; the
+// start's gains at the elbow angles of the path; the end of the horizon weighted as the samples
+// before it; the rates of the first sample one-sided, here by a mirrored point before the path.
 // Measured: x 4e-9, u 4e-10, K 2e-9.
 TEST_F(Planner, AgreesWithTheGoldenPlan) {
   const auto golden = GoldenFile("beyond-golden.json");
@@ -108,8 +109,8 @@ TEST_F(Planner, BringsTheTipToRestWhenTheMoveEnds) {
   }
 }
 
-// As the filter's model, in twice as many steps a sample: 3e-5 rad measured, of up to 0.04 rad that
-// the elbow turns in a sample.
+// Compared with the filter's model in twice as many steps a sample: 3e-5 rad measured, of up to
+// 0.04 rad of elbow motion per sample.
 TEST_F(Planner, ThePlanIsAMotionOfTheModel) {
   const std::vector<RigidPoint> path = kWideSwing.Ahead(0);
   ASSERT_TRUE(planner_->Plan(ProblemAt(path, 0, kWideSwing.periods, 0.5), nullptr, plan_.get()));
@@ -124,7 +125,7 @@ TEST_F(Planner, ThePlanIsAMotionOfTheModel) {
   }
 }
 
-// From standstill in the middle of a move too: such plans are rough, and none is refused for that.
+// Also from standstill in the middle of a move: such plans are rough, and the roughness is allowed.
 TEST_F(Planner, CostNeverRises) {
   HorizonPlannerConfig config = StudyPlannerConfig();
   config.roughness = 10.0;
@@ -133,7 +134,7 @@ TEST_F(Planner, CostNeverRises) {
     for (const int sample : {0, 20, 60, 100, 125}) {
       const std::vector<RigidPoint> path = kWideSwing.Ahead(sample);
       PlanProblem problem = ProblemAt(path, sample, kWideSwing.periods, payload_kg);
-      problem.x[0] += 0.05;  // not where the path begins
+      problem.x[0] += 0.05;  // not at the start of the path
       problem.x[7] = -0.5;
       ASSERT_TRUE(planner_->Plan(problem, nullptr, plan_.get())) << payload_kg << ' ' << sample;
       const auto cold = planner_->figures();
@@ -148,8 +149,8 @@ TEST_F(Planner, CostNeverRises) {
   }
 }
 
-// Ten samples later, on the way and with an estimate that has moved a little.
-TEST_F(Planner, StartsFromThePlanBeforeButNotAcrossAPayloadJump) {
+// Ten samples later, during the move, with a slightly different estimate.
+TEST_F(Planner, WarmStartsFromThePreviousPlanExceptAcrossAPayloadJump) {
   const std::vector<RigidPoint> path = StudyMove().Ahead(0), later = StudyMove().Ahead(10);
   const int periods = StudyMove().periods;
   ASSERT_TRUE(planner_->Plan(ProblemAt(path, 0, periods, 0.5), nullptr, plan_.get()));
@@ -175,9 +176,9 @@ TEST_F(Planner, StartsFromThePlanBeforeButNotAcrossAPayloadJump) {
   EXPECT_FALSE(planner_->figures().warm);
 }
 
-// The torque issued before is far from any that a plan would begin with: 20/28 and 4/5.6 of the
-// limits. In place of a plan that is rougher still the same one is taken.
-TEST_F(Planner, RefusesAPlanThatIsRougherThanTheOneBefore) {
+// The torque issued before is far from the start of any plan: 20/28 and 4/5.6 of the limits. The
+// same plan is accepted if it replaces one that is rougher still.
+TEST_F(Planner, RefusesAPlanRougherThanThePreviousOne) {
   const std::vector<RigidPoint> path = StudyMove().Ahead(60);
   PlanProblem problem = ProblemAt(path, 60, StudyMove().periods, 0.1);
   ASSERT_TRUE(planner_->Plan(problem, nullptr, plan_.get()));
@@ -193,12 +194,12 @@ TEST_F(Planner, RefusesAPlanThatIsRougherThanTheOneBefore) {
   problem.torque_before_nm << -20.0, 4.0;
   plan_->Begin(7, 0.3);
   EXPECT_FALSE(planner_->Plan(problem, nullptr, plan_.get()));
-  EXPECT_EQ(plan_->first_tick(), 7) << "the plan before is kept";
+  EXPECT_EQ(plan_->first_tick(), 7) << "the previous plan is kept";
   EXPECT_TRUE(planner_->Plan(problem, &rough, plan_.get()));
   EXPECT_EQ(plan_->first_tick(), problem.first_tick);
 }
 
-TEST_F(Planner, PlansALongPathAsFarAsItCan) {
+TEST_F(Planner, CutsALongPathAtTheLargestHorizon) {
   const SepticMove slow{.from_rad = Vector2d::Zero(), .to_rad = {0.5, 0.5}, .periods = 700};
   const std::vector<RigidPoint> path = slow.Ahead(0);
   ASSERT_TRUE(planner_->Plan(ProblemAt(path, 0, slow.periods, 0.2), nullptr, plan_.get()));
@@ -208,7 +209,7 @@ TEST_F(Planner, PlansALongPathAsFarAsItCan) {
   EXPECT_FALSE(plan_->At(999).has_value());
 }
 
-TEST_F(Planner, RefusesAPathWithoutAStageAndAStateThatIsNoNumber) {
+TEST_F(Planner, RefusesAPathWithoutAStageAndANanState) {
   const std::vector<RigidPoint> path = StudyMove().Ahead(0);
   PlanProblem problem = ProblemAt(path, 0, StudyMove().periods, 0.2);
   problem.path = problem.path.first(3);

@@ -66,7 +66,7 @@ TEST(LockstepExecutor, RunsInOrderOfInstantThenPriorityThenRegistration) {
   EXPECT_EQ(executor.next_ns(), 3);
 }
 
-TEST(LockstepExecutor, RunUntilLeavesOutTheEndAndGoesOnFromThere) {
+TEST(LockstepExecutor, RunUntilExcludesTheEndAndContinuesFromThere) {
   std::vector<Entry> log;
   LoggingTask task("a", 10, 5, 1, &log);
   LockstepExecutor executor;
@@ -82,7 +82,7 @@ TEST(LockstepExecutor, RunUntilLeavesOutTheEndAndGoesOnFromThere) {
   EXPECT_EQ(task.missed, 0);
 }
 
-TEST(LockstepExecutor, RunWhileAsksBeforeEachInstant) {
+TEST(LockstepExecutor, RunWhileEvaluatesItsPredicateBeforeEachInstant) {
   std::vector<Entry> log;
   LoggingTask a("a", 10, 0, 2, &log);
   LoggingTask b("b", 10, 0, 1, &log);
@@ -94,7 +94,7 @@ TEST(LockstepExecutor, RunWhileAsksBeforeEachInstant) {
     asked.push_back(instant_ns);
     return log.size() < 3;
   });
-  EXPECT_EQ(log.size(), 4u) << "an instant is never left half done";
+  EXPECT_EQ(log.size(), 4u) << "an instant is always completed";
   EXPECT_EQ(asked, (std::vector<std::int64_t>{0, 10, 20}));
 }
 

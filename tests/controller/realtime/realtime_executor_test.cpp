@@ -18,8 +18,8 @@
 #include "controller/realtime/realtime_setup.h"
 #include "tests/support/loop_time.h"
 
-// These machines promise no latency: nothing here asserts how late a thread woke, only order and
-// counts, which hold however late it is.
+// Test machines guarantee no latency: these tests assert order and counts only, which hold for any
+// lateness.
 
 namespace flexarm {
 namespace {
@@ -62,7 +62,8 @@ void RunFor(RealtimeExecutor& executor, std::int64_t epoch_ns, std::uint64_t cou
   executor.Join();
 }
 
-// Every activation lies on the grid, later than the one before, and what is missing was counted.
+// Every activation lies on the grid, later than the one before, and every skipped period is
+// counted.
 void ExpectGridKept(const RecordingTask& task, const TaskStatistics& statistics,
                     std::int64_t end_ns) {
   const Task::Traits traits = task.traits();
@@ -133,7 +134,7 @@ TEST(RealtimeExecutor, AnOverrunSkipsWholePeriodsCountsThemAndKeepsTheGrid) {
   const TaskStatistics statistics = executor.statistics(0);
   ExpectGridKept(task, statistics, task.activations.back().due_ns + 1);
   const std::int64_t overrun_ns = task.activations[2].due_ns;
-  // It ended within the third period after its own, at the earliest: two lost whole, the third run.
+  // It ended in the third period after its own at the earliest: two are skipped, the third runs.
   EXPECT_GE(task.activations[3].due_ns, overrun_ns + 30 * kMs);
   EXPECT_GE(task.activations[3].missed_in_a_row, 3) << "its own deadline and two periods";
   EXPECT_GE(statistics.skipped_periods, 2u);
@@ -141,8 +142,8 @@ TEST(RealtimeExecutor, AnOverrunSkipsWholePeriodsCountsThemAndKeepsTheGrid) {
   EXPECT_GE(statistics.worst_run_ns, 25 * kMs);
 }
 
-// Exact on any machine: what each activation is told follows from the timing of those before it.
-TEST(RealtimeExecutor, TellsEachActivationHowManyWereMissedJustBefore) {
+// Exact on any machine: the count that each activation gets follows from those before it.
+TEST(RealtimeExecutor, PassesTheNumberOfConsecutiveMissesToEachActivation) {
   OverrunningTask task(Every(10 * kMs));
   task.epoch_ns = MonotonicNow() + kLeadNs;
   SpscQueue<TimingRecord> timing(1000);
@@ -161,7 +162,7 @@ TEST(RealtimeExecutor, TellsEachActivationHowManyWereMissedJustBefore) {
   }
 }
 
-TEST(RealtimeExecutor, AnEpochInThePastSkipsWhatIsOver) {
+TEST(RealtimeExecutor, AnEpochInThePastSkipsThePassedPeriods) {
   RecordingTask task(Every(10 * kMs));
   RealtimeExecutor executor(false);
   executor.Add(task);
@@ -171,7 +172,7 @@ TEST(RealtimeExecutor, AnEpochInThePastSkipsWhatIsOver) {
   EXPECT_GE(executor.statistics(0).skipped_periods, 5u);
 }
 
-TEST(RealtimeExecutor, LeavesATimingRecordPerActivationForTasksThatAsk) {
+TEST(RealtimeExecutor, WritesATimingRecordPerActivationIfAQueueIsGiven) {
   RecordingTask task(Every(5 * kMs, 0, 1 * kMs));
   SpscQueue<TimingRecord> timing(1000);
   RealtimeExecutor executor(false);
@@ -188,7 +189,7 @@ TEST(RealtimeExecutor, LeavesATimingRecordPerActivationForTasksThatAsk) {
   EXPECT_FALSE(timing.Pop(&record));
 }
 
-TEST(RealtimeExecutor, StopsWhenAskedAndWhenDestroyed) {
+TEST(RealtimeExecutor, StopsOnRequestAndOnDestruction) {
   RecordingTask task(Every(1 * kMs));
   {
     RealtimeExecutor executor(false);
@@ -258,7 +259,7 @@ TEST(RealtimeExecutor, WithoutFifoEveryThreadIsOrdinary) {
   EXPECT_EQ(control.policy, SCHED_OTHER);
 }
 
-// In a child of its own without any right: exits with 7 and the message if Start refuses.
+// In a child process without any right: exits with 7 and the message if Start refuses.
 [[noreturn]] void StartWithoutRights() {
   const rlimit none{.rlim_cur = 0, .rlim_max = 0};
   if (setrlimit(RLIMIT_RTPRIO, &none) != 0 || (geteuid() == 0 && setuid(65534) != 0)) _exit(3);
@@ -274,17 +275,17 @@ TEST(RealtimeExecutor, WithoutFifoEveryThreadIsOrdinary) {
   _exit(0);  // ran as an ordinary thread: wrong
 }
 
-TEST(RealtimeExecutorDeathTest, RefusesLoudlyWhenFifoIsNotPermitted) {
+TEST(RealtimeExecutorDeathTest, ThrowsWhenFifoIsNotPermitted) {
 #if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "setuid waits for the thread sanitizer's own thread for ever";
+  GTEST_SKIP() << "setuid never returns because of the thread sanitizer's own thread";
 #endif
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(StartWithoutRights(), testing::ExitedWithCode(7),
               "'test' with SCHED_FIFO priority 80.*LimitRTPRIO.*--without-realtime");
 }
 
-// A chain of two tasks that speak through a history: the producer's value of instant t holds from
-// t + 10 ms on. All that the consumer saw is its result.
+// A chain of two tasks that communicate through a history: the producer's value of instant t is
+// valid from t + 10 ms on. The consumer's result depends on all values that it read.
 struct Producer final : Task {
   explicit Producer(LatestValue<History<double, 4>>* out) : out_(out) {}
   Traits traits() const noexcept override {
@@ -346,7 +347,7 @@ TEST(RealtimeExecutor, ARunWithoutAMissedDeadlineEqualsTheLockstepRun) {
       const TaskStatistics statistics = executor.statistics(i);
       all_kept = all_kept && statistics.missed_deadlines + statistics.skipped_periods == 0;
     }
-    if (!all_kept) continue;  // a loaded machine: nothing is promised then
+    if (!all_kept) continue;  // a loaded machine gives no guarantee
     EXPECT_EQ(consumer.seen, lockstep_consumer.seen);
     return;
   }

@@ -33,7 +33,7 @@ RealtimeHost GoodHost() {
           .kernel_version = "#1 SMP PREEMPT_RT Debian 6.1"};
 }
 
-TEST(RealtimeFindings, SayWhatIsGood) {
+TEST(RealtimeFindings, ReportWhatIsPermitted) {
   const auto findings = RealtimeFindings(GoodHost());
   EXPECT_THAT(findings, Contains(AllOf(HasSubstr("PREEMPT_RT"), Not(HasSubstr("not PREEMPT_RT")))));
   EXPECT_THAT(findings, Contains("SCHED_FIFO priority 90: permitted"));
@@ -41,7 +41,7 @@ TEST(RealtimeFindings, SayWhatIsGood) {
   EXPECT_THAT(findings, Contains("RLIMIT_RTTIME: unlimited"));
 }
 
-TEST(RealtimeFindings, SayWhatIsNotAndTheRemedy) {
+TEST(RealtimeFindings, ReportEachProblemWithItsRemedy) {
   RealtimeHost host = GoodHost();
   host.kernel_version = "#1 SMP PREEMPT_DYNAMIC";
   host.fifo_error = EPERM;
@@ -58,7 +58,7 @@ TEST(RealtimeFindings, SayWhatIsNotAndTheRemedy) {
   EXPECT_THAT(RealtimeFindings(host), Contains(HasSubstr("not readable")));
 }
 
-TEST(ReadRealtimeHost, KnowsThisKernel) {
+TEST(ReadRealtimeHost, ReadsThisKernel) {
   const RealtimeHost host = ReadRealtimeHost(50);
   EXPECT_FALSE(host.kernel_version.empty());
   EXPECT_EQ(host.fifo_priority, 50);
@@ -72,7 +72,7 @@ void GiveUpRights() {
   }
 }
 
-// In a child: the exit code says what came of it.
+// In a child process: the exit code gives the result.
 [[noreturn]] void Prepare() {
   try {
     PrepareRealtime(90);
@@ -86,7 +86,7 @@ void GiveUpRights() {
 }
 
 TEST(PrepareRealtimeDeathTest, RefusesWithEveryCauseAndRemedyWhenNothingIsPermitted) {
-  if (kSanitized) GTEST_SKIP() << "a sanitizer answers mlockall and mallopt itself";
+  if (kSanitized) GTEST_SKIP() << "a sanitizer intercepts mlockall and mallopt";
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(
       {
@@ -99,7 +99,7 @@ TEST(PrepareRealtimeDeathTest, RefusesWithEveryCauseAndRemedyWhenNothingIsPermit
 }
 
 TEST(PrepareRealtimeDeathTest, SucceedsWhereFifoAndLockingArePermitted) {
-  if (kSanitized) GTEST_SKIP() << "a sanitizer answers mlockall and mallopt itself";
+  if (kSanitized) GTEST_SKIP() << "a sanitizer intercepts mlockall and mallopt";
   if (geteuid() != 0 || ReadRealtimeHost(90).fifo_error != 0) {
     GTEST_SKIP() << "real time is not permitted here";
   }

@@ -1,4 +1,4 @@
-// Chirp and PRBS against what the theory of signals says of them, and through the reference model.
+// Chirp and PRBS against signal theory, and through the reference model.
 
 #include "controller/reference/identification_torques.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Golomb: N ones and minus ones with N = 2^n - 1, one more 1 than -1, and an autocorrelation of -1
+// Golomb: N values +-1 with N = 2^n - 1, one more 1 than -1, and an autocorrelation of -1
 // at every shift. Only a primitive polynomial gives that.
 TEST(MaximalLengthSequence, IsBalancedAndUncorrelatedAtEveryShift) {
   for (int bits = 2; bits <= 12; ++bits) {
@@ -60,7 +60,7 @@ double PowerAt(const std::vector<double>& signal, double hz) {
 
 // The spectrum of the sequence is flat but at 0, so at the lines i / duration that of the torques
 // is the pulse's: |sum of four holds|^2 (N + 1), exactly.
-TEST(Prbs, TheSpectrumIsThePulses) {
+TEST(Prbs, TheSpectrumIsThatOfThePulse) {
   const Prbs prbs{.start_s = 0, .hold_s = 0.06, .bits = 6, .seed = 5, .torque_nm = {1, 1}};
   for (const int joint : {0, 1}) {
     const std::vector<double> signs = PrbsSigns(prbs, 3, joint);
@@ -77,7 +77,7 @@ TEST(Prbs, TheSpectrumIsThePulses) {
 
 // The band that docs/experiments.md states: half of the peak power between 0.18 and 0.39 over the
 // hold time.
-TEST(Prbs, TheBandIsTheOneThatIsDocumented) {
+TEST(Prbs, TheBandAgreesWithTheDocumentation) {
   const std::vector<double> pulse = [] {
     std::vector<double> p;
     for (const double sign : {1.0, -1.0, -1.0, 1.0}) p.insert(p.end(), 50, sign);  // hold 1 s
@@ -110,7 +110,7 @@ constexpr Chirp kChirp = {
 constexpr Prbs kPrbs = {
     .start_s = 1.0, .hold_s = 0.06, .bits = 6, .seed = 5, .torque_nm = {3.0, 0.3}};
 
-// The reference model holds a double integrator; its bending has died out 4 s later. Round-off of
+// The reference model contains a double integrator; its bending has decayed 4 s later. Round-off of
 // 1e-16 x 600 samples squared.
 TEST(Identification, TheReferenceEndsAtRestWhereItBegan) {
   for (const Experiment& experiment : {With({kChirp}, {}), With({}, {kPrbs})}) {
@@ -123,13 +123,13 @@ TEST(Identification, TheReferenceEndsAtRestWhereItBegan) {
     for (int k = 0; k <= table.periods(); ++k) {
       moved = std::max(moved, std::fabs(table.At(k).x_m[0] - 0.1));
     }
-    EXPECT_GT(moved, 0.01) << "it went somewhere";
+    EXPECT_GT(moved, 0.01) << "the reference must move";
   }
 }
 
-// A sweep spends its time evenly over its band: seen through the whole signal, the power inside is
-// some constant and outside falls off. 0.3 .. 2 Hz in 12 s: to a third inside the middle of the
-// band, below a twentieth half an octave outside.
+// A sweep spends equal time at all frequencies of its band: over the whole signal the power is
+// about constant inside and falls off outside. 0.3 .. 2 Hz in 12 s: constant to a third in the
+// middle of the band, below a twentieth half an octave outside.
 TEST(Chirp, CoversItsBand) {
   const std::vector<double> y = ChirpAngles(kChirp, 600, kPeriod_s);
   EXPECT_EQ(y.front(), 0.0);
@@ -151,7 +151,7 @@ TEST(Chirp, BeyondAQuarterOfTheSamplingRateIsRefused) {
   }
 }
 
-TEST(Prbs, TorquesHaveTheAmplitudesThatWereAskedFor) {
+TEST(Prbs, TorquesHaveTheConfiguredAmplitudes) {
   const ReferenceTable table = ExcitedTable(With({}, {kPrbs}));
   for (int k = 50; k < 50 + 63 * 12; ++k) {
     EXPECT_EQ(std::fabs(table.At(k).u_m_nm[0]), 3.0) << k;

@@ -1,4 +1,4 @@
-// Every limit by hand-made samples just within and just beyond it.
+// Every limit, with hand-made samples just within and just beyond it.
 
 #include "controller/reference/motion_check.h"
 
@@ -92,16 +92,16 @@ std::vector<ReferenceSample> Ramp(double peak_nm, double rate_rad_s) {
   return samples;
 }
 
-// 10 N m are left with 1 N m for Coulomb and 0.5 x 2 N m for viscous friction.
-TEST(MotionCheckTorque, FrictionTakesItsShare) {
+// Of 10 N m, 1 N m are for Coulomb and 0.5 x 2 N m for viscous friction.
+TEST(MotionCheckTorque, FrictionCountsTowardsTheLimit) {
   EXPECT_EQ(Broken(Ramp(8.99, 0.0)), "none");
   EXPECT_THAT(Broken(Ramp(9.01, 0.0)), HasSubstr("torque with friction of joint 1 reaches 10.01"));
   EXPECT_EQ(Broken(Ramp(-7.99, 2.0)), "none");
   EXPECT_THAT(Broken(Ramp(-8.01, 2.0)), HasSubstr("reaches -10.01 N m"));
 }
 
-// Part of a reference, whose first sample is there for the jump after it only.
-TEST(MotionCheckPart, CountsFromItsFirstSampleAndDoesNotJudgeThat) {
+// Part of a reference whose first sample is used only for the change of torque after it.
+TEST(MotionCheckPart, CountsFromItsFirstSampleAndDoesNotCheckIt) {
   std::vector<ReferenceSample> samples(10);
   for (ReferenceSample& sample : samples) sample.u_m_nm[0] = 5.0;
   samples[0].x_m[0] = 2.0;
@@ -114,7 +114,7 @@ TEST(MotionCheckPart, CountsFromItsFirstSampleAndDoesNotJudgeThat) {
                                          HasSubstr("after 0.62 s")));
 }
 
-TEST(MotionCheckShare, AllButTheAngleAreJudgedByTheirShare) {
+TEST(MotionCheckShare, AllLimitsButTheAngleAreScaledByTheShare) {
   EXPECT_EQ(Broken(SamplesWith([](auto* s) { s->x_m[0] = 1.4; }), 0.5), "none");
   EXPECT_THAT(Broken(SamplesWith([](auto* s) { s->x_m[6] = 1.01; }), 0.5), HasSubstr("1 rad/s"));
   EXPECT_EQ(Broken(SamplesWith([](auto* s) { s->x_m[6] = 0.99; }), 0.5), "none");

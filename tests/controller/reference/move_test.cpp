@@ -32,8 +32,8 @@ ReferenceTable MoveTable(const Experiment& experiment, std::array<double, 2> sta
   return {experiment, ShippedDesign(), kPeriod_s, start, ShippedLimits()};
 }
 
-// Angles and rates of two double integrators of inertia M_r under the table's torques: what x_m is
-// without bending. They need nothing of the reference model but M_r.
+// Angles and rates of two double integrators of inertia M_r under the table's torques: x_m without
+// bending. Of the reference model only M_r is used.
 struct RigidMotion {
   std::vector<Eigen::Vector2d> angle, rate;
 };
@@ -69,7 +69,7 @@ TEST(Move, GoesThroughItsWayPointsAndRestsThere) {
   }
 }
 
-// The angles never leave the way between two set-points: a quintic does not overshoot.
+// The angles stay between two set-points: a quintic does not overshoot.
 TEST(Move, StaysBetweenItsEnds) {
   const RigidMotion motion = Integrate(
       MoveTable(Moves({{.start_s = 0.2, .duration_s = 1.0, .to_deg = {30, -10}}})), {0, 0});
@@ -100,7 +100,7 @@ TEST(Move, TheReferenceModelFollowsAndEndsAtTheSetPoint) {
   for (int i = 2; i < 12; ++i) EXPECT_NEAR(x_m(i), 0.0, 1e-9) << i;
 }
 
-TEST(Move, AfterADoubletStartsWhereThatEnded) {
+TEST(Move, AfterADoubletStartsAtItsEnd) {
   const Doublet doublet{
       .start_s = 0.0, .duration_s = 1.0, .shape = DoubletShape::kSquare, .move_deg = {20, 10}};
   const Doublet later{
@@ -116,9 +116,9 @@ TEST(Move, AfterADoubletStartsWhereThatEnded) {
   EXPECT_NEAR(motion.angle.back()(1), 0.0, 1e-12);
 }
 
-// The plan's polynomials and the table are two ways to the same motion: the rigid angles of a
+// The plan's polynomials and the table describe the same motion: the rigid angles of a
 // sampled profile differ from it by the mean over a period, s'' Ts^2 / 8 T^2 = 4e-4 of the way.
-TEST(Move, ThePlanSaysWhereTheRigidCoordinateIs) {
+TEST(Move, ThePlanGivesTheRigidCoordinate) {
   Experiment experiment = Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {40, -20}},
                                  {.start_s = 2.0, .duration_s = 1.2, .to_deg = {25, 60}}});
   experiment.move[1].profile = MoveProfile::kSeptic;
@@ -157,9 +157,8 @@ TEST(Move, TheDerivativesOfThePlanAreThoseOfItsAngles) {
   }
 }
 
-// A planned reference keeps its share of every limit, and one period less would not: both by the
-// check over the whole table, not by the search.
-TEST(Move, AStretchIsWhatLiesBetweenTwoRests) {
+// Segments are separated by rests, which may have no duration.
+TEST(Move, ASegmentLastsFromRestToRest) {
   const auto move = [](int first, int periods) {
     PlannedMove out{};
     out.first = first;
@@ -171,13 +170,15 @@ TEST(Move, AStretchIsWhatLiesBetweenTwoRests) {
   ASSERT_EQ(segments.size(), 3u);
   EXPECT_EQ(segments[0].first, 10);
   EXPECT_EQ(segments[0].end, 60);
-  EXPECT_EQ(segments[1].first, 60) << "from rest, though at once";
+  EXPECT_EQ(segments[1].first, 60) << "from rest, without a pause";
   EXPECT_EQ(segments[1].end, 80);
   EXPECT_EQ(segments[2].first, 100);
-  EXPECT_EQ(segments[2].end, 180) << "the last took over";
+  EXPECT_EQ(segments[2].end, 180) << "the last move retargets";
   EXPECT_TRUE(MotionSegmentsOf({}).empty());
 }
 
+// A planned reference keeps its share of every limit, and with one period less it would not: both
+// by the check over the whole table, not by the search.
 TEST(Move, WithoutADurationTakesTheShortestThatKeepsItsShareOfTheLimits) {
   for (const MoveProfile profile : {MoveProfile::kQuintic, MoveProfile::kSeptic}) {
     Experiment experiment = Moves({{.start_s = 0.2, .to_deg = {30, 30}}});
@@ -270,7 +271,7 @@ TEST(Move, ATipOutOfReachOrOfTwoPosesIsRefused) {
   EXPECT_THAT(to(1.5, 1.0), AllOf(HasSubstr("move[0].to_tip_m = [1.5, 1]"),
                                   HasSubstr("out of reach"), HasSubstr("1.7 m")));
   EXPECT_THAT(to(1.2, 0.5), AllOf(HasSubstr("two poses"), HasSubstr("elbow")));
-  EXPECT_THAT(to(-1.5, 0.0), HasSubstr("no angles within limits.soft_angle_deg"));
+  EXPECT_THAT(to(-1.5, 0.0), HasSubstr("no joint angles within limits.soft_angle_deg"));
   EXPECT_EQ(to(0.0, 1.69), "") << "one of the two poses leaves the soft limits";
 }
 

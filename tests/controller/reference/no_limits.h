@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-/// The shipped arm, and limits that nothing reaches: a test lowers those that it is about.
+/// The shipped arm with limits that are never reached: a test lowers the limits that it checks.
 inline MotionLimits NoLimits() {
   MotionLimits limits = ShippedLimits();
   for (auto* limit : {&limits.soft_angle_rad, &limits.torque_nm, &limits.slew_nm_per_s,

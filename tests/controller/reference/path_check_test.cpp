@@ -1,4 +1,4 @@
-// Limits of a path, for whatever payload follows it: against the two arms sample by sample.
+// Limits of a path for any payload, compared with the two arms sample by sample.
 
 #include "controller/reference/path_check.h"
 
@@ -21,7 +21,7 @@ namespace {
 constexpr double kShare = 0.8;
 constexpr int kPeriods = 160;
 
-// Out, and elsewhere while that lasts: the hubs of a heavy arm lead when it speeds up, and stay
+// A move, and a new target during it: the hubs of a heavy arm lead during acceleration, and stay
 // behind where it turns round.
 RigidPath OutAndBack() {
   const PlannedMove out{.row = 0,
@@ -45,8 +45,8 @@ RigidPath OutAndBack() {
 struct Compared {
   std::array<double, 2> MotionLimits::*limit;
   double share;               // of it
-  std::vector<double> heavy;  // by samples, with 1 kg
-  std::vector<double> rigid;  // with none: nothing leads
+  std::vector<double> heavy;  // by sample, with 1 kg
+  std::vector<double> rigid;  // without payload: no lead
 };
 
 Compared Angles(const RigidPath& path, const std::vector<ReferenceSample>& heavy, std::size_t i) {
@@ -75,7 +75,7 @@ int FirstAbove(const std::vector<double>& value, double limit, int first, int la
   return std::numeric_limits<int>::max();
 }
 
-TEST(PathCheck, FindsTheFirstSampleAtWhichEitherArmBreaksALimitAndSaysWhich) {
+TEST(PathCheck, FindsTheFirstSampleAtWhichEitherArmBreaksALimitAndNamesIt) {
   const RigidPath path = OutAndBack();
   const auto heavy = QuasiStaticReference(path, MakeRigidJointArm(ShippedPathDesign()), 1.0,
                                           kPeriod_s, 0, kPeriods);
@@ -110,12 +110,12 @@ TEST(PathCheck, FindsTheFirstSampleAtWhichEitherArmBreaksALimitAndSaysWhich) {
       }
     }
   }
-  EXPECT_GT(std::min({by_heavy, by_rigid, by_none}), 20) << "the paths show too little";
+  EXPECT_GT(std::min({by_heavy, by_rigid, by_none}), 20) << "the paths are inconclusive";
 }
 
-// In mid-path the torque before the first sample is that of the sample before, not none: its jumps
-// are those of a smooth path, a tenth of what it is.
-TEST(PathCheck, APathLookedAtFromItsMiddleDoesNotBeginWithAJump) {
+// In mid-path the first change of torque is relative to the sample before, not to zero: the changes
+// are those of a smooth path, a tenth of the torque.
+TEST(PathCheck, APathCheckedFromItsMiddleDoesNotBeginWithAJump) {
   const RigidPath path = OutAndBack();
   const auto heavy = QuasiStaticReference(path, MakeRigidJointArm(ShippedPathDesign()), 1.0,
                                           kPeriod_s, 0, kPeriods);
@@ -123,7 +123,7 @@ TEST(PathCheck, APathLookedAtFromItsMiddleDoesNotBeginWithAJump) {
   for (std::size_t k = 31; k <= 50; ++k) {
     largest_nm = std::max(largest_nm, std::fabs(heavy[k].u_m_nm[0] - heavy[k - 1].u_m_nm[0]));
   }
-  ASSERT_GT(std::fabs(heavy[31].u_m_nm[0]), 2.0 * largest_nm) << "the path shows too little";
+  ASSERT_GT(std::fabs(heavy[31].u_m_nm[0]), 2.0 * largest_nm) << "the path is inconclusive";
   const auto broken = [&](double slew_nm) {
     MotionLimits limits = NoLimits();
     limits.slew_nm_per_s[0] = slew_nm / (4.0 * kPeriod_s * kShare);  // over four periods

@@ -33,7 +33,7 @@ Doublet MoveBy(double th1_deg, double th2_deg, double start_s = 0.0, double dura
       .start_s = start_s, .duration_s = duration_s, .shape = shape, .move_deg = {th1_deg, th2_deg}};
 }
 
-// The soft angles of the rig and no other limit: these doublets are there for their arithmetic.
+// The soft angles of the rig and no other limit: these doublets only test the arithmetic.
 MotionLimits SoftAngles() {
   MotionLimits limits = ShippedLimits();
   for (auto* limit :
@@ -67,9 +67,9 @@ TEST(ReferenceTable, BaseCommandIsTheGoldenOne) {
   }
 }
 
-// The golden reference model, driven by this table's torques, makes this table's motion; but for
-// the rounding of its torque modes, 1e-6 of its damping.
-TEST(ReferenceTable, TheGoldenReferenceModelMovesAlike) {
+// The golden reference model under this table's torques gives this table's motion, except for the
+// rounding of its torque modes, 1e-6 of its damping.
+TEST(ReferenceTable, AgreesWithTheGoldenReferenceModel) {
   const nlohmann::json golden = GoldenFile("golden.json");
   const Eigen::MatrixXd Am = AsMatrix(golden["R12_Am"]), Bm = AsMatrix(golden["R12_Bm"]);
   const Eigen::MatrixXd golden_x_m = AsMatrix(golden["x_m"]);
@@ -86,7 +86,7 @@ TEST(ReferenceTable, TheGoldenReferenceModelMovesAlike) {
 }
 
 // A doublet of zero area on a double integrator moves by exactly the angle and leaves it at rest,
-// when the bending has died out: the slowest reference mode has critical damping at 42 rad/s, so
+// when the bending has decayed: the slowest reference mode has critical damping at 42 rad/s, so
 // after 4 s nothing is left but round-off.
 TEST(ReferenceTable, ADoubletMovesByItsAngleAndEndsAtRest) {
   for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
@@ -143,8 +143,8 @@ TEST(ReferenceTable, FollowsTheReferenceModelFromItsStart) {
   }
 }
 
-// On torsional models the torque turns rotors, and hubs follow: both start untwisted at the start,
-// twist on the way, and end untwisted where the move goes.
+// On torsional models the torque moves the rotors, and the hubs follow: both start untwisted at the
+// start, twist during the move, and end untwisted at the target.
 TEST(ReferenceTable, OnATorsionalModelItMovesRotorsAndHubs) {
   const Design design = DesignController(ShippedRig({"controller.nominal=T16"}));
   const ReferenceTable table(kBase, design, kPeriod_s, {0.1, -0.2}, SoftAngles());
@@ -163,7 +163,7 @@ TEST(ReferenceTable, OnATorsionalModelItMovesRotorsAndHubs) {
   }
 }
 
-TEST(ReferenceTable, BeforeTheStartItRestsThereAndAfterTheEndItStays) {
+TEST(ReferenceTable, RestsBeforeTheStartAndAfterTheEnd) {
   const ReferenceTable table = Table(kBase, {0.1, -0.2});
   EXPECT_EQ(table.At(-1).x_m[0], 0.1);
   EXPECT_EQ(table.At(-1).u_m_nm[0], 0.0);
@@ -183,7 +183,7 @@ TEST(ReferenceTable, TimesOffTheSamplingGridAreRefusedByName) {
   EXPECT_THAT(RefusalOf(Doublets({MoveBy(10, 10)}, 6.013)), HasSubstr("duration_s"));
 }
 
-TEST(ReferenceTable, AnOddNumberOfPeriodsHasNoTwoHalvesAndIsRefused) {
+TEST(ReferenceTable, AnOddNumberOfPeriodsIsRefused) {
   EXPECT_THAT(RefusalOf(Doublets({MoveBy(10, 10, 0.0, 0.98)})),
               AllOf(HasSubstr("doublet[0].duration_s"), HasSubstr("even")));
 }
@@ -199,7 +199,7 @@ TEST(ReferenceTable, LeavingTheSoftLimitIsRefusedWithJointAndInstant) {
   EXPECT_EQ(RefusalOf(Doublets({MoveBy(80, 0, 0.0, 2.0)})), "");
 }
 
-// The gate's slew limit is no trip; the thesis's square jumps beyond one period of it, and runs.
+// The gate's slew limit does not trip; the thesis's square exceeds it in one period, and runs.
 TEST(ReferenceTable, TheThesissExperimentsKeepTheLimitsOfTheRig) {
   for (const DoubletShape shape : {DoubletShape::kSquare, DoubletShape::kSine}) {
     const Experiment experiment =
@@ -220,7 +220,7 @@ TEST(ReferenceTable, ABrokenLimitIsRefusedWithItsRow) {
 }
 
 // Half the command now and half of it ten samples later: the mean of two unshaped references.
-TEST(ReferenceTable, AShaperSharesTheCommandOutOverItsSamples) {
+TEST(ReferenceTable, AShaperDistributesTheCommandOverItsSamples) {
   Design shaped = ShippedDesign();
   shaped.shaper = Eigen::RowVectorXd::Zero(11);
   shaped.shaper(0) = shaped.shaper(10) = 0.5;
@@ -239,7 +239,7 @@ TEST(ReferenceTable, AShaperSharesTheCommandOutOverItsSamples) {
   }
 }
 
-// The last move of the base command ends at 4 s of 6: 100 periods more are there, not 101.
+// The last move of the base command ends at 4 s of 6: 100 more periods remain, not 101.
 TEST(ReferenceTable, AShapedMoveThatDoesNotEndWithTheExperimentIsRefused) {
   Design shaped = ShippedDesign();
   shaped.shaper = Eigen::RowVectorXd::Constant(101, 1.0 / 101);

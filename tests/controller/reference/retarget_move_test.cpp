@@ -1,4 +1,4 @@
-// Moves that take over one that lasts: their path, their limits and their durations.
+// Moves that retarget during the move before them: their path, their limits and their durations.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ std::string PathRefusal(const Experiment& experiment,
   return MessageOf<RejectedError>([&] { PathTable(experiment, limits); });
 }
 
-// Out, elsewhere while it still moves, and again elsewhere while that lasts.
+// A move, a new target during it, and another one during that.
 Experiment Chain() {
   return PathMoves(
       {{.start_s = 0.2, .duration_s = 2.4, .to_deg = {40, -30}, .profile = MoveProfile::kSeptic},
@@ -51,14 +51,14 @@ Experiment Chain() {
        {.start_s = 8.0, .duration_s = 2.4, .to_deg = {0, 0}}});
 }
 
-TEST(Retarget, EachMoveBeginsAsThePathBeforeItMoves) {
+TEST(Retarget, EachMoveBeginsWithTheStateOfThePathBeforeIt) {
   const ReferenceTable table = PathTable(Chain());
   ASSERT_EQ(table.moves().size(), 4U);
   const std::array<int, 4> first = {10, 70, 130, 400}, periods = {120, 130, 150, 120};
   for (std::size_t i = 0; i < 4; ++i) {
     const PlannedMove& move = table.moves()[i];
     EXPECT_EQ(move.first, first[i]);
-    EXPECT_EQ(move.periods, periods[i]) << "as planned, though it is taken over";
+    EXPECT_EQ(move.periods, periods[i]) << "as planned, although it is retargeted";
     EXPECT_EQ(move.takes_over, i == 1 || i == 2);
     if (!move.takes_over) continue;
     const RigidPoint before = table.moves()[i - 1].At(first[i], kPeriod_s);
@@ -66,14 +66,14 @@ TEST(Retarget, EachMoveBeginsAsThePathBeforeItMoves) {
     EXPECT_EQ(move.from.rate_rad_s, before.rate_rad_s);
     EXPECT_EQ(move.from.acceleration_rad_s2, before.acceleration_rad_s2);
     EXPECT_EQ(move.from.jerk_rad_s3, before.jerk_rad_s3);
-    EXPECT_GT(std::fabs(before.rate_rad_s[0]), 0.2) << "it rests: the test says nothing";
+    EXPECT_GT(std::fabs(before.rate_rad_s[0]), 0.2) << "it rests: the test is inconclusive";
   }
 }
 
 // From sample to sample by Taylor's series up to Y''': what is left is Ts^n / n! times a fourth
 // derivative of at most 300 rad/s^4 (septics of 1 rad and 1 rad/s in 2.4 s). A jump of a tenth of
-// Y''' = 5 rad/s^3 at a take-over would miss the acceleration by 0.01 rad/s^2.
-TEST(Retarget, ThePathIsSmoothThroughEveryTakeOver) {
+// Y''' = 5 rad/s^3 at a retargeting would change the acceleration by 0.01 rad/s^2.
+TEST(Retarget, ThePathIsSmoothAtEveryRetargeting) {
   const ReferenceTable table = PathTable(Chain());
   constexpr double h = kPeriod_s, fourth = 300.0;
   for (int k = 1; k < table.periods(); ++k) {
@@ -110,8 +110,8 @@ TEST(Retarget, ThePathIsThatOfTheLastMoveThatHasBegunAndRestsAtItsEnd) {
   }
 }
 
-// With quintic rows the jerk is what it is at that instant.
-TEST(Retarget, AQuinticMoveIsTakenOverWithItsJerk) {
+// With quintic rows the jerk is that of the quintic at that instant.
+TEST(Retarget, RetargetingAQuinticMoveKeepsItsJerk) {
   Experiment experiment = Chain();
   experiment.move[0].profile = MoveProfile::kQuintic;
   const ReferenceTable table = PathTable(experiment);
@@ -120,8 +120,8 @@ TEST(Retarget, AQuinticMoveIsTakenOverWithItsJerk) {
   EXPECT_NEAR(table.moves()[1].At(70, kPeriod_s).jerk_rad_s3[0], quintic.jerk_rad_s3[0], 1e-9);
 }
 
-// Nobody can have loaded an arm that moves: the estimator is not to open its doubt again.
-TEST(Retarget, IsNoBeginOfAMoveForTheEstimator) {
+// A moving arm cannot have been loaded: the estimator must not raise its uncertainty again.
+TEST(Retarget, IsNoStartOfAMoveForTheEstimator) {
   const ReferenceTable table = PathTable(Chain());
   MotionState watch;
   std::vector<int> begins;
@@ -131,7 +131,7 @@ TEST(Retarget, IsNoBeginOfAMoveForTheEstimator) {
   EXPECT_EQ(begins, (std::vector{11, 401}));
 }
 
-TEST(Retarget, ALawThatFollowsNoPathRefusesItAndSaysWhichDo) {
+TEST(Retarget, ALawThatFollowsNoPathRefusesItAndNamesThoseThatDo) {
   const auto refusal = [](const Experiment& experiment) {
     return MessageOf<RejectedError>([&] {
       ReferenceTable(experiment, ShippedDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits());
@@ -144,7 +144,7 @@ TEST(Retarget, ALawThatFollowsNoPathRefusesItAndSaysWhichDo) {
   apart.move = {apart.move[0], apart.move[3]};
   EXPECT_EQ(refusal(apart), "");
   apart.move[1].start_s = 2.6;
-  EXPECT_EQ(refusal(apart), "") << "begins when the other ends";
+  EXPECT_EQ(refusal(apart), "") << "begins when the other move ends";
 }
 
 MotionLimits Share(double share) {
@@ -156,7 +156,7 @@ MotionLimits Share(double share) {
   return limits;
 }
 
-// Judged by the check over the whole path, not by the search: one period less breaks a limit.
+// By the check over the whole path, not by the search: one period less breaks a limit.
 TEST(Retarget, WithoutADurationItTakesTheShortestThatKeepsItsShareOfTheLimits) {
   Experiment experiment = Chain();
   experiment.move.resize(2);
@@ -185,7 +185,7 @@ TEST(Retarget, TooFastIsRefusedWithTheShortestDurationFromThere) {
   EXPECT_NE(PathRefusal(experiment), "");
 }
 
-// An arm that is to come back slowly goes on first, the farther the longer it may take.
+// An arm that has to come back slowly first goes on, the farther the longer the duration.
 TEST(Retarget, TooSlowIsRefusedAsItLeavesTheSoftLimits) {
   Experiment experiment = PathMoves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
                                      {.start_s = 1.16, .duration_s = 5.0, .to_deg = {70, 0}}});
@@ -198,24 +198,24 @@ TEST(Retarget, TooSlowIsRefusedAsItLeavesTheSoftLimits) {
   EXPECT_EQ(PathRefusal(experiment), "");
 }
 
-// At 40 of 80 deg, as fast as it gets, with a soft limit at 42 deg.
-TEST(Retarget, WhereNoDurationKeepsTheLimitsItSaysSo) {
+// At 40 of 80 deg, at the highest rate, with a soft limit at 42 deg.
+TEST(Retarget, IsRefusedWhereNoDurationKeepsTheLimits) {
   Experiment experiment = PathMoves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
                                      {.start_s = 1.4, .duration_s = 2.0, .to_deg = {10, 0}}});
   MotionLimits limits = ShippedLimits();
   limits.soft_angle_rad[0] = 42 * kRadPerDeg;
   EXPECT_THAT(PathRefusal(experiment, limits),
               AllOf(HasSubstr("move[1]: the angle of joint 1"),
-                    HasSubstr("no duration_s up to 60 keeps the limits where it takes over")));
+                    HasSubstr("no duration_s up to 60 keeps the limits where the move retargets")));
   experiment.move[1].duration_s.reset();
   EXPECT_THAT(PathRefusal(experiment, limits),
-              AllOf(HasSubstr("move[1].duration_s: none up to 60 s"),
-                    HasSubstr("takes over at [40."), HasSubstr("goes to [10.0, 0.0] deg")));
+              AllOf(HasSubstr("move[1].duration_s: no duration up to 60 s"),
+                    HasSubstr("retargets at [40."), HasSubstr("goes to [10.0, 0.0] deg")));
 }
 
-// Where a path turns round, the hubs of a heavy arm stay behind and those of a light one go on to
-// Y: both are judged, and what is between them is every payload's. 0.02 deg are left to what a
-// payload does to the other joint.
+// Where a path turns round, the hubs of a heavy arm stay behind and those of a light one reach Y:
+// both are checked, and those of any other payload are between. 0.02 deg are allowed for the effect
+// of a payload on the other joint.
 TEST(Retarget, AngleLimitsHoldForLightArmsToo) {
   const ReferenceTable table =
       PathTable(PathMoves({{.start_s = 0.2, .duration_s = 2.4, .to_deg = {80, 0}},
@@ -235,7 +235,7 @@ TEST(Retarget, AngleLimitsHoldForLightArmsToo) {
     farthest_Y = std::max(farthest_Y, path.At(k).angle_rad[0]);
   }
   const double heavy = farthest(1.0);
-  ASSERT_LT(heavy, farthest_Y - 0.5 * kRadPerDeg) << "no difference: the test says nothing";
+  ASSERT_LT(heavy, farthest_Y - 0.5 * kRadPerDeg) << "no difference: the test is inconclusive";
   for (const double payload_kg : {0.0, 0.05, 0.15, 0.4}) {
     EXPECT_GT(farthest(payload_kg), heavy) << payload_kg;
     EXPECT_LT(farthest(payload_kg), farthest_Y + 0.02 * kRadPerDeg) << payload_kg;

@@ -1,4 +1,4 @@
-// The septic that takes over a moving arm, by what it must be at both ends.
+// The septic polynomial that retargets a moving arm, by its conditions at both ends.
 
 #include "controller/reference/retarget.h"
 
@@ -20,7 +20,7 @@ struct Case {
   double duration_s;
 };
 
-// Arms that move as fast and jerk as much as moves of about a second do.
+// States with the rates and jerks of moves of about a second.
 std::vector<Case> Cases() {
   std::mt19937 random(7);
   const auto pair = [&random](double largest) {
@@ -40,7 +40,7 @@ std::vector<Case> Cases() {
 }
 
 // Round-off: coefficients up to 20 x 10 rad, of which the k-th derivative is divided by T^k.
-TEST(SepticToRest, BeginsAsTheArmMovesAndEndsAtRest) {
+TEST(SepticToRest, BeginsWithTheStateOfTheArmAndEndsAtRest) {
   for (const Case& c : Cases()) {
     const double T = c.duration_s;
     const RigidPoint start = SepticToRest(c.from, c.to_rad, T, 0.0),

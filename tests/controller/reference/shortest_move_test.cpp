@@ -1,6 +1,6 @@
-// The fewest periods in which a move keeps its limits: at the ends of what is looked at, and where
-// only few durations do. That what is found fits, and a period less does not: move_test.cpp and
-// retarget_test.cpp.
+// The fewest periods in which a move keeps its limits: at the ends of the search range, and where
+// only few durations are feasible. That the result fits, and a period less does not: move_test.cpp
+// and retarget_move_test.cpp.
 
 #include "controller/reference/shortest_move.h"
 
@@ -32,7 +32,7 @@ PlannedMove FromRest(double from_rad, double to_rad, int periods = 0, int first 
   return move;
 }
 
-// With a move of the shoulder that takes it over at a sample.
+// With a move of the shoulder that retargets it at a sample.
 std::vector<PlannedMove> TakenOver(const PlannedMove& out, int first, double to_rad,
                                    int periods = 0) {
   return {out,
@@ -66,7 +66,7 @@ TEST_P(ShortestFromRest, IsNeverLessThanTenPeriods) {
 }
 
 // The largest rate of a septic move of T is 35/16 of the angle over T; so slow an arm is rigid.
-TEST_P(ShortestFromRest, IsLookedForUpToAMinute) {
+TEST_P(ShortestFromRest, IsSearchedForUpToAMinute) {
   MotionLimits limits = NoLimits();
   const double rate_rad_s = 35.0 / 16.0 * 0.8 / 45.0;
   limits.hub_rate_rad_s[0] = rate_rad_s;
@@ -95,7 +95,7 @@ TEST(ShortestTakeOver, IsNeverLessThanTenPeriods) {
             kFewestPeriods);
 }
 
-// The torque goes on from that of the move before: no jump from nothing.
+// The torque continues from that of the move before: no jump from zero.
 TEST(ShortestTakeOver, DoesNotBeginWithAJumpOfTheTorque) {
   const std::vector<PlannedMove> moves = TakenOver(FromRest(0.0, 0.8, 100), 30, 0.7, 100);
   const RigidPath path(moves, {0.0, 0.0}, 200, kPeriod_s);
@@ -106,8 +106,8 @@ TEST(ShortestTakeOver, DoesNotBeginWithAJumpOfTheTorque) {
   EXPECT_TRUE(Shortest(moves, ShippedPathDesign(), limits));
 }
 
-// The shorter, the more torque; the longer, the farther the arm goes before it turns round. Limits
-// that leave 90 to 95 periods, which no halving would find.
+// The shorter, the more torque; the longer, the farther the arm goes before it turns round. The
+// limits leave 90 to 95 periods, which bisection would not find.
 TEST(ShortestTakeOver, IsFoundWhereOnlyFewDurationsKeepTheLimits) {
   const PlannedMove out = FromRest(0.0, 1.4, 120);
   const auto of = [&out](int periods) {
@@ -132,7 +132,7 @@ TEST(ShortestTakeOver, IsFoundWhereOnlyFewDurationsKeepTheLimits) {
 }
 
 // Slowly out, and as slowly back, at 0.1 rad/s: some 26 s.
-TEST(ShortestTakeOver, IsLookedForUpToAMinuteToo) {
+TEST(ShortestTakeOver, IsSearchedForUpToAMinuteToo) {
   MotionLimits limits = NoLimits();
   limits.hub_rate_rad_s[0] = 0.1;
   const std::optional<int> periods =

@@ -43,7 +43,7 @@ TEST(Trajectory, TheSplineIsTheFunctionBetweenItsRows) {
   }
 }
 
-TEST(Trajectory, WhatTheArmIsAwayFromTheFirstRowIsFadedOut) {
+TEST(Trajectory, ADifferenceFromTheFirstRowIsFadedOut) {
   const auto exact = TrajectoryOnGrid(Swinging(0.1), {0.0, 0.0}, kPeriod_s);
   const auto away = TrajectoryOnGrid(Swinging(0.1), {0.01, 0.0}, kPeriod_s);
   EXPECT_NEAR(away[0].front(), 0.0, 1e-15);
@@ -61,8 +61,8 @@ Experiment Following(const CsvTrajectory& csv, double duration_s) {
           .csv = csv};
 }
 
-// The reference's bending has died out 1 s after a motion: critical damping at 42 rad/s.
-TEST(Trajectory, TheReferenceFollowsItAndAMoveGoesOnFromThere) {
+// The reference's bending has decayed 1 s after a motion: critical damping at 42 rad/s.
+TEST(Trajectory, TheReferenceFollowsItAndAMoveContinuesFromThere) {
   const ReferenceTable table(Following(Swinging(0.1), 7.0), ShippedDesign(), kPeriod_s,
                              {0.005, 0.0}, ShippedLimits());
   EXPECT_NEAR(table.At(199).x_m[0], Swing(2.0), 1e-9);
@@ -80,7 +80,7 @@ std::string RefusalOf(const CsvTrajectory& csv, double start_rad, double duratio
   });
 }
 
-TEST(Trajectory, OneThatCannotBeFollowedIsRefused) {
+TEST(Trajectory, AnInfeasibleTrajectoryIsRefused) {
   EXPECT_EQ(RefusalOf(Swinging(0.1), 0.9 * kRadPerDeg), "");
   EXPECT_THAT(RefusalOf(Swinging(0.1), 1.1 * kRadPerDeg),
               AllOf(HasSubstr("swing.csv: the first row puts joint 1 at 0 deg"), HasSubstr("1.1")));

@@ -1,4 +1,4 @@
-// Other people's CSV: what their numbers become, and each mistake named with its place.
+// CSV files of other recorders: the conversion of their values, and each mistake with its place.
 
 #include "controller/runlog/csv_import.h"
 
@@ -74,7 +74,7 @@ TEST_F(CsvImportTest, EveryDecimationthRowIsATick) {
   EXPECT_DOUBLE_EQ(inputs[2].applied_torque_nm[0], 8.0 * 6.0);
 }
 
-TEST_F(CsvImportTest, NumbersBecomeWhatTheConvertersWouldShow) {
+TEST_F(CsvImportTest, NumbersBecomeConverterReadings) {
   CsvImport import = Import();
   import.column[3].offset = 0.25;
   const StepInput input = Read(kForeignHeader + "0.1,0,-12.54,13,-1,4,0.0124,x\n", import).at(0);
@@ -82,8 +82,8 @@ TEST_F(CsvImportTest, NumbersBecomeWhatTheConvertersWouldShow) {
   // twice.
   EXPECT_EQ(input.frame.counter[0], 256U - 125U);
   EXPECT_EQ(input.frame.counter[1], 512U - 260U);
-  // 12.4 mV are 2.48 counts; 0.1 deg x 100 V/rad are 0.17453 V. The voltage is what the converter
-  // has seen: faces, gains and offsets of the channels are not put in again.
+  // 12.4 mV are 2.48 counts; 0.1 deg x 100 V/rad are 0.17453 V. The voltage is that at the
+  // converter: faces, gains and offsets of the channels are not applied again.
   EXPECT_EQ(input.frame.strain[0], 2);
   EXPECT_EQ(input.frame.strain[1], 35);
   EXPECT_EQ(input.frame.counter_valid, 0b11U);
@@ -97,7 +97,7 @@ TEST_F(CsvImportTest, VoltagesBeyondTheRailsSaturate) {
   EXPECT_EQ(Read(kForeignHeader + "0,0,0,0,0,0,-1e9,x\n").at(0).frame.strain[0], -2048);
 }
 
-TEST_F(CsvImportTest, OurOwnFilesAreReadAsOurOwn) {
+TEST_F(CsvImportTest, FilesInOurOwnFormatAreRecognised) {
   std::ostringstream out;
   CsvWriter writer(&out, OneGaugeALink(), 0);
   StepInput input{};
@@ -119,7 +119,7 @@ TEST_F(CsvImportTest, MistakesAreNamedWithTheirPlace) {
   ExpectError(kForeignHeader + "0,1e300,0,0,0,0,0,x\n",
               ":2: t: found \"1e300\", expected at most 1e8 s");
   ExpectError(kForeignHeader + "0,0,1e300,0,0,0,0,x\n",
-              ":2: a: found \"1e300\", expected an angle of this encoder");
+              ":2: a: found \"1e300\", expected an angle within the range of this encoder");
 }
 
 TEST(CsvImportRules, EverySensorAndTorqueNeedsExactlyOneColumn) {

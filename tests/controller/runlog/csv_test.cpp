@@ -1,4 +1,4 @@
-// CSV: what export writes reads back exactly, and each mistake in a file is named with its place.
+// CSV: an exported file reads back exactly, and each mistake in a file is named with its place.
 
 #include "controller/runlog/csv.h"
 
@@ -45,7 +45,7 @@ StepInput Sample(std::int64_t tick) {
   return input;
 }
 
-TEST_F(CsvTest, WhatIsWrittenReadsBackExactly) {
+TEST_F(CsvTest, AWrittenFileReadsBackExactly) {
   std::ostringstream out;
   CsvWriter writer(&out, TwoAndOneChannels(), 7 * kTestPeriodNs);
   std::vector<StepInput> written = {Sample(7), Sample(8), Sample(10)};
@@ -126,7 +126,7 @@ TEST_F(CsvTest, ARaggedRowIsNamed) {
               ":3: found 3 values, expected 11 as in the header");
 }
 
-TEST_F(CsvTest, WhatIsNotANumberIsNamed) {
+TEST_F(CsvTest, AValueThatIsNotANumberIsNamed) {
   ExpectError(std::string(kHeader) + "0,0,0,0,0,0,0,0,1,abc,0\n",
               ":2: torque_1_nm: found \"abc\", expected a number");
   ExpectError(std::string(kHeader) + "0,0,0,0,0,0,0,0,1,nan,0\n",
@@ -145,7 +145,7 @@ TEST_F(CsvTest, AWrongValidIsNamed) {
               "config");
 }
 
-TEST_F(CsvTest, TimeThatStandsStillIsNamed) {
+TEST_F(CsvTest, TimeThatDoesNotIncreaseIsNamed) {
   ExpectError(std::string(kHeader) + "0,0,0,0,0,0,0,0,1,0,0\n0.001,0,0,0,0,0,0,0,1,0,0\n",
               ":3: time_s: found \"0.001\", expected a time at least one period (0.02 s) after the "
               "row before");

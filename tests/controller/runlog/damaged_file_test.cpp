@@ -1,4 +1,4 @@
-// Whatever is wrong with a log: one InputError that says what was found, or a valid prefix.
+// Damaged logs: one InputError that names the damage, or a valid prefix.
 
 #include <sqlite3.h>
 
@@ -68,9 +68,9 @@ TEST_F(DamagedFileTest, ATextFileIsNotARunLog) {
   ExpectError("begins with \"time_s,counter_1\", expected a SQLite file");
 }
 
-TEST_F(DamagedFileTest, AMissingFileSaysSo) { ExpectError("No such file or directory"); }
+TEST_F(DamagedFileTest, AMissingFileIsNamed) { ExpectError("No such file or directory"); }
 
-TEST_F(DamagedFileTest, AnEmptyFileSaysSo) {
+TEST_F(DamagedFileTest, AnEmptyFileIsNamed) {
   WriteText(File(), "");
   ExpectError("is empty");
 }

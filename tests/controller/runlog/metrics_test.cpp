@@ -1,4 +1,4 @@
-// Metrics of hand-made traces whose figures are known.
+// Metrics of hand-made traces with known results.
 
 #include "controller/runlog/metrics.h"
 
@@ -149,14 +149,14 @@ TEST(RunMetrics, PeakBendingIsTheTipsTrueDeflectionOrTheSumOfTheEstimatedModes) 
   }
 }
 
-TEST(RunMetrics, ARunThatEndedInItsFirstRestIsJudgedOnThatRestAlone) {
+TEST(RunMetrics, ARunThatEndedInItsFirstRestUsesThatRestAlone) {
   const auto ticks = Trace(2, [](double t, TickRecord* record) {
     record->truth.hub_angle_rad[0] = t > 1.71 ? kRadPerDeg : 0;
   });
   EXPECT_NEAR(Judge(ticks).joint_final_error_deg[0], 1, 1e-12);
 }
 
-TEST(RunMetrics, ARunThatEndedInItsFirstMoveHasNoRestToJudge) {
+TEST(RunMetrics, ARunThatEndedInItsFirstMoveHasNoRest) {
   const RunMetrics metrics = Judge(Trace(0.5, [](double, TickRecord*) {}));
   EXPECT_EQ(metrics.ticks, 27);
   EXPECT_TRUE(std::isnan(metrics.joint_final_error_deg[0]));
@@ -165,8 +165,8 @@ TEST(RunMetrics, ARunThatEndedInItsFirstMoveHasNoRestToJudge) {
   EXPECT_FALSE(metrics.tip_settling_time_s.has_value());
 }
 
-// A move that is taken over has no rest of its own, however long its row says that it lasts: here
-// the second takes over the first, and the third one that would have lasted until 5.5 s.
+// A move that is retargeted has no rest of its own, whatever the duration of its row: here the
+// second retargets the first, and the third retargets one that would have lasted until 5.5 s.
 TEST(Rests, AreThoseOfMovesThatEnd) {
   Experiment experiment = TwoMoves();
   experiment.doublet.clear();
@@ -190,7 +190,7 @@ TEST(RunMetrics, NoTickAtAllIsNoError) {
   EXPECT_TRUE(std::isnan(metrics.joint_rms_error_deg[0]));
 }
 
-TEST(RunMetrics, WithoutTruthTheEstimateIsJudged) {
+TEST(RunMetrics, WithoutTruthTheEstimateIsUsed) {
   const auto ticks = Trace(6, [](double, TickRecord* record) {
     record->truth.known = false;
     record->output.x_hat[0] = kRadPerDeg;
@@ -214,9 +214,9 @@ TEST(EstimatedTip, TurnsLinkTwoByTheTipSlopeOfLinkOne) {
   EXPECT_NEAR(tip[1], 0.1 + 0.7 * std::sin(gamma) + 0.2 * std::cos(gamma), 1e-12);
 }
 
-// The same arm and the same place, in the order of each model's states: two modes a link where
-// there are two, rotors (which are no part of it) elsewhere, and a rate that must not be taken for
-// a mode.
+// The same arm at the same place, in the state layout of each nominal model: two modes a link where
+// the model has two, rotors (which do not enter the tip) elsewhere, and a rate that must not be
+// read as a mode.
 TEST(EstimatedTip, IsFoundInTheStatesOfEveryNominalModel) {
   const double th1 = 0.3, th2 = -0.2, f1 = 0.1, f2 = 0.2, rotor = 9.0, rate = 7.0;
   const TipGeometry one = kGeometry;

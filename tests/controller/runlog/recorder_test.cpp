@@ -1,4 +1,4 @@
-// The recorder: which records belong to a run, in which order, and what happens on a bad disk.
+// The recorder: which records belong to a run, in which order, and what happens on a disk error.
 
 #include <sys/stat.h>
 
@@ -88,7 +88,7 @@ TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
   EXPECT_NE(run.info.result_json.find("\"completed\":false"), std::string::npos);
 }
 
-TEST_F(RecorderTest, WhenRecordsArriveDoesNotChangeTheLog) {
+TEST_F(RecorderTest, TheLogDoesNotDependOnWhenRecordsArrive) {
   RunContents at_once, late;
   Start(RunInMemory(&at_once));
   Arm(100);
@@ -178,7 +178,7 @@ TEST_F(RecorderTest, AnExperimentAfterArmIsStoredToo) {
   EXPECT_EQ(RunReader(File()).info().experiment_name, "sine");
 }
 
-TEST_F(RecorderTest, WhatWasRecordedIsSafeWithinHalfASecond) {
+TEST_F(RecorderTest, RecordsAreCommittedWithinHalfASecond) {
   Start(RunInFile(File()));
   Arm(0);
   for (std::int64_t tick = 1; tick <= 500; ++tick) {
@@ -186,7 +186,7 @@ TEST_F(RecorderTest, WhatWasRecordedIsSafeWithinHalfASecond) {
     Ticks(tick, tick, 1);
     RunUntil(now_ns);
     if (now_ns < kSecond || tick % 10 != 0) continue;
-    RunReader reader(File());  // sees what a killed process would leave
+    RunReader reader(File());  // reads what remains of a killed process
     std::int64_t last_ns = 0;
     reader.ForEachTick([&](const TickRecord& record) { last_ns = record.input.now_ns; });
     EXPECT_LE(now_ns - last_ns, kSecond / 2);
@@ -232,7 +232,7 @@ TEST_F(SmallQueueTest, DroppedRecordsAreAnEvent) {
   EXPECT_EQ(run.tick.size() + ticks_.dropped(), 100U);
 }
 
-TEST_F(RecorderTest, TwoRunsOfOneStoryWriteTheSameTickTable) {
+TEST_F(RecorderTest, EqualRunsWriteTheSameTickTable) {
   for (const char* name : {"a", "b"}) {
     Start(RunInFile(File(name)));
     due_ns_ = 0;

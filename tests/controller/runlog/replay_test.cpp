@@ -1,4 +1,4 @@
-// Replay tells the smallest difference, in the loop and in the safety machine.
+// Replay detects the smallest difference, in the loop and in the safety state machine.
 
 #include "controller/runlog/replay.h"
 
@@ -68,7 +68,7 @@ TEST(Replay, ATorqueDifferenceIsTheLargestOfItsJoint) {
   EXPECT_EQ(Replayed(records).first_different_tick, 11);
 }
 
-TEST(Replay, ANanOnOneSideDoesNotHide) {
+TEST(Replay, ANanOnOneSideIsADifference) {
   auto records = Recorded(5);
   records[2].output.torque_nm[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isinf(Replayed(records).max_torque_difference_nm[0]));

@@ -1,4 +1,4 @@
-// A run written to a file is read back to the bit, whatever happens to the process or the folder.
+// A run written to a file is read back bit by bit, also after a crash or from a read-only folder.
 
 #include <fcntl.h>
 #include <signal.h>
@@ -8,6 +8,7 @@
 
 #include "controller/runlog/blob.h"
 #include "controller/runlog/build_info.h"
+#include "controller/runlog/tick_columns.h"
 #include "tests/controller/runlog/runlog_fixture.h"
 
 namespace flexarm {
@@ -15,7 +16,7 @@ namespace {
 
 using RunFileTest = RunLogTest;
 
-TEST_F(RunFileTest, TicksComeBackToTheBitIncludingNegativeZeroAndNan) {
+TEST_F(RunFileTest, TicksReadBackBitExactIncludingNegativeZeroAndNan) {
   TickRecord odd = MakeTick(3);
   odd.output.torque_nm = {-0.0, std::numeric_limits<double>::quiet_NaN()};
   odd.output.x_hat[5] = -std::numeric_limits<double>::infinity();
@@ -41,7 +42,7 @@ TEST_F(RunFileTest, TicksComeBackToTheBitIncludingNegativeZeroAndNan) {
   EXPECT_FALSE(run.tick[1].truth.known);
 }
 
-TEST_F(RunFileTest, EverythingElseComesBack) {
+TEST_F(RunFileTest, AllOtherRecordsReadBack) {
   const SafetyRecord safety =
       MakeSafety(5, {SafetyState::kIdle, TripCause::kNone}, RequestKind::kArm);
   const RunEvent event{.time_ns = 7,
@@ -83,7 +84,7 @@ TEST_F(RunFileTest, EverythingElseComesBack) {
   EXPECT_EQ(run.event[0].value_json, event.value_json);
 }
 
-TEST_F(RunFileTest, ColumnsSayInTheirUnitsWhatTheBlobsSay) {
+TEST_F(RunFileTest, ColumnsAgreeWithTheBlobsInTheirUnits) {
   TickRecord record = MakeTick(100);
   record.output.angle_rad[1] = 1.5707963267948966;
   RunInfo info = MakeInfo();
@@ -107,6 +108,45 @@ TEST_F(RunFileTest, ColumnsSayInTheirUnitsWhatTheBlobsSay) {
   EXPECT_NEAR(row.Real(6), record.input.reference_now.x_m[0] * 180 / 3.14159265358979, 1e-12);
 }
 
+TEST_F(RunFileTest, WhyTheGateChangedATorqueIsReadBack) {
+  TickRecord record = MakeTick(100);
+  record.gate_reasons = 0b10010;
+  {
+    RunWriter writer(File(), MakeInfo());
+    writer.Tick(record);
+    writer.Close("");
+  }
+  EXPECT_EQ(RunReader(File()).ReadAll().tick.at(0).gate_reasons, 0b10010U);
+}
+
+TEST_F(RunFileTest, ALogWithoutTheGateColumnIsReadAsUngated) {
+  {
+    RunWriter writer(File(), MakeInfo());
+    writer.Tick(MakeTick(100));
+    writer.Close("");
+  }
+  {
+    SqliteDb db = SqliteDb::OpenOrCreate(File());
+    db.Execute("ALTER TABLE tick DROP COLUMN gate");
+  }
+  EXPECT_EQ(RunReader(File()).ReadAll().tick.at(0).gate_reasons, 0U);
+}
+
+TEST_F(RunFileTest, EachReadableColumnStandsOnceInTheTable) {
+  {
+    RunWriter writer(File(), MakeInfo());
+    writer.Close("");
+  }
+  SqliteDb db = SqliteDb::OpenReadOnly(File(), false);
+  for (const TickColumn& column : TickColumns()) {
+    SqliteStatement row =
+        db.Prepare("SELECT count(*) FROM pragma_table_info('tick') WHERE name = ?");
+    row.Bind(1, std::string_view(column.name));
+    ASSERT_TRUE(row.Step());
+    EXPECT_EQ(row.Integer(0), 1) << column.name;
+  }
+}
+
 TEST_F(RunFileTest, AClosedRunIsOneFile) {
   {
     RunWriter writer(File(), MakeInfo());
@@ -121,9 +161,9 @@ TEST_F(RunFileTest, ARunIsNeverOverwritten) {
   WriteText(File(), "precious");
   try {
     RunWriter writer(File(), MakeInfo());
-    FAIL() << "it wrote over a file";
+    FAIL() << "it overwrote a file";
   } catch (const RunLogError& error) {
-    EXPECT_NE(std::string(error.what()).find("exists already"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("already exists"), std::string::npos) << error.what();
   }
   EXPECT_EQ(Bytes(File()), "precious");
 }
@@ -139,7 +179,7 @@ TEST_F(RunFileTest, AFolderThatCannotBeMadeIsNamedWithItsCause) {
   }
 }
 
-// A file size limit stands for the disk: a write fails as it would there. @returns an exit code
+// A file size limit in place of a full disk: a write fails in the same way. @returns an exit code
 int WriteUntilFull(const std::filesystem::path& file) {
   ::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{.rlim_cur = 300'000, .rlim_max = 300'000};
@@ -161,7 +201,7 @@ int WriteUntilFull(const std::filesystem::path& file) {
   return 3;
 }
 
-TEST_F(RunFileTest, ADiskThatTakesNoMoreIsNamedAsTheCause) {
+TEST_F(RunFileTest, AFullDiskIsNamedAsTheCause) {
   const pid_t child = ::fork();
   if (child == 0) {
     ::_exit(WriteUntilFull(File()));
@@ -184,7 +224,7 @@ TEST_F(RunFileTest, ReadsARunWhileItIsWritten) {
   writer.Close("");  // a reader does not stop the writer
 }
 
-// Writes ticks and commits after every 25th, then dies without any chance to clean up.
+// Writes ticks and commits after every 25th, then kills itself without clean-up.
 void WriteAndDie(const std::filesystem::path& file, int ticks) {
   RunWriter writer(file, MakeInfo());
   for (int tick = 1; tick <= ticks; ++tick) {
@@ -216,7 +256,7 @@ TEST_F(RunFileTest, ReadsAKilledRunInAFolderWhereNothingMayBeWritten) {
   ::chmod(folder_.c_str(), 0555);
   const pid_t reader = ::fork();
   if (reader == 0) {
-    // Root may write anywhere; nobody may not.
+    // Root may write anywhere; user 65534 (nobody) may not.
     if (::geteuid() == 0 && ::seteuid(65534) != 0) ::_exit(2);
     try {
       ::_exit(RunReader(File()).ReadAll().tick.size() == 50 ? 0 : 1);
@@ -231,7 +271,7 @@ TEST_F(RunFileTest, ReadsAKilledRunInAFolderWhereNothingMayBeWritten) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-TEST_F(RunFileTest, FileNamesAreUniqueAndHarmless) {
+TEST_F(RunFileTest, FileNamesAreUniqueAndValid) {
   const std::filesystem::path first = NewRunFile(folder_, "a/b c");
   EXPECT_EQ(first.parent_path(), folder_);
   EXPECT_NE(first.string().find("Z-a_b_c.flexarm"), std::string::npos) << first;

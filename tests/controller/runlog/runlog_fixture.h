@@ -17,7 +17,7 @@
 
 namespace flexarm {
 
-/// An empty folder of its own, gone after the test.
+/// An empty temporary folder, removed after the test.
 class RunLogTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -49,10 +49,10 @@ class RunLogTest : public ::testing::Test {
 
 inline constexpr std::int64_t kTestPeriodNs = 20'000'000;
 
-/// Before anybody asked for anything.
+/// The status before any request.
 inline constexpr SafetyStatus kIdleStatus{SafetyState::kIdle, TripCause::kNone};
 
-/// A tick with something of its own in every field that has a column.
+/// A tick with distinct values in every field that has a column.
 inline TickRecord MakeTick(std::int64_t tick, SafetyState state = SafetyState::kRunning) {
   TickRecord record{};
   std::mt19937 random(static_cast<unsigned>(tick));
@@ -78,7 +78,7 @@ inline TickRecord MakeTick(std::int64_t tick, SafetyState state = SafetyState::k
   return record;
 }
 
-/// A record of the safety task whose transition NextSafetyState agrees with.
+/// A record of the safety task with a transition of NextSafetyState.
 inline SafetyRecord MakeSafety(std::int64_t due_ns, SafetyStatus before, RequestKind request,
                                TripCauses present = 0) {
   SafetyRecord record{};

@@ -41,7 +41,7 @@ constexpr SafetyState StateAfter(SafetyState from, const SafetyFacts& facts) {
   return NextSafetyState(In(from), facts).status.state;
 }
 
-// How much the state lets flow: nothing, the relay, torque.
+// Energy that a state permits: 0 nothing, 1 the relay, 2 torque.
 constexpr int Energy(SafetyState state) {
   return TorqueAllowed(state) ? 2 : state == kArmed ? 1 : 0;
 }
@@ -56,8 +56,8 @@ std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const S
          std::to_string(facts.reset_pressed);
 }
 
-// "" if the transition obeys every rule of docs/safety.md, else the rule that it breaks. Written
-// from the rules, not from the code.
+// "" if the transition obeys every rule of docs/safety.md, else the violated rule. Written from the
+// rules, not from the code.
 const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
                        const SafetyDecision& decision) {
   const SafetyStatus& to = decision.status;
@@ -102,7 +102,7 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
       if (from.state != kIdle) return "arming starts from Idle";
       if (facts.request != RequestKind::kArm) return "nothing arms by itself";
       if (facts.at_rest == 0) return "a moving arm is not armed";
-      if (facts.all_reported == 0) return "arming needs word from every task";
+      if (facts.all_reported == 0) return "arming needs a report of every task";
     } else {
       if (from.state != kArmed) return "torque starts from Armed";
       if (to.state != kRunning) return "torque starts with Running";
@@ -123,7 +123,7 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
     return "Stopping ends at rest";
   }
   if (from.state == kStopping && facts.stop_expired != 0 && to.state == kStopping) {
-    return "Stopping does not last";
+    return "Stopping ends after its time limit";
   }
   if (moved && to.state == kStarting) return "nothing goes back to Starting";
   if (!asked && decision.refusal != Refusal::kNone) return "no refusal without a request";
@@ -135,7 +135,7 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
         (facts.request == RequestKind::kStop && from.state == kStopping) ||
         (facts.request == RequestKind::kDisarm && from.state == kArmed && to.state == kIdle) ||
         (facts.request == RequestKind::kReset && from.state == kTripped && to.state == kIdle);
-    if (!obeyed) return "what is not refused is done";
+    if (!obeyed) return "a request that is not refused is carried out";
   }
   return "";
 }
@@ -166,7 +166,7 @@ constexpr RequestKind kEveryRequest[] = {
     RequestKind::kNone,   RequestKind::kArm,   RequestKind::kRun, RequestKind::kStop,
     RequestKind::kDisarm, RequestKind::kReset, kCorruptedRequest};
 
-// 34 statuses x 329 sets of causes x 32 flags x 7 requests: every case, none left to imagination.
+// 34 statuses x 329 sets of causes x 32 flags x 7 requests: every case.
 TEST(SafetyMachine, EveryTransitionObeysTheRules) {
   long cases = 0;
   for (const SafetyStatus& from : EveryStatus()) {
@@ -192,7 +192,7 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
   EXPECT_EQ(cases, 34L * 329 * 32 * 7);
 }
 
-// What must happen, beside what must not: a machine that never moves would pass the rules above.
+// Transitions that must happen: a machine that never moves would satisfy the rules above.
 TEST(SafetyMachine, GoesThroughAnExperimentAndBack) {
   EXPECT_EQ(StateAfter(kStarting, Healthy()), kIdle);
   EXPECT_EQ(StateAfter(kStarting, With(Healthy(), &SafetyFacts::all_reported, 0)), kStarting);
@@ -212,7 +212,7 @@ TEST(SafetyMachine, StoppingThatLastsTooLongTrips) {
   SafetyFacts facts = With(Healthy(), &SafetyFacts::at_rest, 0);
   facts.stop_expired = 1;
   EXPECT_EQ(NextSafetyState(In(kStopping), facts).status, In(kTripped, TripCause::kStopTimeout));
-  EXPECT_EQ(StateAfter(kRunning, facts), kRunning) << "a stop time-out is of Stopping alone";
+  EXPECT_EQ(StateAfter(kRunning, facts), kRunning) << "the time limit applies to Stopping only";
   facts.present = CauseBit(TripCause::kEmergencyStop);
   EXPECT_EQ(NextSafetyState(In(kStopping), facts).status, In(kTripped, TripCause::kEmergencyStop));
 }
@@ -267,14 +267,14 @@ TEST(SafetyMachine, EveryRefusalHasATextThatSaysWhatToDo) {
             std::string::npos);
 }
 
-// Also at compile time: the machine needs nothing that a constant expression lacks.
+// Also at compile time: the state machine is a constant expression.
 static_assert(NextSafetyState(In(kCorruptedState), Healthy()).status ==
               In(kTripped, TripCause::kStateNotFinite));
 static_assert(NextSafetyState(In(kTripped, static_cast<TripCause>(200)), Healthy()).status ==
               In(kTripped, TripCause::kStateNotFinite));
 static_assert(noexcept(NextSafetyState(SafetyStatus{}, SafetyFacts{})));
 
-// One random tick: mostly healthy, so that sequences get as far as Running.
+// One random tick: mostly healthy, so that sequences reach Running.
 SafetyFacts DecodeFacts(std::uint32_t bits) {
   SafetyFacts facts{};
   if ((bits & 0xfu) == 0) {
@@ -289,7 +289,7 @@ SafetyFacts DecodeFacts(std::uint32_t bits) {
   return facts;
 }
 
-TEST(SafetyMachine, NoSequenceOfFactsLeadsToTorqueButByArmAndRun) {
+TEST(SafetyMachine, NoSequenceOfFactsReachesTorqueWithoutArmAndRun) {
   setenv("RC_PARAMS", "seed=20261120 max_success=3000 max_size=200", 0);  // repeatable
   long torque_ticks = 0;
   long trips = 0;
@@ -316,7 +316,7 @@ TEST(SafetyMachine, NoSequenceOfFactsLeadsToTorqueButByArmAndRun) {
       torque_ticks += TorqueAllowed(status.state);
       trips += before.state != kTripped && status.state == kTripped;
 
-      // The same facts again without the request change nothing more by themselves but downwards.
+      // The same facts without the request never lead to a state with more energy.
       SafetyFacts silent = facts;
       silent.request = RequestKind::kNone;
       RC_ASSERT(Energy(NextSafetyState(status, silent).status.state) <= Energy(status.state));

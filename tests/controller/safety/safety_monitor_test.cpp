@@ -16,7 +16,7 @@ constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
                                    .missed_deadlines_to_trip = 3,
                                    .homing_contact_ns = 500 * kMs};
 
-// Running for a second, all well.
+// Running for a second, without a fault.
 SafetyInputs Fine() {
   const std::int64_t due_ns = 10'000 * kMs;
   ControlReport control = kNoControlReport;
@@ -49,7 +49,7 @@ void ExpectEvidence(TripCause cause, const SafetyInputs& in, double value, doubl
   EXPECT_EQ(evidence.channel, channel);
 }
 
-TEST(SafetyMonitor, SeesNothingWrongWhenAllIsWell) {
+TEST(SafetyMonitor, FindsNoCauseWithoutAFault) {
   SafetyMonitor supervisor(kLimits);
   const SafetyFacts facts = supervisor.Judge(Fine());
   EXPECT_EQ(facts.present, 0u);
@@ -90,7 +90,7 @@ TEST(SafetyMonitor, ControlHeartbeatIsLostAfterTwoPeriodsAndNotBefore) {
   ExpectEvidence(TripCause::kControlHeartbeatLost, in, 0.041, 0.040, 0);
 }
 
-TEST(SafetyMonitor, AStepThatHasRunButDoesNotHoldYetKeepsTheHeartbeat) {
+TEST(SafetyMonitor, AReportThatIsNotYetValidKeepsTheHeartbeat) {
   SafetyInputs in = Fine();
   in.control.due_ns = in.due_ns - 41 * kMs;  // one period was skipped
   in.control_alive_ns = in.due_ns - 1 * kMs;
@@ -106,7 +106,7 @@ TEST(SafetyMonitor, StaleDriveSideIsAStaleFrame) {
   ExpectEvidence(TripCause::kStaleFrame, in, 0.041, 0.040, 0);
 }
 
-TEST(SafetyMonitor, BusAndDriveAreTakenAtTheirWord) {
+TEST(SafetyMonitor, AReportedBusOrDriveFaultIsACause) {
   SafetyInputs in = Fine();
   in.drive.bus_ok = false;
   EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kBusLost));
@@ -115,7 +115,7 @@ TEST(SafetyMonitor, BusAndDriveAreTakenAtTheirWord) {
   EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kDriveFault));
 }
 
-TEST(SafetyMonitor, TheEvidenceOfABusSaysWhichAndWhatItMet) {
+TEST(SafetyMonitor, TheEvidenceNamesTheBusAndItsFault) {
   SafetyInputs in = Fine();
   in.drive.bus_ok = in.drive.drive_ok = false;
   in.troubles = {.lost = {.bus = 3, .fault = {.kind = 1, .node = 2, .code = 7}},
@@ -142,7 +142,7 @@ TEST(SafetyMonitor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
   ExpectEvidence(TripCause::kMissedDeadlines, in, 3.0, 3.0, 0);
 }
 
-TEST(SafetyMonitor, FaultsOfTheLoopCountWhileItLives) {
+TEST(SafetyMonitor, FaultsOfTheLoopCountWhileItIsAlive) {
   SafetyInputs in = Fine();
   in.control.faults = CauseBit(TripCause::kHubRate2) | CauseBit(TripCause::kEstimatorResidual);
   in.control.evidence = {.value = 10.5, .limit = 10.0, .channel = 2, .detail = 0};
@@ -150,10 +150,10 @@ TEST(SafetyMonitor, FaultsOfTheLoopCountWhileItLives) {
   ExpectEvidence(TripCause::kHubRate2, in, 10.5, 10.0, 2);
   in.control_alive_ns = in.due_ns - 41 * kMs;
   EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kControlHeartbeatLost))
-      << "old word is no word: only the silence counts";
+      << "an old report does not count: only the lost heartbeat does";
 }
 
-TEST(SafetyMonitor, NothingIsSaidOfATaskThatHasNotReportedYet) {
+TEST(SafetyMonitor, ATaskThatHasNotReportedYetGivesNoCause) {
   SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.state = kStarting;
@@ -173,13 +173,13 @@ TEST(SafetyMonitor, NothingIsSaidOfATaskThatHasNotReportedYet) {
 
   in.levels &= ~LineBit(Line::kEmergencyStop);
   EXPECT_EQ(supervisor.Judge(in).present, CauseBit(TripCause::kEmergencyStop))
-      << "the lines speak from the first tick on";
+      << "the lines count from the first tick on";
 
   facts = supervisor.Judge(Fine());
   EXPECT_EQ(facts.all_reported, 1);
 }
 
-TEST(SafetyMonitor, RestCountsOnlyFromALivingLoop) {
+TEST(SafetyMonitor, RestCountsOnlyFromALoopThatIsAlive) {
   SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.control.at_rest = true;
@@ -188,7 +188,7 @@ TEST(SafetyMonitor, RestCountsOnlyFromALivingLoop) {
   EXPECT_EQ(supervisor.Judge(in).at_rest, 0);
 }
 
-TEST(SafetyMonitor, StoppingDoesNotEndOnTheWordOfAStepBeforeIt) {
+TEST(SafetyMonitor, StoppingDoesNotEndOnAReportFromBeforeIt) {
   SafetyMonitor supervisor(kLimits);
   SafetyInputs in = Fine();
   in.state = kStopping;
@@ -204,7 +204,7 @@ TEST(SafetyMonitor, TheEndOfTheLastExperimentDoesNotEndTheNext) {
   SafetyInputs in = Fine();
   in.control.experiment_done = true;
   EXPECT_EQ(supervisor.Judge(in).experiment_done, 1);
-  in.running_since_ns = in.control.due_ns;  // the step may not have known of the run
+  in.running_since_ns = in.control.due_ns;  // the step may be from before the run
   EXPECT_EQ(supervisor.Judge(in).experiment_done, 0);
   in.running_since_ns = INT64_MIN;
   in.state = kArmed;
@@ -224,7 +224,7 @@ TEST(SafetyMonitor, StopExpiresAfterItsTimeInStoppingOnly) {
   EXPECT_EQ(supervisor.Judge(in).stop_expired, 0);
 }
 
-TEST(SafetyMonitor, TheResetButtonCountsWhenItGoesDownAfterTheTrip) {
+TEST(SafetyMonitor, TheResetButtonCountsWhenPressedAfterTheTrip) {
   SafetyMonitor supervisor(kLimits);
   SafetyInputs up = Fine();
   SafetyInputs down = Fine();
@@ -242,7 +242,7 @@ TEST(SafetyMonitor, TheResetButtonCountsWhenItGoesDownAfterTheTrip) {
   up.state = kIdle;
   EXPECT_EQ(supervisor.Judge(up).reset_pressed, 0);
   up.state = kTripped;
-  EXPECT_EQ(supervisor.Judge(up).reset_pressed, 0) << "the next trip wants its own press";
+  EXPECT_EQ(supervisor.Judge(up).reset_pressed, 0) << "the next trip needs a new press";
 }
 
 TEST(SafetyMonitor, AButtonThatIsStuckFromTheStartNeverCounts) {
@@ -268,7 +268,7 @@ TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   EXPECT_EQ(limits.missed_deadlines_to_trip, 5);
 }
 
-// A homing run looks for one limit switch: that one may open while it runs, and not for long.
+// A homing run searches for one limit switch, which may open during the run, for a limited time.
 class HomingContact : public testing::Test {
  protected:
   SafetyInputs OnSwitch(std::int64_t after_ms = 0) const {
@@ -284,12 +284,12 @@ class HomingContact : public testing::Test {
   SafetyMonitor monitor_{kLimits};
 };
 
-TEST_F(HomingContact, TheSwitchThatIsLookedForDoesNotTripAtOnce) {
+TEST_F(HomingContact, TheSwitchSearchedForDoesNotTripAtOnce) {
   EXPECT_EQ(monitor_.Judge(OnSwitch()).present, 0u);
   EXPECT_EQ(monitor_.Judge(OnSwitch(500)).present, 0u);
 }
 
-TEST_F(HomingContact, StandingOnItForTooLongTrips) {
+TEST_F(HomingContact, StayingOnItForTooLongTrips) {
   monitor_.Judge(OnSwitch());
   EXPECT_EQ(monitor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
 }
@@ -302,20 +302,20 @@ TEST_F(HomingContact, TheClockStartsAgainWhenTheSwitchHasClosed) {
   EXPECT_EQ(monitor_.Judge(OnSwitch(600)).present, 0u);
 }
 
-TEST_F(HomingContact, EveryOtherSwitchTripsAsEver) {
+TEST_F(HomingContact, EveryOtherSwitchTrips) {
   SafetyInputs in = OnSwitch();
   in.levels &= ~LineBit(Line::kLimit2Low);
   EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2Low));
 }
 
-TEST_F(HomingContact, TheEmergencyStopCanNeverBeExcused) {
+TEST_F(HomingContact, TheEmergencyStopAlwaysTrips) {
   SafetyInputs in = OnSwitch();
   in.may_open |= LineBit(Line::kEmergencyStop);
   in.levels &= ~LineBit(Line::kEmergencyStop);
   EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kEmergencyStop));
 }
 
-TEST_F(HomingContact, OnlyARunningArmIsExcused) {
+TEST_F(HomingContact, TheSwitchMayOpenOnlyWhileRunning) {
   for (const SafetyState state : {kIdle, kArmed, kStopping, kTripped}) {
     SafetyInputs in = OnSwitch();
     in.state = state;

@@ -36,7 +36,7 @@ void ExpectZeroed(const GateInput& in, std::uint32_t why) {
   EXPECT_EQ(result.why, why);
 }
 
-TEST(Gate, LetsAnAdmissibleTorqueThroughUnchanged) {
+TEST(Gate, PassesAnAdmissibleTorqueUnchanged) {
   const GateResult result = Gate(FineInput(), kGateLimits);
   EXPECT_EQ(result.torque_nm[0], 2.0);
   EXPECT_EQ(result.torque_nm[1], -1.0);
@@ -47,12 +47,12 @@ TEST(Gate, AnOldCommandIsZeroAtOnce) {
   GateInput in = FineInput();
   in.previous_nm = {25.0, 5.0};  // far from zero: no slew on the way down
   in.asked_age_ns = 40 * kMs;
-  EXPECT_EQ(Gate(in, kGateLimits).why & kGateZeroed, 0u) << "exactly two periods is still young";
+  EXPECT_EQ(Gate(in, kGateLimits).why & kGateZeroed, 0u) << "exactly two periods is not too old";
   in.asked_age_ns = 40 * kMs + 1;
   ExpectZeroed(in, kGateCommandOld);
-  in.asked_age_ns = AgeNs(0, INT64_MIN);  // there never was one
+  in.asked_age_ns = AgeNs(0, INT64_MIN);  // there was no command
   ExpectZeroed(in, kGateCommandOld);
-  in.asked_age_ns = -1;  // a clock gone wrong
+  in.asked_age_ns = -1;  // a clock error
   ExpectZeroed(in, kGateCommandOld);
 }
 
@@ -67,7 +67,7 @@ TEST(Gate, AnOldPermitIsZeroAtOnce) {
   ExpectZeroed(in, kGatePermitOld);
 }
 
-TEST(Gate, OnlyRunningAndStoppingLetTorqueThrough) {
+TEST(Gate, OnlyRunningAndStoppingPassTorque) {
   for (int state = 0; state < 256; ++state) {
     GateInput in = FineInput();
     in.permit = static_cast<SafetyState>(state);
@@ -80,7 +80,7 @@ TEST(Gate, OnlyRunningAndStoppingLetTorqueThrough) {
   }
 }
 
-TEST(Gate, WhatIsNotFiniteIsZeroOnBothJoints) {
+TEST(Gate, NonFiniteInputsGiveZeroOnBothJoints) {
   for (const double bad : {kNan, kInf, -kInf}) {
     for (std::size_t joint = 0; joint < 2; ++joint) {
       GateInput in = FineInput();
@@ -102,7 +102,7 @@ TEST(Gate, WhatIsNotFiniteIsZeroOnBothJoints) {
   }
 }
 
-TEST(Gate, LimitsTorqueAndSaysOnWhichJoint) {
+TEST(Gate, LimitsTorqueAndNamesTheJoint) {
   GateInput in = FineInput();
   in.asked_nm = {1e300, -6.1};
   in.previous_nm = {30.0, -6.0};
@@ -112,7 +112,7 @@ TEST(Gate, LimitsTorqueAndSaysOnWhichJoint) {
   EXPECT_EQ(result.why, kGateTorque1 | kGateTorque2);
 }
 
-TEST(Gate, LimitsSlewInBothDirectionsAndSaysOnWhichJoint) {
+TEST(Gate, LimitsSlewInBothDirectionsAndNamesTheJoint) {
   GateInput in = FineInput();
   in.asked_nm = {10.0, -5.0};
   in.previous_nm = {0.0, 0.0};
@@ -127,7 +127,7 @@ TEST(Gate, LimitsSlewInBothDirectionsAndSaysOnWhichJoint) {
   EXPECT_EQ(down.why, kGateSlew1);
 }
 
-TEST(Gate, TorqueLimitHasTheLastWordOverSlew) {
+TEST(Gate, TorqueLimitHasPriorityOverSlewLimit) {
   GateInput in = FineInput();
   in.asked_nm = {29.0, 0.0};
   in.previous_nm = {40.0, 0.0};
@@ -144,7 +144,7 @@ TEST(Gate, NoTimePassedMeansNoChange) {
 
 static_assert(noexcept(Gate(GateInput{}, GateLimits{})));
 
-TEST(Gate, NeverExceedsItsLimitsWhateverComesIn) {
+TEST(Gate, NeverExceedsItsLimitsForAnyInput) {
   setenv("RC_PARAMS", "seed=20261120 max_success=20000", 0);  // repeatable
   long passed = 0;
   long zeroed = 0;

@@ -26,7 +26,7 @@ TEST(TripCause, EveryCauseHasItsOwnMachineNameAndATextThatSaysWhatToDo) {
   }
 }
 
-// The numbers are in logs: these pins fail when somebody renumbers.
+// The numbers are in logs: this test fails if a cause is renumbered.
 TEST(TripCause, NamesAreThoseOfTheirNumbers) {
   EXPECT_STREQ(Name(static_cast<TripCause>(0)), "none");
   EXPECT_STREQ(Name(static_cast<TripCause>(1)), "limit-switch-1-low");

@@ -30,7 +30,7 @@ FramePacket Gauges(std::int64_t sampled_at_ns) {
   return packet;
 }
 
-TEST(JoinFrames, TakesFromEachBusWhatIsItsOwn) {
+TEST(JoinFrames, TakesFromEachBusItsOwnReadings) {
   FramePacket packet = Encoders(20 * kMs);
   Join(Gauges(20 * kMs), &packet);
   EXPECT_EQ(packet.frame.counter, (std::array<std::uint32_t, 4>{1, 2, 3, 4}));
@@ -49,8 +49,8 @@ TEST(JoinFrames, KeepsTheInstantOfEveryReading) {
   EXPECT_EQ(packet.frame.sampled_at_ns + packet.frame.counter_offset_ns[2], 20 * kMs + 30);
 }
 
-// A first bus that has never sent anything stands at instant 0: an offset of hours does not fit.
-TEST(JoinFrames, ABusThatIsLongSilentDoesNotSpoilTheOther) {
+// A first bus that never sent a frame is at instant 0: an offset of hours cannot be represented.
+TEST(JoinFrames, ASilentBusDoesNotAffectTheOther) {
   FramePacket packet{};
   Join(Gauges(3'600'000 * kMs), &packet);
   EXPECT_EQ(packet.frame.sampled_at_ns, 3'600'000 * kMs);

@@ -29,7 +29,7 @@ TEST(MotionProfile, DerivativesAreThoseOfThePolynomial) {
   }
 }
 
-TEST(MotionProfile, LeavesAndArrivesAtRest) {
+TEST(MotionProfile, StartsAndEndsAtRest) {
   for (const MoveProfile profile : kProfiles) {
     const ProfilePoint start = ProfileAt(profile, 0.0), end = ProfileAt(profile, 1.0);
     EXPECT_EQ(start.s, 0.0);
@@ -48,7 +48,7 @@ TEST(MotionProfile, LeavesAndArrivesAtRest) {
 }
 
 // Peaks: the derivative of s'' is 0 at x = 1/2 -+ 1/sqrt(12) (quintic), -+ 1/sqrt(20) (septic);
-// the design study rounds them to 5.77 and 1.875, 7.51 and 2.19. A grid of 1e-4 misses the top by
+// the design study rounds them to 5.77 and 1.875, 7.51 and 2.19. A grid of 1e-4 misses the peak by
 // 1e-6.
 TEST(MotionProfile, PeaksAreThoseOfTheClosedForm) {
   const auto peaks = [](MoveProfile profile) {

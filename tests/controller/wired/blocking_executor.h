@@ -11,12 +11,11 @@
 
 namespace flexarm {
 
-/// Runs tasks on a simulated clock and lets some of them block: while one waits, the others run.
-/// One processor that costs no time; a task that is behind skips whole periods, as under
-/// RealtimeExecutor.
+/// Discrete-event executor with tasks that may block: while one waits, the others run. One
+/// processor with zero execution time; a late task skips whole periods, as under RealtimeExecutor.
 ///
-/// A task that may block has a thread of its own, but only one thread runs at a time, and which is
-/// decided by instant and priority alone: every run is the same.
+/// A task that may block has a thread of its own, but only one thread runs at a time, selected by
+/// instant and priority alone: every run is the same.
 class BlockingExecutor {
  public:
   struct Statistics {
@@ -42,7 +41,8 @@ class BlockingExecutor {
     if (may_block) slot->thread = std::thread([this, s = slot.get()] { Loop(s); });
   }
 
-  /// Ends the threads; what waits goes on at once, so all that the tasks use must still be there.
+  /// Ends the threads; waiting tasks continue at once, so all objects that they use must still
+  /// exist.
   void Stop() {
     over_ = true;
     for (const auto& slot : slots_) {
@@ -54,7 +54,7 @@ class BlockingExecutor {
 
   std::int64_t now_ns() const { return now_ns_; }
 
-  /// Everything that is due before `end_ns`.
+  /// Runs everything that is due before `end_ns`.
   void RunUntil(std::int64_t end_ns) {
     while (Slot* next = Next(end_ns)) {
       now_ns_ = std::max(now_ns_, next->next_ns);
@@ -63,7 +63,7 @@ class BlockingExecutor {
     now_ns_ = std::max(now_ns_, end_ns);
   }
 
-  /// From within a task that may block: it goes on at `instant_ns`.
+  /// From within a task that may block: continues the task at `instant_ns`.
   void BlockUntil(std::int64_t instant_ns) {
     Slot* slot = running_;
     if (over_ || instant_ns <= now_ns_) return;
@@ -86,7 +86,7 @@ class BlockingExecutor {
     Task* task = nullptr;
     Task::Traits traits{};
     std::int64_t due_ns = 0;   // of the activation under way
-    std::int64_t next_ns = 0;  // when it is due again, or goes on
+    std::int64_t next_ns = 0;  // when it is due again, or continues
     bool blocked = false;      // in the middle of an activation
     int missed_in_a_row = 0;
     Statistics statistics{};
@@ -94,7 +94,7 @@ class BlockingExecutor {
     std::thread thread;
   };
 
-  // The first that is due, of those the one with the highest priority.
+  // The task that is due first; of several, the one with the highest priority.
   Slot* Next(std::int64_t end_ns) {
     Slot* next = nullptr;
     for (const auto& slot : slots_) {

@@ -18,19 +18,21 @@
 #include "tests/controller/wired/wired_world.h"
 #include "tests/support/loop_time.h"
 
-// The whole wired stack with its real drivers, in mid-run, when a device begins to misbehave. A
-// failed exchange with an amplifier takes as long as its driver declares, on the clock of the test.
-// Whatever it does:
+// The complete stack with its real drivers, during a run, when a device fails. A failed exchange
+// with an amplifier takes as long as its driver declares, on the simulated clock of the test. For
+// every fault:
 // - control and safety begin every activation at its instant and miss none;
-// - what the loop takes for a reading was there at the instant that it says;
-// - it is survived and counted, or trips by a cause that names the device; the drives' torque ends;
-// - mended, the bus comes back while disarmed, and the arm can be armed again.
+// - every value that the loop uses as a reading was present at the instant that it states;
+// - the fault is survived and counted, or trips with a cause that names the device, and the drives'
+//   torque ends;
+// - after the repair the bus comes back while disarmed, and the arm can be armed again.
 
 namespace flexarm {
 namespace {
 
 constexpr std::int64_t kHalfMs = 500'000;
-// Of the real sockets, where no answer comes anyway: an ordinary machine's peer is quicker.
+// Time-out of the real sockets where no reply comes: longer than the reply time of a loaded
+// machine.
 constexpr double kPatience_ms = 100.0;
 
 // CLOCK_MONOTONIC of the amplifiers' drivers.
@@ -68,7 +70,7 @@ class Rig {
       bus->Open();
       wires.buses.push_back(bus.get());
     }
-    world->epoch_ns = world->wire.now_ns() + 100 * kMs;  // to open them took its time
+    world->epoch_ns = world->wire.now_ns() + 100 * kMs;  // opening them took time
     stack = std::make_unique<WiredStack>(config_, design_, wires);
     stack->SetEpoch(world->epoch_ns);
     planned_ = std::make_unique<PlannedExperiment>(
@@ -132,14 +134,14 @@ class Rig {
   std::int64_t hangs_ns = 0;  // an exchange with the first amplifier takes this long, if not 0
   std::int64_t ticks = 0;
   TripCauses present = 0;  // at the last request
-  int stale = 0;           // readings that the rig never showed at the instant that they claim
+  int stale = 0;           // readings that were not present at their stated instant
 
  private:
   void AddCan() {
     auto bus = std::make_unique<MemoryBus>(&world->wire, "vcan0");
     master = bus.get();
     drivers_.push_back(std::make_unique<CanopenDevice>(config_.hal.canopen[0], std::move(bus)));
-    // The driver waits on the bus, whose time runs ahead of the others' in a call.
+    // The driver waits on the bus, whose time is ahead of the others' during a call.
     WiredWorld* there = world.get();
     buses.push_back(std::make_unique<OnTestTime>(
         drivers_.back().get(), &executor, there, [there](std::int64_t call_ns, BusStatus) {
@@ -151,7 +153,7 @@ class Rig {
     ModbusDeviceConfig config = config_.hal.modbus.device[i];
     config.port = world->amplifiers[i]->server().port();
     drivers_.push_back(std::make_unique<ModbusDevice>(config, Clock));
-    // As it is shipped: with its own time-out, not with the patience of this test.
+    // The shipped time-out, not the long one of this test.
     config.response_timeout_ms = 4.0;
     const ModbusPlan plan = PlanModbus(config);
     const std::int64_t worst_ns = std::max(plan.exchange_worst_ns, plan.reconnect_worst_ns);
@@ -163,7 +165,7 @@ class Rig {
         }));
   }
 
-  // What only the test knows: whether a reading is what it says it is.
+  // Checks a reading against the values that the simulated rig had, which only the test has.
   void Look(const TickRecord& record) {
     const StepInput& in = record.input;
     ++ticks;
@@ -213,7 +215,7 @@ class HostileBus : public testing::Test {
     WiredWorld::Settle(&amplifier());
   }
 
-  // A trip by a bus, with its device's name; the torque ends.
+  // A bus trips, and the trip names its device; the torque ends.
   void ExpectNamed(const std::string& name) {
     ASSERT_TRUE(rig_->RunUntil(500 * kMs, [this] { return rig_->tripped(); }));
     EXPECT_TRUE(rig_->permit().cause == TripCause::kBusLost ||
@@ -227,17 +229,17 @@ class HostileBus : public testing::Test {
     EXPECT_FALSE(rig_->world->drives_make_torque());
   }
 
-  // Mended, it comes back while disarmed, and the arm can be armed.
+  // After the repair the bus comes back while disarmed, and the arm can be armed.
   void ExpectArmable(const std::function<void()>& mend) {
     mend();
     EXPECT_TRUE(rig_->RunUntil(6000 * kMs, [this] { return rig_->AllBack(); })) << Lost();
-    EXPECT_TRUE(rig_->tripped()) << "nothing comes back by itself but the bus";
+    EXPECT_TRUE(rig_->tripped()) << "only the bus comes back by itself";
     rig_->world->lines.levels |= LineBit(Line::kResetButton);
     rig_->RunFor(20 * kMs);
     rig_->world->lines.levels = kHealthyLevels;
     Refusal refusal = Refusal::kNotAtRest;
     for (int k = 0; k < 100 && refusal != Refusal::kNone; ++k) {
-      rig_->RunFor(50 * kMs);  // the arm swings out, and the loop gets to know that all is well
+      rig_->RunFor(50 * kMs);  // the arm comes to rest, and the loop gets healthy reports
       refusal = rig_->Ask(RequestKind::kReset);
     }
     EXPECT_EQ(refusal, Refusal::kNone) << CauseNames(rig_->present);
@@ -262,7 +264,7 @@ class HostileBus : public testing::Test {
     EXPECT_EQ(control.late + control.missed + control.skipped, 0);
     EXPECT_EQ(safety.late + safety.missed + safety.skipped, 0);
     EXPECT_EQ(control.activations, (executor.now_ns() - 10 * kMs + 20 * kMs - 1) / (20 * kMs));
-    EXPECT_EQ(rig_->ticks, control.activations) << "each left its record";
+    EXPECT_EQ(rig_->ticks, control.activations) << "each wrote its record";
     EXPECT_EQ(rig_->stale, 0);
     for (const auto& bus : rig_->buses) EXPECT_EQ(bus->reconnects_under_power, 0);
   }
@@ -280,17 +282,17 @@ void PrintTo(const OnWire& tested, std::ostream* out) { *out << Name(tested.faul
 
 class HostileAmplifier : public HostileBus, public testing::WithParamInterface<OnWire> {};
 
-TEST_P(HostileAmplifier, IsNamedDelaysNothingAndComesBack) {
+TEST_P(HostileAmplifier, IsNamedCausesNoDelayAndComesBack) {
   StartRun(GetParam().transport);
   Behave(GetParam().fault, std::chrono::seconds(5));
   ExpectNamed("modbus 'strain-amplifier-1'");
   ExpectArmable([this] { Behave(WireFault::kNone); });
 }
 
-// Not kTwice, which is survived: below. Not over a serial line: kOneBehind. Its replies bear no
-// number, so a device that answers in time with the values of the period before, and has never
-// missed a reply, is one whose filter is slow. After a miss it is found out:
-// HostilePeerOver.RepliesOfAPeerThatIsAlwaysLateAreNeverAccepted.
+// Without kTwice, which is survived (below). Over a serial line without kOneBehind: its replies
+// have no number, so a device that answers in time with the values of the period before, and never
+// missed a reply, cannot be distinguished from one with a slow filter. After a missed reply it is
+// detected: HostilePeerOver.RepliesOfAPeerThatIsAlwaysLateAreNeverAccepted.
 std::vector<OnWire> AllFaults() {
   using enum WireFault;
   std::vector<OnWire> all;
@@ -317,7 +319,7 @@ INSTANTIATE_TEST_SUITE_P(All, HostileAmplifier, testing::ValuesIn(AllFaults()),
                            return name;
                          });
 
-TEST_F(HostileBus, AWellBehavedRigRunsOn) {
+TEST_F(HostileBus, AHealthyRigKeepsRunning) {
   StartRun();
   rig_->RunFor(2000 * kMs);
   EXPECT_EQ(rig_->permit().state, SafetyState::kRunning) << Name(rig_->permit().cause);
@@ -334,7 +336,7 @@ TEST_F(HostileBus, OneFailedExchangeIsCountedAndSurvived) {
   EXPECT_EQ(rig_->Failed(), 1U);
 }
 
-// What nobody asked for costs the next exchange, and the one after that is good again.
+// An unexpected reply makes the next exchange fail, and the one after that succeeds.
 TEST_F(HostileBus, RepliesThatComeTwiceAreCountedAndSurvived) {
   StartRun();
   Behave(WireFault::kTwice);
@@ -343,8 +345,8 @@ TEST_F(HostileBus, RepliesThatComeTwiceAreCountedAndSurvived) {
   EXPECT_NEAR(rig_->Failed(), 25, 1) << "every second one of fifty";
 }
 
-// Beyond what any driver declares: the bus's thread stands still, and nobody else does.
-TEST_F(HostileBus, AnExchangeThatDoesNotEndIsNamedAndDelaysNobody) {
+// Longer than any driver declares: the thread of the bus is blocked, and no other.
+TEST_F(HostileBus, AnExchangeThatDoesNotEndIsNamedAndDelaysNoTask) {
   StartRun();
   rig_->hangs_ns = 300 * kMs;
   ExpectNamed("strain-amplifier-1: its exchange does not end");
@@ -352,8 +354,8 @@ TEST_F(HostileBus, AnExchangeThatDoesNotEndIsNamedAndDelaysNobody) {
   ExpectArmable([this] { rig_->hangs_ns = 0; });
 }
 
-// Late by more than the declared bound, again and again, but not by two periods: periods are
-// skipped, and readings that are missing are missing.
+// Late by more than the declared bound, repeatedly, but by less than two periods: periods are
+// skipped, and missing readings are marked as missing.
 TEST_F(HostileBus, ExchangesOfMoreThanAPeriodLeaveNoReadingOld) {
   StartRun();
   rig_->hangs_ns = 25 * kMs;
@@ -403,7 +405,7 @@ TEST_F(HostileNode, AnEmergencyIsNamedAndReset) {
   ExpectArmable([] {});
 }
 
-TEST_F(HostileNode, BusOffIsNamedAndLeftWhileDisarmed) {
+TEST_F(HostileNode, BusOffIsNamedAndClearedWhileDisarmed) {
   StartRun();
   rig_->master->SetRestartable(false);
   rig_->master->SetBusOff();
@@ -411,7 +413,7 @@ TEST_F(HostileNode, BusOffIsNamedAndLeftWhileDisarmed) {
   ExpectArmable([this] { rig_->master->SetRestartable(true); });
 }
 
-TEST_F(HostileNode, ABusThatNobodyAcknowledgesIsNamedAndComesBack) {
+TEST_F(HostileNode, ABusWithoutAcknowledgementIsNamedAndComesBack) {
   StartRun();
   rig_->world->wire.SetStalled(true);
   ExpectNamed("vcan0: frames are not sent, no node acknowledges");

@@ -138,7 +138,7 @@ class WiredStackTest : public testing::Test {
   std::int64_t now_ns_ = 0;
 };
 
-// The bars of the in-process backend: the same arm, the same instants, only wired differently.
+// The bars of the in-process backend: the same arm and instants, with other wiring.
 TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend) {
   RunUntil(9'000 * kMs);
   EXPECT_EQ(permit().state, SafetyState::kIdle) << Name(permit().cause);
@@ -150,8 +150,8 @@ TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend
   EXPECT_LE(metrics.joint_rms_error_deg[1], 1.35);
 }
 
-// What OperatorTask asks before it plans.
-TEST_F(WiredStackTest, ARealRigRefusesWhatOnlyASimulatedOneCanMeet) {
+// OperatorTask makes this check before it loads an experiment.
+TEST_F(WiredStackTest, AHardwareRigRefusesSimulationEvents) {
   EXPECT_FALSE(stack_.simulated());
   EXPECT_NO_THROW(RefuseSimEvents(experiment_));
   const std::string message =
@@ -181,7 +181,7 @@ TEST_F(WiredStackTest, OneFailedExchangeIsSurvivedTwoAreALostBus) {
   EXPECT_FALSE(lines_.relay);
 }
 
-// The trip says which bus, and the stack says what that bus met, in words.
+// The trip names the bus, and the stack gives the fault of that bus as text.
 TEST_F(WiredStackTest, ALostBusIsNamedInTheTripAndInTheHealth) {
   RunUntil(2'000 * kMs);
   ASSERT_EQ(stack_.buses().size(), 2U);
@@ -206,7 +206,7 @@ TEST_F(WiredStackTest, ALostBusIsNamedInTheTripAndInTheHealth) {
       << "the trip keeps what caused it";
 }
 
-TEST_F(WiredStackTest, ADriveFaultTripsByItsName) {
+TEST_F(WiredStackTest, ADriveFaultTripsWithItsOwnCause) {
   RunUntil(2'000 * kMs);
   drives_.failure = BusStatus::kDriveFault;
   drives_.fail_from = drives_.exchanges + 1;
@@ -244,19 +244,19 @@ TEST_F(WiredStackTest, AFailedExchangeOpensNoSwitchAndAButtonOnTheBusIsPressed) 
   EXPECT_EQ(permit().levels, kHealthyLevels | LineBit(Line::kResetButton));
 }
 
-TEST_F(WiredStackTest, ALostBusIsTakenBackOnlyWhileDisarmed) {
+TEST_F(WiredStackTest, ALostBusIsReconnectedOnlyWhileDisarmed) {
   RunUntil(2'000 * kMs);
   ASSERT_EQ(permit().state, SafetyState::kRunning);
   drives_.fail_from = drives_.exchanges + 1;
   drives_.fail_until = drives_.exchanges + 20;
   RunUntil(now_ns_ + 40 * kMs);
-  EXPECT_EQ(drives_.reconnects, 0) << "powered: only exchanges";
+  EXPECT_EQ(drives_.reconnects, 0) << "powered: exchanges only, no reconnection";
   RunUntil(now_ns_ + 600 * kMs);
   EXPECT_EQ(permit().state, SafetyState::kTripped);
   EXPECT_GT(drives_.reconnects, 0);
   const std::int64_t before = drives_.reconnects;
   RunUntil(now_ns_ + 200 * kMs);
-  EXPECT_EQ(drives_.reconnects, before) << "it is back: exchanges again";
+  EXPECT_EQ(drives_.reconnects, before) << "the bus is back: exchanges again";
 }
 
 }  // namespace

@@ -20,7 +20,8 @@
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/wired/blocking_executor.h"
 
-// The rig of config/hil-wire.toml without a kernel's CAN and GPIO, so that its time is a test's.
+// The rig of config/hil-wire.toml without the kernel's CAN and GPIO, so that the test sets its
+// time.
 
 namespace flexarm {
 
@@ -45,11 +46,11 @@ class WorldLines final : public SafetyLines {
   std::int64_t pump_toggled_ns_ = -1'000'000'000;
 };
 
-/// Nodes on a CAN bus in memory, amplifiers behind real sockets, the simulated arm between them: a
-/// millisecond a time, after everybody else who is due in it.
+/// Nodes on a CAN bus in memory, amplifiers behind real sockets, and the simulated arm between
+/// them, in steps of a millisecond, after all other tasks that are due in it.
 class WiredWorld final : public Task {
  public:
-  /// What the gauges and counters showed from an instant on.
+  /// Readings of the gauges and counters from an instant on.
   struct Shown {
     std::int64_t from_ns;
     SensorFrame frame;
@@ -99,7 +100,7 @@ class WiredWorld final : public Task {
            node(CanopenRole::kDrive2).torque_per_mille() != 0;
   }
 
-  /// Whether strain row `i` really showed `counts` at `instant_ns`, or just before.
+  /// Whether strain row `i` read `counts` at `instant_ns`, or just before.
   bool Showed(std::size_t i, std::int32_t counts, std::int64_t instant_ns) const {
     return WasThere(instant_ns, [&](const SensorFrame& f) { return f.strain[i] == counts; });
   }
@@ -107,7 +108,7 @@ class WiredWorld final : public Task {
     return WasThere(instant_ns, [&](const SensorFrame& f) { return f.counter[i] == counts; });
   }
 
-  /// What was asked of the amplifier's server is in force when this returns.
+  /// Waits until the amplifier's server has applied its settings.
   static void Settle(SimulatedAmplifier* amplifier) {
     while (!amplifier->server().settled()) {
       std::this_thread::sleep_for(std::chrono::microseconds(100));
@@ -146,7 +147,7 @@ class WiredWorld final : public Task {
     if (shown_.size() > 500) shown_.pop_front();
   }
 
-  // Who is due at the same instant is there first, and finds what was shown before.
+  // A task that is due at the same instant runs first, and reads the values before it.
   bool WasThere(std::int64_t instant_ns,
                 const std::function<bool(const SensorFrame&)>& found) const {
     return std::any_of(shown_.begin(), shown_.end(), [&](const Shown& shown) {
@@ -161,11 +162,11 @@ class WiredWorld final : public Task {
   std::deque<Shown> shown_;
 };
 
-/// A real driver on the test's clock: each of its calls takes as long as its peer makes it take, or
-/// as the test says.
+/// A real driver on the simulated clock: each call takes as long as its peer needs, or as long as
+/// the test sets.
 class OnTestTime final : public BusDevice {
  public:
-  /// From the instant of a call and what it gave: when it shall return.
+  /// Instant at which a call returns, from its start and its status.
   using Returns = std::function<std::int64_t(std::int64_t call_ns, BusStatus status)>;
 
   OnTestTime(BusDevice* driver, BlockingExecutor* executor, WiredWorld* world, Returns returns)

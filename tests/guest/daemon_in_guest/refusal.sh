@@ -26,7 +26,7 @@ plain 0 65536 --experiment $configs/experiments/square-30deg.toml
 check "exit status 1" equal $status 1
 check "names the priority" says 'SCHED_FIFO priority 90 is refused'
 check "names its limit" says 'RLIMIT_RTPRIO is 0'
-check "names the remedy" says 'set LimitRTPRIO=.* or give --without-realtime'
+check "names the remedy" says 'set LimitRTPRIO=.* or use --without-realtime'
 check "names the memory and its limit" says 'locking the memory is refused.*RLIMIT_MEMLOCK is 65536'
 check "names the remedy for the memory" says 'set LimitMEMLOCK=infinity'
 check "leaves no log and no socket" equal "$(find runs socket 2>/dev/null | wc -l)" 0
