@@ -9,6 +9,7 @@
 #include "controller/design/run_design.h"
 #include "controller/host/run_info.h"
 #include "controller/law/design.h"
+#include "controller/operator/operator_task.h"
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/runlog/recorder_task.h"
@@ -18,9 +19,6 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kOperatorPeriodNs = 20'000'000;
-constexpr std::int64_t kAfterTripNs = 5'000'000'000;  // the log of a tripped run goes on this long
-constexpr std::int64_t kAfterIdleNs = 200'000'000;    // until the recorder has seen everything
 constexpr std::size_t kQueueDepth = 64;
 
 /// The operator's thread of a simulated run: one plan, then UnattendedRun's requests.
@@ -30,9 +28,9 @@ class UnattendedTask final : public Task {
 
   Traits traits() const noexcept override {
     return {.name = "operator",
-            .period_ns = kOperatorPeriodNs,
+            .period_ns = OperatorTask::kPeriodNs,
             .phase_ns = 0,
-            .deadline_ns = kOperatorPeriodNs,
+            .deadline_ns = OperatorTask::kPeriodNs,
             .priority = 0};
   }
 
@@ -42,23 +40,13 @@ class UnattendedTask final : public Task {
     const Permit& permit = stack_->operator_permits().Read().At(activation.due_ns - 1).value;
     const OperatorRequest request = run_.Update(activation.due_ns, permit);
     if (request.kind != RequestKind::kNone) stack_->requests().Push(request);
-    if (permit.state == SafetyState::kTripped && trip_ == TripCause::kNone) {
-      trip_ = permit.cause;
-      over_ns_ = activation.due_ns + kAfterTripNs;
-    } else if (run_.over() && over_ns_ == INT64_MAX) {
-      over_ns_ = activation.due_ns + kAfterIdleNs;
-    }
   }
 
-  TripCause trip() const { return trip_; }
-  std::int64_t over_ns() const { return over_ns_; }
   const UnattendedRun& run() const { return run_; }
 
  private:
   SimulatedStack* stack_;
   UnattendedRun run_;
-  TripCause trip_ = TripCause::kNone;
-  std::int64_t over_ns_ = INT64_MAX;
 };
 
 /// Keeps every tick in memory for the metrics, and passes all on to the log if there is one.
@@ -175,7 +163,7 @@ double Simulation::Loop(const std::function<void(double)>& progress) {
       progress(static_cast<double>(now_ns) * 1e-9);
     }
     simulated_ns_ = now_ns;
-    return now_ns < operator_.over_ns();
+    return now_ns < operator_.run().over_ns();
   });
   recorder_.Finish();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -187,7 +175,7 @@ SimulationResult Simulation::Result(double wall_s) const {
       ComputeMetrics(contents_.tick, planned_.accepted, grid_.period_s(),
                      TipGeometryOf(request_.config.arm, request_.config.controller.nominal));
   result.ticks = result.metrics.ticks;
-  result.trip = operator_.trip();
+  result.trip = operator_.run().trip();
   result.completed =
       result.trip == TripCause::kNone && result.ticks == planned_.reference.periods();
   for (const Move& move : planned_.accepted.move) {

@@ -7,8 +7,8 @@
 
 namespace flexarm {
 
-/// The delay of the loop as the drive side measured it, from sampling instant to torque, beside
-/// what the loop can bear: what the operator sees.
+/// The delay of the loop from sampling instant to torque, as the drive side measured it, and what
+/// is left of the loop's delay margin. Real-time safe. Thread: operator.
 class DelayMonitor {
  public:
   /// @param margin_s  delay beyond the predicted one that makes the loop unstable (screen.h)
@@ -16,7 +16,8 @@ class DelayMonitor {
       : period_ns_(period_ns), margin_s_(margin_s) {}
 
   /// Every step, in order.
-  /// @returns true once a run: a torque acted so late that less than half of the margin was left
+  /// @returns true once a run: when a torque acted so late that less than half of the margin was
+  /// left
   bool Take(const StepInput& input) noexcept {
     const bool runs = input.safety_state == SafetyState::kRunning;
     if (runs && !runs_) warned_ = false;
@@ -25,7 +26,7 @@ class DelayMonitor {
     planned_late_ns_ = input.acts_late_ns;
     delay_ns_ = period_ns_ + input.acted_late_ns;
     longest_ns_ = std::max(longest_ns_, delay_ns_);
-    if (!known_) {  // of the first step nobody planned the torque before
+    if (!known_) {  // the torque before the first step has no prediction
       known_ = true;
       return false;
     }
@@ -37,7 +38,7 @@ class DelayMonitor {
 
   double delay_ms() const noexcept { return 1e-6 * static_cast<double>(delay_ns_); }
   double longest_ms() const noexcept { return 1e-6 * static_cast<double>(longest_ns_); }
-  /// What the torque that was latest against its prediction left of the margin.
+  /// What is left of the margin after the largest lateness against the prediction.
   double margin_ms() const noexcept {
     return 1e3 * margin_s_ - 1e-6 * static_cast<double>(beyond_ns_);
   }
@@ -54,23 +55,24 @@ class DelayMonitor {
   bool warned_ = false;
 };
 
-/// A delay that nobody knew of was found: what the operator is told, once a run.
+/// Notices that the step compensates for a delay that is neither declared nor measured (delay_found
+/// of StepOutput). Real-time safe. Thread: operator.
 class FoundDelayMonitor {
  public:
   /// Every step, in order.
-  /// @returns true once a run: it goes on with another delay than the known one
+  /// @returns true once a run: when such a delay was found
   bool Take(const StepInput& input, const StepOutput& output) noexcept {
     if (input.safety_state != SafetyState::kRunning) {
-      told_ = false;
+      reported_ = false;
       return false;
     }
-    if (told_ || output.delay_found == 0) return false;
-    told_ = true;
+    if (reported_ || output.delay_found == 0) return false;
+    reported_ = true;
     return true;
   }
 
  private:
-  bool told_ = false;
+  bool reported_ = false;
 };
 
 }  // namespace flexarm

@@ -1,9 +1,7 @@
 #include "controller/operator/operator_socket.h"
 
-#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,40 +10,24 @@
 #include <cstring>
 #include <utility>
 
+#include "controller/operator/unix_address.h"
 #include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
 
-sockaddr_un AddressOf(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof(address.sun_path)) {
-    throw RejectedError("daemon.socket = " + path + ": must be a path of 1 to " +
-                        std::to_string(sizeof(address.sun_path) - 1) + " characters");
-  }
-  std::copy(path.begin(), path.end(), std::begin(address.sun_path));
-  return address;
-}
-
-const sockaddr* Generic(const sockaddr_un& address) {
-  return reinterpret_cast<const sockaddr*>(&address);  // what the socket calls take
-}
-
-bool SomebodyListens(const sockaddr_un& address) {
+bool DaemonListens(const UnixAddress& address) {
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const bool listens = connect(fd, Generic(address), sizeof(address)) == 0 || errno == EAGAIN;
+  const bool listens = connect(fd, address.get(), address.size()) == 0 || errno == EAGAIN;
   close(fd);
   return listens;
 }
 
-std::string Cause() { return std::strerror(errno); }
-
 }  // namespace
 
 OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
-  const sockaddr_un address = AddressOf(path_);
-  if (SomebodyListens(address)) {
+  const UnixAddress address(path_);
+  if (DaemonListens(address)) {
     throw RejectedError(path_ +
                         ": a daemon is listening there already; stop it first, or set "
                         "daemon.socket to another path");
@@ -54,9 +36,9 @@ OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
   if (lstat(path_.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) unlink(path_.c_str());
   listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const mode_t old_mask = umask(0117);  // rw-rw----
-  const bool bound = listener_ >= 0 && bind(listener_, Generic(address), sizeof(address)) == 0 &&
+  const bool bound = listener_ >= 0 && bind(listener_, address.get(), address.size()) == 0 &&
                      listen(listener_, static_cast<int>(kMaxClients)) == 0;
-  const std::string cause = Cause();
+  const std::string cause = std::strerror(errno);
   umask(old_mask);
   if (bound) return;
   if (listener_ >= 0) close(listener_);
@@ -90,7 +72,7 @@ std::vector<OperatorSocket::Message> OperatorSocket::Poll() {
     if (!Read(&client, &messages)) gone.push_back(client.fd);
   }
   for (const int fd : gone) {
-    // A client may send its line and hang up: its last line is still heard, and answered in vain.
+    // No answer could reach a client that has closed its connection: its lines are dropped.
     std::erase_if(messages, [fd](const Message& m) { return m.client == fd; });
     Close(fd);
   }
@@ -129,39 +111,6 @@ void OperatorSocket::Reply(int client, const std::string& line) {
 void OperatorSocket::Close(int fd) {
   close(fd);
   std::erase_if(clients_, [fd](const Client& c) { return c.fd == fd; });
-}
-
-std::string AskDaemon(const std::string& path, const std::string& line, double timeout_s) {
-  const sockaddr_un address = AddressOf(path);
-  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const auto fail = [&](const std::string& what) {
-    close(fd);
-    throw RejectedError(path + ": " + what);
-  };
-  if (connect(fd, Generic(address), sizeof(address)) != 0) {
-    if (errno == EACCES) {
-      fail(
-          "this user may not operate the arm (Permission denied): be a member of the socket's "
-          "group, which is flexarm for the service (adduser USER flexarm, and log in again)");
-    }
-    fail("no daemon answers (" + Cause() +
-         "); start flexarmd, or name its socket with --socket or -c FILE");
-  }
-  const std::string text = line + "\n";
-  if (send(fd, text.data(), text.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(text.size())) {
-    fail("the daemon did not take the command (" + Cause() + ")");
-  }
-  std::string reply;
-  pollfd ready{.fd = fd, .events = POLLIN, .revents = 0};
-  while (reply.find('\n') == std::string::npos) {
-    if (poll(&ready, 1, static_cast<int>(timeout_s * 1e3)) <= 0) fail("the daemon does not answer");
-    std::array<char, 4096> chunk;
-    const ssize_t count = recv(fd, chunk.data(), chunk.size(), 0);
-    if (count <= 0) fail("the daemon closed the connection");
-    reply.append(chunk.data(), static_cast<std::size_t>(count));
-  }
-  close(fd);
-  return reply.substr(0, reply.find('\n'));
 }
 
 }  // namespace flexarm

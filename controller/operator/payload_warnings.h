@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// How the operator is told of a warning.
+/// A warning about the payload: its name in events and status, and its text.
 struct PayloadWarningText {
   PayloadWarningBit bit;
   const char* name;
@@ -27,24 +27,25 @@ inline constexpr std::array<PayloadWarningText, 3> kPayloadWarnings = {{
      "stable with every payload: make a longer or a faster move"},
 }};
 
-/// Which warnings about the payload are new: the operator is told of each once a run.
+/// Which warnings about the payload are new: each is reported once a run. Real-time safe.
+/// Thread: operator.
 class PayloadWarnings {
  public:
   /// Every step, in order.
   /// @returns PayloadWarningBits that are new in this run
   std::uint32_t Take(const StepInput& input, const StepOutput& output) noexcept {
     const bool runs = input.safety_state == SafetyState::kRunning;
-    if (runs && !runs_) told_ = 0;
+    if (runs && !runs_) reported_ = 0;
     runs_ = runs;
     if (!runs) return 0;
-    const std::uint32_t news = output.payload_warnings & ~told_;
-    told_ |= news;
+    const std::uint32_t news = output.payload_warnings & ~reported_;
+    reported_ |= news;
     return news;
   }
 
  private:
   bool runs_ = false;
-  std::uint32_t told_ = 0;
+  std::uint32_t reported_ = 0;
 };
 
 }  // namespace flexarm

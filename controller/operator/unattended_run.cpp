@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "controller/runlog/run_recording.h"
+
 namespace flexarm {
 
 OperatorRequest UnattendedRun::Ask(RequestKind kind, std::int64_t not_before_ns) noexcept {
@@ -11,6 +13,17 @@ OperatorRequest UnattendedRun::Ask(RequestKind kind, std::int64_t not_before_ns)
 }
 
 OperatorRequest UnattendedRun::Update(std::int64_t due_ns, const Permit& permit) noexcept {
+  const OperatorRequest request = NextRequest(due_ns, permit);
+  if (permit.state == SafetyState::kTripped && trip_ == TripCause::kNone) {
+    trip_ = permit.cause;
+    over_ns_ = due_ns + kAfterTripNs;
+  } else if (over() && over_ns_ == INT64_MAX) {
+    over_ns_ = due_ns + settle_ns_;
+  }
+  return request;
+}
+
+OperatorRequest UnattendedRun::NextRequest(std::int64_t due_ns, const Permit& permit) noexcept {
   const std::int64_t soon_ns = due_ns + kLeadNs;
   if (!over()) {
     switch (permit.state) {

@@ -99,7 +99,7 @@ std::span<const TickColumn> TickColumns() { return kColumns; }
 std::string CreateTickTable() {
   std::string sql = "CREATE TABLE tick (tick INTEGER PRIMARY KEY, time_s REAL";
   for (const TickColumn& column : kColumns) {
-    sql += std::string(", ") + column.name + ' ' + column.type;
+    sql.append(", ").append(column.name).append(" ").append(column.type);
   }
   return sql + ", input BLOB NOT NULL, output BLOB NOT NULL);";
 }

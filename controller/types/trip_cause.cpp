@@ -5,105 +5,125 @@
 namespace flexarm {
 namespace {
 
-struct Texts {
+struct Row {
+  TripCause cause;
   const char* name;
+  TripChannel channel;
   const char* text;
 };
 
-constexpr std::array<Texts, kTripCauses> kTexts{{
-    {"none", "No trip has occurred."},
-    {"limit-switch-1-low",
+using enum TripCause;
+constexpr TripChannel kJoint = TripChannel::kJoint, kStrain = TripChannel::kStrain,
+                      kCounter = TripChannel::kCounter, kBus = TripChannel::kBus;
+
+// All that is said of a cause, in the order of their numbers. A new cause has its number in the
+// header, its row here, and the code that detects it.
+constexpr std::array<Row, kTripCauses> kRows{{
+    {TripCause::kNone, "none", TripChannel::kNone, "No trip has occurred."},
+    {kLimitSwitch1Low, "limit-switch-1-low", kJoint,
      "The low limit switch of joint 1 is open: the joint has reached it, or its wire is cut. Move "
      "the joint back by hand or repair the wire; then press the reset button and run `flexarm "
      "reset`."},
-    {"limit-switch-1-high",
+    {kLimitSwitch1High, "limit-switch-1-high", kJoint,
      "The high limit switch of joint 1 is open: the joint has reached it, or its wire is cut. Move "
      "the joint back by hand or repair the wire; then press the reset button and run `flexarm "
      "reset`."},
-    {"limit-switch-2-low",
+    {kLimitSwitch2Low, "limit-switch-2-low", kJoint,
      "The low limit switch of joint 2 is open: the joint has reached it, or its wire is cut. Move "
      "the joint back by hand or repair the wire; then press the reset button and run `flexarm "
      "reset`."},
-    {"limit-switch-2-high",
+    {kLimitSwitch2High, "limit-switch-2-high", kJoint,
      "The high limit switch of joint 2 is open: the joint has reached it, or its wire is cut. Move "
      "the joint back by hand or repair the wire; then press the reset button and run `flexarm "
      "reset`."},
-    {"emergency-stop",
+    {kEmergencyStop, "emergency-stop", kJoint,
      "The emergency stop was pressed, or its wire is cut. Make the arm safe and release the "
      "emergency stop; then press the reset button and run `flexarm reset`."},
-    {"soft-limit-1",
+    {kSoftLimit1, "soft-limit-1", kJoint,
      "The angle of joint 1 is beyond limits.soft_angle_deg. Move the joint back by hand; check the "
      "experiment and the zero of the encoder."},
-    {"soft-limit-2",
+    {kSoftLimit2, "soft-limit-2", kJoint,
      "The angle of joint 2 is beyond limits.soft_angle_deg. Move the joint back by hand; check the "
      "experiment and the zero of the encoder."},
-    {"hub-rate-1",
+    {kHubRate1, "hub-rate-1", kJoint,
      "Hub 1 turned faster than limits.hub_rate_rad_s on two ticks. Check the experiment, the "
      "payload and the gains."},
-    {"hub-rate-2",
+    {kHubRate2, "hub-rate-2", kJoint,
      "Hub 2 turned faster than limits.hub_rate_rad_s on two ticks. Check the experiment, the "
      "payload and the gains."},
-    {"bending-strain-1",
+    {kBendingStrain1, "bending-strain-1", kJoint,
      "The strain at the root of link 1 exceeded limits.strain_limit. Check the arm for a "
      "collision; check the experiment and the payload."},
-    {"bending-strain-2",
+    {kBendingStrain2, "bending-strain-2", kJoint,
      "The strain at the root of link 2 exceeded limits.strain_limit. Check the arm for a "
      "collision; check the experiment and the payload."},
-    {"encoder-jump",
+    {kEncoderJump, "encoder-jump", kCounter,
      "An encoder moved further in one sample than the arm can. Its angle is unreliable. Check its "
      "cable and its coupling."},
-    {"hub-against-rotor",
+    {kHubAgainstRotor, "hub-against-rotor", kJoint,
      "The hub encoder and the rotor encoder of one joint differ by more than the joint spring can "
      "twist. Check the coupling, the gearbox and both encoders."},
-    {"strain-stuck",
+    {kStrainStuck, "strain-stuck", kStrain,
      "A strain channel repeats the same value. Check its amplifier and its cable, or remove the "
      "channel from the configuration."},
-    {"strain-saturated",
+    {kStrainSaturated, "strain-saturated", kStrain,
      "A strain channel is at the end of its range. Check its gain, its balance and its cable."},
-    {"strain-out-of-family",
+    {kStrainOutOfFamily, "strain-out-of-family", kStrain,
      "A strain channel disagrees with the other channels of its link. Check the gauge and its "
      "cable, or run `flexarm tare`."},
-    {"no-counter-reading",
+    {kNoCounterReading, "no-counter-reading", kCounter,
      "No valid encoder reading arrived for two periods. Check the counter board and its bus."},
-    {"stale-frame",
+    {kStaleFrame, "stale-frame", kJoint,
      "The measurements are too old: the drive side or the simulated plant has stopped. Check the "
      "bus and the load of the computer."},
-    {"bus-lost",
+    {kBusLost, "bus-lost", kBus,
      "A bus to the rig does not answer. Check its cable, its power supply and its interface."},
-    {"drive-fault",
+    {kDriveFault, "drive-fault", kBus,
      "A drive reports a fault or has left operation. Read its fault code, remove the cause and "
      "acknowledge the fault at the drive."},
-    {"missed-deadlines",
+    {kMissedDeadlines, "missed-deadlines", kJoint,
      "The controller missed several deadlines in a row: the computer ran it too late. Check that "
      "the kernel is PREEMPT_RT and that the cores are isolated, and remove other load from the "
      "computer; see docs/timing.md."},
-    {"control-heartbeat-lost",
+    {kControlHeartbeatLost, "control-heartbeat-lost", kJoint,
      "The control thread stopped reporting. A reset is possible only while it runs: restart the "
      "daemon and report the log."},
-    {"state-not-finite",
+    {kStateNotFinite, "state-not-finite", kJoint,
      "The state of the controller is not a finite number, or the safety state is corrupted. "
      "Restart the daemon and report the log."},
-    {"estimator-residual",
+    {kEstimatorResidual, "estimator-residual", kJoint,
      "The measurements do not fit the model of the arm. Check the payload, the gauges and the "
      "configuration."},
-    {"stop-timeout",
+    {kStopTimeout, "stop-timeout", kJoint,
      "The arm did not come to rest within safety.stop_timeout_s. Wait until it is at rest; check "
      "the gains and the rest limits."},
 }};
 
-static_assert(kTexts.back().name != nullptr, "every cause has its texts");
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kRows.size(); ++i) {
+        if (static_cast<std::size_t>(kRows[i].cause) != i || kRows[i].text == nullptr) return false;
+      }
+      return true;
+    }(),
+    "every cause has its row, in the order of the numbers");
 
 }  // namespace
 
 const char* Name(TripCause cause) noexcept {
   const auto index = static_cast<std::size_t>(cause);
-  return index < kTexts.size() ? kTexts[index].name : "corrupted";
+  return index < kRows.size() ? kRows[index].name : "corrupted";
+}
+
+TripChannel ChannelOf(TripCause cause) noexcept {
+  const auto index = static_cast<std::size_t>(cause);
+  return index < kRows.size() ? kRows[index].channel : TripChannel::kNone;
 }
 
 const char* OperatorText(TripCause cause) noexcept {
   const auto index = static_cast<std::size_t>(cause);
-  return index < kTexts.size()
-             ? kTexts[index].text
+  return index < kRows.size()
+             ? kRows[index].text
              : "The number of the trip cause is corrupted. Restart the daemon and report the log.";
 }
 

@@ -45,6 +45,10 @@ constexpr TripCauses CauseBit(TripCause cause) noexcept {
 /// Short machine name, as in JSON and in the log: "limit-switch-1-low". "none" for kNone.
 const char* Name(TripCause cause) noexcept;
 
+/// What Evidence::channel counts for a cause, 1-based.
+enum class TripChannel : std::uint8_t { kNone, kJoint, kStrain, kCounter, kBus };
+TripChannel ChannelOf(TripCause cause) noexcept;
+
 /// Text for the operator: what happened, what it means, what to do.
 const char* OperatorText(TripCause cause) noexcept;
 

@@ -1,0 +1,103 @@
+#include "controller/operator/command_dispatch.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "controller/operator/request_answers.h"
+#include "hal/line_names.h"
+
+namespace flexarm {
+namespace {
+
+nlohmann::json Failure(const std::string& error, const std::string& remedy) {
+  return {{"ok", false}, {"error", error}, {"remedy", remedy}};
+}
+
+std::optional<RequestKind> RequestByName(const std::string& name) {
+  for (const RequestKind kind :
+       {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
+    if (name == Name(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+CommandDispatch::CommandDispatch(Targets targets) : targets_(std::move(targets)) {}
+
+nlohmann::json CommandDispatch::Answer(int client, const std::string& line,
+                                       const OperatorSnapshot& now) {
+  try {
+    return Dispatch(client, line, now);
+  } catch (const std::exception& error) {
+    return {{"ok", false}, {"error", error.what()}};
+  }
+}
+
+nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
+                                         const OperatorSnapshot& now) {
+  const nlohmann::json command = nlohmann::json::parse(line, nullptr, false);
+  if (!command.is_object() || !command.contains("command") || !command["command"].is_string()) {
+    return Failure("not a command: expected a line like {\"command\": \"status\"}",
+                   "use the flexarm program");
+  }
+  const std::string name = command["command"];
+  if (name == "status") return targets_.status();
+  if (name == "sim") return SetLine(command, now.permit.state);
+  if (name == "run") return StartRun(command, client, now);
+  if (Commissioner::Knows(name)) {
+    targets_.commissioning->Start(command, client, now);
+    return nullptr;
+  }
+  if (const std::optional<RequestKind> kind = RequestByName(name)) {
+    targets_.requests->AskFor(client, *kind, now.now_ns);
+    return nullptr;
+  }
+  return Failure("no such command: '" + name + "'",
+                 "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
+                 "home, sim");
+}
+
+nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command, SafetyState state) {
+  const std::optional<Line> line = LineByName(command.value("line", ""));
+  const int level = command.value("level", -1);
+  if (!line || (level != 0 && level != 1)) {
+    return Failure("no such line or level",
+                   "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop or "
+                   "reset-button, and level 0 or 1");
+  }
+  if (!targets_.stack->Press({.line = *line, .level = level})) {
+    return Failure("this backend has no simulated switches", "press the real one");
+  }
+  targets_.report(
+      false, std::string("simulated line ") + Name(*line) + " set to " + std::to_string(level));
+  return {{"ok", true},
+          {"command", "sim"},
+          {"state", Name(state)},
+          {"line", Name(*line)},
+          {"level", level}};
+}
+
+nlohmann::json CommandDispatch::StartRun(const nlohmann::json& command, int client,
+                                         const OperatorSnapshot& now) {
+  const SafetyState state = now.permit.state;
+  if (state != SafetyState::kArmed) {
+    nlohmann::json refusal = RefusalJson(RequestKind::kRun, Refusal::kWrongState, state);
+    refusal["state"] = Name(state);
+    return refusal;
+  }
+  if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
+    return Failure(why, "then run");
+  }
+  const std::string name = command.value("name", "experiment");
+  const std::array<double, kCounters>& angle_rad = now.tick.output.angle_rad;
+  targets_.experiments->Plan(now.now_ns,
+                             targets_.parse_experiment(command.value("experiment", ""), name),
+                             {angle_rad[0], angle_rad[1]});
+  targets_.requests->AskFor(client, RequestKind::kRun, now.now_ns);
+  return nullptr;
+}
+
+}  // namespace flexarm

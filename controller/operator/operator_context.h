@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "controller/operator/journal_report.h"
+#include "controller/runlog/event_queue.h"
+#include "controller/tasks/loop_stack.h"
+
+namespace flexarm {
+
+/// What the operator task needs of its daemon. What is pointed to outlives the task.
+struct OperatorContext {
+  LoopStack* stack;
+  EventQueue* events;  ///< to the recorder
+  const Design* design;
+  const RigConfig* config;
+  LoopGrid grid;
+  double delay_margin_s;  ///< of the design (controller/design/robustness_analysis.h)
+  MotionLimits limits;
+  std::string socket;                    ///< path; empty: no socket
+  std::optional<Experiment> unattended;  ///< run once without a person
+  /// Reads an experiment that a client sent. Throws std::exception with the reasons.
+  std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
+  JournalReport report;
+  /// Makes "threads" of the status: lateness and run time of every task.
+  std::function<nlohmann::json()> thread_status;
+  /// Called once a period while safety and control are alive: the service manager's watchdog.
+  std::function<void(std::int64_t now_ns, const std::string& status)> alive;
+};
+
+}  // namespace flexarm

@@ -1,0 +1,66 @@
+#include "controller/operator/status_json.h"
+
+#include "controller/operator/payload_json.h"
+#include "controller/operator/trip_channel.h"
+#include "model/units.h"
+
+namespace flexarm {
+namespace {
+
+nlohmann::json TextOrNull(const std::string& text) {
+  return text.empty() ? nlohmann::json(nullptr) : nlohmann::json(text);
+}
+
+nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const BusHealth& bus : buses) {
+    all.push_back({{"name", bus.name},
+                   {"ok", bus.ok},
+                   {"fault", TextOrNull(bus.fault)},
+                   {"failed", bus.failed},
+                   {"recovered", bus.recovered}});
+  }
+  return all;
+}
+
+nlohmann::json TripJson(const StatusSources& sources) {
+  const Permit& permit = sources.now->permit;
+  if (permit.state != SafetyState::kTripped) return nullptr;
+  const Evidence& evidence = permit.evidence;
+  return {{"name", Name(permit.cause)},
+          {"number", static_cast<int>(permit.cause)},
+          {"value", evidence.value},
+          {"limit", evidence.limit},
+          {"channel", evidence.channel},
+          {"channel_name", TripChannelName(permit.cause, evidence.channel, *sources.sensors)},
+          {"text", OperatorText(permit.cause)},
+          {"bus", TextOrNull(sources.bus_text)}};
+}
+
+}  // namespace
+
+nlohmann::json StatusJson(const StatusSources& sources) {
+  const OperatorSnapshot& now = *sources.now;
+  const StepInput& in = now.tick.input;
+  const StepOutput& out = now.tick.output;
+  return {{"ok", true},
+          {"state", Name(now.permit.state)},
+          {"time_s", static_cast<double>(now.now_ns) * 1e-9},
+          {"tick", in.tick},
+          {"experiment", TextOrNull(sources.experiment)},
+          {"joint_angle_deg", {out.angle_rad[0] * kDegPerRad, out.angle_rad[1] * kDegPerRad}},
+          {"torque_nm", out.torque_nm},
+          {"modal_m", out.modal_m},
+          {"root_strain", out.root_strain},
+          {"at_rest", out.at_rest != 0},
+          {"payload", PayloadJson(in, out)},
+          {"delay_ms", sources.delay->delay_ms()},
+          {"delay_max_ms", sources.delay->longest_ms()},
+          {"delay_margin_ms", sources.delay->margin_ms()},
+          {"levels", in.frame.levels},
+          {"trip", TripJson(sources)},
+          {"buses", BusesJson(sources.buses)},
+          {"threads", sources.threads}};
+}
+
+}  // namespace flexarm

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "controller/operator/delay_monitor.h"
+#include "controller/operator/operator_snapshot.h"
+#include "controller/tasks/bus_health.h"
+#include "hal/sensor_config.h"
+
+namespace flexarm {
+
+/// What a status is made of. What is pointed to outlives the call.
+struct StatusSources {
+  const OperatorSnapshot* now;
+  const DelayMonitor* delay;
+  const SensorConfig* sensors;
+  std::string experiment;        ///< name of the one that is loaded; empty: none
+  std::vector<BusHealth> buses;  ///< empty: the backend has none
+  std::string bus_text;          ///< LoopStack::BusText of the trip; empty: of no bus
+  nlohmann::json threads;        ///< OperatorContext::thread_status
+};
+
+/// The answer to the command "status". Every key has its unit in its name, or is without unit;
+/// "trip" is null but in Tripped. Pure function. Not real-time safe.
+nlohmann::json StatusJson(const StatusSources& sources);
+
+}  // namespace flexarm

@@ -1,0 +1,210 @@
+#include "controller/operator/command_dispatch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tests/controller/operator/operator_records.h"
+#include "tests/controller/operator/still_stack.h"
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr int kClient = 7;
+constexpr const char* kOneMove =
+    "name = \"one-move\"\nduration_s = 2.0\n"
+    "[[move]]\nstart_s = 0.0\nduration_s = 1.8\nto_deg = [10.0, 0.0]\n";
+
+// A rig whose calibration file is in a folder that is not there.
+RigConfig UncalibratedRig(std::vector<std::string> overrides) {
+  overrides.push_back("log.directory='" + testing::TempDir() + "no-such-folder'");
+  return ShippedRig(overrides);
+}
+
+class CommandDispatchTest : public testing::Test {
+ protected:
+  explicit CommandDispatchTest(const std::vector<std::string>& overrides = {})
+      : config_(UncalibratedRig(overrides)) {
+    now_.now_ns = 60 * kMs;
+    now_.permit.state = SafetyState::kArmed;
+  }
+
+  Json Answer(const Json& command) { return dispatch_.Answer(kClient, command.dump(), now_); }
+  Json AnswerLine(const std::string& line) { return dispatch_.Answer(kClient, line, now_); }
+
+  RigConfig config_;
+  StillStack stack_{config_};
+  EventQueue events_{64};
+  RecordedJournal journal_;
+  RequestTracker requests_{&stack_.requests()};
+  ExperimentLoader experiments_{&stack_, &events_, &ShippedDesign(), LoopGrid(config_.loop),
+                                ShippedLimits()};
+  CommissioningCommands commissioning_{config_,
+                                       {.stack = &stack_,
+                                        .experiments = &experiments_,
+                                        .requests = &requests_,
+                                        .report = journal_.Report()}};
+  CommandDispatch dispatch_{{.stack = &stack_,
+                             .requests = &requests_,
+                             .experiments = &experiments_,
+                             .commissioning = &commissioning_,
+                             .status =
+                                 [] {
+                                   return Json{{"ok", true}, {"tick", 12}};
+                                 },
+                             .parse_experiment = ParseExperiment,
+                             .report = journal_.Report()}};
+  OperatorSnapshot now_;
+};
+
+struct UnprovenRigTest : CommandDispatchTest {
+  UnprovenRigTest() : CommandDispatchTest({"commissioning.prove_before_run=true"}) {}
+};
+
+TEST_F(CommandDispatchTest, WhatIsNoCommandIsAnsweredAndChangesNothing) {
+  const std::string deep(200'000, '[');
+  for (const std::string& line :
+       {std::string(), std::string("arm"), std::string("{"), std::string("null"),
+        std::string("[\"arm\"]"), std::string("{}"), std::string("{\"command\": 3}"),
+        std::string("{\"command\": [\"arm\"]}"), std::string("{\"command\": \"arm\"} x"),
+        std::string("{\"command\": \"\xff\xfe\"}"), std::string("\0\0", 2), deep}) {
+    const Json answer = AnswerLine(line);
+    EXPECT_EQ(answer["ok"], false) << line.substr(0, 40);
+    EXPECT_THAT(answer.value("error", ""), HasSubstr("not a command")) << line.substr(0, 40);
+    EXPECT_THAT(answer.value("remedy", ""), HasSubstr("flexarm")) << line.substr(0, 40);
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, AnUnknownCommandIsAnsweredWithThoseThatThereAre) {
+  for (const char* name : {"Arm", "none", "", "shutdown"}) {
+    const Json answer = Answer({{"command", name}});
+    EXPECT_EQ(answer["ok"], false) << name;
+    EXPECT_THAT(answer.value("error", ""), HasSubstr(std::string("'") + name + "'"));
+    EXPECT_THAT(answer.value("remedy", ""), HasSubstr("arm, run, stop, disarm, reset")) << name;
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, AValueOfTheWrongTypeIsAnswered) {
+  for (const Json& command : {Json{{"command", "sim"}, {"line", 3}, {"level", 0}},
+                              Json{{"command", "sim"}, {"line", "emergency-stop"}, {"level", "up"}},
+                              Json{{"command", "run"}, {"experiment", 3}},
+                              Json{{"command", "run"}, {"name", nullptr}, {"experiment", ""}}}) {
+    const Json answer = Answer(command);
+    EXPECT_EQ(answer["ok"], false) << command;
+    EXPECT_THAT(answer.value("error", ""), HasSubstr("type")) << command;
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_THAT(journal_.lines, IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, StatusIsAnsweredAtOnce) {
+  EXPECT_EQ(Answer({{"command", "status"}}), Json({{"ok", true}, {"tick", 12}}));
+}
+
+TEST_F(CommandDispatchTest, ARequestGoesToTheSafetyTaskWhateverTheState) {
+  for (const RequestKind kind :
+       {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
+    EXPECT_TRUE(Answer({{"command", Name(kind)}}).is_null()) << "its answer comes later";
+    const std::vector<OperatorRequest> made = stack_.TakeRequests();
+    ASSERT_EQ(made.size(), 1u);
+    EXPECT_EQ(made[0].kind, kind);
+    EXPECT_EQ(made[0].not_before_ns, 60 * kMs);
+    EXPECT_EQ(requests_.TakeClientOf({.number = made[0].number,
+                                      .kind = kind,
+                                      .refusal = Refusal::kNone,
+                                      .state = SafetyState::kArmed,
+                                      .present = 0}),
+              kClient);
+  }
+}
+
+TEST_F(CommandDispatchTest, ASimulatedLineIsSetAndWrittenToTheJournal) {
+  EXPECT_EQ(Answer({{"command", "sim"}, {"line", "limit-2-high"}, {"level", 0}}),
+            Json({{"ok", true},
+                  {"command", "sim"},
+                  {"state", "Armed"},
+                  {"line", "limit-2-high"},
+                  {"level", 0}}));
+  EXPECT_EQ(stack_.pressed.line, Line::kLimit2High);
+  EXPECT_EQ(stack_.pressed.level, 0);
+  EXPECT_THAT(journal_.lines, testing::ElementsAre(RecordedJournal::Line(
+                                  false, "simulated line limit-2-high set to 0")));
+}
+
+TEST_F(CommandDispatchTest, ALineOrLevelThatThereIsNotIsRefused) {
+  for (const Json& command :
+       {Json{{"command", "sim"}}, Json{{"command", "sim"}, {"line", "limit-3-low"}, {"level", 0}},
+        Json{{"command", "sim"}, {"line", "emergency-stop"}},
+        Json{{"command", "sim"}, {"line", "emergency-stop"}, {"level", 2}}}) {
+    EXPECT_THAT(Answer(command).value("error", ""), HasSubstr("no such line")) << command;
+  }
+  EXPECT_EQ(stack_.pressed.level, -1);
+}
+
+TEST_F(CommandDispatchTest, ARealRigHasNoSimulatedLines) {
+  stack_.is_simulated = false;
+  const Json answer = Answer({{"command", "sim"}, {"line", "emergency-stop"}, {"level", 0}});
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_THAT(answer.value("error", ""), HasSubstr("no simulated switches"));
+  EXPECT_THAT(journal_.lines, IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, ARunIsPlannedBeforeItIsAskedFor) {
+  EXPECT_TRUE(Answer({{"command", "run"}, {"name", "file"}, {"experiment", kOneMove}}).is_null());
+  EXPECT_EQ(experiments_.name(), "one-move");
+  EXPECT_EQ(stack_.planned.number, 1u);
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0].kind, RequestKind::kRun);
+}
+
+TEST_F(CommandDispatchTest, ARunThatIsNotArmedIsRefusedBeforeItIsRead) {
+  now_.permit.state = SafetyState::kIdle;
+  const Json answer = Answer({{"command", "run"}, {"experiment", "not an experiment"}});
+  EXPECT_EQ(answer, Json({{"ok", false},
+                          {"refusal", "wrong-state"},
+                          {"state", "Idle"},
+                          {"error", "The arm is not armed. Run `flexarm arm` first."}}));
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, AnExperimentThatCannotBeReadOrPlannedIsRefused) {
+  EXPECT_THAT(Answer({{"command", "run"}, {"name", "my.toml"}, {"experiment", "duration_s = x"}})
+                  .value("error", ""),
+              HasSubstr("my.toml"));
+  const std::string far =
+      "name = \"far\"\nduration_s = 2.0\n[[move]]\nstart_s = 0.0\n"
+      "duration_s = 1.8\nto_deg = [170.0, 0.0]\n";
+  EXPECT_THAT(Answer({{"command", "run"}, {"experiment", far}}).value("error", ""),
+              HasSubstr("move"));
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_EQ(experiments_.name(), "");
+}
+
+TEST_F(UnprovenRigTest, ARunIsRefusedUntilTheWiringIsProven) {
+  const Json answer = Answer({{"command", "run"}, {"experiment", kOneMove}});
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_THAT(answer.value("error", ""), HasSubstr("flexarm pluck"));
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, ACommissioningCommandIsBegunOrRefusedByItsReason) {
+  EXPECT_THAT(Answer({{"command", "tare"}}).value("error", ""), HasSubstr("needs the state Idle"));
+  EXPECT_THAT(Answer({{"command", "home"}, {"joint", 3}}).value("error", ""), HasSubstr("1 or 2"));
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_TRUE(Answer({{"command", "pluck"}}).is_null()) << "its answer comes later";
+  EXPECT_EQ(stack_.TakeRequests().size(), 1u);
+}
+
+}  // namespace
+}  // namespace flexarm

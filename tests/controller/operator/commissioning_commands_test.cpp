@@ -1,0 +1,151 @@
+#include "controller/operator/commissioning_commands.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "controller/types/rejected_error.h"
+#include "tests/controller/operator/operator_records.h"
+#include "tests/controller/operator/still_stack.h"
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+class CommissioningCommandsTest : public testing::Test {
+ protected:
+  CommissioningCommandsTest() {
+    now_.now_ns = 60 * kMs;
+    now_.permit.state = SafetyState::kArmed;
+  }
+  ~CommissioningCommandsTest() override { std::filesystem::remove_all(Folder()); }
+
+  static std::string Folder() {
+    return testing::TempDir() + "commissioning_commands_" +
+           testing::UnitTest::GetInstance()->current_test_info()->name();
+  }
+
+  std::optional<ClientAnswer> AnswerOf(std::uint32_t number, Refusal refusal) {
+    return commands_.Answered({.number = number,
+                               .kind = RequestKind::kRun,
+                               .refusal = refusal,
+                               .state = SafetyState::kIdle,
+                               .present = 0},
+                              now_.permit);
+  }
+
+  // Still steps, as many as a measurement of the config takes, but the last.
+  void MeasureButOne() {
+    TickRecord tick{};
+    tick.input.safety_state = SafetyState::kIdle;
+    tick.output.counters_used = 0b1111;
+    for (std::size_t i = 0; i < config_.sensors.strain.size(); ++i) {
+      tick.input.frame.strain[i] = 3;
+      tick.input.frame.strain_valid |= 1u << i;
+    }
+    const double ticks = config_.commissioning.measure_s / kPeriod_s;
+    for (int k = 1; k < static_cast<int>(ticks); ++k) commands_.Take(tick);
+    last_ = tick;
+  }
+
+  RigConfig config_ = ShippedRig({"log.directory='" + Folder() + "'"});
+  StillStack stack_{config_};
+  EventQueue events_{64};
+  RecordedJournal journal_;
+  RequestTracker requests_{&stack_.requests()};
+  ExperimentLoader experiments_{&stack_, &events_, &ShippedDesign(), LoopGrid(config_.loop),
+                                ShippedLimits()};
+  CommissioningCommands commands_{config_,
+                                  {.stack = &stack_,
+                                   .experiments = &experiments_,
+                                   .requests = &requests_,
+                                   .report = journal_.Report()}};
+  OperatorSnapshot now_;
+  TickRecord last_{};
+};
+
+TEST_F(CommissioningCommandsTest, AMotionIsLoadedAndItsRunAskedFor) {
+  const Json home{{"command", "home"}, {"joint", 2}, {"side", "high"}};
+  commands_.Start(home, 7, now_);
+  EXPECT_EQ(stack_.planned.number, 1u);
+  EXPECT_EQ(stack_.planned.experiment->mode, LoopMode::kRegulate);
+  const std::vector<RunEvent> logged = TakeEvents(&events_);
+  ASSERT_EQ(logged.size(), 1u);
+  EXPECT_EQ(logged[0].name, "home");
+  EXPECT_EQ(Json::parse(logged[0].text), home);
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0].kind, RequestKind::kRun);
+  EXPECT_EQ(made[0].may_open, LineBit(Line::kLimit2High)) << "the switch that it looks for";
+}
+
+TEST_F(CommissioningCommandsTest, ARefusedMotionIsAnsweredToItsClientAndFreesTheNext) {
+  commands_.Start({{"command", "pluck"}}, 7, now_);
+  const std::uint32_t number = stack_.TakeRequests().at(0).number;
+  EXPECT_FALSE(AnswerOf(number - 1, Refusal::kWrongState)) << "of another request";
+  EXPECT_FALSE(AnswerOf(number, Refusal::kNone)) << "accepted: it has only begun";
+  now_.permit.state = SafetyState::kTripped;
+  now_.permit.cause = TripCause::kEmergencyStop;
+  const std::optional<ClientAnswer> answer = AnswerOf(number, Refusal::kWrongState);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->client, 7);
+  EXPECT_EQ(answer->json["ok"], false);
+  EXPECT_EQ(answer->json["refusal"], "wrong-state");
+  EXPECT_EQ(answer->json["state"], "Tripped");
+  EXPECT_EQ(answer->json["trip"], "emergency-stop");
+  EXPECT_FALSE(AnswerOf(number, Refusal::kWrongState)) << "once";
+  now_.permit.state = SafetyState::kArmed;
+  EXPECT_NO_THROW(commands_.Start({{"command", "pluck"}}, 8, now_));
+}
+
+TEST_F(CommissioningCommandsTest, AMeasurementIsAnsweredToItsClientWhenItHasEnded) {
+  now_.permit.state = SafetyState::kIdle;
+  commands_.Start({{"command", "tare"}}, 9, now_);
+  EXPECT_TRUE(stack_.TakeRequests().empty()) << "nothing moves";
+  MeasureButOne();
+  EXPECT_FALSE(commands_.TakeAnswer(now_.permit));
+  commands_.Take(last_);
+  const std::optional<ClientAnswer> answer = commands_.TakeAnswer(now_.permit);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->client, 9);
+  EXPECT_EQ(answer->json["ok"], true) << answer->json;
+  EXPECT_EQ(answer->json["command"], "tare");
+  EXPECT_EQ(answer->json["state"], "Idle");
+  EXPECT_FALSE(commands_.TakeAnswer(now_.permit)) << "once";
+  ASSERT_EQ(journal_.lines.size(), 1u);
+  EXPECT_FALSE(journal_.lines[0].first);
+  EXPECT_THAT(journal_.lines[0].second, HasSubstr("tare: done, kept in " + Folder()));
+}
+
+TEST_F(CommissioningCommandsTest, AMeasurementThatFailsIsAnError) {
+  now_.permit.state = SafetyState::kIdle;
+  commands_.Start({{"command", "zero"}}, 9, now_);
+  MeasureButOne();
+  last_.input.safety_state = SafetyState::kArmed;
+  commands_.Take(last_);
+  const std::optional<ClientAnswer> answer = commands_.TakeAnswer(now_.permit);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->json["ok"], false);
+  ASSERT_EQ(journal_.lines.size(), 1u);
+  EXPECT_TRUE(journal_.lines[0].first);
+  EXPECT_THAT(journal_.lines[0].second, HasSubstr("zero: the arm left the state Idle"));
+}
+
+TEST_F(CommissioningCommandsTest, ACommandThatIsRefusedLeavesTheOneThatGoesOn) {
+  now_.permit.state = SafetyState::kIdle;
+  commands_.Start({{"command", "tare"}}, 9, now_);
+  EXPECT_THROW(commands_.Start({{"command", "zero"}}, 10, now_), RejectedError);
+  MeasureButOne();
+  commands_.Take(last_);
+  const std::optional<ClientAnswer> answer = commands_.TakeAnswer(now_.permit);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->client, 9);
+  EXPECT_EQ(answer->json["command"], "tare");
+}
+
+}  // namespace
+}  // namespace flexarm

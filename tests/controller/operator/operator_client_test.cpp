@@ -1,0 +1,78 @@
+#include "controller/operator/operator_client.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include "controller/operator/operator_socket.h"
+#include "controller/types/rejected_error.h"
+#include "tests/controller/operator/socket_peer.h"
+#include "tests/support/message_of.h"
+
+namespace flexarm {
+namespace {
+
+using testing::HasSubstr;
+
+class OperatorClientTest : public testing::Test {
+ protected:
+  ~OperatorClientTest() override {
+    std::filesystem::remove_all(std::filesystem::path(path_).parent_path());
+  }
+
+  // Asks from another thread, and gives this one the message.
+  std::string AskWhile(const std::function<void(OperatorSocket&, int)>& serve) {
+    OperatorSocket server(path_);
+    std::string answer;
+    std::thread client([&] {
+      try {
+        answer = AskDaemon(path_, "{\"command\": \"status\"}", 60.0);
+      } catch (const RejectedError& error) {
+        answer = error.what();
+      }
+    });
+    std::vector<OperatorSocket::Message> messages;
+    while (messages.empty()) messages = server.Poll();
+    EXPECT_EQ(messages[0].line, "{\"command\": \"status\"}");
+    serve(server, messages[0].client);
+    client.join();
+    return answer;
+  }
+
+  const std::string path_ = SocketPath();
+};
+
+TEST_F(OperatorClientTest, ReturnsTheAnswerWithoutItsNewline) {
+  EXPECT_EQ(AskWhile([](OperatorSocket& server, int id) { server.Reply(id, "{\"ok\": true}"); }),
+            "{\"ok\": true}");
+}
+
+TEST_F(OperatorClientTest, AnAnswerLongerThanOneReadComesWhole) {
+  const std::string answer(50'000, 'x');
+  EXPECT_EQ(AskWhile([&](OperatorSocket& server, int id) { server.Reply(id, answer); }), answer);
+}
+
+TEST_F(OperatorClientTest, SaysThatTheDaemonHasClosedTheConnection) {
+  EXPECT_THAT(AskWhile([](OperatorSocket& server, int id) {
+                // More than a socket's buffer: the server closes a client that does not take it.
+                server.Reply(id, std::string(5'000'000, 'x'));
+              }),
+              HasSubstr("the daemon closed the connection"));
+}
+
+TEST_F(OperatorClientTest, SaysWhatToStartWhenNoDaemonListens) {
+  const auto ask = [&] { AskDaemon(path_, "{}", 1.0); };
+  EXPECT_THAT(MessageOf<RejectedError>(ask), HasSubstr("start flexarmd"));
+}
+
+TEST_F(OperatorClientTest, GivesUpOnADaemonThatDoesNotAnswer) {
+  const OperatorSocket silent(path_);
+  const auto ask = [&] { AskDaemon(path_, "{}", 0.02); };
+  EXPECT_THAT(MessageOf<RejectedError>(ask), HasSubstr("does not answer"));
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,385 @@
+// The whole operator task in lock step with the simulated arm; its clients on a real socket.
+
+#include "controller/operator/operator_task.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "controller/realtime/lockstep_executor.h"
+#include "controller/types/rejected_error.h"
+#include "tests/controller/operator/operator_records.h"
+#include "tests/controller/operator/socket_peer.h"
+#include "tests/controller/operator/still_stack.h"
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double kAnswer_s = 0.1;  // five periods of the operator; requests take one
+
+std::string TomlOfMove(double duration_s, const std::string& more = "") {
+  return "name = \"one-move\"\nduration_s = " + std::to_string(duration_s) +
+         "\n[[move]]\nstart_s = 0.0\nduration_s = 1.8\nto_deg = [10.0, -10.0]\n" + more;
+}
+
+class OperatorTaskTest : public testing::Test {
+ protected:
+  ~OperatorTaskTest() override { std::filesystem::remove_all(folder()); }
+
+  std::filesystem::path folder() const { return std::filesystem::path(path_).parent_path(); }
+
+  OperatorContext Context() {
+    return {.stack = stack_.get(),
+            .events = &events_,
+            .design = &ShippedDesign(),
+            .config = &config_,
+            .grid = LoopGrid(config_.loop),
+            .delay_margin_s = 0.009,
+            .limits = ShippedLimits(),
+            .socket = path_,
+            .unattended = {},
+            .parse_experiment = ParseExperiment,
+            .report = journal_.Report(),
+            .thread_status = [] { return Json::array(); },
+            .alive = [this](std::int64_t now_ns, const std::string&) { alive_ns_ = now_ns; }};
+  }
+
+  // The daemon, before its first period.
+  void Start(std::vector<std::string> overrides = {}, const std::string& unattended = "") {
+    overrides.push_back("log.directory='" + folder().string() + "'");
+    config_ = ShippedRig(overrides);
+    stack_ = std::make_unique<SimulatedStack>(config_, ShippedDesign(), 0.1);
+    OperatorContext context = Context();
+    if (!unattended.empty()) context.unattended = ParseExperiment(unattended, "unattended");
+    operator_ = std::make_unique<OperatorTask>(context);
+    executor_.Add(stack_->safety());
+    executor_.Add(stack_->control());
+    executor_.Add(stack_->plant());
+    executor_.Add(*operator_);
+  }
+
+  // The same, until it is Idle and has seen the arm at rest.
+  void StartAtRest(const std::vector<std::string>& overrides = {}) {
+    Start(overrides);
+    Run(1.0);
+    ASSERT_EQ(State(), "Idle");
+  }
+
+  void Run(double seconds) {
+    now_ns_ += std::llround(seconds / kPeriod_s) * kPeriodNs;
+    executor_.RunUntil(now_ns_);
+  }
+
+  // Runs until the client has an answer; null: none within the time.
+  Json AnswerTo(SocketPeer* client, double within_s = kAnswer_s) {
+    for (double s = 0.0; s < within_s; s += kPeriod_s) {
+      Run(kPeriod_s);
+      if (const std::optional<std::string> line = client->Line()) return Json::parse(*line);
+    }
+    return nullptr;
+  }
+
+  Json Ask(const Json& command, double within_s = kAnswer_s) {
+    SocketPeer client(path_);
+    client.Send(command.dump() + "\n");
+    return AnswerTo(&client, within_s);
+  }
+
+  Json Ask(const char* name) { return Ask(Json{{"command", name}}); }
+  Json AskRun(const std::string& toml) {
+    return Ask(Json{{"command", "run"}, {"experiment", toml}});
+  }
+  Json Press(const std::string& line, int level) {
+    return Ask({{"command", "sim"}, {"line", line}, {"level", level}});
+  }
+  std::string State() { return Ask("status").value("state", ""); }
+
+  bool ComesTo(const std::string& state, double within_s = 5.0) {
+    const std::int64_t end_ns = now_ns_ + std::llround(within_s * 1e9);
+    while (now_ns_ < end_ns) {
+      if (State() == state) return true;
+    }
+    return false;
+  }
+
+  std::vector<std::string> JournalTexts() const {
+    std::vector<std::string> texts;
+    for (const RecordedJournal::Line& line : journal_.lines) texts.push_back(line.second);
+    return texts;
+  }
+
+  // Time until the daemon may end, s; negative: not within the time.
+  double RunUntilDone(double within_s) {
+    const std::int64_t began_ns = now_ns_;
+    while (!operator_->done()) {
+      if (now_ns_ - began_ns > std::llround(within_s * 1e9)) return -1.0;
+      Run(kPeriod_s);
+    }
+    return static_cast<double>(now_ns_ - began_ns) * 1e-9;
+  }
+
+  const std::string path_ = SocketPath();
+  RigConfig config_;
+  EventQueue events_{1'000};
+  RecordedJournal journal_;
+  std::unique_ptr<SimulatedStack> stack_;
+  std::unique_ptr<OperatorTask> operator_;
+  LockstepExecutor executor_;
+  std::int64_t now_ns_ = 0;
+  std::int64_t alive_ns_ = -1;  // of the newest period in which the watchdog was fed
+};
+
+TEST_F(OperatorTaskTest, ArmsRunsStopsAndDisarms) {
+  StartAtRest();
+  const Json armed = Ask("arm");
+  EXPECT_EQ(armed, Json({{"ok", true}, {"command", "arm"}, {"state", "Armed"}}));
+  EXPECT_EQ(AskRun(TomlOfMove(20.0))["state"], "Running");
+  EXPECT_EQ(Ask("status")["experiment"], "one-move");
+  Run(1.0);
+  EXPECT_EQ(Ask("stop")["ok"], true);
+  EXPECT_TRUE(ComesTo("Armed"));
+  EXPECT_EQ(Ask("disarm")["state"], "Idle");
+  EXPECT_THAT(JournalTexts(),
+              ElementsAre("Starting -> Idle", "Idle -> Armed", "arm: accepted", "Armed -> Running",
+                          "run: accepted", "Running -> Stopping", "stop: accepted",
+                          "Stopping -> Armed", "Armed -> Idle", "disarm: accepted"));
+  for (const auto& [is_error, text] : journal_.lines) EXPECT_FALSE(is_error) << text;
+  const std::vector<RunEvent> logged = TakeEvents(&events_);
+  ASSERT_EQ(logged.size(), 1u);
+  EXPECT_EQ(logged[0].kind, "experiment");
+}
+
+TEST_F(OperatorTaskTest, ARunEndsByItselfAndTheNextBeginsWhereItEnded) {
+  StartAtRest();
+  Ask("arm");
+  AskRun(TomlOfMove(2.0));
+  EXPECT_TRUE(ComesTo("Armed"));
+  EXPECT_NEAR(Ask("status")["joint_angle_deg"][0].get<double>(), 10.0, 1.0);
+  EXPECT_EQ(AskRun(TomlOfMove(2.0))["ok"], true);
+  Run(1.0);
+  EXPECT_NEAR(Ask("status")["joint_angle_deg"][0].get<double>(), 10.0, 1.0) << "there already";
+}
+
+TEST_F(OperatorTaskTest, WhatTheSafetyTaskRefusesIsAnsweredWithItsReason) {
+  StartAtRest();
+  for (const char* name : {"stop", "disarm", "reset"}) {
+    const Json answer = Ask(name);
+    EXPECT_EQ(answer["ok"], false) << name;
+    EXPECT_EQ(answer["refusal"], "wrong-state") << name;
+    EXPECT_EQ(answer["command"], name);
+    EXPECT_GE(journal_.Find(std::string(name) + ": refused: "), 0);
+  }
+  EXPECT_EQ(AskRun(TomlOfMove(2.0))["refusal"], "wrong-state");
+  Ask("arm");
+  EXPECT_EQ(Ask("arm")["error"], "The arm is already armed.");
+  AskRun(TomlOfMove(20.0));
+  EXPECT_EQ(AskRun(TomlOfMove(2.0))["refusal"], "wrong-state");
+  EXPECT_EQ(Ask("disarm")["refusal"], "wrong-state");
+  EXPECT_EQ(State(), "Running");
+}
+
+TEST_F(OperatorTaskTest, AnArmThatHasNotBeenAtRestIsNotArmed) {
+  Start();
+  Run(0.1);
+  EXPECT_EQ(Ask("arm")["refusal"], "not-at-rest");
+  Run(1.0);
+  EXPECT_EQ(Ask("arm")["ok"], true);
+}
+
+TEST_F(OperatorTaskTest, AMalformedLineIsAnsweredAndTheClientStays) {
+  StartAtRest();
+  SocketPeer client(path_);
+  client.Send("arm\n{\"command\": \n\n{\"command\": \"fly\"}\n{\"command\": \"status\"}\n");
+  for (const char* error : {"not a command", "not a command", "not a command", "no such command"}) {
+    const Json answer = AnswerTo(&client);
+    EXPECT_EQ(answer["ok"], false);
+    EXPECT_THAT(answer.value("error", ""), HasSubstr(error));
+  }
+  EXPECT_EQ(AnswerTo(&client)["state"], "Idle");
+}
+
+TEST_F(OperatorTaskTest, ATripIsInTheStatusUntilButtonAndReset) {
+  StartAtRest();
+  Ask("arm");
+  AskRun(TomlOfMove(20.0));
+  Run(0.5);
+  EXPECT_TRUE(Ask("status")["trip"].is_null());
+  EXPECT_EQ(Press("emergency-stop", 0)["ok"], true);
+  Run(kPeriod_s);
+  const Json status = Ask("status");
+  EXPECT_EQ(status["state"], "Tripped");
+  EXPECT_EQ(status["trip"]["name"], "emergency-stop");
+  EXPECT_EQ(status["trip"]["text"], OperatorText(TripCause::kEmergencyStop));
+  EXPECT_GE(journal_.Find("Running -> Tripped: emergency-stop"), 0);
+  EXPECT_EQ(Ask("arm")["refusal"], "wrong-state");
+  EXPECT_EQ(Ask("reset")["refusal"], "cause-remains");
+  Press("emergency-stop", 1);
+  EXPECT_EQ(Ask("reset")["refusal"], "no-reset");
+  Run(3.0);  // at rest
+  Press("reset-button", 1);
+  Press("reset-button", 0);
+  EXPECT_EQ(Ask("reset")["state"], "Idle");
+  EXPECT_TRUE(Ask("status")["trip"].is_null());
+  EXPECT_EQ(operator_->trip(), TripCause::kEmergencyStop) << "for the exit code";
+}
+
+TEST_F(OperatorTaskTest, AShutdownWhileRunningStopsAndDisarms) {
+  StartAtRest();
+  Ask("arm");
+  AskRun(TomlOfMove(20.0));
+  Run(0.5);
+  operator_->RequestShutdown();
+  operator_->RequestShutdown();
+  const double took_s = RunUntilDone(7.0);
+  EXPECT_GT(took_s, 0.3) << "the recorder takes the last records";
+  EXPECT_LT(took_s, 4.0);
+  journal_.lines.erase(journal_.lines.begin(), journal_.lines.begin() + 5);  // until Running
+  EXPECT_THAT(
+      JournalTexts(),
+      ElementsAre("shutting down: bringing the arm to rest", "Running -> Stopping",
+                  "stop: accepted", "Stopping -> Armed", "Armed -> Idle", "disarm: accepted"));
+  EXPECT_EQ(operator_->trip(), TripCause::kNone);
+}
+
+TEST_F(OperatorTaskTest, AShutdownInIdleTakesTheSettlingTime) {
+  StartAtRest();
+  EXPECT_FALSE(operator_->done());
+  operator_->RequestShutdown();
+  EXPECT_NEAR(RunUntilDone(1.0), 0.32, 1e-9) << "0.3 s after the period in which it was seen";
+}
+
+TEST_F(OperatorTaskTest, AnUnattendedRunArmsRunsAndDisarmsByItself) {
+  Start({}, TomlOfMove(2.0));
+  for (int k = 0; k < 500 && journal_.Find("Armed -> Idle") < 0; ++k) Run(kPeriod_s);
+  EXPECT_FALSE(operator_->done()) << "the recorder takes the last records";
+  EXPECT_NEAR(RunUntilDone(1.0), 0.3, 1e-9);
+  EXPECT_EQ(operator_->trip(), TripCause::kNone);
+  EXPECT_FALSE(operator_->refused());
+  EXPECT_THAT(JournalTexts(),
+              ElementsAre("Starting -> Idle", "arm: accepted", "Idle -> Armed", "run: accepted",
+                          "Armed -> Running", "Running -> Stopping", "Stopping -> Armed",
+                          "disarm: accepted", "Armed -> Idle"));
+  const std::vector<RunEvent> logged = TakeEvents(&events_);
+  ASSERT_EQ(logged.size(), 1u);
+  EXPECT_EQ(logged[0].name, "one-move");
+}
+
+TEST_F(OperatorTaskTest, AnUnattendedRunThatTripsIsRecordedForFiveSeconds) {
+  Start({}, TomlOfMove(2.0, "[[sim_event]]\nat_s = 0.5\nline = \"emergency-stop\"\nlevel = 0\n"));
+  EXPECT_TRUE(ComesTo("Tripped"));
+  EXPECT_NEAR(RunUntilDone(10.0), 5.0, 0.05);
+  EXPECT_EQ(operator_->trip(), TripCause::kEmergencyStop);
+}
+
+TEST_F(OperatorTaskTest, AShutdownOfAnUnattendedRunIsOverWithIt) {
+  Start({}, TomlOfMove(20.0));
+  EXPECT_TRUE(ComesTo("Running"));
+  operator_->RequestShutdown();
+  EXPECT_LT(RunUntilDone(7.0), 4.0);
+  EXPECT_EQ(State(), "Idle");
+}
+
+TEST_F(OperatorTaskTest, AnUnattendedExperimentThatIsImpossibleEndsTheDaemonAtItsStart) {
+  const std::string too_far =
+      "name = \"far\"\nduration_s = 2.0\n[[move]]\nstart_s = 0.0\nduration_s = 1.8\n"
+      "to_deg = [170.0, 0.0]\n";
+  EXPECT_THROW(Start({}, too_far), RejectedError);
+}
+
+TEST_F(OperatorTaskTest, ASecondDaemonOnTheSocketIsRefused) {
+  Start();
+  EXPECT_THROW(OperatorTask second(Context()), RejectedError);
+}
+
+TEST_F(OperatorTaskTest, ACommissioningCommandInAWrongStateIsRefused) {
+  StartAtRest();
+  EXPECT_THAT(Ask("pluck").value("error", ""), HasSubstr("flexarm arm"));
+  Ask("arm");
+  EXPECT_THAT(Ask("tare").value("error", ""), HasSubstr("needs the state Idle"));
+  EXPECT_THAT(Ask("zero").value("error", ""), HasSubstr("needs the state Idle"));
+  EXPECT_EQ(State(), "Armed");
+}
+
+TEST_F(OperatorTaskTest, ACommissioningCommandIsAnsweredAtItsEndAndOthersMeanwhile) {
+  StartAtRest();
+  SocketPeer client(path_);
+  client.Send("{\"command\": \"zero\", \"angle_deg\": [5.0, -5.0]}\n");
+  Run(0.1);
+  EXPECT_EQ(State(), "Idle");
+  EXPECT_EQ(client.Line(), std::nullopt);
+  const Json answer = AnswerTo(&client, 2.0);
+  EXPECT_EQ(answer["ok"], true) << answer;
+  EXPECT_EQ(answer["command"], "zero");
+  EXPECT_EQ(answer["state"], "Idle");
+  EXPECT_GE(journal_.Find("zero: done, kept in " + folder().string()), 0);
+  Run(1.0);
+  EXPECT_NEAR(Ask("status")["joint_angle_deg"][0].get<double>(), 5.0, 0.2)
+      << "the loop has its calibration";
+}
+
+TEST_F(OperatorTaskTest, ACommissioningMotionThatTheSafetyTaskRefusesIsAnswered) {
+  StartAtRest();
+  Ask("arm");
+  SocketPeer client(path_);
+  client.Send("{\"command\": \"disarm\"}\n{\"command\": \"pluck\"}\n");  // in one period
+  EXPECT_EQ(AnswerTo(&client)["command"], "disarm");
+  const Json refused = AnswerTo(&client);
+  EXPECT_EQ(refused["ok"], false);
+  EXPECT_EQ(refused["refusal"], "wrong-state");
+  EXPECT_EQ(refused["state"], "Idle");
+  Run(1.0);  // at rest
+  EXPECT_EQ(Ask("arm")["ok"], true);
+  const Json pluck = Ask(Json{{"command", "pluck"}}, 20.0);
+  EXPECT_EQ(pluck["passed"], true) << pluck;
+}
+
+TEST_F(OperatorTaskTest, AClientThatLeavesBeforeItsAnswerAffectsNoOther) {
+  StartAtRest();
+  {
+    const SocketPeer gone(path_);
+    gone.Send("{\"command\": \"arm\"}\n");
+    Run(kPeriod_s);  // the request is made
+  }
+  EXPECT_EQ(State(), "Armed") << "it was carried out";
+  EXPECT_EQ(Ask("disarm"), Json({{"ok", true}, {"command", "disarm"}, {"state", "Idle"}}));
+  {
+    const SocketPeer gone(path_);
+    gone.Send("{\"command\": \"tare\"}\n");
+    Run(kPeriod_s);
+  }
+  Run(2.0);
+  EXPECT_GE(journal_.Find("tare: done"), 0);
+  EXPECT_EQ(State(), "Idle");
+}
+
+TEST_F(OperatorTaskTest, TheWatchdogIsNotFedBeforeTheFirstPermit) {
+  Start();
+  Run(kPeriod_s);
+  EXPECT_EQ(alive_ns_, -1) << "no permit holds before instant 0";
+  Run(kPeriod_s);
+  EXPECT_EQ(alive_ns_, kPeriodNs);
+}
+
+TEST_F(OperatorTaskTest, TheWatchdogIsFedOnlyWhileControlRuns) {
+  StartAtRest();
+  EXPECT_EQ(alive_ns_, now_ns_ - kPeriodNs) << "the newest period";
+  Ask("arm");
+  AskRun(TomlOfMove(20.0, "[[sim_event]]\nat_s = 0.5\nfreeze = \"control\"\n"));
+  EXPECT_TRUE(ComesTo("Tripped"));
+  Run(0.2);
+  const std::int64_t last_ns = alive_ns_;
+  Run(1.0);
+  EXPECT_EQ(alive_ns_, last_ns);
+  EXPECT_LT(last_ns, now_ns_ - 1'000 * kMs);
+}
+
+}  // namespace
+}  // namespace flexarm

@@ -1,0 +1,126 @@
+#include "controller/operator/status_json.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+
+struct StatusJsonTest : testing::Test {
+  StatusJsonTest() {
+    for (const int link : {1, 2, 2}) {
+      sensors.strain.push_back({.link = link,
+                                .position_m = 0.1,
+                                .face = 1,
+                                .gain_v_per_unit = 1.0,
+                                .offset_counts = 0.0});
+    }
+    now.now_ns = 1'500 * kMs;
+    now.permit.state = SafetyState::kArmed;
+    now.tick.output.payload_kg = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  Json Status() const {
+    return StatusJson({.now = &now,
+                       .delay = &delay,
+                       .sensors = &sensors,
+                       .experiment = experiment,
+                       .buses = buses,
+                       .bus_text = bus_text,
+                       .threads = Json::array({"control"})});
+  }
+
+  OperatorSnapshot now;
+  DelayMonitor delay{kPeriodNs, 0.009};
+  SensorConfig sensors{};
+  std::string experiment;
+  std::vector<BusHealth> buses;
+  std::string bus_text;
+};
+
+TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
+  now.tick.output.angle_rad = {M_PI / 6.0, -M_PI / 2.0, 9.0, 9.0};
+  now.tick.input.tick = 75;
+  now.tick.output.torque_nm = {1.5, -0.5};
+  now.tick.output.at_rest = 1;
+  const Json status = Status();
+  EXPECT_TRUE(status["ok"]);
+  EXPECT_EQ(status["state"], "Armed");
+  EXPECT_DOUBLE_EQ(status["time_s"], 1.5);
+  EXPECT_EQ(status["tick"], 75);
+  EXPECT_NEAR(status["joint_angle_deg"][0], 30.0, 1e-12);
+  EXPECT_NEAR(status["joint_angle_deg"][1], -90.0, 1e-12);
+  EXPECT_EQ(status["joint_angle_deg"].size(), 2u) << "hubs, not rotors";
+  EXPECT_EQ(status["torque_nm"], Json({1.5, -0.5}));
+  EXPECT_EQ(status["at_rest"], true);
+  EXPECT_DOUBLE_EQ(status["delay_margin_ms"], 9.0);
+  EXPECT_EQ(status["threads"], Json({"control"}));
+}
+
+TEST_F(StatusJsonTest, WhatThereIsNotIsNull) {
+  const Json status = Status();
+  EXPECT_TRUE(status["trip"].is_null());
+  EXPECT_TRUE(status["payload"].is_null());
+  EXPECT_TRUE(status["experiment"].is_null());
+  EXPECT_EQ(status["buses"], Json::array());
+}
+
+TEST_F(StatusJsonTest, ThePayloadHasItsWarningsByName) {
+  now.tick.output.payload_kg = 0.25;
+  now.tick.output.payload_warnings = kPayloadAtBound | kPayloadNotObservable;
+  now.tick.output.delay_found = -1;
+  now.tick.input.planned = 1;
+  const Json payload = Status()["payload"];
+  EXPECT_EQ(payload["kg"], 0.25);
+  EXPECT_EQ(payload["warnings"], Json({"payload-at-bound", "payload-not-observable"}));
+  EXPECT_EQ(payload["delay_found"], -1);
+  EXPECT_EQ(payload["planned"], true);
+}
+
+TEST_F(StatusJsonTest, ATripHasItsCauseItsValuesAndItsChannel) {
+  now.permit.state = SafetyState::kTripped;
+  now.permit.cause = TripCause::kStrainSaturated;
+  now.permit.evidence = {.value = 2047.0, .limit = 2000.0, .channel = 3, .detail = 0};
+  experiment = "square";
+  const Json status = Status();
+  EXPECT_EQ(status["experiment"], "square");
+  const Json& trip = status["trip"];
+  EXPECT_EQ(trip["name"], "strain-saturated");
+  EXPECT_EQ(trip["number"], static_cast<int>(TripCause::kStrainSaturated));
+  EXPECT_EQ(trip["value"], 2047.0);
+  EXPECT_EQ(trip["limit"], 2000.0);
+  EXPECT_EQ(trip["channel"], 3);
+  EXPECT_EQ(trip["channel_name"], "strain_2_02");
+  EXPECT_EQ(trip["text"], OperatorText(TripCause::kStrainSaturated));
+  EXPECT_TRUE(trip["bus"].is_null());
+}
+
+TEST_F(StatusJsonTest, ATripOfABusNamesTheDevice) {
+  now.permit.state = SafetyState::kTripped;
+  now.permit.cause = TripCause::kBusLost;
+  bus_text = "can0: node 5 is silent";
+  buses = {{.name = "can0", .ok = false, .fault = "node 5 is silent", .failed = 3, .recovered = 1},
+           {.name = "modbus", .ok = true, .fault = "", .failed = 0, .recovered = 0}};
+  const Json status = Status();
+  EXPECT_EQ(status["trip"]["bus"], "can0: node 5 is silent");
+  EXPECT_EQ(status["buses"][0], Json({{"name", "can0"},
+                                      {"ok", false},
+                                      {"fault", "node 5 is silent"},
+                                      {"failed", 3},
+                                      {"recovered", 1}}));
+  EXPECT_TRUE(status["buses"][1]["fault"].is_null());
+}
+
+TEST_F(StatusJsonTest, ACauseThatIsNoLongerLatchedIsNoTrip) {
+  now.permit.cause = TripCause::kBusLost;
+  EXPECT_TRUE(Status()["trip"].is_null()) << "Armed";
+}
+
+}  // namespace
+}  // namespace flexarm
