@@ -44,7 +44,7 @@ Eigen::MatrixXd StateWeight(const ControllerConfig& controller) {
 
 // LQR without prescribed degree of stability: slower, and without the limit cycle that friction
 // causes under the tracking gains with another payload.
-Eigen::MatrixXd CalmGain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+Eigen::MatrixXd StopGain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                          const Eigen::MatrixXd& Q) {
   const Eigen::Matrix2d I2 = Eigen::Matrix2d::Identity();
   return DareGain(A, B, I2, SolveDare(A, B, Q, I2));
@@ -65,7 +65,7 @@ void DesignRegulator(const ControlConfig& config, Design* design) {
   const Eigen::MatrixXd BtP = B.transpose() * design->P, BtPA = BtP * A;
   const Eigen::MatrixXd S = I2 + BtP * B;
   design->K = S.llt().solve(BtPA);
-  design->K_stop = CalmGain(A, B, Q);
+  design->K_stop = StopGain(A, B, Q);
   design->J = 0.5 * B.transpose() * design->P * B;
   design->G = design->J + controller.passivity_margin * I2;
   design->checks.push_back(

@@ -28,7 +28,7 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kEpochLeadNs = 100'000'000;  // threads are up before instant 0
+constexpr std::int64_t kEpochLeadNs = 100'000'000;  // threads are started before instant 0
 constexpr std::size_t kEventDepth = 256;
 constexpr std::size_t kTimingDepth = 4'000;  // 60 s of the control task
 constexpr int kHighestPriority = SafetyTask::kPriority;
@@ -42,7 +42,7 @@ sigset_t BlockEndSignals() {
   return signals;
 }
 
-/// True if one of `signals` came within the time.
+/// True if one of `signals` arrived within the time.
 bool EndSignal(const sigset_t& signals, std::int64_t wait_ns) {
   const timespec wait{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
   return sigtimedwait(&signals, nullptr, &wait) > 0;
@@ -68,13 +68,13 @@ nlohmann::json ThreadStatus(const RealtimeExecutor& executor) {
   return threads;
 }
 
-/// What the loop drives: the simulated arm in process, or the devices of a real rig.
+/// Backend of the loop: the simulated arm in process, or the devices of a hardware rig.
 struct Backend {
   std::unique_ptr<HardwareRig> rig;  // outlives the stack
   std::unique_ptr<LoopStack> stack;
 };
 
-// Opens the devices of a real rig: they are identified, configured and read back here.
+// Opens the devices of a hardware rig: identifies and configures them, and reads the settings back.
 Backend MakeBackend(const DaemonOptions& options, const Design& design) {
   const RigConfig& config = options.config;
   Backend backend;
@@ -89,7 +89,7 @@ Backend MakeBackend(const DaemonOptions& options, const Design& design) {
   return backend;
 }
 
-/// The daemon's parts, in the order in which they are made.
+/// The daemon's parts, in order of construction.
 class Daemon {
  public:
   explicit Daemon(const DaemonOptions& options)

@@ -10,25 +10,25 @@
 
 namespace flexarm {
 
-/// What the daemon is started with.
+/// Options of the daemon.
 struct DaemonOptions {
   RigConfig config;
-  std::optional<Experiment> experiment;  ///< run once, unattended, then end
+  std::optional<Experiment> experiment;  ///< run once, unattended; then the daemon ends
   std::optional<double> run_for_s;       ///< end after this long
   bool realtime = true;                  ///< false: --without-realtime
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
 };
 
-/// How it ended.
+/// Result of the daemon.
 struct DaemonResult {
   bool tripped = false;
   bool refused = false;  ///< the unattended run was refused
   std::int64_t log_errors = 0;
 };
 
-/// Runs the daemon until its experiment or its time is over, or SIGTERM or SIGINT comes: then it
+/// Runs the daemon until its experiment or its time ends, or SIGTERM or SIGINT arrives. Then it
 /// brings the arm to rest, disarms, closes the log and returns. Blocks those signals.
-/// @throws Refused, RealtimeRejectedError, HalError, std::runtime_error before anything moves
+/// @throws RejectedError, RealtimeRejectedError, HalError, std::runtime_error before any motion
 DaemonResult RunDaemon(const DaemonOptions& options);
 
 }  // namespace flexarm

@@ -4,8 +4,8 @@
 
 namespace flexarm {
 
-/// The daemon's text log: to the journal when stderr is connected to it, else to stderr. Recorder
-/// and operator threads, and start-up, only: a line takes a lock and may wait.
+/// The daemon's text log: to the journal when stderr is connected to it, else to stderr. Only for
+/// the recorder and operator threads and start-up: a line takes a lock and may block.
 class Journal {
  public:
   Journal();

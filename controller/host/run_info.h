@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// What the log of a run says about the rig and its controller.
+/// Description of rig and controller for the log of a run.
 /// @param clock  "monotonic" or "simulated"
 RunInfo MakeRunInfo(const RigConfig& config, const Design& design, const std::string& clock,
                     const std::string& backend);

@@ -5,7 +5,7 @@
 
 namespace flexarm {
 
-/// What the daemon tells systemd, if systemd started it (Type=notify); otherwise nothing happens.
+/// Notifies systemd of the daemon's state if systemd started it (Type=notify); otherwise no effect.
 /// Not real-time safe. Thread: any one at a time.
 class ServiceManager {
  public:
@@ -13,8 +13,8 @@ class ServiceManager {
 
   void Ready();
   void Stopping();
-  /// Feeds the watchdog, if the unit has one, four times in its interval; and the status line
-  /// when it has changed.
+  /// Resets the watchdog of the unit, if any, four times in its interval, and updates the status
+  /// line when it has changed.
   void Alive(std::int64_t now_ns, const std::string& status);
 
  private:

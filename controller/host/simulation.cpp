@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kQueueDepth = 64;
 
-/// The operator's thread of a simulated run: one plan, then UnattendedRun's requests.
+/// The operator task of a simulated run: one experiment, then the requests of UnattendedRun.
 class UnattendedTask final : public Task {
  public:
   explicit UnattendedTask(SimulatedStack* stack) : stack_(stack) {}
@@ -49,7 +49,7 @@ class UnattendedTask final : public Task {
   UnattendedRun run_;
 };
 
-/// Keeps every tick in memory for the metrics, and passes all on to the log if there is one.
+/// Keeps every tick in memory for the metrics, and writes all records to the log.
 class MemoryAndLog final : public RunMemory {
  public:
   MemoryAndLog(RunContents* contents, std::unique_ptr<RunSink> log)
@@ -82,7 +82,7 @@ OpenSink SinkFor(const SimulationRequest& request, RunContents* contents) {
       };
 }
 
-/// A simulated run's parts, in the order in which they are made.
+/// The parts of a simulated run, in order of construction.
 class Simulation {
  public:
   explicit Simulation(const SimulationRequest& request);

@@ -18,10 +18,10 @@ namespace flexarm {
 struct SimulationRequest {
   RigConfig config;
   Experiment experiment;
-  /// Of the simulated rig where that is not what the controller was designed for; differs from
-  /// `config` in what describes the plant only. A log does not tell of it.
+  /// Config of the simulated rig if it differs from that of the design; may differ from `config` in
+  /// the settings of the plant only. It is not logged.
   std::optional<RigConfig> plant = std::nullopt;
-  std::optional<double> payload_kg;          ///< of the plant; its config's if empty
+  std::optional<double> payload_kg;          ///< of the plant; empty: that of its config
   std::optional<std::filesystem::path> log;  ///< must not exist; empty: no log
 };
 
@@ -31,11 +31,11 @@ struct SimulationResult {
   std::int64_t ticks = 0;  ///< in state Running
   RunMetrics metrics;
   std::vector<double> move_duration_s;  ///< of the rows [[move]], as given or as chosen
-  int delay_found = 0;  ///< samples beyond the known delay, the last that was found in the run
+  int delay_found = 0;                  ///< samples beyond the known delay, last result of the run
   double realtime_factor = 0.0;  ///< simulated time over wall time of the loop, recorder included
 };
 
-/// @param progress  called now and then with the simulated time, s; may be empty
+/// @param progress  called repeatedly with the simulated time, s; may be empty
 /// @throws std::runtime_error when the design, the experiment or the log is refused
 SimulationResult Simulate(const SimulationRequest& request,
                           const std::function<void(double)>& progress = {});

@@ -6,14 +6,16 @@
 
 namespace flexarm {
 
-/// Sobel's integral gain K_I, 2 x (n + 4) on r = [y_e; x_m; u_m], kept within reason.
+/// Sobel's integral gain K_I, 2 x (n + 4) on r = [y_e; x_m; u_m], with leakage, dead zone and
+/// projection.
 ///
 ///   K_I <- K_I0 + (1 - sigma) (K_I - K_I0) + v (T r)',   T = adaptation_gain I
 ///
-/// The leak sigma forgets. The dead zone leaves v (T r)' out while |y_e| is below it: an error of
-/// the size of an encoder's count has nothing to teach. The projection scales K_I - K_I0 back to
-/// the radius `adaptation_bound` (Frobenius). Leak and projection never raise the gains' share of
-/// the Lyapunov function (7.11). Real-time: all but the constructor is safe.
+/// The leakage sigma removes this share of K_I - K_I0 each sample. The dead zone omits v (T r)'
+/// while |y_e| is below it: an error of the size of an encoder count is quantisation. The
+/// projection scales K_I - K_I0 back to the radius `adaptation_bound` (Frobenius). Leakage and
+/// projection never raise the gains' part of the Lyapunov function (7.11).
+/// Source: docs/theory/control-law.md 6.5. Real-time: all but the constructor is safe.
 class AdaptiveGain {
  public:
   using Gain = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 20>;
@@ -32,8 +34,8 @@ class AdaptiveGain {
 
   double change() const noexcept { return (K_I_ - K_I0_).norm(); }  ///< |K_I - K_I0|, Frobenius
 
-  /// tr((K_I - K_I0) T^-1 (K_I - K_I0)'): the gains' share of (7.11), with S = I and the gains that
-  /// are ideal for the nominal plant, K_I0, for Kbar.
+  /// tr((K_I - K_I0) T^-1 (K_I - K_I0)'): the gains' part of (7.11), with S = I and Kbar = K_I0,
+  /// the ideal gains of the nominal plant.
   double energy() const noexcept;
 
  private:

@@ -11,27 +11,26 @@
 
 namespace flexarm {
 
-/// One check made on a design, with its figure.
+/// Result of one check of a design.
 struct DesignCheck {
   std::string name;  ///< e.g. "cgt-residual"
   double value;
   double limit;
-  bool below;  ///< true: the value must be below the limit; false: above it
-  bool waived =
-      false;  ///< it failed, and somebody took that upon himself: `flexarm design --force`
+  bool below;           ///< true: the value must be below the limit; false: above it
+  bool waived = false;  ///< it failed and was overridden with `flexarm design --force`
 
   bool passed() const { return below ? value < limit : value > limit; }
 };
 
-/// What the laws that know the payload need (scheduled_law.h).
+/// Design of the laws that use the payload estimate (scheduled_law.h).
 struct ScheduledDesign {
   GainTable gains;
-  std::optional<GainTable> start_gains;  ///< of the law that plans, for a plan's first guess
-  double max_kg;                         ///< moves are planned for it
-  double reference_kg;                   ///< the reference is the way of an arm with this payload
+  std::optional<GainTable> start_gains;  ///< of receding-horizon: for the start of a cold plan
+  double max_kg;                         ///< moves keep the limits with this payload
+  double reference_kg;                   ///< payload of the quasi-static reference
 };
 
-/// Everything that the loop needs and that is computed before it runs. SI, psi(L) = 1.
+/// All matrices of the loop that are computed before it runs. SI, psi(L) = 1.
 ///
 /// Names as in docs/theory/control-law.md 3 to 6 and thesis chapter 7. n states, 2 inputs.
 struct Design {
@@ -51,14 +50,14 @@ struct Design {
   Eigen::RowVectorXd
       shaper;  ///< weights of the samples of an input shaper (input_shaper.h); [1]: none
   std::vector<double> payload_model;         ///< of `ekf-payload`: PayloadModelConstants; or empty
-  std::optional<ScheduledDesign> scheduled;  ///< of the laws that know the payload
+  std::optional<ScheduledDesign> scheduled;  ///< of the laws that use the payload estimate
   Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: a doublet moves by M_r^-1 a T^2/4
   std::vector<DesignCheck> checks;
 
   bool sound() const;  ///< every check passed or was waived
 };
 
-/// The arm that the payload estimator of `design` and its planner compute with.
+/// The arm model of the payload estimator of `design` and of its planner.
 RigidJointArm MakeRigidJointArm(const Design& design);
 
 }  // namespace flexarm

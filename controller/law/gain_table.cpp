@@ -10,7 +10,7 @@
 namespace flexarm {
 namespace {
 
-/// Between knots `first` and `first + 1`, `share` of the way.
+/// Position on an axis: between knots `first` and `first + 1`, at the fraction `share`.
 struct Place {
   std::size_t first;
   double share;

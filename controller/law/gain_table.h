@@ -5,18 +5,19 @@
 
 namespace flexarm {
 
-/// Where a table has its knots: ascending, at least two of each.
+/// Knots of a gain table: ascending, at least two on each axis.
 struct GainGrid {
   std::vector<double> payload_kg;
-  std::vector<double> theta2_rad;  ///< from 0 on: the arm is its own mirror image
+  std::vector<double> theta2_rad;  ///< from 0 on: gains depend on |theta2| by symmetry
 };
 
-/// State feedback u = K (x_d - x) of the arm with rigid joints, by payload and elbow angle.
+/// Gains of the state feedback u = K (x_d - x), scheduled by payload and elbow angle, for the arm
+/// with rigid joints.
 ///
 /// Bilinear between knots, constant beyond the outermost ones. Real-time: At is safe.
 class GainTable {
  public:
-  /// 2 x 12: N m for what is missing in x = [q; q'] of RigidJointArm.
+  /// 2 x 12: N m per SI unit of the error x_d - x, x = [q; q'] of RigidJointArm.
   using Gain = Eigen::Matrix<double, 2, 12>;
 
   /// @param knots  row by row: all elbow angles of the first payload, then of the second

@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// The law that `config` names, with the gains of `design`.
+/// Makes the law of `controller.name` with the gains of `design`.
 std::unique_ptr<Law> MakeLaw(const ControlConfig& config, const Design& design);
 
 }  // namespace flexarm

@@ -10,13 +10,15 @@
 namespace flexarm {
 namespace {
 
-// Below this rate the friction that is fed forward fades away: at the ends of a move its sign is
-// a guess.
+// Below this rate the friction feedforward is faded out: at the ends of a move the sign of the
+// friction is uncertain.
 constexpr double kFrictionRate_rad_s = 0.05;
 
-// After a move the feedback is weaker than the friction: the joints stick, and the arm would swing
-// on as if clamped. So it is helped against most of the friction, as soon as it is worth half of
-// it; less and less, for a feedback that counts flicker should not keep an arm at rest awake.
+// Friction compensation of the feedback after a move. The feedback torque is then smaller than the
+// friction: the joints stick, and the links would vibrate undamped as if their roots were clamped.
+// The compensation adds up to 0.7 of the friction, with the scale of half the friction for the
+// feedback torque. It is faded out over 2 s, so that encoder quantisation in the feedback does not
+// move an arm at rest.
 constexpr double kFrictionHelped = 0.7, kFrictionAsked = 0.5, kHelped_s = 2.0;
 
 }  // namespace

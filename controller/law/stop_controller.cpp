@@ -9,11 +9,11 @@ namespace {
 // with free joints), faster than the stop's time-out of 3 s.
 constexpr double kGoalFollows_s = 0.5;
 
-// The torque before the stop fades with this time constant: a step would excite the links, whose
-// vibrations with free joints take 0.15 s.
+// The difference to the torque before the stop decays with this time constant: a step would excite
+// the links, whose vibrations with free joints have a period of 0.15 s.
 constexpr double kHandOver_s = 0.1;
 
-// If the arm is not at rest by then, the torque is zero, after a ramp of 0.4 s: with backlash any
+// If the arm is not at rest after 1.8 s, the torque is ramped to zero over 0.4 s: with backlash any
 // feedback causes a limit cycle, and friction brings the arm to rest.
 constexpr double kNoTorqueFrom_s = 2.2, kRamp_s = 0.4;
 

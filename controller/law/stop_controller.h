@@ -10,9 +10,9 @@ namespace flexarm {
 /// The controller of Stopping and of homing: a regulator without prescribed degree of stability,
 /// u = K_stop (x_goal - x), whose goal is an arm at rest.
 ///
-/// While Stopping the goal follows the hubs, so that a heavy payload is not pulled back for long;
-/// the torque begins at that of the step before and approaches the regulator's; after 1.8 s it
-/// falls to zero within 0.4 s. Not clipped. Source: docs/theory/control-law.md.
+/// While Stopping the goal follows the hubs, so that the arm with a heavy payload is not pulled
+/// back for long. The torque starts at that of the step before and decays to the regulator's;
+/// after 1.8 s it is ramped to zero over 0.4 s. Not clipped. Source: docs/theory/control-law.md 9.
 /// Real-time: all but the constructor is safe.
 class StopController {
  public:
@@ -20,12 +20,12 @@ class StopController {
   StopController(const Eigen::MatrixXd& K_stop, const StateLayout& layout, double period_s)
       : K_stop_(K_stop), layout_(layout), period_s_(period_s) {}
 
-  /// Regulates to rest with the hubs at `hub_rad`.
+  /// Torque that regulates to rest with the hubs at `hub_rad`.
   Eigen::Vector2d Regulate(const StateVector& x, const Eigen::Vector2d& hub_rad) const noexcept;
 
-  /// A stop begins. @param hub_rad  first goal  @param torque_nm  of the step before
+  /// Start of a stop. @param hub_rad  first goal  @param torque_nm  of the step before
   void Begin(const Eigen::Vector2d& hub_rad, const Eigen::Vector2d& torque_nm) noexcept;
-  /// Every sample of a stop. @param x  state at the instant the torque acts
+  /// Torque of one sample of a stop. @param x  state at the instant at which the torque acts
   Eigen::Vector2d Stop(const StateVector& x) noexcept;
 
  private:
@@ -36,7 +36,7 @@ class StopController {
   double period_s_;
   Eigen::Vector2d goal_rad_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d torque_before_nm_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d hand_over_nm_ = Eigen::Vector2d::Zero();  // what is left of that torque
+  Eigen::Vector2d hand_over_nm_ = Eigen::Vector2d::Zero();  // difference to that torque, decays
   double stopping_s_ = -1.0;  // negative: the next sample is the first
 };
 

@@ -6,7 +6,7 @@
 namespace flexarm {
 namespace {
 
-// The proportional and derivative feedback of each hub alone, 2 x n.
+// Proportional-derivative feedback of each hub to its own torque, 2 x n.
 Eigen::MatrixXd PdGain(const ControllerConfig& config, const StateLayout& layout) {
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(2, layout.states());
   for (int joint = 0; joint < 2; ++joint) {
@@ -17,7 +17,7 @@ Eigen::MatrixXd PdGain(const ControllerConfig& config, const StateLayout& layout
   return K;
 }
 
-// -K on what is not a joint's angle or rate: the reference's links are at rest then.
+// -K without the columns of the joints' angles and rates: in the reference the links are at rest.
 Eigen::MatrixXd LinksAtRest(const Eigen::MatrixXd& K, const StateLayout& layout) {
   Eigen::MatrixXd without = -K;
   without.leftCols(layout.angles()).setZero();
@@ -62,7 +62,7 @@ TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
 void TrackingLaw::SetFeedforward(const Design& design) {
   switch (config_.kind) {
     case ControllerKind::kSobel: {
-      // (7.24) with (7.25): the printed minus sign in front of (A_m - A), or the one that follows.
+      // (7.24) with (7.25): the minus sign in front of (A_m - A) as printed, or the derived sign.
       const double sign = config_.feedforward_sign == FeedforwardSign::kPrinted ? -1.0 : 1.0;
       const double vartheta = config_.vartheta;
       feedforward_x_ = vartheta * sign * design.Ufx + (1.0 - vartheta) * design.S21;
@@ -85,7 +85,7 @@ void TrackingLaw::SetFeedforward(const Design& design) {
       break;
     case ControllerKind::kGainScheduled:
     case ControllerKind::kRecedingHorizon:
-      break;  // has its own, scheduled_law.h
+      break;  // not made by this class: scheduled_law.h
   }
 }
 

@@ -13,11 +13,10 @@
 
 namespace flexarm {
 
-/// C_p of the law, 2 x n: the torque a deviation from the reference is answered with, N m per SI
-/// unit.
+/// C_p of the law, 2 x n: feedback torque per deviation from the reference, N m per SI unit.
 Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& config);
 
-/// Every law that follows the reference model: a feedforward and a feedback, and Sobel's adapts.
+/// Every law that follows the reference model: feedforward plus feedback; Sobel's law adapts.
 ///
 ///   u = u* + C_p (x_m - x), clipped to the torque limits
 ///
@@ -38,23 +37,24 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 ///   u  = K_I r + rho v, clipped
 ///   K_I <- (1 - sigma) (K_I - K_I0) + K_I0 + v (T r)'
 ///
-/// The algebraic loop between v and u is solved, not delayed. With T = Tbar = 0 it is lqr-cgt.
+/// The algebraic loop between v and u is solved within the sample. With T = Tbar = 0 the law is
+/// lqr-cgt.
 /// Real-time: Reset and Compute are safe.
 class TrackingLaw final : public Law {
  public:
   TrackingLaw(const Design& design, const ControllerConfig& config,
               const std::array<double, 2>& torque_limit_nm);
 
-  /// K_I back to [I, S21, S22]: the law starts as lqr-cgt, without a step in its torque.
+  /// Resets K_I to [I, S21, S22]: the law starts as lqr-cgt, without a step in its torque.
   void Reset() noexcept override { K_I_.Reset(); }
 
-  /// @param x          plant state at the instant the torque acts
+  /// @param x          plant state at the instant at which the torque acts
   /// @param reference  of the same instant
-  /// @param may_adapt  false holds K_I (invalid sensor, not Running)
+  /// @param may_adapt  false: K_I is held (invalid sensor, not Running)
   ///
-  /// With the torque comes V = e'Pe + tr((K_I - K_I0) T^-1 (K_I - K_I0)'), N m squared: on the
-  /// nominal plant it falls from sample to sample (vartheta = 0, u_m constant). NaN for the laws
-  /// whose trajectory is not the command generator's: lqr-um, lqg, pd.
+  /// The result has V = e'Pe + tr((K_I - K_I0) T^-1 (K_I - K_I0)'), N m squared. On the nominal
+  /// plant V decreases from sample to sample (vartheta = 0, u_m constant). NaN for the laws whose
+  /// trajectory is not the command generator's: lqr-um, lqg, pd.
   LawOutput Compute(const StateVector& x, const ReferenceSample& reference,
                     bool may_adapt) noexcept;
   LawOutput Compute(const LawInput& input) noexcept override {

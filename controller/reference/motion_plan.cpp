@@ -66,7 +66,7 @@ std::array<double, 2> GoalOf(const Move& move, const std::string& row, const Mot
 
 // Start of a move, for a message that continues with "to".
 std::string BeginText(const PlannedMove& move) {
-  if (!move.takes_over) return "the move goes from " + DegText(move.from.angle_rad);
+  if (!move.retargets) return "the move goes from " + DegText(move.from.angle_rad);
   return "the move retargets at " + DegText(move.from.angle_rad) + " and " +
          DegText(move.from.rate_rad_s) + " per second, and goes";
 }
@@ -101,7 +101,7 @@ void RequireTakeOver(const PlannedMove& planned, const PlannedMove& above, const
 }
 
 // Whether a move that begins at sample `first` begins before the last of `moves` ends.
-bool TakesOver(const std::vector<PlannedMove>& moves, int first) {
+bool Retargets(const std::vector<PlannedMove>& moves, int first) {
   return !moves.empty() && first < moves.back().first + moves.back().periods;
 }
 
@@ -139,13 +139,13 @@ std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& d
     PlannedMove planned{.row = row,
                         .first = OnGrid(move.start_s, period_s, name + ".start_s"),
                         .periods = 0,
-                        .takes_over = false,
+                        .retargets = false,
                         .from = {},
                         .to_rad = GoalOf(move, name, limits),
                         .profile = move.profile};
-    if (TakesOver(moves, planned.first)) {
+    if (Retargets(moves, planned.first)) {
       RequireTakeOver(planned, moves.back(), design, period_s);
-      planned.takes_over = true;
+      planned.retargets = true;
       planned.from = moves.back().At(planned.first, period_s);
     } else {
       planned.from.angle_rad = PlaceBefore(experiment, moves, start_rad, move.start_s);

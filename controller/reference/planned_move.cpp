@@ -11,7 +11,7 @@ Eigen::Vector2d TorqueOf(const PlannedMove& move, const Design& design) {
 }
 
 RigidPoint PlannedMove::At(double sample, double period_s) const noexcept {
-  if (takes_over) {
+  if (retargets) {
     return SepticToRest(from, to_rad, periods * period_s, (sample - first) * period_s);
   }
   const double T = (periods - 1) * period_s;

@@ -18,7 +18,7 @@ struct PlannedMove {
   std::size_t row;               ///< of [[move]]
   int first;                     ///< sample at which it begins
   int periods;                   ///< n: the path is at rest from sample first + n on
-  bool takes_over;               ///< the move retargets: the arm moves when it begins
+  bool retargets;                ///< the move retargets: the arm moves when it begins
   RigidPoint from;               ///< Y at sample `first`: at rest, or of the move that it replaces
   std::array<double, 2> to_rad;  ///< th1, th2
   MoveProfile profile;           ///< from rest; a move that retargets is SepticToRest

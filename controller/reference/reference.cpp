@@ -143,9 +143,9 @@ std::string Remedy(std::span<const PlannedMove> moves, const Design& design, dou
   const auto shortest = ShortestPeriods(moves, design, period_s, limits, 1.0);
   if (!shortest) {
     return std::string("; no duration_s up to ") + NumberText(kLongestChosen_s) +
-           " keeps the limits" + (move.takes_over ? " where the move retargets" : "");
+           " keeps the limits" + (move.retargets ? " where the move retargets" : "");
   }
-  if (!move.takes_over && *shortest <= move.periods) return {};
+  if (!move.retargets && *shortest <= move.periods) return {};
   return std::string("; the shortest duration_s within the limits is ") +
          NumberText(InSeconds(*shortest, period_s));
 }

@@ -47,9 +47,9 @@ std::optional<int> ShortestByHalving(int most, const Fits& fits) {
 }
 
 // Tests durations of a move that retargets.
-class TakeOver {
+class RetargetSearch {
  public:
-  TakeOver(std::span<const PlannedMove> moves, const PathCheck& check, double period_s)
+  RetargetSearch(std::span<const PlannedMove> moves, const PathCheck& check, double period_s)
       : moves_(moves.begin(), moves.end()), check_(check), period_s_(period_s) {
     // Two samples of the previous path are enough.
     const int earlier = moves_.back().first - kFirst;
@@ -83,13 +83,13 @@ class TakeOver {
 std::optional<int> ShortestPeriods(std::span<const PlannedMove> moves, const Design& design,
                                    double period_s, const MotionLimits& limits, double share) {
   const int most = MostPeriods(period_s);
-  if (!moves.back().takes_over) {
+  if (!moves.back().retargets) {
     return ShortestByHalving(most, [&](int periods) {
       return FitsFromRest(moves.back(), periods, design, period_s, limits, share);
     });
   }
   const PathCheck check(design, limits, share, period_s);
-  TakeOver move(moves, check, period_s);
+  RetargetSearch move(moves, check, period_s);
   for (int periods = kFewestPeriods; periods <= most; ++periods) {
     if (move.Fits(periods)) return periods;
   }

@@ -25,7 +25,7 @@ double Distance(const std::array<double, 2>& a, const std::array<double, 2>& b) 
   return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-std::span<const TickRecord> FirstRunningStretch(std::span<const TickRecord> ticks) {
+std::span<const TickRecord> FirstRunningSegment(std::span<const TickRecord> ticks) {
   const auto running = [](const TickRecord& record) {
     return record.input.safety_state == SafetyState::kRunning;
   };
@@ -225,7 +225,7 @@ std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
 RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& experiment,
                           double period_s, const TipGeometry& geometry) {
   RunMetrics metrics;
-  const auto running = FirstRunningStretch(ticks);
+  const auto running = FirstRunningSegment(ticks);
   metrics.ticks = static_cast<std::int64_t>(running.size());
   metrics.truth =
       !running.empty() && std::all_of(running.begin(), running.end(),

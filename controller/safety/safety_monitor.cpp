@@ -36,7 +36,7 @@ bool DriveReported(const SafetyInputs& in) noexcept { return in.drive.due_ns != 
 
 }  // namespace
 
-SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConfig& loop) {
+MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop) {
   return {.heartbeat_timeout_ns = std::llround(2e6 * loop.period_ms),
           .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
           .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,

@@ -12,14 +12,14 @@ struct SafetyConfig;
 struct LoopConfig;
 
 /// Time limits of the safety monitor.
-struct SupervisorLimits {
+struct MonitorLimits {
   std::int64_t heartbeat_timeout_ns;  ///< two control periods, for control and drive side
   std::int64_t stop_timeout_ns;       ///< safety.stop_timeout_s
   int missed_deadlines_to_trip;       ///< safety.missed_deadlines_to_trip
   std::int64_t homing_contact_ns;     ///< how long homing may stay on its switch
 };
 
-SupervisorLimits MakeSupervisorLimits(const SafetyConfig& safety, const LoopConfig& loop);
+MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop);
 
 /// The bus behind a fault of the drive side, numbered from 1, and its fault. 0: none, or the drive
 /// side has no bus.
@@ -61,7 +61,7 @@ struct SafetyInputs {
 /// Real-time: safe.  Thread: safety.
 class SafetyMonitor {
  public:
-  explicit SafetyMonitor(const SupervisorLimits& limits) noexcept : limits_(limits) {}
+  explicit SafetyMonitor(const MonitorLimits& limits) noexcept : limits_(limits) {}
 
   /// Once per tick, in order of time.
   SafetyFacts Judge(const SafetyInputs& in) noexcept;
@@ -74,7 +74,7 @@ class SafetyMonitor {
   /// True while homing is on the switch that it searches for, within the permitted time.
   bool HomingContact(const SafetyInputs& in) noexcept;
 
-  SupervisorLimits limits_;
+  MonitorLimits limits_;
   std::int64_t contact_since_ns_ = INT64_MAX;
   bool all_reported_ = false;
   bool button_was_down_ = true;  // a button that is down from the start does not count

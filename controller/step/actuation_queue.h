@@ -8,22 +8,23 @@
 
 namespace flexarm {
 
-/// Torques and the instants from which each acts until the next: what was asked and is still on its
-/// way. Before the first one, no torque. Remembers eight: more than five periods of delay need.
+/// Asked torques, each with the instant from which it acts until the next one does: those that act
+/// and those that do not act yet. Before the first one the torque is zero. Holds eight, more than a
+/// delay of five periods needs.
 ///
 /// Real-time: safe.
 class ActuationQueue {
  public:
   void Clear() noexcept { size_ = 0; }
 
-  /// Acts from `from_ns` on; an instant before the newest one's counts as that.
+  /// @param from_ns  the torque acts from then on; not before the newest: clamped to its instant
   void Push(std::int64_t from_ns, const std::array<double, 2>& torque_nm) noexcept;
 
-  /// The newest torque began at `from_ns`, as it turned out. Nothing if there is none.
+  /// Sets the instant of the newest torque to the measured one. No effect on an empty queue.
   void CorrectNewest(std::int64_t from_ns) noexcept;
 
-  /// The torque from `start_ns` to `end_ns`, at most six periods later. Borders are rounded to
-  /// ticks from the start, so that errors do not add up.
+  /// The torque from `start_ns` to `end_ns`, at most six periods later. Instants of change are
+  /// rounded to ticks since `start_ns`, so that rounding errors do not accumulate.
   PiecewiseTorque Between(std::int64_t start_ns, std::int64_t end_ns,
                           std::int64_t period_ns) const noexcept;
 

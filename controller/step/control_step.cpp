@@ -109,8 +109,8 @@ LawOutput ControlStep::Decide(const StepInput& input, const StateVector& x,
                               bool sensors_good) noexcept {
   if (input.mode == LoopMode::kOpenLoop) return OpenLoop(input);
   if (input.safety_state != SafetyState::kRunning) return Stop(input, x);
-  // Gains learnt in an earlier run belong to the load of that run: S21 x_m of an arm that rests
-  // away from zero would begin with a step.
+  // The gains adapted in an earlier run are for the payload of that run: for an arm at rest away
+  // from zero, S21 x_m would start with a step.
   if (phase_ != Phase::kRunning) law_->Reset();
   phase_ = Phase::kRunning;
   if (input.mode == LoopMode::kFollow) return Follow(input, x, sensors_good);
@@ -129,7 +129,7 @@ LawOutput ControlStep::Follow(const StepInput& input, const StateVector& x,
                         .may_adapt = sensors_good});
 }
 
-// The first goal is where the reference ended, or where the stop finds the hubs.
+// The first goal is the end of the reference, or the hub angles if the stop interrupts a run.
 LawOutput ControlStep::Stop(const StepInput& input, const StateVector& x) noexcept {
   if (phase_ != Phase::kStopping) {
     Eigen::Vector2d hub_rad;
@@ -161,7 +161,7 @@ void ControlStep::CountSaturation(std::uint32_t limits) noexcept {
 StepOutput ControlStep::Step(const StepInput& input) noexcept {
   if (input.reset != 0) Reset(input);
 
-  // What the sensors say.
+  // Readings of this sample.
   const double frame_age_s =
       static_cast<double>(input.sampling_instant_ns - input.frame.sampled_at_ns) * 1e-9;
   const SensorFrame frame =
@@ -183,8 +183,8 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const StateVector x_next =
       prediction_ ? observer_->Predict(estimate.x, delay_.Pending(input, observer_->delay_found()))
                   : estimate.x;
-  // The arm can be armed again only when the cause of the trip is gone: a state that remained not
-  // finite would block it for ever.
+  // A reset needs the cause of the trip to be gone: a state that stayed not finite would prevent it
+  // for ever.
   if ((verdict.faults & CauseBit(TripCause::kStateNotFinite)) != 0) observer_->Restart();
 
   StepOutput out{};

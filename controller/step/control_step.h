@@ -21,18 +21,18 @@ namespace flexarm {
 struct ControlConfig;
 struct Design;
 
-/// The loop: counts in, torque out (docs/architecture.md).
+/// One step of the loop, from encoder counts and strains to torques (docs/architecture.md).
 ///
-///   counts -decode-> angles, strains -fit-> modal coordinates -observe-> x(k) -predict-> x when
-///   the torque acts -law-> asked torque
+///   counts -decode-> angles, strains -fit-> modal coordinates -observe-> x(k) -predict-> x at the
+///   instant at which the torque acts -law-> asked torque
 ///
-/// A function of its inputs since the last reset: no I/O, lock, allocation, clock or exception, and
-/// + - * / and sqrt only, so the same bytes in give the same bytes out.
+/// The output is a function of the inputs since the last reset: no I/O, lock, allocation, clock or
+/// exception, and only + - * / and sqrt, so the same input bytes give the same output bytes.
 /// Real-time: `Step` is safe; the constructor is not.
 class ControlStep {
  public:
   ControlStep(const ControlConfig& config, const Design& design);
-  /// With a law that is not in the table of laws.
+  /// With another law than that of config.controller.
   ControlStep(const ControlConfig& config, const Design& design, std::unique_ptr<Law> law);
 
   StepOutput Step(const StepInput& input) noexcept;
@@ -54,7 +54,7 @@ class ControlStep {
   void CountSaturation(std::uint32_t limits) noexcept;
 
   double period_s_;
-  std::int64_t max_reading_age_ns_;  // half a period: nearer to this sample than to another
+  std::int64_t max_reading_age_ns_;  // half a period: beyond it another sample is nearer
   bool prediction_;
   std::array<double, 2> torque_limit_nm_;
   StateLayout layout_;

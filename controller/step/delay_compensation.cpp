@@ -16,8 +16,8 @@ void DelayCompensation::TakeReport(const StepInput& input) noexcept {
   reported_nm_[0] = input.applied_torque_nm;
 }
 
-// With a delay beyond the known one, the drive side's mean of a sample is that of the sample so
-// much later. The mean of the next sample is not there yet.
+// With `delay` additional samples of delay, the mean reported for an earlier sample acted over this
+// one. With -1 it would be the mean of the next sample, which is not measured yet.
 PiecewiseTorque DelayCompensation::Applied(const StepInput& input, int delay) const noexcept {
   const std::int64_t end_ns = input.sampling_instant_ns - delay * period_ns_;
   const PiecewiseTorque pieces = asked_.Between(end_ns - period_ns_, end_ns, period_ns_);

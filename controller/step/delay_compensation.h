@@ -10,34 +10,35 @@
 
 namespace flexarm {
 
-/// The torques on their way to the arm: which acted over the last sample, and which will act until
-/// the torque of this step does. With them an Observer corrects for what acted, and predicts the
-/// state without feedback (open loop) to the instant at which the torque acts.
+/// Computes the torques that acted over the last sample, and those that will act until the torque
+/// of this step does. An Observer uses the former in its time update, and the latter for the
+/// open-loop prediction of the state to the instant at which the torque acts.
 ///
-/// A torque acts some time after it is asked for: the instants come from the drive side as far as
-/// it measures them (StepInput), plus the whole samples `delay` that the estimator found. Source:
-/// docs/theory/control-law.md. Real-time: safe.
+/// A torque acts some time after it is asked for. The drive side measures these instants as far as
+/// it can (StepInput); the estimator adds `delay` whole samples.
+/// Source: docs/theory/control-law.md 8. Real-time: safe.
 class DelayCompensation {
  public:
-  /// @param may_act_earlier  a delay of a period or more is declared, so it may be a period less
+  /// @param may_act_earlier  a period or more of delay is declared, so it may be a period less
   DelayCompensation(std::int64_t period_ns, bool may_act_earlier)
       : period_ns_(period_ns), may_act_earlier_(may_act_earlier) {}
 
   void Reset() noexcept;
 
-  /// Each step first: when the newest torque acted, and the mean that the drive side applied.
+  /// Call first in each step. Takes the instant of the newest torque and the applied mean torque.
   void TakeReport(const StepInput& input) noexcept;
 
-  /// Over [k-1, k] Ts: changes when the commands did, with the mean that the drive side applied.
-  /// @param delay  samples by which torques act later than is known
+  /// The torque over [k-1, k] Ts: changes at the instants of the commands, with the mean that the
+  /// drive side applied.
+  /// @param delay  samples by which torques act later than the drive side measures
   PiecewiseTorque Applied(const StepInput& input, int delay) const noexcept;
   /// The same for every delay hypothesis.
   TorqueByDelay AppliedByDelay(const StepInput& input) const noexcept;
 
-  /// From k Ts to the instant at which the torque of this step acts.
+  /// The torque from k Ts to the instant at which the torque of this step acts.
   PiecewiseTorque Pending(const StepInput& input, int delay) const noexcept;
 
-  /// Each step last: the torque that it asks for.
+  /// Call last in each step, with the torque that it asks for.
   void Push(const StepInput& input, const std::array<double, 2>& torque_nm) noexcept;
 
  private:
@@ -48,7 +49,7 @@ class DelayCompensation {
   std::int64_t period_ns_;
   bool may_act_earlier_;
   ActuationQueue asked_;
-  // By the drive side, of this sample and of those before it.
+  // Means that the drive side reported, of this sample and the ones before it.
   std::array<std::array<double, 2>, kDelays - kDelayAsKnown> reported_nm_{};
 };
 

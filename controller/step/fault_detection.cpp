@@ -10,7 +10,7 @@ namespace flexarm {
 namespace {
 
 constexpr int kRateTicks = 2;
-constexpr int kMissingTicks = 2;  // no good reading for two periods
+constexpr int kMissingTicks = 2;  // no valid reading for two periods
 constexpr double kStalePeriods = 2.0;
 
 std::size_t FirstChannel(std::uint32_t mask) noexcept {
@@ -31,7 +31,7 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
       period_s_(period_s),
       counters_present_(counters_present),
       joint_stiffness_(joint_stiffness_nm_per_rad),
-      // Never before the window is full of samples.
+      // Not before the window is full.
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
                                   static_cast<int>(kRestWindow) + 1)) {}
 
@@ -53,7 +53,7 @@ void FaultDetection::Raise(TripCause cause, bool present, int ticks, double valu
     verdict_.channel = static_cast<std::uint16_t>(channel);
   }
   verdict_.faults |= CauseBit(cause);
-  in_a_row = ticks;  // no overflow however long it lasts
+  in_a_row = ticks;  // saturated: cannot overflow
 }
 
 FaultDetection::Verdict FaultDetection::Judge(const LoopFacts& facts) noexcept {
@@ -137,7 +137,7 @@ void FaultDetection::JudgeEstimate(const LoopFacts& facts) noexcept {
 }
 
 bool FaultDetection::JudgeRest(const LoopFacts& facts) noexcept {
-  if (!started_) {  // as if the arm had always stood where it is
+  if (!started_) {  // as if the arm had been at rest here before
     started_ = true;
     hub_before_.fill({facts.counters->angle_rad[0], facts.counters->angle_rad[1]});
     root_strain_before_ = facts.modes->root_strain;

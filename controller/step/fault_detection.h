@@ -13,23 +13,23 @@
 
 namespace flexarm {
 
-/// What the loop knows at one sample, to be judged.
+/// Inputs of the fault detection at one sample.
 struct LoopFacts {
   const DecodedCounters* counters;
   const FittedModes* modes;
   const StateEstimator::Estimate* estimate;
   std::array<double, 2> applied_torque_nm;
-  double frame_age_s;  ///< of the newest frame, at the sampling instant
+  double frame_age_s;  ///< age of the newest frame at the sampling instant
   LoopMode mode;
 };
 
-/// Judges what only the loop can see: soft limits, rates, strain, sensors, estimator.
+/// Checks of the control step: soft limits, rates, strain, sensors, estimator.
 ///
-/// Angle, strain and jumps count in the sample that shows them; hub rate after two samples;
-/// judgements of single sensors and of the estimator after `fault_ticks` samples in a row. Homing
-/// (LoopMode::kRegulate) has no soft limits: they lie inside the switches, and the angle is in
-/// doubt. The pluck test (kOpenLoop) does not judge sensors against each other: that is what it is
-/// for, and its torque does not depend on them.
+/// Violations of angle and strain limits and encoder jumps are faults in the sample in which they
+/// occur; hub rates after two samples; faults of single sensors and of the estimator after
+/// `fault_ticks` samples in a row. Homing (LoopMode::kRegulate) has no soft limits: they lie inside
+/// the switches, and the angle is not calibrated yet. The pluck test (kOpenLoop) does not compare
+/// sensors with each other: it measures their agreement, and its torque does not depend on them.
 /// Real-time: safe.
 class FaultDetection {
  public:
@@ -44,14 +44,14 @@ class FaultDetection {
                  std::uint32_t counters_present,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 
-  /// Forgets everything: what follows depends on the samples after it alone, so that a log, which
-  /// begins here, replays.
+  /// Resets all state: the results depend on later samples only, so that a log, which begins at a
+  /// reset, replays.
   void Reset() noexcept;
   Verdict Judge(const LoopFacts& facts) noexcept;
 
  private:
-  /// Rest is judged by the mean hub rate over this many periods: a single count of the encoder in
-  /// one period is faster than the arm at rest may be.
+  /// The arm is at rest by the mean hub rate over this many periods: one encoder count in one
+  /// period already exceeds the bound on the rate at rest.
   static constexpr std::size_t kRestWindow = 5;
 
   void JudgeJoints(const LoopFacts& facts) noexcept;
@@ -59,7 +59,7 @@ class FaultDetection {
   void JudgeStrain(const LoopFacts& facts) noexcept;
   void JudgeEstimate(const LoopFacts& facts) noexcept;
   bool JudgeRest(const LoopFacts& facts) noexcept;
-  /// Counts `present` samples in a row of one judgement, and raises `cause` from the `ticks`-th on.
+  /// Counts the samples in a row with `present`, and raises `cause` from the `ticks`-th on.
   void Raise(TripCause cause, bool present, int ticks, double value, double limit,
              std::size_t channel) noexcept;
 
@@ -70,10 +70,11 @@ class FaultDetection {
   std::array<double, 2> joint_stiffness_;
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
-  std::array<std::array<double, 2>, kRestWindow> hub_before_{};  // ring of the last hub angles
+  std::array<std::array<double, 2>, kRestWindow>
+      hub_before_{};  // ring buffer of the last hub angles
   std::size_t ring_ = 0;
   std::array<double, 2> root_strain_before_{};
-  bool started_ = false;  // false: the two above hold nothing yet
+  bool started_ = false;  // false: the two above are not set yet
   std::array<int, kTripCauses> in_a_row_{};
   Verdict verdict_{};
 };

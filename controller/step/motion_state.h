@@ -6,12 +6,12 @@
 
 namespace flexarm {
 
-/// Whether the path moves, and since when it rests. Real-time: safe.
+/// Whether the path moves, and for how long it has been at rest. Real-time: safe.
 class MotionState {
  public:
   void Reset() noexcept { *this = MotionState(); }
 
-  /// Every sample, in order.
+  /// Takes the point of each sample, in order.
   /// @returns true when a move begins
   bool Take(const RigidPoint& point, double period_s) noexcept {
     const bool moved = moving_;

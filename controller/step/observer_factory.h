@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// The observer that `config` names, with the filter of `design`.
+/// Makes the observer of `estimator.name` with the filter of `design`.
 std::unique_ptr<Observer> MakeObserver(const ControlConfig& config, const Design& design);
 
 }  // namespace flexarm

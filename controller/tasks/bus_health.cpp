@@ -17,11 +17,12 @@ void BusJournal::Follow(std::int64_t now_ns, const std::vector<BusHealth>& buses
     Told& told = told_[i];
     const std::uint32_t failed = bus.failed - told.failed;
     if (bus.ok != told.ok) {
-      report(!bus.ok, bus.ok ? bus.name + ": back, after " + std::to_string(failed) +
-                                   " failed exchanges and attempts to reconnect"
-                             : "lost: " + bus.fault);
+      report(!bus.ok, bus.ok ? bus.name + ": reconnected after " + std::to_string(failed) +
+                                   " failed exchanges and connection attempts"
+                             : "bus lost: " + bus.fault);
     } else if (bus.ok && failed > 0 && AgeNs(now_ns, told.at_ns) > kAtMostEveryNs) {
-      report(true, bus.name + ": " + std::to_string(failed) + " failed exchanges, survived" +
+      report(true, bus.name + ": " + std::to_string(failed) +
+                       " failed exchanges without loss of the bus" +
                        (bus.fault.empty() ? "" : "; the last: " + bus.fault));
     } else {
       continue;

@@ -10,22 +10,22 @@
 
 namespace flexarm {
 
-/// How one bus of a wired rig does, for people.
+/// Health of one bus of a wired rig, for status and journal.
 struct BusHealth {
   std::string name;
   bool ok;
-  std::string fault;        ///< what its last exchange met, with device and node; empty: nothing
-  std::uint32_t failed;     ///< exchanges that failed, and attempts to reconnect
-  std::uint32_t recovered;  ///< how often it was lost and came back
+  std::string fault;        ///< error of its last exchange, with device and node; empty: none
+  std::uint32_t failed;     ///< number of failed exchanges and attempts to reconnect
+  std::uint32_t recovered;  ///< number of recoveries after a loss
 };
 
-/// Tells the journal when a bus is lost or back, and, once a second at most, of exchanges that
-/// failed without that. Thread: operator.
+/// Reports to the journal when a bus is lost or reconnected, and, at most once a second, exchanges
+/// that failed without a loss of the bus. Thread: operator.
 class BusJournal {
  public:
   using Report = std::function<void(bool is_error, const std::string& text)>;
 
-  /// Once a period of the operator, in order of time.
+  /// Call once a period of the operator task, in order of time.
   void Follow(std::int64_t now_ns, const std::vector<BusHealth>& buses, const Report& report);
 
  private:

@@ -35,8 +35,8 @@ void BusTask::Run(const Activation& activation) noexcept {
   Publish(activation.due_ns, part);
 }
 
-// The last act before the drive. A bus that has just failed is told the same as a healthy one: what
-// it missed is gone, and the next command is the newest.
+// Applies the torque gate to the command that acts now. A failed exchange is not repeated: the next
+// one sends the newest command, as on a healthy bus.
 BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
   const CommandHistory::Entry& command = channels_.commands->Read().At(due_ns);
   const Permit& permit = channels_.permits->Read().Newest().value;
@@ -59,7 +59,7 @@ BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
 
 void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
   FramePacket packet{};
-  packet.frame.sampled_at_ns = due_ns;  // of a failed exchange: nothing is valid
+  packet.frame.sampled_at_ns = due_ns;  // after a failed exchange no reading is valid
   if (status_ == BusStatus::kOk) {
     packet.frame = part;
     packet.frame.sampled_at_ns -= epoch_ns_;
@@ -69,8 +69,8 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
   gate_before_ = gate_reasons_;
   packet.applied_torque_nm =
       applied_.Between(due_ns - grid_.period_ns, due_ns, grid_.period_ns).mean_nm();
-  // Of a bus with drives the frame's instant is also when they took the torque: the SYNC of
-  // CANopen, the end of the analogue outputs of a board.
+  // On a bus with drives the frame's instant is also the instant of the torque output: the SYNC of
+  // CANopen, or the end of the analogue outputs of a board.
   const bool stamped = status_ == BusStatus::kOk && device_->drives() != 0;
   packet.acted_ns = (stamped ? packet.frame.sampled_at_ns : due_ns) + grid_.actuation_ns;
   if (stamped) packet.output_tick = applied_tick_;

@@ -15,22 +15,22 @@ namespace flexarm {
 
 struct RigConfig;
 
-/// Everything that a bus task touches. All of it outlives the task.
+/// Channels of a bus task. All outlive the task.
 struct BusChannels {
   CommandChannel* commands;     ///< read
   PermitChannel* permits;       ///< read
   FrameChannel* frames;         ///< written: this bus's part of the readings
   DriveReportChannel* reports;  ///< written: for the safety task
-  DriveReportChannel* health;   ///< written: the same, for the operator
+  DriveReportChannel* health;   ///< written: the same, for the operator task
 };
 
-/// The thread of one bus of a real rig: on the control grid, the gate, then the drive, then the
-/// readings. It may block in its device for as long as that declares.
+/// The task of one bus of a hardware rig. Each period: torque gate, drive output, sensor readings.
+/// It may block in its device for as long as the device declares.
 ///
-/// Due at every sampling instant k Ts, so that the readings are there `acquire_before` later, when
-/// the step is. The command is the one that acts at k Ts, the permit the newest there is. A bus
-/// that fails twice in a row is lost; it is taken back only while the arm is disarmed. Real-time:
-/// as far as its device is; it allocates nothing itself.
+/// Due at every sampling instant k Ts, so that the readings are available when the step is due,
+/// `acquire_before` later. It puts out the command that acts at k Ts, with the newest permit. A bus
+/// that fails twice in a row is lost; it is reconnected only while the arm is disarmed. Real-time:
+/// as far as its device is; it does not allocate.
 class BusTask final : public Task {
  public:
   static constexpr int kPriority = 70;
@@ -39,7 +39,7 @@ class BusTask final : public Task {
   /// @param device  opened; outlives the task
   BusTask(const RigConfig& config, BusDevice* device, BusChannels channels);
 
-  /// Instant 0 of the loop in CLOCK_MONOTONIC: devices stamp their readings in that. Before Run.
+  /// Instant 0 of the loop in CLOCK_MONOTONIC, the clock of the devices' time stamps. Before Run.
   void SetEpoch(std::int64_t epoch_ns) noexcept { epoch_ns_ = epoch_ns; }
 
   Traits traits() const noexcept override;
@@ -54,14 +54,14 @@ class BusTask final : public Task {
   GateLimits limits_;
   BusChannels channels_;
   std::int64_t epoch_ns_ = 0;
-  std::array<double, 2> applied_nm_{};  // set at the last exchange
-  std::int64_t applied_tick_ = -1;      // of the command that was
-  ActuationQueue applied_;              // when each acted
+  std::array<double, 2> applied_nm_{};  // torque of the last exchange
+  std::int64_t applied_tick_ = -1;      // tick of its command
+  ActuationQueue applied_;              // with the instant at which each acted
   BusStatus status_ = BusStatus::kOk;
   int failures_ = 0;  // in a row
   std::uint32_t failed_ = 0;
   std::uint32_t gate_reasons_ = 0,
-                gate_before_ = 0;  // GateBits of the newest torque, the one before
+                gate_before_ = 0;  // GateBits of the newest torque and the one before
   std::uint32_t recovered_ = 0;
   LineLevels levels_ = kHealthyLevels;
   FrameHistory frames_{kNoFrame};

@@ -18,7 +18,7 @@ Task::Traits ControlTask::traits() const noexcept {
 }
 
 void ControlTask::Run(const Activation& activation) noexcept {
-  // What was published at the due instant itself may or may not be there yet.
+  // Values published at the due instant itself may not be visible yet.
   FollowState(channels_.permits->Read().At(activation.due_ns - 1).value);
   const std::int64_t sampled_ns = grid_.SamplingInstant(grid_.Tick(activation.due_ns));
   const FramePacket packet = ReadFrames(sampled_ns);
@@ -69,7 +69,7 @@ void ControlTask::StartRun() noexcept {
   const LoadedExperiment& planned = channels_.plans->Read();
   const bool used_up = planned.number == plan_.number;
   plan_ = planned;
-  if (used_up) plan_.experiment = nullptr;  // a plan is good for one run
+  if (used_up) plan_.experiment = nullptr;  // an experiment is used for one run
   released_.store(plan_.number, std::memory_order_release);
   sample_ = -1;
   if (channels_.planner != nullptr) channels_.planner->Start(plan_.number);
@@ -105,7 +105,7 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
 }
 
 void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept {
-  if (plan_.experiment == nullptr) {  // nothing to follow: end at once, where the hubs are
+  if (plan_.experiment == nullptr) {  // no reference: end at once, at the hub angles
     input->reference_now.x_m[0] = input->reference_next.x_m[0] = hub_angle_rad_[0];
     input->reference_now.x_m[1] = input->reference_next.x_m[1] = hub_angle_rad_[1];
     input->reference_ended = 1;
@@ -121,7 +121,7 @@ void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept 
   const int last = reference.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
   input->reference_now = ReferenceAtSample(reference);
-  // A torque of an open loop is handed on as it is, none left out and none twice.
+  // In open loop each torque of the sequence is put out once, so the delay found does not shift it.
   const int acts = input->mode == LoopMode::kFollow ? sample_ + delay_found_ : sample_;
   input->reference_next = reference.At(acts);
   input->path = reference.PathAround(acts);
@@ -142,8 +142,8 @@ void ControlTask::FollowPlan(StepInput* input) noexcept {
   input->planned = 1;
 }
 
-// At k Ts, which lies between samples of the reference unless the torques act at sampling instants:
-// on the line between the two.
+// The reference at k Ts. It lies between samples of the reference unless torques act at sampling
+// instants; linear interpolation.
 ReferenceSample ControlTask::ReferenceAtSample(const ReferenceTable& reference) const noexcept {
   const std::int64_t late_ns = grid_.late_ns();
   std::int64_t back = 1 + late_ns / grid_.period_ns;  // whole periods, rounded up

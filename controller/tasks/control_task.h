@@ -17,9 +17,9 @@
 
 namespace flexarm {
 
-/// Everything that the control task touches. All of it outlives the task.
+/// Channels of the control task. All outlive the task.
 struct ControlChannels {
-  std::vector<FrameChannel*> frames;      ///< read: each holds its own part of the readings
+  std::vector<FrameChannel*> frames;      ///< read: one a bus, with its part of the readings
   PermitChannel* permits;                 ///< read
   ExperimentChannel* plans;               ///< read
   CalibrationChannel* calibrations;       ///< read
@@ -27,18 +27,21 @@ struct ControlChannels {
   ControlReportChannel* reports;          ///< written
   SpscQueue<TickRecord>* records;         ///< written: every step, for the log
   SpscQueue<TickRecord>* operator_ticks;  ///< written: every step, for status and commissioning
-  PlanFollower* planner = nullptr;        ///< of the law `receding-horizon`
+  PlanFollower* planner = nullptr;        ///< with the law `receding-horizon` only
 };
 
-/// The control thread's body: newest frame -> Step -> asked torque, 50 Hz. Never waits.
+/// The control task: newest frame -> Step -> asked torque, 50 Hz. Never waits.
 ///
-/// Step k is due `acquire_before` after the sampling instant k Ts, and takes the frame and the
-/// permit that held before it was due. It is reset when it finds the arm newly armed, or newly
-/// calibrated; a calibration is taken over while no torque is allowed. Its torque
-/// is put out when the grid says; it is expected to act as late as the last one did, as far as the
-/// drive side knows; where a step found more delay, or less, the reference is that of the instant
-/// found. A fault that it sees takes the torque away at its deadline. Real-time: safe
-/// after construction.
+/// - Step k is due `acquire_before` after the sampling instant k Ts. It reads the frame and the
+/// permit
+///   published before its due instant.
+/// - The step is reset after arming, and after a new calibration, which is applied only while no
+///   torque is allowed.
+/// - The torque is put out at the output instant of the grid. The actuation delay of torque k is
+///   predicted as the one measured for k-1, plus the delay that the estimator found; the reference
+///   is sampled at that instant.
+/// - If the step reports a fault, the torque is zero from its deadline on.
+/// Real-time: safe after construction.
 class ControlTask final : public Task {
  public:
   static constexpr int kPriority = 80;
@@ -48,7 +51,7 @@ class ControlTask final : public Task {
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
 
-  /// Any thread. Plans with a lower number than this are no longer used.
+  /// Any thread. Experiments with a lower number than this are no longer used.
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
  private:
@@ -73,10 +76,10 @@ class ControlTask final : public Task {
   HomingReference homing_;
   Calibration calibration_{};
   SafetyState state_ = SafetyState::kStarting;
-  LineLevels levels_ = kHealthyLevels;  // as the safety task read them last
-  int sample_ = -1;                     // of the experiment, when the torque acts as known
-  int delay_found_ = 0;                 // samples that the last step found beyond that
-  bool reset_ = true;                   // the next step starts afresh
+  LineLevels levels_ = kHealthyLevels;            // as last read by the safety task
+  int sample_ = -1;                               // of the experiment, at the measured delay
+  int delay_found_ = 0;                           // additional samples, by the last step
+  bool reset_ = true;                             // the next step is a reset
   std::array<std::int64_t, kCounters> counts_{};  // of the last step
   std::array<double, 2> hub_angle_rad_{};         // of the last step
   CommandHistory commands_{kNoCommand};

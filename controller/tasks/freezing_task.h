@@ -7,7 +7,7 @@
 
 namespace flexarm {
 
-/// A task that does nothing from some instant on, as if its thread hung: fault injection for the
+/// A task that does nothing from a set instant on, as if its thread hung: fault injection for the
 /// simulated stack ([[sim_event]] freeze = "control"). Real-time: safe.
 class FreezingTask final : public Task {
  public:

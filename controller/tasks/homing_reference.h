@@ -8,24 +8,24 @@
 
 namespace flexarm {
 
-/// A slow, bounded search for a limit switch by one joint; the other holds its place.
+/// A slow, bounded search for a limit switch by one joint; the other joint is held.
 struct HomingPlan {
   Line line;          ///< the switch
   std::size_t joint;  ///< 0 or 1
-  double step_rad;    ///< of the goal each period; its sign is the direction of the search
-  double travel_rad;  ///< searched at most, > 0
-  double back_rad;    ///< off the switch afterwards, > 0
+  double step_rad;    ///< change of the goal each period; its sign is the direction of search
+  double travel_rad;  ///< largest distance of the search, > 0
+  double back_rad;    ///< distance moved off the switch afterwards, > 0
 };
 
-/// The goal of a homing run, sample by sample: towards the switch until it opens, then back off it
-/// by `back_rad` of where it opened, then done. A switch that does not open within `travel_rad`
-/// ends the search where it is. Real-time: safe.
+/// The goal of a homing run, sample by sample: it moves towards the switch until the switch opens,
+/// then back by `back_rad` from there, and ends. If the switch does not open within `travel_rad`,
+/// the run ends at the last goal. Real-time: safe.
 class HomingReference {
  public:
-  /// @param hub_rad  where the hubs are
+  /// @param hub_rad  hub angles at the start
   void Start(const HomingPlan& plan, const std::array<double, 2>& hub_rad) noexcept;
 
-  /// The next period's goal, in x_m. @param levels  of the digital inputs
+  /// Goal of the next period, in x_m. @param levels  of the digital inputs
   ReferenceSample Next(LineLevels levels, const std::array<double, 2>& hub_rad) noexcept;
 
   bool ended() const noexcept { return ended_; }
@@ -33,7 +33,7 @@ class HomingReference {
  private:
   HomingPlan plan_{};
   std::array<double, 2> goal_rad_{};
-  double left_rad_ = 0.0;  // of the search, or of the way back
+  double left_rad_ = 0.0;  // rest of the search, or of the motion back
   bool found_ = false;
   bool ended_ = true;
 };

@@ -19,8 +19,8 @@ PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design&
 void RefuseSimEvents(const Experiment& experiment) {
   if (experiment.sim_event.empty()) return;
   throw RejectedError(
-      "sim_event[0]: this rig is real, and its switches, threads and payload are not ours to "
-      "change; take the [[sim_event]] rows out, or use the simulated backend");
+      "sim_event[0]: a hardware rig has no simulated switches, threads and payload; remove the "
+      "[[sim_event]] rows, or use the simulated backend");
 }
 
 PlannedExperiment::PlannedExperiment(const std::vector<std::array<double, 2>>& torque_nm)

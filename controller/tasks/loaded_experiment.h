@@ -11,9 +11,9 @@
 
 namespace flexarm {
 
-/// An accepted experiment: made once by the operator's side, never changed after.
+/// An accepted experiment with its reference. Made once by the operator task, then constant.
 struct PlannedExperiment {
-  /// Parameters as ReferenceTable's. @throws Refused as ReferenceTable
+  /// Parameters as ReferenceTable's. @throws RejectedError as ReferenceTable
   PlannedExperiment(const Experiment& experiment, const Design& design, double period_s,
                     const std::array<double, 2>& start_rad, const MotionLimits& limits);
 
@@ -22,21 +22,21 @@ struct PlannedExperiment {
   /// A search for a limit switch.
   explicit PlannedExperiment(const HomingPlan& plan);
 
-  ReferenceTable reference;          ///< of a homing run: nothing
-  Experiment accepted{};             ///< the experiment with the durations that were chosen, if any
+  ReferenceTable reference;          ///< empty for a homing run
+  Experiment accepted{};             ///< the experiment, with the chosen durations
   std::vector<SimEvent> sim_events;  ///< in order of time; simulated backend only
   LoopMode mode = LoopMode::kFollow;
   HomingPlan homing{};  ///< if mode is kRegulate
 };
 
-/// For a rig that is real.
-/// @throws Refused naming the first row of what can only happen to a simulated one
+/// Rejects [[sim_event]] rows on a hardware rig.
+/// @throws RejectedError naming the first row
 void RefuseSimEvents(const Experiment& experiment);
 
-/// The experiment that the next run follows. The operator's side keeps it alive until every reader
-/// has released its number.
+/// The experiment of the next run. The operator task keeps it alive until every reader has released
+/// its number.
 struct LoadedExperiment {
-  const PlannedExperiment* experiment = nullptr;  ///< nullptr: none planned, a run ends where it is
+  const PlannedExperiment* experiment = nullptr;  ///< nullptr: none, a run ends at once
   std::uint32_t number = 0;                       ///< ascending
 };
 using ExperimentChannel = LatestValue<LoadedExperiment>;

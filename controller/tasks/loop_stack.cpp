@@ -3,11 +3,11 @@
 namespace flexarm {
 namespace {
 
-// At least 60 s deep: a recorder that is stuck that long loses nothing.
+// At least 60 s of records: no loss if the recorder is blocked for that long.
 constexpr std::size_t kTickDepth = 4'000;
 constexpr std::size_t kSafetyDepth = 60'000;
 constexpr std::size_t kOperatorDepth = 64;
-constexpr std::size_t kOperatorTickDepth = 500;  // 10 s of steps: commissioning misses none
+constexpr std::size_t kOperatorTickDepth = 500;  // 10 s of steps, so that commissioning gets all
 
 std::vector<PermitChannel*> Joined(std::vector<PermitChannel*> first,
                                    const std::vector<PermitChannel*>& then) {
@@ -37,7 +37,7 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
       step_(config, design),
       planner_(PlannerOf(config, design)),
       follower_(FollowerOf(config, planner_.get())),
-      safety_(MakeSupervisorLimits(config.safety, config.loop),
+      safety_(MakeMonitorLimits(config.safety, config.loop),
               {.lines = wiring.lines,
                .control = &control_reports_,
                .drives = wiring.drives,

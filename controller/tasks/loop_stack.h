@@ -15,24 +15,24 @@
 
 namespace flexarm {
 
-/// A simulated switch pressed by the operator: `flexarm sim LINE LEVEL`.
+/// Level of a simulated switch, set by the operator: `flexarm sim LINE LEVEL`.
 struct LinePress {
   Line line;
   int level;
 };
 
-/// The drive side of a backend, as safety and control see it. All of it outlives the stack.
+/// Interface of a backend to the safety and control tasks. All of it outlives the stack.
 struct LoopWiring {
   SafetyLines* lines;
-  std::vector<FrameChannel*> frames;        ///< each holds its own part of the readings
+  std::vector<FrameChannel*> frames;        ///< one a bus, with its part of the readings
   std::vector<CommandChannel*> commands;    ///< one a drive bus
   std::vector<PermitChannel*> permits;      ///< one a drive bus
   std::vector<DriveReportChannel*> drives;  ///< one a bus
 };
 
-/// The safety and control tasks of the daemon, whatever they drive, and the outside's ends:
-/// requests and plans in, permits, answers and records out. Construction allocates; running does
-/// not.
+/// The safety and control tasks of the daemon for any backend, and their queues and channels to the
+/// operator and recorder: requests and experiments in, permits, answers and records out.
+/// Construction allocates; running does not.
 class LoopStack {
  public:
   LoopStack(const RigConfig& config, const Design& design, const LoopWiring& wiring);
@@ -40,44 +40,44 @@ class LoopStack {
   LoopStack(const LoopStack&) = delete;
   LoopStack& operator=(const LoopStack&) = delete;
 
-  /// Every task that an executor runs: safety, control, the backend's, the planner's.
+  /// All tasks, for an executor: safety, control, those of the backend, the planner.
   std::vector<Task*> tasks();
   Task& safety() { return safety_; }
-  /// Those of the backend, in order of priority.
+  /// Tasks of the backend, in order of priority.
   virtual std::vector<Task*> drive_tasks() = 0;
-  /// The task whose timing the log keeps: one activation a sample.
+  /// The task whose timing is logged: one activation a sample.
   virtual Task& control() { return control_; }
 
-  /// Instant 0 of the loop in CLOCK_MONOTONIC, for devices that stamp in that. Before any task
-  /// runs.
+  /// Instant 0 of the loop in CLOCK_MONOTONIC, the clock of the devices' time stamps. Before any
+  /// task runs.
   virtual void SetEpoch(std::int64_t /*epoch_ns*/) noexcept {}
 
-  // Operator's ends: one thread.
+  // For the operator: one thread.
   SpscQueue<OperatorRequest>& requests() { return requests_; }
   SpscQueue<RequestAnswer>& answers() { return answers_; }
   PermitChannel& operator_permits() { return operator_permits_; }
   /// Every step, for status and commissioning.
   SpscQueue<TickRecord>& operator_ticks() { return operator_ticks_; }
-  /// Taken over by the loop as soon as no torque is allowed.
+  /// The control task applies it as soon as no torque is allowed.
   void Calibrate(const Calibration& calibration) noexcept { calibrations_.Publish(calibration); }
   /// The experiment of the next run; see LoadedExperiment for how long it must live.
   virtual void Plan(const LoadedExperiment& plan) noexcept { plans_.Publish(plan); }
-  /// Plans with a lower number than this are no longer used.
+  /// Experiments with a lower number than this are no longer used.
   virtual std::uint32_t released_experiments() const noexcept { return control_.released(); }
-  /// How the buses do. Empty: this backend has none.
+  /// Health of the buses. Empty: this backend has none.
   virtual std::vector<BusHealth> buses() { return {}; }
-  /// Which bus, device and node a trip is of, and what it met; empty: no bus's.
+  /// Bus, device, node and error behind a trip; empty: the trip is not of a bus.
   virtual std::string BusText(TripCause /*cause*/, const Evidence& /*evidence*/) const {
     return {};
   }
-  /// Whether [[sim_event]] rows can happen: a real rig refuses an experiment that has some.
+  /// Whether [[sim_event]] rows are possible. A hardware rig rejects an experiment with such rows.
   virtual bool simulated() const noexcept { return false; }
   /// False: this backend has no simulated switches.
   virtual bool Press(const LinePress& /*press*/) noexcept { return false; }
-  /// What the simulated arm did at each sample, for the log; null: a real rig does not know it.
+  /// True state of the simulated arm at each sample, for the log; null: a hardware rig.
   virtual SpscQueue<TruthRecord>* truth_records() noexcept { return nullptr; }
 
-  // Recorder's ends: one thread.
+  // For the recorder: one thread.
   SpscQueue<TickRecord>& tick_records() { return tick_records_; }
   SpscQueue<SafetyRecord>& safety_records() { return safety_records_; }
 
@@ -93,7 +93,7 @@ class LoopStack {
   SpscQueue<TickRecord> operator_ticks_;
   SpscQueue<SafetyRecord> safety_records_;
   ControlStep step_;
-  std::unique_ptr<PlannerTask> planner_;    // of the law that plans ahead, or nullptr
+  std::unique_ptr<PlannerTask> planner_;    // with receding-horizon only, else nullptr
   std::unique_ptr<PlanFollower> follower_;  // the same
   SafetyTask safety_;
   ControlTask control_;

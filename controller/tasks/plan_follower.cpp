@@ -31,7 +31,7 @@ void PlanFollower::Ask(int sample, std::int64_t due_ns, const ReferenceTable& re
     next_ask_ = first;
   }
   const std::vector<MotionSegment>& all = reference.segments();
-  // The motion that is on at `first`, or was on last.
+  // The motion at `first`, or the last one before it.
   const auto next = std::upper_bound(all.begin(), all.end(), first,
                                      [](int k, const MotionSegment& s) { return k < s.first; });
   if (next == all.begin()) return;

@@ -9,31 +9,33 @@
 
 namespace flexarm {
 
-/// When a plan is asked for, and from when on it holds. Periods of the loop.
+/// Schedule of plan requests, in periods of the loop: a request every `every` periods, for a plan
+/// that is valid `ready` periods later and ends `rest` periods after the motion.
 struct PlanSchedule {
   int every, ready, rest;
   std::int64_t period_ns;
 };
 
-/// The control task's side of the law `receding-horizon`: asks for plans of the rest of a move, and
-/// takes what the plan that holds says. Never waits: while there is none, the closed form serves.
+/// Part of the control task for the law `receding-horizon`: requests plans for the rest of a move,
+/// and reads the plan that is valid. Never waits: without a plan the law uses its closed form.
 ///
-/// A motion's first plan is asked for `ready` periods before it begins, so that it holds from the
-/// beginning on; then one every `every` periods, until `ready` are left. A plan ends `rest` periods
-/// after the motion, or where the next one begins. Real-time: safe after construction.
+/// The first plan of a motion is requested `ready` periods before the motion starts, so that it is
+/// valid from its start; then one every `every` periods, until `ready` are left. A plan ends `rest`
+/// periods after the motion, or where the next one starts. Real-time: safe after construction.
 class PlanFollower {
  public:
   PlanFollower(const PlanSchedule& schedule, PlanRequestChannel* requests, MotionPlanChannel* plans)
       : schedule_(schedule), requests_(requests), plans_(plans) {}
 
-  /// A run starts: plans of earlier ones are over.
+  /// Start of a run: plans of earlier runs are no longer valid.
   void Start(std::uint32_t run) noexcept;
 
-  /// The plan's sample for the torque of `sample`, or nothing.
+  /// Sample of the valid plan for the torque of `sample`, or nothing.
   /// @param due_ns  of the step that computes it
   std::optional<PlanSample> At(int sample, std::int64_t due_ns) noexcept;
 
-  /// Asks for a plan if it is time to. After the step that computed the torque of `sample`.
+  /// Requests a plan if the schedule demands it. After the step that computed the torque of
+  /// `sample`.
   void Ask(int sample, std::int64_t due_ns, const ReferenceTable& reference,
            const StepOutput& output) noexcept;
 

@@ -9,7 +9,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kAnyGauge_hz = 1.0;  // the prediction reads no gauges
+constexpr double kAnyGauge_hz = 1.0;  // no effect: the prediction has no gauges
 
 HorizonPlannerConfig PlannerConfigOf(const RigConfig& config) {
   const PlanAheadConfig& plan = *config.controller.plan;
@@ -46,7 +46,7 @@ PlannerTask::PlannerTask(const RigConfig& config, const Design& design)
       planner_(MakeRigidJointArm(design), grid_.period_s(), *design.scheduled->start_gains,
                config_) {}
 
-// Due when the step that may ask has published.
+// Due when the step has published, which may have made a request.
 Task::Traits PlannerTask::traits() const noexcept {
   return {.name = "planner",
           .period_ns = grid_.period_ns,
@@ -86,7 +86,7 @@ void PlannerTask::Run(const Activation& /*activation*/) noexcept {
   Publish(request.needed_ns);
 }
 
-// Friction is left out, as in the plan: what the law feeds forward against it, it takes.
+// Without friction, as in the plan: the law's friction feedforward is assumed to cancel it.
 PlannerTask::Start PlannerTask::Predict(const PlanRequest& request, int periods) const noexcept {
   PayloadKnowledge known = request.known;
   known.friction_nm = {0.0, 0.0};

@@ -16,15 +16,16 @@
 
 namespace flexarm {
 
-/// When the control task asks, and from when on plans hold.
+/// The schedule of plan requests by [controller.plan].
 PlanSchedule PlanScheduleOf(const RigConfig& config);
 
-/// The planner's thread: plans the rest of a move whenever the control task asks, for the payload
-/// that is known by then and from the state that the arm will have when the plan holds.
+/// The planner task: on request of the control task it plans the rest of a move, for the payload
+/// estimate of the request and from the state predicted for the instant at which the plan becomes
+/// valid.
 ///
-/// It has PlanSchedule::ready periods for it; the control task waits for nothing. A plan that is
-/// refused (HorizonPlanner) leaves the one before it in force, unless that was made for quite
-/// another payload: then the closed form takes over.
+/// The time for a plan is PlanSchedule::ready periods; the control task never waits. If
+/// HorizonPlanner refuses a plan, the previous one stays valid, unless it is for another payload
+/// (HorizonPlanner::IsFor): then the law uses its closed form.
 /// Source: docs/theory/payload.md 5.4. Real-time: safe after construction; no lock, no allocation,
 /// and every loop has a bound. Large: 2 MB.
 class PlannerTask final : public Task {
@@ -44,7 +45,7 @@ class PlannerTask final : public Task {
   const HorizonPlanner::Figures& figures() const noexcept { return planner_.figures(); }
 
  private:
-  /// What the arm will do until the plan holds.
+  /// Prediction for the instant at which the plan becomes valid.
   struct Start {
     PlanState x;
     Eigen::Vector2d torque_before_nm;
@@ -63,9 +64,9 @@ class PlannerTask final : public Task {
   PlanRequestChannel requests_{PlanRequest{}};
   MotionPlanChannel plans_{MotionPlanHistory(MotionPlan{})};
   MotionPlanHistory history_{MotionPlan{}};
-  MotionPlan newest_{};  // what control was told last
+  MotionPlan newest_{};  // published last
   HorizonPlan made_;
-  int segment_ = -1;  // that the newest is of
+  int segment_ = -1;  // of newest_
   std::uint32_t answered_ = 0;
 };
 

@@ -62,7 +62,7 @@ void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
   ++applied_slices_;
 }
 
-// The slew limit counts from command to command: between two commands the drive holds its
+// The slew limit applies from command to command: between two commands the drive holds its
 // set-point.
 std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept {
   const std::int64_t acting_ns = start_ns - drive->delay_ns;
@@ -143,7 +143,7 @@ void PlantTask::StartFrame(std::int64_t now_ns) noexcept {
   channels_.truth->Push({.tick = now_ns / grid_.period_ns, .truth = rig_.truth()});
 }
 
-// When the last channel of a multiplexed input has been sampled.
+// Publishes the frame once the last channel of a multiplexed input has been sampled.
 void PlantTask::PublishFrame() noexcept {
   const std::optional<SensorFrame> frame = rig_.TakeFrame();
   if (!frame) return;

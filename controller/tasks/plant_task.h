@@ -22,7 +22,7 @@ namespace flexarm {
 
 struct RigConfig;
 
-/// Everything that the plant task touches. All of it outlives the task.
+/// Channels of the plant task. All outlive the task.
 struct PlantChannels {
   CommandChannel* commands;       ///< read
   PermitChannel* permits;         ///< read
@@ -32,40 +32,44 @@ struct PlantChannels {
   FrameChannel* frames;           ///< written
   LevelChannel* levels;           ///< written
   DriveReportChannel* reports;    ///< written
-  SpscQueue<TruthRecord>* truth;  ///< written: what the arm really did, for the log
-  FreezingTask* control;          ///< told when the experiment freezes the control task
+  SpscQueue<TruthRecord>* truth;  ///< written: true state of the arm, for the log
+  FreezingTask* control;          ///< frozen if the experiment has such an event
 };
 
-/// The simulated backend's thread: 1 kHz, integrates the plant up to its due instant.
+/// The task of the simulated backend: 1 kHz, integrates the plant up to its due instant.
 ///
-/// Each millisecond of the plant, s to s + 1 ms, is driven by what holds at s: the command that
-/// acts, through the gate on the permit of s, and nothing if the relay is open or the charge pump
-/// has not toggled for 5 ms. The slice is integrated when it is over, so everybody had a
-/// millisecond to publish what holds at its start. Frames are taken at exactly k Ts; a lost one
-/// holds no reading, as after an exchange of a bus that failed, and the drive goes on. What it
-/// reports of torques is what a bus knows: through the same gate, after the delay that is declared
-/// (`loop.actuation_delay_ms`), whatever `sim.transport_delay_ms` is. A late thread catches up: the
-/// simulated world does not lose time. Real-time: safe after construction.
+/// - Each slice of 1 ms, from s to s + 1 ms, has the torque valid at s: the command that acts,
+/// after
+///   the gate with the permit of s; zero if the relay is open or the charge pump has not toggled
+///   for 5 ms. The slice is integrated at its end, so every task has 1 ms to publish what is valid
+///   at s.
+/// - Frames are sampled at exactly k Ts. A lost frame holds no reading, as after a failed exchange
+/// of
+///   a bus; the drive continues.
+/// - Reported torques are those that a bus can report: after the same gate, with the declared delay
+///   (`loop.actuation_delay_ms`), independent of `sim.transport_delay_ms`.
+/// - After a late activation it catches up: simulated time is not lost.
+/// Real-time: safe after construction.
 class PlantTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
   static constexpr int kPriority = 60;
 
-  /// @param payload_kg  what the plant really carries, whatever the config's arm says
+  /// @param payload_kg  payload of the plant, instead of that of the config's arm
   PlantTask(const RigConfig& config, double payload_kg, PlantChannels channels);
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
 
-  /// Any thread. Plans with a lower number than this are no longer used.
+  /// Any thread. Experiments with a lower number than this are no longer used.
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
  private:
-  // A drive that commands reach after a delay.
+  // A drive with a delay of its commands.
   struct Drive {
     std::int64_t delay_ns;
     std::array<double, 2> torque_nm{};
-    std::int64_t command_acts_ns = INT64_MIN;  // of the command that the gate saw last
+    std::int64_t command_acts_ns = INT64_MIN;  // of the last command of the gate
   };
 
   void AdvanceSlice(std::int64_t start_ns) noexcept;
@@ -81,8 +85,8 @@ class PlantTask final : public Task {
   FrameLoss loss_;
   LoopGrid grid_;
   GateLimits limits_;
-  Drive drive_;            // what moves the plant
-  Drive reported_;         // what it would be with the delay that is declared
+  Drive drive_;            // acts on the plant
+  Drive reported_;         // the same with the declared delay, for reports
   LoadedExperiment plan_;  // of the run that began at run_since_ns_
   std::int64_t run_since_ns_ = INT64_MIN;
   std::size_t next_event_ = 0;
@@ -94,7 +98,7 @@ class PlantTask final : public Task {
   std::array<double, 2> applied_sum_nm_{};  // as reported
   int applied_slices_ = 0;
   std::uint32_t gate_reasons_ = 0;  // GateBits since the last frame
-  FramePacket packet_{};            // of the last sampling instant, until its readings are there
+  FramePacket packet_{};            // of the last sampling instant, until its readings are complete
   std::int64_t packet_ns_ = 0;
   bool packet_lost_ = false;
   bool pump_level_ = false;

@@ -19,7 +19,7 @@ bool RaisesEnergy(RequestKind kind) noexcept {
 
 }  // namespace
 
-SafetyTask::SafetyTask(const SupervisorLimits& limits, SafetyChannels channels)
+SafetyTask::SafetyTask(const MonitorLimits& limits, SafetyChannels channels)
     : channels_(std::move(channels)), monitor_(limits) {}
 
 Task::Traits SafetyTask::traits() const noexcept {

@@ -15,7 +15,7 @@
 
 namespace flexarm {
 
-/// Everything that the safety task touches. All of it outlives the task.
+/// Channels of the safety task. All outlive the task.
 struct SafetyChannels {
   SafetyLines* lines;
   ControlReportChannel* control;            ///< read
@@ -26,23 +26,23 @@ struct SafetyChannels {
   SpscQueue<SafetyRecord>* records;         ///< written
 };
 
-/// The safety thread's body: 1 kHz, highest priority. Levels and reports in, relay and permit out.
+/// The safety task: 1 kHz, highest priority. Levels and reports in, relay and permit out.
 ///
 /// The relay is closed in Armed, Running and Stopping; the charge pump toggles every tick while it
-/// is. The permit is renewed every tick and holds from the tick's due instant. A permit published
-/// at the very instant at which another thread is due may or may not be there yet: whoever must
-/// agree with the lock-step run asks for the one that held just before, At(due - 1).
+/// is closed. The permit is renewed every tick and valid from the tick's due instant. A permit
+/// published at the due instant of another task may not be visible to it yet: a task that must
+/// agree with the lock-step run reads the permit before, At(due - 1).
 ///
-/// Requests are judged one a tick, in order of arrival among those whose `not_before_ns` has come.
-/// A stop or a disarm cancels the planned arms and runs that came before it; a trip cancels all.
-/// Real-time: safe after construction.
+/// One request is judged per tick, in order of arrival among those whose `not_before_ns` has
+/// passed. A stop or a disarm cancels the planned arms and runs that arrived before it; a trip
+/// cancels all. Real-time: safe after construction.
 class SafetyTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
   static constexpr int kPriority = 90;
-  static constexpr std::size_t kMaxWaiting = 32;  ///< requests; more wait in their queue
+  static constexpr std::size_t kMaxWaiting = 32;  ///< requests; others stay in the queue
 
-  SafetyTask(const SupervisorLimits& limits, SafetyChannels channels);
+  SafetyTask(const MonitorLimits& limits, SafetyChannels channels);
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
@@ -54,10 +54,10 @@ class SafetyTask final : public Task {
   struct Taken {
     bool any;
     OperatorRequest request;
-    std::size_t earlier;  ///< requests that came before it and still wait for their time
+    std::size_t earlier;  ///< earlier requests that still wait for their `not_before_ns`
   };
 
-  /// The report of a drive side made of several buses: as good as its worst, as old as its oldest.
+  /// Report of all buses of the drives: the worst status and the oldest age of them.
   struct DriveSide {
     DriveReport report;
     std::int64_t alive_ns;
@@ -78,7 +78,7 @@ class SafetyTask final : public Task {
   Evidence evidence_{};
   std::int64_t state_since_ns_ = INT64_MIN;
   std::int64_t running_since_ns_ = INT64_MIN;
-  LineLevels may_open_ = 0;  // of the run that goes on
+  LineLevels may_open_ = 0;  // in the current run
   bool pump_level_ = false;
   bool recorded_ = false;
   std::array<OperatorRequest, kMaxWaiting> waiting_{};

@@ -13,14 +13,14 @@ using LevelChannel = LatestValue<LevelHistory>;
 using OutputHistory = History<SafetyLines::Outputs, 24>;
 using OutputChannel = LatestValue<OutputHistory>;
 
-/// The safety chain of the simulated rig: wires to the plant task, which holds the switches and
-/// obeys relay and charge pump.
+/// The safety chain of the simulated rig: channels to the plant task, which simulates the switches,
+/// the relay and the charge pump.
 class SimulatedLines final : public SafetyLines {
  public:
   SimulatedLines(LevelChannel* levels, OutputChannel* outputs)
       : levels_(levels), channel_(outputs) {}
 
-  // A level published at this very instant may or may not be there yet: take what held before it.
+  // A level published at this instant may not be visible yet: read the one before.
   LineLevels Read(std::int64_t now_ns) noexcept override {
     return levels_->Read().At(now_ns - 1).value;
   }

@@ -10,7 +10,7 @@
 namespace flexarm {
 
 /// The channels between the loop and the plant task. A base of SimulatedStack, so that they are
-/// there before the tasks that use them.
+/// constructed before the tasks that use them.
 struct SimulatedWires {
   FrameChannel frames{FrameHistory(kNoFrame)};
   CommandChannel commands{CommandHistory(kNoCommand)};
@@ -20,17 +20,17 @@ struct SimulatedWires {
   DriveReportChannel drive_reports{DriveReportHistory(kNoDriveReport)};
   ExperimentChannel plans{LoadedExperiment{}};
   SpscQueue<LinePress> presses{64};
-  SpscQueue<TruthRecord> truth{4000};  // as deep as the queue of steps
+  SpscQueue<TruthRecord> truth{4000};  // as the queue of steps
   SimulatedLines lines{&levels, &outputs};
 };
 
-/// The daemon's real-time tasks on the simulated rig in process. Either executor runs them.
+/// The daemon's real-time tasks with the simulated rig in process, for either executor.
 class SimulatedStack final : private SimulatedWires, public LoopStack {
  public:
-  /// @param payload_kg  that the plant carries; the design keeps the config's
+  /// @param payload_kg  of the plant; the design has that of the config
   SimulatedStack(const RigConfig& config, const Design& design, double payload_kg)
       : SimulatedStack(config, config, design, payload_kg) {}
-  /// @param plant  what the simulated rig is, where that is not what the loop was designed for
+  /// @param plant  config of the simulated rig, if it differs from that of the design
   SimulatedStack(const RigConfig& config, const RigConfig& plant, const Design& design,
                  double payload_kg);
 

@@ -41,7 +41,7 @@ std::vector<BusHealth> WiredStack::buses() {
     const DriveReport& report = wires[i].health.Read().Newest().value;
     const bool well = report.fault == BusFault{};
     all.push_back({.name = devices_[i]->name(),
-                   .ok = report.bus_ok || report.due_ns == INT64_MIN,  // it has not run yet
+                   .ok = report.bus_ok || report.due_ns == INT64_MIN,  // ok before its first run
                    .fault = well ? std::string() : devices_[i]->FaultText(report.fault),
                    .failed = report.failed,
                    .recovered = report.recovered});

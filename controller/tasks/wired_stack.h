@@ -9,14 +9,14 @@
 
 namespace flexarm {
 
-/// What a rig is wired with: its buses, opened, and its safety chain. Outlives the stack.
+/// The opened buses and the safety chain of a rig. Outlive the stack.
 struct RigWires {
   std::vector<BusDevice*> buses;  ///< at least one
   SafetyLines* lines;
 };
 
-/// The channels between the loop and the buses. A base of WiredStack, so that they are there before
-/// the tasks that use them.
+/// The channels between the loop and the buses. A base of WiredStack, so that they are constructed
+/// before the tasks that use them.
 struct BusWires {
   struct Bus {
     FrameChannel frames{FrameHistory(kNoFrame)};
@@ -32,7 +32,7 @@ struct BusWires {
   std::deque<Bus> wires;
 };
 
-/// The daemon's real-time tasks on a real rig: one thread a bus.
+/// The daemon's real-time tasks on a hardware rig, with one thread a bus.
 class WiredStack final : private BusWires, public LoopStack {
  public:
   WiredStack(const RigConfig& config, const Design& design, const RigWires& rig);

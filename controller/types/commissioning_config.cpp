@@ -15,7 +15,7 @@ std::vector<Problem> CommissioningConfig::Problems() const {
   list.Within("pluck_rest_s", pluck_rest_s, 0.1, 10.0,
               "time for the oscillation to decay after each pulse");
   list.Within("motion_tolerance", motion_tolerance, 0.01, 0.6,
-              "above this a wrong gear ratio could be taken for friction");
+              "above this a wrong gear ratio could be mistaken for friction");
   list.Within("gauge_tolerance", gauge_tolerance, 0.005, 0.5,
               "above this two exchanged gauges could pass the test");
   list.Positive("home_rate_deg_per_s", home_rate_deg_per_s, 30.0,

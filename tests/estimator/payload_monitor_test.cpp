@@ -27,9 +27,9 @@ PayloadFilter::Estimate Found(double payload_kg, double sigma_kg) {
 }
 
 /// One sample of motion, then rest, with this standard deviation at the end of the motion.
-std::uint32_t DoubtsAfterAMove(double sigma_kg, PayloadMonitor* supervisor) {
-  supervisor->Judge(Found(0.3, kMoveSigma_kg), kRightNis, true);
-  return supervisor->Judge(Found(0.3, sigma_kg), kRightNis, false).warnings;
+std::uint32_t WarningsAfterAMove(double sigma_kg, PayloadMonitor* monitor) {
+  monitor->Judge(Found(0.3, kMoveSigma_kg), kRightNis, true);
+  return monitor->Judge(Found(0.3, sigma_kg), kRightNis, false).warnings;
 }
 
 TEST(PayloadMonitor, ReportsTheEstimateOfTheFilter) {
@@ -43,48 +43,46 @@ TEST(PayloadMonitor, ReportsTheEstimateOfTheFilter) {
 
 TEST(PayloadMonitor, WarnsWhileThePayloadIsAtItsBound) {
   for (const bool moving : {true, false}) {
-    PayloadMonitor supervisor = Monitor();
-    EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
-    EXPECT_EQ(supervisor.Judge(Found(kMax_kg, 0.0), kRightNis, moving).warnings,
+    PayloadMonitor monitor = Monitor();
+    EXPECT_EQ(monitor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
+    EXPECT_EQ(monitor.Judge(Found(kMax_kg, 0.0), kRightNis, moving).warnings,
               static_cast<std::uint32_t>(kPayloadAtBound));
-    EXPECT_EQ(supervisor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
+    EXPECT_EQ(monitor.Judge(Found(1.099, 0.0), kRightNis, moving).warnings, 0u);
   }
 }
 
 // At the same NIS at which SchedulingPayload gives the robust gains only.
 TEST(PayloadMonitor, WarnsWhileTheInnovationsContradictTheModel) {
   for (const bool moving : {true, false}) {
-    PayloadMonitor supervisor = Monitor();
-    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kModelWrongNis, moving).warnings, 0u);
-    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), 60.1, moving).warnings,
+    PayloadMonitor monitor = Monitor();
+    EXPECT_EQ(monitor.Judge(Found(0.3, 0.0), kModelWrongNis, moving).warnings, 0u);
+    EXPECT_EQ(monitor.Judge(Found(0.3, 0.0), 60.1, moving).warnings,
               static_cast<std::uint32_t>(kPayloadModelMismatch));
-    EXPECT_EQ(supervisor.Judge(Found(0.3, 0.0), kRightNis, moving).warnings, 0u);
+    EXPECT_EQ(monitor.Judge(Found(0.3, 0.0), kRightNis, moving).warnings, 0u);
   }
 }
 
 TEST(PayloadMonitor, WarnsAfterAMoveWithoutObservabilityUntilTheNextBegins) {
-  PayloadMonitor supervisor = Monitor();
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u)
-      << "the move is not over";
+  PayloadMonitor monitor = Monitor();
+  EXPECT_EQ(monitor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u) << "the move is not over";
   for (const double sigma_kg : {0.1, 0.4, 0.01}) {
-    EXPECT_EQ(supervisor.Judge(Found(0.3, sigma_kg), kRightNis, false).warnings,
+    EXPECT_EQ(monitor.Judge(Found(0.3, sigma_kg), kRightNis, false).warnings,
               static_cast<std::uint32_t>(kPayloadNotObservable))
         << sigma_kg << ": the result at the end of the move holds";
   }
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u)
-      << "the next move begins";
-  EXPECT_EQ(supervisor.Judge(Found(0.3, 0.099), kRightNis, false).warnings, 0u)
+  EXPECT_EQ(monitor.Judge(Found(0.3, 0.4), kRightNis, true).warnings, 0u) << "the next move begins";
+  EXPECT_EQ(monitor.Judge(Found(0.3, 0.099), kRightNis, false).warnings, 0u)
       << "the payload was observable";
 }
 
 // With a random walk of 3 g per sample the standard deviation exceeds 0.1 kg after 22 s at 50 Hz.
 TEST(PayloadMonitor, ALongRestRaisesNoWarning) {
-  PayloadMonitor supervisor = Monitor();
-  EXPECT_EQ(DoubtsAfterAMove(0.02, &supervisor), 0u);
+  PayloadMonitor monitor = Monitor();
+  EXPECT_EQ(WarningsAfterAMove(0.02, &monitor), 0u);
   double variance_kg2 = 0.02 * 0.02;
   for (int k = 0; k < 1500; ++k) {
     variance_kg2 += 0.003 * 0.003;
-    ASSERT_EQ(supervisor.Judge(Found(0.3, std::sqrt(variance_kg2)), kRightNis, false).warnings, 0u)
+    ASSERT_EQ(monitor.Judge(Found(0.3, std::sqrt(variance_kg2)), kRightNis, false).warnings, 0u)
         << k;
   }
   EXPECT_GT(std::sqrt(variance_kg2), kMoveSigma_kg) << "the rest is too short for this test";
@@ -95,13 +93,13 @@ TEST(PayloadMonitor, NoWarningBeforeTheFirstMove) {
 }
 
 TEST(PayloadMonitor, AResetClearsTheMoveAndItsWarning) {
-  PayloadMonitor supervisor = Monitor();
-  ASSERT_NE(DoubtsAfterAMove(0.4, &supervisor), 0u);
-  supervisor.Reset();
-  EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);
-  supervisor.Judge(Found(0.2, 0.4), kRightNis, true);
-  supervisor.Reset();
-  EXPECT_EQ(supervisor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u)
+  PayloadMonitor monitor = Monitor();
+  ASSERT_NE(WarningsAfterAMove(0.4, &monitor), 0u);
+  monitor.Reset();
+  EXPECT_EQ(monitor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u);
+  monitor.Judge(Found(0.2, 0.4), kRightNis, true);
+  monitor.Reset();
+  EXPECT_EQ(monitor.Judge(Found(0.2, 0.4), kRightNis, false).warnings, 0u)
       << "a move that a reset aborted has not ended";
 }
 

@@ -46,7 +46,7 @@ class Reader {
       if (keys.contains(key)) continue;
       std::string list;
       for (const std::string& known : keys) list += (list.empty() ? "" : ", ") + known;
-      Refuse(key, " is not a key here; expected " + list);
+      Refuse(key, "is not a key here; expected " + list);
     }
   }
 

@@ -18,7 +18,7 @@ struct DaemonClient {
   /// verb.
   CLI::App* AddVerb(CLI::App& app, const char* name, const char* what);
 
-  /// Sends `command` and waits for the answer. @throws Refused, InputError
+  /// Sends `command` and waits for the answer. @throws RejectedError, InputError
   nlohmann::ordered_json Ask(const nlohmann::ordered_json& command, double within_s = 5.0) const;
 
   /// Prints the answer as JSON if --json was given, and the reason of a refusal to stderr. @returns

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Names the files that changed of late, the most recent first: those that differ from the last
+"""Names the files that changed recently, the most recent first: those that differ from the last
 commit, then those of the last 30 commits, or of the day before the last commit where that is more.
 No clock is read: the answer for a commit is always the same. A shallow clone has no answer.
 """

@@ -7,7 +7,7 @@ includes, as they are written (a comment may be a NOLINT), its compile command w
 folder taken out, the .clang-tidy files above it, and the versions of clang-tidy and of the
 installed -dev packages, which stand for the system's headers. A file with findings leaves none.
 
-With --changed it is the files that changed of late (changed_files.py), the most recent first. A
+With --changed it is the files that changed recently (changed_files.py), the most recent first. A
 header is checked with the source of its name, or with one that includes it; a .clang-tidy with
 all files below it. Without history all files are checked, and --within does not hold.
 """
@@ -137,7 +137,7 @@ def main():
     parser.add_argument("places", nargs="+", type=Path, help="source files, or folders of them")
     parser.add_argument("--build", type=Path, default=ROOT / "build/separate",
                         help="where compile_commands.json is (default: build/separate)")
-    parser.add_argument("--changed", action="store_true", help="only what changed of late")
+    parser.add_argument("--changed", action="store_true", help="only what changed recently")
     parser.add_argument("--within", type=float, default=float("inf"), metavar="SECONDS",
                         help="with --changed: begin with no file after this time")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count(), help="files at a time")

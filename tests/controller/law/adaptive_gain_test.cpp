@@ -7,7 +7,7 @@
 namespace flexarm {
 namespace {
 
-// A small gain by hand: n = 2, so 2 x 6.
+// A small gain, computed by hand: n = 2, so 2 x 6.
 Eigen::MatrixXd Initial() { return Eigen::MatrixXd::Constant(2, 6, 0.5); }
 
 AdaptiveGain::Regressor Large() { return AdaptiveGain::Regressor::Constant(6, 2.0); }

@@ -24,7 +24,7 @@ TEST(LawTable, HasOneRowForEachKindAndName) {
   EXPECT_EQ(names.size(), kLaws.size());
 }
 
-// At rest on a reference at rest.
+// The arm and the reference are at rest.
 TEST(LawFactory, MakesEveryLawOfTheTable) {
   for (const LawRow& row : kLaws) {
     const RigConfig config = ShippedRig({std::string("controller.name=") + row.name});
@@ -55,13 +55,13 @@ TEST(LawFactory, MakesEveryLawOfTheTable) {
   }
 }
 
-TEST(Saturation, KeepsEachTorqueWithinItsLimitAndSaysWhich) {
+TEST(Saturation, ClipsEachTorqueToItsLimitAndFlagsIt) {
   const LawOutput out = Saturate({-40.0, 3.0}, {30.0, 6.0});
   EXPECT_EQ(out.torque_nm, (std::array<double, 2>{-30.0, 3.0}));
   EXPECT_EQ(out.limits, std::uint32_t{kLimitTorque1});
 }
 
-TEST(Saturation, WhatIsNoNumberBecomesZeroAndIsReported) {
+TEST(Saturation, ATorqueThatIsNotFiniteBecomesZeroAndIsFlagged) {
   const LawOutput out = SaturateWithoutAdaptation({std::nan(""), 3.0}, {30.0, 6.0});
   EXPECT_FALSE(out.finite);
   EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0}));

@@ -59,7 +59,7 @@ constexpr PayloadKnowledge kKnown = {.payload_kg = 0.3,
                                      .mean_nis = 8.0,
                                      .warnings = 0};
 
-TEST(PathReference, GoesFromRestToRestBentByTheReferencePayload) {
+TEST(PathReference, GoesFromRestToRestBendingAsWithTheReferencePayload) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0), {0.1, -0.2});
   const std::array<double, 2> to_rad = {30 * kRadPerDeg, -20 * kRadPerDeg};
   const RigidJointArm arm = MakeRigidJointArm(ShippedPathDesign());
@@ -79,7 +79,7 @@ TEST(PathReference, GoesFromRestToRestBentByTheReferencePayload) {
   EXPECT_GT(bent_m, 0.01) << "an arm that does not bend: the test is inconclusive";
 }
 
-TEST(PathReference, ThePathAroundASampleIsThatOfTheMoves) {
+TEST(PathReference, ThePathAroundASampleMatchesTheMoves) {
   const ReferenceTable table = ScheduledTable(OneMove({30, -20}, 2.0));
   for (const int k : {-3, 0, 10, 11, 60, 109, 110, 111, 400, 500}) {
     const auto path = table.PathAround(k);
@@ -91,7 +91,7 @@ TEST(PathReference, ThePathAroundASampleIsThatOfTheMoves) {
   }
 }
 
-// Without moves the reference of a law that follows the path must not become zero.
+// Without moves the reference of a law that follows the path must stay at the start, not at zero.
 TEST(PathReference, AnExperimentWithoutMovesRestsWhereItStarts) {
   Experiment nothing = OneMove({0, 0}, 1.0);
   nothing.move.clear();
@@ -102,7 +102,7 @@ TEST(PathReference, AnExperimentWithoutMovesRestsWhereItStarts) {
   }
 }
 
-TEST(PathReference, ThePathIsAlsoGivenToLawsThatDoNotFollowIt) {
+TEST(PathReference, TheReferenceOfOtherLawsHasThePathToo) {
   const Experiment experiment = OneMove({30, -20}, 2.0);
   const ReferenceTable table(experiment, ShippedDesign(), kPeriod_s, {0.1, -0.2}, ShippedLimits());
   const ReferenceTable scheduled = ScheduledTable(experiment, {0.1, -0.2});
@@ -144,7 +144,7 @@ TEST(PathReference, RowsOtherThanMovesAreRefused) {
               AllOf(HasSubstr("doublet[0]"), HasSubstr("[[move]] rows only")));
 }
 
-TEST(ScheduledLaw, AtRestOnItsPathTheTorqueIsZero) {
+TEST(ScheduledLaw, TheTorqueIsZeroAtRestOnThePath) {
   const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const ScheduledLaw::State x = ScheduledLaw::State::Zero();
   EXPECT_EQ(AskedOf(x, kKnown, path, 1.0), Vector2d(0.0, 0.0));
@@ -168,9 +168,9 @@ TEST(ScheduledLaw, TheTorqueIsQuasiStaticPlusFrictionPlusScheduledFeedback) {
   }
 }
 
-// An uncertain payload gets the gains that are stable for every payload, and so does an arm at
-// rest.
-TEST(ScheduledLaw, AnUncertainPayloadGetsTheRobustGains) {
+// The gains that are stable for every payload are used while the payload is uncertain and while the
+// arm rests.
+TEST(ScheduledLaw, UsesTheRobustGainsForAnUncertainPayload) {
   const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const ScheduledLaw::State x = -0.01 * ScheduledLaw::State::Unit(0);
   PayloadKnowledge heavy = kKnown;

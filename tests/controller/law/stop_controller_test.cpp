@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 class StopControllerTest : public testing::Test {
  protected:
-  // The nominal arm, one sample on.
+  // Advances the nominal arm by one sample.
   StateVector Next(const StateVector& x, const Vector2d& torque_nm) const {
     return design_.A * VectorXd(x) + design_.B * torque_nm;
   }
@@ -25,7 +25,7 @@ class StopControllerTest : public testing::Test {
   StopController stop_{design_.K_stop, design_.layout, kPeriod_s};
 };
 
-// The slowest pole of A - B K_stop decides how far the arm is after 10 s.
+// The slowest pole of A - B K_stop determines the remaining error after 10 s.
 TEST_F(StopControllerTest, RegulateBringsTheNominalArmToRestAtTheGoal) {
   StateVector x = StateVector::Zero(12), goal = StateVector::Zero(12);
   x << 0.11, 0.08, -0.05, 1e-3, -0.04, 1e-3, 0.5, 0.4, -0.3, 0.01, 0.2, -0.01;
@@ -40,15 +40,15 @@ TEST_F(StopControllerTest, RegulateBringsTheNominalArmToRestAtTheGoal) {
   EXPECT_LT((x - goal).norm(), 1e-3);
 }
 
-TEST_F(StopControllerTest, AStopBeginsWithTheTorqueOfTheStepBefore) {
+TEST_F(StopControllerTest, AStopStartsWithTheTorqueOfTheStepBefore) {
   StateVector x = StateVector::Zero(12);
   x(6) = 0.8;  // th1'
   stop_.Begin({0.2, -0.1}, {3.0, -1.0});
   EXPECT_LT((stop_.Stop(x) - Vector2d(3.0, -1.0)).norm(), 1e-12);
 }
 
-// 2.2 s after its begin, whatever the state.
-TEST_F(StopControllerTest, AStopThatLastsEndsWithoutTorque) {
+// 2.2 s after its start, for any state.
+TEST_F(StopControllerTest, ALongStopEndsWithZeroTorque) {
   StateVector x = StateVector::Zero(12);
   x(6) = 0.8;
   stop_.Begin({0.0, 0.0}, {3.0, -1.0});
@@ -57,7 +57,7 @@ TEST_F(StopControllerTest, AStopThatLastsEndsWithoutTorque) {
   EXPECT_EQ(stop_.Stop(x), Vector2d(0.0, 0.0));
 }
 
-// The goal moves to the hubs: an arm that rests elsewhere is not pulled back.
+// The goal follows the hubs: an arm that rests elsewhere is not pulled back.
 TEST_F(StopControllerTest, TheGoalFollowsTheHubs) {
   StateVector x = StateVector::Zero(12);
   x(0) = 0.3;
@@ -68,7 +68,7 @@ TEST_F(StopControllerTest, TheGoalFollowsTheHubs) {
   EXPECT_LT(torque_nm.norm(), 0.05 * held.norm());
 }
 
-TEST_F(StopControllerTest, ASecondStopForgetsTheFirst) {
+TEST_F(StopControllerTest, ASecondStopDoesNotDependOnTheFirst) {
   StateVector x = StateVector::Zero(12);
   x(6) = 0.8;
   stop_.Begin({0.0, 0.0}, {1.0, 0.0});

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr std::array<double, 2> kWide = {1e9, 1e9};  // limits that are never reached
+constexpr std::array<double, 2> kWide = {1e9, 1e9};  // limits without effect
 
 // A state a few degrees and millimetres away from a moving reference.
 struct Sample {
@@ -48,7 +48,7 @@ TrackingLaw LawWith(const ControllerConfig& config, std::array<double, 2> limit_
 
 Vector2d Torque(const LawOutput& result) { return {result.torque_nm[0], result.torque_nm[1]}; }
 
-// (7.24) and (7.25), written out from the thesis and not from the code.
+// (7.24) and (7.25) as printed in the thesis, independent of the code.
 Vector2d UStar(const Sample& s, const ControllerConfig& config) {
   const Design& d = ShippedDesign();
   const MatrixXd pseudo_inverse = (d.B.transpose() * d.B).inverse() * d.B.transpose();
@@ -64,8 +64,9 @@ MatrixXd KI0() {
   return K_I;
 }
 
-// The loop as in the thesis, with the torque on both sides: z = F e + G (u* + K_e C_p e - u) and
-// u = K_I r + z (r' Tbar r). Returns the residual of the second equation with the first inserted.
+// The algebraic loop of the thesis, with the torque on both sides: z = F e + G (u* + K_e C_p e - u)
+// and u = K_I r + z (r' Tbar r). Returns the residual of the second equation with the first
+// inserted.
 Vector2d LoopMismatch(const Sample& s, const MatrixXd& K_I, const ControllerConfig& config,
                       const Vector2d& u) {
   const Design& d = ShippedDesign();
@@ -78,7 +79,7 @@ Vector2d LoopMismatch(const Sample& s, const MatrixXd& K_I, const ControllerConf
 
 // The residual is round-off times G rho, about 1e2; a loop solved with the previous u has residuals
 // of newton metres.
-TEST(TrackingLaw, TheTorqueSatisfiesItsOwnAlgebraicLoop) {
+TEST(TrackingLaw, TheTorqueSatisfiesTheAlgebraicLoop) {
   for (const double gain : {1e-4, 0.01, 1.0}) {
     for (const FeedforwardSign sign : {FeedforwardSign::kPrinted, FeedforwardSign::kCorrected}) {
       ControllerConfig config = Controller();
@@ -244,7 +245,7 @@ TEST(TrackingLaw, TheGainNeverLeavesItsBound) {
 }
 
 // Sobel's theorem on the nominal plant, where u_c is the ideal torque: V of (7.11) decreases in
-// every sample. T = 1, a hundred times the shipped one, so that the gains take part of it.
+// every sample. T = 1, a hundred times the shipped one, so that the gains contribute to V.
 TEST(TrackingLaw, TheLyapunovFunctionFallsOnTheNominalPlant) {
   const Design& d = ShippedDesign();
   ControllerConfig config = Controller();
@@ -288,7 +289,7 @@ TEST(TrackingLaw, ALawWithoutTheCommandGeneratorsTrajectoryHasNoLyapunovValue) {
   }
 }
 
-TEST(TrackingLaw, AdaptationIsHeldWhileSaturatedOrForbidden) {
+TEST(TrackingLaw, AdaptationIsHeldWhileSaturatedOrNotAllowed) {
   const Sample s;
   TrackingLaw saturated = LawWith(Controller(), {0.5, 1e9});
   const LawOutput clipped = saturated.Compute(s.x, s.reference, true);
@@ -320,7 +321,7 @@ TEST(TrackingLaw, TorqueIsClippedToEachLimitWithItsFlag) {
   }
 }
 
-TEST(TrackingLaw, ResetForgetsTheAdaptation) {
+TEST(TrackingLaw, ResetRestoresTheInitialGains) {
   TrackingLaw law = LawWith(Controller());
   const Sample s;
   const Vector2d first = Torque(law.Compute(s.x, s.reference, true));

@@ -92,18 +92,18 @@ TEST_P(FindsThePayload, OnPlantsThatDifferFromTheModel) {
   EXPECT_GE(static_cast<double>(settled), 0.95 * static_cast<double>(all));
 }
 
-struct Doubted {
+struct Warned {
   std::uint32_t warnings;  // all that the run had
   double payload_kg;       // at its end
   double sigma_kg;
 };
 
-Doubted DoubtsOf(double payload_kg, const Experiment& experiment,
-                 std::vector<std::string> overrides = {}, std::int64_t until_ns = 10'000'000'000) {
+Warned WarningsOf(double payload_kg, const Experiment& experiment,
+                  std::vector<std::string> overrides = {}, std::int64_t until_ns = 10'000'000'000) {
   overrides.emplace_back("controller.name=gain-scheduled");
   StackRun run(ShippedRig(overrides), experiment, payload_kg);
   run.Run(until_ns);
-  Doubted out{};
+  Warned out{};
   for (const TickRecord& record : run.tick) {
     if (record.input.safety_state != SafetyState::kRunning) continue;
     out.warnings |= record.output.payload_warnings;
@@ -114,14 +114,14 @@ Doubted DoubtsOf(double payload_kg, const Experiment& experiment,
 }
 
 TEST(GainScheduled, APayloadWithinItsRangeIsEstimatedWithoutWarning) {
-  const Doubted found = DoubtsOf(0.35, ShippedExperiment("benchmark-waypoints"));
+  const Warned found = WarningsOf(0.35, ShippedExperiment("benchmark-waypoints"));
   EXPECT_EQ(found.warnings, 0u);
   EXPECT_NEAR(found.payload_kg, 0.35, 0.03);
 }
 
 TEST(GainScheduled, APayloadBeyondItsRangeRaisesAWarning) {
-  const Doubted found =
-      DoubtsOf(0.35, ShippedExperiment("benchmark-waypoints"), {"estimator.payload.max_kg=0.25"});
+  const Warned found =
+      WarningsOf(0.35, ShippedExperiment("benchmark-waypoints"), {"estimator.payload.max_kg=0.25"});
   EXPECT_EQ(found.warnings & kPayloadAtBound, kPayloadAtBound);
   EXPECT_LE(found.payload_kg, 0.25);
 }
@@ -130,7 +130,7 @@ TEST(GainScheduled, APayloadBeyondItsRangeRaisesAWarning) {
 TEST(GainScheduled, AnUninformativeMoveRaisesAWarning) {
   Experiment creeping = ShippedExperiment("benchmark-waypoints");
   creeping.move = {{.start_s = 0.0, .duration_s = 2.0, .to_deg = {0.5, 0.5}}};
-  const Doubted found = DoubtsOf(0.35, creeping);
+  const Warned found = WarningsOf(0.35, creeping);
   EXPECT_EQ(found.warnings, static_cast<std::uint32_t>(kPayloadNotObservable));
 }
 
@@ -139,7 +139,7 @@ TEST(GainScheduled, ALongRestRaisesNoWarning) {
   Experiment resting = ShippedExperiment("benchmark-waypoints");
   resting.duration_s = 32.0;
   resting.move = {{.start_s = 0.0, .duration_s = 1.6, .to_deg = {30, 30}}};
-  const Doubted found = DoubtsOf(0.35, resting, {}, 35'000'000'000);
+  const Warned found = WarningsOf(0.35, resting, {}, 35'000'000'000);
   EXPECT_EQ(found.warnings, 0u);
   EXPECT_GT(found.sigma_kg, kPayloadUncertain_kg) << "too short a rest: the test is inconclusive";
   EXPECT_NEAR(found.payload_kg, 0.35, 0.03) << "flickering counts must not change it";

@@ -117,7 +117,7 @@ TEST_F(OperatorSocketTest, LinesOfAClientThatHasGoneAreDropped) {
   EXPECT_EQ(messages[0].line, "status");
 }
 
-TEST_F(OperatorSocketTest, AReplyToAClientThatHasGoneHarmsNobody) {
+TEST_F(OperatorSocketTest, AReplyToADisconnectedClientAffectsNoOther) {
   OperatorSocket server(path_);
   SocketPeer gone(path_);
   SocketPeer here(path_);

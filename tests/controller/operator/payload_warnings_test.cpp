@@ -14,7 +14,7 @@ std::uint32_t Take(PayloadWarnings* watch, std::uint32_t warnings,
   return watch->Take(input, output);
 }
 
-TEST(PayloadWarnings, TellsEachDoubtOnceARun) {
+TEST(PayloadWarnings, ReportsEachWarningOnceARun) {
   PayloadWarnings watch;
   EXPECT_EQ(Take(&watch, 0), 0u);
   EXPECT_EQ(Take(&watch, kPayloadAtBound), kPayloadAtBound);
@@ -24,7 +24,7 @@ TEST(PayloadWarnings, TellsEachDoubtOnceARun) {
   EXPECT_EQ(Take(&watch, kPayloadAtBound), kPayloadAtBound) << "the next run";
 }
 
-TEST(PayloadWarnings, EveryDoubtHasAName) {
+TEST(PayloadWarnings, EveryWarningHasAName) {
   std::uint32_t named = 0;
   for (const PayloadWarningText& warning : kPayloadWarnings) named |= warning.bit;
   EXPECT_EQ(named, kPayloadAtBound | kPayloadModelMismatch | kPayloadNotObservable);

@@ -27,14 +27,14 @@ RigidPath OutAndBack() {
   const PlannedMove out{.row = 0,
                         .first = 10,
                         .periods = 100,
-                        .takes_over = false,
+                        .retargets = false,
                         .from = {},
                         .to_rad = {0.8, -0.5},
                         .profile = MoveProfile::kSeptic};
   const PlannedMove back{.row = 1,
                          .first = 60,
                          .periods = 90,
-                         .takes_over = true,
+                         .retargets = true,
                          .from = out.At(60, kPeriod_s),
                          .to_rad = {0.1, 0.3},
                          .profile = MoveProfile::kSeptic};

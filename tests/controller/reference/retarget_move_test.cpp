@@ -59,8 +59,8 @@ TEST(Retarget, EachMoveBeginsWithTheStateOfThePathBeforeIt) {
     const PlannedMove& move = table.moves()[i];
     EXPECT_EQ(move.first, first[i]);
     EXPECT_EQ(move.periods, periods[i]) << "as planned, although it is retargeted";
-    EXPECT_EQ(move.takes_over, i == 1 || i == 2);
-    if (!move.takes_over) continue;
+    EXPECT_EQ(move.retargets, i == 1 || i == 2);
+    if (!move.retargets) continue;
     const RigidPoint before = table.moves()[i - 1].At(first[i], kPeriod_s);
     EXPECT_EQ(move.from.angle_rad, before.angle_rad);
     EXPECT_EQ(move.from.rate_rad_s, before.rate_rad_s);

@@ -24,7 +24,7 @@ PlannedMove FromRest(double from_rad, double to_rad, int periods = 0, int first 
   PlannedMove move{.row = 0,
                    .first = first,
                    .periods = periods,
-                   .takes_over = false,
+                   .retargets = false,
                    .from = {},
                    .to_rad = {to_rad, 0.0},
                    .profile = MoveProfile::kSeptic};
@@ -39,7 +39,7 @@ std::vector<PlannedMove> TakenOver(const PlannedMove& out, int first, double to_
           {.row = 1,
            .first = first,
            .periods = periods,
-           .takes_over = true,
+           .retargets = true,
            .from = out.At(first, kPeriod_s),
            .to_rad = {to_rad, 0.0},
            .profile = MoveProfile::kSeptic}};
@@ -90,13 +90,13 @@ TEST_P(ShortestFromRest, KeepsTheSoftLimitsFromWhereItBegins) {
   EXPECT_FALSE(Of(FromRest(0.5, 1.4), limits));
 }
 
-TEST(ShortestTakeOver, IsNeverLessThanTenPeriods) {
+TEST(ShortestRetarget, IsNeverLessThanTenPeriods) {
   EXPECT_EQ(Shortest(TakenOver(FromRest(0.0, 0.8, 100), 50, 0.7), ShippedPathDesign(), NoLimits()),
             kFewestPeriods);
 }
 
 // The torque continues from that of the move before: no jump from zero.
-TEST(ShortestTakeOver, DoesNotBeginWithAJumpOfTheTorque) {
+TEST(ShortestRetarget, DoesNotBeginWithAJumpOfTheTorque) {
   const std::vector<PlannedMove> moves = TakenOver(FromRest(0.0, 0.8, 100), 30, 0.7, 100);
   const RigidPath path(moves, {0.0, 0.0}, 200, kPeriod_s);
   const auto sample =
@@ -108,7 +108,7 @@ TEST(ShortestTakeOver, DoesNotBeginWithAJumpOfTheTorque) {
 
 // The shorter, the more torque; the longer, the farther the arm goes before it turns round. The
 // limits leave 90 to 95 periods, which bisection would not find.
-TEST(ShortestTakeOver, IsFoundWhereOnlyFewDurationsKeepTheLimits) {
+TEST(ShortestRetarget, IsFoundWhereOnlyFewDurationsKeepTheLimits) {
   const PlannedMove out = FromRest(0.0, 1.4, 120);
   const auto of = [&out](int periods) {
     const RigidPath path(TakenOver(out, 50, 0.4, periods), {0.0, 0.0}, 300, kPeriod_s);
@@ -132,7 +132,7 @@ TEST(ShortestTakeOver, IsFoundWhereOnlyFewDurationsKeepTheLimits) {
 }
 
 // Slowly out, and as slowly back, at 0.1 rad/s: some 26 s.
-TEST(ShortestTakeOver, IsSearchedForUpToAMinuteToo) {
+TEST(ShortestRetarget, IsSearchedForUpToAMinuteToo) {
   MotionLimits limits = NoLimits();
   limits.hub_rate_rad_s[0] = 0.1;
   const std::optional<int> periods =

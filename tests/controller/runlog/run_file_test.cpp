@@ -256,7 +256,7 @@ TEST_F(RunFileTest, ReadsAKilledRunInAFolderWhereNothingMayBeWritten) {
   ::chmod(folder_.c_str(), 0555);
   const pid_t reader = ::fork();
   if (reader == 0) {
-    // Root may write anywhere; user 65534 (nobody) may not.
+    // Root may write anywhere; user 65534 may not.
     if (::geteuid() == 0 && ::seteuid(65534) != 0) ::_exit(2);
     try {
       ::_exit(RunReader(File()).ReadAll().tick.size() == 50 ? 0 : 1);

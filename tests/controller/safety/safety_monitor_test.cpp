@@ -11,10 +11,10 @@ namespace {
 
 using enum SafetyState;
 
-constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
-                                   .stop_timeout_ns = 3000 * kMs,
-                                   .missed_deadlines_to_trip = 3,
-                                   .homing_contact_ns = 500 * kMs};
+constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
+                                .stop_timeout_ns = 3000 * kMs,
+                                .missed_deadlines_to_trip = 3,
+                                .homing_contact_ns = 500 * kMs};
 
 // Running for a second, without a fault.
 SafetyInputs Fine() {
@@ -257,12 +257,12 @@ TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   SafetyConfig safety{};
   safety.stop_timeout_s = 3.0;
   safety.missed_deadlines_to_trip = 5;
-  const SupervisorLimits limits = MakeSupervisorLimits(safety, {.period_ms = 20.0,
-                                                                .acquire_before_ms = 5.0,
-                                                                .step_deadline_ms = 5.0,
-                                                                .output = OutputTiming::kNextTick,
-                                                                .output_after_ms = 15.0,
-                                                                .actuation_delay_ms = 0.0});
+  const MonitorLimits limits = MakeMonitorLimits(safety, {.period_ms = 20.0,
+                                                          .acquire_before_ms = 5.0,
+                                                          .step_deadline_ms = 5.0,
+                                                          .output = OutputTiming::kNextTick,
+                                                          .output_after_ms = 15.0,
+                                                          .actuation_delay_ms = 0.0});
   EXPECT_EQ(limits.heartbeat_timeout_ns, 40 * kMs);
   EXPECT_EQ(limits.stop_timeout_ns, 3000 * kMs);
   EXPECT_EQ(limits.missed_deadlines_to_trip, 5);

@@ -32,19 +32,19 @@ ActuationQueue Three() {
   return line;
 }
 
-TEST(ActuationQueue, CutsAnIntervalWhereTheTorqueChanges) {
+TEST(ActuationQueue, DividesAnIntervalWhereTheTorqueChanges) {
   ExpectPieces(Three().Between(20 * kMs, 54 * kMs, kPeriodNs), {{1.0, 6}, {2.0, 20}, {3.0, 8}});
   ExpectPieces(Three().Between(26 * kMs, 46 * kMs, kPeriodNs), {{2.0, 20}});
   ExpectPieces(Three().Between(30 * kMs, 40 * kMs, kPeriodNs), {{2.0, 10}});
 }
 
-TEST(ActuationQueue, HasNoTorqueBeforeTheFirst) {
+TEST(ActuationQueue, TheTorqueIsZeroBeforeTheFirst) {
   ExpectPieces(Three().Between(-10 * kMs, 10 * kMs, kPeriodNs), {{0.0, 10}, {1.0, 10}});
   ExpectPieces(ActuationQueue().Between(0, kPeriodNs, kPeriodNs), {{0.0, 20}});
 }
 
-// A torque that takes no time is none; a whole period is exactly one.
-TEST(ActuationQueue, BordersAtTheEndsAddNothing) {
+// A torque of zero duration gives no piece; a whole period gives exactly one.
+TEST(ActuationQueue, ChangesAtTheEndsOfTheIntervalAddNoPiece) {
   ActuationQueue line;
   for (int k = 0; k < 4; ++k) line.Push(k * kPeriodNs, {1.0 * k, 0.0});
   const PiecewiseTorque pieces = line.Between(kPeriodNs, 2 * kPeriodNs, kPeriodNs);
@@ -55,7 +55,7 @@ TEST(ActuationQueue, BordersAtTheEndsAddNothing) {
   ExpectPieces(line.Between(kPeriodNs, 0, kPeriodNs), {});
 }
 
-TEST(ActuationQueue, RoundedBordersStillAddUpToTheWhole) {
+TEST(ActuationQueue, RoundedPiecesSumToTheWholePeriod) {
   ActuationQueue line;
   for (int i = 0; i < 5; ++i) line.Push(3'333'333 * (i + 1), {1.0 * i, 0.0});
   const PiecewiseTorque pieces = line.Between(0, kPeriodNs, kPeriodNs);
@@ -64,26 +64,26 @@ TEST(ActuationQueue, RoundedBordersStillAddUpToTheWhole) {
   EXPECT_EQ(sum, kPeriodTicks);
 }
 
-TEST(ActuationQueue, TheNewestIsCorrectedWithinItsPlace) {
+TEST(ActuationQueue, CorrectsTheNewestButNotBeforeThePrevious) {
   ActuationQueue line = Three();
   line.CorrectNewest(50 * kMs);
   ExpectPieces(line.Between(26 * kMs, 60 * kMs, kPeriodNs), {{2.0, 24}, {3.0, 10}});
-  line.CorrectNewest(0);  // not before the one before
+  line.CorrectNewest(0);  // clamped to the previous instant
   ExpectPieces(line.Between(20 * kMs, 40 * kMs, kPeriodNs), {{1.0, 6}, {3.0, 14}});
   ActuationQueue empty;
   empty.CorrectNewest(5);
   ExpectPieces(empty.Between(0, kPeriodNs, kPeriodNs), {{0.0, 20}});
 }
 
-TEST(ActuationQueue, ForgetsTheOldestOfNineAndLooksSixPeriodsAhead) {
+TEST(ActuationQueue, HoldsEightTorquesAndSixPeriodsAhead) {
   ActuationQueue line;
   for (int k = 0; k < 9; ++k) line.Push(k * kPeriodNs, {1.0 + k, 0.0});
   ExpectPieces(line.Between(0, 2 * kPeriodNs, kPeriodNs), {{0.0, 20}, {2.0, 20}});
   ExpectPieces(line.Between(8 * kPeriodNs, 100 * kPeriodNs, kPeriodNs), {{9.0, 120}});
 }
 
-// Whatever the gate made of it: the changes stay where they are, the mean is the measured one.
-TEST(PiecewiseTorque, TakeTheMeanThatWasMeasured) {
+// The instants and sizes of the changes stay; the mean becomes the measured one, after the gate.
+TEST(PiecewiseTorque, TakesTheMeasuredMean) {
   const PiecewiseTorque asked =
       Three().Between(20 * kMs, 40 * kMs, kPeriodNs);  // 1 for 6, 2 for 14
   const PiecewiseTorque applied = asked.WithMean({1.2, 0.3});

@@ -16,9 +16,9 @@
 namespace flexarm {
 namespace {
 
-// What the drives and the encoders tell of an arm that follows its reference sample by sample, as
-// if nothing swung: hubs as the reference bends them, torque with friction, rotors twisted by it.
-// The gauges are silent.
+// Readings of drives and encoders of an arm that follows its reference without vibration: hub
+// angles of the reference, torque with friction, rotors with the torsion of that torque. No strain
+// reading is valid.
 StepInput Followed(const ReferenceTable& table, int k, const ArmParameters& arm) {
   StepInput input = AtRest(k, SafetyState::kRunning);
   input.reset = k == 0 ? 1 : 0;
@@ -43,9 +43,10 @@ bool IsMoving(const RigidPoint& point) {
   return point.rate_rad_s[0] != 0.0 || point.rate_rad_s[1] != 0.0;
 }
 
-// Two moves of an arm with 0.15 kg, the payload of the scheduled reference. The first shows it; the
-// second begins with the doubt of [estimator.payload], 0.2 kg, and the walk of that sample.
-TEST(ControlStepWithPayload, AMoveOpensTheDoubtOfThePayload) {
+// Two moves of an arm with 0.15 kg, the payload of the scheduled reference. In the first the
+// payload is estimated; the second starts with the standard deviation of [estimator.payload], 0.2
+// kg, and the random walk of that sample.
+TEST(ControlStepWithPayload, AMoveRaisesTheStandardDeviationOfThePayload) {
   const Experiment there_and_back = {
       .name = "test",
       .text = "",
@@ -73,7 +74,7 @@ TEST(ControlStepWithPayload, AMoveOpensTheDoubtOfThePayload) {
       input.path = table.PathAround(k);
       const StepOutput out = step.Step(input);
       if (IsMoving(input.path[1]) && !moved && ++moves == 2) {
-        EXPECT_LT(sigma_before_kg, 0.05) << "nothing learnt: the test says nothing";
+        EXPECT_LT(sigma_before_kg, 0.05) << "nothing was estimated: the test is inconclusive";
         EXPECT_GE(out.payload_sigma_kg, 0.2);
         EXPECT_LT(out.payload_sigma_kg, 0.201);
       }
@@ -82,11 +83,11 @@ TEST(ControlStepWithPayload, AMoveOpensTheDoubtOfThePayload) {
       EXPECT_EQ(out.payload_warnings, 0u) << k;
     }
     EXPECT_EQ(moves, 2);
-    EXPECT_LT(sigma_before_kg, 0.05) << "found again";
+    EXPECT_LT(sigma_before_kg, 0.05) << "estimated again";
   }
 }
 
-// Of two arms at rest, one at its plan and one beside it. Without a plan the path counts.
+// The arm is at rest, at the plan's state and beside it. Without a plan the path is followed.
 TEST(ControlStepWithPayload, FollowsThePlanIfThereIsOne) {
   const RigConfig config =
       ShippedRig({"controller.name=receding-horizon", "controller.prediction=false"});
@@ -103,7 +104,7 @@ TEST(ControlStepWithPayload, FollowsThePlanIfThereIsOne) {
   StepInput input = AtRest(1, SafetyState::kRunning);
   for (RigidPoint& point : input.path) point.angle_rad[0] = 0.5;
   const Eigen::Matrix<double, 2, 12> K = design.scheduled->gains.At(0.15, 0.0);
-  EXPECT_NEAR((asked(input) - K.col(0) * 0.5).norm(), 0.0, 1e-9) << "the path's";
+  EXPECT_NEAR((asked(input) - K.col(0) * 0.5).norm(), 0.0, 1e-9) << "the torque of the path";
   input.planned = 1;
   input.plan.torque_nm = {0.3, -0.2};
   EXPECT_NEAR((asked(input) - Eigen::Vector2d(0.3, -0.2)).norm(), 0.0, 1e-9);
@@ -111,11 +112,12 @@ TEST(ControlStepWithPayload, FollowsThePlanIfThereIsOne) {
   EXPECT_NEAR((asked(input) - Eigen::Vector2d(0.3, -0.2) - K.col(1) * 0.02).norm(), 0.0, 1e-9);
 }
 
-// A path that rests 0.01 rad away from an arm that stands, after a move of a sample: the torque is
-// K times that. The filter is sure of 0.5 kg, so K is that of 0.5 kg until the path has rested for
-// half a second, and of 0.15 kg from then on. A sigma of 0.001 kg counts 1e-4 of the difference.
-// Without friction, which the law helps the feedback over.
-TEST(ControlStepWithPayload, RestingItTakesTheRobustGains) {
+// The arm is at rest 0.01 rad away from a path that rests after a move of one sample: the torque is
+// K times 0.01 rad. The filter starts at 0.5 kg with a standard deviation of 0.001 kg, so K is that
+// of 0.5 kg until the path has rested for half a second, and of 0.15 kg from then on. That
+// deviation changes the torque by 1e-4 of the difference. Friction is zero, so the law's friction
+// compensation is too.
+TEST(ControlStepWithPayload, UsesTheRobustGainsAtRest) {
   const RigConfig config =
       ShippedRig({"controller.name=gain-scheduled", "controller.prediction=false",
                   "estimator.payload.start_kg=0.5", "estimator.payload.start_sigma_kg=0.001",
@@ -136,7 +138,7 @@ TEST(ControlStepWithPayload, RestingItTakesTheRobustGains) {
     return design.scheduled->gains.At(payload_kg, 0.0).col(0) * 0.01;
   };
   const Eigen::Vector2d difference = torque(0.5) - torque(0.15);
-  ASSERT_GT(difference.norm(), 1e-3) << "the same gains: the test says nothing";
+  ASSERT_GT(difference.norm(), 1e-3) << "the same gains: the test is inconclusive";
   for (int i = 0; i < 2; ++i) {
     const auto j = static_cast<std::size_t>(i);
     const double tolerance_nm = 2e-4 * difference.norm();
@@ -145,7 +147,7 @@ TEST(ControlStepWithPayload, RestingItTakesTheRobustGains) {
   }
 }
 
-TEST(ControlStepWithPayload, AMoveThatShowsNothingLeavesADoubtUntilTheNextRun) {
+TEST(ControlStepWithPayload, AMoveWithoutObservabilityWarnsUntilTheNextRun) {
   const RigConfig config = ShippedRig({"controller.name=gain-scheduled"});
   ControlStep step(config, DesignController(config));
   std::uint32_t warnings = 0;
@@ -158,10 +160,10 @@ TEST(ControlStepWithPayload, AMoveThatShowsNothingLeavesADoubtUntilTheNextRun) {
   }
   StepInput again = AtRest(11, SafetyState::kArmed);
   again.reset = 1;
-  EXPECT_EQ(step.Step(again).payload_warnings, 0u) << "of the run before";
+  EXPECT_EQ(step.Step(again).payload_warnings, 0u) << "the warning is of the run before";
 }
 
-TEST(ControlStepWithPayload, WithoutItsEstimatorNothingIsSaidOfIt) {
+TEST(ControlStepWithPayload, WithoutAPayloadEstimatorItsOutputsAreNaN) {
   ControlStep step(ShippedRig(), ShippedDesign());
   const StepOutput out = step.Step(AtRest(0, SafetyState::kRunning));
   for (const double value : {out.payload_kg, out.payload_sigma_kg, out.mean_nis, out.friction_nm[0],

@@ -20,7 +20,7 @@ namespace {
 
 static_assert(noexcept(std::declval<ControlStep&>().Step(std::declval<const StepInput&>())));
 
-// A reference half a degree away, so that there is something to ask torque for.
+// A reference half a degree away, so that the torque is not zero.
 StepInput Moving(std::int64_t tick, SafetyState state = SafetyState::kRunning) {
   StepInput input = AtRest(tick, state);
   input.reference_now.x_m[0] = input.reference_next.x_m[0] = 0.01;
@@ -57,7 +57,7 @@ bool SameBytes(const StepOutput& a, const StepOutput& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-// Whatever was before: after a reset the same inputs give the same bytes.
+// After a reset the same inputs give the same bytes, for any inputs before.
 TEST_F(ControlStepTest, AfterAResetTheSameInputsGiveTheSameBytes) {
   const std::vector<StepInput> run = ARun();
   std::vector<StepOutput> first;
@@ -75,7 +75,7 @@ TEST_F(ControlStepTest, AfterAResetTheSameInputsGiveTheSameBytes) {
   EXPECT_NE(first[10].torque_nm[0], 0.0);
 }
 
-TEST_F(ControlStepTest, AResetGoesOnFromTheCountsBefore) {
+TEST_F(ControlStepTest, AResetContinuesFromTheGivenCounts) {
   StepInput input = AtRest(0, SafetyState::kArmed);
   input.reset = 1;
   input.counts_before = {1000, -300, 1000, 100'000};
@@ -100,9 +100,9 @@ TEST_F(ControlStepTest, TorqueIsZeroInEveryStateButRunningAndStopping) {
   }
 }
 
-// docs/theory/control-law.md 6.1: y_e = K (x_m - x), and at zero with a pure angle reference all
-// else is feedforward of a resting reference, S21's first two columns, which are zero. So u = K x_m
-// but for the adaptive part, of the order of r^2 T = 1e-2 of it.
+// docs/theory/control-law.md 6.1: y_e = K (x_m - x). At zero with a pure angle reference the rest
+// is the feedforward of a resting reference, the first two columns of S21, which are zero. So u = K
+// x_m except for the adaptive part, of the order of r^2 T = 1e-2 of it.
 TEST_F(ControlStepTest, TorqueActsTowardsTheReference) {
   const StepOutput out = step_.Step(Moving(0));
   const Eigen::Vector2d expected = ShippedDesign().K.leftCols<2>() * Eigen::Vector2d(0.01, -0.01);
@@ -124,17 +124,17 @@ TEST_F(ControlStepTest, PredictsToTheInstantAtWhichTheTorqueActs) {
   EXPECT_EQ(out.limits & kPredictionOff, 0u);
 }
 
-// Moves [x; rates] over `ms` under a torque: the hold of just that duration, made in one piece.
+// Advances x by `ms` under a constant torque: the zero-order hold of that duration in one piece.
 Eigen::VectorXd Held(const Eigen::VectorXd& x, double ms, const std::array<double, 2>& torque_nm) {
   const Design& d = ShippedDesign();
   const DiscreteModel hold = ZeroOrderHold(d.A_rate, d.B_rate, 1e-3 * ms);
   return hold.A * x + hold.B * Eigen::Vector2d(torque_nm[0], torque_nm[1]);
 }
 
-// Torque k acts 15, 26 or 54 ms after k Ts; until then those before it act, each in its turn.
-// Borders are rounded to 0.3 us: at rates of 1 rad/s and 100 rad/s^2 that is 3e-7 rad and 3e-5
-// rad/s; a prediction of one whole period instead is off by a thousand times that.
-TEST_F(ControlStepTest, PredictsThroughTheTorquesOnTheirWay) {
+// Torque k acts 15, 26 or 54 ms after k Ts; until then the earlier ones act in order. Instants are
+// rounded to 0.3 us: at rates of 1 rad/s and 100 rad/s^2 the error is 3e-7 rad and 3e-5 rad/s. A
+// prediction over one whole period instead has a thousand times that error.
+TEST_F(ControlStepTest, PredictsWithTheTorquesThatDoNotActYet) {
   for (const std::int64_t late_ms : {-5, 6, 34}) {
     ControlStep step(config_, ShippedDesign());
     std::vector<StepOutput> out;
@@ -155,11 +155,12 @@ TEST_F(ControlStepTest, PredictsThroughTheTorquesOnTheirWay) {
     const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out[k].x_next.data(), 12);
     EXPECT_LT((predicted - x).head(6).cwiseAbs().maxCoeff(), 3e-7) << late_ms;
     EXPECT_LT((predicted - x).tail(6).cwiseAbs().maxCoeff(), 3e-5) << late_ms;
-    EXPECT_NE(asked(k - 1), asked(k - 2)) << "the same torque: the order says nothing";
+    EXPECT_NE(asked(k - 1), asked(k - 2)) << "the same torque: the test is inconclusive";
   }
 }
 
-// What the drive side measured counts for the torque that it is about, the plan for the new one.
+// The measured instant is used for the torque that it was measured of, the planned one for the new
+// torque.
 TEST_F(ControlStepTest, ACommandThatActedLateIsPredictedLate) {
   step_.Step(Moving(0));
   const StepOutput before = step_.Step(Moving(1));
@@ -175,7 +176,7 @@ TEST_F(ControlStepTest, ACommandThatActedLateIsPredictedLate) {
   EXPECT_LT((predicted - x).cwiseAbs().maxCoeff(), 3e-5);
 }
 
-TEST_F(ControlStepTest, WithoutPredictionTheStateIsTakenAsItIsAndFlagged) {
+TEST_F(ControlStepTest, WithoutPredictionTheLawUsesTheEstimateAndAFlagIsSet) {
   ControlStep step(ShippedRig({"controller.prediction=false"}), ShippedDesign());
   step.Step(Moving(0));
   const StepOutput out = step.Step(Moving(1));
@@ -183,9 +184,9 @@ TEST_F(ControlStepTest, WithoutPredictionTheStateIsTakenAsItIsAndFlagged) {
   EXPECT_NE(out.limits & kPredictionOff, 0u);
 }
 
-// The goal of a stop is the arm where it is, joints untwisted: standing there costs no torque. With
-// a goal that forgot the rotors of a torsional model it would cost K_stop times their angle.
-TEST(ControlStepOfATorsionalModel, StoppingAtRestAsksNoTorque) {
+// The goal of a stop is the arm at its hub angles with untwisted joints: at rest there the torque
+// is zero. A goal without the rotors of a torsional model would give K_stop times their angle.
+TEST(ControlStepOfATorsionalModel, StoppingAtRestAsksForZeroTorque) {
   const RigConfig config = ShippedRig({"controller.nominal=T16"});
   ControlStep step(config, DesignController(config));
   StepOutput out{};
@@ -203,12 +204,12 @@ TEST(ControlStepOfATorsionalModel, StoppingAtRestAsksNoTorque) {
   EXPECT_NEAR(out.torque_nm[1], 0.0, 1e-6);
 }
 
-// One late frame is coasted over, on prediction; beyond two periods it is a fault.
+// One missing frame is bridged by prediction; more than two periods without a frame are a fault.
 TEST_F(ControlStepTest, AFrameOfAnotherTickIsIgnored) {
   step_.Step(AtRest(0, SafetyState::kRunning));
   StepInput late = AtRest(1, SafetyState::kRunning);
   late.frame.sampled_at_ns = 0;
-  late.frame.counter[0] = 20;  // what it says must not matter
+  late.frame.counter[0] = 20;  // must have no effect
   const StepOutput out = step_.Step(late);
   EXPECT_EQ(out.counters_used, 0u);
   EXPECT_EQ(out.strain_used, 0u);
@@ -220,7 +221,7 @@ TEST_F(ControlStepTest, AFrameOfAnotherTickIsIgnored) {
   EXPECT_EQ(next.faults, 0u);
 }
 
-TEST_F(ControlStepTest, AStaleFrameIsAFaultAndTakesTheTorque) {
+TEST_F(ControlStepTest, AStaleFrameIsAFaultAndZeroesTheTorque) {
   StepOutput out{};
   for (int k = 0; k <= 3; ++k) {
     StepInput input = Moving(k);
@@ -232,7 +233,7 @@ TEST_F(ControlStepTest, AStaleFrameIsAFaultAndTakesTheTorque) {
   EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0}));
 }
 
-TEST_F(ControlStepTest, ATorqueThatIsNotANumberIsAFaultAndTakesTheTorque) {
+TEST_F(ControlStepTest, AnAppliedTorqueThatIsNaNIsAFaultAndZeroesTheTorque) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     ControlStep step(config_, ShippedDesign());
@@ -245,20 +246,20 @@ TEST_F(ControlStepTest, ATorqueThatIsNotANumberIsAFaultAndTakesTheTorque) {
   }
 }
 
-// Clipping alone would turn a NaN into full torque: fmax and fmin pass over it.
-TEST_F(ControlStepTest, AReferenceThatIsNotANumberIsAFaultAndTakesTheTorque) {
+// Clipping alone would turn a NaN into full torque: fmax and fmin ignore it.
+TEST_F(ControlStepTest, AReferenceThatIsNaNIsAFaultAndZeroesTheTorque) {
   step_.Step(AtRest(0, SafetyState::kArmed));
   StepInput input = Moving(1);
   input.reference_next.x_m[0] = std::numeric_limits<double>::quiet_NaN();
   const StepOutput output = step_.Step(input);
   EXPECT_EQ(output.faults, CauseBit(TripCause::kStateNotFinite));
   EXPECT_EQ(output.torque_nm, (std::array<double, 2>{0.0, 0.0}));
-  EXPECT_EQ(step_.Step(Moving(2)).faults, 0u) << "the adaptive gains must not have taken it in";
+  EXPECT_EQ(step_.Step(Moving(2)).faults, 0u) << "the adaptive gains must not contain it";
 }
 
-// A trip is left only when its cause has gone, and the step is reset only when the arm is armed
-// again: so a state that went bad must mend by itself, or the daemon can never be reset.
-TEST_F(ControlStepTest, AStateThatWasNotFiniteMendsWhenTheInputsDo) {
+// A trip can be reset only when its cause is gone, and the step is reset only when the arm is armed
+// again. So a state that is not finite must recover without a reset, or the daemon stays tripped.
+TEST_F(ControlStepTest, AStateThatWasNotFiniteRecoversWithTheInputs) {
   step_.Step(Moving(0));
   StepInput poisoned = Moving(1);
   poisoned.applied_torque_nm[0] = std::numeric_limits<double>::quiet_NaN();
@@ -269,9 +270,9 @@ TEST_F(ControlStepTest, AStateThatWasNotFiniteMendsWhenTheInputsDo) {
   EXPECT_TRUE(out.at_rest);
 }
 
-// Gains that a first run has taught must not greet the second with a step: an arm that rests on its
-// reference, away from zero, is asked for no torque. Only round-off is left, of K_I (x_m - x).
-TEST_F(ControlStepTest, ASecondRunBeginsWithoutAStep) {
+// The gains adapted in a first run must not cause a torque step in the second: for an arm at rest
+// on its reference, away from zero, the torque is zero up to round-off of K_I (x_m - x).
+TEST_F(ControlStepTest, ASecondRunStartsWithoutATorqueStep) {
   const auto at_rest_on_reference = [](int k, SafetyState state) {
     StepInput input = AtRest(k, state);
     for (std::size_t i = 0; i < 3; ++i) input.frame.counter[i] = 127;
@@ -288,11 +289,11 @@ TEST_F(ControlStepTest, ASecondRunBeginsWithoutAStep) {
   step_.Step(first);
   for (int k = 1; k < 30; ++k) {
     StepInput input = at_rest_on_reference(k, SafetyState::kRunning);
-    input.reference_next.x_m[0] += 0.05;  // an error that teaches
+    input.reference_next.x_m[0] += 0.05;  // an error, so that the gains adapt
     step_.Step(input);
   }
   const StepOutput taught = step_.Step(at_rest_on_reference(30, SafetyState::kArmed));
-  ASSERT_GT(taught.adaptive_gain_change, 1e-3) << "nothing learnt: the test says nothing";
+  ASSERT_GT(taught.adaptive_gain_change, 1e-3) << "nothing adapted: the test is inconclusive";
   StepOutput out{};
   for (int k = 31; k < 200; ++k) out = step_.Step(at_rest_on_reference(k, SafetyState::kArmed));
   EXPECT_EQ(out.adaptive_gain_change, taught.adaptive_gain_change) << "not held while Armed";
@@ -301,9 +302,9 @@ TEST_F(ControlStepTest, ASecondRunBeginsWithoutAStep) {
   EXPECT_NEAR(out.torque_nm[1], 0.0, 1e-6);
 }
 
-// From Running to Stopping the torque goes on where it was, and what is left of it fades by a fifth
-// a sample (0.1 s at 50 Hz) towards what the regulator asks.
-TEST_F(ControlStepTest, StoppingTakesOverWithoutAStep) {
+// From Running to Stopping the torque is continuous. Its difference to the regulator's torque
+// decays by a fifth a sample (0.1 s at 50 Hz).
+TEST_F(ControlStepTest, StoppingStartsWithoutATorqueStep) {
   StepOutput running{};
   for (int k = 0; k < 3; ++k) running = step_.Step(Moving(k));
   ASSERT_GT(running.torque_nm[0], 0.3);
@@ -331,7 +332,7 @@ TEST_F(ControlStepTest, CountsTheTimeAtTheTorqueLimits) {
   EXPECT_EQ(step_.Step(again).saturated_s, (std::array<double, 2>{0.0, 0.0}));
 }
 
-TEST_F(ControlStepTest, EchoesItsTickAndTheEndOfTheReference) {
+TEST_F(ControlStepTest, ReturnsItsTickAndTheEndOfTheReference) {
   StepInput input = Moving(17);
   EXPECT_EQ(step_.Step(input).tick, 17);
   EXPECT_EQ(step_.Step(input).experiment_done, 0);
@@ -339,7 +340,7 @@ TEST_F(ControlStepTest, EchoesItsTickAndTheEndOfTheReference) {
   EXPECT_EQ(step_.Step(input).experiment_done, 1);
 }
 
-TEST_F(ControlStepTest, InOpenLoopTheTorqueIsTheReferencesWhateverTheSensorsSay) {
+TEST_F(ControlStepTest, InOpenLoopTheTorqueIsThatOfTheReferenceForAnyReadings) {
   StepInput input = Moving(0);
   input.mode = LoopMode::kOpenLoop;
   input.reference_next.u_m_nm = {1.5, -0.25};
@@ -348,14 +349,14 @@ TEST_F(ControlStepTest, InOpenLoopTheTorqueIsTheReferencesWhateverTheSensorsSay)
   EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{30.0, -6.0})) << "the limits";
 }
 
-TEST_F(ControlStepTest, InOpenLoopStoppingAsksForNothing) {
+TEST_F(ControlStepTest, InOpenLoopStoppingAsksForZeroTorque) {
   StepInput input = Moving(0, SafetyState::kStopping);
   input.mode = LoopMode::kOpenLoop;
   input.reference_next.u_m_nm = {1.5, -0.25};
   EXPECT_EQ(step_.Step(input).torque_nm, (std::array<double, 2>{0.0, 0.0}));
 }
 
-TEST_F(ControlStepTest, RegulatingPullsTheHubsToTheirGoal) {
+TEST_F(ControlStepTest, RegulatingActsTowardsTheGoalOfTheHubs) {
   StepInput input = Moving(0);
   input.mode = LoopMode::kRegulate;
   const StepOutput out = step_.Step(input);
@@ -364,8 +365,8 @@ TEST_F(ControlStepTest, RegulatingPullsTheHubsToTheirGoal) {
   EXPECT_NE(out.limits & kAdaptationHeld, 0u);
 }
 
-// Homing looks for a switch that lies outside the soft limits, with an angle that is in doubt.
-TEST_F(ControlStepTest, SoftLimitsHoldInEveryModeButHoming) {
+// Homing searches for a switch outside the soft limits, with an angle that is not calibrated yet.
+TEST_F(ControlStepTest, SoftLimitsApplyInEveryModeButHoming) {
   for (const LoopMode mode : {LoopMode::kFollow, LoopMode::kOpenLoop, LoopMode::kRegulate}) {
     StepInput input = Moving(0);
     input.reset = 1;
@@ -377,7 +378,7 @@ TEST_F(ControlStepTest, SoftLimitsHoldInEveryModeButHoming) {
   }
 }
 
-TEST_F(ControlStepTest, ACalibrationCountsFromTheResetOn) {
+TEST_F(ControlStepTest, ACalibrationAppliesFromTheResetOn) {
   StepInput input = AtRest(0, SafetyState::kArmed);
   input.calibration.counter_zero = {-254, 0, 0, 0};
   EXPECT_EQ(step_.Step(input).angle_rad[0], 0.0);

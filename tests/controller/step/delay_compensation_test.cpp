@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kLateNs = 5'000'000;  // from the sampling instant to the torque's effect
 
-// Step k asks for k N m on joint 1; each acts 5 ms after (k+1) Ts. The drive reports what it did.
+// Step k asks for k N m on joint 1; each acts 5 ms after (k+1) Ts. The drive reports the mean.
 class DelayCompensationTest : public testing::Test {
  protected:
   StepInput InputAt(std::int64_t tick, double applied_nm) const {
@@ -20,7 +20,7 @@ class DelayCompensationTest : public testing::Test {
     return input;
   }
 
-  // Until the step of `tick` has taken its report and not yet asked.
+  // Up to the step of `tick`, after its TakeReport and before its Push.
   StepInput RunTo(std::int64_t tick) {
     for (std::int64_t k = 0;; ++k) {
       // Over [k-1, k] Ts torque k-2 acted from 5 ms on, torque k-3 before.
@@ -37,7 +37,7 @@ class DelayCompensationTest : public testing::Test {
   DelayCompensation delay_{kPeriodNs, false};
 };
 
-TEST_F(DelayCompensationTest, WhatActedChangedWhenTheCommandDid) {
+TEST_F(DelayCompensationTest, TheAppliedTorqueChangesAtTheInstantOfTheCommand) {
   const StepInput input = RunTo(10);
   const PiecewiseTorque applied = delay_.Applied(input, 0);
   ASSERT_EQ(applied.all().size(), 2U);
@@ -47,7 +47,7 @@ TEST_F(DelayCompensationTest, WhatActedChangedWhenTheCommandDid) {
 }
 
 // The torque of this step acts 25 ms after its sample.
-TEST_F(DelayCompensationTest, PendingReachesToTheInstantAtWhichThisStepsTorqueActs) {
+TEST_F(DelayCompensationTest, PendingEndsWhenTheTorqueOfThisStepActs) {
   const StepInput input = RunTo(10);
   const PiecewiseTorque pending = delay_.Pending(input, 0);
   std::int64_t ticks = 0;
@@ -57,7 +57,7 @@ TEST_F(DelayCompensationTest, PendingReachesToTheInstantAtWhichThisStepsTorqueAc
   EXPECT_DOUBLE_EQ(pending.all().back().torque_nm[0], 9.0);
 }
 
-TEST_F(DelayCompensationTest, ASampleOfDelayMoreTakesTheTorquesOfASampleEarlier) {
+TEST_F(DelayCompensationTest, OneMoreSampleOfDelayGivesTheTorquesOneSampleEarlier) {
   const StepInput input = RunTo(10);
   const PiecewiseTorque applied = delay_.Applied(input, 1);
   EXPECT_DOUBLE_EQ(applied.all()[0].torque_nm[0], 6.0);
@@ -66,8 +66,8 @@ TEST_F(DelayCompensationTest, ASampleOfDelayMoreTakesTheTorquesOfASampleEarlier)
   EXPECT_DOUBLE_EQ(pending.all().front().torque_nm[0], 7.0);
 }
 
-// The drive applied less than was asked, as after its slew limit.
-TEST_F(DelayCompensationTest, TheMeanThatTheDriveReportsCounts) {
+// The drive applied less than was asked, as with its slew limit.
+TEST_F(DelayCompensationTest, UsesTheMeanThatTheDriveReports) {
   RunTo(9);
   delay_.Push(InputAt(9, 0.0), {9.0, 0.0});
   const StepInput input = InputAt(10, 5.0);
@@ -75,13 +75,13 @@ TEST_F(DelayCompensationTest, TheMeanThatTheDriveReportsCounts) {
   EXPECT_NEAR(delay_.Applied(input, 0).mean_nm()[0], 5.0, 1e-12);
 }
 
-TEST_F(DelayCompensationTest, LessDelayIsAHypothesisOnlyWhereAPeriodIsDeclared) {
+TEST_F(DelayCompensationTest, LessDelayIsAHypothesisOnlyIfAPeriodIsDeclared) {
   const StepInput input = RunTo(10);
   EXPECT_FALSE(delay_.AppliedByDelay(input)[0].has_value());
   EXPECT_TRUE(DelayCompensation(kPeriodNs, true).AppliedByDelay(input)[0].has_value());
 }
 
-TEST_F(DelayCompensationTest, AResetForgetsTorquesAndReports) {
+TEST_F(DelayCompensationTest, AResetClearsTorquesAndReports) {
   const StepInput input = RunTo(10);
   delay_.Reset();
   EXPECT_EQ(delay_.Applied(input, 0).mean_nm(), (std::array<double, 2>{0.0, 0.0}));

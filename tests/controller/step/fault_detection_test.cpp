@@ -1,5 +1,5 @@
-// Every cause that only the loop can see, raised by its fact: after how many ticks, with what
-// value, limit and channel.
+// Every trip cause of the control step: after how many samples it is raised, with which value,
+// limit and channel.
 
 #include "controller/step/fault_detection.h"
 
@@ -16,7 +16,7 @@
 namespace flexarm {
 namespace {
 
-// Facts of a healthy arm at rest at zero.
+// Inputs of a healthy arm at rest at zero.
 struct Facts {
   DecodedCounters counters{};
   FittedModes modes{};
@@ -43,8 +43,8 @@ struct Facts {
 
 class LoopSupervisorTest : public testing::Test {
  protected:
-  // Shows `facts` and expects `cause` alone from the `ticks`-th sample on, with its evidence; and
-  // silence again when the fact has gone.
+  // Judges `facts` repeatedly; expects only `cause`, with its evidence, from the `ticks`-th sample
+  // on, and no fault once the inputs are healthy again.
   void Expect(TripCause cause, int ticks, const Facts& facts, double value, double limit,
               std::uint16_t channel) {
     SCOPED_TRACE(Name(cause));
@@ -59,18 +59,18 @@ class LoopSupervisorTest : public testing::Test {
       EXPECT_DOUBLE_EQ(verdict.limit, limit);
       EXPECT_EQ(verdict.channel, channel);
     }
-    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u) << "the fact has gone";
+    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u) << "the inputs are healthy again";
   }
 
   const RigConfig config_ = ShippedRig();
   FaultDetection monitor_{config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96}};
 };
 
-TEST_F(LoopSupervisorTest, AHealthyArmRaisesNothing) {
+TEST_F(LoopSupervisorTest, AHealthyArmRaisesNoFault) {
   for (int k = 0; k < 100; ++k) EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
 }
 
-TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSampleThatShowsThem) {
+TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSameSample) {
   for (const double sign : {1.0, -1.0}) {
     Facts facts;
     facts.counters.angle_rad = {sign * 90.1 * kRadPerDeg, 0, sign * 90.1 * kRadPerDeg, 0};
@@ -92,7 +92,7 @@ TEST_F(LoopSupervisorTest, HubRatesTripOnTheSecondSample) {
   Expect(TripCause::kHubRate2, 2, facts, 10.1, 10.0, 2);
 }
 
-TEST_F(LoopSupervisorTest, AHubRateOfEverySecondSampleDoesNotTrip) {
+TEST_F(LoopSupervisorTest, AHubRateInEverySecondSampleDoesNotTrip) {
   Facts fast;
   fast.estimate.x(6) = 9.0;
   for (int k = 0; k < 20; ++k) {
@@ -101,7 +101,7 @@ TEST_F(LoopSupervisorTest, AHubRateOfEverySecondSampleDoesNotTrip) {
   }
 }
 
-TEST_F(LoopSupervisorTest, BendingStrainTripsInTheSampleThatShowsIt) {
+TEST_F(LoopSupervisorTest, BendingStrainTripsInTheSameSample) {
   Facts facts;
   facts.modes.root_strain = {-1.95e-3, 0.0};
   Expect(TripCause::kBendingStrain1, 1, facts, 1.95e-3, 1.9e-3, 1);
@@ -118,7 +118,7 @@ TEST_F(LoopSupervisorTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
   EXPECT_DOUBLE_EQ(verdict.limit, 14.0);
 }
 
-// "No good counter reading for two periods."
+// No valid counter reading for two periods.
 TEST_F(LoopSupervisorTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
   Facts facts;
   facts.counters.good = 0b1101;
@@ -128,7 +128,7 @@ TEST_F(LoopSupervisorTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
   Expect(TripCause::kNoCounterReading, 1, facts, 2.0, 2.0, 2);
 }
 
-TEST_F(LoopSupervisorTest, AnEncoderThatTheRigDoesNotHaveIsNotMissed) {
+TEST_F(LoopSupervisorTest, AnEncoderThatTheRigLacksDoesNotTrip) {
   FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {761.59, 497.96});
   Facts facts;
   facts.counters.good = 0b0011;
@@ -136,14 +136,14 @@ TEST_F(LoopSupervisorTest, AnEncoderThatTheRigDoesNotHaveIsNotMissed) {
   for (int k = 0; k < 5; ++k) EXPECT_EQ(hubs_only.Judge(facts.Now()).faults, 0u);
 }
 
-// 0.1 rad beyond what the torque twists the spring by.
-TEST_F(LoopSupervisorTest, HubAgainstRotorTripsBeyondTheTorsionThatTheTorqueExplains) {
+// 0.1 rad beyond the torsion of the joint spring by the torque.
+TEST_F(LoopSupervisorTest, HubAgainstRotorTripsBeyondTheTorsionByTheTorque) {
   Facts facts;
   facts.counters.angle_rad = {0.2, 0.0, 0.2 + 0.11, 0.0};
   Expect(TripCause::kHubAgainstRotor, 3, facts, 0.2 + 0.11 - 0.2, 0.1, 1);
   facts.counters.angle_rad = {0.0, 0.1, 0.0, 0.0};
   EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
-  // 761.59 N m twist joint 1 by one radian: nothing is wrong then.
+  // 761.59 N m twist joint 1 by one radian, so this is no fault.
   facts = {};
   facts.torque_nm = {761.59, 0.0};
   facts.counters.angle_rad = {0.0, 0.0, 1.0, 0.0};
@@ -173,7 +173,7 @@ TEST_F(LoopSupervisorTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
   Expect(TripCause::kStrainOutOfFamily, 3, facts, 7e-4, 4e-4, 1);
 }
 
-TEST_F(LoopSupervisorTest, AStrainFaultThatComesAndGoesDoesNotTrip) {
+TEST_F(LoopSupervisorTest, AnIntermittentStrainFaultDoesNotTrip) {
   Facts bad;
   bad.modes.outlier = 1;
   for (int k = 0; k < 10; ++k) {
@@ -212,7 +212,7 @@ TEST_F(LoopSupervisorTest, EstimatorResidualTripsAfterThreeSamplesAndNamesTheJoi
   Expect(TripCause::kEstimatorResidual, 3, facts, 0.4, 0.35, 2);
 }
 
-// Three causes in one sample: all are raised, the evidence is that of the lowest number.
+// Three causes in one sample: all are raised; the evidence is that of the lowest cause.
 TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
   Facts facts;
   facts.frame_age_s = 0.1;
@@ -226,7 +226,7 @@ TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
   EXPECT_EQ(verdict.channel, 2);
 }
 
-TEST_F(LoopSupervisorTest, ResetForgetsSamplesInARow) {
+TEST_F(LoopSupervisorTest, ResetClearsTheCountsOfSamplesInARow) {
   Facts facts;
   facts.modes.stuck = 1;
   monitor_.Judge(facts.Now());
@@ -236,8 +236,8 @@ TEST_F(LoopSupervisorTest, ResetForgetsSamplesInARow) {
 }
 
 // Symptom: the log of a second run, armed away from zero, did not replay: a loop that had run
-// before saw rest five samples earlier than the one that began with the log.
-TEST_F(LoopSupervisorTest, ResetForgetsWhereTheArmWas) {
+// before detected rest five samples earlier than the one that started with the log.
+TEST_F(LoopSupervisorTest, ResetClearsTheHubAnglesBefore) {
   Facts elsewhere;
   elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
   elsewhere.modes.root_strain = {2e-4, 1e-4};
@@ -245,18 +245,18 @@ TEST_F(LoopSupervisorTest, ResetForgetsWhereTheArmWas) {
   for (int k = 0; k < 38; ++k) monitor_.Judge(elsewhere.Now());  // 38: not a full ring
   monitor_.Reset();
   for (int k = 1; k <= 60; ++k) {
-    // Moves from sample 30 to 33, so that the order in the ring shows.
+    // Moves from sample 30 to 33, so that the order in the ring buffer has an effect.
     if (k >= 30 && k <= 33) elsewhere.counters.angle_rad[0] += 0.002;
     const bool at_rest = monitor_.Judge(elsewhere.Now()).at_rest;
     EXPECT_EQ(at_rest, fresh.Judge(elsewhere.Now()).at_rest) << k;
     if (k < 30) {
-      EXPECT_EQ(at_rest, k >= 25) << "half a second, wherever it stands: " << k;
+      EXPECT_EQ(at_rest, k >= 25) << "half a second, at any angle: " << k;
     }
   }
 }
 
 // safety.rest_time_s may be shorter than the window over which hub rates are measured.
-TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestHoweverShortTheRest) {
+TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestWithAShortRestTime) {
   SafetyConfig safety = config_.safety;
   safety.rest_time_s = 0.05;
   FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
@@ -268,19 +268,19 @@ TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestHoweverShortTheRest) {
 }
 
 // At rest: half a second, 25 samples, of slow hubs and slow strain.
-TEST_F(LoopSupervisorTest, RestIsSeenAfterHalfASecondOfIt) {
+TEST_F(LoopSupervisorTest, RestIsDetectedAfterHalfASecond) {
   for (int k = 1; k < 25; ++k) EXPECT_FALSE(monitor_.Judge(Facts().Now()).at_rest) << k;
   EXPECT_TRUE(monitor_.Judge(Facts().Now()).at_rest);
 }
 
-TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestAndACountOfItIs) {
+TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestButAFlickeringCountIs) {
   Facts moving;
   for (int k = 0; k < 60; ++k) {  // 0.06 rad/s, the bound being 0.05
     moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
     EXPECT_FALSE(monitor_.Judge(moving.Now()).at_rest);
   }
   monitor_.Reset();
-  Facts flicker;  // one count of 2540 to and fro: 0.12 rad/s from sample to sample
+  Facts flicker;  // one count of 2540 back and forth: 0.12 rad/s from sample to sample
   bool at_rest = false;
   for (int k = 0; k < 60; ++k) {
     flicker.counters.angle_rad[0] = k % 2 == 0 ? 0.0 : 2.0 * std::numbers::pi / 2540.0;
@@ -298,7 +298,7 @@ TEST_F(LoopSupervisorTest, ABendingLinkIsNotAtRest) {
   }
 }
 
-TEST_F(LoopSupervisorTest, OneMovementStartsTheHalfSecondAnew) {
+TEST_F(LoopSupervisorTest, AMovementRestartsTheHalfSecond) {
   for (int k = 0; k < 40; ++k) monitor_.Judge(Facts().Now());
   ASSERT_TRUE(monitor_.Judge(Facts().Now()).at_rest);
   Facts moved;
@@ -307,7 +307,7 @@ TEST_F(LoopSupervisorTest, OneMovementStartsTheHalfSecondAnew) {
   int samples = 0;
   while (!monitor_.Judge(moved.Now()).at_rest && samples < 100) ++samples;
   EXPECT_GE(samples, 24);
-  EXPECT_LE(samples, 30) << "the window of five samples may delay it, no more";
+  EXPECT_LE(samples, 30) << "only the window of five samples may delay it";
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ BusHealth Bus(bool ok, const char* fault, std::uint32_t failed) {
   return {.name = "can0", .ok = ok, .fault = fault, .failed = failed, .recovered = 0};
 }
 
-TEST(BusJournal, SaysWhenABusIsLostAndWhenItIsBack) {
+TEST(BusJournal, ReportsALossAndTheReconnection) {
   Journal told;
   told.Follow(0, {Bus(true, "", 0)});
   told.Follow(20 * kMs, {Bus(false, "can0: node 2 (drive2): does not answer SYNC", 2)});
@@ -32,23 +32,25 @@ TEST(BusJournal, SaysWhenABusIsLostAndWhenItIsBack) {
   told.Follow(60 * kMs, {Bus(true, "", 8)});
   told.Follow(80 * kMs, {Bus(true, "", 8)});
   EXPECT_EQ(told.lines, (std::vector<std::string>{
-                            "error: lost: can0: node 2 (drive2): does not answer SYNC",
-                            "can0: back, after 6 failed exchanges and attempts to reconnect"}));
+                            "error: bus lost: can0: node 2 (drive2): does not answer SYNC",
+                            "can0: reconnected after 6 failed exchanges and connection attempts"}));
 }
 
-// A bus that fails now and then and is never lost: counted, and told, but not fifty times a second.
-TEST(BusJournal, TellsOfSurvivedFailuresOnceASecondAtMost) {
+// Sporadic failures without a loss of the bus are counted and reported, but not fifty times a
+// second.
+TEST(BusJournal, ReportsFailuresWithoutALossAtMostOnceASecond) {
   Journal told;
   for (std::uint32_t k = 0; k < 150; ++k) {
     told.Follow(std::int64_t{k} * 20 * kMs,
                 {Bus(true, k % 2 == 0 ? "" : "can0: no answer in time", (k + 1) / 2)});
   }
   EXPECT_EQ(told.lines.size(), 3U);
-  EXPECT_EQ(told.lines[0],
-            "error: can0: 1 failed exchanges, survived; the last: can0: no answer in time");
+  EXPECT_EQ(
+      told.lines[0],
+      "error: can0: 1 failed exchanges without loss of the bus; the last: can0: no answer in time");
 }
 
-TEST(BusJournal, KeepsTheBusesApart) {
+TEST(BusJournal, ReportsEachBusSeparately) {
   Journal told;
   BusHealth other = Bus(true, "", 0);
   other.name = "amplifier";
@@ -59,7 +61,7 @@ TEST(BusJournal, KeepsTheBusesApart) {
                           .fault = "amplifier: connection lost",
                           .failed = 2,
                           .recovered = 0}});
-  EXPECT_EQ(told.lines, std::vector<std::string>{"error: lost: amplifier: connection lost"});
+  EXPECT_EQ(told.lines, std::vector<std::string>{"error: bus lost: amplifier: connection lost"});
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST_F(HomingGoalTest, MovesItsJointAndHoldsTheOther) {
   EXPECT_FALSE(goal_.ended());
 }
 
-TEST_F(HomingGoalTest, TurnsRoundWhereTheHubIsWhenTheSwitchOpensAndGoesBack) {
+TEST_F(HomingGoalTest, ReversesFromTheHubAngleWhenTheSwitchOpens) {
   for (int k = 0; k < 50; ++k) goal_.Next(kHealthyLevels, {0.3, -0.12});
   ReferenceSample sample = goal_.Next(kOpen, {0.3, -0.11});  // the hub lags behind its goal
   EXPECT_NEAR(sample.x_m[1], -0.11 - 0.002, 1e-12);
@@ -33,23 +33,23 @@ TEST_F(HomingGoalTest, TurnsRoundWhereTheHubIsWhenTheSwitchOpensAndGoesBack) {
   EXPECT_NEAR(steps, 50, 1);
 }
 
-TEST_F(HomingGoalTest, ASwitchThatOpensAgainOnTheWayBackChangesNothing) {
+TEST_F(HomingGoalTest, ASwitchThatOpensAgainDuringTheMotionBackHasNoEffect) {
   goal_.Next(kOpen, {0.3, 0.0});
   const double before = goal_.Next(kHealthyLevels, {0.3, 0.0}).x_m[1];
   EXPECT_LT(goal_.Next(kOpen, {0.3, 0.0}).x_m[1], before);
 }
 
-TEST_F(HomingGoalTest, GivesUpAfterItsTravel) {
+TEST_F(HomingGoalTest, EndsTheSearchAfterItsTravel) {
   double farthest = 0.0;
   int steps = 0;
   for (; !goal_.ended() && steps < 1000; ++steps) {
     farthest = goal_.Next(kHealthyLevels, {0.3, 0.0}).x_m[1];
   }
   EXPECT_NEAR(farthest, -0.2 + kPlan.travel_rad, kPlan.step_rad);
-  EXPECT_EQ(goal_.Next(kHealthyLevels, {0.3, 0.0}).x_m[1], farthest) << "and stays";
+  EXPECT_EQ(goal_.Next(kHealthyLevels, {0.3, 0.0}).x_m[1], farthest) << "and stays there";
 }
 
-TEST_F(HomingGoalTest, SearchesTheOtherWayWithANegativeStep) {
+TEST_F(HomingGoalTest, SearchesInTheOtherDirectionWithANegativeStep) {
   HomingPlan low = kPlan;
   low.line = Line::kLimit2Low;
   low.step_rad = -0.002;

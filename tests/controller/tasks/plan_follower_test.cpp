@@ -1,4 +1,4 @@
-// When the control task asks for plans, for what, and which plan it takes.
+// When the control task requests plans, the content of the requests, and the plan that it follows.
 
 #include "controller/tasks/plan_follower.h"
 
@@ -29,8 +29,8 @@ ReferenceTable MovesOf(double duration_s, const std::vector<double>& starts_s) {
   return {experiment, ShippedPathDesign(), kPeriod_s, {0.0, 0.0}, ShippedLimits()};
 }
 
-// A move from sample 50 to 150, and one from sample 154 to 254, before the first one's plans have
-// rested for 20 periods.
+// A move from sample 50 to 150, and one from sample 154 to 254: less than the 20 periods of rest of
+// a plan after the first.
 const ReferenceTable& TwoMoves() {
   static const ReferenceTable table = MovesOf(2.0, {1.0, 3.08});
   return table;
@@ -51,7 +51,7 @@ class PlanFollowerTest : public testing::Test {
  protected:
   PlanFollowerTest() { follower_.Start(7); }
 
-  // Steps from `from` to `to`, and the requests that they made.
+  // Runs the samples `from` to `to`. @returns the requests made
   std::vector<PlanRequest> AskedBetween(int from, int to) {
     std::vector<PlanRequest> asked;
     for (int sample = from; sample <= to; ++sample) {
@@ -86,7 +86,7 @@ class PlanFollowerTest : public testing::Test {
   std::uint32_t seen_ = 0;
 };
 
-TEST_F(PlanFollowerTest, AsksSoThatAPlanHoldsFromTheBeginningOfEachMoveAndEveryTenPeriods) {
+TEST_F(PlanFollowerTest, RequestsPlansFromTheStartOfEachMoveAndEveryTenPeriods) {
   const std::vector<PlanRequest> asked = AskedBetween(0, 399);
   std::vector<int> first;
   for (const PlanRequest& request : asked) first.push_back(request.first);
@@ -102,18 +102,18 @@ TEST_F(PlanFollowerTest, AsksSoThatAPlanHoldsFromTheBeginningOfEachMoveAndEveryT
   }
 }
 
-TEST_F(PlanFollowerTest, ARunThatBeginsInItsMoveGetsItsPlanAtOnce) {
+TEST_F(PlanFollowerTest, ARunThatStartsDuringAMoveRequestsAPlanAtOnce) {
   EXPECT_EQ(AskedBetween(80, 80).at(0).first, 85);
   EXPECT_EQ(AskedBetween(81, 95).at(0).first, 95) << "then every ten";
 }
 
-TEST_F(PlanFollowerTest, AsksUntilAPlanWouldHoldForFivePeriodsOnly) {
+TEST_F(PlanFollowerTest, RequestsNoPlanForLessThanFivePeriods) {
   EXPECT_EQ(AskedBetween(140, 140).at(0).first, 145);
   follower_.Start(8);
   EXPECT_TRUE(AskedBetween(141, 148).empty());
 }
 
-// Ten periods after 145 the next move has begun.
+// Ten periods after 145 the next move has started.
 TEST_F(PlanFollowerTest, TheNextMoveDoesNotWaitForTheTenPeriodsOfTheOneBefore) {
   ASSERT_EQ(AskedBetween(140, 140).at(0).first, 145);
   EXPECT_EQ(AskedBetween(141, 155).at(0).first, 154);
@@ -125,8 +125,8 @@ TEST_F(PlanFollowerTest, TheNextRunDoesNotWaitForTheTenPeriodsOfTheOneBefore) {
   EXPECT_EQ(AskedBetween(46, 46).at(0).first, 51);
 }
 
-// A plan has 500 samples at the most; this move has 600.
-TEST_F(PlanFollowerTest, OfALongMoveThePathIsToldAsFarAsAPlanGoes) {
+// A plan has at most 500 samples; this move has 600.
+TEST_F(PlanFollowerTest, TheRequestOfALongMoveHasThePathOfTheLongestPlan) {
   const ReferenceTable table = MovesOf(12.0, {1.0});
   follower_.Ask(45, 45 * kPeriodNs, table, AnOutput());
   const PlanRequest& request = requests_->Read();
@@ -135,7 +135,7 @@ TEST_F(PlanFollowerTest, OfALongMoveThePathIsToldAsFarAsAPlanGoes) {
   EXPECT_EQ(request.path[522].angle_rad, table.PathAround(44 + 522)[1].angle_rad);
 }
 
-TEST_F(PlanFollowerTest, TellsTheStateThePayloadAndThePathAroundTheHorizon) {
+TEST_F(PlanFollowerTest, TheRequestHasStatePayloadAndThePathOfTheHorizon) {
   const std::vector<PlanRequest> asked = AskedBetween(0, 200);
   const PlanRequest& first = asked.at(0);
   EXPECT_EQ(first.known.payload_kg, 0.3);
@@ -144,7 +144,7 @@ TEST_F(PlanFollowerTest, TellsTheStateThePayloadAndThePathAroundTheHorizon) {
   EXPECT_EQ(first.known.warnings, static_cast<std::uint32_t>(kPayloadAtBound));
   EXPECT_EQ(first.known.friction_nm, AnOutput().friction_nm);
   EXPECT_EQ(first.x[11], AnOutput().x_next[11]);
-  // From one before `sample` to one after the plan's end: at the next move's beginning, ...
+  // From one before `sample` to one after the plan's end: at the start of the next move, ...
   EXPECT_EQ(static_cast<int>(first.points), 154 + 1 - (first.sample - 1) + 1);
   for (const std::uint32_t i : {0u, 6u, 60u, first.points - 1}) {
     const RigidPoint expected = TwoMoves().PathAround(first.sample - 1 + static_cast<int>(i))[1];
@@ -156,29 +156,29 @@ TEST_F(PlanFollowerTest, TellsTheStateThePayloadAndThePathAroundTheHorizon) {
   EXPECT_EQ(static_cast<int>(last.points), 254 + 20 + 1 - (last.sample - 1) + 1);
 }
 
-TEST_F(PlanFollowerTest, TakesThePlanThatHoldsWhenTheStepIsDue) {
+TEST_F(PlanFollowerTest, UsesThePlanThatIsValidWhenTheStepIsDue) {
   Publish(7, 60, 0.5, 60 * kPeriodNs);
-  EXPECT_FALSE(follower_.At(59, 59 * kPeriodNs)) << "not yet";
+  EXPECT_FALSE(follower_.At(59, 59 * kPeriodNs)) << "not valid yet";
   const std::optional<PlanSample> old = follower_.At(62, 62 * kPeriodNs);
   ASSERT_TRUE(old);
   EXPECT_EQ(old->x[3], 2.5);
   EXPECT_EQ(old->torque_nm[1], 4.0);
 
-  Publish(7, 70, -0.5, 70 * kPeriodNs);  // ready before it holds
-  EXPECT_EQ(follower_.At(69, 69 * kPeriodNs)->x[0], 9.5) << "the old one until then";
+  Publish(7, 70, -0.5, 70 * kPeriodNs);  // published before it is valid
+  EXPECT_EQ(follower_.At(69, 69 * kPeriodNs)->x[0], 9.5) << "the old plan until then";
   EXPECT_EQ(follower_.At(70, 70 * kPeriodNs)->x[0], -0.5);
-  EXPECT_FALSE(follower_.At(90, 90 * kPeriodNs)) << "over";
+  EXPECT_FALSE(follower_.At(90, 90 * kPeriodNs)) << "after its end";
 }
 
-TEST_F(PlanFollowerTest, TakesNoPlanOfAnotherRun) {
+TEST_F(PlanFollowerTest, UsesNoPlanOfAnotherRun) {
   Publish(7, 60, 0.5, 60 * kPeriodNs);
   follower_.Start(8);
   EXPECT_FALSE(follower_.At(62, 62 * kPeriodNs));
-  EXPECT_EQ(AskedBetween(62, 62).at(0).run, 8u) << "and asks for one of its own";
+  EXPECT_EQ(AskedBetween(62, 62).at(0).run, 8u) << "and requests one for this run";
 }
 
-// A plan that was asked for before is not taken even if it comes after.
-TEST_F(PlanFollowerTest, WhereTheModelIsContradictedThePlansAreVoidAndANewOneIsAskedFor) {
+// A plan that was requested before is not used even if it is published after.
+TEST_F(PlanFollowerTest, AModelMismatchInvalidatesThePlansAndRequestsANewOne) {
   const std::uint32_t before = AskedBetween(45, 55).back().number;
   Publish(7, 60, 0.5, 60 * kPeriodNs);
   ASSERT_TRUE(follower_.At(62, 62 * kPeriodNs));

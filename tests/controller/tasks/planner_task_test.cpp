@@ -1,4 +1,4 @@
-// The planner's thread: what it makes of a request. That plans bring the tip to rest is shown in
+// The planner task: its plan for a request. That plans bring the tip to rest is shown in
 // tests/controller/planner/horizon_planner_test.cpp.
 
 #include "controller/tasks/planner_task.h"
@@ -59,7 +59,7 @@ class PlannerTaskTest : public testing::Test {
     follower_->Start(1);
   }
 
-  // The control task asks at a sample, and the planner runs.
+  // Requests a plan at a sample and runs the planner.
   void AskAt(int sample, const PlanState& x, double payload_kg, std::uint32_t warnings = 0) {
     StepOutput output{};
     output.payload_warnings = warnings;
@@ -75,8 +75,8 @@ class PlannerTaskTest : public testing::Test {
 
   PlanState StateAt(int sample) { return PlanState::Map(At(sample).value().x.data()); }
 
-  // Where an arm with 0.3 kg will be five samples after it was at x, under the law towards
-  // desired(sample). Without friction: what the law feeds forward against it, it takes.
+  // State of an arm with 0.3 kg five samples after x, under the law that follows desired(sample).
+  // Without friction: the law's friction feedforward is assumed to cancel it.
   template <typename Desired>
   PlanState FiveSamplesAfter(int sample, const PlanState& x, const Desired& desired) {
     const RigidJointArm arm = MakeRigidJointArm(DesignOfRig());
@@ -106,11 +106,11 @@ class PlannerTaskTest : public testing::Test {
   std::unique_ptr<PlanFollower> follower_;
 };
 
-TEST_F(PlannerTaskTest, ThePlanHoldsFromTheBeginningOfTheMoveAndEndsAtRestAtItsGoal) {
+TEST_F(PlannerTaskTest, ThePlanStartsWithTheMoveAndEndsAtRestAtItsGoal) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
   EXPECT_FALSE(At(kFirst - 1));
-  EXPECT_LT(StateAt(kFirst).norm(), 1e-12) << "at rest, and so it was predicted";
+  EXPECT_LT(StateAt(kFirst).norm(), 1e-12) << "predicted at rest";
   const PlanState end = StateAt(kEnd + 19);
   EXPECT_FALSE(At(kEnd + 20));
   const std::array<double, 2> goal_rad = OneMove().moves()[0].to_rad;
@@ -120,8 +120,8 @@ TEST_F(PlannerTaskTest, ThePlanHoldsFromTheBeginningOfTheMoveAndEndsAtRestAtItsG
   EXPECT_FALSE(planner_->figures().warm);
 }
 
-// Each number of the config in its place: the plan is that of a planner which was told the design
-// study's.
+// The planner uses each number of the config: the plan is that of a planner with the design study's
+// settings.
 TEST_F(PlannerTaskTest, PlansWithTheWeightsAndLimitsOfTheConfig) {
   for (const double torque_share : {0.93, 0.05}) {
     Make({"controller.plan.torque_share=" + std::to_string(torque_share),
@@ -150,13 +150,13 @@ TEST_F(PlannerTaskTest, PlansWithTheWeightsAndLimitsOfTheConfig) {
       ASSERT_EQ(StateAt(k), expected.x) << k;
       largest = std::max(largest, std::fabs(expected.torque_nm[1]) / told.torque_limit_nm[1]);
     }
-    EXPECT_EQ(largest == 1.0, torque_share < 0.1) << "the limit counts in the second plan only";
+    EXPECT_EQ(largest == 1.0, torque_share < 0.1) << "only the second plan reaches the limit";
   }
 }
 
-// Due when the step has published, 15 ms after its sample; what was asked for at one step holds for
-// the fifth after it.
-TEST_F(PlannerTaskTest, IsDueWhenAStepHasAskedAndReadyBeforeThePlanHolds) {
+// Due when the step has published, 15 ms after its sample; a plan requested at one step is valid
+// for the fifth after it.
+TEST_F(PlannerTaskTest, IsDueAfterTheStepAndReadyBeforeThePlanIsValid) {
   Make();
   const Task::Traits traits = planner_->traits();
   EXPECT_EQ(traits.phase_ns, 15'000'000);
@@ -164,19 +164,19 @@ TEST_F(PlannerTaskTest, IsDueWhenAStepHasAskedAndReadyBeforeThePlanHolds) {
   EXPECT_EQ(traits.deadline_ns, 4 * kPeriodNs);
 }
 
-// On its plan the arm will be where the plan is: 5 samples with 8 steps each, where the plan
-// takes 4.
-TEST_F(PlannerTaskTest, TheNextPlanBeginsWhereTheArmWillBeByThen) {
+// For an arm that follows its plan the predicted state is that of the plan, up to the integration
+// error: the prediction takes 8 steps a sample, the plan 4.
+TEST_F(PlannerTaskTest, TheNextPlanStartsAtThePredictedState) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
   const PlanState now = StateAt(kFirst + 5), then = StateAt(kFirst + 10);
   AskAt(kFirst + 5, now, 0.3);
   EXPECT_TRUE(planner_->figures().warm);
   EXPECT_LT((StateAt(kFirst + 10) - then).cwiseAbs().maxCoeff(), 2e-3);
-  EXPECT_GT((then - now).cwiseAbs().maxCoeff(), 0.05) << "no motion: the test says nothing";
+  EXPECT_GT((then - now).cwiseAbs().maxCoeff(), 0.05) << "no motion: the test is inconclusive";
 }
 
-TEST_F(PlannerTaskTest, TheOldPlanHoldsUntilTheNextOneDoes) {
+TEST_F(PlannerTaskTest, TheOldPlanIsValidUntilTheNextOneIs) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
   const PlanState before = StateAt(kFirst + 9);
@@ -185,8 +185,8 @@ TEST_F(PlannerTaskTest, TheOldPlanHoldsUntilTheNextOneDoes) {
   EXPECT_EQ(StateAt(kFirst + 9), before);
 }
 
-// Round-off only: the plan begins where the law will have taken the arm.
-TEST_F(PlannerTaskTest, AnArmBesideItsPlanIsLedBackByTheLawUntilTheNextOneHolds) {
+// The new plan starts at the state predicted under the law, up to round-off.
+TEST_F(PlannerTaskTest, ThePredictionFollowsTheOldPlanUntilTheNextOneIsValid) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
   PlanState beside = StateAt(kFirst + 5);
@@ -200,8 +200,8 @@ TEST_F(PlannerTaskTest, AnArmBesideItsPlanIsLedBackByTheLawUntilTheNextOneHolds)
   EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// The plan of the run before is for an arm of another payload, and would lead it elsewhere.
-TEST_F(PlannerTaskTest, InAnotherRunItIsLedByTheClosedForm) {
+// The plan of the run before is for another payload, and would give another prediction.
+TEST_F(PlannerTaskTest, InAnotherRunThePredictionUsesTheClosedForm) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.8);
   follower_->Start(2);
@@ -211,7 +211,7 @@ TEST_F(PlannerTaskTest, InAnotherRunItIsLedByTheClosedForm) {
   EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST_F(PlannerTaskTest, WhereTheModelIsContradictedTheOldPlanIsNoGuide) {
+TEST_F(PlannerTaskTest, AfterAModelMismatchThePredictionUsesTheClosedForm) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.31);
   const PlanState beside = ClosedForm(kFirst + 5).x + PlanState::Constant(1e-3);
@@ -221,12 +221,12 @@ TEST_F(PlannerTaskTest, WhereTheModelIsContradictedTheOldPlanIsNoGuide) {
   EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST_F(PlannerTaskTest, WithoutAPlanTheArmIsOnTheWayOfTheClosedForm) {
+TEST_F(PlannerTaskTest, WithoutAPlanThePredictionFollowsTheClosedForm) {
   Make();
   const auto closed = [](int k) { return ClosedForm(k).x; };
   AskAt(kFirst + 30, closed(kFirst + 30), 0.3);
   EXPECT_FALSE(planner_->figures().warm);
-  // The closed form leaves out inertia of the links' bending: some 1e-3 rad over 0.1 s.
+  // The closed form neglects the inertia of the links' bending: some 1e-3 rad over 0.1 s.
   EXPECT_LT((StateAt(kFirst + 35) - closed(kFirst + 35)).head<2>().cwiseAbs().maxCoeff(), 5e-3);
   EXPECT_GT((closed(kFirst + 35) - closed(kFirst + 30)).head<2>().cwiseAbs().maxCoeff(), 0.03);
 }
@@ -236,10 +236,10 @@ TEST_F(PlannerTaskTest, AnswersARequestOnce) {
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
   const PlanSample before = At(kFirst + 20).value();
   planner_->Run({.due_ns = (kFirst - 4) * kPeriodNs, .missed_in_a_row = 0});
-  EXPECT_EQ(At(kFirst + 20)->x, before.x) << "the same plan, not one that starts from it";
+  EXPECT_EQ(At(kFirst + 20)->x, before.x) << "the same plan, and not another warm start";
 }
 
-// With a tight bound on the roughness a state that is far from the plan asks for a jump.
+// With a tight bound on the roughness a state far from the plan needs a larger jump than allowed.
 class RefusedPlans : public PlannerTaskTest {
  protected:
   RefusedPlans() {
@@ -254,22 +254,22 @@ class RefusedPlans : public PlannerTaskTest {
   PlanState displaced_;
 };
 
-TEST_F(RefusedPlans, LeaveTheOneBeforeInForce) {
+TEST_F(RefusedPlans, LeaveThePreviousPlanValid) {
   ASSERT_TRUE(kept_);
   AskAt(kFirst + 5, displaced_, 0.31);
   ASSERT_TRUE(At(kFirst + 20));
   EXPECT_EQ(At(kFirst + 20)->x, kept_->x);
 }
 
-TEST_F(RefusedPlans, LeaveNoneIfThatIsForAnotherPayload) {
+TEST_F(RefusedPlans, LeaveNoPlanIfThePreviousIsForAnotherPayload) {
   ASSERT_TRUE(kept_);
   AskAt(kFirst + 5, displaced_, 0.6);
   EXPECT_FALSE(At(kFirst + 20));
   EXPECT_FALSE(At(kFirst + 10));
 }
 
-// A fifth of 0.05 kg is less than the 0.03 kg that a plan may always be off by.
-TEST_F(PlannerTaskTest, ARefusedPlanForALightPayloadLeavesTheOneBeforeToo) {
+// A fifth of 0.05 kg is less than the difference of 0.03 kg that is always allowed.
+TEST_F(PlannerTaskTest, ARefusedPlanForALightPayloadLeavesThePreviousToo) {
   Make({"controller.plan.roughness=0.05"});
   AskAt(kFirst - 5, PlanState::Zero(), 0.05);
   PlanState displaced = StateAt(kFirst + 5);
@@ -278,16 +278,17 @@ TEST_F(PlannerTaskTest, ARefusedPlanForALightPayloadLeavesTheOneBeforeToo) {
   EXPECT_TRUE(At(kFirst + 20));
 }
 
-// Rough is what jumps from the torque that acts before the plan does, not from nothing.
-TEST_F(PlannerTaskTest, APlanMadeInMidMoveIsNoJump) {
+// The roughness includes the jump from the torque that acts before the plan, not from zero.
+TEST_F(PlannerTaskTest, APlanThatStartsDuringAMoveIsNotRough) {
   Make({"controller.plan.roughness=0.05"});
   AskAt(kFirst + 20, ClosedForm(kFirst + 20).x, 0.3);
   ASSERT_TRUE(At(kFirst + 25));
   const std::array<double, 2> torque_nm = At(kFirst + 25)->torque_nm;
-  EXPECT_GT(std::fabs(torque_nm[0]) / 28.0 + std::fabs(torque_nm[1]) / 5.6, 0.06) << "no test";
+  EXPECT_GT(std::fabs(torque_nm[0]) / 28.0 + std::fabs(torque_nm[1]) / 5.6, 0.06)
+      << "the test is inconclusive";
 }
 
-TEST_F(PlannerTaskTest, AnotherRunStartsFromScratch) {
+TEST_F(PlannerTaskTest, ThePlanOfAnotherRunIsNoWarmStart) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
   follower_->Start(2);

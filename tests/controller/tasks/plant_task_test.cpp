@@ -1,6 +1,6 @@
-// The drive side of the simulated backend: permit, relay, charge pump and the age of a command each
-// stop the torque alone. In a whole stack they act together, and hide one another. And the load
-// that an experiment drops or picks up.
+// The drive side of the simulated backend: permit, relay, charge pump and command age each remove
+// the torque independently. In the complete stack they act together, so that one hides another.
+// Also payload changes by an experiment.
 
 #include "controller/tasks/plant_task.h"
 
@@ -18,7 +18,7 @@
 namespace flexarm {
 namespace {
 
-// What the other tasks say in every millisecond.
+// Outputs of the other tasks in every millisecond.
 struct World {
   SafetyState permit = SafetyState::kRunning;
   bool permit_renewed = true;
@@ -28,7 +28,7 @@ struct World {
   std::int64_t running_since_ns = INT64_MIN;
 };
 
-// Stands for the control task.
+// Replaces the control task.
 class CountingTask final : public Task {
  public:
   Traits traits() const noexcept override {
@@ -55,7 +55,7 @@ class PlantTaskTest : public testing::Test {
                .truth = &truth_,
                .control = &control_}) {}
 
-  // What the arm did at a sample, taken from the queue up to it.
+  // True state of the arm at a sample; drops earlier ones from the queue.
   PlantTruth TruthAt(std::int64_t tick) {
     TruthRecord record{};
     while (truth_.Pop(&record)) {
@@ -64,8 +64,8 @@ class PlantTaskTest : public testing::Test {
     return {};
   }
 
-  // Runs to `until_ns`, the world as it says from now on; returns the mean torque of joint 1 over
-  // the 20 ms that end there.
+  // Runs to `until_ns` with these outputs of the other tasks.
+  // @returns the mean torque of joint 1 over the last 20 ms
   double RunTo(std::int64_t until_ns, const World& world) {
     while (now_ns_ < until_ns) {
       if (world.commands_go_on && now_ns_ % (20 * kMs) == 0) {
@@ -113,7 +113,7 @@ TEST_F(PlantTaskTest, AppliesTheCommandWhileEverythingAllowsIt) {
   EXPECT_EQ(RunTo(60 * kMs, {}), 2.0);
 }
 
-TEST_F(PlantTaskTest, AFrameCarriesWhyTheGateChangedTheTorqueBeforeIt) {
+TEST_F(PlantTaskTest, AFrameHasTheGateReasonsOfTheTorqueBeforeIt) {
   World world;
   RunTo(60 * kMs, world);
   EXPECT_EQ(frames_.Read().At(60 * kMs).value.gate_reasons, 0U);
@@ -122,7 +122,7 @@ TEST_F(PlantTaskTest, AFrameCarriesWhyTheGateChangedTheTorqueBeforeIt) {
   EXPECT_EQ(frames_.Read().At(80 * kMs).value.gate_reasons, std::uint32_t{kGateNotAllowed});
 }
 
-TEST(FreezingTask, RunsItsTaskUpToTheInstantAndNotFromThereOn) {
+TEST(FreezingTask, RunsItsTaskOnlyBeforeTheInstant) {
   CountingTask inner;
   FreezingTask task(&inner);
   EXPECT_STREQ(task.traits().name, "control");
@@ -135,38 +135,39 @@ TEST(FreezingTask, RunsItsTaskUpToTheInstantAndNotFromThereOn) {
   EXPECT_EQ(inner.runs, 2);
 }
 
-TEST_F(PlantTaskTest, APermitThatAllowsNoTorqueStopsItAlone) {
+TEST_F(PlantTaskTest, APermitThatAllowsNoTorqueRemovesIt) {
   ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
   EXPECT_EQ(RunTo(60 * kMs, {.permit = SafetyState::kTripped}), 0.0);
 }
 
-TEST_F(PlantTaskTest, AnOpenRelayStopsItAlone) {
+TEST_F(PlantTaskTest, AnOpenRelayRemovesTheTorque) {
   ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
   EXPECT_EQ(RunTo(60 * kMs, {.relay_closed = false}), 0.0);
 }
 
-// Renewed last at 39 ms, the permit is 5 ms old at 44 and too old at 45: five of the twenty
-// milliseconds from 40 on.
-TEST_F(PlantTaskTest, APermitOlderThanFiveMillisecondsStopsItAlone) {
+// Last renewed at 39 ms, the permit is 5 ms old at 44 and too old at 45: torque in five of the
+// twenty milliseconds from 40 on.
+TEST_F(PlantTaskTest, APermitOlderThanFiveMillisecondsRemovesTheTorque) {
   ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
   EXPECT_DOUBLE_EQ(RunTo(60 * kMs, {.permit_renewed = false}), 2.0 * 5.0 / 20.0);
 }
 
-// The pump toggled last at 39 ms; the same five milliseconds.
-TEST_F(PlantTaskTest, AChargePumpThatStandsStillStopsItAlone) {
+// The pump last toggled at 39 ms; torque in the same five milliseconds.
+TEST_F(PlantTaskTest, AStoppedChargePumpRemovesTheTorque) {
   ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
   EXPECT_DOUBLE_EQ(RunTo(60 * kMs, {.pump_toggles = false}), 2.0 * 5.0 / 20.0);
 }
 
-// The last command acts from 20 ms on and lives two periods: to 60 ms and that millisecond.
-TEST_F(PlantTaskTest, ACommandOlderThanTwoPeriodsStopsItAlone) {
+// The last command acts from 20 ms on and is valid for two periods: to 60 ms, and for that
+// millisecond.
+TEST_F(PlantTaskTest, ACommandOlderThanTwoPeriodsRemovesTheTorque) {
   ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
   EXPECT_EQ(RunTo(60 * kMs, {.commands_go_on = false}), 2.0);
   EXPECT_DOUBLE_EQ(RunTo(80 * kMs, {.commands_go_on = false}), 2.0 * 1.0 / 20.0);
   EXPECT_EQ(RunTo(100 * kMs, {.commands_go_on = false}), 0.0);
 }
 
-TEST_F(PlantTaskTest, AnotherPayloadTakesNoHeap) {
+TEST_F(PlantTaskTest, AChangeOfPayloadDoesNotAllocate) {
   PlannedExperiment planned(std::vector<std::array<double, 2>>(10));
   planned.sim_events = {PayloadEvent(0.0, 0.8), PayloadEvent(0.04, 0.0)};
   plans_.Publish({.experiment = &planned, .number = 7});
@@ -175,7 +176,7 @@ TEST_F(PlantTaskTest, AnotherPayloadTakesNoHeap) {
     const NoAlloc armed;
     RunTo(200 * kMs, {.running_since_ns = 20 * kMs});
   }
-  EXPECT_EQ(task_.released(), 7u) << "the plan was not looked at";
+  EXPECT_EQ(task_.released(), 7u) << "the experiment was not read";
 }
 
 Experiment WithPayload(double at_s, double payload_kg) {
@@ -190,20 +191,20 @@ std::unique_ptr<StackRun> Recorded(const Experiment& experiment, double payload_
   return run;
 }
 
-TEST(PlantTaskPayload, OneOfTheSamePayloadIsNone) {
+TEST(PlantTaskPayload, AChangeToTheSamePayloadHasNoEffect) {
   EXPECT_TRUE(
       SameTicks(*Recorded(WithPayload(0.5, 0.1), 0.1), *Recorded(ShippedExperiment(), 0.1)));
 }
 
-// The arm rests at zero until the experiment starts: what it carried by then cannot matter.
-TEST(PlantTaskPayload, FromTheStartOnItIsARunWithThatPayload) {
+// The arm rests at zero until the experiment starts, so the payload before has no effect.
+TEST(PlantTaskPayload, AChangeAtTheStartEqualsARunWithThatPayload) {
   const auto changed = Recorded(WithPayload(0.0, 0.3), 0.1);
   EXPECT_TRUE(SameTicks(*changed, *Recorded(ShippedExperiment(), 0.3)));
   EXPECT_FALSE(SameTicks(*changed, *Recorded(ShippedExperiment(), 0.1)));
 }
 
-// In the middle of a push: the frame of that instant is the last one that knows nothing of it.
-TEST(PlantTaskPayload, ItActsFromItsInstantOn) {
+// During a torque pulse: the frame of that instant is the last one without an effect.
+TEST(PlantTaskPayload, AChangeActsFromItsInstantOn) {
   const auto changed = Recorded(WithPayload(0.4, 0.3), 0.1);
   const auto plain = Recorded(ShippedExperiment(), 0.1);
   const auto [first, other] = std::mismatch(
@@ -219,9 +220,9 @@ class LatePlantTaskTest : public PlantTaskTest {
       : PlantTaskTest({"sim.transport_delay_ms=40", "loop.actuation_delay_ms=20"}) {}
 };
 
-// Commands from 0 ms on; declared to act 20 ms later, they act 40 ms later. What is told of the arm
-// itself is true.
-TEST_F(LatePlantTaskTest, ADelayThatIsNotDeclaredIsNotReportedEither) {
+// Commands from 0 ms on; the declared delay is 20 ms, the true one 40 ms. The record of the true
+// state has the true delay.
+TEST_F(LatePlantTaskTest, ReportedTorquesHaveTheDeclaredDelayOnly) {
   EXPECT_EQ(RunTo(20 * kMs, {}), 0.0);
   EXPECT_EQ(RunTo(40 * kMs, {}), 2.0);
   EXPECT_EQ(TruthAt(2).hub_angle_rad[0], 0.0);
@@ -234,9 +235,8 @@ class LossyPlantTaskTest : public PlantTaskTest {
   LossyPlantTaskTest() : PlantTaskTest({"sim.lost_frame_fraction=0.5"}) {}
 };
 
-// With every second frame lost: it holds no reading, the one after it holds all, and the drive does
-// not care.
-TEST_F(LossyPlantTaskTest, ALostFrameHoldsNoReadingAndTheDriveGoesOn) {
+// Every second frame is lost: it holds no reading, the next one holds all; the drive continues.
+TEST_F(LossyPlantTaskTest, ALostFrameHoldsNoReadingAndTheDriveContinues) {
   ASSERT_EQ(RunTo(40 * kMs, {}), 2.0);
   const bool at_40 = frames_.Read().At(40 * kMs).value.frame.counter_valid != 0;
   for (int k = 3; k < 10; ++k) {
@@ -257,7 +257,7 @@ class MultiplexedPlantTaskTest : public PlantTaskTest {
 };
 
 // The last of twenty channels is sampled 4.75 ms after the instant that the frame belongs to.
-TEST_F(MultiplexedPlantTaskTest, AFrameIsThereWhenItsLastChannelIs) {
+TEST_F(MultiplexedPlantTaskTest, AFrameIsPublishedWithItsLastChannel) {
   RunTo(44 * kMs, {});
   EXPECT_EQ(frames_.Read().Newest().value.frame.sampled_at_ns, 20 * kMs);
   RunTo(45 * kMs, {});

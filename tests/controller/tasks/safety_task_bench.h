@@ -11,16 +11,16 @@
 #include "controller/tasks/safety_task.h"
 #include "tests/support/loop_time.h"
 
-// The safety task between a control and a drive side that can be stopped, on the lock-step clock.
+// The safety task with simulated control and drive tasks that can be stopped, in lock step.
 
 namespace flexarm {
 
 inline constexpr std::int64_t kPhaseNs = 5 * kMs;
 inline constexpr std::int64_t kDeadlineNs = 10 * kMs;
-inline constexpr SupervisorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
-                                          .stop_timeout_ns = 3000 * kMs,
-                                          .missed_deadlines_to_trip = 3,
-                                          .homing_contact_ns = 500 * kMs};
+inline constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
+                                       .stop_timeout_ns = 3000 * kMs,
+                                       .missed_deadlines_to_trip = 3,
+                                       .homing_contact_ns = 500 * kMs};
 
 struct FakeLines final : SafetyLines {
   struct Written {
@@ -67,7 +67,7 @@ struct FakeControl final : Task {
   ControlReportChannel* out_;
 };
 
-// Writes the torque that the gate lets through, like the plant task.
+// Applies the torque after the gate, like the plant task.
 struct FakeDrive final : Task {
   FakeDrive(PermitChannel* permits, DriveReportChannel* out) : permits_(permits), out_(out) {}
   Traits traits() const noexcept override {
@@ -81,7 +81,7 @@ struct FakeDrive final : Task {
                             .command_timeout_ns = 2 * kPeriodNs,
                             .permit_timeout_ns = 5 * kMs};
     const GateResult result = Gate({.asked_nm = {1.0, 1.0},
-                                    .asked_age_ns = 0,  // commands never age: the permit alone acts
+                                    .asked_age_ns = 0,  // commands never age: only the permit acts
                                     .permit = permit.state,
                                     .permit_age_ns = AgeNs(activation.due_ns, permit.renewed_ns),
                                     .previous_nm = torque_nm,
@@ -119,7 +119,7 @@ class SafetyTaskTest : public testing::Test {
     return number_;
   }
 
-  // Asks, runs one tick, and gives the answer.
+  // Sends a request, runs one tick and returns the answer.
   Refusal Now(RequestKind kind) {
     const std::uint32_t number = Ask(kind);
     RunFor(kMs);
@@ -144,7 +144,7 @@ class SafetyTaskTest : public testing::Test {
     ASSERT_EQ(drive_.torque_nm[0], 1.0);
   }
 
-  // Runs till the trip; gives its instant.
+  // Runs until the trip. @returns its instant
   std::int64_t RunUntilTripped(std::int64_t at_most_ns) {
     const std::int64_t end_ns = executor_.next_ns() + at_most_ns;
     while (safety_.status().state != SafetyState::kTripped && executor_.next_ns() < end_ns)

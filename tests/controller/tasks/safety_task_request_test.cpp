@@ -3,14 +3,14 @@
 #include "controller/tasks/safety_task.h"
 #include "tests/controller/tasks/safety_task_bench.h"
 
-// The operator's requests, and how a run ends.
+// Requests of the operator, and the end of a run.
 
 namespace flexarm {
 namespace {
 
 using enum SafetyState;
 
-TEST_F(SafetyTaskTest, TheEndOfTheExperimentStopsDampsAndArms) {
+TEST_F(SafetyTaskTest, AfterTheExperimentTheArmIsDampedThenArmed) {
   GoTo(kRunning);
   control_.report.experiment_done = true;
   RunFor(40 * kMs);
@@ -31,7 +31,7 @@ TEST_F(SafetyTaskTest, TheEndOfTheExperimentStopsDampsAndArms) {
 
 TEST_F(SafetyTaskTest, PlannedRequestsAreJudgedAtTheirTickInOrder) {
   Ask(RequestKind::kArm, 100 * kMs);
-  Ask(RequestKind::kRun, 200 * kMs + 1);  // not on the grid: the next tick
+  Ask(RequestKind::kRun, 200 * kMs + 1);  // between two ticks: judged at the next
   executor_.RunUntil(100 * kMs);
   EXPECT_EQ(safety_.status().state, kIdle);
   executor_.RunUntil(100 * kMs + 1);
@@ -62,7 +62,7 @@ TEST_F(SafetyTaskTest, RequestsThatArriveTogetherAreJudgedOneATickInOrder) {
   EXPECT_EQ(safety_.status().state, kRunning);
 }
 
-TEST_F(SafetyTaskTest, AStopOvertakesPlannedRequestsAndCancelsThePlannedRun) {
+TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
   GoTo(kRunning);
   const std::uint32_t planned_run = Ask(RequestKind::kRun, executor_.next_ns() + 500 * kMs);
   Ask(RequestKind::kDisarm, executor_.next_ns() + 1000 * kMs);
@@ -77,7 +77,8 @@ TEST_F(SafetyTaskTest, AStopOvertakesPlannedRequestsAndCancelsThePlannedRun) {
   ASSERT_TRUE(answers_.Pop(&answer));
   EXPECT_EQ(answer.number, planned_run);
   EXPECT_EQ(answer.refusal, Refusal::kCancelled);
-  EXPECT_FALSE(answers_.Pop(&answer)) << "the planned disarm stays, and what came after the stop";
+  EXPECT_FALSE(answers_.Pop(&answer))
+      << "the planned disarm and the requests after the stop are kept";
   control_.report.at_rest = true;
   RunFor(1000 * kMs);
   EXPECT_EQ(safety_.status().state, kIdle) << "armed at rest, then disarmed as planned";

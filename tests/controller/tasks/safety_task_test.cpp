@@ -6,20 +6,20 @@
 
 #include "tests/controller/tasks/safety_task_bench.h"
 
-// States, relay and charge pump, permit, and what is recorded.
+// States, relay and charge pump, permit, and records.
 
 namespace flexarm {
 namespace {
 
 using enum SafetyState;
 
-TEST_F(SafetyTaskTest, ComesToIdleWhenEveryTaskHasReportedAndStaysThere) {
-  RunFor(15 * kMs);  // the first step's report holds from 5 + 10 ms on
+TEST_F(SafetyTaskTest, EntersIdleWhenEveryTaskHasReportedAndStaysThere) {
+  RunFor(15 * kMs);  // the first step's report is valid from 5 + 10 ms on
   EXPECT_EQ(safety_.status().state, kStarting);
   RunFor(kMs);
   EXPECT_EQ(safety_.status().state, kIdle);
   RunFor(2000 * kMs);
-  EXPECT_EQ(safety_.status().state, kIdle) << "nothing arms by itself";
+  EXPECT_EQ(safety_.status().state, kIdle) << "no arming without a request";
   for (const auto& written : lines_.written) {
     EXPECT_FALSE(written.outputs.relay_closed);
     EXPECT_FALSE(written.outputs.pump_level);
@@ -60,7 +60,7 @@ TEST_F(SafetyTaskTest, ThePermitIsRenewedEveryTick) {
   }
 }
 
-// What the recorder gets is enough to run the machine again: the same transitions, nothing between.
+// The records are sufficient to run the state machine again: the same transitions and no others.
 TEST_F(SafetyTaskTest, TheRecordsReplayToTheSameTransitions) {
   GoTo(kRunning);
   ASSERT_EQ(Now(RequestKind::kDisarm), Refusal::kWrongState);
@@ -69,7 +69,7 @@ TEST_F(SafetyTaskTest, TheRecordsReplayToTheSameTransitions) {
   RunFor(100 * kMs);
   const std::vector<SafetyRecord> records = Records();
   ASSERT_GT(records.size(), 8u);
-  EXPECT_EQ(records.front().due_ns, 0) << "the first tick is always there";
+  EXPECT_EQ(records.front().due_ns, 0) << "the first tick is always recorded";
   SafetyStatus status{kStarting, TripCause::kNone};
   int refused = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {

@@ -3,7 +3,7 @@
 #include "controller/tasks/safety_task.h"
 #include "tests/controller/tasks/safety_task_bench.h"
 
-// What trips, how soon, and that it stays tripped.
+// Trips: cause, reaction time and latch.
 
 namespace flexarm {
 namespace {
@@ -25,7 +25,7 @@ TEST_F(SafetyTaskTest, EverySwitchOpensTheRelayAtTheNextTickAndZeroesTheTorqueWi
     if (first) {
       GoTo(kRunning);
       first = false;
-    } else {  // out of the last trip
+    } else {  // after the last trip
       lines_.levels = kHealthyLevels | LineBit(Line::kResetButton);
       control_.report.at_rest = true;
       RunFor(100 * kMs);
@@ -40,25 +40,26 @@ TEST_F(SafetyTaskTest, EverySwitchOpensTheRelayAtTheNextTickAndZeroesTheTorqueWi
     EXPECT_EQ(lines_.written.back().now_ns, opened_ns);
     EXPECT_FALSE(lines_.relay_closed());
     EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, c.cause}));
-    RunFor(kMs);  // the drive's next
+    RunFor(kMs);  // the drive's next tick
     EXPECT_EQ(drive_.torque_nm[0], 0.0);
     EXPECT_EQ(drive_.torque_nm[1], 0.0);
     EXPECT_EQ(permit().cause, c.cause);
     EXPECT_EQ(permit().evidence.limit, 1.0);
     lines_.levels |= LineBit(c.line);
     RunFor(1000 * kMs);
-    EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, c.cause})) << "latched, though it closed";
+    EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, c.cause}))
+        << "latched, though the switch closed";
   }
 }
 
-// Stopped at each ms of a period: whenever it is, torque ends within two periods and 2 ms.
+// Stopped at each millisecond of a period: the torque always ends within two periods and 2 ms.
 TEST_F(SafetyTaskTest, AStoppedControlThreadEndsTheTorqueWithinTwoPeriodsAndTwoMs) {
   GoTo(kRunning);
   for (int offset_ms = 0; offset_ms < 20; ++offset_ms) {
     SCOPED_TRACE(offset_ms);
     RunFor(kPeriodNs + kMs);
     ASSERT_EQ(drive_.torque_nm[0], 1.0);
-    // Nothing that is due at next_ns() or later runs any more: it stopped just before.
+    // No activation due at next_ns() or later runs: the thread stopped just before.
     const std::int64_t stopped_ns = executor_.next_ns();
     control_.stopped = true;
     const std::int64_t tripped_ns = RunUntilTripped(1000 * kMs);
@@ -74,15 +75,15 @@ TEST_F(SafetyTaskTest, AStoppedControlThreadEndsTheTorqueWithinTwoPeriodsAndTwoM
     lines_.levels |= LineBit(Line::kResetButton);
     RunFor(100 * kMs);
     lines_.levels = kHealthyLevels;
-    ASSERT_EQ(safety_.status().state, kTripped) << "it runs again, and nothing re-arms";
+    ASSERT_EQ(safety_.status().state, kTripped) << "it runs again, without arming";
     ASSERT_EQ(Now(RequestKind::kReset), Refusal::kNone);
     GoTo(kRunning);
-    // Move on by one ms a round.
+    // One millisecond later each round.
     while ((executor_.next_ns() / kMs) % 20 != offset_ms) RunFor(kMs);
   }
 }
 
-TEST_F(SafetyTaskTest, OneSkippedPeriodOfTheControlThreadIsNotAStoppedOne) {
+TEST_F(SafetyTaskTest, OneSkippedPeriodOfTheControlThreadDoesNotTrip) {
   GoTo(kRunning);
   while (executor_.next_ns() % kPeriodNs != kPhaseNs) RunFor(kMs);
   control_.stopped = true;
@@ -102,12 +103,12 @@ TEST_F(SafetyTaskTest, AFrozenDriveSideTripsAsAStaleFrameWithinTwoPeriodsAndTwoM
   EXPECT_FALSE(lines_.relay_closed());
   drive_.stopped = false;
   RunFor(2 * kMs);
-  EXPECT_EQ(drive_.torque_nm[0], 0.0) << "it wakes into a trip";
+  EXPECT_EQ(drive_.torque_nm[0], 0.0) << "tripped when it runs again";
   RunFor(1000 * kMs);
   EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, TripCause::kStaleFrame}));
 }
 
-TEST_F(SafetyTaskTest, ALostBusAndADriveFaultTripAtTheTickFromWhichTheReportHolds) {
+TEST_F(SafetyTaskTest, ALostBusAndADriveFaultTripWhenTheReportIsValid) {
   GoTo(kRunning);
   drive_.report.drive_ok = false;
   const std::int64_t reported_ns = executor_.next_ns();
@@ -118,7 +119,7 @@ TEST_F(SafetyTaskTest, ALostBusAndADriveFaultTripAtTheTickFromWhichTheReportHold
   EXPECT_EQ(safety_.status().cause, TripCause::kDriveFault) << "the first cause stays";
 }
 
-TEST_F(SafetyTaskTest, AFaultOfTheLoopTripsWhenItsReportHoldsAndBringsItsEvidence) {
+TEST_F(SafetyTaskTest, AFaultOfTheLoopTripsWithItsEvidenceWhenTheReportIsValid) {
   GoTo(kRunning);
   control_.report.faults =
       CauseBit(TripCause::kSoftLimit2) | CauseBit(TripCause::kEstimatorResidual);
@@ -141,7 +142,7 @@ TEST_F(SafetyTaskTest, StoppingLongerThanAllowedTripsThreeSecondsAfterTheStop) {
   EXPECT_DOUBLE_EQ(permit().evidence.limit, 3.0);
 }
 
-TEST_F(SafetyTaskTest, NothingRearmsByItselfAndResetNeedsButtonAndOperator) {
+TEST_F(SafetyTaskTest, NoArmingWithoutRequestAndResetNeedsButtonAndOperator) {
   GoTo(kRunning);
   lines_.levels &= ~LineBit(Line::kEmergencyStop);
   RunFor(kMs);

@@ -34,7 +34,7 @@ misbehaves() {
   check "$1 $2: named" grep -qE -- "-> Tripped: bus-lost: modbus '$1' .*: $3\. " \
     <(grep -e '-> Tripped' daemon.log | tail -n 1)
   echo "amplifier $1 well" >&3
-  check "$1 $2: back without a restart" within 10 said $round ' back, after'
+  check "$1 $2: reconnects without a restart" within 10 said $round ': reconnected after'
   press_and_reset >/dev/null
   check "$1 $2: idle" within 2 said $round 'Tripped -> Idle'
 }
@@ -66,7 +66,7 @@ done
 sleep 1
 check "the run continues" refused grep -q 'Running -> ' daemon.log
 check "counted" at_least "$(bus $tcp failed)" $((failed + 1))
-check "reported" grep -q "$tcp: [0-9]* failed exchanges, survived" daemon.log
+check "reported" grep -q "$tcp: [0-9]* failed exchanges without loss of the bus" daemon.log
 
 echo "== silent during a run"
 echo "amplifier $tcp silent" >&3

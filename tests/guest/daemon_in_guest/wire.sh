@@ -105,8 +105,8 @@ check "nothing arms by itself" equal "$(state)" Tripped
 check "reset" press_and_reset
 check "and armed again" flexarm arm
 check "the recovery follows the trip, the reset follows the recovery" equal \
-  "$(grep -oE -- '-> Tripped|vcan0: back|Tripped -> Idle' daemon.log | paste -sd,)" \
-  "-> Tripped,vcan0: back,Tripped -> Idle"
+  "$(grep -oE -- '-> Tripped|vcan0: reconnected|Tripped -> Idle' daemon.log | paste -sd,)" \
+  "-> Tripped,vcan0: reconnected,Tripped -> Idle"
 kill -TERM $daemon
 wait $daemon
 FLEXARM_SOCKET=$PWD/flexarmd.sock
