@@ -38,9 +38,10 @@ void CheckRules(const RigConfig& config, ProblemLog* log) {
   log->AddRules(config.commissioning.Problems());
   log->AddRules(config.loop.Problems());
   log->AddRules(config.daemon.Problems());
-  log->AddRules(config.hal.Problems(config.sensors,
-                                    std::llround(config.loop.acquire_before_ms * 1e6),
-                                    config.safety.torque_limit_nm));
+  log->AddRules(
+      config.hal.Problems({.sensors = config.sensors,
+                           .available_ns = std::llround(config.loop.acquire_before_ms * 1e6),
+                           .torque_limit_nm = config.safety.torque_limit_nm}));
   if (config.csv && log->Clear({"sensors"})) log->AddRules(ProblemsOf(*config.csv, config.sensors));
   CheckCrossRules(config, log);
 }

@@ -1,6 +1,12 @@
 #include "config/hal_binding.h"
 
+#include <array>
+#include <memory>
+
 #include "config/line_key.h"
+#include "hal/canopen/canopen_wiring.h"
+#include "hal/comedi/comedi_wiring.h"
+#include "hal/modbus/modbus_wiring.h"
 
 namespace flexarm {
 namespace {
@@ -76,8 +82,7 @@ void ReadModbusTransport(TableReader row, ModbusDeviceConfig* out) {
   row.Read("stop_bits", &out->stop_bits);
 }
 
-void ReadModbus(TableReader row, ModbusDeviceConfig* out) {
-  *out = ModbusDeviceConfig{};
+void ReadModbus(TableReader row, double /*period_ms*/, ModbusDeviceConfig* out) {
   row.Read("name", &out->name);
   ReadModbusTransport(row, out);
   row.Read("unit", &out->unit);
@@ -119,7 +124,6 @@ void ReadNode(TableReader row, CanopenNodeConfig* out) {
 }
 
 void ReadCanopen(TableReader row, double period_ms, CanopenConfig* out) {
-  *out = CanopenConfig{};
   out->period_ms = period_ms;
   row.Read("interface", &out->interface);
   row.Read("bitrate_bps", &out->bitrate_bps);
@@ -179,7 +183,6 @@ void ReadComediOutput(TableReader output, ComediOutputConfig* out) {
 }
 
 void ReadComedi(TableReader row, double period_ms, ComediBoardConfig* out) {
-  *out = ComediBoardConfig{};
   out->period_ms = period_ms;
   row.Read("device", &out->device);
   row.Read("driver", &out->driver);
@@ -212,18 +215,32 @@ void ReadGpiod(TableReader gpiod, GpiodConfig* out) {
   gpiod.Read("pump", &out->pump);
 }
 
+// A bus from its row, by a function that reads the keys of its config.
+template <typename Wiring, void (*read)(TableReader, double, typename Wiring::Config*)>
+std::shared_ptr<const BusWiring> ReadBus(const TableReader& row, double period_ms) {
+  typename Wiring::Config config{};
+  read(row, period_ms, &config);
+  return std::make_shared<Wiring>(std::move(config));
+}
+
+struct BusKind {
+  const char* key;  // of [hal], and BusWiring::kind
+  std::shared_ptr<const BusWiring> (*read)(const TableReader& row, double period_ms);
+};
+
+// Every kind of bus, in the order in which the rig opens them.
+constexpr std::array kBusKinds = {
+    BusKind{"canopen", ReadBus<CanopenWiring, ReadCanopen>},
+    BusKind{"modbus", ReadBus<ModbusWiring, ReadModbus>},
+    BusKind{"comedi", ReadBus<ComediWiring, ReadComedi>},
+};
+
 }  // namespace
 
 void ReadHal(TableReader hal, double period_ms, std::string* backend, HalConfig* out) {
   hal.Read<std::string>("backend", backend, {{"sim", "sim"}, {"wired", "wired"}});
-  for (const TableReader& row : hal.OptionalRows("modbus")) {
-    ReadModbus(row, &out->modbus.device.emplace_back());
-  }
-  for (const TableReader& row : hal.OptionalRows("canopen")) {
-    ReadCanopen(row, period_ms, &out->canopen.emplace_back());
-  }
-  for (const TableReader& row : hal.OptionalRows("comedi")) {
-    ReadComedi(row, period_ms, &out->comedi.emplace_back());
+  for (const BusKind& kind : kBusKinds) {
+    for (const TableReader& row : hal.OptionalRows(kind.key)) out->Add(kind.read(row, period_ms));
   }
   if (hal.Has("gpiod")) ReadGpiod(hal.Table("gpiod"), &out->gpiod.emplace());
 }

@@ -186,6 +186,7 @@ void ReadPlan(TableReader plan, PlanAheadConfig* out) {
 
 void ReadController(TableReader controller, ControllerConfig* out) {
   std::vector<NamedValue<ControllerKind>> laws;
+  laws.reserve(kLaws.size());
   for (const LawRow& law : kLaws) laws.push_back({law.name, law.kind});
   controller.Read("name", &out->kind, laws);
   controller.Read("nominal", &out->nominal,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flexarm {
 namespace {
@@ -11,9 +12,8 @@ constexpr double kVibrationDecays_s = 2.0;
 
 }  // namespace
 
-PayloadObserver::PayloadObserver(const PayloadEstimator& estimator,
-                                 const PayloadEstimatorConfig& config)
-    : estimator_(estimator), monitor_(config), detect_delay_(config.detect_delay) {}
+PayloadObserver::PayloadObserver(PayloadEstimator estimator, const PayloadEstimatorConfig& config)
+    : estimator_(std::move(estimator)), monitor_(config), detect_delay_(config.detect_delay) {}
 
 void PayloadObserver::Reset() noexcept {
   estimator_.Reset();

@@ -15,7 +15,7 @@ namespace flexarm {
 /// (docs/theory/payload.md 2.6).
 class PayloadObserver final : public Observer {
  public:
-  PayloadObserver(const PayloadEstimator& estimator, const PayloadEstimatorConfig& config);
+  PayloadObserver(PayloadEstimator estimator, const PayloadEstimatorConfig& config);
 
   void Reset() noexcept override;
   void Restart() noexcept override { estimator_.Reset(); }

@@ -82,7 +82,7 @@ Backend MakeBackend(const DaemonOptions& options, const Design& design) {
     backend.stack = std::make_unique<SimulatedStack>(config, design, config.arm.payload_mass_kg);
   } else {
     backend.rig = std::make_unique<HardwareRig>(
-        config.hal, CanClocks{.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
+        config.hal, BusClocks{.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
     backend.stack = std::make_unique<WiredStack>(
         config, design, RigWires{.buses = backend.rig->buses(), .lines = backend.rig->lines()});
   }

@@ -41,7 +41,7 @@ Eigen::Vector2d StopController::Stop(const StateVector& x) noexcept {
   if (first) hand_over_nm_ = torque_before_nm_ - u;
   stopping_s_ = first ? 0.0 : stopping_s_ + period_s_;
   const double ramp = std::fmin(1.0, std::fmax(0.0, (kNoTorqueFrom_s - stopping_s_) / kRamp_s));
-  const Eigen::Vector2d torque_nm = ramp * (u + hand_over_nm_);
+  Eigen::Vector2d torque_nm = ramp * (u + hand_over_nm_);
   hand_over_nm_ *= 1.0 - period_s_ / kHandOver_s;
   return torque_nm;
 }

@@ -85,7 +85,7 @@ std::optional<LinkProblem> FindProblem(const CanLink& link, std::uint32_t bitrat
 
 }  // namespace
 
-SocketCanBus::SocketCanBus(std::string interface, CanClocks clocks)
+SocketCanBus::SocketCanBus(std::string interface, BusClocks clocks)
     : interface_(std::move(interface)), clocks_(clocks) {}
 
 SocketCanBus::~SocketCanBus() { Close(); }

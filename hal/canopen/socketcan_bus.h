@@ -6,16 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "hal/bus_clocks.h"
 #include "hal/canopen/can_bus.h"
 
 namespace flexarm {
-
-/// Clocks in ns since their epochs; injected, as only executors read clocks.
-struct CanClocks {
-  std::int64_t (*monotonic_ns)() noexcept;
-  std::int64_t (
-      *realtime_ns)() noexcept;  ///< CLOCK_REALTIME, the clock of the kernel's frame time stamps
-};
 
 /// A CAN interface of the kernel (SocketCAN), hardware or virtual.
 ///
@@ -28,7 +22,7 @@ class SocketCanBus : public CanBus {
  public:
   static constexpr std::uint32_t kMostQueued = 16;  ///< frames; Linux gives a CAN interface 10
 
-  SocketCanBus(std::string interface, CanClocks clocks);
+  SocketCanBus(std::string interface, BusClocks clocks);
   ~SocketCanBus() override;
   SocketCanBus(const SocketCanBus&) = delete;
   SocketCanBus& operator=(const SocketCanBus&) = delete;
@@ -52,7 +46,7 @@ class SocketCanBus : public CanBus {
   void TakeErrorFrame(std::uint32_t id, const std::uint8_t* data) noexcept;
 
   std::string interface_;
-  CanClocks clocks_;
+  BusClocks clocks_;
   int fd_ = -1;
   int index_ = 0;  // of the interface
   std::vector<can_filter> filters_;

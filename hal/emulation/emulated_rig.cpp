@@ -1,6 +1,8 @@
 #include "hal/emulation/emulated_rig.h"
 
 #include "hal/bus_device.h"
+#include "hal/canopen/canopen_wiring.h"
+#include "hal/modbus/modbus_wiring.h"
 #include "hal/safety_lines.h"
 
 namespace flexarm {
@@ -16,15 +18,15 @@ const GpiodConfig& LinesOf(const HalConfig& hal) {
 }  // namespace
 
 EmulatedRig::EmulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
-                         const SimConfig& sim, const HalConfig& hal, const CanClocks& clocks)
+                         const SimConfig& sim, const HalConfig& hal, const BusClocks& clocks)
     : rig_(arm, sensors, sim), lines_(LinesOf(hal)), gpio_(lines_.chip) {
-  for (const CanopenConfig& bus : hal.canopen) AddNodes(bus, clocks);
-  for (const ModbusDeviceConfig& device : hal.modbus.device) {
+  for (const CanopenConfig& bus : ConfigsOf<CanopenWiring>(hal)) AddNodes(bus, clocks);
+  for (const ModbusDeviceConfig& device : ConfigsOf<ModbusWiring>(hal)) {
     amplifiers_.push_back(std::make_unique<SimulatedAmplifier>(device, sensors));
   }
 }
 
-void EmulatedRig::AddNodes(const CanopenConfig& bus, const CanClocks& clocks) {
+void EmulatedRig::AddNodes(const CanopenConfig& bus, const BusClocks& clocks) {
   for (const CanopenNodeConfig& config : bus.node) {
     Node node{.config = config,
               .bus = std::make_unique<SocketCanBus>(bus.interface, clocks),

@@ -37,7 +37,7 @@ class EmulatedRig {
   /// @param arm  with the actual payload of the plant
   /// @throws HalError
   EmulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
-              const HalConfig& hal, const CanClocks& clocks);
+              const HalConfig& hal, const BusClocks& clocks);
 
   /// Simulates one millisecond, up to `now_ns` of CLOCK_MONOTONIC.
   void Step(std::int64_t now_ns) noexcept;
@@ -58,7 +58,7 @@ class EmulatedRig {
     std::unique_ptr<SimulatedNode> node;
   };
 
-  void AddNodes(const CanopenConfig& bus, const CanClocks& clocks);
+  void AddNodes(const CanopenConfig& bus, const BusClocks& clocks);
   bool PowerOn(std::int64_t now_ns) noexcept;
   void DriveArm(bool power) noexcept;
   void Show(std::int64_t now_ns) noexcept;

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "hal/line_names.h"
 #include "hal/modbus/modbus_plan.h"
@@ -23,34 +22,34 @@ constexpr std::array<int, 9> kBauds = {1200, 2400, 4800, 9600, 19200, 38400, 576
 
 bool IsAddress(int address) { return address >= 0 && address < kAddresses; }
 
-void CheckTcp(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
+void CheckTcp(const ModbusDeviceConfig& d, ProblemList* list) {
   in_addr address{};
-  list->Require(inet_pton(AF_INET, d.host.c_str(), &address) == 1, row + ".host", d.host,
+  list->Require(inet_pton(AF_INET, d.host.c_str(), &address) == 1, "host", d.host,
                 "must be an IPv4 address in digits: a name lookup has no time bound");
-  list->Within(row + ".port", d.port, 1, 65535, "a TCP port; Modbus's own is 502");
-  list->Require((d.unit >= 0 && d.unit <= 247) || d.unit == 255, row + ".unit", NumberText(d.unit),
+  list->Within("port", d.port, 1, 65535, "a TCP port; Modbus's own is 502");
+  list->Require((d.unit >= 0 && d.unit <= 247) || d.unit == 255, "unit", NumberText(d.unit),
                 "must lie in 0 .. 247, or be 255 (the TCP device itself)");
 }
 
-void CheckRtu(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
-  list->Require(d.device.starts_with('/'), row + ".device", d.device,
+void CheckRtu(const ModbusDeviceConfig& d, ProblemList* list) {
+  list->Require(d.device.starts_with('/'), "device", d.device,
                 "must be the absolute path of a serial port, preferably in /dev/serial/by-id");
-  list->Require(std::find(kBauds.begin(), kBauds.end(), d.baud) != kBauds.end(), row + ".baud",
+  list->Require(std::find(kBauds.begin(), kBauds.end(), d.baud) != kBauds.end(), "baud",
                 NumberText(d.baud),
                 "must be 1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200 or 230400");
-  list->Require(d.data_bits == 8, row + ".data_bits", NumberText(d.data_bits),
+  list->Require(d.data_bits == 8, "data_bits", NumberText(d.data_bits),
                 "must be 8: a byte of a Modbus RTU frame has 8 bits");
-  list->Within(row + ".stop_bits", d.stop_bits, 1, 2, "stop bits of a character");
-  list->Within(row + ".unit", d.unit, 1, 247, "0 is the broadcast, which has no reply");
+  list->Within("stop_bits", d.stop_bits, 1, 2, "stop bits of a character");
+  list->Within("unit", d.unit, 1, 247, "0 is the broadcast, which has no reply");
 }
 
-void CheckIdentification(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
-  list->Require(!d.identification.empty(), row + ".identification", "0 rows",
+void CheckIdentification(const ModbusDeviceConfig& d, ProblemList* list) {
+  list->Require(!d.identification.empty(), "identification", "0 rows",
                 "must have a row: a register whose value identifies the device");
   std::set<std::pair<ModbusTable, int>> seen;
   for (std::size_t i = 0; i < d.identification.size(); ++i) {
     const ModbusIdentity& id = d.identification[i];
-    const std::string key = row + "." + ProblemList::Element("identification", i);
+    const std::string key = ProblemList::Element("identification", i);
     list->Require(!HoldsBits(id.table), key + ".table", Name(id.table),
                   "must be \"input register\" or \"holding register\"");
     list->Within(key + ".address", id.address, 0, kAddresses - 1, "the address on the wire");
@@ -96,11 +95,11 @@ void CheckInputRow(const ModbusRegister& r, const std::string& key, ProblemList*
 }
 
 // Two overlapping rows of a device: one of them has a wrong address.
-void CheckOverlaps(const ModbusDeviceConfig& d, const std::string& row, ProblemList* list) {
+void CheckOverlaps(const ModbusDeviceConfig& d, ProblemList* list) {
   std::map<std::pair<ModbusTable, int>, std::size_t> taken;
   for (std::size_t i = 0; i < d.map.size(); ++i) {
     const ModbusRegister& r = d.map[i];
-    const std::string key = row + "." + ProblemList::Element("register", i) + ".address";
+    const std::string key = ProblemList::Element("register", i) + ".address";
     const int end = r.address + WidthOf(r.type);
     list->Require(IsAddress(r.address) && end <= kAddresses, key, NumberText(r.address),
                   "must lie in 0 .. 65535 with all of its registers");
@@ -117,8 +116,8 @@ void CheckOverlaps(const ModbusDeviceConfig& d, const std::string& row, ProblemL
 
 // A late reply on a serial line has no transaction number. It is recognised because the request
 // after a failure, an identity check, differs from every first request for readings.
-void CheckResynchronisation(const ModbusDeviceConfig& d, const std::string& row,
-                            const ModbusPlan& plan, ProblemList* list) {
+void CheckResynchronisation(const ModbusDeviceConfig& d, const ModbusPlan& plan,
+                            ProblemList* list) {
   if (d.transport != ModbusTransport::kRtu) return;
   for (const ModbusRequest& proof : plan.proofs) {
     const bool differs =
@@ -126,14 +125,14 @@ void CheckResynchronisation(const ModbusDeviceConfig& d, const std::string& row,
           return proof.table == read.table && proof.count == read.count;
         });
     list->Require(
-        differs, row + ".identification", NumberText(proof.count) + " x " + Name(proof.table),
+        differs, "identification", NumberText(proof.count) + " x " + Name(proof.table),
         "must differ in table or number from every request for readings, or a late reply "
         "on the serial line could be mistaken for another; name one register more or less");
   }
 }
 
-void CheckTime(const ModbusDeviceConfig& d, const std::string& row, const ModbusPlan& plan,
-               std::int64_t available_ns, ProblemList* list) {
+void CheckTime(const ModbusDeviceConfig& d, const ModbusPlan& plan, std::int64_t available_ns,
+               ProblemList* list) {
   const auto milliseconds = [](std::int64_t ns) {
     return NumberText(std::round(static_cast<double>(ns) / 1e4) / 100.0) + " ms";
   };
@@ -145,72 +144,10 @@ void CheckTime(const ModbusDeviceConfig& d, const std::string& row, const Modbus
     }
     costs += "together " + milliseconds(read.worst_ns);
   }
-  list->Require(plan.exchange_worst_ns <= available_ns, row + ".response_timeout_ms",
+  list->Require(plan.exchange_worst_ns <= available_ns, "response_timeout_ms",
                 NumberText(d.response_timeout_ms),
                 "must leave an exchange within " + milliseconds(available_ns) + "; it may take " +
                     milliseconds(plan.exchange_worst_ns) + costs);
-}
-
-void CheckDevice(const ModbusDeviceConfig& d, const std::string& row, std::size_t strain_rows,
-                 std::int64_t available_ns, ProblemList* all) {
-  ProblemList list("hal.");
-  list.Require(!d.name.empty(), row + ".name", d.name, "must not be empty: messages contain it");
-  if (d.transport == ModbusTransport::kTcp) {
-    CheckTcp(d, row, &list);
-  } else {
-    CheckRtu(d, row, &list);
-  }
-  list.Within(row + ".response_timeout_ms", d.response_timeout_ms, 0.5, 1000.0,
-              "largest response time of the device");
-  list.Within(row + ".gap_limit", d.gap_limit, 0, 120,
-              "unused addresses that may be read to save a request");
-  CheckIdentification(d, row, &list);
-  list.Require(!d.map.empty(), row + ".register", "0 rows", "must have at least one row");
-  for (std::size_t i = 0; i < d.map.size(); ++i) {
-    const std::string key = row + "." + ProblemList::Element("register", i);
-    if (d.map[i].role == ModbusRole::kStrain) {
-      CheckStrainRow(d.map[i], key, strain_rows, &list);
-    } else {
-      CheckInputRow(d.map[i], key, &list);
-    }
-  }
-  CheckOverlaps(d, row, &list);
-  if (list.empty()) {  // requests and times are valid
-    const ModbusPlan plan = PlanModbus(d);
-    CheckResynchronisation(d, row, plan, &list);
-    CheckTime(d, row, plan, available_ns, &list);
-  }
-  for (Problem& p : list.Take()) {
-    all->Require(false, p.key.substr(4), std::move(p.value), std::move(p.rule));
-  }
-}
-
-// Values that two devices, or two rows of any devices, must not share.
-void CheckDuplicates(const std::vector<ModbusDeviceConfig>& device, ProblemList* list) {
-  std::set<std::string> names;
-  std::set<std::tuple<std::string, int, int>> places;
-  std::map<std::pair<ModbusRole, int>, std::string> readers;
-  for (std::size_t i = 0; i < device.size(); ++i) {
-    const ModbusDeviceConfig& d = device[i];
-    const std::string row = ProblemList::Element("modbus", i);
-    list->Require(names.insert(d.name).second, row + ".name", d.name,
-                  "must be used for one device only");
-    if (d.transport == ModbusTransport::kTcp) {
-      list->Require(places.insert({d.host, d.port, d.unit}).second, row + ".host", d.host,
-                    "must be used once with this port and unit");
-    } else {
-      list->Require(places.insert({d.device, 0, 0}).second, row + ".device", d.device,
-                    "must be used for one device only: two masters on a line disturb each other");
-    }
-    for (std::size_t k = 0; k < d.map.size(); ++k) {
-      const ModbusRegister& r = d.map[k];
-      const bool strain = r.role == ModbusRole::kStrain;
-      const std::string at = row + "." + ProblemList::Element("register", k);
-      const auto [first, fresh] = readers.insert({{r.role, r.index}, at});
-      list->Require(fresh, at + (strain ? ".strain" : ".input"), ChannelName(r),
-                    "must be read once only; " + first->second + " reads it too");
-    }
-  }
 }
 
 }  // namespace
@@ -237,13 +174,29 @@ std::string ChannelName(const ModbusRegister& row) {
   return Name(static_cast<Line>(row.index));
 }
 
-std::vector<Problem> ModbusConfig::Problems(std::size_t strain_rows,
-                                            std::int64_t available_ns) const {
-  ProblemList list("hal.");
-  for (std::size_t i = 0; i < device.size(); ++i) {
-    CheckDevice(device[i], ProblemList::Element("modbus", i), strain_rows, available_ns, &list);
+std::vector<Problem> ModbusDeviceConfig::Problems(const std::string& section,
+                                                  std::size_t strain_rows,
+                                                  std::int64_t available_ns) const {
+  ProblemList list(section);
+  list.Require(!name.empty(), "name", name, "must not be empty: messages contain it");
+  transport == ModbusTransport::kTcp ? CheckTcp(*this, &list) : CheckRtu(*this, &list);
+  list.Within("response_timeout_ms", response_timeout_ms, 0.5, 1000.0,
+              "largest response time of the device");
+  list.Within("gap_limit", gap_limit, 0, 120,
+              "unused addresses that may be read to save a request");
+  CheckIdentification(*this, &list);
+  list.Require(!map.empty(), "register", "0 rows", "must have at least one row");
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const std::string key = ProblemList::Element("register", i);
+    map[i].role == ModbusRole::kStrain ? CheckStrainRow(map[i], key, strain_rows, &list)
+                                       : CheckInputRow(map[i], key, &list);
   }
-  CheckDuplicates(device, &list);
+  CheckOverlaps(*this, &list);
+  if (list.empty()) {  // requests and times are valid
+    const ModbusPlan plan = PlanModbus(*this);
+    CheckResynchronisation(*this, plan, &list);
+    CheckTime(*this, plan, available_ns, &list);
+  }
   return list.Take();
 }
 

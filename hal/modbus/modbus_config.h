@@ -76,16 +76,12 @@ struct ModbusDeviceConfig {
   int gap_limit;               ///< unused addresses that may be read to save a request
   std::vector<ModbusIdentity> identification;
   std::vector<ModbusRegister> map;
-};
 
-/// All Modbus devices of the rig.
-struct ModbusConfig {
-  std::vector<ModbusDeviceConfig> device;
-
-  /// Violated rules.
+  /// Violated rules. `section` is the prefix of every key, e.g. "hal.modbus[0].".
   /// @param strain_rows   rows of [[sensors.strain]]
   /// @param available_ns  bound of one exchange, for any behaviour of the peer
-  std::vector<Problem> Problems(std::size_t strain_rows, std::int64_t available_ns) const;
+  std::vector<Problem> Problems(const std::string& section, std::size_t strain_rows,
+                                std::int64_t available_ns) const;
 };
 
 /// Number of registers (or bits) of a value of this type.

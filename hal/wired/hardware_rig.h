@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "hal/bus_device.h"
-#include "hal/canopen/socketcan_bus.h"
 #include "hal/safety_lines.h"
 #include "hal/wired/hal_config.h"
 
@@ -15,7 +14,7 @@ class HardwareRig {
  public:
   /// Opens the safety chain first, then every bus: identified, configured, read back.
   /// @throws HalError of the first device that fails; opened devices are closed
-  HardwareRig(const HalConfig& config, const CanClocks& clocks);
+  HardwareRig(const HalConfig& config, const BusClocks& clocks);
   ~HardwareRig();  ///< closes the buses, torque off, then releases the lines
   HardwareRig(const HardwareRig&) = delete;
   HardwareRig& operator=(const HardwareRig&) = delete;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/comedi/comedi_wiring.h"
 #include "tests/config/config_testing.h"
 #include "tests/support/message_of.h"
 
@@ -23,8 +24,9 @@ std::string Complaint(const std::vector<std::string>& overrides) {
 TEST(DaqConfig, TheShippedBoardsAreRead) {
   const RigConfig config = LoadConfig(Shipped("daq-rig.toml"));
   EXPECT_EQ(config.backend, "wired");
-  ASSERT_EQ(config.hal.comedi.size(), 2U);
-  const ComediBoardConfig& first = config.hal.comedi[0];
+  const std::vector<ComediBoardConfig> boards = ConfigsOf<ComediWiring>(config.hal);
+  ASSERT_EQ(boards.size(), 2U);
+  const ComediBoardConfig& first = boards[0];
   EXPECT_EQ(first.device, "/dev/comedi0");
   EXPECT_EQ(first.period_ms, config.loop.period_ms);
   ASSERT_TRUE(first.input.has_value());
@@ -35,7 +37,7 @@ TEST(DaqConfig, TheShippedBoardsAreRead) {
   ASSERT_EQ(first.output->drive.size(), 2U);
   EXPECT_EQ(first.output->drive[1].joint, 1);
   EXPECT_NEAR(first.output->drive[0].torque_per_volt_nm(), 3.0, 1e-12);
-  const ComediBoardConfig& second = config.hal.comedi[1];
+  const ComediBoardConfig& second = boards[1];
   EXPECT_FALSE(second.output.has_value());
   EXPECT_EQ(second.input->channel[9].strain, 19);
   ASSERT_EQ(second.counter.size(), 2U);

@@ -4,8 +4,11 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "config/config.h"
+#include "hal/canopen/canopen_wiring.h"
+#include "hal/modbus/modbus_wiring.h"
 #include "tests/support/message_of.h"
 
 // The wiring of a hardware rig: it is read from config/hil-wire.toml, and refused if it cannot
@@ -41,12 +44,14 @@ std::string Complaint(const std::string& from, const std::string& to) {
 TEST(HalConfig, TheShippedWiringIsRead) {
   const RigConfig config = LoadConfig(kFile);
   EXPECT_EQ(config.backend, "wired");
-  ASSERT_EQ(config.hal.canopen.size(), 1u);
-  EXPECT_EQ(config.hal.canopen[0].node.size(), 6u);
-  EXPECT_EQ(config.hal.canopen[0].node[1].gear, 48.96);
-  EXPECT_EQ(config.hal.canopen[0].period_ms, config.loop.period_ms);
-  ASSERT_EQ(config.hal.modbus.device.size(), 2u);
-  EXPECT_EQ(config.hal.modbus.device[1].map[9].index, 19);
+  const std::vector<CanopenConfig> canopen = ConfigsOf<CanopenWiring>(config.hal);
+  ASSERT_EQ(canopen.size(), 1u);
+  EXPECT_EQ(canopen[0].node.size(), 6u);
+  EXPECT_EQ(canopen[0].node[1].gear, 48.96);
+  EXPECT_EQ(canopen[0].period_ms, config.loop.period_ms);
+  const std::vector<ModbusDeviceConfig> modbus = ConfigsOf<ModbusWiring>(config.hal);
+  ASSERT_EQ(modbus.size(), 2u);
+  EXPECT_EQ(modbus[1].map[9].index, 19);
   ASSERT_TRUE(config.hal.gpiod.has_value());
   EXPECT_EQ(config.hal.gpiod->relay, 6);
 }

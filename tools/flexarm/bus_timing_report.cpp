@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/wired/bus_timing_budget.h"
+#include "hal/wired/hal_config.h"
 #include "model/problem_list.h"
 
 namespace flexarm {
@@ -24,7 +24,7 @@ OrderedJson BusJson(const BusCost& bus, std::int64_t available_ns) {
   json["name"] = bus.name;
   json["worst_case_ms"] = Milliseconds(bus.worst_ns);
   json["spare_ms"] = Milliseconds(available_ns - bus.worst_ns);
-  json["other_ms"] = Milliseconds(bus.other_ns);
+  json["other_ms"] = Milliseconds(bus.other_ns());
   if (bus.oldest_ns > 0) json["oldest_reading_ms"] = Milliseconds(bus.oldest_ns);
   for (const ChannelCost& channel : bus.channel) {
     const auto shares = std::count_if(

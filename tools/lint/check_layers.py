@@ -351,7 +351,11 @@ def target_of(folder):
 
 def check_targets(root, graph):
     """The targets that a folder's CMakeLists.txt links are the folders that it includes."""
-    targets = {target_of(folder): folder for folder in LAYERS}
+    targets = {target_of(folder): [folder] for folder in LAYERS}
+    for path in root.glob("*/CMakeLists.txt"):
+        for group in re.findall(r"flexarm_group\((.*?)\)", path.read_text(encoding="utf-8"), re.S):
+            name, *members = group.split()
+            targets[name] = [folder for member in members for folder in targets.get(member, [])]
     for folder in LAYERS:
         path = root / folder / "CMakeLists.txt"
         if not path.is_file():
@@ -364,7 +368,7 @@ def check_targets(root, graph):
         words = linked.group(2).split()
         if linked.group(1) == "library" and words[0] != target_of(folder):
             yield Finding(name, 1, "target", f"{words[0]} must be {target_of(folder)}")
-        links = {targets[word] for word in words[1:] if word in targets}
+        links = {linked for word in words[1:] for linked in targets.get(word, [])}
         for other in sorted(links ^ graph.uses.get(folder, set())):
             what = "is linked and not included" if other in links else "is included and not linked"
             yield Finding(name, 1, "target", f"{other} {what}")

@@ -21,7 +21,7 @@ LAYERS = {
     "hal/modbus": "model hal",
     "hal/comedi": "model hal",
     "hal/gpiod": "model hal",
-    "hal/wired": "model hal hal/canopen hal/modbus hal/comedi hal/gpiod",
+    "hal/wired": "model hal hal/gpiod",
     "hal/emulation": "hal hal/sim hal/canopen hal/modbus hal/wired",
     "estimator": "model model/math model/parameters model/beam model/arm model/rigid_joint hal",
     "controller/exchange": "",
@@ -48,7 +48,7 @@ LAYERS = {
     "controller/host": "hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/operator",
-    "config": "model hal hal/wired estimator controller/types controller/runlog",
+    "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/types controller/runlog",
     "tools/support": "controller/runlog",
     "tools/runs": "controller/runlog config",
     "tools/plot": "model model/beam controller/safety tools/runs",

@@ -41,17 +41,24 @@ std::int64_t Clock() noexcept { return the_world->monotonic_ns(); }
 
 RigConfig WiredConfig(ModbusTransport transport) {
   RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil-wire.toml", {});
-  for (ModbusDeviceConfig& device : config.hal.modbus.device) {
+  std::vector<ModbusDeviceConfig> devices = ConfigsOf<ModbusWiring>(config.hal);
+  for (ModbusDeviceConfig& device : devices) {
     device.port = 0;
     device.response_timeout_ms = kPatience_ms;
   }
-  ModbusDeviceConfig& hostile = config.hal.modbus.device[0];
+  ModbusDeviceConfig& hostile = devices[0];
   hostile.transport = transport;
   hostile.device = testing::TempDir() + "/flexarm-hostile-bus-" + std::to_string(getpid());
   hostile.baud = 115200;
   hostile.parity = ModbusParity::kEven;
   hostile.data_bits = 8;
   hostile.stop_bits = 1;
+  std::erase_if(config.hal.bus, [](const HalConfig::Bus& bus) {
+    return dynamic_cast<const ModbusWiring*>(bus.wiring.get()) != nullptr;
+  });
+  for (ModbusDeviceConfig& device : devices) {
+    config.hal.Add(std::make_shared<ModbusWiring>(std::move(device)));
+  }
   return config;
 }
 
@@ -140,7 +147,8 @@ class Rig {
   void AddCan() {
     auto bus = std::make_unique<MemoryBus>(&world->wire, "vcan0");
     master = bus.get();
-    drivers_.push_back(std::make_unique<CanopenDevice>(config_.hal.canopen[0], std::move(bus)));
+    drivers_.push_back(
+        std::make_unique<CanopenDevice>(ConfigsOf<CanopenWiring>(config_.hal)[0], std::move(bus)));
     // The driver waits on the bus, whose time is ahead of the others' during a call.
     WiredWorld* there = world.get();
     buses.push_back(std::make_unique<OnTestTime>(
@@ -150,7 +158,7 @@ class Rig {
   }
 
   void AddAmplifier(std::size_t i) {
-    ModbusDeviceConfig config = config_.hal.modbus.device[i];
+    ModbusDeviceConfig config = ConfigsOf<ModbusWiring>(config_.hal)[i];
     config.port = world->amplifiers[i]->server().port();
     drivers_.push_back(std::make_unique<ModbusDevice>(config, Clock));
     // The shipped time-out, not the long one of this test.

@@ -13,9 +13,11 @@
 #include "config/config.h"
 #include "controller/realtime/task.h"
 #include "hal/canopen/canopen_device.h"
+#include "hal/canopen/canopen_wiring.h"
 #include "hal/emulation/memory_bus.h"
 #include "hal/emulation/simulated_amplifier.h"
 #include "hal/emulation/simulated_node.h"
+#include "hal/modbus/modbus_wiring.h"
 #include "hal/safety_lines.h"
 #include "hal/sim/simulated_rig.h"
 #include "tests/controller/wired/blocking_executor.h"
@@ -58,8 +60,9 @@ class WiredWorld final : public Task {
 
   WiredWorld(const RigConfig& config, BlockingExecutor* executor)
       : executor_(executor), rig_(config.arm, config.sensors, config.sim) {
-    for (const CanopenNodeConfig& node : config.hal.canopen[0].node) AddNode(node);
-    for (const ModbusDeviceConfig& device : config.hal.modbus.device) {
+    const CanopenConfig can = ConfigsOf<CanopenWiring>(config.hal).at(0);
+    for (const CanopenNodeConfig& node : can.node) AddNode(node);
+    for (const ModbusDeviceConfig& device : ConfigsOf<ModbusWiring>(config.hal)) {
       amplifiers.push_back(std::make_unique<SimulatedAmplifier>(device, config.sensors));
     }
     Show(0);

@@ -34,7 +34,7 @@ std::int64_t Now(clockid_t clock) noexcept {
 }
 std::int64_t Monotonic() noexcept { return Now(CLOCK_MONOTONIC); }
 std::int64_t Realtime() noexcept { return Now(CLOCK_REALTIME); }
-constexpr CanClocks kClocks{.monotonic_ns = Monotonic, .realtime_ns = Realtime};
+constexpr BusClocks kClocks{.monotonic_ns = Monotonic, .realtime_ns = Realtime};
 constexpr const char* kInterface = "vcan0";
 
 // A raw socket for frames that SocketCanBus never sends.

@@ -17,8 +17,8 @@ namespace {
 constexpr std::int64_t kAvailableNs = 15'000'000;
 constexpr std::size_t kStrainRows = 20;
 
-std::vector<Problem> ProblemsOf(const std::vector<ModbusDeviceConfig>& devices) {
-  return ModbusConfig{devices}.Problems(kStrainRows, kAvailableNs);
+std::vector<Problem> ProblemsOf(const ModbusDeviceConfig& device) {
+  return device.Problems("hal.modbus[0].", kStrainRows, kAvailableNs);
 }
 
 std::string Text(const std::vector<Problem>& problems) {
@@ -28,11 +28,11 @@ std::string Text(const std::vector<Problem>& problems) {
 }
 
 TEST(ModbusConfig, AValidConfigHasNoProblem) {
-  EXPECT_EQ(Text(ProblemsOf({Amplifier()})), "");
+  EXPECT_EQ(Text(ProblemsOf(Amplifier())), "");
   ModbusDeviceConfig serial = SerialAmplifier("/dev/ttyS0");
   serial.map.pop_back();  // one request and its identity check fit into 15 ms
   serial.response_timeout_ms = 1.0;
-  EXPECT_EQ(Text(ProblemsOf({serial})), "");
+  EXPECT_EQ(Text(ProblemsOf(serial)), "");
 }
 
 struct Broken {
@@ -46,7 +46,7 @@ class ModbusConfigRule : public testing::TestWithParam<Broken> {};
 TEST_P(ModbusConfigRule, ViolationNamesKeyAndRule) {
   ModbusDeviceConfig device = Amplifier();
   GetParam().damage(&device);
-  const std::vector<Problem> problems = ProblemsOf({device});
+  const std::vector<Problem> problems = ProblemsOf(device);
   ASSERT_FALSE(problems.empty());
   bool named = false;
   for (const Problem& p : problems) {
@@ -95,7 +95,6 @@ const std::vector<Broken> kBroken = {
      [](auto* d) { d->identification[0].expected = 65536; }},
     {"register", "at least one row", [](auto* d) { d->map.clear(); }},
     {"register[2].strain", "it has rows: 20", [](auto* d) { d->map[2].index = 20; }},
-    {"register[2].strain", "once only", [](auto* d) { d->map[2].index = 1; }},
     {"register[2].table", "a strain is a number",
      [](auto* d) { d->map[2].table = ModbusTable::kCoil; }},
     {"register[2].type", "a strain is a number",
@@ -119,39 +118,6 @@ const std::vector<Broken> kBroken = {
 
 INSTANTIATE_TEST_SUITE_P(All, ModbusConfigRule, testing::ValuesIn(kBroken),
                          [](const auto& broken) { return "case" + std::to_string(broken.index); });
-
-TEST(ModbusConfig, TwoDevicesShareNothing) {
-  ModbusDeviceConfig other = Amplifier();
-  other.name = "other";
-  other.unit = 2;
-  other.map = {StrainRow(10, 0)};
-  EXPECT_EQ(Text(ProblemsOf({Amplifier(), other})), "");
-
-  const auto refused = [](const ModbusDeviceConfig& second, const std::string& key) {
-    const std::string text = Text(ProblemsOf({Amplifier(), second}));
-    EXPECT_NE(text.find("hal.modbus[1]." + key), std::string::npos) << text;
-  };
-  ModbusDeviceConfig twin = other;
-  twin.name = "amplifier";
-  refused(twin, "name");
-  twin = other;
-  twin.unit = 1;
-  refused(twin, "host");
-  twin = other;
-  twin.map = {StrainRow(3, 0)};
-  refused(twin, "register[0].strain");
-  twin.map = {InputRow(Line::kResetButton, 0)};
-  refused(twin, "register[0].input");
-}
-
-TEST(ModbusConfig, ASerialLineHasOneMaster) {
-  ModbusDeviceConfig first = SerialAmplifier("/dev/ttyS0"), second = first;
-  second.name = "other";
-  second.unit = 2;
-  second.map = {StrainRow(10, 0)};
-  const std::string text = Text(ProblemsOf({first, second}));
-  EXPECT_NE(text.find("hal.modbus[1].device"), std::string::npos) << text;
-}
 
 }  // namespace
 }  // namespace flexarm
