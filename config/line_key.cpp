@@ -7,12 +7,12 @@ namespace flexarm {
 void ReadLine(TableReader row, Line* out) {
   using enum Line;
   row.Read("line", out,
-           {{Name(kLimit1Low), kLimit1Low},
-            {Name(kLimit1High), kLimit1High},
-            {Name(kLimit2Low), kLimit2Low},
-            {Name(kLimit2High), kLimit2High},
-            {Name(kEmergencyStop), kEmergencyStop},
-            {Name(kResetButton), kResetButton}});
+           {{ToString(kLimit1Low), kLimit1Low},
+            {ToString(kLimit1High), kLimit1High},
+            {ToString(kLimit2Low), kLimit2Low},
+            {ToString(kLimit2High), kLimit2High},
+            {ToString(kEmergencyStop), kEmergencyStop},
+            {ToString(kResetButton), kResetButton}});
 }
 
 }  // namespace flexarm

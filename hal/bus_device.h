@@ -27,7 +27,7 @@ enum class BusStatus : std::uint8_t {
 };
 
 /// Text of a status for messages: "no answer in time".
-constexpr const char* Words(BusStatus status) noexcept {
+constexpr const char* ToString(BusStatus status) noexcept {
   switch (status) {
     case BusStatus::kOk:
       return "answers";
@@ -89,7 +89,7 @@ class BusDevice {
 
   /// Text of a fault of FaultOf, with the names of device and node. Any thread; not real-time.
   virtual std::string FaultText(const BusFault& fault) const {
-    return std::string(name()) + ": " + Words(static_cast<BusStatus>(fault.kind));
+    return std::string(name()) + ": " + ToString(static_cast<BusStatus>(fault.kind));
   }
 
   /// Switches the torque off by the shortest path, then releases the device.

@@ -10,7 +10,7 @@ constexpr std::array<const char*, kLines> kNames = {
 
 }  // namespace
 
-const char* Name(Line line) noexcept { return kNames[static_cast<std::size_t>(line)]; }
+const char* ToString(Line line) noexcept { return kNames[static_cast<std::size_t>(line)]; }
 
 std::optional<Line> LineByName(std::string_view name) noexcept {
   for (std::size_t i = 0; i < kNames.size(); ++i) {

@@ -17,14 +17,14 @@ using Json = nlohmann::json;
 
 void RequireIdle(const std::string& command, SafetyState state) {
   if (state == SafetyState::kIdle) return;
-  throw RejectedError(command + " needs the state Idle, but the state is " + Name(state) +
+  throw RejectedError(command + " needs the state Idle, but the state is " + ToString(state) +
                       ": run `flexarm disarm`, or `flexarm reset` after a trip");
 }
 
 void RequireArmed(const std::string& command, SafetyState state) {
   if (state == SafetyState::kArmed) return;
   throw RejectedError(command + " moves the arm and needs the state Armed, but the state is " +
-                      Name(state) + ": run `flexarm arm`");
+                      ToString(state) + ": run `flexarm arm`");
 }
 
 double Number(const Json& command, const char* key) {
@@ -254,7 +254,7 @@ Json Commissioner::Home(const std::vector<TickRecord>& run, std::size_t joint, L
             {"contact_before_deg", tick.output.angle_rad[joint] / kRadPerDeg},
             {"contact_deg", switch_deg}};
   }
-  throw RejectedError(std::string(Name(line)) + " did not open: move the joint to within " +
+  throw RejectedError(std::string(ToString(line)) + " did not open: move the joint to within " +
                       std::to_string(config_.commissioning.home_travel_deg) +
                       " deg of it by hand, and check the switch");
 }

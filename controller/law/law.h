@@ -16,7 +16,7 @@ struct LawInput {
   const StateVector* x;                   ///< predicted state of the arm
   const ReferenceSample* reference;       ///< of the reference model
   const std::array<RigidPoint, 3>* path;  ///< one period before, at and after the instant
-  const PlanSample* plan;                 ///< null: no plan
+  const MotionSample* plan;               ///< null: no plan
   PayloadKnowledge payload;
   double rested_s;  ///< time since the last move ended; infinite before the first, 0 during one
   bool may_adapt;   ///< false: an input is invalid

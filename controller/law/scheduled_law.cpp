@@ -19,26 +19,23 @@ constexpr double kFrictionRate_rad_s = 0.05;
 // The compensation adds up to 0.7 of the friction, with the scale of half the friction for the
 // feedback torque. It is faded out over 2 s, so that encoder quantisation in the feedback does not
 // move an arm at rest.
-constexpr double kFrictionHelped = 0.7, kFrictionAsked = 0.5, kHelped_s = 2.0;
+constexpr double kFrictionShare = 0.7, kFeedbackScale = 0.5, kCompensationFades_s = 2.0;
 
 }  // namespace
 
 LawOutput ScheduledLaw::Compute(const LawInput& input) noexcept {
-  const QuasiStaticSample desired =
-      input.plan == nullptr
-          ? ClosedForm(input.payload.payload_kg, *input.path)
-          : QuasiStaticSample{.x = State::Map(input.plan->x.data()),
-                              .torque_nm = Eigen::Vector2d::Map(input.plan->torque_nm.data())};
+  const MotionSample desired =
+      input.plan == nullptr ? ClosedForm(input.payload.payload_kg, *input.path) : *input.plan;
   return SaturateWithoutAdaptation(Torque(*input.x, input.payload, desired, input.rested_s),
                                    torque_limit_nm_);
 }
 
 Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& knowledge,
-                                     const QuasiStaticSample& desired,
-                                     double rested_s) const noexcept {
-  Eigen::Vector2d u = desired.torque_nm;
+                                     const MotionSample& desired, double rested_s) const noexcept {
+  const State x_desired = desired.State();
+  Eigen::Vector2d u = desired.Torque_nm();
   for (int i = 0; i < 2; ++i) {
-    const double rate_rad_s = desired.x[RigidJointArm::kDof + i];
+    const double rate_rad_s = x_desired[RigidJointArm::kDof + i];
     u[i] += knowledge.friction_nm[static_cast<std::size_t>(i)] *
             PortableMath::Tanh(rate_rad_s / kFrictionRate_rad_s);
   }
@@ -47,14 +44,14 @@ Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& kno
       at_bound ? std::numeric_limits<double>::infinity() : knowledge.payload_sigma_kg;
   const double gain_payload_kg =
       SchedulingPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s);
-  const Eigen::Vector2d feedback_nm = gains_.At(gain_payload_kg, x[1]).lazyProduct(desired.x - x);
+  const Eigen::Vector2d feedback_nm = gains_.At(gain_payload_kg, x[1]).lazyProduct(x_desired - x);
   u += feedback_nm;
-  const double help = rested_s > 0.0 ? std::max(0.0, 1.0 - rested_s / kHelped_s) : 0.0;
+  const double share = rested_s > 0.0 ? std::max(0.0, 1.0 - rested_s / kCompensationFades_s) : 0.0;
   for (int i = 0; i < 2; ++i) {
     const double friction_nm = knowledge.friction_nm[static_cast<std::size_t>(i)];
-    if (help == 0.0 || friction_nm <= 0.0) continue;
-    u[i] += help * kFrictionHelped * friction_nm *
-            PortableMath::Tanh(feedback_nm[i] / (kFrictionAsked * friction_nm));
+    if (share == 0.0 || friction_nm <= 0.0) continue;
+    u[i] += share * kFrictionShare * friction_nm *
+            PortableMath::Tanh(feedback_nm[i] / (kFeedbackScale * friction_nm));
   }
   return u;
 }

@@ -40,8 +40,7 @@ class ScheduledLaw final : public Law {
 
   /// x_d and u_d in closed form: QuasiStaticOver.
   /// @param path  one period before, at and after the instant at which the torque acts
-  QuasiStaticSample ClosedForm(double payload_kg,
-                               const std::array<RigidPoint, 3>& path) const noexcept {
+  MotionSample ClosedForm(double payload_kg, const std::array<RigidPoint, 3>& path) const noexcept {
     return QuasiStaticOver(arm_, payload_kg, path, period_s_);
   }
 
@@ -50,7 +49,7 @@ class ScheduledLaw final : public Law {
   /// @param rested_s  time since the last move ended, infinite before the first; 0 during one
   /// @returns the torque, not clipped
   Eigen::Vector2d Torque(const State& x, const PayloadKnowledge& knowledge,
-                         const QuasiStaticSample& desired, double rested_s) const noexcept;
+                         const MotionSample& desired, double rested_s) const noexcept;
 
  private:
   RigidJointArm arm_;

@@ -11,7 +11,7 @@ constexpr double kGoalFollows_s = 0.5;
 
 // The difference to the torque before the stop decays with this time constant: a step would excite
 // the links, whose vibrations with free joints have a period of 0.15 s.
-constexpr double kHandOver_s = 0.1;
+constexpr double kJumpDecays_s = 0.1;
 
 // If the arm is not at rest after 1.8 s, the torque is ramped to zero over 0.4 s: with backlash any
 // feedback causes a limit cycle, and friction brings the arm to rest.
@@ -38,11 +38,11 @@ Eigen::Vector2d StopController::Stop(const StateVector& x) noexcept {
   const Eigen::Vector2d hubs(x(layout_.hub(0)), x(layout_.hub(1)));
   goal_rad_ += (period_s_ / kGoalFollows_s) * (hubs - goal_rad_);
   const Eigen::Vector2d u = Regulate(x, goal_rad_);
-  if (first) hand_over_nm_ = torque_before_nm_ - u;
+  if (first) jump_nm_ = torque_before_nm_ - u;
   stopping_s_ = first ? 0.0 : stopping_s_ + period_s_;
   const double ramp = std::fmin(1.0, std::fmax(0.0, (kNoTorqueFrom_s - stopping_s_) / kRamp_s));
-  Eigen::Vector2d torque_nm = ramp * (u + hand_over_nm_);
-  hand_over_nm_ *= 1.0 - period_s_ / kHandOver_s;
+  Eigen::Vector2d torque_nm = ramp * (u + jump_nm_);
+  jump_nm_ *= 1.0 - period_s_ / kJumpDecays_s;
   return torque_nm;
 }
 

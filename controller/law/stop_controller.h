@@ -36,8 +36,8 @@ class StopController {
   double period_s_;
   Eigen::Vector2d goal_rad_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d torque_before_nm_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d hand_over_nm_ = Eigen::Vector2d::Zero();  // difference to that torque, decays
-  double stopping_s_ = -1.0;  // negative: the next sample is the first
+  Eigen::Vector2d jump_nm_ = Eigen::Vector2d::Zero();  // difference to that torque, decays
+  double stopping_s_ = -1.0;                           // negative: the next sample is the first
 };
 
 }  // namespace flexarm

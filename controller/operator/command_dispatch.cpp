@@ -18,7 +18,7 @@ nlohmann::json Failure(const std::string& error, const std::string& remedy) {
 std::optional<RequestKind> RequestByName(const std::string& name) {
   for (const RequestKind kind :
        {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
-    if (name == Name(kind)) return kind;
+    if (name == ToString(kind)) return kind;
   }
   return std::nullopt;
 }
@@ -72,11 +72,11 @@ nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command, SafetySta
     return Failure("this backend has no simulated switches", "press the real one");
   }
   targets_.report(
-      false, std::string("simulated line ") + Name(*line) + " set to " + std::to_string(level));
+      false, std::string("simulated line ") + ToString(*line) + " set to " + std::to_string(level));
   return {{"ok", true},
           {"command", "sim"},
-          {"state", Name(state)},
-          {"line", Name(*line)},
+          {"state", ToString(state)},
+          {"line", ToString(*line)},
           {"level", level}};
 }
 
@@ -85,7 +85,7 @@ nlohmann::json CommandDispatch::StartRun(const nlohmann::json& command, int clie
   const SafetyState state = now.permit.state;
   if (state != SafetyState::kArmed) {
     nlohmann::json refusal = RefusalJson(RequestKind::kRun, Refusal::kWrongState, state);
-    refusal["state"] = Name(state);
+    refusal["state"] = ToString(state);
     return refusal;
   }
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {

@@ -58,7 +58,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     FollowUnattended();
     FollowShutdown();
     experiments_.FreeReleased();
-    if (LoopIsAlive()) context_.alive(now_.now_ns, Name(now_.permit.state));
+    if (LoopIsAlive()) context_.alive(now_.now_ns, ToString(now_.permit.state));
   } catch (const std::exception& error) {
     context_.report(true, std::string("operator: ") + error.what());
   }

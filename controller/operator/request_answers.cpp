@@ -7,21 +7,22 @@
 namespace flexarm {
 
 nlohmann::json RefusalJson(RequestKind request, Refusal refusal, SafetyState state) {
-  return {
-      {"ok", false}, {"refusal", Name(refusal)}, {"error", RefusalText(request, refusal, state)}};
+  return {{"ok", false},
+          {"refusal", ToString(refusal)},
+          {"error", RefusalText(request, refusal, state)}};
 }
 
 nlohmann::json AnswerJson(const RequestAnswer& answer, SafetyState state_now) {
   nlohmann::json json = answer.refusal == Refusal::kNone
                             ? nlohmann::json{{"ok", true}}
                             : RefusalJson(answer.kind, answer.refusal, answer.state);
-  json["command"] = Name(answer.kind);
-  json["state"] = Name(state_now);
+  json["command"] = ToString(answer.kind);
+  json["state"] = ToString(state_now);
   return json;
 }
 
 std::string AnswerLine(const RequestAnswer& answer) {
-  const std::string request = Name(answer.kind);
+  const std::string request = ToString(answer.kind);
   if (answer.refusal == Refusal::kNone) return request + ": accepted";
   return request + ": refused: " + RefusalText(answer.kind, answer.refusal, answer.state);
 }

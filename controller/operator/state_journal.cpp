@@ -13,7 +13,7 @@ StateJournal::StateJournal(const LoopStack* stack, const SensorConfig* sensors, 
 void StateJournal::Follow(std::int64_t now_ns, const Permit& permit) {
   if (permit.state == state_) return;
   const bool tripped = permit.state == SafetyState::kTripped;
-  std::string text = std::string(Name(state_)) + " -> " + Name(permit.state);
+  std::string text = std::string(ToString(state_)) + " -> " + ToString(permit.state);
   state_ = permit.state;
   if (tripped) {
     const std::string of_bus = stack_->BusText(permit.cause, permit.evidence);
@@ -21,7 +21,7 @@ void StateJournal::Follow(std::int64_t now_ns, const Permit& permit) {
     if (!of_bus.empty()) {
       events_->Push({.time_ns = now_ns,
                      .kind = "bus",
-                     .name = Name(permit.cause),
+                     .name = ToString(permit.cause),
                      .text = of_bus,
                      .value_json = {}});
     }
@@ -36,7 +36,7 @@ std::string StateJournal::TripText(const Permit& permit, const std::string& of_b
                                   ? " (value " + std::to_string(evidence.value) + ", limit " +
                                         std::to_string(evidence.limit) + "). "
                                   : ": " + of_bus + ". ";
-  return std::string(": ") + Name(permit.cause) + (channel.empty() ? "" : ": " + channel) +
+  return std::string(": ") + ToString(permit.cause) + (channel.empty() ? "" : ": " + channel) +
          details + OperatorText(permit.cause);
 }
 

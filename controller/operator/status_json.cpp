@@ -27,7 +27,7 @@ nlohmann::json TripJson(const StatusSources& sources) {
   const Permit& permit = sources.now->permit;
   if (permit.state != SafetyState::kTripped) return nullptr;
   const Evidence& evidence = permit.evidence;
-  return {{"name", Name(permit.cause)},
+  return {{"name", ToString(permit.cause)},
           {"number", static_cast<int>(permit.cause)},
           {"value", evidence.value},
           {"limit", evidence.limit},
@@ -44,7 +44,7 @@ nlohmann::json StatusJson(const StatusSources& sources) {
   const StepInput& in = now.tick.input;
   const StepOutput& out = now.tick.output;
   return {{"ok", true},
-          {"state", Name(now.permit.state)},
+          {"state", ToString(now.permit.state)},
           {"time_s", static_cast<double>(now.now_ns) * 1e-9},
           {"tick", in.tick},
           {"experiment", TextOrNull(sources.experiment)},

@@ -13,7 +13,7 @@ using Matrix2x12 = Eigen::Matrix<double, 2, 12>;
 }  // namespace
 
 void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const PlanCost& targets,
-                  const PlanTrack& track, PlanPolicy* policy) noexcept {
+                  const PlanTrajectory& track, PlanPolicy* policy) noexcept {
   const std::size_t stages = targets.stages();
   const auto slope = [&](std::size_t k) -> PlanState {
     return targets.StateWeight(k).cwiseProduct(track.x[k] - targets.Reference(k));

@@ -21,6 +21,6 @@ struct PlanPolicy {
 /// Source: docs/theory/payload.md 5.2. Real-time: safe.
 /// @param track  a motion of the model, targets.stages() long
 void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const PlanCost& targets,
-                  const PlanTrack& track, PlanPolicy* policy) noexcept;
+                  const PlanTrajectory& track, PlanPolicy* policy) noexcept;
 
 }  // namespace flexarm

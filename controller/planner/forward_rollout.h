@@ -16,7 +16,8 @@ namespace flexarm {
 /// @param law  torque by sample and state, N m: Eigen::Vector2d(std::size_t k, const PlanState& x)
 template <typename Law>
 void RollOut(const RigidJointStepper& stepper, double payload_kg, std::size_t stages,
-             const Eigen::Vector2d& torque_limit_nm, const Law& law, PlanTrack* track) noexcept {
+             const Eigen::Vector2d& torque_limit_nm, const Law& law,
+             PlanTrajectory* track) noexcept {
   GaugedState state{
       .q = track->x[0].head<6>(), .v = track->x[0].tail<6>(), .phi_f = Eigen::Vector4d::Zero()};
   for (std::size_t k = 0; k < stages; ++k) {

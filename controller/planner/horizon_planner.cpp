@@ -42,7 +42,7 @@ bool HorizonPlanner::Plan(const PlanProblem& problem, const HorizonPlan* previou
 
   out->Begin(problem.first_tick, problem.payload_kg);
   for (std::size_t k = 0; k < targets_.stages(); ++k) {
-    out->Append({.x = track_.x[k], .torque_nm = track_.torque_nm[k], .K = policy_.K[k]});
+    out->Append(PlanEntry::Of(MotionSample::Of(track_.x[k], track_.torque_nm[k]), policy_.K[k]));
   }
   return true;
 }
@@ -62,11 +62,14 @@ bool HorizonPlanner::MayContinue(const HorizonPlan& previous,
 // gain table is read at its elbow angle.
 void HorizonPlanner::RollOutStart(const PlanProblem& problem,
                                   const HorizonPlan* previous) noexcept {
-  const PlanTrack& quasi_static = targets_.quasi_static();
+  const PlanTrajectory& quasi_static = targets_.quasi_static();
   const auto law = [&](std::size_t k, const PlanState& x) -> Eigen::Vector2d {
     if (previous != nullptr) {
       const auto entry = previous->At(problem.first_tick + static_cast<std::int64_t>(k));
-      if (entry) return entry->torque_nm + entry->K.lazyProduct(x - entry->x);
+      if (entry) {
+        const PlanState deviation = x - entry->motion.State();
+        return entry->motion.Torque_nm() + entry->Gain().lazyProduct(deviation);
+      }
     }
     const GainTable::Gain K = start_gains_.At(problem.payload_kg, quasi_static.x[k][1]);
     return quasi_static.torque_nm[k] + K.lazyProduct(quasi_static.x[k] - x);
@@ -111,8 +114,8 @@ bool HorizonPlanner::IsSmooth(const PlanProblem& problem,
     if (previous == nullptr) continue;
     const auto entry = previous->At(problem.first_tick + static_cast<std::int64_t>(k));
     if (!entry) continue;
-    old = std::max(old, change(old_before, entry->torque_nm));
-    old_before = entry->torque_nm;
+    old = std::max(old, change(old_before, entry->motion.Torque_nm()));
+    old_before = entry->motion.Torque_nm();
   }
   return mine <= std::max(config_.roughness, old);
 }

@@ -71,7 +71,7 @@ class HorizonPlanner {
   Figures figures_{};
   PlanCost targets_;
   PlanPolicy policy_;
-  PlanTrack track_, trial_;
+  PlanTrajectory track_, trial_;
 };
 
 }  // namespace flexarm

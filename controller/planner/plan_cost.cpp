@@ -43,7 +43,7 @@ void PlanCost::Set(const RigidJointArm& arm, double period_s, const PlanWeights&
   }
 }
 
-double PlanCost::Cost(const PlanTrack& track) const noexcept {
+double PlanCost::Cost(const PlanTrajectory& track) const noexcept {
   double cost = 0.0;
   for (std::size_t k = 0; k <= stages_; ++k) {
     const PlanState dx = track.x[k] - reference_[k];

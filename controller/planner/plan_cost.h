@@ -36,7 +36,7 @@ struct PlanWeights {
 };
 
 /// A trajectory: stages + 1 states, stages torques. Large.
-struct PlanTrack {
+struct PlanTrajectory {
   std::array<PlanState, HorizonPlan::kMaxStages + 1> x;
   std::array<Eigen::Vector2d, HorizonPlan::kMaxStages> torque_nm;
 };
@@ -60,7 +60,7 @@ class PlanCost {
 
   std::size_t stages() const noexcept { return stages_; }
   /// The quasi-static motion with the present payload.
-  const PlanTrack& quasi_static() const noexcept { return quasi_static_; }
+  const PlanTrajectory& quasi_static() const noexcept { return quasi_static_; }
   const PlanState& Reference(std::size_t k) const noexcept { return reference_[k]; }
 
   /// Diagonal of Q of sample k.
@@ -69,13 +69,13 @@ class PlanCost {
   }
   const Eigen::Vector2d& TorqueWeight() const noexcept { return torque_weight_; }
 
-  double Cost(const PlanTrack& track) const noexcept;
+  double Cost(const PlanTrajectory& track) const noexcept;
 
  private:
   std::size_t stages_ = 0, move_samples_ = 0;
   PlanState moving_, resting_;
   Eigen::Vector2d torque_weight_;
-  PlanTrack quasi_static_;
+  PlanTrajectory quasi_static_;
   std::array<PlanState, HorizonPlan::kMaxStages + 1> reference_;
 };
 

@@ -30,9 +30,9 @@ std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const R
   std::vector<ReferenceSample> samples(static_cast<std::size_t>(last - first) + 1);
   for (int k = first; k <= last; ++k) {
     ReferenceSample& sample = samples[static_cast<std::size_t>(k - first)];
-    const QuasiStaticSample bent = QuasiStaticOver(arm, payload_kg, path.Around(k), period_s);
-    std::copy_n(bent.x.data(), bent.x.size(), sample.x_m.begin());
-    sample.u_m_nm = {bent.torque_nm[0], bent.torque_nm[1]};
+    const MotionSample bent = QuasiStaticOver(arm, payload_kg, path.Around(k), period_s);
+    std::copy(bent.x.begin(), bent.x.end(), sample.x_m.begin());
+    sample.u_m_nm = bent.torque_nm;
   }
   return samples;
 }

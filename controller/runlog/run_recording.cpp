@@ -16,7 +16,7 @@ RunEvent TripEvent(const SafetyRecord& record) {
                                 {"present", CauseNames(record.facts.present)}};
   return {.time_ns = record.due_ns,
           .kind = "trip",
-          .name = Name(record.after.cause),
+          .name = ToString(record.after.cause),
           .text = OperatorText(record.after.cause),
           .value_json = value.dump()};
 }
@@ -25,11 +25,11 @@ RunEvent RequestEvent(const SafetyRecord& record) {
   const RequestKind request = record.facts.request;
   const bool accepted = record.refusal == Refusal::kNone;
   const nlohmann::json value = {{"number", record.request_number},
-                                {"state", Name(record.before.state)},
-                                {"refusal", Name(record.refusal)}};
+                                {"state", ToString(record.before.state)},
+                                {"refusal", ToString(record.refusal)}};
   return {.time_ns = record.due_ns,
           .kind = accepted ? "command" : "refusal",
-          .name = Name(request),
+          .name = ToString(request),
           .text = RefusalText(request, record.refusal, record.before.state),
           .value_json = value.dump()};
 }
@@ -112,10 +112,10 @@ std::string RunRecording::ResultJson() const {
   const bool tripped = trip_ != TripCause::kNone;
   nlohmann::json result;
   result["completed"] = has_run_ && !tripped && !TorqueAllowed(state_);
-  result["trip"] = tripped ? nlohmann::json(Name(trip_)) : nlohmann::json(nullptr);
+  result["trip"] = tripped ? nlohmann::json(ToString(trip_)) : nlohmann::json(nullptr);
   result["ticks"] = ticks_;
   result["missing_ticks"] = missing_ticks_;
-  result["final_state"] = Name(state_);
+  result["final_state"] = ToString(state_);
   return result.dump();
 }
 

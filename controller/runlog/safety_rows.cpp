@@ -10,7 +10,7 @@ std::string CauseNames(TripCauses causes) {
     const TripCause cause = static_cast<TripCause>(number);
     if ((causes & CauseBit(cause)) == 0) continue;
     if (!names.empty()) names += ' ';
-    names += Name(cause);
+    names += ToString(cause);
   }
   return names;
 }
@@ -23,17 +23,17 @@ void InsertSafety(SqliteStatement* insert, const SafetyRecord& record, std::int6
   const auto real = [&](double value) { insert->Bind(next++, value); };
   integer(record.due_ns);
   real(static_cast<double>(record.due_ns - start_ns) * 1e-9);
-  text(Name(record.before.state));
-  text(Name(record.after.state));
-  text(Name(record.after.cause));
+  text(ToString(record.before.state));
+  text(ToString(record.after.state));
+  text(ToString(record.after.cause));
   text(CauseNames(facts.present));
   for (const std::uint8_t flag : {facts.all_reported, facts.at_rest, facts.experiment_done,
                                   facts.stop_expired, facts.reset_pressed}) {
     integer(flag);
   }
-  text(Name(facts.request));
+  text(ToString(facts.request));
   integer(record.request_number);
-  text(Name(record.refusal));
+  text(ToString(record.refusal));
   real(record.evidence.value);
   real(record.evidence.limit);
   integer(record.evidence.channel);

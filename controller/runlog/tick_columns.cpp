@@ -16,7 +16,7 @@ double Known(const TickRecord& r, double value) {
 constexpr auto kColumns = std::to_array<TickColumn>({
     {"state", "TEXT",
      [](const TickRecord& r) -> ColumnValue {
-       return std::string_view(Name(r.input.safety_state));
+       return std::string_view(ToString(r.input.safety_state));
      }},
     {"hub_1_deg", "REAL",
      [](const TickRecord& r) -> ColumnValue { return r.output.angle_rad[0] * kDegPerRad; }},

@@ -33,7 +33,7 @@ const char* WrongStateText(RequestKind request, SafetyState state) noexcept {
 
 }  // namespace
 
-const char* Name(RequestKind request) noexcept {
+const char* ToString(RequestKind request) noexcept {
   switch (request) {
     case RequestKind::kNone:
       return "none";
@@ -51,7 +51,7 @@ const char* Name(RequestKind request) noexcept {
   return "corrupted";
 }
 
-const char* Name(Refusal refusal) noexcept {
+const char* ToString(Refusal refusal) noexcept {
   switch (refusal) {
     case Refusal::kNone:
       return "none";

@@ -113,10 +113,10 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
   return {{kTripped, TripCause::kStateNotFinite}, not_here};
 }
 
-const char* Name(RequestKind request) noexcept;
+const char* ToString(RequestKind request) noexcept;
 
 /// Machine name of a refusal, as in JSON: "wrong-state".
-const char* Name(Refusal refusal) noexcept;
+const char* ToString(Refusal refusal) noexcept;
 
 /// Text for the operator: why the request was refused in `state` and what to do. "" if accepted.
 const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state) noexcept;

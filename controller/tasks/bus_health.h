@@ -29,12 +29,12 @@ class BusJournal {
   void Follow(std::int64_t now_ns, const std::vector<BusHealth>& buses, const Report& report);
 
  private:
-  struct Told {
+  struct Reported {
     bool ok = true;
     std::uint32_t failed = 0;
     std::int64_t at_ns = INT64_MIN;
   };
-  std::vector<Told> told_;
+  std::vector<Reported> reported_;
 };
 
 }  // namespace flexarm

@@ -135,7 +135,7 @@ bool ControlTask::PlansAhead(const StepInput& input) const noexcept {
 }
 
 void ControlTask::FollowPlan(StepInput* input) noexcept {
-  const std::optional<PlanSample> plan =
+  const std::optional<MotionSample> plan =
       channels_.planner->At(sample_ + delay_found_, input->now_ns);
   if (!plan) return;
   input->plan = *plan;

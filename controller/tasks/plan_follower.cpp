@@ -12,15 +12,12 @@ void PlanFollower::Start(std::uint32_t run) noexcept {
   request_.segment = -1;
 }
 
-std::optional<PlanSample> PlanFollower::At(int sample, std::int64_t due_ns) noexcept {
+std::optional<MotionSample> PlanFollower::At(int sample, std::int64_t due_ns) noexcept {
   const MotionPlan& motion = plans_->Read().At(due_ns).value;
   if (motion.run != request_.run || motion.number < request_.valid_from) return {};
   const std::optional<PlanEntry> entry = motion.plan.At(sample);
   if (!entry) return {};
-  PlanSample out{};
-  Eigen::Matrix<double, 12, 1>::Map(out.x.data()) = entry->x;
-  Eigen::Vector2d::Map(out.torque_nm.data()) = entry->torque_nm;
-  return out;
+  return entry->motion;
 }
 
 void PlanFollower::Ask(int sample, std::int64_t due_ns, const ReferenceTable& reference,

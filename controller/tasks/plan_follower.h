@@ -32,7 +32,7 @@ class PlanFollower {
 
   /// Sample of the valid plan for the torque of `sample`, or nothing.
   /// @param due_ns  of the step that computes it
-  std::optional<PlanSample> At(int sample, std::int64_t due_ns) noexcept;
+  std::optional<MotionSample> At(int sample, std::int64_t due_ns) noexcept;
 
   /// Requests a plan if the schedule demands it. After the step that computed the torque of
   /// `sample`.

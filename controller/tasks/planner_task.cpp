@@ -95,9 +95,9 @@ PlannerTask::Start PlannerTask::Predict(const PlanRequest& request, int periods)
     const std::array<RigidPoint, 3> path = {request.path[static_cast<std::size_t>(i)],
                                             request.path[static_cast<std::size_t>(i) + 1],
                                             request.path[static_cast<std::size_t>(i) + 2]};
-    QuasiStaticSample desired = law_.ClosedForm(known.payload_kg, path);
+    MotionSample desired = law_.ClosedForm(known.payload_kg, path);
     const auto entry = newest_.plan.At(request.sample + i);
-    if (entry) desired = {.x = entry->x, .torque_nm = entry->torque_nm};
+    if (entry) desired = entry->motion;
     at.torque_before_nm = law_.Torque(at.x, known, desired, 0.0)
                               .cwiseMax(-torque_limit_nm_)
                               .cwiseMin(torque_limit_nm_);

@@ -7,13 +7,23 @@
 #include <optional>
 #include <type_traits>
 
+#include "model/rigid_joint/motion_sample.h"
+
 namespace flexarm {
 
 /// Entry of a plan for one sample, an affine feedback: u = torque + K (x - x_plan).
 struct PlanEntry {
-  Eigen::Matrix<double, 12, 1> x;  ///< [q; q'] of RigidJointArm, rad and m, and per second
-  Eigen::Vector2d torque_nm;       ///< held for one period, without friction compensation
-  Eigen::Matrix<double, 2, 12> K;  ///< feedback gain: N m per deviation from x
+  MotionSample motion;       ///< its torque is held for one period
+  std::array<double, 24> K;  ///< feedback gain, 2 x 12 by columns: N m per deviation from x
+
+  static PlanEntry Of(const MotionSample& motion, const Eigen::Matrix<double, 2, 12>& K) noexcept {
+    PlanEntry entry{.motion = motion, .K = {}};
+    Eigen::Matrix<double, 2, 12>::Map(entry.K.data()) = K;
+    return entry;
+  }
+  Eigen::Matrix<double, 2, 12> Gain() const noexcept {
+    return Eigen::Matrix<double, 2, 12>::Map(K.data());
+  }
 };
 
 /// Planned trajectory: states, torques and feedback gains, sample by sample.
@@ -33,11 +43,7 @@ class HorizonPlan {
 
   /// Appends the entry of the next sample; no effect if the plan is full.
   void Append(const PlanEntry& entry) noexcept {
-    if (size_ == kMaxStages) return;
-    Row& row = rows_[size_++];
-    Eigen::Matrix<double, 12, 1>::Map(row.x.data()) = entry.x;
-    Eigen::Vector2d::Map(row.torque_nm.data()) = entry.torque_nm;
-    Eigen::Matrix<double, 2, 12>::Map(row.K.data()) = entry.K;
+    if (size_ < kMaxStages) entries_[size_++] = entry;
   }
 
   std::int64_t first_tick() const noexcept { return first_tick_; }
@@ -49,23 +55,14 @@ class HorizonPlan {
   /// The entry of a sample; nothing before or after the plan.
   std::optional<PlanEntry> At(std::int64_t tick) const noexcept {
     if (tick < first_tick_ || tick - first_tick_ >= static_cast<std::int64_t>(size_)) return {};
-    const Row& row = rows_[static_cast<std::size_t>(tick - first_tick_)];
-    return PlanEntry{.x = Eigen::Matrix<double, 12, 1>::Map(row.x.data()),
-                     .torque_nm = Eigen::Vector2d::Map(row.torque_nm.data()),
-                     .K = Eigen::Matrix<double, 2, 12>::Map(row.K.data())};
+    return entries_[static_cast<std::size_t>(tick - first_tick_)];
   }
 
  private:
-  struct Row {
-    std::array<double, 12> x;
-    std::array<double, 2> torque_nm;
-    std::array<double, 24> K;
-  };
-
   std::int64_t first_tick_ = 0;
   std::size_t size_ = 0;
   double payload_kg_ = 0.0;
-  std::array<Row, kMaxStages> rows_{};
+  std::array<PlanEntry, kMaxStages> entries_{};
 };
 
 static_assert(std::is_trivially_copyable_v<HorizonPlan>, "passed between threads");

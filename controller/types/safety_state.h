@@ -24,7 +24,7 @@ constexpr bool Powered(SafetyState state) noexcept {
   return state == SafetyState::kArmed || TorqueAllowed(state);
 }
 
-constexpr const char* Name(SafetyState state) noexcept {
+constexpr const char* ToString(SafetyState state) noexcept {
   switch (state) {
     case SafetyState::kStarting:
       return "Starting";

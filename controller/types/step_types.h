@@ -7,6 +7,7 @@
 #include "controller/types/safety_state.h"
 #include "estimator/calibration.h"
 #include "hal/sensor_frame.h"
+#include "model/rigid_joint/motion_sample.h"
 #include "model/rigid_joint/rigid_point.h"
 
 namespace flexarm {
@@ -18,12 +19,6 @@ inline constexpr int kMaxFilterOutputs = 8;
 struct ReferenceSample {
   std::array<double, 2> u_m_nm;               ///< command torque u_m held from this sample on
   std::array<double, kMaxNominalStates> x_m;  ///< state of the reference model, SI, psi(L) = 1
-};
-
-/// A plan's state and torque at the instant at which the torque acts (horizon_plan.h), no gains.
-struct PlanSample {
-  std::array<double, 12> x;         ///< [q; q'] of RigidJointArm, rad and m, and per second
-  std::array<double, 2> torque_nm;  ///< feedforward torque, without friction
 };
 
 /// Source of the torque while torque is allowed. The value is logged: never renumber.
@@ -48,7 +43,7 @@ struct StepInput {
   ReferenceSample reference_now;   ///< at k Ts
   ReferenceSample reference_next;  ///< when the torque computed now acts, with the delay found
   std::array<RigidPoint, 3> path;  ///< a period before that, at it, a period after; of a path
-  PlanSample plan;  ///< of the law `receding-horizon`, at that instant; see `planned`
+  MotionSample plan;  ///< of the law `receding-horizon`, at that instant; see `planned`
   std::array<std::int64_t, kCounters> counts_before;  ///< unwrapped counts from before a reset
   Calibration calibration;                            ///< adopted at a reset
   SafetyState safety_state;
@@ -60,7 +55,7 @@ struct StepInput {
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
 static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 32 + 2 * sizeof(ReferenceSample) +
-                                       3 * sizeof(RigidPoint) + sizeof(PlanSample) +
+                                       3 * sizeof(RigidPoint) + sizeof(MotionSample) +
                                        sizeof(std::int64_t) * kCounters + sizeof(Calibration) + 8,
               "no padding: the bytes are logged and compared");
 

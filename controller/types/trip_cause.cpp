@@ -110,7 +110,7 @@ static_assert(
 
 }  // namespace
 
-const char* Name(TripCause cause) noexcept {
+const char* ToString(TripCause cause) noexcept {
   const auto index = static_cast<std::size_t>(cause);
   return index < kRows.size() ? kRows[index].name : "corrupted";
 }

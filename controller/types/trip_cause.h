@@ -43,7 +43,7 @@ constexpr TripCauses CauseBit(TripCause cause) noexcept {
 }
 
 /// Short machine name, as in JSON and in the log: "limit-switch-1-low". "none" for kNone.
-const char* Name(TripCause cause) noexcept;
+const char* ToString(TripCause cause) noexcept;
 
 /// What Evidence::channel counts for a cause, 1-based.
 enum class TripChannel : std::uint8_t { kNone, kJoint, kStrain, kCounter, kBus };

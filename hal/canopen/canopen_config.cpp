@@ -42,7 +42,7 @@ void CheckDrive(const CanopenNodeConfig& node, const std::string& row, ProblemLi
 void CheckEncoder(const CanopenNodeConfig& node, const std::string& row, ProblemList* list) {
   list->Require(node.torque_per_mille_nm == 0.0 && node.sign == 0 && node.torque_range_nm == 0.0 &&
                     node.gear == 0.0 && !node.position_is_rotor,
-                row + ".role", CanopenRoleName(node.role),
+                row + ".role", ToString(node.role),
                 "must have no torque_per_mille_nm, sign, torque_range_nm, gear or "
                 "position_is_rotor: only drives have them");
 }
@@ -63,11 +63,11 @@ void CheckNodes(const CanopenConfig& config, ProblemList* list) {
       const CanopenNodeConfig& other = config.node[k];
       list->Require(node.node_id != other.node_id, row + ".node_id", NumberText(node.node_id),
                     "must be used once: " + ProblemList::Element("node", k) + " uses it too");
-      list->Require(node.role != other.role, row + ".role", CanopenRoleName(node.role),
+      list->Require(node.role != other.role, row + ".role", ToString(node.role),
                     "must be used once: " + ProblemList::Element("node", k) + " uses it too");
       list->Require(
           node.role == other.role || node.counter() < 0 || node.counter() != other.counter(),
-          row + ".position_is_rotor", CanopenRoleName(node.role),
+          row + ".position_is_rotor", ToString(node.role),
           "must be left to " + ProblemList::Element("node", k) +
               ", which already reads this counter");
     }
@@ -99,7 +99,7 @@ void CheckTimes(const CanopenConfig& config, ProblemList* list) {
 
 }  // namespace
 
-const char* CanopenRoleName(CanopenRole role) noexcept {
+const char* ToString(CanopenRole role) noexcept {
   switch (role) {
     case CanopenRole::kDrive1:
       return "drive1";

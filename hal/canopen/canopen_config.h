@@ -14,7 +14,7 @@ enum class CanopenRole : std::uint8_t { kDrive1, kDrive2, kHub1, kHub2, kRotor1,
 inline constexpr int kMaxCanopenNodes = 8;
 
 /// "drive1", "drive2", "hub1", "hub2", "rotor1", "rotor2": values of the key `role`.
-const char* CanopenRoleName(CanopenRole role) noexcept;
+const char* ToString(CanopenRole role) noexcept;
 
 constexpr bool IsDrive(CanopenRole role) noexcept { return role <= CanopenRole::kDrive2; }
 

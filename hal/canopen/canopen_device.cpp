@@ -14,8 +14,8 @@ namespace {
 constexpr int kMissedIsSilent = 3;
 constexpr int kStuckIsFault = 3;
 // A drive charges its intermediate circuit or releases a brake: a second at 50 Hz.
-constexpr int kPatienceToEnable = 50;
-constexpr int kPatienceToDisable = 5;
+constexpr int kFramesToEnable = 50;
+constexpr int kFramesToDisable = 5;
 constexpr int kResetsBeforeSetup = 6;
 // More than a full socket holds: bounds the time of a call under a flood of frames.
 constexpr int kMostFrames = 1024;
@@ -206,13 +206,13 @@ void CanopenDevice::FollowDrive(DriveWish wish, Node* node) noexcept {
   if (wish == DriveWish::kOn) {
     if (node->was_enabled && !operating) {
       Latch(CanopenFaultKind::kLeftOperation, node, node->statusword);
-    } else if (node->waiting > kPatienceToEnable) {
+    } else if (node->waiting > kFramesToEnable) {
       Latch(CanopenFaultKind::kNotEnabled, node, node->statusword);
     }
     node->was_enabled = node->was_enabled || operating;
   } else {
     node->was_enabled = false;
-    if (node->waiting > kPatienceToDisable) {
+    if (node->waiting > kFramesToDisable) {
       Latch(CanopenFaultKind::kNotDisabled, node, node->statusword);
     }
   }

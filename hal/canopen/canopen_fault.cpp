@@ -14,7 +14,7 @@ const CanopenNodeConfig* NodeOf(const CanopenConfig& config, int node_id) noexce
   return nullptr;
 }
 
-const char* Words(CanopenFaultKind kind) {
+const char* ToString(CanopenFaultKind kind) {
   switch (kind) {
     case CanopenFaultKind::kNone:
       return "no fault";
@@ -104,9 +104,9 @@ CanopenFault Unpacked(const BusFault& fault) noexcept {
 std::string CanopenFaultText(const CanopenConfig& config, const CanopenFault& fault) {
   std::string text = config.interface + ": ";
   if (const CanopenNodeConfig* node = NodeOf(config, fault.node_id)) {
-    text += "node " + std::to_string(node->node_id) + " (" + CanopenRoleName(node->role) + "): ";
+    text += "node " + std::to_string(node->node_id) + " (" + ToString(node->role) + "): ";
   }
-  text += Words(fault.kind);
+  text += ToString(fault.kind);
   if (fault.code == 0) return text;
   std::array<char, 4> hex{};
   const auto [end, error] = std::to_chars(hex.data(), hex.data() + hex.size(), fault.code, 16);

@@ -11,8 +11,8 @@ namespace {
 std::string NodeCosts(const CanopenConfig& bus) {
   std::string text;
   for (const CanopenNodeConfig& node : bus.node) {
-    text += (text.empty() ? "; on the wire: " : ", ") + std::string(CanopenRoleName(node.role)) +
-            " " + std::to_string(bus.wire_time_ns(node) / 1000) + " us";
+    text += (text.empty() ? "; on the wire: " : ", ") + std::string(ToString(node.role)) + " " +
+            std::to_string(bus.wire_time_ns(node) / 1000) + " us";
   }
   return text;
 }
@@ -64,7 +64,7 @@ BusCost CanopenWiring::Cost() const {
               .oldest_ns = 0};
   for (const CanopenNodeConfig& node : config_.node) {
     bus.channel.push_back({.device = "node " + std::to_string(node.node_id),
-                           .channel = CanopenRoleName(node.role),
+                           .channel = ToString(node.role),
                            .transaction = static_cast<int>(bus.channel.size()),
                            .cost_ns = config_.wire_time_ns(node),
                            .convert_ns = 0});

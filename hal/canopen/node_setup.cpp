@@ -254,7 +254,7 @@ std::string NodeSetup::FailureText() const {
   if (failure_ == Failure::kNone) return "";
   const CanopenNodeConfig& node = config_.node[node_];
   std::string text = std::string(bus_->interface()) + ": node " + std::to_string(node.node_id) +
-                     " (" + CanopenRoleName(node.role) + "): " + step().what;
+                     " (" + ToString(node.role) + "): " + step().what;
   const bool transfer =
       step().action == SetupAction::kExpect || step().action == SetupAction::kWrite;
   if (transfer) {

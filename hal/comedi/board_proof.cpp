@@ -15,7 +15,7 @@ namespace {
 // Periods that the buffer must hold when the reader is delayed, for example by a slow disk.
 constexpr double kPeriodsToHold = 5.0;
 
-const char* Name(DaqKind kind) {
+const char* ToString(DaqKind kind) {
   constexpr std::array kNames = {"analogue input", "analogue output", "digital lines",
                                  "counter",        "something else",  "nothing"};
   return kNames[static_cast<std::size_t>(kind)];
@@ -53,7 +53,7 @@ class Proof {
 
   DaqSubdevice ProveSubdevice(int subdevice, DaqKind kind) const {
     const DaqSubdevice found = board_->Describe(subdevice);
-    if (found.kind != kind) Refuse(Place(subdevice), Name(found.kind), Name(kind));
+    if (found.kind != kind) Refuse(Place(subdevice), ToString(found.kind), ToString(kind));
     return found;
   }
 

@@ -196,6 +196,6 @@ std::string ChannelName(const ComediDriveConfig& row) {
 
 std::string ChannelName(const ComediCounterConfig& row) { return CounterName(row.counter); }
 
-std::string ChannelName(const ComediLineConfig& row) { return Name(row.line); }
+std::string ChannelName(const ComediLineConfig& row) { return ToString(row.line); }
 
 }  // namespace flexarm

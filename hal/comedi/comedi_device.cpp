@@ -48,7 +48,7 @@ void ComediDevice::Open() {
   if (streams()) AwaitFirstScan();
   SensorFrame part{};
   if (Exchange(kOff, &part) == BusStatus::kOk) return;
-  throw HalError("comedi " + config_.device + ": the first exchange fails: " + Name(fault_));
+  throw HalError("comedi " + config_.device + ": the first exchange fails: " + ToString(fault_));
 }
 
 void ComediDevice::AwaitFirstScan() {
@@ -61,7 +61,7 @@ void ComediDevice::AwaitFirstScan() {
   }
   if (scan_clock_.running()) return;
   if (fault_ == ComediFault::kNone) Fail(ComediFault::kLateScan);
-  throw HalError("comedi " + config_.device + ": no scan has arrived: " + Name(fault_) +
+  throw HalError("comedi " + config_.device + ": no scan has arrived: " + ToString(fault_) +
                  ", expected one every " +
                  std::to_string(config_.input->scan_interval_ns() / 1000) + " us");
 }
@@ -255,7 +255,7 @@ std::string ComediDevice::FaultText(const BusFault& fault) const {
   if (fault.node > 0 && fault.node <= plan_.channels.size()) {
     text += plan_.channels[fault.node - std::size_t{1}].channel + ": ";
   }
-  return text + Name(static_cast<ComediFault>(fault.kind));
+  return text + ToString(static_cast<ComediFault>(fault.kind));
 }
 
 void ComediDevice::Close() noexcept {

@@ -2,7 +2,7 @@
 
 namespace flexarm {
 
-const char* Name(ComediFault fault) noexcept {
+const char* ToString(ComediFault fault) noexcept {
   switch (fault) {
     case ComediFault::kNone:
       return "no fault";

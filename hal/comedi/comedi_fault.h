@@ -22,7 +22,7 @@ enum class ComediFault : std::uint8_t {
 };
 
 /// Text of a fault for the log: "scan late".
-const char* Name(ComediFault fault) noexcept;
+const char* ToString(ComediFault fault) noexcept;
 
 /// True for a latched fault: it lasts until Reconnect has succeeded.
 bool Lasts(ComediFault fault) noexcept;

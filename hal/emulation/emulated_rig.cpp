@@ -39,7 +39,7 @@ void EmulatedRig::AddNodes(const CanopenConfig& bus, const BusClocks& clocks) {
 
 SimulatedNode* EmulatedRig::FindNode(std::string_view role) noexcept {
   for (const Node& node : nodes_) {
-    if (role == CanopenRoleName(node.config.role)) return node.node.get();
+    if (role == ToString(node.config.role)) return node.node.get();
   }
   return nullptr;
 }

@@ -107,7 +107,7 @@ ModbusBytes TcpFrame(const ModbusBytes& request, std::uint8_t unit, const Modbus
 }
 
 // Truncates the frame, or replaces it by garbage.
-ModbusBytes Spoilt(ModbusBytes frame, WireFault fault) {
+ModbusBytes Corrupted(ModbusBytes frame, WireFault fault) {
   if (fault == WireFault::kGarbage) frame.assign(64, 0xFF);
   if (fault == WireFault::kThreeBytes) frame.resize(3);
   if (fault == WireFault::kHalfFrame || fault == WireFault::kHalfFrameThenClose) {
@@ -145,11 +145,11 @@ ModbusBytes ReplyFrame(const ModbusDeviceConfig& config, const RegisterImage& im
                          request.end() - (rtu ? 2 : 0));
   const ModbusBytes answer = mine ? Answer(image, body, fault) : Refusal(body[0], kTargetFailed);
   const auto shown = static_cast<std::uint8_t>(unit + (fault == WireFault::kWrongUnit ? 1 : 0));
-  if (!rtu) return Spoilt(TcpFrame(request, shown, answer, fault), fault);
+  if (!rtu) return Corrupted(TcpFrame(request, shown, answer, fault), fault);
   ModbusBytes frame = {shown};
   frame.insert(frame.end(), answer.begin(), answer.end());
   AppendChecksum(&frame, fault);
-  return Spoilt(std::move(frame), fault);
+  return Corrupted(std::move(frame), fault);
 }
 
 }  // namespace flexarm

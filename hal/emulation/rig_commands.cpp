@@ -56,8 +56,8 @@ std::string NoChannel(const ChannelFaults& channels) {
 }
 
 // Executes a fault of single channels. Empty: `what` is not one of them.
-std::optional<std::string> ObeyChannels(const std::string& what, std::istringstream& words,
-                                        ChannelFaults* channels) {
+std::optional<std::string> CommandChannels(const std::string& what, std::istringstream& words,
+                                           ChannelFaults* channels) {
   if (what != "stuck" && what != "inverted" && what != "swapped" && what != "scaled") {
     return std::nullopt;
   }
@@ -81,10 +81,10 @@ std::optional<std::string> ObeyChannels(const std::string& what, std::istringstr
 
 }  // namespace
 
-std::string ObeyAmplifier(std::istringstream& words, SimulatedAmplifier* amplifier) {
+std::string CommandAmplifier(std::istringstream& words, SimulatedAmplifier* amplifier) {
   std::string what;
   words >> what;
-  if (const auto done = ObeyChannels(what, words, &amplifier->channels())) return *done;
+  if (const auto done = CommandChannels(what, words, &amplifier->channels())) return *done;
   if (what == "late") {
     int late_ms = 0;
     if (!(words >> late_ms) || late_ms < 0) return "expected a delay in ms";
@@ -103,7 +103,7 @@ std::string ObeyAmplifier(std::istringstream& words, SimulatedAmplifier* amplifi
   return "";
 }
 
-std::string ObeyNode(std::istringstream& words, SimulatedNode* node) {
+std::string CommandNode(std::istringstream& words, SimulatedNode* node) {
   std::string what, code;
   words >> what >> code;
   if (what == "well") {
@@ -147,11 +147,11 @@ std::string ExecuteRigCommand(const std::string& line, EmulatedRig* rig) {
   if (command == "amplifier") {
     SimulatedAmplifier* amplifier = rig->FindAmplifier(name);
     return amplifier == nullptr ? "no such amplifier: '" + name + "'"
-                                : ObeyAmplifier(words, amplifier);
+                                : CommandAmplifier(words, amplifier);
   }
   if (command == "node") {
     SimulatedNode* node = rig->FindNode(name);
-    return node == nullptr ? "no such node: '" + name + "'" : ObeyNode(words, node);
+    return node == nullptr ? "no such node: '" + name + "'" : CommandNode(words, node);
   }
   if (command == "bus-off") {
     return AnnounceBusOff(name) ? "" : name + ": " + std::strerror(errno);

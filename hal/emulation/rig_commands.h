@@ -16,7 +16,7 @@ extern const char* const kRigCommands;
 std::string ExecuteRigCommand(const std::string& line, EmulatedRig* rig);
 
 /// The same for the words after "amplifier NAME" and "node ROLE".
-std::string ObeyAmplifier(std::istringstream& words, SimulatedAmplifier* amplifier);
-std::string ObeyNode(std::istringstream& words, SimulatedNode* node);
+std::string CommandAmplifier(std::istringstream& words, SimulatedAmplifier* amplifier);
+std::string CommandNode(std::istringstream& words, SimulatedNode* node);
 
 }  // namespace flexarm

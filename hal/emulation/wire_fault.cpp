@@ -32,7 +32,7 @@ static_assert(kNames.back() != nullptr, "every fault must have a name");
 
 }  // namespace
 
-const char* Name(WireFault fault) noexcept { return kNames[static_cast<std::size_t>(fault)]; }
+const char* ToString(WireFault fault) noexcept { return kNames[static_cast<std::size_t>(fault)]; }
 
 std::optional<WireFault> WireFaultByName(std::string_view name) noexcept {
   for (std::size_t i = 0; i < kNames.size(); ++i) {

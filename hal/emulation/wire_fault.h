@@ -38,7 +38,7 @@ enum class WireFault : std::uint8_t {
 inline constexpr int kWireFaults = 25;
 
 /// Name of a fault in commands: "byte-by-byte"; kNone is "well".
-const char* Name(WireFault fault) noexcept;
+const char* ToString(WireFault fault) noexcept;
 
 /// The fault with this name; empty if there is none.
 std::optional<WireFault> WireFaultByName(std::string_view name) noexcept;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxOffset = 1023;  // no chip has more lines
 
 std::string KeyOf(Line line) {
-  std::string key = Name(line);
+  std::string key = ToString(line);
   for (char& c : key) {
     if (c == '-') c = '_';
   }

@@ -16,7 +16,7 @@ namespace flexarm {
 /// drives while its line toggles.
 struct GpiodConfig {
   std::string chip;               ///< "/dev/gpiochip0", or a chip's name or label
-  std::array<int, kLines> input;  ///< keys by Name(Line), with underscores: limit_1_low, ..
+  std::array<int, kLines> input;  ///< keys by ToString(Line), with underscores: limit_1_low, ..
   int relay;
   int pump;
 

@@ -54,7 +54,7 @@ struct GpiodLines::Lines {
     gpiod_line_bulk_init(&inputs);
     for (int i = 0; i < kLines; ++i) {
       gpiod_line_bulk_add(&inputs, LineAt(config, chip, config.input[static_cast<std::size_t>(i)],
-                                          Name(static_cast<Line>(i))));
+                                          ToString(static_cast<Line>(i))));
     }
     gpiod_line_bulk_init(&outputs);
     gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.relay, "relay"));

@@ -50,7 +50,7 @@ void CheckIdentification(const ModbusDeviceConfig& d, ProblemList* list) {
   for (std::size_t i = 0; i < d.identification.size(); ++i) {
     const ModbusIdentity& id = d.identification[i];
     const std::string key = ProblemList::Element("identification", i);
-    list->Require(!HoldsBits(id.table), key + ".table", Name(id.table),
+    list->Require(!HoldsBits(id.table), key + ".table", ToString(id.table),
                   "must be \"input register\" or \"holding register\"");
     list->Within(key + ".address", id.address, 0, kAddresses - 1, "the address on the wire");
     list->Within(key + ".expected", id.expected, 0, 65535, "a register has 16 bits");
@@ -73,7 +73,7 @@ void CheckStrainRow(const ModbusRegister& r, const std::string& key, std::size_t
       r.index >= 0 && static_cast<std::size_t>(r.index) < strain_rows, key + ".strain",
       NumberText(r.index),
       "must be a row of [[sensors.strain]], from 0; it has rows: " + NumberText(strain_rows));
-  list->Require(!HoldsBits(r.table), key + ".table", Name(r.table),
+  list->Require(!HoldsBits(r.table), key + ".table", ToString(r.table),
                 "must be \"input register\" or \"holding register\": a strain is a number");
   list->Require(r.type != ModbusType::kBit, key + ".type", "bit",
                 "must be int16, uint16, int32 or float32: a strain is a number");
@@ -88,7 +88,7 @@ void CheckStrainRow(const ModbusRegister& r, const std::string& key, std::size_t
 void CheckInputRow(const ModbusRegister& r, const std::string& key, ProblemList* list) {
   list->Require(r.index >= 0 && r.index < kLines, key + ".input", NumberText(r.index),
                 "must be the name of a digital input");
-  list->Require(HoldsBits(r.table), key + ".table", Name(r.table),
+  list->Require(HoldsBits(r.table), key + ".table", ToString(r.table),
                 "must be \"discrete input\" or \"coil\": an input is a bit");
   list->Require(r.type == ModbusType::kBit, key + ".type", "not a bit",
                 "must be left out, or bit: an input is a bit");
@@ -108,8 +108,8 @@ void CheckOverlaps(const ModbusDeviceConfig& d, ProblemList* list) {
       const auto [place, fresh] = taken.insert({{r.table, address}, i});
       list->Require(fresh, key, NumberText(r.address),
                     "must not overlap " + ProblemList::Element("register", place->second) + " (" +
-                        ChannelName(d.map[place->second]) + "): both take " + Name(r.table) + " " +
-                        NumberText(address));
+                        ChannelName(d.map[place->second]) + "): both take " + ToString(r.table) +
+                        " " + NumberText(address));
     }
   }
 }
@@ -125,7 +125,7 @@ void CheckResynchronisation(const ModbusDeviceConfig& d, const ModbusPlan& plan,
           return proof.table == read.table && proof.count == read.count;
         });
     list->Require(
-        differs, "identification", NumberText(proof.count) + " x " + Name(proof.table),
+        differs, "identification", NumberText(proof.count) + " x " + ToString(proof.table),
         "must differ in table or number from every request for readings, or a late reply "
         "on the serial line could be mistaken for another; name one register more or less");
   }
@@ -152,7 +152,7 @@ void CheckTime(const ModbusDeviceConfig& d, const ModbusPlan& plan, std::int64_t
 
 }  // namespace
 
-const char* Name(ModbusTable table) noexcept {
+const char* ToString(ModbusTable table) noexcept {
   switch (table) {
     case ModbusTable::kCoil:
       return "coil";
@@ -171,7 +171,7 @@ std::string ChannelName(const ModbusRegister& row) {
     return "strain[" + NumberText(row.index) + "]";
   }
   if (row.index < 0 || row.index >= kLines) return "input " + NumberText(row.index);
-  return Name(static_cast<Line>(row.index));
+  return ToString(static_cast<Line>(row.index));
 }
 
 std::vector<Problem> ModbusDeviceConfig::Problems(const std::string& section,

@@ -94,7 +94,7 @@ constexpr bool HoldsBits(ModbusTable table) {
 }
 
 /// Name of a table in messages: "input register".
-const char* Name(ModbusTable table) noexcept;
+const char* ToString(ModbusTable table) noexcept;
 
 /// "strain[3]" or the name of the line.
 std::string ChannelName(const ModbusRegister& row);

@@ -50,13 +50,13 @@ std::string ModbusDevice::Place() const {
 }
 
 std::string ModbusDevice::Refusal(const ModbusRequest& request, BusStatus status) const {
-  const std::string range = std::string(Name(request.table)) + "s " +
+  const std::string range = std::string(ToString(request.table)) + "s " +
                             std::to_string(request.address) + " .. " +
                             std::to_string(request.address + request.count - 1);
   const ModbusCounters& met = counters();
   const bool refused = status == BusStatus::kMalformed && met.last_exception != 0;
   return Place() + range + " cannot be read: found " +
-         (refused ? "exception " + std::to_string(met.last_exception) : Words(status)) +
+         (refused ? "exception " + std::to_string(met.last_exception) : ToString(status)) +
          ", expected " + std::to_string(request.count) + " values";
 }
 
@@ -69,7 +69,7 @@ BusFault ModbusDevice::FaultOf(BusStatus status) const noexcept {
 
 std::string ModbusDevice::FaultText(const BusFault& fault) const {
   if (fault.code != 0) return Place() + "answers with exception " + std::to_string(fault.code);
-  return Place() + Words(static_cast<BusStatus>(fault.kind));
+  return Place() + ToString(static_cast<BusStatus>(fault.kind));
 }
 
 void ModbusDevice::Open() {
@@ -80,7 +80,7 @@ void ModbusDevice::Open() {
     status = ConnectAndProve(&wrong);
     if (wrong.identity != nullptr) {
       const ModbusIdentity& id = *wrong.identity;
-      throw HalError(Place() + Name(id.table) + " " + std::to_string(id.address) + " is " +
+      throw HalError(Place() + ToString(id.table) + " " + std::to_string(id.address) + " is " +
                      Hexadecimal(wrong.found) + ", expected " + Hexadecimal(id.expected) +
                      ": another device, or different settings");
     }
@@ -170,7 +170,7 @@ BusStatus ModbusDevice::Exchange(const BusCommand&, SensorFrame* part) noexcept 
   fresh.levels = 0;
   const BusStatus status = ReadAll(&fresh);
   if (status == BusStatus::kOk) {
-    link_.ForgiveMismatches();
+    link_.ClearMismatches();
     KeepAges(&fresh);
     last_ = fresh;
     *part = fresh;

@@ -71,7 +71,7 @@ class ModbusLink {
 
   /// A whole exchange was right: earlier mismatches no longer count. One right reply is not enough:
   /// a serial peer that is always late gives right replies too.
-  void ForgiveMismatches() noexcept { mismatches_in_a_row_ = 0; }
+  void ClearMismatches() noexcept { mismatches_in_a_row_ = 0; }
 
   void Close() noexcept;
 

@@ -71,7 +71,7 @@ void CheckWiring(const HalConfig& hal, const SensorConfig& sensors, ProblemList*
   }
   for (std::size_t i = 0; i < kLines; ++i) {
     const Census::Places places = census.At(Kind::kLine, i);
-    list->Require(places.size() <= 1, std::string("line ") + Name(static_cast<Line>(i)),
+    list->Require(places.size() <= 1, std::string("line ") + ToString(static_cast<Line>(i)),
                   Times(places), "must be read once at most, besides [hal.gpiod]" + Where(places));
   }
   list->Require(hal.gpiod.has_value(), "gpiod", "missing",

@@ -32,17 +32,16 @@ QuasiStaticPose QuasiStaticAt(const RigidJointArm& arm, const OutboardBody& body
   return out;
 }
 
-QuasiStaticSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,
-                                  const std::array<RigidPoint, 3>& previous_now_next,
-                                  double period_s) noexcept {
+MotionSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,
+                             const std::array<RigidPoint, 3>& previous_now_next,
+                             double period_s) noexcept {
   const OutboardBody body = arm.Outboard(payload_kg);
   const QuasiStaticPose previous = QuasiStaticAt(arm, body, previous_now_next[0]);
   const QuasiStaticPose now = QuasiStaticAt(arm, body, previous_now_next[1]);
   const QuasiStaticPose next = QuasiStaticAt(arm, body, previous_now_next[2]);
-  QuasiStaticSample out;
-  out.x << now.q, (next.q - previous.q) / (2.0 * period_s);
-  out.torque_nm = 0.5 * (now.torque_nm + next.torque_nm);
-  return out;
+  Eigen::Matrix<double, 12, 1> x;
+  x << now.q, (next.q - previous.q) / (2.0 * period_s);
+  return MotionSample::Of(x, 0.5 * (now.torque_nm + next.torque_nm));
 }
 
 }  // namespace flexarm

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "model/rigid_joint/motion_sample.h"
 #include "model/rigid_joint/rigid_joint_arm.h"
 #include "model/rigid_joint/rigid_point.h"
 
@@ -24,18 +25,13 @@ struct QuasiStaticPose {
 QuasiStaticPose QuasiStaticAt(const RigidJointArm& arm, const OutboardBody& body,
                               const RigidPoint& point) noexcept;
 
-/// State and torque of a sample.
-struct QuasiStaticSample {
-  Eigen::Matrix<double, 12, 1> x;  ///< [q; q'], rad and m, and per second
-  Eigen::Vector2d torque_nm;       ///< mean of this instant and the next, for the sample between
-};
-
 /// Quasi-static reference: rates are central differences over the neighbours, all with the same
-/// payload. Source: docs/theory/payload.md 3.3. Real-time: safe.
+/// payload. The torque is the mean of this instant and the next, for the sample between.
+/// Source: docs/theory/payload.md 3.3. Real-time: safe.
 /// @param previous_now_next  the path, one period apart
 /// @param period_s           > 0
-QuasiStaticSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,
-                                  const std::array<RigidPoint, 3>& previous_now_next,
-                                  double period_s) noexcept;
+MotionSample QuasiStaticOver(const RigidJointArm& arm, double payload_kg,
+                             const std::array<RigidPoint, 3>& previous_now_next,
+                             double period_s) noexcept;
 
 }  // namespace flexarm

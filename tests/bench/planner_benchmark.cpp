@@ -24,7 +24,7 @@ struct Bench {
   RigidJointStepper linear{RigidJointArm(ThesisRig()), kPeriod_s, 1.0};
   RigidJointStepper rolling{RigidJointArm(ThesisRig()), kPeriod_s, 1.0, 4};
   PlanCost targets;
-  PlanTrack track;
+  PlanTrajectory track;
   PlanPolicy policy;
 };
 
@@ -41,7 +41,7 @@ BENCHMARK(Targets)->Unit(benchmark::kMillisecond);
 void BackwardSweep(benchmark::State& state) {
   const auto bench = std::make_unique<Bench>();
   bench->targets.Set(bench->linear.arm(), kPeriod_s, StudyPlannerConfig().weights, bench->problem);
-  const PlanTrack& track = bench->targets.quasi_static();
+  const PlanTrajectory& track = bench->targets.quasi_static();
   for (auto _ : state) {
     BackwardPass(bench->linear, 0.37, bench->targets, track, &bench->policy);
     benchmark::DoNotOptimize(bench->policy.K.data());

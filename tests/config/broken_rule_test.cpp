@@ -102,16 +102,16 @@ TEST(BrokenConfigs, ALawThatEstimatesThePayloadNeedsItsTables) {
                                         "name = \"" + law + "\""),
                                "[" + table + "]  ", "[rig2]  "));
   };
-  const auto told = [](const std::vector<ConfigProblem>& problems, const std::string& table) {
+  const auto refused = [](const std::vector<ConfigProblem>& problems, const std::string& table) {
     return std::any_of(problems.begin(), problems.end(), [&](const ConfigProblem& problem) {
       return problem.key == "controller.name" && problem.rule == "needs the table [" + table + "]";
     });
   };
   const std::string payload = "controller.payload", plan = "controller.plan";
-  EXPECT_TRUE(told(without("gain-scheduled", payload), payload));
-  EXPECT_TRUE(told(without("receding-horizon", payload), payload));
-  EXPECT_TRUE(told(without("receding-horizon", plan), plan));
-  EXPECT_FALSE(told(without("gain-scheduled", plan), plan)) << "this law has no planner";
+  EXPECT_TRUE(refused(without("gain-scheduled", payload), payload));
+  EXPECT_TRUE(refused(without("receding-horizon", payload), payload));
+  EXPECT_TRUE(refused(without("receding-horizon", plan), plan));
+  EXPECT_FALSE(refused(without("gain-scheduled", plan), plan)) << "this law has no planner";
 }
 
 TEST(BrokenConfigs, AHardwareRigHasNoTipAccelerometer) {

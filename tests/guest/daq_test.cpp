@@ -167,7 +167,7 @@ TEST(DaqInGuest, AStreamedReadingIsAsOldAsItsOffsetSays) {
   bench.device.Open();
   double worst_us = 0.0;
   for (int k = 0; k < 100; ++k) {
-    ASSERT_EQ(bench.Exchange(), BusStatus::kOk) << Name(bench.device.fault()) << " " << k;
+    ASSERT_EQ(bench.Exchange(), BusStatus::kOk) << ToString(bench.device.fault()) << " " << k;
     ASSERT_EQ(bench.frame.strain_valid, 0b111U);
     constexpr int kAmplitude = 3276;  // 1 V, as the driver rounds it
     const int code = bench.frame.strain[0] + 32768;
@@ -217,7 +217,7 @@ TEST(DaqInGuest, ABufferOverflowIsNamedAndReconnectReadsAgain) {
   ASSERT_EQ(bench.Exchange({.torque_nm = {12.0, 3.0}, .enabled = true}), BusStatus::kOk);
   SleepUntil(Monotonic() + 3'500 * kMillisecond);  // 3 channels every 0.25 ms: 2.7 s fill it
   EXPECT_EQ(bench.Exchange({.torque_nm = {12.0, 3.0}, .enabled = true}), BusStatus::kMalformed);
-  EXPECT_EQ(bench.device.fault(), ComediFault::kOverrun) << Name(bench.device.fault());
+  EXPECT_EQ(bench.device.fault(), ComediFault::kOverrun) << ToString(bench.device.fault());
   EXPECT_EQ(bench.frame.strain_valid, 0U);
   EXPECT_NE(bench.Exchange({.torque_nm = {12.0, 3.0}, .enabled = true}), BusStatus::kOk);
   EXPECT_EQ(bench.ReconnectUntilOk(), BusStatus::kOk);

@@ -205,6 +205,22 @@ lane_unit() {
                                "lane_format() {\nlane_fuzz() {\n"),
             ["tools/lanes.sh:1: lane: fuzz is either a function or in a set, and not both"])
 
+    def law_findings(self, *rows):
+        laws = '{ControllerKind::kPd, "pd", "a hub alone", false},\n{ControllerKind::kLqg,\n "lqg", "all"}'
+        with tempfile.TemporaryDirectory() as folder:
+            write(Path(folder), {"controller/types/law_table.h": laws,
+                                 "docs/theory/README.md": "\n".join(rows)})
+            return check_docs.check_tree(Path(folder))
+
+    def test_takes_a_row_for_each_law(self):
+        self.assertEqual(self.law_findings("| `pd` | a hub alone | 1 |", "| `lqg` | all | 2 |"), [])
+
+    def test_finds_a_law_without_a_row_and_a_row_without_a_law(self):
+        self.assertEqual(self.law_findings("| `pd` | both hubs | 1 |", "| `lqg` | all | 2 |"),
+                         ["docs/theory/README.md:1: law: there is no row for pd: a hub alone",
+                          "docs/theory/README.md:1: law: controller/types/law_table.h has no pd: "
+                          "both hubs"])
+
     def test_this_tree_speaks_of_what_is_there(self):
         self.assertEqual(check_docs.check_tree(ROOT), [])
 

@@ -168,7 +168,7 @@ OrderedJson ParametricJson(const ParametricStudy& study, const std::vector<State
 void PrintStatements(const std::vector<Statement>& statements) {
   for (const Statement& s : statements) {
     std::printf("%s  %s\n     model: %s\n     %s\n", s.section.c_str(), s.thesis.c_str(),
-                s.model.c_str(), Name(s.verdict));
+                s.model.c_str(), ToString(s.verdict));
   }
 }
 

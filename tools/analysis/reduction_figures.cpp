@@ -37,7 +37,7 @@ constexpr std::array<Surface, 4> kSurfaces = {{{"figure-6.6.png", 0.0},
 
 std::string Caption(double theta2_deg, const std::string& rest, ModalScaling scaling) {
   std::ostringstream text;
-  text << "elbow " << theta2_deg << " deg" << rest << ", phi scaled by " << Name(scaling);
+  text << "elbow " << theta2_deg << " deg" << rest << ", phi scaled by " << ToString(scaling);
   return text.str();
 }
 

@@ -16,11 +16,11 @@ using Eigen::Index;
 
 std::vector<double> List(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
 
-const char* Name(PowerCondition condition) {
+const char* ToString(PowerCondition condition) {
   return condition == PowerCondition::kSymmetric ? "symmetric" : "diagonalisable";
 }
 
-const char* Name(DroppedRoot::Reason reason) {
+const char* ToString(DroppedRoot::Reason reason) {
   switch (reason) {
     case DroppedRoot::Reason::kRigid:
       return "rigid";
@@ -54,7 +54,7 @@ OrderedJson Notes(const OrderedJson& power) {
 
 OrderedJson PowerJson(const PowerBalance& balance) {
   OrderedJson json;
-  json["condition"] = Name(balance.condition);
+  json["condition"] = ToString(balance.condition);
   double flexible = 0.0;
   for (const PowerMode& mode : balance.mode) flexible += mode.rigid_origin ? 0.0 : mode.rho;
   json["modes"] = OrderedJson::array();
@@ -70,7 +70,7 @@ OrderedJson PowerJson(const PowerBalance& balance) {
   for (const DroppedRoot& root : balance.dropped) {
     json["dropped_roots"].push_back({{"real_rad2_s2", root.squared_frequency_rad2_s2.real()},
                                      {"imaginary_rad2_s2", root.squared_frequency_rad2_s2.imag()},
-                                     {"reason", Name(root.reason)}});
+                                     {"reason", ToString(root.reason)}});
   }
   return json;
 }
@@ -180,7 +180,7 @@ void PrintGrid(const OrderedJson& grid) {
 
 }  // namespace
 
-const char* Name(ModalScaling scaling) {
+const char* ToString(ModalScaling scaling) {
   switch (scaling) {
     case ModalScaling::kTip:
       return "tip";
@@ -202,7 +202,7 @@ OrderedJson ArmReductionJson(const ArmModel& model, const NominalMotion& motion,
                    {"theta2_rate_rad_s", motion.theta2_rate_rad_s},
                    {"payload_kg", model.parameters().payload_mass_kg},
                    {"modes_per_link", model.mode_count().link1},
-                   {"scaling", Name(options.scaling)}};
+                   {"scaling", ToString(options.scaling)}};
   const ArmConstants& c = model.constants();
   for (const int link : {1, 2}) {
     const LinkContribution& contribution = reduction.link[static_cast<std::size_t>(link - 1)];

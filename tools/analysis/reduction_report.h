@@ -26,6 +26,6 @@ nlohmann::ordered_json GridJson(const ReductionGrid& grid, const std::vector<Red
 void PrintReduction(const nlohmann::ordered_json& json);
 
 /// "mass", "length" or "tip", with an explanation.
-const char* Name(ModalScaling scaling);
+const char* ToString(ModalScaling scaling);
 
 }  // namespace flexarm

@@ -18,7 +18,7 @@ std::string Cell(const std::string& text) {
 
 }  // namespace
 
-const char* Name(Verdict verdict) {
+const char* ToString(Verdict verdict) {
   switch (verdict) {
     case Verdict::kHolds:
       return "holds";
@@ -56,7 +56,8 @@ std::string Counted(const std::vector<Statement>& statements) {
     const auto count =
         std::count_if(statements.begin(), statements.end(),
                       [verdict](const Statement& s) { return s.verdict == verdict; });
-    text += (text.empty() ? "" : ", ") + std::string(Name(verdict)) + ": " + std::to_string(count);
+    text +=
+        (text.empty() ? "" : ", ") + std::string(ToString(verdict)) + ": " + std::to_string(count);
   }
   return text;
 }
@@ -67,7 +68,7 @@ nlohmann::ordered_json StatementsJson(const std::vector<Statement>& statements) 
     json["statements"].push_back({{"section", s.section},
                                   {"thesis", s.thesis},
                                   {"model", s.model},
-                                  {"verdict", Name(s.verdict)}});
+                                  {"verdict", ToString(s.verdict)}});
   }
   return json;
 }
@@ -77,7 +78,7 @@ std::string StatementTable(const std::vector<Statement>& statements) {
       "| section | the thesis says | the model says | verdict |\n|---|---|---|---|\n";
   for (const Statement& s : statements) {
     table += "| " + s.section + " | " + Cell(s.thesis) + " | " + Cell(s.model) + " | " +
-             Name(s.verdict) + " |\n";
+             ToString(s.verdict) + " |\n";
   }
   return table;
 }

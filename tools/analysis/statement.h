@@ -27,7 +27,7 @@ struct Statement {
 };
 
 /// "holds", "holds in part", "depends on the excitation", "does not hold", "not testable".
-const char* Name(Verdict verdict);
+const char* ToString(Verdict verdict);
 
 /// A number with the given significant digits, without an exponent if that is short: "8.76",
 /// "0.023".

@@ -117,7 +117,7 @@ BenchmarkTable TableOf(BenchmarkKind kind, const SweepPlan& plan,
 }
 
 nlohmann::ordered_json BenchmarkJson(const BenchmarkTable& table) {
-  nlohmann::ordered_json json{{"table", Name(table.kind)},
+  nlohmann::ordered_json json{{"table", ToString(table.kind)},
                               {"laws", nlohmann::ordered_json::array()}};
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
     const std::size_t worst = table.WorstScenario(law);

@@ -17,7 +17,7 @@ constexpr const char* kMoveSeeds = "4001..4010";
 
 }  // namespace
 
-const char* Name(BenchmarkKind kind) {
+const char* ToString(BenchmarkKind kind) {
   switch (kind) {
     case BenchmarkKind::kCommands:
       return "commands";
@@ -32,8 +32,8 @@ const char* Name(BenchmarkKind kind) {
 BenchmarkKind BenchmarkKindNamed(const std::string& name) {
   std::string known;
   for (const BenchmarkKind kind : kKinds) {
-    if (name == Name(kind)) return kind;
-    known += std::string(known.empty() ? "" : ", ") + Name(kind);
+    if (name == ToString(kind)) return kind;
+    known += std::string(known.empty() ? "" : ", ") + ToString(kind);
   }
   throw InputError("--table " + name + ": expected one of " + known);
 }

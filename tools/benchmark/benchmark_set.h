@@ -17,7 +17,7 @@ enum class BenchmarkKind : std::uint8_t {
   kLimits,    ///< the same moves, with the limits of the rig removed one by one
 };
 
-const char* Name(BenchmarkKind kind);  ///< "commands", "moves", "limits"
+const char* ToString(BenchmarkKind kind);  ///< "commands", "moves", "limits"
 /// @throws InputError  there is no table of that name
 BenchmarkKind BenchmarkKindNamed(const std::string& name);
 

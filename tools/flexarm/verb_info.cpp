@@ -24,7 +24,7 @@ struct InfoOptions {
 OrderedJson TripJson(const LoadedRun& run) {
   const std::optional<SafetyRecord> trip = TripOf(run.contents.safety);
   if (!trip) return nullptr;
-  return {{"name", Name(trip->after.cause)},
+  return {{"name", ToString(trip->after.cause)},
           {"time_s", static_cast<double>(trip->due_ns - run.contents.info.start_ns) * 1e-9},
           {"value", NumberOrNull(trip->evidence.value)},
           {"limit", NumberOrNull(trip->evidence.limit)},
@@ -99,7 +99,7 @@ OrderedJson Info(const LoadedRun& run) {
   json["delay_max_ms"] = DelayJson(run);
   json["final_state"] = run.contents.safety.empty()
                             ? OrderedJson(nullptr)
-                            : OrderedJson(Name(run.contents.safety.back().after.state));
+                            : OrderedJson(ToString(run.contents.safety.back().after.state));
   json["trip"] = TripJson(run);
   json["gate"] = GateJson(ticks);
   json["result"] = OrderedJson::parse(info.result_json, nullptr, false);
@@ -149,10 +149,10 @@ void PrintSafety(const RunContents& run) {
     if (record.before == record.after) continue;
     std::cout << std::right << std::setw(10)
               << static_cast<double>(record.due_ns - run.info.start_ns) * 1e-9 << " s  "
-              << Name(record.before.state) << " -> " << Name(record.after.state);
-    if (record.after.cause != TripCause::kNone) std::cout << ": " << Name(record.after.cause);
+              << ToString(record.before.state) << " -> " << ToString(record.after.state);
+    if (record.after.cause != TripCause::kNone) std::cout << ": " << ToString(record.after.cause);
     if (record.facts.request != RequestKind::kNone) {
-      std::cout << " (" << Name(record.facts.request) << ")";
+      std::cout << " (" << ToString(record.facts.request) << ")";
     }
     std::cout << '\n';
   }

@@ -53,7 +53,7 @@ nlohmann::ordered_json ToJson(const SimulationResult& result, const std::filesys
   nlohmann::ordered_json json;
   json["completed"] = result.completed;
   json["trip"] = result.trip == TripCause::kNone ? nlohmann::ordered_json(nullptr)
-                                                 : nlohmann::ordered_json(Name(result.trip));
+                                                 : nlohmann::ordered_json(ToString(result.trip));
   json["ticks"] = result.ticks;
   json.update(ToJson(result.metrics));
   json["move_duration_s"] = result.move_duration_s;
@@ -68,7 +68,8 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
   const RunMetrics& m = result.metrics;
   std::printf("completed                 %s\n", result.completed ? "yes" : "NO");
   if (result.trip != TripCause::kNone) {
-    std::printf("trip                      %s: %s\n", Name(result.trip), OperatorText(result.trip));
+    std::printf("trip                      %s: %s\n", ToString(result.trip),
+                OperatorText(result.trip));
   }
   std::printf("ticks                     %lld\n", static_cast<long long>(result.ticks));
   std::printf("joint rms error           %.2f, %.2f deg\n", m.joint_rms_error_deg[0],

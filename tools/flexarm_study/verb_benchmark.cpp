@@ -16,7 +16,7 @@ namespace {
 struct BenchmarkOptions {
   ConfigOptions config;
   GridOptions grid;
-  std::string table = Name(BenchmarkKind::kCommands), laws, seeds;
+  std::string table = ToString(BenchmarkKind::kCommands), laws, seeds;
   std::filesystem::path output, page;
   bool json = false;
 };

@@ -69,6 +69,11 @@ SAID_COMMAND = re.compile(r"(?:[\"`]\s*|Examples?:\s+|Next:\s+|&& )"
 KEY = re.compile(r"([a-z]\w*(?:\.[a-z]\w*)+)(?: = .*)?")
 SET_KEY = re.compile(r"--(?:set|over) ([a-z]\w*(?:\.[a-z]\w*)+)=")
 
+LAWS = Path("controller/types/law_table.h")
+LAWS_PAGE = Path("docs/theory/README.md")
+LAW = re.compile(r'\{ControllerKind::\w+,\s*"([\w-]+)",\s*"([^"]*)"')
+LAW_ROW = re.compile(r"^\| `([\w-]+)` \| ([^|]*) \| [^|]*\|$", re.M)
+
 SYMBOLS = Path("model/symbols.md")
 CODE_COLUMNS = ("in equations", "across files", "in the code")
 EQUATION = re.compile(r"^ {4,}([A-Za-z]\w*[*']*(?:\(\w+\))?)\s*(?:=|<-)(?![=>])", re.M)
@@ -432,6 +437,21 @@ def check_lanes(root):
         yield Finding(LANES_PAGE, 1, "lane", f"there is no row for {lane}")
 
 
+def check_laws(root):
+    """Yields where the table of laws and the page about it differ."""
+    table, page = root / LAWS, root / LAWS_PAGE
+    if not table.exists() or not page.exists():
+        return
+    laws = LAW.findall(table.read_text(encoding="utf-8"))
+    rows = LAW_ROW.findall(page.read_text(encoding="utf-8"))
+    for name, about in laws:
+        if (name, about) not in rows:
+            yield Finding(LAWS_PAGE, 1, "law", f"there is no row for {name}: {about}")
+    for name, about in rows:
+        if (name, about) not in laws:
+            yield Finding(LAWS_PAGE, 1, "law", f"{LAWS} has no {name}: {about}")
+
+
 def check_file(tree, path):
     """Yields (position, rule, message) of one file."""
     text = tree.texts[path]
@@ -449,7 +469,7 @@ def check_file(tree, path):
 def check_tree(root):
     """All findings in the tree under `root`, as FILE:LINE: text."""
     tree = Tree(root.resolve())
-    findings = [*check_lanes(root), *check_symbols(tree)]
+    findings = [*check_lanes(root), *check_laws(root), *check_symbols(tree)]
     for path in (*tree.pages, *tree.files):
         for position, rule, message in sorted(set(check_file(tree, path))):
             line = prose.line_of(tree.texts[path], position)

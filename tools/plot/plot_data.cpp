@@ -178,7 +178,7 @@ PlotRun PlotDataOf(const LoadedRun& run) {
   PlotRun plot{.name = run.file.stem().string(),
                .period_s = run.period_s(),
                .truth = truth,
-               .trip = trip ? Name(trip->after.cause) : "",
+               .trip = trip ? ToString(trip->after.cause) : "",
                .sample = {},
                .span = StateSpansOf(run, zero_ns),
                .pose = PosesOf(run, zero_ns),

@@ -227,7 +227,7 @@ class Script {
           << StateColour(span.state) << "' back\n";
     const bool wide = (span.until_s - span.from_s) > 0.09 * (until_s_ - from_s_);
     if (wide) {
-      text_ << "set label " << 100 + *object << " '" << Name(span.state) << "' at "
+      text_ << "set label " << 100 + *object << " '" << ToString(span.state) << "' at "
             << (span.from_s + span.until_s) / 2 << ',' << low + 0.5 << " center font ',11' front\n";
     }
     ++*object;

@@ -119,8 +119,8 @@ void HtmlPage::Statements(const std::vector<Statement>& statements) {
       "<table>\n" + TableRow({"section", "the thesis says", "the model says", "verdict"}, "th");
   for (const Statement& s : statements) {
     body_ += "<tr><td>" + Escaped(s.section) + "</td><td>" + Escaped(s.thesis) + "</td><td>" +
-             Escaped(s.model) + "</td><td class=\"" + ClassOf(s.verdict) + "\">" + Name(s.verdict) +
-             "</td></tr>\n";
+             Escaped(s.model) + "</td><td class=\"" + ClassOf(s.verdict) + "\">" +
+             ToString(s.verdict) + "</td></tr>\n";
   }
   body_ += "</table>\n";
 }

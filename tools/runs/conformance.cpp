@@ -99,10 +99,10 @@ std::string NoTorqueWhereNoneIsAllowed(const TickRecord* before, const TickRecor
   if (TorqueAllowed(now.input.safety_state)) return "";
   for (std::size_t joint = 0; joint < 2; ++joint) {
     if (now.output.torque_nm[joint] != 0)
-      return "torque asked in " + std::string(Name(now.input.safety_state));
+      return "torque asked in " + std::string(ToString(now.input.safety_state));
     const bool was_allowed = before == nullptr || TorqueAllowed(before->input.safety_state);
     if (!was_allowed && now.input.applied_torque_nm[joint] != 0) {
-      return "torque applied in " + std::string(Name(now.input.safety_state));
+      return "torque applied in " + std::string(ToString(now.input.safety_state));
     }
   }
   return "";

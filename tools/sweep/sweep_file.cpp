@@ -134,7 +134,7 @@ void SweepFile::Create(const SweepIdentity& identity) {
     const SweepAxis& axis = identity.axes[i];
     for (std::size_t j = 0; j < axis.values.size(); ++j) {
       value.Bind(1, static_cast<std::int64_t>(i));
-      value.Bind(2, std::string_view(Name(axis.target)));
+      value.Bind(2, std::string_view(ToString(axis.target)));
       value.Bind(3, std::string_view(axis.key));
       value.Bind(4, static_cast<std::int64_t>(j));
       value.Bind(5, std::string_view(axis.values[j]));
@@ -163,7 +163,7 @@ void SweepFile::Load() {
   while (value.Step()) {
     if (static_cast<std::size_t>(value.Integer(0)) == identity_.axes.size()) {
       AxisTarget target = AxisTarget::kConfig;
-      while (value.Text(1) != Name(target) && target != AxisTarget::kSeed) {
+      while (value.Text(1) != ToString(target) && target != AxisTarget::kSeed) {
         target = static_cast<AxisTarget>(static_cast<int>(target) + 1);
       }
       identity_.axes.push_back({.target = target, .key = value.Text(2), .values = {}});

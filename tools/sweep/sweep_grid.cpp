@@ -93,7 +93,7 @@ std::optional<std::vector<std::string>> WholeRange(const std::string& text) {
 
 }  // namespace
 
-const char* Name(AxisTarget target) noexcept {
+const char* ToString(AxisTarget target) noexcept {
   switch (target) {
     case AxisTarget::kConfig:
       return "config";
@@ -113,7 +113,7 @@ const char* Name(AxisTarget target) noexcept {
 
 std::string SweepAxis::Column() const {
   if (target == AxisTarget::kConfig) return key;
-  return target == AxisTarget::kPlant ? "plant:" + key : Name(target);
+  return target == AxisTarget::kPlant ? "plant:" + key : ToString(target);
 }
 
 std::vector<std::string> ParseValues(const std::string& text) {

@@ -17,7 +17,7 @@ enum class AxisTarget : std::uint8_t {
   kSeed       ///< of the measurement noise
 };
 
-const char* Name(AxisTarget target) noexcept;
+const char* ToString(AxisTarget target) noexcept;
 
 /// One axis of the grid. The values keep the text in which they were given.
 struct SweepAxis {

@@ -15,7 +15,7 @@ SweepRow RowOf(std::size_t point, const SimulationResult& result) {
   return {
       .point = point,
       .completed = result.completed,
-      .trip = result.trip == TripCause::kNone ? "" : Name(result.trip),
+      .trip = result.trip == TripCause::kNone ? "" : ToString(result.trip),
       .refused = {},
       .ticks = result.ticks,
       .measure = {m.joint_rms_error_deg[0], m.joint_rms_error_deg[1], m.joint_final_error_deg[0],

@@ -58,11 +58,12 @@ TEST_F(CalibrateTest, TareNamesExactlyTheImplausibleChannels) {
   readings.strain_missing[2] = 3;
   readings.strain_sigma[7] = 40.0;    // a loose contact
   readings.strain_mean[15] = 1900.0;  // bytes in the wrong order, or a broken bridge
-  const std::string told = MessageOf<RejectedError>([&] { Tare(config_.sensors, readings, {}); });
-  EXPECT_THAT(told, HasSubstr("strain_1_03: 3 of 50 readings are missing"));
-  EXPECT_THAT(told, HasSubstr("strain_1_08: varies by 40.0"));
-  EXPECT_THAT(told, HasSubstr("strain_2_06: is 1900"));
-  EXPECT_THAT(told, Not(HasSubstr("strain_1_01")));
+  const std::string message =
+      MessageOf<RejectedError>([&] { Tare(config_.sensors, readings, {}); });
+  EXPECT_THAT(message, HasSubstr("strain_1_03: 3 of 50 readings are missing"));
+  EXPECT_THAT(message, HasSubstr("strain_1_08: varies by 40.0"));
+  EXPECT_THAT(message, HasSubstr("strain_2_06: is 1900"));
+  EXPECT_THAT(message, Not(HasSubstr("strain_1_01")));
 }
 
 TEST_F(CalibrateTest, ZeroPutsHubAndRotorOfAJointAtTheSameAngle) {
@@ -76,11 +77,11 @@ TEST_F(CalibrateTest, ZeroRefusesAnEncoderThatMovesOrIsNotRead) {
   RestReadings readings = StillArm(config_.sensors, Flat(0.0));
   readings.travel_counts[1] = 4;
   readings.counters_good = 0b0111;
-  const std::string told =
+  const std::string message =
       MessageOf<RejectedError>([&] { Zero(config_.sensors, readings, {}, {}); });
-  EXPECT_THAT(told, HasSubstr("hub2: moved by 4 counts"));
-  EXPECT_THAT(told, HasSubstr("rotor2: was not read"));
-  EXPECT_THAT(told, Not(HasSubstr("hub1")));
+  EXPECT_THAT(message, HasSubstr("hub2: moved by 4 counts"));
+  EXPECT_THAT(message, HasSubstr("rotor2: was not read"));
+  EXPECT_THAT(message, Not(HasSubstr("hub1")));
 }
 
 // The modes of the arm model solve the same beam independently: K phi = Q with a unit force at the
@@ -131,10 +132,10 @@ TEST_F(CalibrateTest, AnImplausibleGainIsRefusedWithItsChannel) {
   std::vector<double> counts = Loaded(load);
   counts[11] *= -1.0;
   GainCalibration gains(config_.arm, config_.sensors);
-  const std::string told =
+  const std::string message =
       MessageOf<RejectedError>([&] { gains.Add(load, StillArm(config_.sensors, counts), {}); });
-  EXPECT_THAT(told, HasSubstr("strain_2_02: reads -"));
-  EXPECT_THAT(told, Not(HasSubstr("strain_2_01")));
+  EXPECT_THAT(message, HasSubstr("strain_2_02: reads -"));
+  EXPECT_THAT(message, Not(HasSubstr("strain_2_01")));
 }
 
 TEST_F(CalibrateTest, ALoadWithoutMeasurableStrainIsRefused) {

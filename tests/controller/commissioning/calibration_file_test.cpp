@@ -23,7 +23,7 @@ class CalibrationFileTest : public testing::Test {
     std::filesystem::create_directories(folder_);
     std::ofstream(file_) << text;
   }
-  std::string Told() const {
+  std::string Refusal() const {
     return MessageOf<InputError>([this] { ReadCalibration(file_, config_.sensors); });
   }
 
@@ -68,7 +68,7 @@ TEST_F(CalibrationFileTest, OtherSensorsAreRefused) {
 TEST_F(CalibrationFileTest, TextThatIsNoCalibrationIsRefusedWithTheFilesName) {
   for (const char* text : {"", "{", "[1, 2]", R"({"encoder": 1, "strain": []})"}) {
     Put(text);
-    EXPECT_THAT(Told(), HasSubstr("calibration.json: expected a calibration")) << text;
+    EXPECT_THAT(Refusal(), HasSubstr("calibration.json: expected a calibration")) << text;
   }
 }
 
@@ -78,7 +78,7 @@ TEST_F(CalibrationFileTest, AValueThatIsNoNumberIsNamed) {
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   text.replace(text.find("\"gain_error\": 0.0"), 17, "\"gain_error\": null");
   Put(text);
-  EXPECT_THAT(Told(), HasSubstr("expected a number in 'gain_error'"));
+  EXPECT_THAT(Refusal(), HasSubstr("expected a number in 'gain_error'"));
 }
 
 TEST_F(CalibrationFileTest, AFolderThatCannotBeMadeIsNamed) {

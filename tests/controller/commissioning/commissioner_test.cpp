@@ -200,29 +200,31 @@ TEST(Commissioner, HomingThatStaysOnItsSwitchTrips) {
 TEST(Commissioner, RefusesCommandsThatTheStateForbids) {
   Bench bench;
   Commissioner& commissioner = bench.commissioner();
-  const auto told = [&](const Json& command) {
+  const auto refusal = [&](const Json& command) {
     return MessageOf<RejectedError>([&] { commissioner.Start(command, bench.state()); });
   };
-  EXPECT_THAT(told({{"command", "pluck"}}), HasSubstr("flexarm arm"));
-  EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "low"}}), HasSubstr("flexarm arm"));
+  EXPECT_THAT(refusal({{"command", "pluck"}}), HasSubstr("flexarm arm"));
+  EXPECT_THAT(refusal({{"command", "home"}, {"joint", 1}, {"side", "low"}}),
+              HasSubstr("flexarm arm"));
   bench.Ask(RequestKind::kArm);
   for (const char* name : {"tare", "zero"}) {
-    EXPECT_THAT(told({{"command", name}}), HasSubstr("needs the state Idle")) << name;
+    EXPECT_THAT(refusal({{"command", name}}), HasSubstr("needs the state Idle")) << name;
   }
 }
 
 TEST(Commissioner, RefusesInvalidArguments) {
   Bench bench;
-  const auto told = [&](const Json& command) {
+  const auto refusal = [&](const Json& command) {
     return MessageOf<RejectedError>(
         [&] { bench.commissioner().Start(command, SafetyState::kArmed); });
   };
-  EXPECT_THAT(told({{"command", "home"}, {"joint", 3}, {"side", "low"}}), HasSubstr("1 or 2"));
-  EXPECT_THAT(told({{"command", "home"}, {"joint", 1}, {"side", "up"}}), HasSubstr("low or high"));
-  EXPECT_THAT(told({{"command", "home"}, {"side", "low"}}), HasSubstr("'joint'"));
-  EXPECT_THAT(told({{"command", "calibrate"}, {"link", 1}, {"force_n", 5}, {"at_m", 2.0}}),
+  EXPECT_THAT(refusal({{"command", "home"}, {"joint", 3}, {"side", "low"}}), HasSubstr("1 or 2"));
+  EXPECT_THAT(refusal({{"command", "home"}, {"joint", 1}, {"side", "up"}}),
+              HasSubstr("low or high"));
+  EXPECT_THAT(refusal({{"command", "home"}, {"side", "low"}}), HasSubstr("'joint'"));
+  EXPECT_THAT(refusal({{"command", "calibrate"}, {"link", 1}, {"force_n", 5}, {"at_m", 2.0}}),
               HasSubstr("lie on link 1"));
-  EXPECT_THAT(told({{"command", "zero"}, {"angle_deg", {1}}}), HasSubstr("two numbers"));
+  EXPECT_THAT(refusal({{"command", "zero"}, {"angle_deg", {1}}}), HasSubstr("two numbers"));
 }
 
 TEST(Commissioner, RefusesASecondCommandWhileBusy) {

@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string Told(const PluckVerdict& verdict) {
+std::string Text(const PluckVerdict& verdict) {
   std::string text;
   for (const PluckFinding& f : verdict.finding) text += f.channel + ": " + f.problem + "\n";
   return text;
@@ -42,7 +42,7 @@ TEST(PluckTorques, PulsesHaveZeroAreaAndActOnOneJointAtATime) {
 
 TEST(Pluck, ARigWiredAsConfiguredPasses) {
   const PluckVerdict verdict = Judged();
-  EXPECT_TRUE(verdict.passed()) << Told(verdict);
+  EXPECT_TRUE(verdict.passed()) << Text(verdict);
   EXPECT_EQ(verdict.answer.size(), 2u + 4u + 20u);
   for (const PluckAnswer& a : verdict.answer) EXPECT_TRUE(a.provable) << a.channel;
 }
@@ -60,14 +60,14 @@ TEST(Pluck, PassesWithOtherPayloadAndFrictionThanConfigured) {
        {std::pair{0.1, 0.5}, {0.1, 1.5}, {0.09, 1.0}, {0.115, 1.0}}) {
     const PluckVerdict verdict = Judged(real(payload_kg, friction));
     EXPECT_TRUE(verdict.passed()) << payload_kg << " kg, friction x " << friction << '\n'
-                                  << Told(verdict);
+                                  << Text(verdict);
   }
 }
 
 TEST(Pluck, ManySeedsOfNoisePass) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const PluckVerdict verdict = Judged({.real = [=](RigConfig& c) { c.sim.seed = seed; }});
-    EXPECT_TRUE(verdict.passed()) << seed << '\n' << Told(verdict);
+    EXPECT_TRUE(verdict.passed()) << seed << '\n' << Text(verdict);
   }
 }
 
@@ -101,10 +101,10 @@ class WrongWireTest : public testing::TestWithParam<WrongWire> {};
 TEST_P(WrongWireTest, IsNamed) {
   const PluckVerdict verdict = Judged(GetParam().wrong);
   EXPECT_FALSE(verdict.passed());
-  EXPECT_THAT(Told(verdict),
+  EXPECT_THAT(Text(verdict),
               HasSubstr(std::string(GetParam().channel) + ": " + GetParam().problem));
   // No other channel is named: one line, or one for each of two exchanged channels.
-  EXPECT_LE(verdict.finding.size(), 2u) << Told(verdict);
+  EXPECT_LE(verdict.finding.size(), 2u) << Text(verdict);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -179,7 +179,7 @@ TEST(Pluck, ATestThatEndsEarlyIsNotPassed) {
   std::vector<TickRecord> run = PluckedRun({}, config);
   run.resize(40);
   const PluckVerdict verdict = JudgePluck(config, run);
-  EXPECT_THAT(Told(verdict), HasSubstr("drive2: was not tested"));
+  EXPECT_THAT(Text(verdict), HasSubstr("drive2: was not tested"));
   EXPECT_FALSE(JudgePluck(config, {}).passed());
 }
 
@@ -194,9 +194,9 @@ TEST(Pluck, ARigWithFewSensorsPassesAndItsFaultsAreFound) {
   for (std::size_t k = 0; k < run.size(); ++k) {
     thin[k].input.frame.strain[1] = run[k].input.frame.strain[10];
   }
-  EXPECT_TRUE(JudgePluck(config, thin).passed()) << Told(JudgePluck(config, thin));
+  EXPECT_TRUE(JudgePluck(config, thin).passed()) << Text(JudgePluck(config, thin));
   for (TickRecord& tick : thin) tick.input.frame.strain[1] *= -1;
-  EXPECT_THAT(Told(JudgePluck(config, thin)), HasSubstr("hub2, strain_2_*: contradict"));
+  EXPECT_THAT(Text(JudgePluck(config, thin)), HasSubstr("hub2, strain_2_*: contradict"));
 }
 
 }  // namespace

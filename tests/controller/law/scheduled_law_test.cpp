@@ -70,9 +70,11 @@ TEST(PathReference, GoesFromRestToRestBendingAsWithTheReferencePayload) {
   }
   double bent_m = 0.0;
   for (int k = 0; k <= table.periods(); ++k) {
-    const QuasiStaticSample expected = QuasiStaticOver(arm, 0.15, table.PathAround(k), kPeriod_s);
+    const MotionSample expected = QuasiStaticOver(arm, 0.15, table.PathAround(k), kPeriod_s);
     for (int i = 0; i < 12; ++i) {
-      ASSERT_EQ(table.At(k).x_m[static_cast<std::size_t>(i)], expected.x[i]) << k;
+      ASSERT_EQ(table.At(k).x_m[static_cast<std::size_t>(i)],
+                expected.x[static_cast<std::size_t>(i)])
+          << k;
     }
     bent_m = std::fmax(bent_m, std::fabs(table.At(k).x_m[2]));
   }
@@ -156,14 +158,14 @@ TEST(ScheduledLaw, TheTorqueIsQuasiStaticPlusFrictionPlusScheduledFeedback) {
   const GainTable& gains = ShippedPathDesign().scheduled->gains;
   for (const int k : {30, 60, 90}) {
     const auto path = table.PathAround(k);
-    const QuasiStaticSample desired = QuasiStaticOver(arm, 0.3, path, kPeriod_s);
-    ScheduledLaw::State x = desired.x;
+    const MotionSample desired = QuasiStaticOver(arm, 0.3, path, kPeriod_s);
+    ScheduledLaw::State x = desired.State();
     const Vector2d expected(desired.torque_nm[0] + 0.16 * std::tanh(desired.x[6] / 0.05),
                             desired.torque_nm[1] + 0.01 * std::tanh(desired.x[7] / 0.05));
     EXPECT_LT((AskedOf(x, kKnown, path, 0.0) - expected).norm(), 1e-12) << k;
     x[0] -= 0.01;
     x[4] += 0.002;
-    const Vector2d corrected = expected + gains.At(0.3, x[1]) * (desired.x - x);
+    const Vector2d corrected = expected + gains.At(0.3, x[1]) * (desired.State() - x);
     EXPECT_LT((AskedOf(x, kKnown, path, 0.0) - corrected).norm(), 1e-12) << k;
   }
 }

@@ -178,7 +178,7 @@ TEST(UnknownDelay, IsNotFoundAtRest) {
 }
 
 // Number of samples by which a plan advances between two steps, by its own rates.
-double SamplesOn(const PlanSample& before, const PlanSample& now) {
+double SamplesOn(const MotionSample& before, const MotionSample& now) {
   using Joints = Eigen::Matrix<double, 6, 1>;
   const Joints by = Joints::Map(now.x.data()) - Joints::Map(before.x.data());
   const Joints rate = 0.5 * (Joints::Map(now.x.data() + 6) + Joints::Map(before.x.data() + 6));

@@ -55,8 +55,8 @@ const SafetyRecord& Trip(const StackRun& run) {
 // Tripped at the end with the first cause, and never left in between.
 void ExpectLatched(StackRun* run, TripCause cause) {
   const SafetyRecord& trip = Trip(*run);
-  EXPECT_STREQ(Name(trip.after.cause), Name(cause));
-  EXPECT_STREQ(Name(run->permit().cause), Name(cause));
+  EXPECT_STREQ(ToString(trip.after.cause), ToString(cause));
+  EXPECT_STREQ(ToString(run->permit().cause), ToString(cause));
   EXPECT_EQ(run->permit().state, SafetyState::kTripped);
   for (const SafetyRecord& record : run->safety) {
     if (record.due_ns <= trip.due_ns) continue;
@@ -129,7 +129,7 @@ TEST_P(FreezePhase, OfThePlantTripsWithinTwoPeriodsAndTwoMilliseconds) {
   EXPECT_GT(trip.due_ns - run.event_ns(), 20 * kMs) << "one late frame is no fault";
   EXPECT_TRUE(trip.after.cause == TripCause::kStaleFrame ||
               trip.after.cause == TripCause::kNoCounterReading)
-      << Name(trip.after.cause);
+      << ToString(trip.after.cause);
   EXPECT_GT(trip.evidence.limit, 0.0);
   EXPECT_GE(trip.evidence.value, trip.evidence.limit);
   ExpectLatched(&run, trip.after.cause);

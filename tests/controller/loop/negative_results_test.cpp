@@ -16,7 +16,8 @@ int Failures(const Runs& runs, double bar1_deg, double bar2_deg) {
   for (std::size_t i = 0; i < runs.rms1_deg.size(); ++i) {
     const bool worse = runs.rms1_deg[i] > 2.0 * bar1_deg || runs.rms2_deg[i] > 2.0 * bar2_deg;
     if (runs.trip[i] != TripCause::kNone || worse) ++failures;
-    std::printf("  rms %7.2f %7.2f  %s\n", runs.rms1_deg[i], runs.rms2_deg[i], Name(runs.trip[i]));
+    std::printf("  rms %7.2f %7.2f  %s\n", runs.rms1_deg[i], runs.rms2_deg[i],
+                ToString(runs.trip[i]));
   }
   return failures;
 }

@@ -132,7 +132,7 @@ void Print(const char* what, const Scene& scene, double load_kg, const EventOutc
   if (out.completed) {
     std::printf("t15 %.2f s", out.settling_s);
   } else {
-    std::printf("trips %s, a hub reaches %.0f deg", Name(out.trip), out.farthest_deg);
+    std::printf("trips %s, a hub reaches %.0f deg", ToString(out.trip), out.farthest_deg);
   }
   std::printf("%s; %.3f kg found\n",
               (out.warnings & kPayloadModelMismatch) != 0 ? ", payload-model-mismatch" : "",

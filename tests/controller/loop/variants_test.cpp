@@ -187,7 +187,7 @@ TEST(LoopVariants, PlantsThatDifferFromTheDesignAreStable) {
                                                   .payload_kg = payload_kg,
                                                   .log = {}});
         EXPECT_TRUE(result.completed) << variant.name << " " << payload_kg << " kg, seed " << seed
-                                      << ": " << Name(result.trip);
+                                      << ": " << ToString(result.trip);
       }
     }
   }

@@ -114,7 +114,7 @@ TEST_F(CommandDispatchTest, StatusIsAnsweredAtOnce) {
 TEST_F(CommandDispatchTest, ARequestGoesToTheSafetyTaskWhateverTheState) {
   for (const RequestKind kind :
        {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
-    EXPECT_TRUE(Answer({{"command", Name(kind)}}).is_null()) << "its answer comes later";
+    EXPECT_TRUE(Answer({{"command", ToString(kind)}}).is_null()) << "its answer comes later";
     const std::vector<OperatorRequest> made = stack_.TakeRequests();
     ASSERT_EQ(made.size(), 1u);
     EXPECT_EQ(made[0].kind, kind);

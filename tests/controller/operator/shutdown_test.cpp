@@ -38,9 +38,9 @@ TEST_F(ShutdownTest, IsOverOnceTheLastRecordsAreTaken) {
     one.Update(kBeginNs, kStopping);
     one.Update(kBeginNs + 500 * kMs, end);
     EXPECT_EQ(one.Update(kBeginNs + 799 * kMs, end), RequestKind::kNone);
-    EXPECT_FALSE(one.over()) << Name(end);
+    EXPECT_FALSE(one.over()) << ToString(end);
     one.Update(kBeginNs + 800 * kMs, end);
-    EXPECT_TRUE(one.over()) << Name(end);
+    EXPECT_TRUE(one.over()) << ToString(end);
   }
 }
 

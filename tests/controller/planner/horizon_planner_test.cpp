@@ -76,12 +76,12 @@ TEST_F(Planner, AgreesWithTheGoldenPlan) {
   MatrixXd x(golden_x.rows(), 12), u(golden_u.rows(), 2);
   for (int i = 0; i < x.rows(); ++i) {
     const PlanEntry entry = EntryAt(*plan_, 1000 + 10 * i);
-    x.row(i) = entry.x;
-    u.row(i) = entry.torque_nm;
+    x.row(i) = entry.motion.State();
+    u.row(i) = entry.motion.Torque_nm();
   }
   EXPECT_LT(RelativeError(x, golden_x), 1e-8);
   EXPECT_LT(RelativeError(u, golden_u), 1e-8);
-  EXPECT_LT(RelativeError(EntryAt(*plan_, 1000).K, AsMatrix(golden["plan_K0"])), 1e-6);
+  EXPECT_LT(RelativeError(EntryAt(*plan_, 1000).Gain(), AsMatrix(golden["plan_K0"])), 1e-6);
 }
 
 // docs/theory/payload.md 3.4: the tip's error at the end of the plan is below 1 mm whenever the
@@ -102,7 +102,7 @@ TEST_F(Planner, BringsTheTipToRestWhenTheMoveEnds) {
       double farthest_m = 0.0;
       for (std::size_t k = static_cast<std::size_t>(move.periods); k < plan_->size(); ++k) {
         const PlanEntry entry = EntryAt(*plan_, 1000 + static_cast<std::int64_t>(k));
-        farthest_m = std::fmax(farthest_m, (tip(entry.x) - goal).norm());
+        farthest_m = std::fmax(farthest_m, (tip(entry.motion.State()) - goal).norm());
       }
       EXPECT_LT(farthest_m, 1e-3) << payload_kg << " kg, " << move.periods << " periods";
     }
@@ -118,9 +118,11 @@ TEST_F(Planner, ThePlanIsAMotionOfTheModel) {
   for (int k = 0; k < 149; k += 10) {
     const PlanEntry entry = EntryAt(*plan_, 1000 + k);
     const GaugedState end = fine.Advance(
-        {.q = entry.x.head<6>(), .v = entry.x.tail<6>(), .phi_f = Eigen::Vector4d::Zero()},
-        {.torque_nm = entry.torque_nm, .payload_kg = 0.5, .friction_nm = {0.0, 0.0}});
-    const PlanState next = EntryAt(*plan_, 1001 + k).x;
+        {.q = entry.motion.State().head<6>(),
+         .v = entry.motion.State().tail<6>(),
+         .phi_f = Eigen::Vector4d::Zero()},
+        {.torque_nm = entry.motion.Torque_nm(), .payload_kg = 0.5, .friction_nm = {0.0, 0.0}});
+    const PlanState next = EntryAt(*plan_, 1001 + k).motion.State();
     EXPECT_LT((end.q - next.head<6>()).cwiseAbs().maxCoeff(), 1e-4) << k;
   }
 }
@@ -155,8 +157,8 @@ TEST_F(Planner, WarmStartsFromThePreviousPlanExceptAcrossAPayloadJump) {
   const int periods = StudyMove().periods;
   ASSERT_TRUE(planner_->Plan(ProblemAt(path, 0, periods, 0.5), nullptr, plan_.get()));
   PlanProblem problem = ProblemAt(later, 10, periods, 0.5);
-  problem.x = EntryAt(*plan_, 1010).x;
-  problem.torque_before_nm = EntryAt(*plan_, 1009).torque_nm;
+  problem.x = EntryAt(*plan_, 1010).motion.State();
+  problem.torque_before_nm = EntryAt(*plan_, 1009).motion.Torque_nm();
   struct Case {
     double payload_kg;
     bool warm;
@@ -186,8 +188,8 @@ TEST_F(Planner, RefusesAPlanRougherThanThePreviousOne) {
   rough.Begin(plan_->first_tick(), plan_->payload_kg());
   for (std::int64_t k = 0; k < static_cast<std::int64_t>(plan_->size()); ++k) {
     PlanEntry entry = EntryAt(*plan_, problem.first_tick + k);
-    if (k == 5) entry.torque_nm << 28.0, -5.6;
-    if (k == 6) entry.torque_nm << -28.0, 5.6;
+    if (k == 5) entry.motion.torque_nm = {28.0, -5.6};
+    if (k == 6) entry.motion.torque_nm = {-28.0, 5.6};
     rough.Append(entry);
   }
 

@@ -47,13 +47,13 @@ constexpr int Energy(SafetyState state) {
 }
 
 std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const SafetyDecision& to) {
-  return std::string("from ") + Name(from.state) + " (" + Name(from.cause) + ") to " +
-         Name(to.status.state) + " (" + Name(to.status.cause) + ") refusal " + Name(to.refusal) +
-         "; request " + Name(facts.request) + " present " + std::to_string(facts.present) +
-         " reported " + std::to_string(facts.all_reported) + " rest " +
-         std::to_string(facts.at_rest) + " done " + std::to_string(facts.experiment_done) +
-         " expired " + std::to_string(facts.stop_expired) + " pressed " +
-         std::to_string(facts.reset_pressed);
+  return std::string("from ") + ToString(from.state) + " (" + ToString(from.cause) + ") to " +
+         ToString(to.status.state) + " (" + ToString(to.status.cause) + ") refusal " +
+         ToString(to.refusal) + "; request " + ToString(facts.request) + " present " +
+         std::to_string(facts.present) + " reported " + std::to_string(facts.all_reported) +
+         " rest " + std::to_string(facts.at_rest) + " done " +
+         std::to_string(facts.experiment_done) + " expired " + std::to_string(facts.stop_expired) +
+         " pressed " + std::to_string(facts.reset_pressed);
 }
 
 // "" if the transition obeys every rule of docs/safety.md, else the violated rule. Written from the
@@ -258,7 +258,7 @@ TEST(SafetyMachine, EveryRefusalHasATextThatSaysWhatToDo) {
       EXPECT_STREQ(RefusalText(request, Refusal::kNone, state), "");
       for (int i = 1; i <= static_cast<int>(Refusal::kCancelled); ++i) {
         EXPECT_STRNE(RefusalText(request, static_cast<Refusal>(i), state), "");
-        EXPECT_STRNE(Name(static_cast<Refusal>(i)), "corrupted");
+        EXPECT_STRNE(ToString(static_cast<Refusal>(i)), "corrupted");
       }
     }
   }

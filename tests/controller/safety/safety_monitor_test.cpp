@@ -73,7 +73,7 @@ TEST(SafetyMonitor, NamesEachOpenSwitchAndTheEmergencyStop) {
   for (const auto& c : cases) {
     SafetyInputs in = Fine();
     in.levels &= ~LineBit(c.line);
-    EXPECT_EQ(PresentIn(in), CauseBit(c.cause)) << Name(c.cause);
+    EXPECT_EQ(PresentIn(in), CauseBit(c.cause)) << ToString(c.cause);
     ExpectEvidence(c.cause, in, 0.0, 1.0, c.joint);
   }
   SafetyInputs in = Fine();
@@ -319,7 +319,8 @@ TEST_F(HomingContact, TheSwitchMayOpenOnlyWhileRunning) {
   for (const SafetyState state : {kIdle, kArmed, kStopping, kTripped}) {
     SafetyInputs in = OnSwitch();
     in.state = state;
-    EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High)) << Name(state);
+    EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High))
+        << ToString(state);
   }
 }
 

@@ -14,7 +14,7 @@ TEST(TripCause, EveryCauseHasItsOwnMachineNameAndATextThatSaysWhatToDo) {
   for (int i = 0; i < kTripCauses; ++i) {
     const auto cause = static_cast<TripCause>(i);
     SCOPED_TRACE(i);
-    const std::string name = Name(cause);
+    const std::string name = ToString(cause);
     EXPECT_TRUE(names.insert(name).second) << name << " is given twice";
     EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-0123456789"), std::string::npos);
     const std::string text = OperatorText(cause);
@@ -28,18 +28,18 @@ TEST(TripCause, EveryCauseHasItsOwnMachineNameAndATextThatSaysWhatToDo) {
 
 // The numbers are in logs: this test fails if a cause is renumbered.
 TEST(TripCause, NamesAreThoseOfTheirNumbers) {
-  EXPECT_STREQ(Name(static_cast<TripCause>(0)), "none");
-  EXPECT_STREQ(Name(static_cast<TripCause>(1)), "limit-switch-1-low");
-  EXPECT_STREQ(Name(static_cast<TripCause>(5)), "emergency-stop");
-  EXPECT_STREQ(Name(static_cast<TripCause>(11)), "bending-strain-2");
-  EXPECT_STREQ(Name(static_cast<TripCause>(18)), "stale-frame");
-  EXPECT_STREQ(Name(static_cast<TripCause>(22)), "control-heartbeat-lost");
-  EXPECT_STREQ(Name(static_cast<TripCause>(25)), "stop-timeout");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(0)), "none");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(1)), "limit-switch-1-low");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(5)), "emergency-stop");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(11)), "bending-strain-2");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(18)), "stale-frame");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(22)), "control-heartbeat-lost");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(25)), "stop-timeout");
 }
 
 TEST(TripCause, ACorruptedNumberIsNamedAsSuch) {
-  EXPECT_STREQ(Name(static_cast<TripCause>(kTripCauses)), "corrupted");
-  EXPECT_STREQ(Name(static_cast<TripCause>(255)), "corrupted");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(kTripCauses)), "corrupted");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(255)), "corrupted");
   EXPECT_STRNE(OperatorText(static_cast<TripCause>(255)), "");
 }
 

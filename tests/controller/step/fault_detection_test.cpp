@@ -41,13 +41,13 @@ struct Facts {
   }
 };
 
-class LoopSupervisorTest : public testing::Test {
+class FaultDetectionTest : public testing::Test {
  protected:
   // Judges `facts` repeatedly; expects only `cause`, with its evidence, from the `ticks`-th sample
   // on, and no fault once the inputs are healthy again.
   void Expect(TripCause cause, int ticks, const Facts& facts, double value, double limit,
               std::uint16_t channel) {
-    SCOPED_TRACE(Name(cause));
+    SCOPED_TRACE(ToString(cause));
     monitor_.Reset();
     for (int k = 1; k < ticks; ++k) {
       EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u) << "after " << k;
@@ -66,11 +66,11 @@ class LoopSupervisorTest : public testing::Test {
   FaultDetection monitor_{config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96}};
 };
 
-TEST_F(LoopSupervisorTest, AHealthyArmRaisesNoFault) {
+TEST_F(FaultDetectionTest, AHealthyArmRaisesNoFault) {
   for (int k = 0; k < 100; ++k) EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
 }
 
-TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSameSample) {
+TEST_F(FaultDetectionTest, SoftLimitsTripInTheSameSample) {
   for (const double sign : {1.0, -1.0}) {
     Facts facts;
     facts.counters.angle_rad = {sign * 90.1 * kRadPerDeg, 0, sign * 90.1 * kRadPerDeg, 0};
@@ -83,7 +83,7 @@ TEST_F(LoopSupervisorTest, SoftLimitsTripInTheSameSample) {
   }
 }
 
-TEST_F(LoopSupervisorTest, HubRatesTripOnTheSecondSample) {
+TEST_F(FaultDetectionTest, HubRatesTripOnTheSecondSample) {
   Facts facts;
   facts.estimate.x(6) = -8.1;
   Expect(TripCause::kHubRate1, 2, facts, 8.1, 8.0, 1);
@@ -92,7 +92,7 @@ TEST_F(LoopSupervisorTest, HubRatesTripOnTheSecondSample) {
   Expect(TripCause::kHubRate2, 2, facts, 10.1, 10.0, 2);
 }
 
-TEST_F(LoopSupervisorTest, AHubRateInEverySecondSampleDoesNotTrip) {
+TEST_F(FaultDetectionTest, AHubRateInEverySecondSampleDoesNotTrip) {
   Facts fast;
   fast.estimate.x(6) = 9.0;
   for (int k = 0; k < 20; ++k) {
@@ -101,7 +101,7 @@ TEST_F(LoopSupervisorTest, AHubRateInEverySecondSampleDoesNotTrip) {
   }
 }
 
-TEST_F(LoopSupervisorTest, BendingStrainTripsInTheSameSample) {
+TEST_F(FaultDetectionTest, BendingStrainTripsInTheSameSample) {
   Facts facts;
   facts.modes.root_strain = {-1.95e-3, 0.0};
   Expect(TripCause::kBendingStrain1, 1, facts, 1.95e-3, 1.9e-3, 1);
@@ -109,7 +109,7 @@ TEST_F(LoopSupervisorTest, BendingStrainTripsInTheSameSample) {
   Expect(TripCause::kBendingStrain2, 1, facts, 1.95e-3, 1.9e-3, 2);
 }
 
-TEST_F(LoopSupervisorTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
+TEST_F(FaultDetectionTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
   Facts facts;
   facts.counters.jumped = 0b0100;
   const auto verdict = monitor_.Judge(facts.Now());
@@ -119,7 +119,7 @@ TEST_F(LoopSupervisorTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
 }
 
 // No valid counter reading for two periods.
-TEST_F(LoopSupervisorTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
+TEST_F(FaultDetectionTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
   Facts facts;
   facts.counters.good = 0b1101;
   facts.counters.missing_ticks = {0, 1, 0, 0};
@@ -128,7 +128,7 @@ TEST_F(LoopSupervisorTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
   Expect(TripCause::kNoCounterReading, 1, facts, 2.0, 2.0, 2);
 }
 
-TEST_F(LoopSupervisorTest, AnEncoderThatTheRigLacksDoesNotTrip) {
+TEST_F(FaultDetectionTest, AnEncoderThatTheRigLacksDoesNotTrip) {
   FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {761.59, 497.96});
   Facts facts;
   facts.counters.good = 0b0011;
@@ -137,7 +137,7 @@ TEST_F(LoopSupervisorTest, AnEncoderThatTheRigLacksDoesNotTrip) {
 }
 
 // 0.1 rad beyond the torsion of the joint spring by the torque.
-TEST_F(LoopSupervisorTest, HubAgainstRotorTripsBeyondTheTorsionByTheTorque) {
+TEST_F(FaultDetectionTest, HubAgainstRotorTripsBeyondTheTorsionByTheTorque) {
   Facts facts;
   facts.counters.angle_rad = {0.2, 0.0, 0.2 + 0.11, 0.0};
   Expect(TripCause::kHubAgainstRotor, 3, facts, 0.2 + 0.11 - 0.2, 0.1, 1);
@@ -153,14 +153,14 @@ TEST_F(LoopSupervisorTest, HubAgainstRotorTripsBeyondTheTorsionByTheTorque) {
   EXPECT_EQ(monitor_.Judge(facts.Now()).faults, CauseBit(TripCause::kHubAgainstRotor));
 }
 
-TEST_F(LoopSupervisorTest, HubAgainstRotorIsNotJudgedWithoutBothReadings) {
+TEST_F(FaultDetectionTest, HubAgainstRotorIsNotJudgedWithoutBothReadings) {
   Facts facts;
   facts.counters.angle_rad = {0.0, 0.0, 0.5, 0.0};
   facts.counters.good = 0b1011;
   for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
 }
 
-TEST_F(LoopSupervisorTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
+TEST_F(FaultDetectionTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
   Facts facts;
   facts.modes.stuck = 1u << 4;
   Expect(TripCause::kStrainStuck, 3, facts, 0.0, 1e-4, 5);
@@ -173,7 +173,7 @@ TEST_F(LoopSupervisorTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
   Expect(TripCause::kStrainOutOfFamily, 3, facts, 7e-4, 4e-4, 1);
 }
 
-TEST_F(LoopSupervisorTest, AnIntermittentStrainFaultDoesNotTrip) {
+TEST_F(FaultDetectionTest, AnIntermittentStrainFaultDoesNotTrip) {
   Facts bad;
   bad.modes.outlier = 1;
   for (int k = 0; k < 10; ++k) {
@@ -183,7 +183,7 @@ TEST_F(LoopSupervisorTest, AnIntermittentStrainFaultDoesNotTrip) {
   }
 }
 
-TEST_F(LoopSupervisorTest, AStaleFrameTripsBeyondTwoPeriods) {
+TEST_F(FaultDetectionTest, AStaleFrameTripsBeyondTwoPeriods) {
   Facts facts;
   facts.frame_age_s = 0.04;
   EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
@@ -191,7 +191,7 @@ TEST_F(LoopSupervisorTest, AStaleFrameTripsBeyondTwoPeriods) {
   Expect(TripCause::kStaleFrame, 1, facts, 0.041, 0.04, 0);
 }
 
-TEST_F(LoopSupervisorTest, AStateThatIsNotFiniteTripsAtOnce) {
+TEST_F(FaultDetectionTest, AStateThatIsNotFiniteTripsAtOnce) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (Eigen::Index i = 0; i < 12; ++i) {
@@ -204,7 +204,7 @@ TEST_F(LoopSupervisorTest, AStateThatIsNotFiniteTripsAtOnce) {
   }
 }
 
-TEST_F(LoopSupervisorTest, EstimatorResidualTripsAfterThreeSamplesAndNamesTheJoint) {
+TEST_F(FaultDetectionTest, EstimatorResidualTripsAfterThreeSamplesAndNamesTheJoint) {
   Facts facts;
   facts.estimate.innovation[0] = -0.36;
   Expect(TripCause::kEstimatorResidual, 3, facts, 0.36, 0.35, 1);
@@ -213,7 +213,7 @@ TEST_F(LoopSupervisorTest, EstimatorResidualTripsAfterThreeSamplesAndNamesTheJoi
 }
 
 // Three causes in one sample: all are raised; the evidence is that of the lowest cause.
-TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
+TEST_F(FaultDetectionTest, TheEvidenceIsThatOfTheLowestCause) {
   Facts facts;
   facts.frame_age_s = 0.1;
   facts.counters.jumped = 0b1000;
@@ -226,7 +226,7 @@ TEST_F(LoopSupervisorTest, TheEvidenceIsThatOfTheLowestCause) {
   EXPECT_EQ(verdict.channel, 2);
 }
 
-TEST_F(LoopSupervisorTest, ResetClearsTheCountsOfSamplesInARow) {
+TEST_F(FaultDetectionTest, ResetClearsTheCountsOfSamplesInARow) {
   Facts facts;
   facts.modes.stuck = 1;
   monitor_.Judge(facts.Now());
@@ -237,7 +237,7 @@ TEST_F(LoopSupervisorTest, ResetClearsTheCountsOfSamplesInARow) {
 
 // Symptom: the log of a second run, armed away from zero, did not replay: a loop that had run
 // before detected rest five samples earlier than the one that started with the log.
-TEST_F(LoopSupervisorTest, ResetClearsTheHubAnglesBefore) {
+TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
   Facts elsewhere;
   elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
   elsewhere.modes.root_strain = {2e-4, 1e-4};
@@ -256,7 +256,7 @@ TEST_F(LoopSupervisorTest, ResetClearsTheHubAnglesBefore) {
 }
 
 // safety.rest_time_s may be shorter than the window over which hub rates are measured.
-TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestWithAShortRestTime) {
+TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestWithAShortRestTime) {
   SafetyConfig safety = config_.safety;
   safety.rest_time_s = 0.05;
   FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
@@ -268,12 +268,12 @@ TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestWithAShortRestTime) {
 }
 
 // At rest: half a second, 25 samples, of slow hubs and slow strain.
-TEST_F(LoopSupervisorTest, RestIsDetectedAfterHalfASecond) {
+TEST_F(FaultDetectionTest, RestIsDetectedAfterHalfASecond) {
   for (int k = 1; k < 25; ++k) EXPECT_FALSE(monitor_.Judge(Facts().Now()).at_rest) << k;
   EXPECT_TRUE(monitor_.Judge(Facts().Now()).at_rest);
 }
 
-TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestButAFlickeringCountIs) {
+TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestButAFlickeringCountIs) {
   Facts moving;
   for (int k = 0; k < 60; ++k) {  // 0.06 rad/s, the bound being 0.05
     moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
@@ -290,7 +290,7 @@ TEST_F(LoopSupervisorTest, AMovingHubIsNotAtRestButAFlickeringCountIs) {
 }
 
 // 1.2e-4 of strain a sample is 6e-3 1/s, the bound being 5e-3.
-TEST_F(LoopSupervisorTest, ABendingLinkIsNotAtRest) {
+TEST_F(FaultDetectionTest, ABendingLinkIsNotAtRest) {
   Facts bending;
   for (int k = 0; k < 60; ++k) {
     bending.modes.root_strain[1] = (k % 2 == 0 ? 1.0 : -1.0) * 0.6e-4;
@@ -298,7 +298,7 @@ TEST_F(LoopSupervisorTest, ABendingLinkIsNotAtRest) {
   }
 }
 
-TEST_F(LoopSupervisorTest, AMovementRestartsTheHalfSecond) {
+TEST_F(FaultDetectionTest, AMovementRestartsTheHalfSecond) {
   for (int k = 0; k < 40; ++k) monitor_.Judge(Facts().Now());
   ASSERT_TRUE(monitor_.Judge(Facts().Now()).at_rest);
   Facts moved;

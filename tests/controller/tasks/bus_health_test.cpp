@@ -25,43 +25,44 @@ BusHealth Bus(bool ok, const char* fault, std::uint32_t failed) {
 }
 
 TEST(BusJournal, ReportsALossAndTheReconnection) {
-  Journal told;
-  told.Follow(0, {Bus(true, "", 0)});
-  told.Follow(20 * kMs, {Bus(false, "can0: node 2 (drive2): does not answer SYNC", 2)});
-  told.Follow(40 * kMs, {Bus(false, "can0: node 2 (drive2): does not answer SYNC", 3)});
-  told.Follow(60 * kMs, {Bus(true, "", 8)});
-  told.Follow(80 * kMs, {Bus(true, "", 8)});
-  EXPECT_EQ(told.lines, (std::vector<std::string>{
-                            "error: bus lost: can0: node 2 (drive2): does not answer SYNC",
-                            "can0: reconnected after 6 failed exchanges and connection attempts"}));
+  Journal journal;
+  journal.Follow(0, {Bus(true, "", 0)});
+  journal.Follow(20 * kMs, {Bus(false, "can0: node 2 (drive2): does not answer SYNC", 2)});
+  journal.Follow(40 * kMs, {Bus(false, "can0: node 2 (drive2): does not answer SYNC", 3)});
+  journal.Follow(60 * kMs, {Bus(true, "", 8)});
+  journal.Follow(80 * kMs, {Bus(true, "", 8)});
+  EXPECT_EQ(journal.lines,
+            (std::vector<std::string>{
+                "error: bus lost: can0: node 2 (drive2): does not answer SYNC",
+                "can0: reconnected after 6 failed exchanges and connection attempts"}));
 }
 
 // Sporadic failures without a loss of the bus are counted and reported, but not fifty times a
 // second.
 TEST(BusJournal, ReportsFailuresWithoutALossAtMostOnceASecond) {
-  Journal told;
+  Journal journal;
   for (std::uint32_t k = 0; k < 150; ++k) {
-    told.Follow(std::int64_t{k} * 20 * kMs,
-                {Bus(true, k % 2 == 0 ? "" : "can0: no answer in time", (k + 1) / 2)});
+    journal.Follow(std::int64_t{k} * 20 * kMs,
+                   {Bus(true, k % 2 == 0 ? "" : "can0: no answer in time", (k + 1) / 2)});
   }
-  EXPECT_EQ(told.lines.size(), 3U);
+  EXPECT_EQ(journal.lines.size(), 3U);
   EXPECT_EQ(
-      told.lines[0],
+      journal.lines[0],
       "error: can0: 1 failed exchanges without loss of the bus; the last: can0: no answer in time");
 }
 
 TEST(BusJournal, ReportsEachBusSeparately) {
-  Journal told;
+  Journal journal;
   BusHealth other = Bus(true, "", 0);
   other.name = "amplifier";
-  told.Follow(0, {Bus(true, "", 0), other});
-  told.Follow(20 * kMs, {Bus(true, "", 0),
-                         {.name = "amplifier",
-                          .ok = false,
-                          .fault = "amplifier: connection lost",
-                          .failed = 2,
-                          .recovered = 0}});
-  EXPECT_EQ(told.lines, std::vector<std::string>{"error: bus lost: amplifier: connection lost"});
+  journal.Follow(0, {Bus(true, "", 0), other});
+  journal.Follow(20 * kMs, {Bus(true, "", 0),
+                            {.name = "amplifier",
+                             .ok = false,
+                             .fault = "amplifier: connection lost",
+                             .failed = 2,
+                             .recovered = 0}});
+  EXPECT_EQ(journal.lines, std::vector<std::string>{"error: bus lost: amplifier: connection lost"});
 }
 
 }  // namespace

@@ -69,9 +69,8 @@ class PlanFollowerTest : public testing::Test {
     motion->number = requests_->Read().number;
     motion->plan.Begin(first, 0.3);
     for (int k = 0; k < 20; ++k) {
-      motion->plan.Append({.x = Eigen::Matrix<double, 12, 1>::Constant(angle_rad + k),
-                           .torque_nm = {1.0, 2.0 + k},
-                           .K = Eigen::Matrix<double, 2, 12>::Zero()});
+      const auto x = Eigen::Matrix<double, 12, 1>::Constant(angle_rad + k);
+      motion->plan.Append({.motion = MotionSample::Of(x, {1.0, 2.0 + k}), .K = {}});
     }
     history_->Push(from_ns, *motion);
     plans_->Publish(*history_);
@@ -159,7 +158,7 @@ TEST_F(PlanFollowerTest, TheRequestHasStatePayloadAndThePathOfTheHorizon) {
 TEST_F(PlanFollowerTest, UsesThePlanThatIsValidWhenTheStepIsDue) {
   Publish(7, 60, 0.5, 60 * kPeriodNs);
   EXPECT_FALSE(follower_.At(59, 59 * kPeriodNs)) << "not valid yet";
-  const std::optional<PlanSample> old = follower_.At(62, 62 * kPeriodNs);
+  const std::optional<MotionSample> old = follower_.At(62, 62 * kPeriodNs);
   ASSERT_TRUE(old);
   EXPECT_EQ(old->x[3], 2.5);
   EXPECT_EQ(old->torque_nm[1], 4.0);

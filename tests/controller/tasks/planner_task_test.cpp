@@ -71,9 +71,9 @@ class PlannerTaskTest : public testing::Test {
     planner_->Run({.due_ns = sample * kPeriodNs, .missed_in_a_row = 0});
   }
 
-  std::optional<PlanSample> At(int sample) { return follower_->At(sample, sample * kPeriodNs); }
+  std::optional<MotionSample> At(int sample) { return follower_->At(sample, sample * kPeriodNs); }
 
-  PlanState StateAt(int sample) { return PlanState::Map(At(sample).value().x.data()); }
+  PlanState StateAt(int sample) { return At(sample).value().State(); }
 
   // State of an arm with 0.3 kg five samples after x, under the law that follows desired(sample).
   // Without friction: the law's friction feedforward is assumed to cancel it.
@@ -97,7 +97,7 @@ class PlannerTaskTest : public testing::Test {
     return (PlanState() << at.q, at.v).finished();
   }
 
-  static QuasiStaticSample ClosedForm(int sample) {
+  static MotionSample ClosedForm(int sample) {
     return QuasiStaticOver(MakeRigidJointArm(DesignOfRig()), 0.3, OneMove().PathAround(sample),
                            kPeriod_s);
   }
@@ -127,11 +127,11 @@ TEST_F(PlannerTaskTest, PlansWithTheWeightsAndLimitsOfTheConfig) {
     Make({"controller.plan.torque_share=" + std::to_string(torque_share),
           "controller.plan.roughness=2"});
     AskAt(kFirst - 5, PlanState::Zero(), 0.3);
-    HorizonPlannerConfig told = StudyPlannerConfig();
-    told.torque_limit_nm = {torque_share * 30.0, torque_share * 6.0};
-    told.roughness = 2.0;
+    HorizonPlannerConfig config = StudyPlannerConfig();
+    config.torque_limit_nm = {torque_share * 30.0, torque_share * 6.0};
+    config.roughness = 2.0;
     const auto planner = std::make_unique<HorizonPlanner>(
-        MakeRigidJointArm(DesignOfRig()), kPeriod_s, *DesignOfRig().scheduled->start_gains, told);
+        MakeRigidJointArm(DesignOfRig()), kPeriod_s, *DesignOfRig().scheduled->start_gains, config);
     std::vector<RigidPoint> path;
     for (int k = kFirst - 1; k <= kEnd + 21; ++k) {
       path.push_back(OneMove().PathAround(k)[1]);
@@ -147,8 +147,9 @@ TEST_F(PlannerTaskTest, PlansWithTheWeightsAndLimitsOfTheConfig) {
     double largest = 0.0;
     for (int k = kFirst; k < kEnd + 20; ++k) {
       const PlanEntry expected = plan->At(k).value();
-      ASSERT_EQ(StateAt(k), expected.x) << k;
-      largest = std::max(largest, std::fabs(expected.torque_nm[1]) / told.torque_limit_nm[1]);
+      ASSERT_EQ(StateAt(k), expected.motion.State()) << k;
+      largest =
+          std::max(largest, std::fabs(expected.motion.torque_nm[1]) / config.torque_limit_nm[1]);
     }
     EXPECT_EQ(largest == 1.0, torque_share < 0.1) << "only the second plan reaches the limit";
   }
@@ -191,11 +192,8 @@ TEST_F(PlannerTaskTest, ThePredictionFollowsTheOldPlanUntilTheNextOneIsValid) {
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
   PlanState beside = StateAt(kFirst + 5);
   beside[0] += 0.02;
-  const PlanState expected = FiveSamplesAfter(kFirst + 5, beside, [this](int k) {
-    const PlanSample plan = At(k).value();
-    return QuasiStaticSample{.x = PlanState::Map(plan.x.data()),
-                             .torque_nm = Eigen::Vector2d::Map(plan.torque_nm.data())};
-  });
+  const PlanState expected =
+      FiveSamplesAfter(kFirst + 5, beside, [this](int k) { return At(k).value(); });
   AskAt(kFirst + 5, beside, 0.3);
   EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
@@ -205,7 +203,7 @@ TEST_F(PlannerTaskTest, InAnotherRunThePredictionUsesTheClosedForm) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.8);
   follower_->Start(2);
-  const PlanState beside = ClosedForm(kFirst + 5).x + PlanState::Constant(1e-3);
+  const PlanState beside = ClosedForm(kFirst + 5).State() + PlanState::Constant(1e-3);
   AskAt(kFirst + 5, beside, 0.3);
   const PlanState expected = FiveSamplesAfter(kFirst + 5, beside, ClosedForm);
   EXPECT_LT((StateAt(kFirst + 10) - expected).cwiseAbs().maxCoeff(), 1e-12);
@@ -214,7 +212,7 @@ TEST_F(PlannerTaskTest, InAnotherRunThePredictionUsesTheClosedForm) {
 TEST_F(PlannerTaskTest, AfterAModelMismatchThePredictionUsesTheClosedForm) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.31);
-  const PlanState beside = ClosedForm(kFirst + 5).x + PlanState::Constant(1e-3);
+  const PlanState beside = ClosedForm(kFirst + 5).State() + PlanState::Constant(1e-3);
   AskAt(kFirst + 5, beside, 0.3, kPayloadModelMismatch);
   EXPECT_FALSE(planner_->figures().warm);
   const PlanState expected = FiveSamplesAfter(kFirst + 5, beside, ClosedForm);
@@ -223,7 +221,7 @@ TEST_F(PlannerTaskTest, AfterAModelMismatchThePredictionUsesTheClosedForm) {
 
 TEST_F(PlannerTaskTest, WithoutAPlanThePredictionFollowsTheClosedForm) {
   Make();
-  const auto closed = [](int k) { return ClosedForm(k).x; };
+  const auto closed = [](int k) { return ClosedForm(k).State(); };
   AskAt(kFirst + 30, closed(kFirst + 30), 0.3);
   EXPECT_FALSE(planner_->figures().warm);
   // The closed form neglects the inertia of the links' bending: some 1e-3 rad over 0.1 s.
@@ -234,7 +232,7 @@ TEST_F(PlannerTaskTest, WithoutAPlanThePredictionFollowsTheClosedForm) {
 TEST_F(PlannerTaskTest, AnswersARequestOnce) {
   Make();
   AskAt(kFirst - 5, PlanState::Zero(), 0.3);
-  const PlanSample before = At(kFirst + 20).value();
+  const MotionSample before = At(kFirst + 20).value();
   planner_->Run({.due_ns = (kFirst - 4) * kPeriodNs, .missed_in_a_row = 0});
   EXPECT_EQ(At(kFirst + 20)->x, before.x) << "the same plan, and not another warm start";
 }
@@ -250,7 +248,7 @@ class RefusedPlans : public PlannerTaskTest {
     displaced_[7] += 10.0;
   }
 
-  std::optional<PlanSample> kept_;
+  std::optional<MotionSample> kept_;
   PlanState displaced_;
 };
 
@@ -281,7 +279,7 @@ TEST_F(PlannerTaskTest, ARefusedPlanForALightPayloadLeavesThePreviousToo) {
 // The roughness includes the jump from the torque that acts before the plan, not from zero.
 TEST_F(PlannerTaskTest, APlanThatStartsDuringAMoveIsNotRough) {
   Make({"controller.plan.roughness=0.05"});
-  AskAt(kFirst + 20, ClosedForm(kFirst + 20).x, 0.3);
+  AskAt(kFirst + 20, ClosedForm(kFirst + 20).State(), 0.3);
   ASSERT_TRUE(At(kFirst + 25));
   const std::array<double, 2> torque_nm = At(kFirst + 25)->torque_nm;
   EXPECT_GT(std::fabs(torque_nm[0]) / 28.0 + std::fabs(torque_nm[1]) / 5.6, 0.06)

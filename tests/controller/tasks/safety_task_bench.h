@@ -127,7 +127,7 @@ class SafetyTaskTest : public testing::Test {
     while (answers_.Pop(&answer)) {
       if (answer.number == number) return answer.refusal;
     }
-    ADD_FAILURE() << "no answer to " << Name(kind);
+    ADD_FAILURE() << "no answer to " << ToString(kind);
     return Refusal::kNone;
   }
 

@@ -21,7 +21,7 @@ TEST_F(SafetyTaskTest, EverySwitchOpensTheRelayAtTheNextTickAndZeroesTheTorqueWi
                {Line::kEmergencyStop, TripCause::kEmergencyStop}};
   bool first = true;
   for (const auto& c : cases) {
-    SCOPED_TRACE(Name(c.cause));
+    SCOPED_TRACE(ToString(c.cause));
     if (first) {
       GoTo(kRunning);
       first = false;

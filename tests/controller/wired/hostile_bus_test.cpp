@@ -33,7 +33,7 @@ namespace {
 constexpr std::int64_t kHalfMs = 500'000;
 // Time-out of the real sockets where no reply comes: longer than the reply time of a loaded
 // machine.
-constexpr double kPatience_ms = 100.0;
+constexpr double kResponseTimeout_ms = 100.0;
 
 // CLOCK_MONOTONIC of the amplifiers' drivers.
 const WiredWorld* the_world = nullptr;
@@ -44,7 +44,7 @@ RigConfig WiredConfig(ModbusTransport transport) {
   std::vector<ModbusDeviceConfig> devices = ConfigsOf<ModbusWiring>(config.hal);
   for (ModbusDeviceConfig& device : devices) {
     device.port = 0;
-    device.response_timeout_ms = kPatience_ms;
+    device.response_timeout_ms = kResponseTimeout_ms;
   }
   ModbusDeviceConfig& hostile = devices[0];
   hostile.transport = transport;
@@ -205,12 +205,12 @@ class HostileBus : public testing::Test {
     rig_ = std::make_unique<Rig>(transport);
     ASSERT_TRUE(rig_->RunUntil(2000 * kMs, [this] {
       return rig_->permit().state == SafetyState::kIdle;
-    })) << Name(rig_->permit().cause);
+    })) << ToString(rig_->permit().cause);
     rig_->RunFor(600 * kMs);  // at rest
     ASSERT_EQ(rig_->Ask(RequestKind::kArm), Refusal::kNone);
     ASSERT_EQ(rig_->Ask(RequestKind::kRun), Refusal::kNone);
     rig_->RunFor(2000 * kMs);
-    ASSERT_EQ(rig_->permit().state, SafetyState::kRunning) << Name(rig_->permit().cause);
+    ASSERT_EQ(rig_->permit().state, SafetyState::kRunning) << ToString(rig_->permit().cause);
     ASSERT_TRUE(rig_->RunUntil(500 * kMs, [this] { return rig_->world->drives_make_torque(); }));
     failed_before_ = rig_->Failed();
     EXPECT_EQ(failed_before_, 0U);
@@ -229,7 +229,7 @@ class HostileBus : public testing::Test {
     EXPECT_TRUE(rig_->permit().cause == TripCause::kBusLost ||
                 rig_->permit().cause == TripCause::kDriveFault ||
                 rig_->permit().cause == TripCause::kStaleFrame)
-        << Name(rig_->permit().cause);
+        << ToString(rig_->permit().cause);
     EXPECT_NE(rig_->Named().find(name), std::string::npos) << rig_->Named();
     EXPECT_GT(rig_->Failed() + (rig_->hangs_ns > 0 ? 1 : 0), failed_before_);
     EXPECT_FALSE(rig_->world->lines.relay);
@@ -253,7 +253,7 @@ class HostileBus : public testing::Test {
     EXPECT_EQ(refusal, Refusal::kNone) << CauseNames(rig_->present);
     EXPECT_EQ(rig_->Ask(RequestKind::kArm), Refusal::kNone);
     rig_->RunFor(200 * kMs);
-    EXPECT_EQ(rig_->permit().state, SafetyState::kArmed) << Name(rig_->permit().cause);
+    EXPECT_EQ(rig_->permit().state, SafetyState::kArmed) << ToString(rig_->permit().cause);
   }
 
   std::string Lost() {
@@ -286,7 +286,7 @@ struct OnWire {
   WireFault fault;
 };
 
-void PrintTo(const OnWire& tested, std::ostream* out) { *out << Name(tested.fault); }
+void PrintTo(const OnWire& tested, std::ostream* out) { *out << ToString(tested.fault); }
 
 class HostileAmplifier : public HostileBus, public testing::WithParamInterface<OnWire> {};
 
@@ -321,7 +321,7 @@ INSTANTIATE_TEST_SUITE_P(All, HostileAmplifier, testing::ValuesIn(AllFaults()),
                          [](const testing::TestParamInfo<OnWire>& tested) {
                            std::string name =
                                tested.param.transport == ModbusTransport::kTcp ? "Tcp" : "Rtu";
-                           for (const char* c = Name(tested.param.fault); *c != '\0'; ++c) {
+                           for (const char* c = ToString(tested.param.fault); *c != '\0'; ++c) {
                              name += *c == '-' ? '_' : *c;
                            }
                            return name;
@@ -330,7 +330,7 @@ INSTANTIATE_TEST_SUITE_P(All, HostileAmplifier, testing::ValuesIn(AllFaults()),
 TEST_F(HostileBus, AHealthyRigKeepsRunning) {
   StartRun();
   rig_->RunFor(2000 * kMs);
-  EXPECT_EQ(rig_->permit().state, SafetyState::kRunning) << Name(rig_->permit().cause);
+  EXPECT_EQ(rig_->permit().state, SafetyState::kRunning) << ToString(rig_->permit().cause);
   EXPECT_EQ(rig_->Failed(), 0U);
 }
 
@@ -340,7 +340,7 @@ TEST_F(HostileBus, OneFailedExchangeIsCountedAndSurvived) {
   ASSERT_TRUE(rig_->RunUntil(40 * kMs, [this] { return rig_->Failed() > 0; }));
   Behave(WireFault::kNone);
   rig_->RunFor(1000 * kMs);
-  EXPECT_EQ(rig_->permit().state, SafetyState::kRunning) << Name(rig_->permit().cause);
+  EXPECT_EQ(rig_->permit().state, SafetyState::kRunning) << ToString(rig_->permit().cause);
   EXPECT_EQ(rig_->Failed(), 1U);
 }
 
@@ -349,7 +349,7 @@ TEST_F(HostileBus, RepliesThatComeTwiceAreCountedAndSurvived) {
   StartRun();
   Behave(WireFault::kTwice);
   rig_->RunFor(1000 * kMs);
-  EXPECT_EQ(rig_->permit().state, SafetyState::kRunning) << Name(rig_->permit().cause);
+  EXPECT_EQ(rig_->permit().state, SafetyState::kRunning) << ToString(rig_->permit().cause);
   EXPECT_NEAR(rig_->Failed(), 25, 1) << "every second one of fifty";
 }
 

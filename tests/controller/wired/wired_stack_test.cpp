@@ -141,7 +141,7 @@ class WiredStackTest : public testing::Test {
 // The bars of the in-process backend: the same arm and instants, with other wiring.
 TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend) {
   RunUntil(9'000 * kMs);
-  EXPECT_EQ(permit().state, SafetyState::kIdle) << Name(permit().cause);
+  EXPECT_EQ(permit().state, SafetyState::kIdle) << ToString(permit().cause);
   EXPECT_TRUE(operator_.ran());
   const RunMetrics metrics = ComputeMetrics(ticks_, experiment_, 0.02,
                                             TipGeometryOf(config_.arm, config_.controller.nominal));
@@ -172,12 +172,12 @@ TEST_F(WiredStackTest, OneFailedExchangeIsSurvivedTwoAreALostBus) {
   drives_.fail_from = 100;
   drives_.fail_until = 101;
   RunUntil(3'000 * kMs);
-  EXPECT_EQ(permit().state, SafetyState::kRunning) << Name(permit().cause);
+  EXPECT_EQ(permit().state, SafetyState::kRunning) << ToString(permit().cause);
   drives_.fail_from = drives_.exchanges + 1;
   drives_.fail_until = INT64_MAX;
   RunUntil(now_ns_ + 100 * kMs);
   EXPECT_EQ(permit().state, SafetyState::kTripped);
-  EXPECT_EQ(permit().cause, TripCause::kBusLost) << Name(permit().cause);
+  EXPECT_EQ(permit().cause, TripCause::kBusLost) << ToString(permit().cause);
   EXPECT_FALSE(lines_.relay);
 }
 
@@ -189,7 +189,7 @@ TEST_F(WiredStackTest, ALostBusIsNamedInTheTripAndInTheHealth) {
   EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "");
   gauges_.status = BusStatus::kMalformed;
   RunUntil(now_ns_ + 100 * kMs);
-  EXPECT_EQ(permit().cause, TripCause::kBusLost) << Name(permit().cause);
+  EXPECT_EQ(permit().cause, TripCause::kBusLost) << ToString(permit().cause);
   EXPECT_EQ(permit().evidence.channel, 2U);
   EXPECT_EQ(stack_.BusText(permit().cause, permit().evidence), "gauges: malformed reply");
   const std::vector<BusHealth> health = stack_.buses();
@@ -211,17 +211,17 @@ TEST_F(WiredStackTest, ADriveFaultTripsWithItsOwnCause) {
   drives_.failure = BusStatus::kDriveFault;
   drives_.fail_from = drives_.exchanges + 1;
   RunUntil(now_ns_ + 60 * kMs);
-  EXPECT_EQ(permit().cause, TripCause::kDriveFault) << Name(permit().cause);
+  EXPECT_EQ(permit().cause, TripCause::kDriveFault) << ToString(permit().cause);
 }
 
 // A remote input reads limit switch 2 as well, once a period; its other inputs are not wired.
 TEST_F(WiredStackTest, ASwitchThatABusReadsTripsThoughTheLineOfTheSafetyChainIsClosed) {
   RunUntil(2'000 * kMs);
-  ASSERT_EQ(permit().state, SafetyState::kRunning) << Name(permit().cause);
+  ASSERT_EQ(permit().state, SafetyState::kRunning) << ToString(permit().cause);
   gauges_.levels = 0;
   RunUntil(now_ns_ + 40 * kMs);
   EXPECT_EQ(permit().state, SafetyState::kTripped);
-  EXPECT_EQ(permit().cause, TripCause::kLimitSwitch2High) << Name(permit().cause);
+  EXPECT_EQ(permit().cause, TripCause::kLimitSwitch2High) << ToString(permit().cause);
   EXPECT_EQ(permit().levels, kHealthyLevels & ~LineBit(Line::kLimit2High));
   EXPECT_FALSE(lines_.relay);
 }
@@ -230,7 +230,7 @@ TEST_F(WiredStackTest, ASwitchOfTheSafetyChainTripsThoughTheBusReadsItAsClosed) 
   RunUntil(2'000 * kMs);
   lines_.levels &= ~LineBit(Line::kLimit2High);
   RunUntil(now_ns_ + 20 * kMs);
-  EXPECT_EQ(permit().cause, TripCause::kLimitSwitch2High) << Name(permit().cause);
+  EXPECT_EQ(permit().cause, TripCause::kLimitSwitch2High) << ToString(permit().cause);
 }
 
 TEST_F(WiredStackTest, AFailedExchangeOpensNoSwitchAndAButtonOnTheBusIsPressed) {

@@ -158,7 +158,7 @@ class ComediTrouble : public testing::TestWithParam<Trouble> {
 TEST_P(ComediTrouble, IsNamedAndNoReadingIsValid) {
   const SensorFrame before = bench_.frame;
   EXPECT_EQ(bench_.Exchange(kTorque), GetParam().status);
-  EXPECT_EQ(bench_.device->fault(), GetParam().fault) << Name(bench_.device->fault());
+  EXPECT_EQ(bench_.device->fault(), GetParam().fault) << ToString(bench_.device->fault());
   EXPECT_EQ(bench_.frame.strain_valid, 0U);
   EXPECT_EQ(bench_.frame.counter_valid, 0U);
   EXPECT_EQ(bench_.frame.levels, 0U);
@@ -269,7 +269,7 @@ TEST(ComediFault, TextNamesTheBoardAndTheChannel) {
 
 TEST(ComediFault, EveryFaultHasAName) {
   for (int i = 0; i <= static_cast<int>(ComediFault::kGone); ++i) {
-    EXPECT_STRNE(Name(static_cast<ComediFault>(i)), "?") << i;
+    EXPECT_STRNE(ToString(static_cast<ComediFault>(i)), "?") << i;
   }
 }
 

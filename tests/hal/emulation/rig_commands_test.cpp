@@ -25,7 +25,7 @@ constexpr BusCommand kNoCommand{.torque_nm = {}, .enabled = false};
 
 std::string Tell(const std::string& words, SimulatedAmplifier* amplifier) {
   std::istringstream stream(words);
-  const std::string complaint = ObeyAmplifier(stream, amplifier);
+  const std::string complaint = CommandAmplifier(stream, amplifier);
   while (!amplifier->server().settled()) {
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
@@ -167,8 +167,8 @@ TEST(RigCommands, ReportWhatTheyDoNotUnderstand) {
 TEST(RigCommands, TheHelpNamesEveryFaultOfAWire) {
   for (int i = 0; i < kWireFaults; ++i) {
     const auto fault = static_cast<WireFault>(i);
-    EXPECT_THAT(kRigCommands, testing::HasSubstr(Name(fault)));
-    EXPECT_EQ(WireFaultByName(Name(fault)), fault);
+    EXPECT_THAT(kRigCommands, testing::HasSubstr(ToString(fault)));
+    EXPECT_EQ(WireFaultByName(ToString(fault)), fault);
   }
 }
 
@@ -177,7 +177,7 @@ class NodeOf : public testing::Test {
   // Sends `words` to node `i` of the bench; the driver's fault text within `exchanges`.
   std::string After(std::size_t i, const std::string& words, int exchanges = 10) {
     std::istringstream stream(words);
-    EXPECT_EQ(ObeyNode(stream, &bench_.node(i)), "");
+    EXPECT_EQ(CommandNode(stream, &bench_.node(i)), "");
     const BusCommand on{.torque_nm = {}, .enabled = true};
     for (int k = 0; k < exchanges; ++k) {
       const BusStatus status = bench_.Exchange(on);
@@ -210,7 +210,7 @@ TEST_F(NodeOf, EachNodeFaultIsInjectedAndRemoved) {
 
 TEST_F(NodeOf, AnotherProductIsRejectedAtTheStart) {
   std::istringstream words("another-product");
-  ASSERT_EQ(ObeyNode(words, &bench_.node(1)), "");
+  ASSERT_EQ(CommandNode(words, &bench_.node(1)), "");
   try {
     bench_.device->Open();
     FAIL() << "opened";
@@ -222,10 +222,11 @@ TEST_F(NodeOf, AnotherProductIsRejectedAtTheStart) {
 TEST_F(NodeOf, ReportsWhatItDoesNotUnderstand) {
   for (const char* words : {"emcy", "emcy 0", "emcy 0x10000", "emcy torque"}) {
     std::istringstream stream(words);
-    EXPECT_EQ(ObeyNode(stream, &bench_.node(0)), "expected a code from 0x0001 to 0xFFFF") << words;
+    EXPECT_EQ(CommandNode(stream, &bench_.node(0)), "expected a code from 0x0001 to 0xFFFF")
+        << words;
   }
   std::istringstream stream("sulky");
-  EXPECT_EQ(ObeyNode(stream, &bench_.node(0)), "unknown node fault: 'sulky'");
+  EXPECT_EQ(CommandNode(stream, &bench_.node(0)), "unknown node fault: 'sulky'");
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST_F(QuasiStaticMap, AgreesWithTheGoldenMove) {
   MatrixXd x(golden_x.rows(), 12), u(golden_u.rows(), 2);
   for (int i = 0; i < x.rows(); ++i) {
     const auto path = StudyMove().Around(10 * i);
-    x.row(i) = QuasiStaticOver(arm_, golden["m"], path, kPeriod_s).x;
+    x.row(i) = QuasiStaticOver(arm_, golden["m"], path, kPeriod_s).State();
     u.row(i) = QuasiStaticAt(arm_, body, path[1]).torque_nm;
   }
   const auto rates = [](const MatrixXd& all) -> MatrixXd {
@@ -60,7 +60,7 @@ TEST_F(QuasiStaticMap, TheTorqueOfASampleIsTheMeanOfItsEnds) {
   const auto path = StudyMove().Around(20);
   const Vector2d now = QuasiStaticAt(arm_, body, path[1]).torque_nm,
                  next = QuasiStaticAt(arm_, body, path[2]).torque_nm;
-  EXPECT_EQ(QuasiStaticOver(arm_, 0.37, path, kPeriod_s).torque_nm, 0.5 * (now + next));
+  EXPECT_EQ(QuasiStaticOver(arm_, 0.37, path, kPeriod_s).Torque_nm(), 0.5 * (now + next));
   EXPECT_GT(next[0] - now[0], 0.1);
 }
 
@@ -106,8 +106,8 @@ TEST_F(QuasiStaticMap, AnArmAtRestIsStraight) {
   const auto sample = QuasiStaticOver(arm_, 0.5, {rest, rest, rest}, kPeriod_s);
   Eigen::Matrix<double, 12, 1> expected = Eigen::Matrix<double, 12, 1>::Zero();
   expected.head<2>() = Vector2d::Map(rest.angle_rad.data());
-  EXPECT_EQ(sample.x, expected);
-  EXPECT_EQ(sample.torque_nm, Vector2d::Zero());
+  EXPECT_EQ(sample.State(), expected);
+  EXPECT_EQ(sample.Torque_nm(), Vector2d::Zero());
 }
 
 // Its torque alone, on the frictionless arm: the residual motion at the end of the move is due to
@@ -120,7 +120,8 @@ TEST_F(QuasiStaticMap, ItsTorqueMovesTheArmAlongThePath) {
     for (int k = 0; k < StudyMove().periods; ++k) {
       const auto sample = QuasiStaticOver(arm_, payload_kg, StudyMove().Around(k), kPeriod_s);
       x = stepper.Advance(
-          x, {.torque_nm = sample.torque_nm, .payload_kg = payload_kg, .friction_nm = {0.0, 0.0}});
+          x,
+          {.torque_nm = sample.Torque_nm(), .payload_kg = payload_kg, .friction_nm = {0.0, 0.0}});
     }
     const Vector2d goal = Vector2d::Map(StudyMove().At(StudyMove().periods).angle_rad.data());
     EXPECT_LT((x.q.head<2>() - goal).cwiseAbs().maxCoeff(), 0.002) << payload_kg;

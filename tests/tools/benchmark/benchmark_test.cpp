@@ -25,11 +25,11 @@ TEST(BenchmarkPlan, RunsEveryLawInEveryScenarioWithEverySeed) {
   for (const BenchmarkKind kind : kKinds) {
     const std::size_t laws = BenchmarkSetOf(kind, Rig(), kExperiments).laws.size();
     const SweepPlan plan = Plan("", "1..3", kind);
-    EXPECT_EQ(plan.grid.size(), laws * plan.scenarios.size() * 3) << Name(kind);
+    EXPECT_EQ(plan.grid.size(), laws * plan.scenarios.size() * 3) << ToString(kind);
     std::set<std::string> names;
     for (const Scenario& scenario : plan.scenarios) names.insert(scenario.name);
-    EXPECT_EQ(names.size(), plan.scenarios.size()) << Name(kind);
-    EXPECT_EQ(BenchmarkKindNamed(Name(kind)), kind);
+    EXPECT_EQ(names.size(), plan.scenarios.size()) << ToString(kind);
+    EXPECT_EQ(BenchmarkKindNamed(ToString(kind)), kind);
   }
   EXPECT_THAT(MessageOf<InputError>([] { BenchmarkKindNamed("pictures"); }),
               HasSubstr("expected one of commands, moves, limits"));

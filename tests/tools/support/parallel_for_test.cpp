@@ -11,15 +11,15 @@ namespace {
 
 TEST(ParallelFor, RunsEachOnceAndReportsTheEnd) {
   std::vector<std::atomic<int>> runs(1000);
-  std::size_t told = 0;
+  std::size_t reported = 0;
   ParallelFor(
       runs.size(), [&](std::size_t i) { ++runs[i]; },
       [&](std::size_t done) {
-        EXPECT_GE(done, told);
-        told = done;
+        EXPECT_GE(done, reported);
+        reported = done;
       });
   for (const auto& count : runs) EXPECT_EQ(count, 1);
-  EXPECT_EQ(told, 1000u);
+  EXPECT_EQ(reported, 1000u);
 }
 
 TEST(ParallelFor, AcceptsACountOfZero) {
