@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -242,10 +243,13 @@ class Daemon(ProgramTest):
         if os.geteuid() != 0:
             self.skipTest("dropping a permission needs root")
         os.chmod(self.folder, 0o777)
+        # The clone may be in a folder that only root may enter, such as /root.
+        config = shutil.copytree(HIL.parent, self.folder / "config")
         result = subprocess.run(
             ["setpriv", "--reuid=65534", "--clear-groups", "--bounding-set=-sys_nice,-ipc_lock",
-             BIN / "flexarmd", "--config", HIL, "--experiment", SQUARE, "--log-dir",
-             self.folder / "runs", "--socket", self.folder / "socket"],
+             BIN / "flexarmd", "--config", config / HIL.name, "--experiment",
+             config / "experiments" / SQUARE.name, "--log-dir", self.folder / "runs", "--socket",
+             self.folder / "socket"],
             cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
         self.assertIn("SCHED_FIFO", result.stderr)
