@@ -1,90 +1,10 @@
 #include "hal/gpiod/gpiod_lines.h"
 
-#include <gpiod.h>
-
-#include <array>
-#include <cerrno>
-#include <cstring>
-
-#include "hal/bus_device.h"
-#include "hal/line_names.h"
-
 namespace flexarm {
-namespace {
-
-constexpr const char* kConsumer = "flexarmd";
-
-[[noreturn]] void Fail(const GpiodConfig& config, const std::string& what) {
-  throw HalError("gpiod " + config.chip + ": " + what + " (" + std::strerror(errno) + ")");
-}
-
-gpiod_line* LineAt(const GpiodConfig& config, gpiod_chip* chip, int offset,
-                   const std::string& name) {
-  gpiod_line* line = gpiod_chip_get_line(chip, static_cast<unsigned>(offset));
-  if (line == nullptr) Fail(config, name + " = line " + std::to_string(offset) + " does not exist");
-  if (gpiod_line_is_used(line)) {
-    const char* consumer = gpiod_line_consumer(line);
-    errno = EBUSY;
-    Fail(config, name + " = line " + std::to_string(offset) + " is held by " +
-                     (consumer != nullptr ? consumer : "an unknown process"));
-  }
-  return line;
-}
-
-}  // namespace
-
-struct GpiodLines::Lines {
-  explicit Lines(const GpiodConfig& config) : chip(gpiod_chip_open_lookup(config.chip.c_str())) {
-    if (chip == nullptr) Fail(config, "cannot be opened");
-    try {
-      Request(config);
-    } catch (...) {
-      gpiod_chip_close(chip);  // releases what was requested
-      throw;
-    }
-  }
-  ~Lines() {
-    Set(0, 0);
-    gpiod_chip_close(chip);
-  }
-  Lines(const Lines&) = delete;
-  Lines& operator=(const Lines&) = delete;
-
-  void Request(const GpiodConfig& config) {
-    gpiod_line_bulk_init(&inputs);
-    for (int i = 0; i < kLines; ++i) {
-      gpiod_line_bulk_add(&inputs, LineAt(config, chip, config.input[static_cast<std::size_t>(i)],
-                                          ToString(static_cast<Line>(i))));
-    }
-    gpiod_line_bulk_init(&outputs);
-    gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.relay, "relay"));
-    gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.pump, "pump"));
-    if (gpiod_line_request_bulk_input(&inputs, kConsumer) != 0) {
-      Fail(config, "the input lines cannot be requested");
-    }
-    const std::array<int, 2> low = {0, 0};
-    if (gpiod_line_request_bulk_output(&outputs, kConsumer, low.data()) != 0) {
-      Fail(config, "the output lines cannot be requested");
-    }
-  }
-
-  void Set(int relay, int pump) noexcept {
-    const std::array<int, 2> values = {relay, pump};
-    gpiod_line_set_value_bulk(&outputs, values.data());
-  }
-
-  gpiod_chip* chip;
-  gpiod_line_bulk inputs;
-  gpiod_line_bulk outputs;  // relay, pump
-};
-
-GpiodLines::GpiodLines(const GpiodConfig& config) : lines_(std::make_unique<Lines>(config)) {}
-
-GpiodLines::~GpiodLines() = default;
 
 LineLevels GpiodLines::Read(std::int64_t /*now_ns*/) noexcept {
   std::array<int, kLines> values{};
-  if (gpiod_line_get_value_bulk(&lines_->inputs, values.data()) != 0) return 0;
+  if (!request_.Read(&values)) return 0;
   LineLevels levels = 0;
   for (int i = 0; i < kLines; ++i) {
     if (values[static_cast<std::size_t>(i)] != 0) levels |= LineBit(static_cast<Line>(i));
@@ -93,7 +13,7 @@ LineLevels GpiodLines::Read(std::int64_t /*now_ns*/) noexcept {
 }
 
 void GpiodLines::Write(std::int64_t /*now_ns*/, const Outputs& outputs) noexcept {
-  lines_->Set(outputs.relay_closed ? 1 : 0, outputs.pump_level ? 1 : 0);
+  static_cast<void>(request_.Write(outputs.relay_closed ? 1 : 0, outputs.pump_level ? 1 : 0));
 }
 
 }  // namespace flexarm

@@ -115,6 +115,7 @@ std::vector<Problem> HalConfig::Problems(const BusRequirements& required) const 
 
 std::vector<BusCost> AcquisitionCosts(const HalConfig& hal) {
   std::vector<BusCost> costs;
+  costs.reserve(hal.bus.size());
   for (const HalConfig::Bus& bus : hal.bus) costs.push_back(bus.wiring->Cost());
   return costs;
 }

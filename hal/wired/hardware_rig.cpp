@@ -17,6 +17,7 @@ HardwareRig::~HardwareRig() {
 
 std::vector<BusDevice*> HardwareRig::buses() const {
   std::vector<BusDevice*> all;
+  all.reserve(buses_.size());
   for (const auto& bus : buses_) all.push_back(bus.get());
   return all;
 }

@@ -53,7 +53,7 @@ class SmallCholesky {
           x[k] *= inverse_.coeff(k);
           for (int i = k + 1; i < end; ++i) x[i] -= At(i, k) * x[k];
         }
-        for (int i = end; i < N; ++i) {
+        for (int i = panel + kPanel; i < N; ++i) {
           double sum = 0.0;
           for (int k = panel; k < end; ++k) sum += At(i, k) * x[k];
           x[i] -= sum;

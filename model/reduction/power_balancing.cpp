@@ -109,6 +109,7 @@ std::vector<Index> Kept(const Spectrum& spectrum, double rigid_below, PowerBalan
 // The roots nearest to zero stem from rigid-body motions; some of them may have been dropped.
 void MarkRigid(const PowerOptions& options, PowerBalance* balance) {
   std::vector<double> distance;
+  distance.reserve(balance->mode.size() + balance->dropped.size());
   for (const PowerMode& mode : balance->mode) {
     distance.push_back(mode.frequency_rad_s * mode.frequency_rad_s);
   }

@@ -22,14 +22,17 @@ cache=${cache:-$root/build/guest}
 
 headers=linux-headers-rt-amd64  # depends on the headers of the current real-time kernel
 
-# Contents of the root image: a small system, the libraries of flexarm's programs, tools of the
-# tests.
+# Contents of the root image: a small system, tools of the tests, and the libraries of flexarm's
+# programs: those that the installed -dev packages belong to, whose names differ between releases.
 guest_packages=(
   base-files base-passwd bash coreutils dash findutils grep iproute2 kmod libc-bin mawk mount passwd
   perl-base procps sed util-linux
   dbus systemd systemd-sysv
-  libfmt9 libnlopt0 libspdlog1.10 libsqlite3-0 libstdc++6 libsystemd0 libtomlplusplus3
-  can-utils gpiod jq libcomedi0 libgpiod2 libmodbus5 rt-tests sqlite3 stress-ng
+  can-utils gpiod jq libstdc++6 rt-tests sqlite3 stress-ng
+)
+dev_packages=(
+  libcomedi-dev libfmt-dev libgpiod-dev libmodbus-dev libnlopt-dev libspdlog-dev libsqlite3-dev
+  libsystemd-dev libtomlplusplus-dev
 )
 # Modules in addition to gpio-sim, for the root image and for the initial RAM disk.
 root_modules=(autofs4 can can-raw comedi comedi_parport comedi_test configfs vcan)
@@ -60,9 +63,15 @@ setup() {
     "$headers" >&2
 }
 
+runtime_libraries() {
+  dpkg-query -W -f '${Depends}\n' "${dev_packages[@]}" | tr ',' '\n' |
+    sed -n 's/^ *\(lib[^ ]*\) (=.*/\1/p' | grep -v -- '-dev$' | sort -u
+}
+
 # A hash of the inputs of build; a cache with the same stamp is up to date.
 stamp() {
   package_version
+  runtime_libraries
   kernel_release
   cat "$here/guest.sh" "$here/extract_kernel.py" "$here"/image/* | sha256sum
 }
@@ -76,7 +85,8 @@ download() {  # download PACKAGE NEW_NAME
 make_kernel() {
   download "linux-image-$release=$version" image.deb
   mkdir kernel
-  dpkg-deb --fsys-tarfile image.deb | tar x -C kernel ./boot ./lib/modules
+  dpkg-deb --fsys-tarfile image.deb | tar x -C kernel
+  [[ -d kernel/lib ]] || ln -s usr/lib kernel/lib  # since Debian 13 the package has no /lib
   python3 "$here/extract_kernel.py" "kernel/boot/vmlinuz-$release" vmlinux
 }
 
@@ -114,6 +124,15 @@ module_files() {
   done | awk '$1 == "insmod" && !seen[$2]++ { print $2 }'
 }
 
+# Since Debian 13 modules are compressed, which the insmod of the initial RAM disk cannot read.
+copy_module() {  # copy_module FILE TARGET
+  mkdir -p "$(dirname "$2")"
+  case $1 in
+    *.xz) unxz -c "$1" >"${2%.xz}" ;;
+    *) cp "$1" "$2" ;;
+  esac
+}
+
 apt_sources() {
   local file
   for file in /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list; do
@@ -138,7 +157,7 @@ mask_services() {
 make_root() {
   local tree=$PWD/tree file
   local packages
-  packages=$(IFS=,; echo "${guest_packages[*]}")
+  packages=$(IFS=,; echo "${guest_packages[*]}"),$(runtime_libraries | paste -sd,)
   # shellcheck source=/dev/null
   mmdebstrap -q --variant=extract --mode=root --format=directory --include="$packages" \
     --hook-dir=/usr/share/mmdebstrap/hooks/merged-usr \
@@ -162,7 +181,7 @@ make_root() {
   mask_services "$tree"
   module_files gpio-sim "${root_modules[@]}" "${boot_modules[@]}" |
     while read -r file; do
-      install -Dm644 "$file" "$tree/usr/lib/modules/${file#*/lib/modules/}"
+      copy_module "$file" "$tree/usr/lib/modules/${file#*/lib/modules/}"
     done
   cp "kernel/lib/modules/$release"/modules.{builtin,builtin.modinfo,order} \
     "$tree/usr/lib/modules/$release/"
@@ -176,8 +195,8 @@ make_initrd() {
   mkdir -p initrd/{bin,dev,proc,sys,root,modules}
   cp /bin/busybox initrd/bin/
   module_files "${boot_modules[@]}" | while read -r file; do
-    cp "$file" initrd/modules/
-    basename "$file" >>initrd/modules/order
+    copy_module "$file" "initrd/modules/$(basename "$file")"
+    basename "$file" .xz >>initrd/modules/order
   done
   install -m755 "$here/image/initrd_init.sh" initrd/init
   (cd initrd && find . | cpio --quiet -o -H newc) >initrd.cpio
