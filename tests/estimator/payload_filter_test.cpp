@@ -7,9 +7,7 @@
 
 #include <cmath>
 
-#include "model/arm/arm_model.h"
-#include "model/rigid_joint/tip_acceleration.h"
-#include "model/simulation/arm_simulator.h"
+#include "tests/estimator/quantised_arm.h"
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/golden_data.h"
 #include "tests/support/no_alloc.h"
@@ -23,8 +21,6 @@ using Eigen::Vector2d;
 using Eigen::VectorXd;
 using Outputs = PayloadFilter::Outputs;
 
-constexpr double kCount_rad = 2.0 * M_PI / 2540.0, kFineCount_rad = 2.0 * M_PI / 24480.0;
-
 PiecewiseTorque Held(const Vector2d& torque_nm) {
   return PiecewiseTorque::WholePeriod({torque_nm[0], torque_nm[1]});
 }
@@ -34,50 +30,13 @@ PiecewiseTorque Held(const Vector2d& torque_nm) {
 PayloadFilterConfig WithTheTipRead() {
   PayloadFilterConfig config = StudyPayload();
   config.tip_sigma_m_s2 = 0.3;
-  config.tip_lag_s = 8e-4;
+  config.tip_lag_s = kTipLag_s;
   return config;
 }
 
 RigidJointStepper StudyStepper() { return {RigidJointArm(ThesisRig()), kPeriod_s, kGauge_hz}; }
 
 PayloadFilter StudyFilter() { return {StudyStepper(), WithTheTipRead()}; }
-
-double Rounded(double angle, double quantum) { return quantum * std::round(angle / quantum); }
-
-/// The elastic arm with quantised angles and filtered modal coordinates.
-class Plant {
- public:
-  explicit Plant(const ArmParameters& p)
-      : model_(p, {2, 2}), simulator_(model_), x_(model_.dof()) {}
-
-  Outputs Run(const Vector2d& torque) {
-    constexpr int kSteps = 40;
-    const double h = kPeriod_s / kSteps, share = 1.0 - std::exp(-2.0 * M_PI * kGauge_hz * h);
-    for (int i = 0; i < kSteps; ++i) {
-      const ArmState before = x_;
-      simulator_.Step(x_, torque, h);
-      const double tip_m_s2 =
-          TipAcceleration(model_, ArmVector(0.5 * (before.q + x_.q)),
-                          ArmVector(0.5 * (before.v + x_.v)), ArmVector((x_.v - before.v) / h));
-      tip_m_s2_ += (1.0 - std::exp(-h / WithTheTipRead().tip_lag_s)) * (tip_m_s2 - tip_m_s2_);
-      phi_f_ += share * (x_.q.tail<4>() - phi_f_);
-    }
-    Outputs z;
-    for (int i = 0; i < 4; ++i) z[i] = Rounded(x_.q[i], i < 3 ? kCount_rad : kFineCount_rad);
-    z.tail<4>() = phi_f_;
-    return z;
-  }
-
-  /// Acceleration of the tip behind the filter of an accelerometer.
-  double tip_m_s2() const { return tip_m_s2_; }
-
- private:
-  ArmModel model_;
-  ArmSimulator simulator_;
-  ArmState x_;
-  Eigen::Vector4d phi_f_ = Eigen::Vector4d::Zero();
-  double tip_m_s2_ = 0.0;
-};
 
 ArmParameters RigWith(double payload_kg) {
   ArmParameters p = ThesisRig();
@@ -173,7 +132,7 @@ TEST(PayloadFilter, AHypothesisEqualsAFilterWithAnotherTorque) {
 }
 
 TEST(PayloadFilter, SwitchingCopiesTheMotionAndRestartsThePayloadEstimate) {
-  Plant plant(RigWith(0.6));
+  QuantisedArm plant(RigWith(0.6));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 60; ++k) {
     filter.Update(Held(MoveTorque(k)),
@@ -203,7 +162,7 @@ TEST(PayloadFilter, SwitchingCopiesTheMotionAndRestartsThePayloadEstimate) {
 // docs/theory/payload.md 6.2: within 0.03 kg at the end of a run.
 TEST(PayloadFilter, EstimatesThePayloadOfTheSimulatedArm) {
   for (const double payload_kg : {0.0, 0.1, 0.3, 0.6, 1.0}) {
-    Plant plant(RigWith(payload_kg));
+    QuantisedArm plant(RigWith(payload_kg));
     PayloadFilter filter = StudyFilter();
     for (int k = 0; k < 140; ++k) {
       filter.Update(Held(MoveTorque(k)),
@@ -218,7 +177,7 @@ TEST(PayloadFilter, EstimatesThePayloadOfTheSimulatedArm) {
 TEST(PayloadFilter, TheTipAccelerationSpeedsUpThePayloadEstimate) {
   double early_with = 0.0, early_without = 0.0;
   for (const double payload_kg : {0.0, 0.1, 0.3, 0.6, 1.0}) {
-    Plant plant(RigWith(payload_kg));
+    QuantisedArm plant(RigWith(payload_kg));
     PayloadFilter with = StudyFilter(), without = StudyFilter();
     for (int k = 0; k < 140; ++k) {
       const Outputs z = plant.Run(MoveTorque(k));
@@ -236,7 +195,7 @@ TEST(PayloadFilter, TheTipAccelerationSpeedsUpThePayloadEstimate) {
 
 // Detects a wrong sign or unit of the accelerometer.
 TEST(PayloadFilter, TheTipAccelerationAgreesWithTheModel) {
-  Plant plant(RigWith(0.3));
+  QuantisedArm plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   double squares = 0.0, reading_squares = 0.0;
   for (int k = 0; k < 140; ++k) {
@@ -253,7 +212,7 @@ TEST(PayloadFilter, TheTipAccelerationAgreesWithTheModel) {
 
 // Innovation and NIS belong to the eight outputs, for any reading of the accelerometer.
 TEST(PayloadFilter, AMissingTipReadingHasNoEffectInItsSample) {
-  Plant plant(RigWith(0.3));
+  QuantisedArm plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 20; ++k) {
     filter.Update(Held(MoveTorque(k)), {.z = plant.Run(MoveTorque(k)),
@@ -288,7 +247,7 @@ TEST(PayloadFilter, AReadingReducesTheVarianceAsPredicted) {
   PayloadFilterConfig fine = WithTheTipRead(), coarse = fine;
   fine.tip_sigma_m_s2 = 0.3;
   coarse.tip_sigma_m_s2 = 1.0;
-  Plant plant(RigWith(0.3));
+  QuantisedArm plant(RigWith(0.3));
   PayloadFilter none(stepper, fine), with_fine(stepper, fine), with_coarse(stepper, coarse);
   for (int k = 0; k <= 10; ++k) {
     PayloadFilter::Reading reading{.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood};
@@ -311,7 +270,7 @@ TEST(PayloadFilter, AReadingReducesTheVarianceAsPredicted) {
 
 // 40 m/s^2 beside the true value, once: a broken wire. The gate leaves a twentieth of the effect.
 TEST(PayloadFilter, AnAccelerometerOutlierHardlyMovesTheEstimate) {
-  Plant plant(RigWith(0.3));
+  QuantisedArm plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 60; ++k) {
     filter.Update(Held(MoveTorque(k)), {.z = plant.Run(MoveTorque(k)),
@@ -356,7 +315,7 @@ TEST(PayloadFilter, PredictsThroughLostFrames) {
 
 // One channel that jumps by 0.5 rad for a sample: the gate leaves a hundredth of the error.
 TEST(PayloadFilter, OneOutlierHardlyMovesTheEstimate) {
-  Plant plant(RigWith(0.3));
+  QuantisedArm plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 60; ++k) {
     filter.Update(Held(MoveTorque(k)),
@@ -375,7 +334,7 @@ TEST(PayloadFilter, OneOutlierHardlyMovesTheEstimate) {
 }
 
 TEST(PayloadFilter, AMoveRaisesThePayloadVariance) {
-  Plant plant(RigWith(0.3));
+  QuantisedArm plant(RigWith(0.3));
   PayloadFilter filter = StudyFilter();
   for (int k = 0; k < 140; ++k) {
     filter.Update(Held(MoveTorque(k)),
@@ -390,7 +349,7 @@ TEST(PayloadFilter, AMoveRaisesThePayloadVariance) {
 // with a small variance at 0 kg would converge to a fraction of a kilogram, overconfidently.
 TEST(PayloadFilter, NoMoveStartsBelowTheFirstPayloadEstimate) {
   for (const double payload_kg : {0.0, 0.6}) {
-    Plant plant(RigWith(payload_kg));
+    QuantisedArm plant(RigWith(payload_kg));
     PayloadFilter filter = StudyFilter();
     for (int k = 0; k < 140; ++k) {
       filter.Update(Held(MoveTorque(k)),
@@ -406,7 +365,7 @@ TEST(PayloadFilter, NoMoveStartsBelowTheFirstPayloadEstimate) {
 
 // The payload is still there: assumed lost, it is estimated again.
 TEST(PayloadFilter, APayloadAssumedLostIsEstimatedAgainFromZero) {
-  Plant plant(RigWith(0.6));
+  QuantisedArm plant(RigWith(0.6));
   PayloadFilter filter = StudyFilter();
   const auto sample = [&](int k) {
     filter.Update(Held(MoveTorque(k)),
@@ -430,7 +389,7 @@ TEST(PayloadFilter, APayloadAssumedLostIsEstimatedAgainFromZero) {
 }
 
 TEST(PayloadFilter, PayloadAndFrictionAreNotUpdatedBetweenMoves) {
-  Plant plant(RigWith(0.6));
+  QuantisedArm plant(RigWith(0.6));
   PayloadFilter filter = StudyFilter();
   filter.EndMove();
   const auto sample = [&](int k) {

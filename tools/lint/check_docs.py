@@ -48,7 +48,7 @@ NUMBERS = r"(\d+(?:\.\d+)*(?:(?:,|,?\s+and|\s+to)\s+\d+(?:\.\d+)*)*)"
 SECTIONS = re.compile(r"[`\])]*,?(?:\s+sections?)?\s+" + NUMBERS)
 OWN_SECTIONS = re.compile(r"\bsections?\s+" + NUMBERS)
 HEADING = re.compile(r"^#+ +(.*?) *$", re.M)
-OUTSIDE = re.compile(r"(?<![\w.$}/])/work/[\w./-]*")
+OUTSIDE = re.compile(r"(?<![\w.$}/])/home/[\w./-]*")
 
 TOP_FOLDERS = (*prose.CODE_FOLDERS, "systemd", "docs")
 PATH = re.compile(r"(?<![\w/.{}-])(?:" + "|".join(TOP_FOLDERS) + r")/[\w./{},*+-]*")

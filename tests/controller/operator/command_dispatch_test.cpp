@@ -7,9 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "tests/controller/operator/operator_records.h"
-#include "tests/controller/operator/still_stack.h"
-#include "tests/support/loop_time.h"
+#include "tests/controller/operator/operator_parts.h"
 
 namespace flexarm {
 namespace {
@@ -29,29 +27,14 @@ RigConfig UncalibratedRig(std::vector<std::string> overrides) {
   return ShippedRig(overrides);
 }
 
-class CommandDispatchTest : public testing::Test {
+class CommandDispatchTest : public OperatorParts {
  protected:
   explicit CommandDispatchTest(const std::vector<std::string>& overrides = {})
-      : config_(UncalibratedRig(overrides)) {
-    now_.now_ns = 60 * kMs;
-    now_.permit.state = SafetyState::kArmed;
-  }
+      : OperatorParts(UncalibratedRig(overrides)) {}
 
   Json Answer(const Json& command) { return dispatch_.Answer(kClient, command.dump(), now_); }
   Json AnswerLine(const std::string& line) { return dispatch_.Answer(kClient, line, now_); }
 
-  RigConfig config_;
-  StillStack stack_{config_};
-  EventQueue events_{64};
-  RecordedJournal journal_;
-  RequestTracker requests_{&stack_.requests()};
-  ExperimentLoader experiments_{&stack_, &events_, &ShippedDesign(), LoopGrid(config_.loop),
-                                ShippedLimits()};
-  CommissioningCommands commissioning_{config_,
-                                       {.stack = &stack_,
-                                        .experiments = &experiments_,
-                                        .requests = &requests_,
-                                        .report = journal_.Report()}};
   CommandDispatch dispatch_{{.stack = &stack_,
                              .requests = &requests_,
                              .experiments = &experiments_,
@@ -62,7 +45,6 @@ class CommandDispatchTest : public testing::Test {
                                  },
                              .parse_experiment = ParseExperiment,
                              .report = journal_.Report()}};
-  OperatorSnapshot now_;
 };
 
 struct UnprovenRigTest : CommandDispatchTest {

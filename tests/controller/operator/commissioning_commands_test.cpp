@@ -6,9 +6,7 @@
 #include <filesystem>
 
 #include "controller/types/rejected_error.h"
-#include "tests/controller/operator/operator_records.h"
-#include "tests/controller/operator/still_stack.h"
-#include "tests/support/loop_time.h"
+#include "tests/controller/operator/operator_parts.h"
 
 namespace flexarm {
 namespace {
@@ -16,12 +14,9 @@ namespace {
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-class CommissioningCommandsTest : public testing::Test {
+class CommissioningCommandsTest : public OperatorParts {
  protected:
-  CommissioningCommandsTest() {
-    now_.now_ns = 60 * kMs;
-    now_.permit.state = SafetyState::kArmed;
-  }
+  CommissioningCommandsTest() : OperatorParts(ShippedRig({"log.directory='" + Folder() + "'"})) {}
   ~CommissioningCommandsTest() override { std::filesystem::remove_all(Folder()); }
 
   static std::string Folder() {
@@ -30,12 +25,12 @@ class CommissioningCommandsTest : public testing::Test {
   }
 
   std::optional<ClientAnswer> AnswerOf(std::uint32_t number, Refusal refusal) {
-    return commands_.Answered({.number = number,
-                               .kind = RequestKind::kRun,
-                               .refusal = refusal,
-                               .state = SafetyState::kIdle,
-                               .present = 0},
-                              now_.permit);
+    return commissioning_.Answered({.number = number,
+                                    .kind = RequestKind::kRun,
+                                    .refusal = refusal,
+                                    .state = SafetyState::kIdle,
+                                    .present = 0},
+                                   now_.permit);
   }
 
   // Still steps, as many as a measurement of the config takes, but the last.
@@ -48,29 +43,16 @@ class CommissioningCommandsTest : public testing::Test {
       tick.input.frame.strain_valid |= 1u << i;
     }
     const double ticks = config_.commissioning.measure_s / kPeriod_s;
-    for (int k = 1; k < static_cast<int>(ticks); ++k) commands_.Take(tick);
+    for (int k = 1; k < static_cast<int>(ticks); ++k) commissioning_.Take(tick);
     last_ = tick;
   }
 
-  RigConfig config_ = ShippedRig({"log.directory='" + Folder() + "'"});
-  StillStack stack_{config_};
-  EventQueue events_{64};
-  RecordedJournal journal_;
-  RequestTracker requests_{&stack_.requests()};
-  ExperimentLoader experiments_{&stack_, &events_, &ShippedDesign(), LoopGrid(config_.loop),
-                                ShippedLimits()};
-  CommissioningCommands commands_{config_,
-                                  {.stack = &stack_,
-                                   .experiments = &experiments_,
-                                   .requests = &requests_,
-                                   .report = journal_.Report()}};
-  OperatorSnapshot now_;
   TickRecord last_{};
 };
 
 TEST_F(CommissioningCommandsTest, AMotionIsLoadedAndItsRunAskedFor) {
   const Json home{{"command", "home"}, {"joint", 2}, {"side", "high"}};
-  commands_.Start(home, 7, now_);
+  commissioning_.Start(home, 7, now_);
   EXPECT_EQ(stack_.planned.number, 1u);
   EXPECT_EQ(stack_.planned.experiment->mode, LoopMode::kRegulate);
   const std::vector<RunEvent> logged = TakeEvents(&events_);
@@ -84,7 +66,7 @@ TEST_F(CommissioningCommandsTest, AMotionIsLoadedAndItsRunAskedFor) {
 }
 
 TEST_F(CommissioningCommandsTest, ARefusedMotionIsAnsweredToItsClientAndFreesTheNext) {
-  commands_.Start({{"command", "pluck"}}, 7, now_);
+  commissioning_.Start({{"command", "pluck"}}, 7, now_);
   const std::uint32_t number = stack_.TakeRequests().at(0).number;
   EXPECT_FALSE(AnswerOf(number - 1, Refusal::kWrongState)) << "of another request";
   EXPECT_FALSE(AnswerOf(number, Refusal::kNone)) << "accepted: it has only begun";
@@ -99,23 +81,23 @@ TEST_F(CommissioningCommandsTest, ARefusedMotionIsAnsweredToItsClientAndFreesThe
   EXPECT_EQ(answer->json["trip"], "emergency-stop");
   EXPECT_FALSE(AnswerOf(number, Refusal::kWrongState)) << "once";
   now_.permit.state = SafetyState::kArmed;
-  EXPECT_NO_THROW(commands_.Start({{"command", "pluck"}}, 8, now_));
+  EXPECT_NO_THROW(commissioning_.Start({{"command", "pluck"}}, 8, now_));
 }
 
 TEST_F(CommissioningCommandsTest, AMeasurementIsAnsweredToItsClientWhenItHasEnded) {
   now_.permit.state = SafetyState::kIdle;
-  commands_.Start({{"command", "tare"}}, 9, now_);
+  commissioning_.Start({{"command", "tare"}}, 9, now_);
   EXPECT_TRUE(stack_.TakeRequests().empty()) << "nothing moves";
   MeasureButOne();
-  EXPECT_FALSE(commands_.TakeAnswer(now_.permit));
-  commands_.Take(last_);
-  const std::optional<ClientAnswer> answer = commands_.TakeAnswer(now_.permit);
+  EXPECT_FALSE(commissioning_.TakeAnswer(now_.permit));
+  commissioning_.Take(last_);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->client, 9);
   EXPECT_EQ(answer->json["ok"], true) << answer->json;
   EXPECT_EQ(answer->json["command"], "tare");
   EXPECT_EQ(answer->json["state"], "Idle");
-  EXPECT_FALSE(commands_.TakeAnswer(now_.permit)) << "once";
+  EXPECT_FALSE(commissioning_.TakeAnswer(now_.permit)) << "once";
   ASSERT_EQ(journal_.lines.size(), 1u);
   EXPECT_FALSE(journal_.lines[0].first);
   EXPECT_THAT(journal_.lines[0].second, HasSubstr("tare: done, kept in " + Folder()));
@@ -123,11 +105,11 @@ TEST_F(CommissioningCommandsTest, AMeasurementIsAnsweredToItsClientWhenItHasEnde
 
 TEST_F(CommissioningCommandsTest, AMeasurementThatFailsIsAnError) {
   now_.permit.state = SafetyState::kIdle;
-  commands_.Start({{"command", "zero"}}, 9, now_);
+  commissioning_.Start({{"command", "zero"}}, 9, now_);
   MeasureButOne();
   last_.input.safety_state = SafetyState::kArmed;
-  commands_.Take(last_);
-  const std::optional<ClientAnswer> answer = commands_.TakeAnswer(now_.permit);
+  commissioning_.Take(last_);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->json["ok"], false);
   ASSERT_EQ(journal_.lines.size(), 1u);
@@ -137,11 +119,11 @@ TEST_F(CommissioningCommandsTest, AMeasurementThatFailsIsAnError) {
 
 TEST_F(CommissioningCommandsTest, ACommandThatIsRefusedLeavesTheOneThatGoesOn) {
   now_.permit.state = SafetyState::kIdle;
-  commands_.Start({{"command", "tare"}}, 9, now_);
-  EXPECT_THROW(commands_.Start({{"command", "zero"}}, 10, now_), RejectedError);
+  commissioning_.Start({{"command", "tare"}}, 9, now_);
+  EXPECT_THROW(commissioning_.Start({{"command", "zero"}}, 10, now_), RejectedError);
   MeasureButOne();
-  commands_.Take(last_);
-  const std::optional<ClientAnswer> answer = commands_.TakeAnswer(now_.permit);
+  commissioning_.Take(last_);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->client, 9);
   EXPECT_EQ(answer->json["command"], "tare");

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "controller/operator/commissioning_commands.h"
+#include "tests/controller/operator/operator_records.h"
+#include "tests/controller/operator/still_stack.h"
+#include "tests/support/loop_time.h"
+
+namespace flexarm {
+
+/// The operator task's parts up to the commissioning commands, on a stack that does not run.
+class OperatorParts : public testing::Test {
+ protected:
+  explicit OperatorParts(RigConfig config) : config_(std::move(config)) {
+    now_.now_ns = 60 * kMs;
+    now_.permit.state = SafetyState::kArmed;
+  }
+
+  RigConfig config_;
+  StillStack stack_{config_};
+  EventQueue events_{64};
+  RecordedJournal journal_;
+  RequestTracker requests_{&stack_.requests()};
+  ExperimentLoader experiments_{&stack_, &events_, &ShippedDesign(), LoopGrid(config_.loop),
+                                ShippedLimits()};
+  CommissioningCommands commissioning_{config_,
+                                       {.stack = &stack_,
+                                        .experiments = &experiments_,
+                                        .requests = &requests_,
+                                        .report = journal_.Report()}};
+  OperatorSnapshot now_;
+};
+
+}  // namespace flexarm
