@@ -16,9 +16,7 @@ inline constexpr double kModelWrongNis = 60.0;
 
 /// True if the innovations contradict the filter's model. Real-time: safe.
 /// @param mean_nis  as PayloadFilter's
-inline constexpr bool ContradictsModel(double mean_nis) noexcept {
-  return mean_nis > kModelWrongNis;
-}
+constexpr bool ContradictsModel(double mean_nis) noexcept { return mean_nis > kModelWrongNis; }
 
 /// Monitor of the payload estimate: raises its warnings.
 ///

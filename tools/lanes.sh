@@ -101,8 +101,8 @@ for name, value in preset["environment"].items():
 
 sources() { git ls-files -z -- '*.h' '*.cpp'; }
 
-lane_format() {  # clang-format 14 changes nothing
-  sources | xargs -0 -P "$jobs" -n 40 clang-format-14 --dry-run -Werror
+lane_format() {  # clang-format 19 changes nothing
+  sources | xargs -0 -P "$jobs" -n 40 clang-format-19 --dry-run -Werror
   note "$(sources | tr -cd '\0' | wc -c) files"
 }
 

@@ -17,7 +17,7 @@ namespace {
 // process started by a service inherits the variable, though its stderr may be something else.
 bool StderrIsTheJournal() {
   const char* stream = std::getenv("JOURNAL_STREAM");
-  struct stat standard_error {};
+  struct stat standard_error{};
   if (stream == nullptr || fstat(STDERR_FILENO, &standard_error) != 0) return false;
   return stream ==
          std::to_string(standard_error.st_dev) + ":" + std::to_string(standard_error.st_ino);

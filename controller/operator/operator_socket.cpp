@@ -32,7 +32,7 @@ OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
                         ": a daemon is listening there already; stop it first, or set "
                         "daemon.socket to another path");
   }
-  struct stat there {};
+  struct stat there{};
   if (lstat(path_.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) unlink(path_.c_str());
   listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const mode_t old_mask = umask(0117);  // rw-rw----

@@ -37,15 +37,12 @@ void AddActs(const std::vector<Row>& rows, const std::string& kind, const std::s
 
 std::vector<Act> ActsOf(const Experiment& e) {
   std::vector<Act> acts;
-  AddActs(
-      e.doublet, "doublet", "duration_s", [](const auto& r) { return r.duration_s; }, &acts);
+  AddActs(e.doublet, "doublet", "duration_s", [](const auto& r) { return r.duration_s; }, &acts);
   AddActs(
       e.move, "move", "duration_s", [](const auto& r) { return r.duration_s.value_or(0.0); },
       &acts);
-  AddActs(
-      e.chirp, "chirp", "duration_s", [](const auto& r) { return r.duration_s; }, &acts);
-  AddActs(
-      e.prbs, "prbs", "bits", [](const auto& r) { return r.duration_s(); }, &acts);
+  AddActs(e.chirp, "chirp", "duration_s", [](const auto& r) { return r.duration_s; }, &acts);
+  AddActs(e.prbs, "prbs", "bits", [](const auto& r) { return r.duration_s(); }, &acts);
   if (e.csv) {
     acts.push_back({.kind = "csv",
                     .row = "csv",

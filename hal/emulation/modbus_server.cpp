@@ -91,7 +91,7 @@ void ModbusServer::OpenPseudoTerminal() {
   cfmakeraw(&settings);  // otherwise replies would be echoed
   tcsetattr(slave_, TCSANOW, &settings);
   if (config_.device.empty()) return;
-  struct stat there {};
+  struct stat there{};
   if (lstat(config_.device.c_str(), &there) == 0 && S_ISLNK(there.st_mode)) {
     unlink(config_.device.c_str());  // left by a server that died
   }

@@ -14,7 +14,7 @@ constexpr unsigned kLastPtyMajor = 143;
 constexpr int kLowLatency = 1 << ASYNCB_LOW_LATENCY;  // serial_struct::flags is an int
 
 bool IsPseudoTerminal(int fd) noexcept {
-  struct stat status {};
+  struct stat status{};
   if (fstat(fd, &status) != 0 || !S_ISCHR(status.st_mode)) return false;
   const unsigned number = major(status.st_rdev);
   return number >= kFirstPtyMajor && number <= kLastPtyMajor;

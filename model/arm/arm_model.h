@@ -52,7 +52,7 @@ class ArmModel {
                                const Eigen::VectorXd& generalized_force) const;
   const Eigen::MatrixXd& stiffness() const {
     return stiffness_;
-  }                                                            ///< K, constant; without backlash
+  }  ///< K, constant; without backlash
   const Eigen::MatrixXd& damping() const { return damping_; }  ///< D, constant
   /// dof x 2: motor torques act on th3 and th4, at the gearbox output.
   Eigen::MatrixXd InputMatrix() const;

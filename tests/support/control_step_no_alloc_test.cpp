@@ -36,15 +36,9 @@ constexpr Case kCases[] = {
     {"stale frame", [](StepInput& in) { in.frame.sampled_at_ns -= 60'000'000; }},
     {"jumping counter", [](StepInput& in) { in.frame.counter[0] ^= 0x40; }},
     {"saturated strain", [](StepInput& in) { in.frame.strain.fill(2047); }},
-    {"applied torque not finite",
-     [](StepInput& in) {
-       in.applied_torque_nm = {kNaN, kNaN};
-     }},
+    {"applied torque not finite", [](StepInput& in) { in.applied_torque_nm = {kNaN, kNaN}; }},
     {"reference not finite", [](StepInput& in) { in.reference_next.x_m.fill(kNaN); }},
-    {"reference far away",
-     [](StepInput& in) {
-       in.reference_next.u_m_nm = {1e3, -1e3};
-     }},
+    {"reference far away", [](StepInput& in) { in.reference_next.u_m_nm = {1e3, -1e3}; }},
     {"experiment ended", [](StepInput& in) { in.reference_ended = 1; }},
 };
 

@@ -107,7 +107,9 @@ TEST_F(NoAllocDeathTest, EndsWithItsScopeAndNests) {
   EXPECT_DEATH(
       {
         const NoAlloc outer;
-        { const NoAlloc inner; }
+        {
+          const NoAlloc inner;
+        }
         Use(std::malloc(24));
       },
       "no_alloc: malloc");

@@ -14,7 +14,7 @@ double ParameterAt(const ParametricSweep& sweep, std::ptrdiff_t place) {
 }  // namespace
 
 std::vector<double> Values(const ParametricSweep& sweep, Signal signal,
-                           double SignalMeasures::*measure) {
+                           double SignalMeasures::* measure) {
   std::vector<double> values;
   for (const ParametricPoint& point : sweep.point) values.push_back(point.signal[signal].*measure);
   return values;

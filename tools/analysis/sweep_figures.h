@@ -10,7 +10,7 @@ namespace flexarm {
 
 /// One measure of a signal at every point.
 std::vector<double> Values(const ParametricSweep& sweep, Signal signal,
-                           double SignalMeasures::*measure = &SignalMeasures::peak);
+                           double SignalMeasures::* measure = &SignalMeasures::peak);
 
 /// One of the two lowest frequencies with the motors free, Hz.
 std::vector<double> FreeFrequenciesHz(const ParametricSweep& sweep, std::size_t mode);

@@ -31,7 +31,7 @@ STAMPS = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fle
 MAX_STAMP_AGE_S = 60 * 24 * 3600  # counted from its last use
 INCLUDE = re.compile(rb'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 INCLUDE_FOLDER = re.compile(r"-I\s*(\S+)")
-TIDY = ["clang-tidy-14", "-quiet"]
+TIDY = ["clang-tidy-19", "-quiet"]
 
 
 def output(*command):

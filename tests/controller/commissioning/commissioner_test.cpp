@@ -230,9 +230,8 @@ TEST(Commissioner, RefusesInvalidArguments) {
 TEST(Commissioner, RefusesASecondCommandWhileBusy) {
   Bench bench;
   bench.commissioner().Start({{"command", "tare"}}, bench.state());
-  EXPECT_THAT(MessageOf<RejectedError>([&] {
-                bench.commissioner().Start({{"command", "zero"}}, bench.state());
-              }),
+  EXPECT_THAT(MessageOf<RejectedError>(
+                  [&] { bench.commissioner().Start({{"command", "zero"}}, bench.state()); }),
               HasSubstr("busy with tare"));
 }
 

@@ -117,9 +117,8 @@ TEST(PathReference, TheReferenceOfOtherLawsHasThePathToo) {
 }
 
 TEST(PathReference, AMoveTooFastForTheHeaviestPayloadIsRefusedWithTheShortestDuration) {
-  const std::string message = MessageOf<RejectedError>([] {
-    ScheduledTable(OneMove({60, 80}, 1.0));
-  });
+  const std::string message =
+      MessageOf<RejectedError>([] { ScheduledTable(OneMove({60, 80}, 1.0)); });
   EXPECT_THAT(message, AllOf(HasSubstr("move[0]"), HasSubstr("controller.payload.max_kg"),
                              HasSubstr("the shortest duration_s within the limits is ")));
   const double shortest_s = std::stod(message.substr(message.rfind(' ')));

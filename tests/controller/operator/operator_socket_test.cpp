@@ -134,13 +134,15 @@ TEST_F(OperatorSocketTest, AReplyToADisconnectedClientAffectsNoOther) {
 
 TEST_F(OperatorSocketTest, OnlyItsOwnerAndGroupMayConnect) {
   const OperatorSocket server(path_);
-  struct stat there {};
+  struct stat there{};
   ASSERT_EQ(stat(path_.c_str(), &there), 0);
   EXPECT_EQ(there.st_mode & 0777u, 0660u);
 }
 
 TEST_F(OperatorSocketTest, ItsFileIsRemovedAtItsEnd) {
-  { const OperatorSocket server(path_); }
+  {
+    const OperatorSocket server(path_);
+  }
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 

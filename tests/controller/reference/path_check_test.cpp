@@ -43,7 +43,7 @@ RigidPath OutAndBack() {
 
 // What a limit of PathCheck is compared with: index 0 or 1 is the joint.
 struct Compared {
-  std::array<double, 2> MotionLimits::*limit;
+  std::array<double, 2> MotionLimits::* limit;
   double share;               // of it
   std::vector<double> heavy;  // by sample, with 1 kg
   std::vector<double> rigid;  // without payload: no lead

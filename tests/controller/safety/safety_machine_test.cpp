@@ -27,7 +27,8 @@ constexpr SafetyFacts Healthy(RequestKind request = RequestKind::kNone) {
   return facts;
 }
 
-constexpr SafetyFacts With(SafetyFacts facts, std::uint8_t SafetyFacts::*flag, std::uint8_t value) {
+constexpr SafetyFacts With(SafetyFacts facts, std::uint8_t SafetyFacts::* flag,
+                           std::uint8_t value) {
   facts.*flag = value;
   return facts;
 }

@@ -84,9 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
                             {},
                             "bits of the outputs is 16, expected 12"},
                     Refusal{"AUnipolarOutput",
-                            [](auto* w) {
-                              w->output_ranges = {{0.0, 10.0}};
-                            },
+                            [](auto* w) { w->output_ranges = {{0.0, 10.0}}; },
                             {},
                             "channel 1 is 0 .. 10 V, expected -10 .. 10 V"},
                     Refusal{"OtherCounterBits",
