@@ -133,7 +133,7 @@ BusStatus ModbusLink::Connect() noexcept {
   const auto timeout_ns = static_cast<std::int64_t>(std::ceil(config_.response_timeout_ms * 1e6));
   SetTimeout(context_->modbus, timeout_ns);
   if (modbus_connect(context_->modbus) != 0) {
-    const int error = errno == EINPROGRESS ? ETIMEDOUT : errno;  // errno after select
+    const int error = errno == EINPROGRESS ? ETIMEDOUT : errno;  // libmodbus before 3.1.11
     return Fail("cannot connect", error);
   }
   open_ = true;

@@ -137,7 +137,8 @@ PowerBalance BalancePower(const UndampedSystem& system, const PowerOptions& opti
   // Real roots have real eigenvectors: the imaginary part is zero.
   balance.T1 = spectrum.T1(Eigen::all, kept).real();
   balance.T2 = spectrum.T2(Eigen::all, kept).real();
-  balance.b = spectrum.T2_inverse(kept, Eigen::all).real() * system.B0;
+  const Eigen::MatrixXd kept_rows = spectrum.T2_inverse(kept, Eigen::all).real();
+  balance.b = kept_rows * system.B0;
   balance.c = system.C0 * balance.T1;
   balance.mu = balance.mu_rate = VectorXd::Zero(system.Q1.rows());
   for (std::size_t k = 0; k < kept.size(); ++k) {

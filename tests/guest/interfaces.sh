@@ -23,31 +23,6 @@ check "the CAN driver's tests pass on it" /mnt/share/hal_canopen_socketcan_test 
 grep -vE '^\[ RUN|^$' driver.txt
 check "none of them was skipped" refused grep -q SKIPPED driver.txt
 
-echo "== GPIO lines of gpio-sim"
-modprobe gpio-sim  # before the mount: configfs exists only after a module uses it
-mountpoint -q /sys/kernel/config || mount -t configfs none /sys/kernel/config
-device=/sys/kernel/config/gpio-sim/plc
-mkdir -p $device/bank/line3
-echo 8 >$device/bank/num_lines
-echo limit >$device/bank/line3/name
-echo 1 >$device/live
-chip=$(cat $device/bank/chip_name)
-line=/sys/devices/platform/$(cat $device/dev_name)/$chip/sim_gpio
-check "the line is found by its name" equal "$(gpiofind limit)" "$chip 3"
-check "the line reads 0" equal "$(gpioget "$chip" 3)" 0
-echo pull-up >"${line}3/pull"
-check "the line reads 1 when pulled" equal "$(gpioget "$chip" 3)" 1
-gpiomon --num-events=1 --falling-edge "$chip" 3 >edge.txt &
-monitor=$!
-sleep 0.5
-echo pull-down >"${line}3/pull"
-wait $monitor
-check "an edge is reported" grep -q FALLING edge.txt
-gpioset --mode=time --sec=1 "$chip" 5=1 &
-sleep 0.5
-check "a driven line is seen outside" equal "$(cat "${line}5/value")" 1
-wait
-
 echo "== comedi"
 modprobe comedi_test  # is attached automatically
 check "a DAQ board exists" ls /dev/comedi0

@@ -20,8 +20,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/share/guest"
 DESTDIR=$work/share/machine cmake --install "$build" >/dev/null
-cp -r "$here"/{check.sh,interfaces.sh,daq.sh,daemon_in_guest} "$work/share/guest"
-cp "$build"/tests/{guest/guest_daq_test,hal/canopen/hal_canopen_socketcan_test} "$work/share"
+cp -r "$here"/{check.sh,interfaces.sh,daq.sh,gpio.sh,daemon_in_guest} "$work/share/guest"
+cp "$build"/tests/{guest/guest_daq_test,guest/guest_gpio_test,hal/canopen/hal_canopen_socketcan_test} \
+  "$work/share"
 # Uses the installed programs, which a build in progress cannot change between two comparisons.
 bin=$(dirname "$(find "$work/share/machine" -type f -name flexarm -path '*/bin/*')")
 [[ -x $bin/flexarmd ]] || { echo "run_all: $build contains no flexarmd" >&2; exit 1; }
@@ -75,7 +76,7 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 
 # A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
 # first.
-names=(service wire commission load hostile experiment refusal interfaces daq)
+names=(service wire commission load hostile experiment refusal interfaces daq gpio)
 running=0
 for name in "${names[@]}"; do
   if ((running == 2)); then
@@ -84,7 +85,7 @@ for name in "${names[@]}"; do
   fi
   case $name in
     service | refusal) in_guest "daemon_in_guest/$name.sh" --systemd & ;;
-    interfaces | daq) in_guest "$name.sh" & ;;
+    interfaces | daq | gpio) in_guest "$name.sh" & ;;
     *) in_guest "daemon_in_guest/$name.sh" & ;;
   esac
   running=$((running + 1))

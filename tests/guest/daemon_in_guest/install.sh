@@ -11,7 +11,7 @@ useradd stranger
 
 experiment=/usr/local/share/flexarm/config/experiments/square-30deg.toml
 
-as() { runuser -u "$1" -- "${@:2}"; }
+as() { setpriv --reuid="$1" --regid="$(id -g "$1")" --init-groups -- "${@:2}"; }
 operate() { as member flexarm "$@"; }
 state() { operate status --json | jq -r .state; }
 in_state() { [[ $(state) == "$1" ]]; }

@@ -51,7 +51,8 @@ hardware() {
   : >rig.out
   echo report >&3
   within 5 grep -q torque_nm rig.out
-  tail -n 1 rig.out | jq -c '[.torque_nm, .relay_closed, .pump_alive]'
+  # jq 1.7 (Debian 13) prints 0.0 as it was read, a sum as 0.
+  tail -n 1 rig.out | jq -c '[(.torque_nm | map(. + 0)), .relay_closed, .pump_alive]'
 }
 dead='[[0,0],false,false]'
 
@@ -60,8 +61,17 @@ press_and_reset() {
   echo press reset-button 1 >&3
   sleep 0.1
   echo press reset-button 0 >&3
-  sleep 0.6 # at rest for half a second
-  flexarm reset
+  within 10 flexarm reset 2>reset.err || { cat reset.err; return 1; }  # when the arm is at rest
+}
+
+# The tools of the two generations of libgpiod name chip and line differently.
+gpio_get() { if gpio_is_v1; then gpioget "$chip" "$1"; else gpioget -c "$chip" "$1"; fi; }
+gpio_set() { if gpio_is_v1; then gpioset "$chip" "$1=1"; else gpioset -t 0 -c "$chip" "$1=1"; fi; }
+gpio_is_v1() { gpiodetect --version | grep -q ' v1\.'; }
+busy() {  # busy COMMAND..: it must fail because the line is held
+  local said
+  if said=$("$@" 2>&1); then return 1; fi
+  grep -q 'resource busy' <<<"$said" || { echo "  said '$said'"; return 1; }
 }
 
 state() { flexarm status --json | jq -r .state; }

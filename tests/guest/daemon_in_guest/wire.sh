@@ -12,9 +12,9 @@
 echo "== a whole experiment"
 start_rig
 start_daemon
-check "no other process may change the direction of the relay's line" refused gpioget "$chip" 6
-check "nor drive it" refused gpioset "$chip" 6=1
-check "nor take a limit switch's" refused gpioset "$chip" 0=1
+check "no other process may change the direction of the relay's line" busy gpio_get 6
+check "nor drive it" busy gpio_set 6
+check "nor take a limit switch's" busy gpio_set 0
 start_run
 within 30 grep -q 'Stopping -> Armed' daemon.log
 check "disarmed" flexarm disarm

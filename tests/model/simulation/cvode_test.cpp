@@ -22,12 +22,16 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
+#ifndef SUN_COMM_NULL  // before SUNDIALS 7 (Debian 13)
+constexpr void* SUN_COMM_NULL = nullptr;
+#endif
+
 struct Problem {
   const ArmModel* model;
   VectorXd force;
 };
 
-int Rate(realtype, N_Vector y, N_Vector y_dot, void* user) {
+int Rate(sunrealtype, N_Vector y, N_Vector y_dot, void* user) {
   const auto& problem = *static_cast<const Problem*>(user);
   const Eigen::Index n = problem.model->dof();
   const Eigen::Map<const VectorXd> in(N_VGetArrayPointer(y), 2 * n);
@@ -46,10 +50,11 @@ class Cvode {
  public:
   Cvode(const ArmModel& model, double relative)
       : problem_{&model, VectorXd::Zero(model.dof())}, n_(model.dof()) {
-    Require(SUNContext_Create(nullptr, &context_));
-    y_ = N_VNew_Serial(2 * n_, context_);
+    Require(SUNContext_Create(SUN_COMM_NULL, &context_));
+    const auto states = static_cast<sunindextype>(2 * n_);
+    y_ = N_VNew_Serial(states, context_);
     N_VConst(0.0, y_);
-    matrix_ = SUNDenseMatrix(2 * n_, 2 * n_, context_);
+    matrix_ = SUNDenseMatrix(states, states, context_);
     solver_ = SUNLinSol_Dense(y_, matrix_, context_);
     memory_ = CVodeCreate(CV_BDF, context_);
     Require(CVodeInit(memory_, Rate, 0.0, y_));
@@ -84,7 +89,7 @@ class Cvode {
   SUNMatrix matrix_ = nullptr;
   SUNLinearSolver solver_ = nullptr;
   void* memory_ = nullptr;
-  realtype time_ = 0.0;
+  sunrealtype time_ = 0.0;
 };
 
 ArmParameters Frictionless(DampingReading damping) {
