@@ -9,7 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit build-cost headers-all separate clang-tidy-all asan-all)
+  only_all_lanes=(guards unit build-cost headers-all separate clang-tidy-all asan-all debian13
+                  arm64)
 }
 
 logs=build/logs
@@ -242,6 +243,22 @@ lane_clang-tidy() {  # .clang-tidy on files of the product that changed recently
 
 lane_clang-tidy-all() {  # .clang-tidy on product and tests; unchanged files are skipped
   tidy "${product[@]}" tests
+}
+
+lane_debian13() {  # both commands of the README in a bare Debian 13; not the slowest lanes
+  tests/clean_root.sh trixie './tools/run-hil && ./tools/run-tests --lane format --lane layers \
+    --lane release --lane install --lane hil --lane e2e --lane guest'
+}
+
+lane_arm64() {  # 64-bit ARM under qemu-user: tests labelled unit or loop, replay across processors
+  build release flexarm
+  local share
+  share=$(mktemp -d)
+  python3 tests/arm64/replays.py record build/release/bin/flexarm amd64 "$share"
+  tests/clean_root.sh --share "$share" bookworm 'tests/arm64/cross.sh ../share'
+  python3 tests/arm64/replays.py replay build/release/bin/flexarm amd64 "$share" |
+    tee >(tail -n 1 >"$logs/$lane.note")
+  rm -r "$share"
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kStackBytes = std::size_t{2} << 20;  // a sanitizer uses 1 MiB of it
 constexpr std::size_t kPrefaultBytes = std::size_t{256} << 10;
-constexpr std::size_t kPageBytes = 4096;
+constexpr std::size_t kPageBytes = 4096;  // the smallest of any processor; some have 16 KiB
 
 template <typename T>
 void Increase(std::atomic<T>& counter, T amount) noexcept {

@@ -17,4 +17,9 @@ std::string BuildId() {
   return build.git_hash + " " + build.compiler + " " + build.flags_hash;
 }
 
+std::string ProcessorOf(std::string_view build_id) {
+  const std::string_view without_flags = build_id.substr(0, build_id.rfind(' '));
+  return std::string(without_flags.substr(without_flags.rfind(' ') + 1));
+}
+
 }  // namespace flexarm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace flexarm {
 
@@ -16,5 +17,8 @@ const BuildInfo& ThisBuild();
 
 /// "<git hash> <compiler> <flags hash>": logged, and compared by replay.
 std::string BuildId();
+
+/// The processor in a BuildId: "x86_64", "aarch64".
+std::string ProcessorOf(std::string_view build_id);
 
 }  // namespace flexarm

@@ -21,7 +21,9 @@ double Difference(double a, double b) {
 }  // namespace
 
 Replay::Replay(StepFunction step, bool other_config) : step_(std::move(step)) {
-  if (other_config) result_.bit_exact.reset();
+  if (!other_config) return;
+  result_.bit_exact.reset();
+  result_.estimate_difference.reset();
 }
 
 void Replay::Tick(const TickRecord& record) {
@@ -39,6 +41,12 @@ void Replay::Tick(const TickRecord& record) {
     largest =
         std::max(largest, Difference(output.torque_nm[joint], record.output.torque_nm[joint]));
     innovation_square_[joint] += output.innovation[joint] * output.innovation[joint];
+  }
+  for (std::size_t i = 0; i < kMaxNominalStates; ++i) {
+    const double recorded = record.output.x_hat[i];
+    largest_state_[i] = std::max(largest_state_[i], std::abs(recorded));
+    largest_state_difference_[i] =
+        std::max(largest_state_difference_[i], Difference(output.x_hat[i], recorded));
   }
   if (output.faults != 0) ++result_.faulty_ticks;
   if (SameBytes(output, record.output)) return;
@@ -59,6 +67,11 @@ void Replay::Safety(const SafetyRecord& record) {
 ReplayResult Replay::Result() const {
   ReplayResult result = result_;
   if (result.safety_records == 0) result.safety_exact.reset();
+  for (std::size_t i = 0; i < kMaxNominalStates && result.estimate_difference; ++i) {
+    if (largest_state_difference_[i] == 0) continue;
+    result.estimate_difference =
+        std::max(*result.estimate_difference, largest_state_difference_[i] / largest_state_[i]);
+  }
   for (std::size_t joint = 0; joint < 2 && result.ticks > 0; ++joint) {
     result.hub_innovation_rms_rad[joint] =
         std::sqrt(innovation_square_[joint] / static_cast<double>(result.ticks));

@@ -19,6 +19,9 @@ struct ReplayResult {
   std::optional<bool> bit_exact = true;
   std::array<double, 2>
       max_torque_difference_nm{};  ///< of the requested torque, against the recorded one
+  /// Largest difference of a component of the state estimate x_hat, as a share of the largest
+  /// recorded value of that component. Nothing under another config.
+  std::optional<double> estimate_difference = 0.0;
   /// Innovation of the hub encoders, rms; 0 without a filter.
   std::array<double, 2> hub_innovation_rms_rad{};
   std::int64_t faulty_ticks = 0;            ///< in which the loop detected a fault
@@ -50,6 +53,8 @@ class Replay {
  private:
   StepFunction step_;
   ReplayResult result_;
+  std::array<double, kMaxNominalStates> largest_state_{};
+  std::array<double, kMaxNominalStates> largest_state_difference_{};
   std::array<double, 2> innovation_square_{};  // sums
   std::optional<std::int64_t> previous_tick_;
   std::optional<SafetyStatus> previous_status_;

@@ -191,7 +191,7 @@ void RunReader::ForEachTick(const std::function<void(const TickRecord&)>& visit)
     std::string select = kSelectTick;
     select.append(HasGateColumn() ? "gate" : "0");  // an older log has no such column
     select.append(" FROM tick ORDER BY tick");
-    SqliteStatement row = db_.Prepare(select.c_str());
+    SqliteStatement row = db_.Prepare(select);
     while (row.Step()) {
       TickRecord record;
       const std::string where = "tick " + std::to_string(row.Integer(0)) + ": ";

@@ -94,7 +94,7 @@ void FaultDetection::JudgeCounters(const LoopFacts& facts) noexcept {
   for (std::size_t i = 0; i < kCounters; ++i) {
     if ((counters_present_ >> i & 1u) == 0 || counters.missing_ticks[i] < kMissingTicks) continue;
     silent |= std::uint32_t{1} << i;
-    if (counters.missing_ticks[i] > longest) longest = counters.missing_ticks[i];
+    longest = std::max(longest, counters.missing_ticks[i]);
   }
   Raise(TripCause::kNoCounterReading, silent != 0, 1, longest, kMissingTicks, FirstChannel(silent));
 

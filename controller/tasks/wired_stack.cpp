@@ -27,6 +27,7 @@ WiredStack::WiredStack(const RigConfig& config, const Design& design, const RigW
 
 std::vector<Task*> WiredStack::drive_tasks() {
   std::vector<Task*> tasks;
+  tasks.reserve(tasks_.size());
   for (BusTask& task : tasks_) tasks.push_back(&task);
   return tasks;
 }

@@ -2,6 +2,8 @@
 
 #include "controller/runlog/replay.h"
 
+#include <limits>
+
 #include "tests/controller/runlog/runlog_fixture.h"
 
 namespace flexarm {
@@ -49,6 +51,18 @@ TEST(Replay, TheSameLoopIsBitExact) {
   EXPECT_FALSE(result.first_gap_tick.has_value());
   EXPECT_FALSE(result.first_different_tick.has_value());
   EXPECT_FALSE(result.safety_exact.has_value());
+}
+
+TEST(Replay, TheEstimateIsComparedWithTheLargestValueOfItsState) {
+  auto records = Recorded(5);
+  for (TickRecord& record : records) record.output.x_hat = {};
+  EXPECT_EQ(Replayed(records).estimate_difference, 0.0);
+  records[1].output.x_hat[3] = 4e-9;  // Counting finds 0
+  records[2].output.x_hat[3] = -1e-9;
+  EXPECT_EQ(Replayed(records).estimate_difference, 1.0);
+  EXPECT_FALSE(Replayed(records, true).estimate_difference.has_value());
+  records[2].output.x_hat[5] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(Replayed(records).estimate_difference, std::numeric_limits<double>::infinity());
 }
 
 TEST(Replay, ASignOfZeroIsADifferenceWithoutATorqueDifference) {

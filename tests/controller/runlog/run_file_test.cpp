@@ -16,6 +16,11 @@ namespace {
 
 using RunFileTest = RunLogTest;
 
+TEST(BuildInfo, TheProcessorOfABuildIsInItsId) {
+  EXPECT_EQ(ProcessorOf("0123456789ab-dirty GNU 12.2.0 aarch64 77f2"), "aarch64");
+  EXPECT_TRUE(ThisBuild().compiler.ends_with(" " + ProcessorOf(BuildId())));
+}
+
 TEST_F(RunFileTest, TicksReadBackBitExactIncludingNegativeZeroAndNan) {
   TickRecord odd = MakeTick(3);
   odd.output.torque_nm = {-0.0, std::numeric_limits<double>::quiet_NaN()};

@@ -43,7 +43,7 @@ void ExpectBitsOfEigen() {
 
 // Reference: Eigen. Where it has a fused multiply-add it rounds once less often.
 TEST(SmallCholesky, IsBitIdenticalToEigensGeneralAlgorithm) {
-#ifdef EIGEN_VECTORIZE_FMA
+#if defined(EIGEN_VECTORIZE_FMA) || defined(__ARM_FEATURE_FMA)
   GTEST_SKIP() << "Eigen uses fused multiply-add on this processor";
 #endif
   ExpectBitsOfEigen<2>();
