@@ -16,7 +16,7 @@ constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 std::optional<double> FiniteNumber(const toml::node& node) {
   const auto value = node.value<double>();
   const bool number = node.is_number() && value && std::isfinite(*value);
-  return number ? std::optional<double>(*value) : std::nullopt;
+  return number ? value : std::nullopt;
 }
 
 std::string Numbers(std::size_t count) {

@@ -66,7 +66,7 @@ void Report(const EmulatedRig& rig, bool json) {
     out["pump_alive"] = seen.pump_alive;
     out["powered_ms"] = seen.powered_slices;
     out["drives_active_ms"] = seen.active_slices;
-    std::cout << out.dump() << std::endl;
+    std::cout << out.dump() << '\n' << std::flush;
     return;
   }
   std::printf("torque %.3f, %.3f N m; relay %s; charge pump %s; %lld ms under power\n",
