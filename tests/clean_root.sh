@@ -8,16 +8,12 @@
 #   e.g. clean_root.sh trixie './tools/run-hil && ./tools/run-tests --lane release'
 set -euo pipefail
 
-share=() share_back=()
+share=
 if [[ ${1:-} == --share && -d ${2:-} ]]; then
-  CLEAN_ROOT_SHARE=$(realpath "$2")
-  export CLEAN_ROOT_SHARE
-  # shellcheck disable=SC2016
-  share=(--customize-hook='cp -r "$CLEAN_ROOT_SHARE" "$1/root/share"')
-  # shellcheck disable=SC2016
-  share_back=(--customize-hook='cp -r "$1/root/share/." "$CLEAN_ROOT_SHARE"')
+  share=$(realpath "$2")
   shift 2
 fi
+export CLEAN_ROOT_SHARE=$share
 if (($# != 2)); then
   sed -n '/^# usage: /,/^set/s/^# //p' "${BASH_SOURCE[0]}" >&2
   exit 2
@@ -27,18 +23,23 @@ export CLEAN_ROOT_COMMAND=$2
 CLEAN_ROOT_SOURCE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 export CLEAN_ROOT_SOURCE
 
-# In mmdebstrap's shell, with the new root as $1. Its output is that of the lane.
+# mmdebstrap's shell runs each hook, with the new root as $1.
 # shellcheck disable=SC2016
-clone='
-git clone --quiet --no-hardlinks "$CLEAN_ROOT_SOURCE" "$1/root/flexarm"
-git -C "$CLEAN_ROOT_SOURCE" diff --binary HEAD |
-  git -C "$1/root/flexarm" apply --allow-empty --whitespace=nowarn
-'
+hooks=(
+  --customize-hook='git clone --quiet --no-hardlinks "$CLEAN_ROOT_SOURCE" "$1/root/flexarm"'
+  --customize-hook='git -C "$CLEAN_ROOT_SOURCE" diff --binary HEAD |'\
+' git -C "$1/root/flexarm" apply --allow-empty --whitespace=nowarn'
+)
 # shellcheck disable=SC2016
-run='
-chroot "$1" /usr/bin/env -i HOME=/root TERM=dumb PATH=/usr/sbin:/usr/bin:/sbin:/bin \
-  bash -c "cd /root/flexarm && $CLEAN_ROOT_COMMAND"
-'
-mmdebstrap --quiet --variant=minbase --include=ca-certificates,git \
-  --customize-hook="$clone" "${share[@]}" --customize-hook="$run" "${share_back[@]}" \
-  "$release" /dev/null
+if [[ -n $share ]]; then
+  hooks+=(--customize-hook='cp -r "$CLEAN_ROOT_SHARE" "$1/root/share"')
+fi
+# shellcheck disable=SC2016
+hooks+=(--customize-hook='chroot "$1" /usr/bin/env -i HOME=/root TERM=dumb'\
+' PATH=/usr/sbin:/usr/bin:/sbin:/bin bash -c "cd /root/flexarm && $CLEAN_ROOT_COMMAND"')
+# shellcheck disable=SC2016
+if [[ -n $share ]]; then
+  hooks+=(--customize-hook='cp -r "$1/root/share/." "$CLEAN_ROOT_SHARE"')
+fi
+mmdebstrap --quiet --variant=minbase --include=ca-certificates,git "${hooks[@]}" "$release" \
+  /dev/null

@@ -48,6 +48,8 @@ usage() {
   exit 2
 }
 
+[[ $(uname -m) == x86_64 ]] || fail "the guest's kernel is for amd64, and this machine is not"
+
 # Version of the kernel's packages, and release of the kernel: those of the installed headers.
 package_version() { dpkg-query -W -f '${Version}' "$headers" 2>/dev/null; }
 kernel_release() {
