@@ -19,6 +19,9 @@ refused() { ! "$@"; }  # for a command that must fail
 equal() { [[ $1 == "$2" ]] || { echo "  got '$1', expected '$2'"; return 1; }; }
 at_least() { (($1 >= $2)) || { echo "  got $1, expected at least $2"; return 1; }; }
 
+# holds FILTER FILE: whether jq's FILTER gives true for each object in FILE; not for an empty FILE.
+holds() { equal "$(jq "$1" "$2" | sort -u)" true; }
+
 # within SECONDS COMMAND..: repeats COMMAND until it succeeds; 1 when the time is over.
 within() {
   local end=$((SECONDS + $1))

@@ -1,7 +1,7 @@
 # Sourced inside the guest: the machine that `cmake --install` made, a CAN interface and GPIO lines,
 # and the programs between them: `flexarm rig`, which emulates the devices, and the unchanged daemon
 # with its real drivers.
-# shellcheck shell=bash disable=SC2034
+# shellcheck shell=bash disable=SC2034,SC2154
 
 cp -a /mnt/share/machine/. /
 configs=/usr/local/share/flexarm/config
@@ -20,15 +20,17 @@ sed "s/^chip = .*/chip = \"$chip\"/" $configs/hil-wire.toml >wire.toml
 sed -i "s#^extends = .*#extends = \"$configs/thesis-rig.toml\"#" wire.toml
 
 start_rig() {
+  failures_before=$failures
   rm -f rig.in rig.out
   mkfifo rig.in
   chrt -f 75 flexarm rig -c wire.toml --json <rig.in >>rig.out 2>rig.err &
   rig=$!
   exec 3>rig.in
-  within 20 grep -q emulating rig.err
+  check "the rig is emulated" within 20 grep -q emulating rig.err
 }
 
 stop_rig() {
+  if ((failures > failures_before)); then tail -n 40 daemon.log rig.err; fi
   kill $rig
   wait $rig
   exec 3>&-
@@ -37,7 +39,7 @@ stop_rig() {
 start_daemon() {
   flexarmd --config wire.toml --log-dir runs --socket "$FLEXARM_SOCKET" 2>daemon.log &
   daemon=$!
-  within 30 grep -q 'Starting -> Idle' daemon.log
+  check "the daemon is idle" within 30 grep -q 'Starting -> Idle' daemon.log
   sleep 1 # at rest for half a second
 }
 
