@@ -9,8 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit build-cost headers-all separate clang-tidy-all asan-all debian13
-                  arm64)
+  only_all_lanes=(guards unit campaigns build-cost headers-all separate clang-tidy-all asan-all
+                  debian13 arm64)
 }
 
 logs=build/logs
@@ -138,6 +138,12 @@ lane_unit() {  # tests labelled unit, release build (part of release)
 lane_release() {  # all tests but those of whole programs, release build
   build release
   ctest --preset release
+}
+
+lane_campaigns() {  # random campaigns at their whole size; `release` runs a sample of each
+  build release operator_loop_test
+  FLEXARM_CAMPAIGN=whole build/release/tests/controller/operator/operator_loop_test \
+    --gtest_filter='*.Campaign*'
 }
 
 lane_step-cost() {  # instructions of one control step are within their limits

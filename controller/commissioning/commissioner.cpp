@@ -73,6 +73,7 @@ struct Commissioner::Job {
   RestMeter rest{1};
   FromRest from_rest;
   FromRun from_run;
+  std::uint32_t run_number = 0;  // of its motion
   std::vector<TickRecord> run;
 };
 
@@ -92,6 +93,8 @@ Commissioner::Commissioner(const RigConfig& config)
 Commissioner::~Commissioner() = default;
 
 void Commissioner::Abort() { job_.reset(); }
+
+void Commissioner::Expect(std::uint32_t run_number) { job_->run_number = run_number; }
 
 bool Commissioner::Knows(const std::string& command) {
   return command == "tare" || command == "zero" || command == "calibrate" || command == "pluck" ||
@@ -140,6 +143,7 @@ void Commissioner::StartRest(const std::string& command, SafetyState state, From
                                    .rest = RestMeter(static_cast<int>(std::lround(ticks))),
                                    .from_rest = std::move(then),
                                    .from_run = {},
+                                   .run_number = 0,
                                    .run = {}});
 }
 
@@ -273,9 +277,9 @@ void Commissioner::Take(const TickRecord& tick) {
       if (!job_->rest.Take(tick)) return;
       answer = job_->from_rest(job_->rest.Result());
     } else {
-      const bool moves = TorqueAllowed(state);
-      if (state == SafetyState::kRunning) job_->run.push_back(tick);
-      if (moves || job_->run.empty()) return;
+      const bool own = tick.run_number == job_->run_number;
+      if (own && state == SafetyState::kRunning) job_->run.push_back(tick);
+      if ((own && TorqueAllowed(state)) || job_->run.empty()) return;
       answer = job_->from_run(job_->run);
     }
   } catch (const std::exception& error) {

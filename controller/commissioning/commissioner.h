@@ -11,7 +11,7 @@
 
 #include "controller/commissioning/calibrate.h"
 #include "controller/commissioning/pluck.h"
-#include "controller/tasks/loaded_experiment.h"
+#include "controller/tasks/planned_experiment.h"
 #include "controller/types/rig_config.h"
 
 namespace flexarm {
@@ -47,9 +47,13 @@ class Commissioner {
 
   bool busy() const { return job_ != nullptr; }
 
-  /// Begins a command. The caller runs the motion, if there is one.
+  /// Begins a command. The caller asks for a run of the motion, if there is one, and tells its
+  /// number to Expect.
   /// @throws RejectedError if the command is not possible now, or not valid
   CommissioningMotion Start(const nlohmann::json& command, SafetyState state);
+
+  /// The number of the run that is the motion of this command: no other run is judged.
+  void Expect(std::uint32_t run_number);
 
   /// Takes every step of the loop, in order.
   void Take(const TickRecord& tick);

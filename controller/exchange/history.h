@@ -40,6 +40,14 @@ class History {
     return entries_[static_cast<std::size_t>((newest_ + 1) % N)];
   }
 
+  /// Calls `look` with each stored value that began to hold after `after_ns` and until `until_ns`.
+  template <typename Look>
+  void ForEach(std::int64_t after_ns, std::int64_t until_ns, Look look) const noexcept {
+    for (const Entry& entry : entries_) {
+      if (entry.from_ns > after_ns && entry.from_ns <= until_ns) look(entry.value);
+    }
+  }
+
   const Entry& Newest() const noexcept { return entries_[static_cast<std::size_t>(newest_)]; }
 
  private:

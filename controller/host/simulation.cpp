@@ -24,7 +24,8 @@ constexpr std::size_t kQueueDepth = 64;
 /// The operator task of a simulated run: one experiment, then the requests of UnattendedRun.
 class UnattendedTask final : public Task {
  public:
-  explicit UnattendedTask(SimulatedStack* stack) : stack_(stack) {}
+  UnattendedTask(SimulatedStack* stack, const PlannedExperiment* experiment)
+      : stack_(stack), run_(experiment) {}
 
   Traits traits() const noexcept override {
     return {.name = "operator",
@@ -134,9 +135,7 @@ Simulation::Simulation(const SimulationRequest& request)
                  .events = &events_,
                  .truth = stack_.truth_records()},
                 &recording_),
-      operator_(&stack_) {
-  stack_.Plan({.experiment = &planned_, .number = 1});
-}
+      operator_(&stack_, &planned_) {}
 
 void Simulation::Announce() {
   events_.Push({.time_ns = 0,

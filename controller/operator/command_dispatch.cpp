@@ -15,6 +15,14 @@ nlohmann::json Failure(const std::string& error, const std::string& remedy) {
   return {{"ok", false}, {"error", error}, {"remedy", remedy}};
 }
 
+// A refusal that the operator task gives without the safety task.
+nlohmann::json Refused(RequestKind kind, Refusal refusal, SafetyState state) {
+  nlohmann::json json = RefusalJson(kind, refusal, state);
+  json["command"] = ToString(kind);
+  json["state"] = ToString(state);
+  return json;
+}
+
 std::optional<RequestKind> RequestByName(const std::string& name) {
   for (const RequestKind kind :
        {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
@@ -52,8 +60,8 @@ nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
     return nullptr;
   }
   if (const std::optional<RequestKind> kind = RequestByName(name)) {
-    targets_.requests->AskFor(client, *kind, now.now_ns);
-    return nullptr;
+    if (targets_.requests->Ask(*kind, now.now_ns, client) != 0) return nullptr;
+    return Refused(*kind, Refusal::kBusy, now.permit.state);
   }
   return Failure("no such command: '" + name + "'",
                  "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
@@ -83,20 +91,19 @@ nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command, SafetySta
 nlohmann::json CommandDispatch::StartRun(const nlohmann::json& command, int client,
                                          const OperatorSnapshot& now) {
   const SafetyState state = now.permit.state;
+  if (targets_.requests->busy()) return Refused(RequestKind::kRun, Refusal::kBusy, state);
   if (state != SafetyState::kArmed) {
-    nlohmann::json refusal = RefusalJson(RequestKind::kRun, Refusal::kWrongState, state);
-    refusal["state"] = ToString(state);
-    return refusal;
+    return Refused(RequestKind::kRun, Refusal::kWrongState, state);
   }
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
     return Failure(why, "then run");
   }
   const std::string name = command.value("name", "experiment");
   const std::array<double, kCounters>& angle_rad = now.tick.output.angle_rad;
-  targets_.experiments->Plan(now.now_ns,
-                             targets_.parse_experiment(command.value("experiment", ""), name),
-                             {angle_rad[0], angle_rad[1]});
-  targets_.requests->AskFor(client, RequestKind::kRun, now.now_ns);
+  targets_.experiments->AskForRun(
+      now.now_ns, client,
+      targets_.experiments->Plan(targets_.parse_experiment(command.value("experiment", ""), name),
+                                 {angle_rad[0], angle_rad[1]}));
   return nullptr;
 }
 

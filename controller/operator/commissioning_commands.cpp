@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "controller/operator/request_answers.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
@@ -23,13 +24,19 @@ CommissioningCommands::CommissioningCommands(const RigConfig& config, Targets ta
 
 void CommissioningCommands::Start(const nlohmann::json& command, int client,
                                   const OperatorSnapshot& now) {
+  if (targets_.requests->busy()) {
+    throw RejectedError(RefusalText(RequestKind::kRun, Refusal::kBusy, now.permit.state));
+  }
   CommissioningMotion motion = commissioner_.Start(command, now.permit.state);
   client_ = client;
   request_ = 0;
   if (motion.planned == nullptr) return;
-  targets_.experiments->Load(now.now_ns, std::move(motion.planned), command["command"],
-                             command.dump());
-  request_ = targets_.requests->Ask(RequestKind::kRun, now.now_ns, motion.may_open);
+  request_ = targets_.experiments->AskForRun(now.now_ns, RequestTracker::kNoClient,
+                                             {.planned = std::move(motion.planned),
+                                              .name = command["command"],
+                                              .text = command.dump(),
+                                              .may_open = motion.may_open});
+  commissioner_.Expect(request_);
 }
 
 std::optional<ClientAnswer> CommissioningCommands::TakeAnswer(const Permit& permit) {

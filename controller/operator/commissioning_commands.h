@@ -39,7 +39,7 @@ class CommissioningCommands {
   CommissioningCommands(const RigConfig& config, Targets targets);
 
   /// Begins a command of `client`. Its answer comes from TakeAnswer or Answered.
-  /// @throws RejectedError if it cannot be done now, or makes no sense
+  /// @throws RejectedError if it cannot be done now, or makes no sense, or a request is in flight
   void Start(const nlohmann::json& command, int client, const OperatorSnapshot& now);
 
   /// Why no experiment may run yet, and what to do; empty: it may.

@@ -4,27 +4,48 @@
 
 namespace flexarm {
 
-void ExperimentLoader::Plan(std::int64_t now_ns, const Experiment& experiment,
-                            const std::array<double, 2>& start_rad) {
+ExperimentLoader::Order ExperimentLoader::Plan(const Experiment& experiment,
+                                               const std::array<double, 2>& start_rad) const {
   if (!stack_->simulated()) RefuseSimEvents(experiment);
-  auto planned = std::make_unique<PlannedExperiment>(experiment, *design_, grid_.period_s(),
-                                                     start_rad, limits_);
-  const Experiment accepted = planned->accepted;
-  Load(now_ns, std::move(planned), accepted.name, accepted.text);
+  Order order{.planned = std::make_unique<PlannedExperiment>(experiment, *design_, grid_.period_s(),
+                                                             start_rad, limits_),
+              .name = {},
+              .text = {}};
+  order.name = order.planned->accepted.name;
+  order.text = order.planned->accepted.text;
+  return order;
 }
 
-void ExperimentLoader::Load(std::int64_t now_ns, std::unique_ptr<PlannedExperiment> planned,
-                            const std::string& name, const std::string& text) {
-  stack_->Plan({.experiment = planned.get(), .number = ++number_});
-  loaded_.push_back({.number = number_, .experiment = std::move(planned)});
-  name_ = name;
-  events_->Push(
-      {.time_ns = now_ns, .kind = "experiment", .name = name, .text = text, .value_json = {}});
+std::uint32_t ExperimentLoader::AskForRun(std::int64_t now_ns, int client, Order order) {
+  if (requests_->busy()) return 0;
+  const RunOrder run{.experiment = order.planned.get(), .may_open = order.may_open};
+  // Kept before it is asked for: the safety task may grant it at once.
+  asked_.push_back({.number = 0, .order = std::move(order)});
+  asked_.back().number = requests_->Ask(RequestKind::kRun, now_ns, client, run);
+  return asked_.back().number;
+}
+
+void ExperimentLoader::Answered(std::int64_t now_ns, const RequestAnswer& answer) {
+  if (asked_.empty() || asked_.back().number != answer.number) return;
+  if (answer.refusal == Refusal::kNone) {
+    Announce(now_ns, asked_.back().order);
+  } else {
+    asked_.pop_back();
+  }
+}
+
+void ExperimentLoader::Announce(std::int64_t now_ns, const Order& order) {
+  name_ = order.name;
+  events_->Push({.time_ns = now_ns,
+                 .kind = "experiment",
+                 .name = order.name,
+                 .text = order.text,
+                 .value_json = {}});
 }
 
 void ExperimentLoader::FreeReleased() {
-  while (!loaded_.empty() && loaded_.front().number < stack_->released_experiments()) {
-    loaded_.pop_front();
+  while (!asked_.empty() && asked_.front().number < stack_->released_experiments()) {
+    asked_.pop_front();
   }
 }
 

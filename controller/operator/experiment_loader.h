@@ -7,53 +7,71 @@
 #include <memory>
 #include <string>
 
+#include "controller/operator/request_tracker.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/tasks/loop_stack.h"
 
 namespace flexarm {
 
-/// Plans experiments, hands them to the loop, and keeps them until the loop has released them.
+/// Plans experiments, asks for their runs, and keeps each until the loop no longer uses it.
 ///
 /// Not real-time safe: planning takes milliseconds and allocates. Thread: operator.
 class ExperimentLoader {
  public:
+  /// A planned experiment for which a run is asked.
+  struct Order {
+    std::unique_ptr<PlannedExperiment> planned;
+    std::string name;
+    std::string text;  ///< for the log: the experiment's file, or the command that it comes from
+    LineLevels may_open = 0;  ///< RunOrder::may_open
+  };
+
   /// All pointers outlive the loader.
-  /// @param events  to the recorder: one "experiment" for every experiment that is loaded
-  ExperimentLoader(LoopStack* stack, EventQueue* events, const Design* design, const LoopGrid& grid,
-                   const MotionLimits& limits)
-      : stack_(stack), events_(events), design_(design), grid_(grid), limits_(limits) {}
+  /// @param events  to the recorder: one "experiment" for every run that is granted
+  ExperimentLoader(LoopStack* stack, RequestTracker* requests, EventQueue* events,
+                   const Design* design, const LoopGrid& grid, const MotionLimits& limits)
+      : stack_(stack),
+        requests_(requests),
+        events_(events),
+        design_(design),
+        grid_(grid),
+        limits_(limits) {}
 
-  /// Plans `experiment` from these hub angles, rad, and loads it for the next run.
+  /// Plans `experiment` from these hub angles, rad.
   /// @throws RejectedError if it is impossible, or has simulated events and the rig is real
-  void Plan(std::int64_t now_ns, const Experiment& experiment,
-            const std::array<double, 2>& start_rad);
+  Order Plan(const Experiment& experiment, const std::array<double, 2>& start_rad) const;
 
-  /// Loads an experiment that is planned already, for the next run.
-  /// @param text  for the log: the experiment's file, or the command that it comes from
-  void Load(std::int64_t now_ns, std::unique_ptr<PlannedExperiment> planned,
-            const std::string& name, const std::string& text);
+  /// Asks the safety task for a run of it; `client` waits for the answer.
+  /// @returns the number of the request and of its run; 0: the tracker is busy
+  std::uint32_t AskForRun(std::int64_t now_ns, int client, Order order);
+
+  /// Every answer of the safety task: announces the granted experiment, forgets a refused one.
+  void Answered(std::int64_t now_ns, const RequestAnswer& answer);
+
+  /// Announces an experiment to the log, whose run is asked for by others.
+  void Announce(std::int64_t now_ns, const Order& order);
 
   /// Frees the experiments that the loop no longer uses. Once a period.
   void FreeReleased();
 
-  /// Name of the newest experiment; empty: none has been loaded.
+  /// Name of the experiment that was announced last; empty: none.
   const std::string& name() const { return name_; }
   /// How many experiments are in memory.
-  std::size_t size() const { return loaded_.size(); }
+  std::size_t size() const { return asked_.size(); }
 
  private:
-  struct Loaded {
+  struct Asked {
     std::uint32_t number;
-    std::unique_ptr<PlannedExperiment> experiment;
+    Order order;
   };
 
   LoopStack* stack_;
+  RequestTracker* requests_;
   EventQueue* events_;
   const Design* design_;
   LoopGrid grid_;
   MotionLimits limits_;
-  std::deque<Loaded> loaded_;  // in order of number
-  std::uint32_t number_ = 0;   // of the newest
+  std::deque<Asked> asked_;  // in order of number
   std::string name_;
 };
 

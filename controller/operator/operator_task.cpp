@@ -12,13 +12,20 @@ namespace {
 
 constexpr std::int64_t kAliveNs = 100'000'000;  // an older heartbeat starves the watchdog
 
+std::optional<ExperimentLoader::Order> OrderOf(const std::optional<Experiment>& experiment,
+                                               const ExperimentLoader& loader) {
+  if (!experiment) return std::nullopt;
+  return loader.Plan(*experiment, {0.0, 0.0});
+}
+
 }  // namespace
 
 OperatorTask::OperatorTask(OperatorContext context)
     : context_(std::move(context)),
-      requests_(&context_.stack->requests()),
-      experiments_(context_.stack, context_.events, context_.design, context_.grid,
+      requests_(context_.stack),
+      experiments_(context_.stack, &requests_, context_.events, context_.design, context_.grid,
                    context_.limits),
+      unattended_order_(OrderOf(context_.unattended, experiments_)),
       commissioning_(*context_.config, {.stack = context_.stack,
                                         .experiments = &experiments_,
                                         .requests = &requests_,
@@ -32,9 +39,11 @@ OperatorTask::OperatorTask(OperatorContext context)
                  .status = [this] { return Status(); },
                  .parse_experiment = context_.parse_experiment,
                  .report = context_.report}),
-      unattended_(Shutdown::kSettleNs) {
+      unattended_(unattended_order_ ? unattended_order_->planned.get() : nullptr,
+                  Shutdown::kSettleNs),
+      shutdown_(Shutdown::LimitNs(context_.config->safety)) {
   if (!context_.socket.empty()) socket_ = std::make_unique<OperatorSocket>(context_.socket);
-  if (context_.unattended) experiments_.Plan(now_.now_ns, *context_.unattended, {0.0, 0.0});
+  if (unattended_order_) experiments_.Announce(now_.now_ns, *unattended_order_);
 }
 
 OperatorTask::~OperatorTask() = default;
@@ -50,6 +59,7 @@ Task::Traits OperatorTask::traits() const noexcept {
 void OperatorTask::Run(const Activation& activation) noexcept {
   try {
     now_.now_ns = activation.due_ns;
+    BeginShutdown();  // its line precedes those of its effects
     FollowState();
     bus_journal_.Follow(now_.now_ns, context_.stack->buses(), context_.report);
     TakeTicks();
@@ -85,9 +95,10 @@ void OperatorTask::TakeAnswers() {
   while (context_.stack->answers().Pop(&answer)) {
     unattended_.Answered(answer);
     context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
+    experiments_.Answered(now_.now_ns, answer);
     Reply(commissioning_.Answered(answer, now_.permit));
-    if (const std::optional<int> client = requests_.TakeClientOf(answer)) {
-      Reply(*client, AnswerJson(answer, now_.permit.state));
+    for (const int client : requests_.TakeClientsOf(answer)) {
+      Reply(client, AnswerJson(answer, now_.permit.state));
     }
   }
 }
@@ -102,21 +113,22 @@ void OperatorTask::Serve() {
 void OperatorTask::FollowUnattended() {
   if (!context_.unattended || shutdown_requested_.load(std::memory_order_relaxed)) return;
   const OperatorRequest request = unattended_.Update(now_.now_ns, now_.permit);
-  if (request.kind != RequestKind::kNone) context_.stack->requests().Push(request);
+  if (request.kind != RequestKind::kNone) requests_.AskPlanned(request);
   if (unattended_.progress() == UnattendedRun::Progress::kRefused) {
     refused_.store(true, std::memory_order_relaxed);
   }
   if (now_.now_ns >= unattended_.over_ns()) done_.store(true, std::memory_order_release);
 }
 
+void OperatorTask::BeginShutdown() {
+  if (!shutdown_requested_.load(std::memory_order_relaxed) || shutdown_.begun()) return;
+  shutdown_.Begin(now_.now_ns, unattended_.over_ns());
+  context_.report(false, "shutting down: bringing the arm to rest");
+}
+
 void OperatorTask::FollowShutdown() {
-  if (!shutdown_requested_.load(std::memory_order_relaxed) || done()) return;
-  if (!shutdown_.begun()) {
-    shutdown_.Begin(now_.now_ns, unattended_.over_ns());
-    context_.report(false, "shutting down: bringing the arm to rest");
-  }
-  const RequestKind request = shutdown_.Update(now_.now_ns, now_.permit.state);
-  if (request != RequestKind::kNone) requests_.Ask(request, now_.now_ns);
+  if (!shutdown_.begun() || done()) return;
+  shutdown_.Update(now_.now_ns, now_.permit.state);
   if (shutdown_.over()) done_.store(true, std::memory_order_release);
 }
 

@@ -39,8 +39,12 @@ class OperatorTask final : public Task {
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
 
-  /// Any thread: bring the arm to rest, disarm, then be `done`. Idempotent.
-  void RequestShutdown() noexcept { shutdown_requested_.store(true, std::memory_order_relaxed); }
+  /// Any thread: the safety task brings the arm to rest and disarms it, then this task is `done`.
+  /// Idempotent.
+  void RequestShutdown() noexcept {
+    context_.stack->RequestShutdown();
+    shutdown_requested_.store(true, std::memory_order_relaxed);
+  }
 
   /// Any thread: nothing is left to do; the tasks may be stopped.
   bool done() const noexcept { return done_.load(std::memory_order_acquire); }
@@ -55,6 +59,7 @@ class OperatorTask final : public Task {
   void TakeAnswers();
   void Serve();
   void FollowUnattended();
+  void BeginShutdown();
   void FollowShutdown();
   /// Safety and control have both run lately.
   bool LoopIsAlive() const;
@@ -66,6 +71,7 @@ class OperatorTask final : public Task {
   OperatorSnapshot now_;
   RequestTracker requests_;
   ExperimentLoader experiments_;
+  std::optional<ExperimentLoader::Order> unattended_order_;
   CommissioningCommands commissioning_;
   RunWarnings warnings_;
   StateJournal state_journal_;

@@ -1,46 +1,52 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <optional>
+#include <vector>
 
 #include "controller/tasks/loop_stack.h"
 
 namespace flexarm {
 
-/// Numbers the requests to the safety task, and records which client each answer is for.
+/// Numbers the requests to the safety task, and records which clients wait for each answer.
 ///
-/// The safety task answers the requests of clients in the order in which they were made.
-/// Not real-time safe: allocates. Thread: operator.
+/// One arm, run or reset at a time: while it is not answered, another is not made. Stop and disarm
+/// are always made, and wait behind nothing; several that are not answered yet share one answer.
+/// Each request is answered once. Not real-time safe: allocates. Thread: operator.
 class RequestTracker {
  public:
   /// Requests of an unattended run have the numbers 1, 2, ..: these come after them.
   static constexpr std::uint32_t kFirstNumber = 1'001;
+  static constexpr int kNoClient = -1;
 
-  /// @param requests  to the safety task; outlives the tracker
-  explicit RequestTracker(SpscQueue<OperatorRequest>* requests) : requests_(requests) {}
+  /// @param stack  outlives the tracker
+  explicit RequestTracker(LoopStack* stack) : stack_(stack) {}
 
-  /// Makes a request that no client waits for.
-  /// @param may_open  of a homing run: the limit switch that it looks for
-  /// @returns its number
-  std::uint32_t Ask(RequestKind kind, std::int64_t now_ns, LineLevels may_open = 0);
+  /// True while an arm, run or reset is not answered yet.
+  bool busy() const { return judged_ != 0; }
 
-  /// Makes a request whose answer `client` waits for.
-  void AskFor(int client, RequestKind kind, std::int64_t now_ns);
+  /// Makes a request; `client` waits for its answer.
+  /// @returns its number; 0: it was not made, because the tracker is busy
+  std::uint32_t Ask(RequestKind kind, std::int64_t now_ns, int client = kNoClient,
+                    const RunOrder& run = {});
+
+  /// Makes a request of an unattended run.
+  void AskPlanned(const OperatorRequest& request);
 
   /// Every answer of the safety task, in order.
-  /// @returns the client that waits for it, once; empty: none does
-  std::optional<int> TakeClientOf(const RequestAnswer& answer);
+  /// @returns the clients that wait for it, each once
+  std::vector<int> TakeClientsOf(const RequestAnswer& answer);
 
  private:
   struct Waiting {
     std::uint32_t number;
+    RequestKind kind;
     int client;
   };
 
-  SpscQueue<OperatorRequest>* requests_;
+  LoopStack* stack_;
   std::uint32_t next_number_ = kFirstNumber;
-  std::deque<Waiting> waiting_;  // in order of number
+  std::uint32_t judged_ = 0;      // the arm, run or reset that is not answered yet
+  std::vector<Waiting> waiting_;  // in order of number
 };
 
 }  // namespace flexarm

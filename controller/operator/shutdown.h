@@ -2,18 +2,25 @@
 
 #include <cstdint>
 
-#include "controller/types/messages.h"
+#include "controller/types/safety_config.h"
+#include "controller/types/safety_state.h"
 
 namespace flexarm {
 
-/// Brings the arm to a safe end: stops a run, then disarms, one request a state.
+/// Waits for the safe end of the arm after LoopStack::RequestShutdown: the safety task stops the
+/// run and disarms.
 ///
-/// It is over once the arm is Idle, tripped or still starting, or kLimitNs after the beginning in
-/// any state, and kSettleNs have passed since then. Real-time safe. Thread: operator.
+/// It is over once the arm is Idle, tripped or still starting, or after LimitNs in any state, and
+/// kSettleNs have passed since then. Real-time safe. Thread: operator.
 class Shutdown {
  public:
-  static constexpr std::int64_t kLimitNs = 6'000'000'000;  ///< a stop takes 3 s at most, or trips
-  static constexpr std::int64_t kSettleNs = 300'000'000;   ///< the recorder takes the last records
+  static constexpr std::int64_t kSettleNs = 300'000'000;  ///< the recorder takes the last records
+
+  /// Longer than the longest stop, which trips after safety.stop_timeout_s.
+  static std::int64_t LimitNs(const SafetyConfig& safety);
+
+  /// @param limit_ns  LimitNs of the rig
+  explicit Shutdown(std::int64_t limit_ns) : limit_ns_(limit_ns) {}
 
   /// @param end_ns  when the daemon ends anyway, which then replaces the settling time;
   ///                INT64_MAX: it does not
@@ -21,15 +28,14 @@ class Shutdown {
   bool begun() const noexcept { return begun_ns_ != INT64_MAX; }
 
   /// Once a period after Begin.
-  /// @returns the request to make now; kNone: none
-  RequestKind Update(std::int64_t now_ns, SafetyState state) noexcept;
+  void Update(std::int64_t now_ns, SafetyState state) noexcept;
 
   bool over() const noexcept { return over_; }
 
  private:
+  std::int64_t limit_ns_;
   std::int64_t begun_ns_ = INT64_MAX;
   std::int64_t end_ns_ = INT64_MAX;
-  SafetyState asked_in_ = SafetyState::kStarting;  // state of the newest request
   bool over_ = false;
 };
 

@@ -9,7 +9,9 @@ namespace flexarm {
 OperatorRequest UnattendedRun::Ask(RequestKind kind, std::int64_t not_before_ns) noexcept {
   if (asked_ == kind) return {.kind = RequestKind::kNone, .number = 0, .not_before_ns = 0};
   asked_ = kind;
-  return {.kind = kind, .number = ++number_, .not_before_ns = not_before_ns};
+  OperatorRequest request{.kind = kind, .number = ++number_, .not_before_ns = not_before_ns};
+  if (kind == RequestKind::kRun) request.run.experiment = experiment_;
+  return request;
 }
 
 OperatorRequest UnattendedRun::Update(std::int64_t due_ns, const Permit& permit) noexcept {

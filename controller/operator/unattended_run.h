@@ -27,8 +27,10 @@ class UnattendedRun {
   /// In lock step, the recorder has taken the last records by then.
   static constexpr std::int64_t kSettleNs = 200'000'000;
 
+  /// @param experiment  of the run; outlives it
   /// @param settle_ns  from the end of the run until over_ns()
-  explicit UnattendedRun(std::int64_t settle_ns = kSettleNs) : settle_ns_(settle_ns) {}
+  explicit UnattendedRun(const PlannedExperiment* experiment, std::int64_t settle_ns = kSettleNs)
+      : experiment_(experiment), settle_ns_(settle_ns) {}
 
   /// Once a period, in order of time.
   /// @returns the request to make now; kind kNone: none
@@ -51,6 +53,7 @@ class UnattendedRun {
   OperatorRequest NextRequest(std::int64_t due_ns, const Permit& permit) noexcept;
   OperatorRequest Ask(RequestKind kind, std::int64_t not_before_ns) noexcept;
 
+  const PlannedExperiment* experiment_;
   std::int64_t settle_ns_;
   Progress progress_ = Progress::kArming;
   RequestKind asked_ = RequestKind::kNone;  // without its effect so far

@@ -67,6 +67,10 @@ const char* ToString(Refusal refusal) noexcept {
       return "unhealthy";
     case Refusal::kCancelled:
       return "cancelled";
+    case Refusal::kBusy:
+      return "busy";
+    case Refusal::kShuttingDown:
+      return "shutting-down";
   }
   return "corrupted";
 }
@@ -89,6 +93,10 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
       return "A cause of a trip is present, or a task has not reported yet: see `flexarm status`.";
     case Refusal::kCancelled:
       return "A stop, a disarm or a trip cancelled this planned request. Repeat the request.";
+    case Refusal::kBusy:
+      return "Another arm, run or reset has not been answered yet. Repeat the request.";
+    case Refusal::kShuttingDown:
+      return "The daemon is shutting down. Start it again first.";
   }
   return "Unknown reason of refusal.";
 }

@@ -21,7 +21,8 @@ struct SafetyFacts {
   std::uint8_t stop_expired;     ///< Stopping has lasted longer than permitted
   std::uint8_t reset_pressed;    ///< the reset button was pressed after the trip
   RequestKind request;           ///< request of the operator in this tick
-  std::array<std::uint8_t, 2> reserved;  ///< zero
+  std::uint8_t shutting_down;    ///< the daemon ends: the arm is stopped and disarmed
+  std::uint8_t reserved;         ///< zero
 };
 static_assert(std::has_unique_object_representations_v<SafetyFacts>, "no padding: it is logged");
 
@@ -53,11 +54,13 @@ constexpr TripCause LowestCause(TripCauses causes) noexcept {
 ///
 /// A cause that is present trips from every state. Tripped is left only towards Idle, by the
 /// operator's reset after the physical reset button, at rest, with no cause present. Torque becomes
-/// possible only by `run` from Armed. At most one transition per tick. Real-time: safe.
+/// possible only by `run` from Armed. While the daemon shuts down nothing starts, and the arm is
+/// stopped and disarmed. At most one transition per tick. Real-time: safe.
 constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts& facts) noexcept {
   using enum SafetyState;
   const RequestKind request = facts.request;
   const Refusal not_here = request == RequestKind::kNone ? Refusal::kNone : Refusal::kWrongState;
+  const bool shutting_down = facts.shutting_down != 0;
   const auto go = [](SafetyState state, Refusal refusal) {
     return SafetyDecision{{state, TripCause::kNone}, refusal};
   };
@@ -91,16 +94,21 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       return go(facts.all_reported != 0 ? kIdle : kStarting, not_here);
     case kIdle:
       if (request != RequestKind::kArm) return go(kIdle, not_here);
+      if (shutting_down) return go(kIdle, Refusal::kShuttingDown);
       if (facts.all_reported == 0) return go(kIdle, Refusal::kUnhealthy);
       if (facts.at_rest == 0) return go(kIdle, Refusal::kNotAtRest);
       return go(kArmed, Refusal::kNone);
     case kArmed:
-      if (request == RequestKind::kRun) return go(kRunning, Refusal::kNone);
       if (request == RequestKind::kDisarm) return go(kIdle, Refusal::kNone);
-      return go(kArmed, not_here);
-    case kRunning:
+      if (shutting_down) {
+        return go(kIdle, request == RequestKind::kRun ? Refusal::kShuttingDown : not_here);
+      }
+      return request == RequestKind::kRun ? go(kRunning, Refusal::kNone) : go(kArmed, not_here);
+    case kRunning: {
       if (request == RequestKind::kStop) return go(kStopping, Refusal::kNone);
-      return go(facts.experiment_done != 0 ? kStopping : kRunning, not_here);
+      const bool ends = facts.experiment_done != 0 || shutting_down;
+      return go(ends ? kStopping : kRunning, not_here);
+    }
     case kStopping: {
       const Refusal refusal = request == RequestKind::kStop ? Refusal::kNone : not_here;
       if (facts.at_rest != 0) return go(kArmed, refusal);

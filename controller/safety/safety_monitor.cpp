@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "controller/safety/torque_gate.h"
 #include "controller/types/runtime_config.h"
@@ -44,13 +45,14 @@ MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& lo
 }
 
 bool SafetyMonitor::HomingContact(const SafetyInputs& in) noexcept {
-  const bool runs = in.state == SafetyState::kRunning;
-  if (!runs || (~in.levels & in.may_open) == 0) {
-    contact_since_ns_ = INT64_MAX;
+  const std::int64_t since_ns = std::exchange(looked_ns_, in.due_ns);
+  if (in.state != SafetyState::kRunning || in.may_open == 0) {
+    contact_ns_ = 0;
     return false;
   }
-  if (contact_since_ns_ == INT64_MAX) contact_since_ns_ = in.due_ns;
-  return in.due_ns - contact_since_ns_ <= limits_.homing_contact_ns;
+  if ((~in.levels & in.may_open) == 0) return false;
+  contact_ns_ += in.due_ns - since_ns;  // a tick that is late counts for the time since the last
+  return contact_ns_ <= limits_.homing_contact_ns;
 }
 
 SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
@@ -100,6 +102,7 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
   facts.reset_pressed = Flag(reset_pressed_);
 
   facts.request = in.request;
+  facts.shutting_down = Flag(in.shutting_down);
   return facts;
 }
 

@@ -16,7 +16,7 @@ struct MonitorLimits {
   std::int64_t heartbeat_timeout_ns;  ///< two control periods, for control and drive side
   std::int64_t stop_timeout_ns;       ///< safety.stop_timeout_s
   int missed_deadlines_to_trip;       ///< safety.missed_deadlines_to_trip
-  std::int64_t homing_contact_ns;     ///< how long homing may stay on its switch
+  std::int64_t homing_contact_ns;     ///< how long a homing run may be on its switch in all
 };
 
 MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop);
@@ -43,21 +43,22 @@ struct SafetyInputs {
   std::int64_t drive_alive_ns;    ///< due instant of the newest one published; INT64_MIN: none
   DriveTroubles troubles{};
   RequestKind request;
-  SafetyState state;  ///< before this tick
+  bool shutting_down = false;  ///< the daemon ends
+  SafetyState state;           ///< before this tick
   std::int64_t state_since_ns;
   std::int64_t running_since_ns;  ///< INT64_MIN: never
-  LineLevels may_open;            ///< limit switches that a homing run searches for
+  LineLevels may_open;            ///< the limit switch that the run searches for (RunOrder)
 };
 
 /// Safety monitor: derives the inputs of the safety state machine from line levels and task
 /// reports, with all checks of time, levels and freshness. Its only memory is the reset button, the
-/// first reports, and since when homing has been on its switch. Reads no clock.
+/// first reports, and how long homing has been on its switch. Reads no clock.
 ///
 /// A report counts only while its sender is alive; no cause is derived from a task before its first
 /// report. While Stopping, `at_rest` counts only from a step that was due after the stop, and
 /// `experiment_done` only from a step that was due after the run began, so the last run cannot end
-/// the next one. The switch that a homing run searches for may open during that run, for a bounded
-/// time; the other switches trip as always.
+/// the next one. The switch that a homing run searches for may open while that run is Running, for
+/// a bounded time in all: a switch that bounces gains none. The other switches trip as always.
 /// Real-time: safe.  Thread: safety.
 class SafetyMonitor {
  public:
@@ -75,7 +76,8 @@ class SafetyMonitor {
   bool HomingContact(const SafetyInputs& in) noexcept;
 
   MonitorLimits limits_;
-  std::int64_t contact_since_ns_ = INT64_MAX;
+  std::int64_t contact_ns_ = 0;  // of the present homing run
+  std::int64_t looked_ns_ = 0;   // the tick before
   bool all_reported_ = false;
   bool button_was_down_ = true;  // a button that is down from the start does not count
   bool reset_pressed_ = false;

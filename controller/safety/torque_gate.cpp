@@ -20,7 +20,8 @@ GateLimits MakeGateLimits(const SafetyConfig& safety, const LoopGrid& grid) noex
   return {.torque_nm = safety.torque_limit_nm,
           .slew_nm_per_s = safety.slew_limit_nm_per_s,
           .command_timeout_ns = 2 * grid.period_ns,
-          .permit_timeout_ns = std::llround(safety.permit_timeout_ms * 1e6)};
+          .permit_timeout_ns = std::llround(safety.permit_timeout_ms * 1e6),
+          .homing_fraction = safety.homing_torque_fraction};
 }
 
 GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
@@ -29,13 +30,15 @@ GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
   if (!Young(in.permit_age_ns, limits.permit_timeout_ns)) why |= kGatePermitOld;
   if (!TorqueAllowed(in.permit)) why |= kGateNotAllowed;
   const bool finite = Finite(in.asked_nm) && Finite(in.previous_nm) && std::isfinite(in.dt_s) &&
-                      Finite(limits.torque_nm) && Finite(limits.slew_nm_per_s);
+                      Finite(limits.torque_nm) && Finite(limits.slew_nm_per_s) &&
+                      std::isfinite(limits.homing_fraction);
   if (!finite) why |= kGateNotFinite;
   if (why != 0) return {.torque_nm = {0.0, 0.0}, .why = why};
 
   GateResult result{.torque_nm = {0.0, 0.0}, .why = 0};
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    const double limit = std::max(limits.torque_nm[joint], 0.0);
+    const double share = in.homing ? limits.homing_fraction : 1.0;
+    const double limit = std::max(share * limits.torque_nm[joint], 0.0);
     const double step = std::max(limits.slew_nm_per_s[joint] * in.dt_s, 0.0);
     const double within = std::clamp(in.asked_nm[joint], -limit, limit);
     if (within != in.asked_nm[joint]) result.why |= joint == 0 ? kGateTorque1 : kGateTorque2;

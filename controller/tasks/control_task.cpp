@@ -19,7 +19,13 @@ Task::Traits ControlTask::traits() const noexcept {
 
 void ControlTask::Run(const Activation& activation) noexcept {
   // Values published at the due instant itself may not be visible yet.
-  FollowState(channels_.permits->Read().At(activation.due_ns - 1).value);
+  const std::int64_t seen_ns = activation.due_ns - 1;
+  const PermitHistory& permits = channels_.permits->Read();
+  FollowState(permits.At(seen_ns).value);
+  // A switch that was open for a moment since the last step counts as open.
+  permits.ForEach(seen_ns - grid_.period_ns, seen_ns, [this](const Permit& permit) {
+    levels_ = MergeRedundantLevels(levels_, permit.levels);
+  });
   const std::int64_t sampled_ns = grid_.SamplingInstant(grid_.Tick(activation.due_ns));
   const FramePacket packet = ReadFrames(sampled_ns);
 
@@ -27,12 +33,13 @@ void ControlTask::Run(const Activation& activation) noexcept {
   record.input = Gather(activation, packet, state_);
   record.output = step_->Step(record.input);
   record.gate_reasons = packet.gate_reasons;
+  record.run_number = run_number_;
   counts_ = record.output.counts;
   delay_found_ = int{record.output.delay_found};
   hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
   Publish(activation, record.input, record.output);
   if (PlansAhead(record.input)) {
-    channels_.planner->Ask(sample_ + delay_found_, activation.due_ns, plan_.experiment->reference,
+    channels_.planner->Ask(sample_ + delay_found_, activation.due_ns, experiment_->reference,
                            record.output);
   }
   channels_.records->Push(record);
@@ -50,7 +57,7 @@ FramePacket ControlTask::ReadFrames(std::int64_t sampled_ns) noexcept {
 void ControlTask::FollowState(const Permit& permit) noexcept {
   reset_ = reset_ || (Powered(permit.state) && !Powered(state_));
   if (permit.state == SafetyState::kRunning) {
-    if (state_ != SafetyState::kRunning) StartRun();
+    if (permit.run_number != run_number_) StartRun(permit);
     ++sample_;
   }
   state_ = permit.state;
@@ -65,17 +72,14 @@ void ControlTask::TakeCalibration() noexcept {
   reset_ = true;
 }
 
-void ControlTask::StartRun() noexcept {
-  const LoadedExperiment& planned = channels_.plans->Read();
-  const bool used_up = planned.number == plan_.number;
-  plan_ = planned;
-  if (used_up) plan_.experiment = nullptr;  // an experiment is used for one run
-  released_.store(plan_.number, std::memory_order_release);
+void ControlTask::StartRun(const Permit& permit) noexcept {
+  experiment_ = permit.run.experiment;
+  run_number_ = permit.run_number;
+  released_.store(run_number_, std::memory_order_release);
   sample_ = -1;
-  if (channels_.planner != nullptr) channels_.planner->Start(plan_.number);
-  if (plan_.experiment == nullptr) return;
-  if (plan_.experiment->mode == LoopMode::kRegulate) {
-    homing_.Start(plan_.experiment->homing, hub_angle_rad_);
+  if (channels_.planner != nullptr) channels_.planner->Start(run_number_);
+  if (experiment_ != nullptr && experiment_->mode == LoopMode::kRegulate) {
+    homing_.Start(experiment_->homing, hub_angle_rad_);
   }
 }
 
@@ -105,19 +109,19 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
 }
 
 void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept {
-  if (plan_.experiment == nullptr) {  // no reference: end at once, at the hub angles
+  if (experiment_ == nullptr) {  // no reference: end at once, at the hub angles
     input->reference_now.x_m[0] = input->reference_next.x_m[0] = hub_angle_rad_[0];
     input->reference_now.x_m[1] = input->reference_next.x_m[1] = hub_angle_rad_[1];
     input->reference_ended = 1;
     return;
   }
-  input->mode = plan_.experiment->mode;
+  input->mode = experiment_->mode;
   if (input->mode == LoopMode::kRegulate) {
     input->reference_next = homing_.Next(levels_, hub_angle_rad_);
     input->reference_ended = homing_.ended() ? 1 : 0;
     return;
   }
-  const ReferenceTable& reference = plan_.experiment->reference;
+  const ReferenceTable& reference = experiment_->reference;
   const int last = reference.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
   input->reference_now = ReferenceAtSample(reference);
@@ -130,7 +134,7 @@ void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept 
 }
 
 bool ControlTask::PlansAhead(const StepInput& input) const noexcept {
-  return channels_.planner != nullptr && plan_.experiment != nullptr &&
+  return channels_.planner != nullptr && experiment_ != nullptr &&
          input.safety_state == SafetyState::kRunning && input.mode == LoopMode::kFollow;
 }
 

@@ -8,8 +8,8 @@
 #include "controller/realtime/task.h"
 #include "controller/step/control_step.h"
 #include "controller/tasks/homing_reference.h"
-#include "controller/tasks/loaded_experiment.h"
 #include "controller/tasks/plan_follower.h"
+#include "controller/tasks/planned_experiment.h"
 #include "controller/types/frame_packet.h"
 #include "controller/types/loop_grid.h"
 #include "controller/types/messages.h"
@@ -20,8 +20,7 @@ namespace flexarm {
 /// Channels of the control task. All outlive the task.
 struct ControlChannels {
   std::vector<FrameChannel*> frames;      ///< read: one a bus, with its part of the readings
-  PermitChannel* permits;                 ///< read
-  ExperimentChannel* plans;               ///< read
+  PermitChannel* permits;                 ///< read: state, and the run that was granted
   CalibrationChannel* calibrations;       ///< read
   std::vector<CommandChannel*> commands;  ///< written: one a drive bus
   ControlReportChannel* reports;          ///< written
@@ -57,7 +56,7 @@ class ControlTask final : public Task {
  private:
   FramePacket ReadFrames(std::int64_t sampled_ns) noexcept;
   void FollowState(const Permit& permit) noexcept;
-  void StartRun() noexcept;
+  void StartRun(const Permit& permit) noexcept;
   void TakeCalibration() noexcept;
   void FollowReference(SafetyState state, StepInput* input) noexcept;
   void FollowPlan(StepInput* input) noexcept;
@@ -71,7 +70,8 @@ class ControlTask final : public Task {
   LoopGrid grid_;
   ControlStep* step_;
   ControlChannels channels_;
-  LoadedExperiment plan_;
+  const PlannedExperiment* experiment_ = nullptr;  // of the present run, or of the last
+  std::uint32_t run_number_ = 0;                   // its number; 0: none yet
   std::atomic<std::uint32_t> released_{0};
   HomingReference homing_;
   Calibration calibration_{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -31,7 +32,7 @@ struct LoopWiring {
 };
 
 /// The safety and control tasks of the daemon for any backend, and their queues and channels to the
-/// operator and recorder: requests and experiments in, permits, answers and records out.
+/// operator and recorder: requests in, permits, answers and records out.
 /// Construction allocates; running does not.
 class LoopStack {
  public:
@@ -53,16 +54,19 @@ class LoopStack {
   virtual void SetEpoch(std::int64_t /*epoch_ns*/) noexcept {}
 
   // For the operator: one thread.
+  /// For arm, run and reset, and for planned requests. A request of the operator is pushed only
+  /// when the one before is answered (RequestTracker), so the queue never fills.
   SpscQueue<OperatorRequest>& requests() { return requests_; }
+  /// Requests that never wait behind another.
+  LatchedRequest& stop() { return stop_; }
+  LatchedRequest& disarm() { return disarm_; }
   SpscQueue<RequestAnswer>& answers() { return answers_; }
   PermitChannel& operator_permits() { return operator_permits_; }
   /// Every step, for status and commissioning.
   SpscQueue<TickRecord>& operator_ticks() { return operator_ticks_; }
   /// The control task applies it as soon as no torque is allowed.
   void Calibrate(const Calibration& calibration) noexcept { calibrations_.Publish(calibration); }
-  /// The experiment of the next run; see LoadedExperiment for how long it must live.
-  virtual void Plan(const LoadedExperiment& plan) noexcept { plans_.Publish(plan); }
-  /// Experiments with a lower number than this are no longer used.
+  /// Experiments of runs with a lower number than this are no longer used.
   virtual std::uint32_t released_experiments() const noexcept { return control_.released(); }
   /// Health of the buses. Empty: this backend has none.
   virtual std::vector<BusHealth> buses() { return {}; }
@@ -77,6 +81,9 @@ class LoopStack {
   /// True state of the simulated arm at each sample, for the log; null: a hardware rig.
   virtual SpscQueue<TruthRecord>* truth_records() noexcept { return nullptr; }
 
+  /// Any thread, at once: the safety task stops the arm, disarms it and starts nothing more.
+  void RequestShutdown() noexcept { shutting_down_.store(true, std::memory_order_release); }
+
   // For the recorder: one thread.
   SpscQueue<TickRecord>& tick_records() { return tick_records_; }
   SpscQueue<SafetyRecord>& safety_records() { return safety_records_; }
@@ -85,9 +92,10 @@ class LoopStack {
   PermitChannel control_permits_{PermitHistory(kNoPermit)};
   PermitChannel operator_permits_{PermitHistory(kNoPermit)};
   ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
-  ExperimentChannel plans_{LoadedExperiment{}};
   CalibrationChannel calibrations_{Calibration{}};
   SpscQueue<OperatorRequest> requests_;
+  LatchedRequest stop_, disarm_;
+  std::atomic<bool> shutting_down_{false};
   SpscQueue<RequestAnswer> answers_;
   SpscQueue<TickRecord> tick_records_;
   SpscQueue<TickRecord> operator_ticks_;

@@ -73,6 +73,7 @@ std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* d
   const GateResult gated = Gate({.asked_nm = command.value.torque_nm,
                                  .asked_age_ns = AgeNs(acting_ns, command.from_ns),
                                  .permit = permit.state,
+                                 .homing = Homes(permit.run),
                                  .permit_age_ns = AgeNs(start_ns, permit.renewed_ns),
                                  .previous_nm = drive->torque_nm,
                                  .dt_s = fresh ? grid_.period_s() : 0.0},
@@ -99,12 +100,12 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
   if (permit.running_since_ns != run_since_ns_) {
     run_since_ns_ = permit.running_since_ns;
     next_event_ = 0;
-    plan_ = channels_.plans->Read();
-    released_.store(plan_.number, std::memory_order_release);
+    experiment_ = permit.run.experiment;
+    released_.store(permit.run_number, std::memory_order_release);
     FreezeControlTask();
   }
-  if (plan_.experiment == nullptr) return;
-  const std::vector<SimEvent>& events = plan_.experiment->sim_events;
+  if (experiment_ == nullptr) return;
+  const std::vector<SimEvent>& events = experiment_->sim_events;
   const std::int64_t start_ns = grid_.ExperimentStart(run_since_ns_);
   for (; next_event_ < events.size(); ++next_event_) {
     const SimEvent& event = events[next_event_];
@@ -117,8 +118,8 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
 }
 
 void PlantTask::FreezeControlTask() noexcept {
-  if (plan_.experiment == nullptr) return;
-  for (const SimEvent& event : plan_.experiment->sim_events) {
+  if (experiment_ == nullptr) return;
+  for (const SimEvent& event : experiment_->sim_events) {
     if (event.freeze != FreezeTarget::kControl) continue;
     channels_.control->FreezeFrom(grid_.ExperimentStart(run_since_ns_) +
                                   std::llround(event.at_s * 1e9));

@@ -8,8 +8,8 @@
 #include "controller/realtime/task.h"
 #include "controller/safety/torque_gate.h"
 #include "controller/tasks/freezing_task.h"
-#include "controller/tasks/loaded_experiment.h"
 #include "controller/tasks/loop_stack.h"
+#include "controller/tasks/planned_experiment.h"
 #include "controller/tasks/simulated_lines.h"
 #include "controller/types/frame_packet.h"
 #include "controller/types/loop_grid.h"
@@ -25,9 +25,8 @@ struct RigConfig;
 /// Channels of the plant task. All outlive the task.
 struct PlantChannels {
   CommandChannel* commands;       ///< read
-  PermitChannel* permits;         ///< read
+  PermitChannel* permits;         ///< read; the sim_events are those of its run
   OutputChannel* outputs;         ///< read: relay and charge pump
-  ExperimentChannel* plans;       ///< read: for the experiment's sim_events
   SpscQueue<LinePress>* presses;  ///< read
   FrameChannel* frames;           ///< written
   LevelChannel* levels;           ///< written
@@ -85,9 +84,9 @@ class PlantTask final : public Task {
   FrameLoss loss_;
   LoopGrid grid_;
   GateLimits limits_;
-  Drive drive_;            // acts on the plant
-  Drive reported_;         // the same with the declared delay, for reports
-  LoadedExperiment plan_;  // of the run that began at run_since_ns_
+  Drive drive_;                                    // acts on the plant
+  Drive reported_;                                 // the same with the declared delay, for reports
+  const PlannedExperiment* experiment_ = nullptr;  // of the run that began at run_since_ns_
   std::int64_t run_since_ns_ = INT64_MIN;
   std::size_t next_event_ = 0;
   std::atomic<std::uint32_t> released_{0};

@@ -36,7 +36,8 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const DriveSide drive = ReadDrives(due_ns);
   const LineLevels levels =
       MergeRedundantLevels(channels_.lines->Read(due_ns), drive.report.levels);
-  const auto [requested, request, earlier] = TakeRequest(due_ns);
+  const OperatorRequest request = TakeRequest(due_ns);
+  const bool requested = request.kind != RequestKind::kNone;
 
   const SafetyInputs in{.due_ns = due_ns,
                         .levels = levels,
@@ -46,17 +47,15 @@ void SafetyTask::Run(const Activation& activation) noexcept {
                         .drive_alive_ns = drive.alive_ns,
                         .troubles = drive.troubles,
                         .request = request.kind,
+                        .shutting_down = channels_.shutting_down->load(std::memory_order_acquire),
                         .state = status_.state,
                         .state_since_ns = state_since_ns_,
                         .running_since_ns = running_since_ns_,
-                        .may_open = may_open_};
+                        .may_open = run_.may_open};
   const SafetyFacts facts = monitor_.Judge(in);
   const SafetyStatus before = status_;
   const SafetyDecision decision = NextSafetyState(before, facts);
-  Enter(decision.status, in);
-  if (decision.status.state != before.state) {
-    may_open_ = decision.status.state == SafetyState::kRunning ? request.may_open : 0;
-  }
+  Enter(decision.status, in, request);
   Drive(due_ns);
   Publish(due_ns, levels);
 
@@ -73,18 +72,21 @@ void SafetyTask::Run(const Activation& activation) noexcept {
     last_facts_ = facts;
     recorded_ = true;
   }
-  if (requested) {
-    channels_.answers->Push({.number = request.number,
-                             .kind = request.kind,
-                             .refusal = decision.refusal,
-                             .state = before.state,
-                             .present = facts.present});
-  }
+  if (requested) Answer(request, decision.refusal, before.state, facts.present);
   if (tripped) {
-    CancelPlanned(waiting_count_, facts.present);
+    CancelBelow(UINT32_MAX, facts.present);
   } else if (request.kind == RequestKind::kStop || request.kind == RequestKind::kDisarm) {
-    CancelPlanned(earlier, facts.present);
+    CancelBelow(request.number, facts.present);
   }
+}
+
+void SafetyTask::Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
+                        TripCauses present) noexcept {
+  channels_.answers->Push({.number = request.number,
+                           .kind = request.kind,
+                           .refusal = refusal,
+                           .state = judged_in,
+                           .present = present});
 }
 
 SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
@@ -109,42 +111,49 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
   return side;
 }
 
-SafetyTask::Taken SafetyTask::TakeRequest(std::int64_t due_ns) noexcept {
+OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns) noexcept {
   while (waiting_count_ < kMaxWaiting && channels_.requests->Pop(&waiting_[waiting_count_])) {
     ++waiting_count_;
   }
+  if (const std::uint32_t number = channels_.stop->Take(); number != 0) {
+    return {.kind = RequestKind::kStop, .number = number, .not_before_ns = due_ns};
+  }
+  if (const std::uint32_t number = channels_.disarm->Take(); number != 0) {
+    return {.kind = RequestKind::kDisarm, .number = number, .not_before_ns = due_ns};
+  }
   for (std::size_t i = 0; i < waiting_count_; ++i) {
     if (waiting_[i].not_before_ns > due_ns) continue;
-    const Taken taken{.any = true, .request = waiting_[i], .earlier = i};
+    const OperatorRequest request = waiting_[i];
     --waiting_count_;
     for (std::size_t k = i; k < waiting_count_; ++k) waiting_[k] = waiting_[k + 1];
-    return taken;
+    return request;
   }
-  return Taken{};
+  return {.kind = RequestKind::kNone, .number = 0, .not_before_ns = due_ns};
 }
 
-void SafetyTask::CancelPlanned(std::size_t first, TripCauses present) noexcept {
+void SafetyTask::CancelBelow(std::uint32_t number, TripCauses present) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < waiting_count_; ++i) {
-    const OperatorRequest& planned = waiting_[i];
-    if (i < first && RaisesEnergy(planned.kind)) {
-      channels_.answers->Push({.number = planned.number,
-                               .kind = planned.kind,
-                               .refusal = Refusal::kCancelled,
-                               .state = status_.state,
-                               .present = present});
+    const OperatorRequest& waits = waiting_[i];
+    if (RaisesEnergy(waits.kind) && waits.number < number) {
+      Answer(waits, Refusal::kCancelled, status_.state, present);
     } else {
-      waiting_[kept++] = planned;
+      waiting_[kept++] = waits;
     }
   }
   waiting_count_ = kept;
 }
 
-void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in) noexcept {
+void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in,
+                       const OperatorRequest& request) noexcept {
   if (next == status_) return;
   if (next.state != status_.state) {
     state_since_ns_ = in.due_ns;
-    if (next.state == SafetyState::kRunning) running_since_ns_ = in.due_ns;
+    if (next.state == SafetyState::kRunning) {
+      running_since_ns_ = in.due_ns;
+      run_number_ = request.number;
+      run_ = request.run;
+    }
   }
   evidence_ =
       next.state == SafetyState::kTripped ? monitor_.EvidenceOf(next.cause, in) : Evidence{};
@@ -163,7 +172,9 @@ void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {
                          .renewed_ns = due_ns,
                          .running_since_ns = running_since_ns_,
                          .evidence = evidence_,
-                         .levels = levels});
+                         .levels = levels,
+                         .run_number = run_number_,
+                         .run = run_});
   for (PermitChannel* channel : channels_.permits) channel->Publish(permits_);
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "controller/exchange/latched_request.h"
 #include "controller/exchange/spsc_queue.h"
 #include "controller/realtime/task.h"
 #include "controller/safety/safety_machine.h"
@@ -20,7 +22,10 @@ struct SafetyChannels {
   SafetyLines* lines;
   ControlReportChannel* control;            ///< read
   std::vector<DriveReportChannel*> drives;  ///< read: one a bus
-  SpscQueue<OperatorRequest>* requests;     ///< read
+  SpscQueue<OperatorRequest>* requests;     ///< read: arm, run, reset, and planned ones
+  LatchedRequest* stop;                     ///< read: before every queued request
+  LatchedRequest* disarm;                   ///< read: the same
+  const std::atomic<bool>* shutting_down;   ///< read: stop and disarm the arm, start nothing
   std::vector<PermitChannel*> permits;      ///< written: one a reader (drive, control, operator)
   SpscQueue<RequestAnswer>* answers;        ///< written
   SpscQueue<SafetyRecord>* records;         ///< written
@@ -33,9 +38,10 @@ struct SafetyChannels {
 /// published at the due instant of another task may not be visible to it yet: a task that must
 /// agree with the lock-step run reads the permit before, At(due - 1).
 ///
-/// One request is judged per tick, in order of arrival among those whose `not_before_ns` has
-/// passed. A stop or a disarm cancels the planned arms and runs that arrived before it; a trip
-/// cancels all. Real-time: safe after construction.
+/// One request is judged per tick: a latched stop or disarm, else the first in order of arrival of
+/// those whose `not_before_ns` has passed. A stop or a disarm cancels the waiting arms and runs of
+/// lower numbers; a trip cancels all. The run that is granted is in the permit from that tick on.
+/// Real-time: safe after construction.
 class SafetyTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -51,12 +57,6 @@ class SafetyTask final : public Task {
   SafetyStatus status() const noexcept { return status_; }
 
  private:
-  struct Taken {
-    bool any;
-    OperatorRequest request;
-    std::size_t earlier;  ///< earlier requests that still wait for their `not_before_ns`
-  };
-
   /// Report of all buses of the drives: the worst status and the oldest age of them.
   struct DriveSide {
     DriveReport report;
@@ -65,9 +65,14 @@ class SafetyTask final : public Task {
   };
 
   DriveSide ReadDrives(std::int64_t due_ns) noexcept;
-  Taken TakeRequest(std::int64_t due_ns) noexcept;
-  void CancelPlanned(std::size_t first, TripCauses present) noexcept;
-  void Enter(const SafetyStatus& next, const SafetyInputs& in) noexcept;
+  /// Kind kNone: there is none in this tick.
+  OperatorRequest TakeRequest(std::int64_t due_ns) noexcept;
+  /// Refuses the waiting arms and runs whose number is below `number`.
+  void CancelBelow(std::uint32_t number, TripCauses present) noexcept;
+  void Enter(const SafetyStatus& next, const SafetyInputs& in,
+             const OperatorRequest& request) noexcept;
+  void Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
+              TripCauses present) noexcept;
   void Drive(std::int64_t due_ns) noexcept;
   void Publish(std::int64_t due_ns, LineLevels levels) noexcept;
 
@@ -78,7 +83,8 @@ class SafetyTask final : public Task {
   Evidence evidence_{};
   std::int64_t state_since_ns_ = INT64_MIN;
   std::int64_t running_since_ns_ = INT64_MIN;
-  LineLevels may_open_ = 0;  // in the current run
+  std::uint32_t run_number_ = 0;  // of the present run, or of the last
+  RunOrder run_{};
   bool pump_level_ = false;
   bool recorded_ = false;
   std::array<OperatorRequest, kMaxWaiting> waiting_{};

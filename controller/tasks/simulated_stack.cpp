@@ -17,18 +17,12 @@ SimulatedStack::SimulatedStack(const RigConfig& config, const RigConfig& plant,
              {.commands = &commands,
               .permits = &permits,
               .outputs = &outputs,
-              .plans = &plans,
               .presses = &presses,
               .frames = &frames,
               .levels = &levels,
               .reports = &drive_reports,
               .truth = &truth,
               .control = &control_}) {}
-
-void SimulatedStack::Plan(const LoadedExperiment& plan) noexcept {
-  LoopStack::Plan(plan);
-  plans.Publish(plan);
-}
 
 std::uint32_t SimulatedStack::released_experiments() const noexcept {
   return std::min(LoopStack::released_experiments(), plant_.released());

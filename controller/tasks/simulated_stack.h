@@ -18,7 +18,6 @@ struct SimulatedWires {
   OutputChannel outputs{OutputHistory({.relay_closed = false, .pump_level = false})};
   LevelChannel levels{LevelHistory(kHealthyLevels)};
   DriveReportChannel drive_reports{DriveReportHistory(kNoDriveReport)};
-  ExperimentChannel plans{LoadedExperiment{}};
   SpscQueue<LinePress> presses{64};
   SpscQueue<TruthRecord> truth{4000};  // as the queue of steps
   SimulatedLines lines{&levels, &outputs};
@@ -38,7 +37,6 @@ class SimulatedStack final : private SimulatedWires, public LoopStack {
   std::vector<Task*> drive_tasks() override { return {&plant_}; }
   Task& control() override { return control_; }
 
-  void Plan(const LoadedExperiment& plan) noexcept override;
   std::uint32_t released_experiments() const noexcept override;
   bool simulated() const noexcept override { return true; }
   bool Press(const LinePress& press) noexcept override { return presses.Push(press); }

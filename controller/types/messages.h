@@ -15,6 +15,20 @@
 
 namespace flexarm {
 
+struct PlannedExperiment;  // controller/tasks/planned_experiment.h
+
+/// A run, as one object: the operator task asks for it with a number, the safety task grants that
+/// number or refuses it, and the loop carries out what the permit holds. So what runs is what was
+/// granted, and a limit switch may open only in the run that searches for it.
+struct RunOrder {
+  /// Lives until the loop has begun a run with a higher number. nullptr: the run ends at once.
+  const PlannedExperiment* experiment = nullptr;
+  LineLevels may_open = 0;  ///< of a homing run: the limit switch that it searches for
+};
+
+/// Homing moves onto a limit switch: its torque limit is reduced.
+constexpr bool Homes(const RunOrder& run) noexcept { return run.may_open != 0; }
+
 /// Evidence: the values that caused a trip.
 struct Evidence {
   double value;           ///< measured value
@@ -37,6 +51,8 @@ struct Permit {
   std::int64_t running_since_ns;  ///< instant of the last change to Running; INT64_MIN: never
   Evidence evidence;              ///< of `cause`
   LineLevels levels;              ///< digital inputs as read in that tick
+  std::uint32_t run_number = 0;   ///< of the granted request, ascending; 0: none yet
+  RunOrder run{};                 ///< that run: the present one, or the last
 };
 
 /// Control task -> safety: heartbeat, and facts that only the loop can detect. Valid from the
@@ -67,9 +83,9 @@ enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kRese
 /// Operator -> safety. `not_before_ns` lets an unattended run schedule its requests on the grid.
 struct OperatorRequest {
   RequestKind kind;
-  std::uint32_t number;  ///< echoed in the answer
+  std::uint32_t number;  ///< ascending; echoed in the answer, and in the permit of its run
   std::int64_t not_before_ns;
-  LineLevels may_open = 0;  ///< of a homing run: the limit switch that it searches for
+  RunOrder run{};  ///< of kRun
 };
 
 enum class Refusal : std::uint8_t {
@@ -80,6 +96,8 @@ enum class Refusal : std::uint8_t {
   kNoReset,       ///< the physical reset button has not been pressed since the trip
   kUnhealthy,     ///< a fact that would trip is present, or a task has not reported yet
   kCancelled,     ///< a planned arm or run, cancelled by a stop, a disarm or a trip
+  kBusy,          ///< another arm, run or reset has not been answered yet
+  kShuttingDown,  ///< the daemon ends: nothing may start
 };
 
 /// Safety -> operator: answer to a request.

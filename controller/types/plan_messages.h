@@ -22,7 +22,7 @@ struct PlanRequest {
   static constexpr std::size_t kMostPoints = kMostReadyPeriods + HorizonPlan::kMaxStages + 3;
 
   std::uint32_t number;      ///< ascending; 0: none yet
-  std::uint32_t run;         ///< LoadedExperiment::number
+  std::uint32_t run;         ///< Permit::run_number
   std::uint32_t valid_from;  ///< plans of earlier requests are void: another payload
   int segment;               ///< first sample of the motion: plans of another one are no warm start
   int sample;                ///< to which `x` belongs

@@ -20,7 +20,8 @@ struct TickRecord {
   StepOutput output;
   /// GateBits (torque_gate.h) of the torque that acted in the period before the sample.
   std::uint32_t gate_reasons;
-  PlantTruth truth;  ///< of the simulated stack: the recorder adds it
+  std::uint32_t run_number;  ///< of the present run, or of the last (Permit); 0: none yet
+  PlantTruth truth;          ///< of the simulated stack: the recorder adds it
 };
 
 /// Event: a trip, a refusal, a command of the operator, a gap in the log.

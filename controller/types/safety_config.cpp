@@ -37,7 +37,9 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
   list->Within("safety.missed_deadlines_to_trip", c.missed_deadlines_to_trip, 1, 10,
                "consecutive deadlines of the control task");
   list->Within("safety.homing_contact_s", c.homing_contact_s, 0.1, 10.0,
-               "how long homing may stay on the switch that it searches for");
+               "how long homing may be on the switch that it searches for, in all");
+  list->Positive("safety.homing_torque_fraction", c.homing_torque_fraction, 1.0,
+                 "the share of limits.torque_limit_nm that homing may use");
 }
 
 }  // namespace

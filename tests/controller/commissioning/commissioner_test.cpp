@@ -46,8 +46,13 @@ class Bench {
     while (now_ns_ < end_ns) Look();
   }
 
-  void Ask(RequestKind kind, LineLevels may_open = 0) {
-    stack_.requests().Push({.kind = kind, .number = 1, .not_before_ns = 0, .may_open = may_open});
+  /// @returns the number of the request
+  std::uint32_t Ask(RequestKind kind, const RunOrder& run = {}) {
+    stack_.requests().Push({.kind = kind, .number = ++requests_, .not_before_ns = 0, .run = run});
+    return requests_;
+  }
+  void Arm() {
+    Ask(RequestKind::kArm);
     Run(0.04);
   }
 
@@ -55,13 +60,18 @@ class Bench {
     CommissioningMotion motion = commissioner_.Start(command, state());
     if (motion.planned == nullptr) return;
     motions_.push_back(std::move(motion.planned));
-    stack_.Plan({.experiment = motions_.back().get(), .number = ++plans_});
-    Ask(RequestKind::kRun, motion.may_open);
+    commissioner_.Expect(
+        Ask(RequestKind::kRun, {.experiment = motions_.back().get(), .may_open = motion.may_open}));
+    Run(0.04);
   }
 
   /// Starts the command and runs until its answer.
   Json Do(const Json& command, double within_s = 40.0) {
     Begin(command);
+    return Answer(within_s);
+  }
+
+  Json Answer(double within_s) {
     const std::int64_t end_ns = now_ns_ + std::llround(within_s * 1e9);
     while (now_ns_ < end_ns) {
       Look();
@@ -83,12 +93,25 @@ class Bench {
   Commissioner& commissioner() { return commissioner_; }
   const RigConfig& config() const { return config_; }
   void Press(Line line, int level) { stack_.Press({.line = line, .level = level}); }
+  void PressFor(Line line, std::int64_t duration_ns) {
+    Press(line, 0);
+    executor_.RunUntil(now_ns_ + duration_ns);
+    Press(line, 1);
+  }
+  /// Largest torque that has acted.
+  double most_torque_nm(std::size_t joint) const { return most_torque_nm_[joint]; }
 
  private:
   void Look() {
     now_ns_ += kLookNs;
     executor_.RunUntil(now_ns_);
-    while (stack_.operator_ticks().Pop(&last_)) commissioner_.Take(last_);
+    while (stack_.operator_ticks().Pop(&last_)) {
+      commissioner_.Take(last_);
+      for (std::size_t i = 0; i < 2; ++i) {
+        most_torque_nm_[i] =
+            std::max(most_torque_nm_[i], std::fabs(last_.input.applied_torque_nm[i]));
+      }
+    }
     while (stack_.truth_records()->Pop(&truth_)) {
     }
   }
@@ -98,9 +121,10 @@ class Bench {
   Commissioner commissioner_;
   LockstepExecutor executor_;
   std::vector<std::unique_ptr<PlannedExperiment>> motions_;
-  std::uint32_t plans_ = 0;
+  std::uint32_t requests_ = 0;
   TickRecord last_{};
   TruthRecord truth_{};
+  std::array<double, 2> most_torque_nm_{};
   std::int64_t now_ns_ = 0;
 };
 
@@ -130,7 +154,7 @@ TEST(Commissioner, ZeroSetsTheAnglesOfTheCommand) {
 TEST(Commissioner, PluckProvesTheWiringAndEndsArmed) {
   Bench bench({"commissioning.prove_before_run=true"});
   EXPECT_THAT(bench.commissioner().WhyNoRun(), HasSubstr("flexarm pluck"));
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   const Json answer = bench.Do({{"command", "pluck"}});
   EXPECT_TRUE(answer["ok"]) << answer;
   EXPECT_TRUE(answer["passed"]);
@@ -140,7 +164,7 @@ TEST(Commissioner, PluckProvesTheWiringAndEndsArmed) {
 
 TEST(Commissioner, HomingFindsTheSwitchAndTheAngle) {
   Bench bench(kNearSwitches);
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   const Json answer = bench.Do({{"command", "home"}, {"joint", 2}, {"side", "high"}});
   EXPECT_TRUE(answer["ok"]) << answer;
   EXPECT_EQ(bench.state(), SafetyState::kArmed);
@@ -155,7 +179,7 @@ TEST(Commissioner, HomingFindsAnUnknownAngle) {
   overrides.push_back("commissioning.angles_at_start=lost");
   Bench bench(overrides);
   EXPECT_THAT(bench.commissioner().WhyNoRun(), HasSubstr("angle of joint 1"));
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   // The config has the low switch of joint 1 at -125 degrees, and the rig at -25.
   EXPECT_TRUE(bench.Do({{"command", "home"}, {"joint", 1}, {"side", "low"}})["ok"]);
   EXPECT_NEAR(bench.angle_deg(0), bench.truth_deg(0) - 100.0, 0.3);
@@ -164,7 +188,7 @@ TEST(Commissioner, HomingFindsAnUnknownAngle) {
 
 TEST(Commissioner, HomingReportsThatNoSwitchOpened) {
   Bench bench({"commissioning.home_travel_deg=5.0"});
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   const Json answer = bench.Do({{"command", "home"}, {"joint", 1}, {"side", "low"}});
   EXPECT_FALSE(answer["ok"]);
   EXPECT_THAT(answer["error"].get<std::string>(), HasSubstr("limit-1-low did not open"));
@@ -174,7 +198,7 @@ TEST(Commissioner, HomingReportsThatNoSwitchOpened) {
 
 TEST(Commissioner, HomingOntoAnotherSwitchTrips) {
   Bench bench(kNearSwitches);
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
   bench.Run(1.0);
   EXPECT_EQ(bench.state(), SafetyState::kRunning);
@@ -186,7 +210,7 @@ TEST(Commissioner, HomingOntoAnotherSwitchTrips) {
 
 TEST(Commissioner, HomingThatStaysOnItsSwitchTrips) {
   Bench bench({"commissioning.home_back_deg=60.0", "safety.homing_contact_s=1.0"});
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
   bench.Run(1.0);
   bench.Press(Line::kLimit1Low, 0);
@@ -195,6 +219,61 @@ TEST(Commissioner, HomingThatStaysOnItsSwitchTrips) {
   bench.Run(0.2);
   EXPECT_EQ(bench.state(), SafetyState::kTripped);
   EXPECT_EQ(bench.trip(), TripCause::kLimitSwitch1Low);
+}
+
+// A switch that bounces gains no time: the contact is summed.
+TEST(Commissioner, HomingThatBouncesOnItsSwitchTripsAfterAsMuchContact) {
+  Bench bench({"commissioning.home_back_deg=60.0", "safety.homing_contact_s=1.0"});
+  bench.Arm();
+  bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
+  bench.Run(1.0);
+  for (int i = 0; i < 9; ++i) {
+    bench.Press(Line::kLimit1Low, 0);
+    bench.Run(0.1);
+    bench.Press(Line::kLimit1Low, 1);
+    bench.Run(0.1);
+  }
+  EXPECT_EQ(bench.state(), SafetyState::kRunning) << "0.9 s of contact";
+  bench.Press(Line::kLimit1Low, 0);
+  bench.Run(0.14);
+  EXPECT_EQ(bench.state(), SafetyState::kTripped);
+  EXPECT_EQ(bench.trip(), TripCause::kLimitSwitch1Low);
+}
+
+// The step looks every 20 ms, the safety task every millisecond.
+TEST(Commissioner, HomingSeesAContactOfAFewMilliseconds) {
+  Bench bench;
+  bench.Arm();
+  bench.Begin({{"command", "home"}, {"joint", 1}, {"side", "low"}});
+  bench.Run(1.0);
+  bench.PressFor(Line::kLimit1Low, 3'000'000);
+  const Json answer = bench.Answer(10.0);
+  EXPECT_TRUE(answer["ok"]) << answer;
+}
+
+TEST(Commissioner, HomingHasThePermittedShareOfTheTorque) {
+  Bench bench(kNearSwitches);
+  bench.Arm();
+  bench.Begin({{"command", "home"}, {"joint", 2}, {"side", "high"}});
+  const double share = bench.config().safety.homing_torque_fraction;
+  const Json answer = bench.Answer(40.0);
+  EXPECT_TRUE(answer["ok"]) << answer;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LE(bench.most_torque_nm(i), share * bench.config().safety.torque_limit_nm[i]);
+  }
+}
+
+// A run of another number is none of the command's, whatever it does.
+TEST(Commissioner, AnotherRunIsNotItsMotion) {
+  Bench bench(kNearSwitches);
+  bench.Arm();
+  CommissioningMotion motion = bench.commissioner().Start(
+      {{"command", "home"}, {"joint", 1}, {"side", "low"}}, bench.state());
+  bench.commissioner().Expect(1'000'000);  // its run is not granted
+  bench.Ask(RequestKind::kRun, {.experiment = motion.planned.get(), .may_open = motion.may_open});
+  EXPECT_EQ(bench.Answer(10.0)["error"], "no answer");
+  EXPECT_TRUE(bench.commissioner().busy());
+  EXPECT_EQ(bench.commissioner().calibration(), Calibration{});
 }
 
 TEST(Commissioner, RefusesCommandsThatTheStateForbids) {
@@ -206,7 +285,7 @@ TEST(Commissioner, RefusesCommandsThatTheStateForbids) {
   EXPECT_THAT(refusal({{"command", "pluck"}}), HasSubstr("flexarm arm"));
   EXPECT_THAT(refusal({{"command", "home"}, {"joint", 1}, {"side", "low"}}),
               HasSubstr("flexarm arm"));
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   for (const char* name : {"tare", "zero"}) {
     EXPECT_THAT(refusal({{"command", name}}), HasSubstr("needs the state Idle")) << name;
   }
@@ -237,7 +316,7 @@ TEST(Commissioner, RefusesASecondCommandWhileBusy) {
 
 TEST(Commissioner, HomingNeedsAPassedPluckTest) {
   Bench bench({"commissioning.prove_before_run=true"});
-  bench.Ask(RequestKind::kArm);
+  bench.Arm();
   EXPECT_THAT(MessageOf<RejectedError>([&] {
                 bench.commissioner().Start({{"command", "home"}, {"joint", 1}, {"side", "low"}},
                                            bench.state());

@@ -9,7 +9,7 @@
 #include "controller/law/design.h"
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/lockstep_executor.h"
-#include "controller/tasks/loaded_experiment.h"
+#include "controller/tasks/planned_experiment.h"
 #include "controller/tasks/simulated_stack.h"
 #include "tests/controller/loop/simulated_runs.h"
 
@@ -28,7 +28,6 @@ class StackRun {
         grid_(config.loop),
         planned_(experiment, design_, grid_.period_s(), {0.0, 0.0}, MotionLimitsOf(config)),
         stack_(config, plant, design_, payload_kg) {
-    stack_.Plan({.experiment = &planned_, .number = 1});
     for (Task* task : stack_.tasks()) executor_.Add(*task);
   }
 
@@ -47,7 +46,8 @@ class StackRun {
 
   /// Sends a request, waits 20 ms and returns the refusal in the answer.
   Refusal Ask(RequestKind kind) {
-    stack_.requests().Push({.kind = kind, .number = ++asked_, .not_before_ns = 0});
+    stack_.requests().Push(
+        {.kind = kind, .number = ++asked_, .not_before_ns = 0, .run = {.experiment = &planned_}});
     Run(now_ns_ + 20'000'000, false);
     return answer.back().refusal;
   }
@@ -92,7 +92,7 @@ class StackRun {
   PlannedExperiment planned_;
   SimulatedStack stack_;
   LockstepExecutor executor_;
-  UnattendedRun operator_;
+  UnattendedRun operator_{&planned_};
   std::vector<PlantTruth> truth_;  // by tick
   std::int64_t now_ns_ = 0;
   std::uint32_t asked_ = 1000;  // apart from the unattended run's numbers

@@ -91,20 +91,40 @@ TEST_F(CommandDispatchTest, StatusIsAnsweredAtOnce) {
 }
 
 TEST_F(CommandDispatchTest, ARequestGoesToTheSafetyTaskWhateverTheState) {
-  for (const RequestKind kind :
-       {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
+  for (const RequestKind kind : {RequestKind::kArm, RequestKind::kReset}) {
     EXPECT_TRUE(Answer({{"command", ToString(kind)}}).is_null()) << "its answer comes later";
     const std::vector<OperatorRequest> made = stack_.TakeRequests();
     ASSERT_EQ(made.size(), 1u);
     EXPECT_EQ(made[0].kind, kind);
     EXPECT_EQ(made[0].not_before_ns, 60 * kMs);
-    EXPECT_EQ(requests_.TakeClientOf({.number = made[0].number,
-                                      .kind = kind,
-                                      .refusal = Refusal::kNone,
-                                      .state = SafetyState::kArmed,
-                                      .present = 0}),
-              kClient);
+    Answered(kind, made[0].number, Refusal::kNone);
+    EXPECT_THAT(clients_, testing::ElementsAre(kClient));
   }
+}
+
+TEST_F(CommandDispatchTest, AStopAndADisarmAreLatchedHoweverManyCome) {
+  for (int i = 0; i < 300; ++i) {
+    EXPECT_TRUE(Answer({{"command", "stop"}}).is_null());
+    EXPECT_TRUE(Answer({{"command", "disarm"}}).is_null());
+  }
+  Answered(RequestKind::kStop, stack_.stop().Take(), Refusal::kWrongState);
+  EXPECT_EQ(clients_.size(), 300u);
+  Answered(RequestKind::kDisarm, stack_.disarm().Take(), Refusal::kNone);
+  EXPECT_EQ(clients_.size(), 300u);
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, ASecondRequestInOnePollIsRefusedAsBusy) {
+  const Json run{{"command", "run"}, {"experiment", kOneMove}};
+  EXPECT_TRUE(Answer(run).is_null());
+  for (const Json& second : {run, Json{{"command", "arm"}}, Json{{"command", "reset"}}}) {
+    const Json answer = Answer(second);
+    EXPECT_EQ(answer["ok"], false) << second;
+    EXPECT_EQ(answer["refusal"], "busy") << second;
+    EXPECT_EQ(answer["command"], second["command"]);
+  }
+  EXPECT_EQ(Answer({{"command", "home"}, {"joint", 1}, {"side", "low"}})["ok"], false);
+  EXPECT_EQ(stack_.TakeRequests().size(), 1u);
 }
 
 TEST_F(CommandDispatchTest, ASimulatedLineIsSetAndWrittenToTheJournal) {
@@ -140,11 +160,10 @@ TEST_F(CommandDispatchTest, ARealRigHasNoSimulatedLines) {
 
 TEST_F(CommandDispatchTest, ARunIsPlannedBeforeItIsAskedFor) {
   EXPECT_TRUE(Answer({{"command", "run"}, {"name", "file"}, {"experiment", kOneMove}}).is_null());
-  EXPECT_EQ(experiments_.name(), "one-move");
-  EXPECT_EQ(stack_.planned.number, 1u);
   const std::vector<OperatorRequest> made = stack_.TakeRequests();
   ASSERT_EQ(made.size(), 1u);
   EXPECT_EQ(made[0].kind, RequestKind::kRun);
+  EXPECT_EQ(made[0].run.experiment->accepted.name, "one-move");
 }
 
 TEST_F(CommandDispatchTest, ARunThatIsNotArmedIsRefusedBeforeItIsRead) {
@@ -152,6 +171,7 @@ TEST_F(CommandDispatchTest, ARunThatIsNotArmedIsRefusedBeforeItIsRead) {
   const Json answer = Answer({{"command", "run"}, {"experiment", "not an experiment"}});
   EXPECT_EQ(answer, Json({{"ok", false},
                           {"refusal", "wrong-state"},
+                          {"command", "run"},
                           {"state", "Idle"},
                           {"error", "The arm is not armed. Run `flexarm arm` first."}}));
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());

@@ -25,11 +25,7 @@ class CommissioningCommandsTest : public OperatorParts {
   }
 
   std::optional<ClientAnswer> AnswerOf(std::uint32_t number, Refusal refusal) {
-    return commissioning_.Answered({.number = number,
-                                    .kind = RequestKind::kRun,
-                                    .refusal = refusal,
-                                    .state = SafetyState::kIdle,
-                                    .present = 0},
+    return commissioning_.Answered(OperatorParts::Answered(RequestKind::kRun, number, refusal),
                                    now_.permit);
   }
 
@@ -50,26 +46,34 @@ class CommissioningCommandsTest : public OperatorParts {
   TickRecord last_{};
 };
 
-TEST_F(CommissioningCommandsTest, AMotionIsLoadedAndItsRunAskedFor) {
+TEST_F(CommissioningCommandsTest, AMotionIsARunThatIsAskedForWithItsSwitch) {
   const Json home{{"command", "home"}, {"joint", 2}, {"side", "high"}};
   commissioning_.Start(home, 7, now_);
-  EXPECT_EQ(stack_.planned.number, 1u);
-  EXPECT_EQ(stack_.planned.experiment->mode, LoopMode::kRegulate);
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0].kind, RequestKind::kRun);
+  EXPECT_EQ(made[0].run.experiment->mode, LoopMode::kRegulate);
+  EXPECT_EQ(made[0].run.may_open, LineBit(Line::kLimit2High)) << "the switch that it looks for";
+  Answered(RequestKind::kRun, made[0].number, Refusal::kNone);
   const std::vector<RunEvent> logged = TakeEvents(&events_);
   ASSERT_EQ(logged.size(), 1u);
   EXPECT_EQ(logged[0].name, "home");
   EXPECT_EQ(Json::parse(logged[0].text), home);
-  const std::vector<OperatorRequest> made = stack_.TakeRequests();
-  ASSERT_EQ(made.size(), 1u);
-  EXPECT_EQ(made[0].kind, RequestKind::kRun);
-  EXPECT_EQ(made[0].may_open, LineBit(Line::kLimit2High)) << "the switch that it looks for";
+}
+
+// A run that is not answered yet could be the motion's, and the other way round.
+TEST_F(CommissioningCommandsTest, NothingBeginsWhileARequestIsInFlight) {
+  const std::uint32_t arm = requests_.Ask(RequestKind::kArm, 0, 6);
+  EXPECT_THROW(commissioning_.Start({{"command", "pluck"}}, 7, now_), RejectedError);
+  EXPECT_EQ(stack_.TakeRequests().size(), 1u);
+  Answered(RequestKind::kArm, arm, Refusal::kWrongState);
+  EXPECT_NO_THROW(commissioning_.Start({{"command", "pluck"}}, 7, now_));
 }
 
 TEST_F(CommissioningCommandsTest, ARefusedMotionIsAnsweredToItsClientAndFreesTheNext) {
   commissioning_.Start({{"command", "pluck"}}, 7, now_);
   const std::uint32_t number = stack_.TakeRequests().at(0).number;
   EXPECT_FALSE(AnswerOf(number - 1, Refusal::kWrongState)) << "of another request";
-  EXPECT_FALSE(AnswerOf(number, Refusal::kNone)) << "accepted: it has only begun";
   now_.permit.state = SafetyState::kTripped;
   now_.permit.cause = TripCause::kEmergencyStop;
   const std::optional<ClientAnswer> answer = AnswerOf(number, Refusal::kWrongState);
@@ -82,6 +86,11 @@ TEST_F(CommissioningCommandsTest, ARefusedMotionIsAnsweredToItsClientAndFreesThe
   EXPECT_FALSE(AnswerOf(number, Refusal::kWrongState)) << "once";
   now_.permit.state = SafetyState::kArmed;
   EXPECT_NO_THROW(commissioning_.Start({{"command", "pluck"}}, 8, now_));
+}
+
+TEST_F(CommissioningCommandsTest, AGrantedMotionHasOnlyBegun) {
+  commissioning_.Start({{"command", "pluck"}}, 7, now_);
+  EXPECT_FALSE(AnswerOf(stack_.TakeRequests().at(0).number, Refusal::kNone));
 }
 
 TEST_F(CommissioningCommandsTest, AMeasurementIsAnsweredToItsClientWhenItHasEnded) {

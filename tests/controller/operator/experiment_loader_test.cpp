@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "controller/types/rejected_error.h"
-#include "tests/controller/operator/operator_records.h"
-#include "tests/controller/operator/still_stack.h"
-#include "tests/support/loop_time.h"
+#include "tests/controller/operator/operator_parts.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
 
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 Experiment OneMove(const std::string& name, double to_deg, const std::string& more = "") {
   return ParseExperiment("name = \"" + name +
@@ -22,76 +21,109 @@ Experiment OneMove(const std::string& name, double to_deg, const std::string& mo
                          name);
 }
 
-struct ExperimentLoaderTest : testing::Test {
-  void Plan(const Experiment& experiment) { loader.Plan(40 * kMs, experiment, {0.0, 0.0}); }
+struct ExperimentLoaderTest : OperatorParts {
+  ExperimentLoaderTest() : OperatorParts(ShippedRig()) {}
 
-  StillStack stack;
-  EventQueue events{64};
-  ExperimentLoader loader{&stack, &events, &ShippedDesign(), LoopGrid(ShippedRig().loop),
-                          ShippedLimits()};
+  // @returns the number of the run that is asked for; 0: it is not
+  std::uint32_t Ask(const Experiment& experiment) {
+    return experiments_.AskForRun(now_.now_ns, 7, experiments_.Plan(experiment, {0.0, 0.0}));
+  }
+  std::uint32_t AskAndGrant(const Experiment& experiment) {
+    const std::uint32_t number = Ask(experiment);
+    Answered(RequestKind::kRun, number, Refusal::kNone);
+    return number;
+  }
 };
 
-TEST_F(ExperimentLoaderTest, TheNextRunFollowsTheNewestExperiment) {
-  EXPECT_EQ(loader.name(), "");
-  Plan(OneMove("there", 20.0));
-  Plan(OneMove("back", 0.0));
-  EXPECT_EQ(loader.name(), "back");
-  EXPECT_EQ(stack.planned.number, 2u);
-  EXPECT_EQ(stack.planned.experiment->accepted.name, "back");
+TEST_F(ExperimentLoaderTest, TheRequestCarriesItsExperiment) {
+  const std::uint32_t number = Ask(OneMove("there", 20.0));
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0].number, number);
+  EXPECT_EQ(made[0].run.experiment->accepted.name, "there");
+  EXPECT_EQ(made[0].run.may_open, 0);
+  EXPECT_EQ(experiments_.name(), "") << "not granted yet";
 }
 
-TEST_F(ExperimentLoaderTest, EachIsAnEventWithItsWholeFile) {
-  Plan(OneMove("there", 20.0));
-  loader.Load(60 * kMs, std::make_unique<PlannedExperiment>(HomingPlan{}), "home", "{\"joint\":1}");
-  const std::vector<RunEvent> logged = TakeEvents(&events);
+// Two commands in one poll: the second is refused and leaves no trace.
+TEST_F(ExperimentLoaderTest, OneRunIsAskedForAtATime) {
+  const std::uint32_t first = Ask(OneMove("first", 20.0));
+  EXPECT_EQ(Ask(OneMove("second", 10.0)), 0u);
+  EXPECT_EQ(stack_.TakeRequests().size(), 1u);
+  EXPECT_EQ(experiments_.size(), 1u);
+  Answered(RequestKind::kRun, first, Refusal::kNone);
+  EXPECT_EQ(experiments_.name(), "first");
+  EXPECT_EQ(TakeEvents(&events_).size(), 1u);
+}
+
+TEST_F(ExperimentLoaderTest, AGrantedOneIsAnEventWithItsWholeFile) {
+  AskAndGrant(OneMove("there", 20.0));
+  const std::uint32_t home =
+      experiments_.AskForRun(now_.now_ns, RequestTracker::kNoClient,
+                             {.planned = std::make_unique<PlannedExperiment>(HomingPlan{}),
+                              .name = "home",
+                              .text = "{\"joint\":1}",
+                              .may_open = 0b100});
+  Answered(RequestKind::kRun, home, Refusal::kNone);
+  EXPECT_EQ(stack_.TakeRequests().back().run.may_open, 0b100);
+  const std::vector<RunEvent> logged = TakeEvents(&events_);
   ASSERT_EQ(logged.size(), 2u);
   EXPECT_EQ(logged[0].kind, "experiment");
   EXPECT_EQ(logged[0].name, "there");
-  EXPECT_EQ(logged[0].time_ns, 40 * kMs);
+  EXPECT_EQ(logged[0].time_ns, now_.now_ns);
   EXPECT_EQ(logged[0].text, OneMove("there", 20.0).text);
-  EXPECT_EQ(logged[1].kind, "experiment");
   EXPECT_EQ(logged[1].name, "home");
-  EXPECT_EQ(logged[1].time_ns, 60 * kMs);
   EXPECT_EQ(logged[1].text, "{\"joint\":1}");
 }
 
+TEST_F(ExperimentLoaderTest, ARefusedOneIsForgotten) {
+  AskAndGrant(OneMove("there", 20.0));
+  TakeEvents(&events_);
+  Answered(RequestKind::kRun, Ask(OneMove("back", 0.0)), Refusal::kWrongState);
+  EXPECT_EQ(experiments_.name(), "there");
+  EXPECT_EQ(experiments_.size(), 1u);
+  EXPECT_THAT(TakeEvents(&events_), IsEmpty());
+}
+
 TEST_F(ExperimentLoaderTest, OneIsKeptUntilTheLoopHasReleasedIt) {
-  for (const char* name : {"first", "second", "third"}) Plan(OneMove(name, 10.0));
-  loader.FreeReleased();
-  EXPECT_EQ(loader.size(), 3u);
-  stack.released = 1;
-  loader.FreeReleased();
-  EXPECT_EQ(loader.size(), 3u) << "number 1 is still followed";
-  stack.released = 3;
-  loader.FreeReleased();
-  EXPECT_EQ(loader.size(), 1u);
-  EXPECT_EQ(stack.planned.experiment->accepted.name, "third");
+  const std::uint32_t first = AskAndGrant(OneMove("first", 10.0));
+  AskAndGrant(OneMove("second", 10.0));
+  const std::uint32_t third = AskAndGrant(OneMove("third", 10.0));
+  experiments_.FreeReleased();
+  EXPECT_EQ(experiments_.size(), 3u);
+  stack_.released = first;
+  experiments_.FreeReleased();
+  EXPECT_EQ(experiments_.size(), 3u) << "the first is still followed";
+  stack_.released = third;
+  experiments_.FreeReleased();
+  EXPECT_EQ(experiments_.size(), 1u);
+  EXPECT_EQ(stack_.TakeRequests().back().run.experiment->accepted.name, "third");
 }
 
 TEST_F(ExperimentLoaderTest, ARealRigRefusesEventsThatAreSimulated) {
   const Experiment dropped =
       OneMove("dropped", 20.0, "[[sim_event]]\nat_s = 1.0\npayload_kg = 0.0\n");
-  Plan(dropped);
-  EXPECT_EQ(loader.size(), 1u) << "a simulated one takes them";
-  stack.is_simulated = false;
-  EXPECT_THAT(MessageOf<RejectedError>([&] { Plan(dropped); }), HasSubstr("sim_event"));
-  Plan(OneMove("without", 20.0));
-  EXPECT_EQ(loader.name(), "without");
+  AskAndGrant(dropped);
+  EXPECT_EQ(experiments_.size(), 1u) << "a simulated one takes them";
+  stack_.is_simulated = false;
+  EXPECT_THAT(MessageOf<RejectedError>([&] { Ask(dropped); }), HasSubstr("sim_event"));
+  EXPECT_NE(Ask(OneMove("without", 20.0)), 0u);
 }
 
-TEST_F(ExperimentLoaderTest, ARefusedExperimentLeavesTheLoadedOne) {
-  Plan(OneMove("there", 20.0));
-  TakeEvents(&events);
-  EXPECT_THROW(Plan(OneMove("too-far", 170.0)), RejectedError);
-  EXPECT_EQ(loader.name(), "there");
-  EXPECT_EQ(loader.size(), 1u);
-  EXPECT_EQ(stack.planned.number, 1u);
-  EXPECT_TRUE(TakeEvents(&events).empty());
+TEST_F(ExperimentLoaderTest, AnImpossibleOneChangesNothing) {
+  AskAndGrant(OneMove("there", 20.0));
+  TakeEvents(&events_);
+  stack_.TakeRequests();
+  EXPECT_THROW(Ask(OneMove("too-far", 170.0)), RejectedError);
+  EXPECT_EQ(experiments_.name(), "there");
+  EXPECT_EQ(experiments_.size(), 1u);
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_THAT(TakeEvents(&events_), IsEmpty());
 }
 
 TEST_F(ExperimentLoaderTest, AMoveBeginsWhereTheHubsAre) {
-  loader.Plan(0, OneMove("there", 20.0), {0.1, 0.0});
-  EXPECT_NEAR(stack.planned.experiment->reference.At(0).x_m[0], 0.1, 1e-12);
+  const ExperimentLoader::Order order = experiments_.Plan(OneMove("there", 20.0), {0.1, 0.0});
+  EXPECT_NEAR(order.planned->reference.At(0).x_m[0], 0.1, 1e-12);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <utility>
+#include <vector>
 
 #include "controller/operator/commissioning_commands.h"
 #include "tests/controller/operator/operator_records.h"
@@ -19,19 +20,32 @@ class OperatorParts : public testing::Test {
     now_.permit.state = SafetyState::kArmed;
   }
 
+  // The answer of the safety task to the request `number`, taken by every part.
+  RequestAnswer Answered(RequestKind kind, std::uint32_t number, Refusal refusal) {
+    const RequestAnswer answer{.number = number,
+                               .kind = kind,
+                               .refusal = refusal,
+                               .state = SafetyState::kArmed,
+                               .present = 0};
+    experiments_.Answered(now_.now_ns, answer);
+    clients_ = requests_.TakeClientsOf(answer);
+    return answer;
+  }
+
   RigConfig config_;
   StillStack stack_{config_};
   EventQueue events_{64};
   RecordedJournal journal_;
-  RequestTracker requests_{&stack_.requests()};
-  ExperimentLoader experiments_{&stack_, &events_, &ShippedDesign(), LoopGrid(config_.loop),
-                                ShippedLimits()};
+  RequestTracker requests_{&stack_};
+  ExperimentLoader experiments_{
+      &stack_, &requests_, &events_, &ShippedDesign(), LoopGrid(config_.loop), ShippedLimits()};
   CommissioningCommands commissioning_{config_,
                                        {.stack = &stack_,
                                         .experiments = &experiments_,
                                         .requests = &requests_,
                                         .report = journal_.Report()}};
   OperatorSnapshot now_;
+  std::vector<int> clients_;  // of the newest answer
 };
 
 }  // namespace flexarm

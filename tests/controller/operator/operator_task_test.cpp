@@ -242,10 +242,9 @@ TEST_F(OperatorTaskTest, AShutdownWhileRunningStopsAndDisarms) {
   EXPECT_GT(took_s, 0.3) << "the recorder takes the last records";
   EXPECT_LT(took_s, 4.0);
   journal_.lines.erase(journal_.lines.begin(), journal_.lines.begin() + 5);  // until Running
-  EXPECT_THAT(
-      JournalTexts(),
-      ElementsAre("shutting down: bringing the arm to rest", "Running -> Stopping",
-                  "stop: accepted", "Stopping -> Armed", "Armed -> Idle", "disarm: accepted"));
+  EXPECT_THAT(JournalTexts(), ElementsAre("shutting down: bringing the arm to rest",
+                                          "Running -> Stopping", "Stopping -> Idle"))
+      << "Armed for a tick";
   EXPECT_EQ(operator_->trip(), TripCause::kNone);
 }
 

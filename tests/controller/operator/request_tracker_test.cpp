@@ -1,59 +1,99 @@
 #include "controller/operator/request_tracker.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/controller/operator/still_stack.h"
 
 namespace flexarm {
 namespace {
 
-RequestAnswer AnswerTo(std::uint32_t number) {
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+RequestAnswer AnswerTo(std::uint32_t number, RequestKind kind) {
   return {.number = number,
-          .kind = RequestKind::kArm,
+          .kind = kind,
           .refusal = Refusal::kNone,
           .state = SafetyState::kIdle,
           .present = 0};
 }
 
 struct RequestTrackerTest : testing::Test {
-  OperatorRequest Next() {
-    OperatorRequest request{};
-    EXPECT_TRUE(requests.Pop(&request));
-    return request;
-  }
-
-  SpscQueue<OperatorRequest> requests{64};
-  RequestTracker tracker{&requests};
+  StillStack stack;
+  RequestTracker tracker{&stack};
 };
 
 TEST_F(RequestTrackerTest, ARequestCountsFromNowOnWithTheNextNumber) {
-  EXPECT_EQ(tracker.Ask(RequestKind::kRun, 40, 0b10), 1'001u) << "unattended ones are 1, 2, ..";
-  tracker.AskFor(7, RequestKind::kStop, 60);
-  const OperatorRequest run = Next();
-  EXPECT_EQ(run.kind, RequestKind::kRun);
-  EXPECT_EQ(run.number, 1'001u);
-  EXPECT_EQ(run.not_before_ns, 40);
-  EXPECT_EQ(run.may_open, 0b10);
-  const OperatorRequest stop = Next();
-  EXPECT_EQ(stop.kind, RequestKind::kStop);
-  EXPECT_EQ(stop.number, 1'002u);
-  EXPECT_EQ(stop.not_before_ns, 60);
-  EXPECT_EQ(stop.may_open, 0);
+  EXPECT_EQ(tracker.Ask(RequestKind::kRun, 40, 7, {.experiment = nullptr, .may_open = 0b10}),
+            1'001u)
+      << "unattended ones are 1, 2, ..";
+  const std::vector<OperatorRequest> made = stack.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0].kind, RequestKind::kRun);
+  EXPECT_EQ(made[0].number, 1'001u);
+  EXPECT_EQ(made[0].not_before_ns, 40);
+  EXPECT_EQ(made[0].run.may_open, 0b10);
+}
+
+TEST_F(RequestTrackerTest, AStopAndADisarmAreLatchedAndNotQueued) {
+  EXPECT_EQ(tracker.Ask(RequestKind::kStop, 40, 7), 1'001u);
+  EXPECT_EQ(tracker.Ask(RequestKind::kDisarm, 40, 8), 1'002u);
+  EXPECT_THAT(stack.TakeRequests(), IsEmpty());
+  EXPECT_EQ(stack.stop().Take(), 1'001u);
+  EXPECT_EQ(stack.stop().Take(), 0u);
+  EXPECT_EQ(stack.disarm().Take(), 1'002u);
+}
+
+TEST_F(RequestTrackerTest, OneArmRunOrResetAtATime) {
+  for (const RequestKind first : {RequestKind::kArm, RequestKind::kRun, RequestKind::kReset}) {
+    const std::uint32_t number = tracker.Ask(first, 0, 7);
+    EXPECT_TRUE(tracker.busy());
+    for (const RequestKind next : {RequestKind::kArm, RequestKind::kRun, RequestKind::kReset}) {
+      EXPECT_EQ(tracker.Ask(next, 0, 8), 0u) << ToString(first) << ", " << ToString(next);
+    }
+    EXPECT_NE(tracker.Ask(RequestKind::kStop, 0, 8), 0u) << "a stop is always made";
+    EXPECT_EQ(stack.TakeRequests().size(), 1u);
+    EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(number, first)), ElementsAre(7));
+    EXPECT_FALSE(tracker.busy());
+  }
+}
+
+TEST_F(RequestTrackerTest, ARequestOfAnUnattendedRunKeepsItBusyToo) {
+  tracker.AskPlanned({.kind = RequestKind::kArm, .number = 1, .not_before_ns = 100});
+  EXPECT_EQ(tracker.Ask(RequestKind::kArm, 0, 7), 0u);
+  EXPECT_EQ(stack.TakeRequests().size(), 1u);
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1, RequestKind::kArm)), IsEmpty());
+  tracker.AskPlanned({.kind = RequestKind::kDisarm, .number = 2, .not_before_ns = 100});
+  EXPECT_FALSE(tracker.busy()) << "a disarm adds no energy";
 }
 
 TEST_F(RequestTrackerTest, EachClientGetsTheAnswerToItsOwnRequestOnce) {
-  tracker.AskFor(7, RequestKind::kArm, 0);
-  tracker.AskFor(8, RequestKind::kStop, 0);
-  EXPECT_EQ(tracker.TakeClientOf(AnswerTo(1'001)), 7);
-  EXPECT_EQ(tracker.TakeClientOf(AnswerTo(1'001)), std::nullopt);
-  EXPECT_EQ(tracker.TakeClientOf(AnswerTo(1'002)), 8);
-  EXPECT_EQ(tracker.TakeClientOf(AnswerTo(1'002)), std::nullopt);
+  tracker.Ask(RequestKind::kArm, 0, 7);
+  tracker.Ask(RequestKind::kStop, 0, 8);
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'002, RequestKind::kStop)), ElementsAre(8))
+      << "answered before the arm, which was made before it";
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'001, RequestKind::kArm)), ElementsAre(7));
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'001, RequestKind::kArm)), IsEmpty());
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'002, RequestKind::kStop)), IsEmpty());
+}
+
+TEST_F(RequestTrackerTest, StopsThatAreNotAnsweredYetShareAnAnswer) {
+  for (int client = 0; client < 300; ++client) tracker.Ask(RequestKind::kStop, 0, client);
+  tracker.Ask(RequestKind::kDisarm, 0, 1'000);
+  const std::uint32_t newest = stack.stop().Take();
+  EXPECT_EQ(newest, 1'300u);
+  EXPECT_EQ(tracker.TakeClientsOf(AnswerTo(newest, RequestKind::kStop)).size(), 300u);
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'301, RequestKind::kDisarm)), ElementsAre(1'000));
 }
 
 TEST_F(RequestTrackerTest, AnAnswerThatNoClientWaitsForGoesToNone) {
-  tracker.Ask(RequestKind::kStop, 0);
-  tracker.AskFor(7, RequestKind::kDisarm, 0);
-  EXPECT_EQ(tracker.TakeClientOf(AnswerTo(1)), std::nullopt) << "of an unattended run";
-  EXPECT_EQ(tracker.TakeClientOf(AnswerTo(1'001)), std::nullopt) << "of the shutdown";
-  EXPECT_EQ(tracker.TakeClientOf(AnswerTo(1'002)), 7);
+  tracker.Ask(RequestKind::kRun, 0);
+  tracker.Ask(RequestKind::kDisarm, 0, 7);
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1, RequestKind::kArm)), IsEmpty())
+      << "of an unattended run";
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'001, RequestKind::kRun)), IsEmpty());
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'002, RequestKind::kDisarm)), ElementsAre(7));
 }
 
 }  // namespace

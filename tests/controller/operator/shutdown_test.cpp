@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
@@ -9,35 +10,35 @@ namespace {
 
 using enum SafetyState;
 
+constexpr std::int64_t kLimitNs = 4'000 * kMs;
+
 struct ShutdownTest : testing::Test {
   ShutdownTest() { shutdown.Begin(kBeginNs, INT64_MAX); }
 
   // One period `after_ms` after the beginning.
-  RequestKind At(std::int64_t after_ms, SafetyState state) {
-    return shutdown.Update(kBeginNs + after_ms * kMs, state);
+  void At(std::int64_t after_ms, SafetyState state) {
+    shutdown.Update(kBeginNs + after_ms * kMs, state);
   }
 
   static constexpr std::int64_t kBeginNs = 5'000 * kMs;
-  Shutdown shutdown;
+  Shutdown shutdown{kLimitNs};
 };
 
-TEST_F(ShutdownTest, StopsARunThenDisarmsAndAsksOnceAState) {
-  EXPECT_EQ(At(0, kRunning), RequestKind::kStop);
-  EXPECT_EQ(At(20, kRunning), RequestKind::kNone) << "asked already";
-  EXPECT_EQ(At(40, kStopping), RequestKind::kNone);
-  EXPECT_EQ(At(900, kArmed), RequestKind::kDisarm);
-  EXPECT_EQ(At(920, kArmed), RequestKind::kNone) << "asked already";
-  EXPECT_EQ(At(940, kIdle), RequestKind::kNone);
-  EXPECT_FALSE(shutdown.over());
+TEST_F(ShutdownTest, IsNotOverWhileTheArmHasPower) {
+  for (const SafetyState powered : {kArmed, kRunning, kStopping}) {
+    At(0, powered);
+    At(3'900, powered);
+    EXPECT_FALSE(shutdown.over()) << ToString(powered);
+  }
 }
 
 TEST_F(ShutdownTest, IsOverOnceTheLastRecordsAreTaken) {
   for (const SafetyState end : {kIdle, kTripped, kStarting}) {
-    Shutdown one;
+    Shutdown one(kLimitNs);
     one.Begin(kBeginNs, INT64_MAX);
     one.Update(kBeginNs, kStopping);
     one.Update(kBeginNs + 500 * kMs, end);
-    EXPECT_EQ(one.Update(kBeginNs + 799 * kMs, end), RequestKind::kNone);
+    one.Update(kBeginNs + 799 * kMs, end);
     EXPECT_FALSE(one.over()) << ToString(end);
     one.Update(kBeginNs + 800 * kMs, end);
     EXPECT_TRUE(one.over()) << ToString(end);
@@ -46,24 +47,23 @@ TEST_F(ShutdownTest, IsOverOnceTheLastRecordsAreTaken) {
 
 TEST_F(ShutdownTest, EndsAlthoughTheArmDoesNotComeToRest) {
   At(0, kRunning);
-  At(6'000, kStopping);
-  At(6'400, kStopping);
+  At(4'000, kStopping);
+  At(4'400, kStopping);
   EXPECT_FALSE(shutdown.over()) << "the settling time begins once the limit has passed";
-  EXPECT_EQ(At(6'700, kStopping), RequestKind::kNone);
+  At(4'700, kStopping);
   EXPECT_TRUE(shutdown.over());
 }
 
-TEST_F(ShutdownTest, IsNotOverWhileTheArmIsArmedAgain) {
-  At(0, kIdle);
-  EXPECT_EQ(At(200, kArmed), RequestKind::kDisarm) << "a client has armed it";
-  At(400, kArmed);
-  EXPECT_FALSE(shutdown.over());
-  At(420, kIdle);
-  EXPECT_TRUE(shutdown.over()) << "the records of 300 ms ago are taken";
+// A stop that does not end trips after stop_timeout_s, which opens the relay: that comes first.
+TEST(Shutdown, ItsLimitIsAboveTheLongestStop) {
+  for (const char* stop_s : {"3.0", "8.0"}) {
+    const RigConfig rig = ShippedRig({std::string("safety.stop_timeout_s=") + stop_s});
+    EXPECT_GT(Shutdown::LimitNs(rig.safety), std::llround(1e9 * rig.safety.stop_timeout_s));
+  }
 }
 
 TEST(Shutdown, EndsWhenTheDaemonWouldHaveEndedAnyway) {
-  Shutdown shutdown;
+  Shutdown shutdown(kLimitNs);
   EXPECT_FALSE(shutdown.begun());
   shutdown.Begin(0, 4'000 * kMs);  // of a run that tripped 1 s ago
   EXPECT_TRUE(shutdown.begun());

@@ -20,7 +20,6 @@ class StillStack final : private SimulatedWires, public LoopStack {
                    .drives = {&drive_reports}}) {}
 
   std::vector<Task*> drive_tasks() override { return {}; }
-  void Plan(const LoadedExperiment& plan) noexcept override { planned = plan; }
   std::uint32_t released_experiments() const noexcept override { return released; }
   std::string BusText(TripCause, const Evidence&) const override { return bus_text; }
   bool simulated() const noexcept override { return is_simulated; }
@@ -36,7 +35,6 @@ class StillStack final : private SimulatedWires, public LoopStack {
     return all;
   }
 
-  LoadedExperiment planned;  ///< the newest
   std::uint32_t released = 0;
   std::string bus_text;
   bool is_simulated = true;

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <vector>
+
+#include "controller/tasks/planned_experiment.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
@@ -34,17 +38,20 @@ void Finish(UnattendedRun* run) {
 }
 
 TEST(UnattendedRun, ArmsRunsOnceAndDisarms) {
-  UnattendedRun run;
+  const PlannedExperiment experiment(std::vector<std::array<double, 2>>(10));
+  UnattendedRun run(&experiment);
   EXPECT_EQ(run.Update(0, PermitOf(kStarting)).kind, RequestKind::kNone);
   const OperatorRequest arm = run.Update(20 * kMs, PermitOf(kIdle));
   EXPECT_EQ(arm.kind, RequestKind::kArm);
   EXPECT_EQ(arm.number, 1u);
+  EXPECT_EQ(arm.run.experiment, nullptr);
   EXPECT_EQ(arm.not_before_ns, 700 * kMs) << "half a second of rest must have been seen";
   EXPECT_EQ(run.Update(40 * kMs, PermitOf(kIdle)).kind, RequestKind::kNone) << "asked already";
   const OperatorRequest start = run.Update(720 * kMs, PermitOf(kArmed));
   EXPECT_EQ(start.kind, RequestKind::kRun);
   EXPECT_EQ(start.number, 2u);
   EXPECT_EQ(start.not_before_ns, 820 * kMs);
+  EXPECT_EQ(start.run.experiment, &experiment);
   EXPECT_EQ(run.Update(840 * kMs, PermitOf(kRunning)).kind, RequestKind::kNone);
   EXPECT_EQ(run.Update(900 * kMs, PermitOf(kStopping)).kind, RequestKind::kNone);
   const OperatorRequest disarm = run.Update(2'000 * kMs, PermitOf(kArmed));
@@ -57,8 +64,8 @@ TEST(UnattendedRun, ArmsRunsOnceAndDisarms) {
 }
 
 TEST(UnattendedRun, IsOverItsSettlingTimeAfterIdle) {
-  UnattendedRun lockstep;
-  UnattendedRun daemon(300 * kMs);
+  UnattendedRun lockstep(nullptr);
+  UnattendedRun daemon(nullptr, 300 * kMs);
   EXPECT_EQ(lockstep.over_ns(), INT64_MAX);
   Finish(&lockstep);
   Finish(&daemon);
@@ -70,7 +77,7 @@ TEST(UnattendedRun, IsOverItsSettlingTimeAfterIdle) {
 }
 
 TEST(UnattendedRun, IsOverFiveSecondsAfterItsFirstTrip) {
-  UnattendedRun run;
+  UnattendedRun run(nullptr);
   run.Update(1'000 * kMs, PermitOf(kRunning));
   EXPECT_EQ(run.Update(1'020 * kMs, TrippedBy(TripCause::kHubRate1)).kind, RequestKind::kNone);
   EXPECT_TRUE(run.over());
@@ -83,7 +90,7 @@ TEST(UnattendedRun, IsOverFiveSecondsAfterItsFirstTrip) {
 }
 
 TEST(UnattendedRun, ATripWhileItSettlesIsRecordedAsLong) {
-  UnattendedRun run;
+  UnattendedRun run(nullptr);
   Finish(&run);
   run.Update(3'100 * kMs, TrippedBy(TripCause::kEmergencyStop));
   EXPECT_EQ(run.over_ns(), 8'100 * kMs);
@@ -91,7 +98,7 @@ TEST(UnattendedRun, ATripWhileItSettlesIsRecordedAsLong) {
 }
 
 TEST(UnattendedRun, ARefusalOfItsNewestRequestEndsIt) {
-  UnattendedRun run;
+  UnattendedRun run(nullptr);
   run.Update(700 * kMs, PermitOf(kIdle));
   run.Answered(RefusalOf(1'001));
   EXPECT_FALSE(run.over()) << "a client's request";

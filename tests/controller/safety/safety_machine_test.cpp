@@ -54,7 +54,8 @@ std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const S
          std::to_string(facts.present) + " reported " + std::to_string(facts.all_reported) +
          " rest " + std::to_string(facts.at_rest) + " done " +
          std::to_string(facts.experiment_done) + " expired " + std::to_string(facts.stop_expired) +
-         " pressed " + std::to_string(facts.reset_pressed);
+         " pressed " + std::to_string(facts.reset_pressed) + " shutting down " +
+         std::to_string(facts.shutting_down);
 }
 
 // "" if the transition obeys every rule of docs/safety.md, else the violated rule. Written from the
@@ -127,6 +128,12 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
     return "Stopping ends after its time limit";
   }
   if (moved && to.state == kStarting) return "nothing goes back to Starting";
+  if (facts.shutting_down != 0) {
+    if (Energy(to.state) > Energy(from.state)) return "nothing starts while shutting down";
+    if (to.state == kRunning || to.state == kArmed) {
+      if (from.state == to.state) return "a shutdown stops the arm and disarms it";
+    }
+  }
   if (!asked && decision.refusal != Refusal::kNone) return "no refusal without a request";
   if (asked && decision.refusal == Refusal::kNone) {
     const bool obeyed =
@@ -167,12 +174,12 @@ constexpr RequestKind kEveryRequest[] = {
     RequestKind::kNone,   RequestKind::kArm,   RequestKind::kRun, RequestKind::kStop,
     RequestKind::kDisarm, RequestKind::kReset, kCorruptedRequest};
 
-// 34 statuses x 329 sets of causes x 32 flags x 7 requests: every case.
+// 34 statuses x 329 sets of causes x 64 flags x 7 requests: every case.
 TEST(SafetyMachine, EveryTransitionObeysTheRules) {
   long cases = 0;
   for (const SafetyStatus& from : EveryStatus()) {
     for (const TripCauses present : EverySetOfUpToTwoCauses()) {
-      for (unsigned flags = 0; flags < 32; ++flags) {
+      for (unsigned flags = 0; flags < 64; ++flags) {
         for (const RequestKind request : kEveryRequest) {
           SafetyFacts facts{};
           facts.present = present;
@@ -181,6 +188,7 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
           facts.experiment_done = (flags >> 2) & 1u;
           facts.stop_expired = (flags >> 3) & 1u;
           facts.reset_pressed = (flags >> 4) & 1u;
+          facts.shutting_down = (flags >> 5) & 1u;
           facts.request = request;
           const SafetyDecision to = NextSafetyState(from, facts);
           const char* broken = BrokenRule(from, facts, to);
@@ -190,7 +198,21 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
       }
     }
   }
-  EXPECT_EQ(cases, 34L * 329 * 32 * 7);
+  EXPECT_EQ(cases, 34L * 329 * 64 * 7);
+}
+
+TEST(SafetyMachine, AShutdownEndsARunInIdleWithoutARequest) {
+  const auto shutting_down = [](SafetyFacts facts) {
+    return With(facts, &SafetyFacts::shutting_down, 1);
+  };
+  EXPECT_EQ(StateAfter(kRunning, shutting_down(Healthy())), kStopping);
+  EXPECT_EQ(StateAfter(kStopping, shutting_down(Healthy())), kArmed);
+  EXPECT_EQ(StateAfter(kArmed, shutting_down(Healthy())), kIdle);
+  EXPECT_EQ(StateAfter(kIdle, shutting_down(Healthy())), kIdle);
+  EXPECT_EQ(NextSafetyState(In(kIdle), shutting_down(Healthy(RequestKind::kArm))).refusal,
+            Refusal::kShuttingDown);
+  EXPECT_EQ(NextSafetyState(In(kArmed), shutting_down(Healthy(RequestKind::kRun))).refusal,
+            Refusal::kShuttingDown);
 }
 
 // Transitions that must happen: a machine that never moves would satisfy the rules above.
@@ -257,7 +279,7 @@ TEST(SafetyMachine, EveryRefusalHasATextThatSaysWhatToDo) {
   for (const RequestKind request : kEveryRequest) {
     for (const SafetyState state : {kStarting, kIdle, kArmed, kRunning, kStopping, kTripped}) {
       EXPECT_STREQ(RefusalText(request, Refusal::kNone, state), "");
-      for (int i = 1; i <= static_cast<int>(Refusal::kCancelled); ++i) {
+      for (int i = 1; i <= static_cast<int>(Refusal::kShuttingDown); ++i) {
         EXPECT_STRNE(RefusalText(request, static_cast<Refusal>(i), state), "");
         EXPECT_STRNE(ToString(static_cast<Refusal>(i)), "corrupted");
       }

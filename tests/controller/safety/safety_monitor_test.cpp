@@ -280,36 +280,54 @@ class HomingContact : public testing::Test {
     in.levels &= ~LineBit(Line::kLimit2High);
     return in;
   }
+  SafetyInputs OffSwitch(std::int64_t after_ms = 0) const {
+    SafetyInputs in = OnSwitch(after_ms);
+    in.levels = kHealthyLevels;
+    return in;
+  }
 
   SafetyMonitor monitor_{kLimits};
 };
 
 TEST_F(HomingContact, TheSwitchSearchedForDoesNotTripAtOnce) {
-  EXPECT_EQ(monitor_.Judge(OnSwitch()).present, 0u);
+  monitor_.Judge(OffSwitch());
+  EXPECT_EQ(monitor_.Judge(OnSwitch(1)).present, 0u);
   EXPECT_EQ(monitor_.Judge(OnSwitch(500)).present, 0u);
 }
 
 TEST_F(HomingContact, StayingOnItForTooLongTrips) {
-  monitor_.Judge(OnSwitch());
+  monitor_.Judge(OffSwitch());
   EXPECT_EQ(monitor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
 }
 
-TEST_F(HomingContact, TheClockStartsAgainWhenTheSwitchHasClosed) {
-  monitor_.Judge(OnSwitch());
-  SafetyInputs off = OnSwitch(400);
-  off.levels = kHealthyLevels;
-  monitor_.Judge(off);
-  EXPECT_EQ(monitor_.Judge(OnSwitch(600)).present, 0u);
+TEST_F(HomingContact, TheTimeGoesOnWhenTheSwitchHasClosedBetween) {
+  monitor_.Judge(OffSwitch());
+  EXPECT_EQ(monitor_.Judge(OnSwitch(300)).present, 0u);
+  EXPECT_EQ(monitor_.Judge(OffSwitch(500)).present, 0u);
+  EXPECT_EQ(monitor_.Judge(OnSwitch(700)).present, 0u) << "0.5 s in all";
+  EXPECT_EQ(monitor_.Judge(OffSwitch(701)).present, 0u) << "off the switch";
+  EXPECT_EQ(monitor_.Judge(OnSwitch(702)).present, CauseBit(TripCause::kLimitSwitch2High));
+}
+
+TEST_F(HomingContact, TheTimeBeginsAgainWithTheNextRun) {
+  monitor_.Judge(OffSwitch());
+  monitor_.Judge(OnSwitch(500));
+  SafetyInputs armed = OffSwitch(501);
+  armed.state = kArmed;
+  monitor_.Judge(armed);
+  EXPECT_EQ(monitor_.Judge(OnSwitch(900)).present, 0u);
 }
 
 TEST_F(HomingContact, EveryOtherSwitchTrips) {
-  SafetyInputs in = OnSwitch();
+  monitor_.Judge(OffSwitch());
+  SafetyInputs in = OnSwitch(1);
   in.levels &= ~LineBit(Line::kLimit2Low);
   EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2Low));
 }
 
 TEST_F(HomingContact, TheEmergencyStopAlwaysTrips) {
-  SafetyInputs in = OnSwitch();
+  monitor_.Judge(OffSwitch());
+  SafetyInputs in = OnSwitch(1);
   in.may_open |= LineBit(Line::kEmergencyStop);
   in.levels &= ~LineBit(Line::kEmergencyStop);
   EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kEmergencyStop));

@@ -134,6 +134,23 @@ TEST(Gate, TorqueLimitHasPriorityOverSlewLimit) {
   EXPECT_EQ(Gate(in, kGateLimits).torque_nm[0], 30.0);
 }
 
+TEST(Gate, HomingHasAShareOfTheTorqueLimit) {
+  GateLimits limits = kGateLimits;
+  limits.homing_fraction = 0.3;
+  GateInput in = FineInput();
+  in.asked_nm = {29.0, -5.0};
+  in.previous_nm = {10.0, -2.0};
+  in.dt_s = 0.1;
+  EXPECT_EQ(Gate(in, limits).why, 0u) << "29 and -5 N m are within the limits of a run";
+  in.homing = true;
+  const GateResult homing = Gate(in, limits);
+  EXPECT_DOUBLE_EQ(homing.torque_nm[0], 0.3 * 30.0);
+  EXPECT_DOUBLE_EQ(homing.torque_nm[1], -0.3 * 6.0);
+  EXPECT_EQ(homing.why, kGateTorque1 | kGateTorque2);
+  limits.homing_fraction = kNan;
+  EXPECT_EQ(Gate(in, limits).torque_nm, (std::array<double, 2>{0.0, 0.0}));
+}
+
 TEST(Gate, NoTimePassedMeansNoChange) {
   GateInput in = FineInput();
   for (const double dt : {0.0, -1.0}) {

@@ -26,6 +26,7 @@ struct World {
   bool pump_toggles = true;
   bool commands_go_on = true;
   std::int64_t running_since_ns = INT64_MIN;
+  RunOrder run{};
 };
 
 // Replaces the control task.
@@ -47,7 +48,6 @@ class PlantTaskTest : public testing::Test {
               {.commands = &commands_,
                .permits = &permits_,
                .outputs = &outputs_,
-               .plans = &plans_,
                .presses = &presses_,
                .frames = &frames_,
                .levels = &levels_,
@@ -77,6 +77,8 @@ class PlantTaskTest : public testing::Test {
         permit.state = world.permit;
         permit.renewed_ns = now_ns_;
         permit.running_since_ns = world.running_since_ns;
+        permit.run_number = 7;
+        permit.run = world.run;
         permits_history_.Push(now_ns_, permit);
         permits_.Publish(permits_history_);
       }
@@ -97,7 +99,6 @@ class PlantTaskTest : public testing::Test {
   CommandChannel commands_{commands_history_};
   PermitChannel permits_{permits_history_};
   OutputChannel outputs_{outputs_history_};
-  ExperimentChannel plans_{LoadedExperiment{}};
   SpscQueue<LinePress> presses_{4};
   FrameChannel frames_{FrameHistory(kNoFrame)};
   LevelChannel levels_{LevelHistory(kHealthyLevels)};
@@ -170,11 +171,10 @@ TEST_F(PlantTaskTest, ACommandOlderThanTwoPeriodsRemovesTheTorque) {
 TEST_F(PlantTaskTest, AChangeOfPayloadDoesNotAllocate) {
   PlannedExperiment planned(std::vector<std::array<double, 2>>(10));
   planned.sim_events = {PayloadEvent(0.0, 0.8), PayloadEvent(0.04, 0.0)};
-  plans_.Publish({.experiment = &planned, .number = 7});
   RunTo(20 * kMs, {});
   {
     const NoAlloc armed;
-    RunTo(200 * kMs, {.running_since_ns = 20 * kMs});
+    RunTo(200 * kMs, {.running_since_ns = 20 * kMs, .run = {.experiment = &planned}});
   }
   EXPECT_EQ(task_.released(), 7u) << "the experiment was not read";
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -113,9 +114,10 @@ class SafetyTaskTest : public testing::Test {
 
   void RunFor(std::int64_t duration_ns) { executor_.RunUntil(executor_.next_ns() + duration_ns); }
 
-  std::uint32_t Ask(RequestKind kind, std::int64_t not_before_ns = INT64_MIN) {
-    EXPECT_TRUE(
-        requests_.Push({.kind = kind, .number = ++number_, .not_before_ns = not_before_ns}));
+  std::uint32_t Ask(RequestKind kind, std::int64_t not_before_ns = INT64_MIN,
+                    const RunOrder& run = {}) {
+    EXPECT_TRUE(requests_.Push(
+        {.kind = kind, .number = ++number_, .not_before_ns = not_before_ns, .run = run}));
     return number_;
   }
 
@@ -167,6 +169,8 @@ class SafetyTaskTest : public testing::Test {
   PermitChannel drive_permits_{PermitHistory(kNoPermit)};
   PermitChannel operator_permits_{PermitHistory(kNoPermit)};
   SpscQueue<OperatorRequest> requests_{100};
+  LatchedRequest stop_, disarm_;
+  std::atomic<bool> shutting_down_{false};
   SpscQueue<RequestAnswer> answers_{100};
   SpscQueue<SafetyRecord> records_{10'000};
   SafetyTask safety_{kLimits,
@@ -174,6 +178,9 @@ class SafetyTaskTest : public testing::Test {
                       .control = &reports_,
                       .drives = {&drive_reports_},
                       .requests = &requests_,
+                      .stop = &stop_,
+                      .disarm = &disarm_,
+                      .shutting_down = &shutting_down_,
                       .permits = {&drive_permits_, &operator_permits_},
                       .answers = &answers_,
                       .records = &records_}};

@@ -82,7 +82,6 @@ class Rig {
     stack->SetEpoch(world->epoch_ns);
     planned_ = std::make_unique<PlannedExperiment>(
         experiment_, design_, 0.02, std::array<double, 2>{0.0, 0.0}, MotionLimitsOf(config_));
-    stack->Plan({.experiment = planned_.get(), .number = 1});
     executor.Add(stack->safety());
     executor.Add(stack->control());
     for (Task* task : stack->drive_tasks()) executor.Add(*task, true);
@@ -109,7 +108,10 @@ class Rig {
   }
 
   Refusal Ask(RequestKind kind) {
-    stack->requests().Push({.kind = kind, .number = ++number_, .not_before_ns = INT64_MIN});
+    stack->requests().Push({.kind = kind,
+                            .number = ++number_,
+                            .not_before_ns = INT64_MIN,
+                            .run = {.experiment = planned_.get()}});
     RunFor(3 * kMs);
     RequestAnswer answer{};
     Refusal refusal = Refusal::kCancelled;

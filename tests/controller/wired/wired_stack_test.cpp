@@ -107,7 +107,6 @@ class Lines final : public SafetyLines {
 class WiredStackTest : public testing::Test {
  protected:
   WiredStackTest() {
-    stack_.Plan({.experiment = &planned_, .number = 1});
     for (Task* task : stack_.tasks()) executor_.Add(*task);
   }
 
@@ -133,7 +132,7 @@ class WiredStackTest : public testing::Test {
   Lines lines_;
   WiredStack stack_{config_, design_, {.buses = {&drives_, &gauges_}, .lines = &lines_}};
   LockstepExecutor executor_;
-  UnattendedRun operator_;
+  UnattendedRun operator_{&planned_};
   std::vector<TickRecord> ticks_;
   std::int64_t now_ns_ = 0;
 };

@@ -33,13 +33,6 @@ struct PlannedExperiment {
 /// @throws RejectedError naming the first row
 void RefuseSimEvents(const Experiment& experiment);
 
-/// The experiment of the next run. The operator task keeps it alive until every reader has released
-/// its number.
-struct LoadedExperiment {
-  const PlannedExperiment* experiment = nullptr;  ///< nullptr: none, a run ends at once
-  std::uint32_t number = 0;                       ///< ascending
-};
-using ExperimentChannel = LatestValue<LoadedExperiment>;
 using CalibrationChannel = LatestValue<Calibration>;
 
 }  // namespace flexarm

@@ -1,4 +1,4 @@
-#include "controller/tasks/loaded_experiment.h"
+#include "controller/tasks/planned_experiment.h"
 
 #include <algorithm>
 

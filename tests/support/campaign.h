@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdlib>
+#include <string>
+
+namespace flexarm {
+
+/// How many cases a campaign of random cases has: `sample` in every run of the tests, a tenth of
+/// that under a sanitizer, `whole` with FLEXARM_CAMPAIGN=whole (lane `campaigns`).
+inline long CampaignCases(long sample, long whole) {
+  const char* wanted = std::getenv("FLEXARM_CAMPAIGN");
+  if (wanted != nullptr && std::string(wanted) == "whole") return whole;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return sample / 10;
+#else
+  return sample;
+#endif
+}
+
+}  // namespace flexarm
