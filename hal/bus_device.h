@@ -49,12 +49,15 @@ constexpr const char* ToString(BusStatus status) noexcept {
 struct BusCommand {
   std::array<double, 2> torque_nm;  ///< after the gate, at the gearbox output
   bool enabled;                     ///< false: the drives must be off, for any torque
+  /// CLOCK_MONOTONIC: later than this no torque is sent. Looked at just before each output.
+  std::int64_t expires_ns = INT64_MAX;
 };
 
 /// One bus, board or serial line. It has its own thread, because its calls may block.
 ///
-/// Order: Open, then Exchange once a period; after a failed one Reconnect, until it succeeds, but
-/// only while the arm is disarmed. Thread: the bus's own; Open and Close when no thread runs.
+/// Order: Open, then Exchange once a period, and SwitchOff at any time between; after a failed one
+/// Reconnect, until it succeeds, but only while the arm is disarmed. Thread: the bus's own; Open
+/// and Close when no thread runs.
 class BusDevice {
  public:
   virtual ~BusDevice() = default;
@@ -78,6 +81,10 @@ class BusDevice {
   /// sampled_at_ns and offsets in CLOCK_MONOTONIC. On failure no reading is valid.
   [[nodiscard]] virtual BusStatus Exchange(const BusCommand& command,
                                            SensorFrame* part) noexcept = 0;
+
+  /// Between two exchanges: switches the drives off at once, by the shortest path. Waits for no
+  /// answer: the next exchange reads what the drives did. Does nothing on a bus without drives.
+  [[nodiscard]] virtual BusStatus SwitchOff() noexcept { return BusStatus::kOk; }
 
   /// One bounded attempt to recover from a failure.
   [[nodiscard]] virtual BusStatus Reconnect() noexcept = 0;

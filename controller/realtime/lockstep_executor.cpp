@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "controller/realtime/wakeup.h"
+
 namespace flexarm {
 
 void LockstepExecutor::Add(Task& task) {
@@ -32,6 +34,8 @@ void LockstepExecutor::RunInstant() noexcept {
   const std::int64_t now_ns = next_ns_;
   std::int64_t next_ns = INT64_MAX;
   for (Slot& slot : slots_) {
+    Wakeup* wakeup = slot.task->wakeup();
+    if (wakeup != nullptr && wakeup->Take()) slot.task->Woken(now_ns);
     if (slot.due_ns == now_ns) {
       slot.task->Run({.due_ns = now_ns, .missed_in_a_row = 0});
       slot.due_ns += slot.period_ns;

@@ -9,8 +9,8 @@
 namespace flexarm {
 
 /// Discrete-event executor: runs all tasks on the calling thread on a simulated clock, as fast as
-/// possible. Tasks run in order of due instant, then of priority (highest first), then of Add. No
-/// deadline is ever missed.
+/// possible. Tasks run in order of due instant, then of priority (highest first), then of Add. A
+/// task that one of higher priority wakes is woken at the same instant. No deadline is ever missed.
 ///
 /// Denormals are flushed while tasks run, as under RealtimeExecutor.
 /// Thread: one. Does not allocate after the last Add.

@@ -12,6 +12,7 @@
 
 #include "controller/realtime/clock.h"
 #include "controller/realtime/float_environment.h"
+#include "controller/realtime/wakeup.h"
 
 namespace flexarm {
 namespace {
@@ -115,13 +116,22 @@ void* RealtimeExecutor::Main(void* argument) noexcept {
   return nullptr;
 }
 
+void RealtimeExecutor::AwaitDue(Task& task, std::int64_t due_ns) noexcept {
+  Wakeup* wakeup = task.wakeup();
+  if (wakeup == nullptr) return SleepUntil(epoch_ns_ + due_ns);
+  while (wakeup->SleepUntil(epoch_ns_ + due_ns)) {
+    if (stop_.load(std::memory_order_relaxed)) return;
+    task.Woken(MonotonicNow() - epoch_ns_);
+  }
+}
+
 void RealtimeExecutor::Loop(Thread& thread) noexcept {
   const Task::Traits& traits = thread.traits;
   Counters& counters = thread.counters;
   int missed_in_a_row = 0;
   std::int64_t finished_ns = INT64_MIN;
   for (std::int64_t due_ns = traits.phase_ns; due_ns < end_ns_; due_ns += traits.period_ns) {
-    SleepUntil(epoch_ns_ + due_ns);
+    AwaitDue(*thread.task, due_ns);
     if (stop_.load(std::memory_order_relaxed)) return;
     const std::int64_t woke_ns = MonotonicNow() - epoch_ns_;
 

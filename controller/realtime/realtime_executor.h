@@ -88,6 +88,8 @@ class RealtimeExecutor {
 
   void StartThread(Thread& thread);
   void Loop(Thread& thread) noexcept;
+  /// Sleeps until the task is due; a wake before that runs its Woken.
+  void AwaitDue(Task& task, std::int64_t due_ns) noexcept;
   static void* Main(void* argument) noexcept;
 
   bool fifo_;

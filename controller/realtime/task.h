@@ -4,6 +4,8 @@
 
 namespace flexarm {
 
+class Wakeup;
+
 /// Periodic task: the body of a thread, or of a slot of the lock-step executor.
 ///
 /// `Run` gets the instant at which the task was due, never the instant at which it woke: a task
@@ -26,6 +28,11 @@ class Task {
   virtual ~Task() = default;
   virtual Traits traits() const noexcept = 0;
   virtual void Run(const Activation& activation) noexcept = 0;
+
+  /// What may wake the task between two activations; nullptr: nothing does.
+  virtual Wakeup* wakeup() noexcept { return nullptr; }
+  /// Between two activations, after `wakeup` was woken. @param now_ns  in the clock of the loop
+  virtual void Woken(std::int64_t /*now_ns*/) noexcept {}
 };
 
 }  // namespace flexarm

@@ -5,6 +5,12 @@
 #include "controller/types/rig_config.h"
 
 namespace flexarm {
+namespace {
+
+// Frames that are sent so shortly before an exchange would still wait when it begins.
+constexpr std::int64_t kSoonNs = 500'000;
+
+}  // namespace
 
 BusTask::BusTask(const RigConfig& config, BusDevice* device, BusChannels channels)
     : device_(device),
@@ -21,6 +27,7 @@ Task::Traits BusTask::traits() const noexcept {
 }
 
 void BusTask::Run(const Activation& activation) noexcept {
+  next_due_ns_ = activation.due_ns + grid_.period_ns;
   const BusCommand command = Command(activation.due_ns);
   SensorFrame part{};
   const bool may_reconnect = failures_ > 0 && !command.enabled;
@@ -33,6 +40,18 @@ void BusTask::Run(const Activation& activation) noexcept {
     ++failed_;
   }
   Publish(activation.due_ns, part);
+}
+
+void BusTask::Woken(std::int64_t now_ns) noexcept {
+  const Permit& permit = channels_.permits->Read().Newest().value;
+  if (!enabled_ || Powered(permit.state)) return;
+  if (now_ns + kSoonNs >= next_due_ns_) return;  // the exchange switches them off
+  enabled_ = false;
+  gate_reasons_ |= kGateNotAllowed;
+  // If it fails, the next exchange tries again, and reports it.
+  if (device_->SwitchOff() != BusStatus::kOk) return;
+  applied_nm_ = {};
+  applied_.Push(now_ns + grid_.actuation_ns, applied_nm_);
 }
 
 // Applies the torque gate to the command that acts now. A failed exchange is not repeated: the next
@@ -54,8 +73,13 @@ BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     applied_nm_[i] = (device_->drives() >> i & 1u) != 0 ? gated.torque_nm[i] : 0.0;
   }
-  return {.torque_nm = applied_nm_,
-          .enabled = Powered(permit.state) && (gated.why & kGatePermitOld) == 0};
+  enabled_ = Powered(permit.state) && (gated.why & kGatePermitOld) == 0;
+  BusCommand out{.torque_nm = applied_nm_, .enabled = enabled_};
+  if ((gated.why & kGateZeroed) == 0) {
+    out.expires_ns = epoch_ns_ + std::min(permit.renewed_ns + limits_.permit_timeout_ns,
+                                          command.from_ns + limits_.command_timeout_ns);
+  }
+  return out;
 }
 
 void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {

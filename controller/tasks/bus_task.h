@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "controller/realtime/task.h"
+#include "controller/realtime/wakeup.h"
 #include "controller/safety/torque_gate.h"
 #include "controller/step/actuation_queue.h"
 #include "controller/types/frame_packet.h"
@@ -22,13 +23,17 @@ struct BusChannels {
   FrameChannel* frames;         ///< written: this bus's part of the readings
   DriveReportChannel* reports;  ///< written: for the safety task
   DriveReportChannel* health;   ///< written: the same, for the operator task
+  Wakeup* wakeup;               ///< the safety task wakes a bus with drives when the power goes
 };
 
 /// The task of one bus of a hardware rig. Each period: torque gate, drive output, sensor readings.
 /// It may block in its device for as long as the device declares.
 ///
 /// Due at every sampling instant k Ts, so that the readings are available when the step is due,
-/// `acquire_before` later. It puts out the command that acts at k Ts, with the newest permit. A bus
+/// `acquire_before` later. It puts out the command that acts at k Ts, with the newest permit; the
+/// command expires with the permit, which the device looks at before each output. When a state
+/// without power begins, the safety task wakes the task, which switches its drives off at once, or
+/// when the exchange that is under way has ended. A bus
 /// that fails twice in a row is lost; it is reconnected only while the arm is disarmed. Real-time:
 /// as far as its device is; it does not allocate.
 class BusTask final : public Task {
@@ -44,6 +49,8 @@ class BusTask final : public Task {
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
+  Wakeup* wakeup() noexcept override { return device_->drives() != 0 ? channels_.wakeup : nullptr; }
+  void Woken(std::int64_t now_ns) noexcept override;
 
  private:
   BusCommand Command(std::int64_t due_ns) noexcept;
@@ -58,7 +65,9 @@ class BusTask final : public Task {
   std::int64_t applied_tick_ = -1;      // tick of its command
   ActuationQueue applied_;              // with the instant at which each acted
   BusStatus status_ = BusStatus::kOk;
-  int failures_ = 0;  // in a row
+  bool enabled_ = false;          // the drives, by the last exchange
+  std::int64_t next_due_ns_ = 0;  // of the next exchange
+  int failures_ = 0;              // in a row
   std::uint32_t failed_ = 0;
   std::uint32_t gate_reasons_ = 0,
                 gate_before_ = 0;  // GateBits of the newest torque and the one before

@@ -45,6 +45,7 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
                .stop = &stop_,
                .disarm = &disarm_,
                .shutting_down = &shutting_down_,
+               .wakeups = wiring.wakeups,
                .permits = Joined({&control_permits_, &operator_permits_}, wiring.permits),
                .answers = &answers_,
                .records = &safety_records_}),

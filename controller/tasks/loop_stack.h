@@ -29,6 +29,7 @@ struct LoopWiring {
   std::vector<CommandChannel*> commands;    ///< one a drive bus
   std::vector<PermitChannel*> permits;      ///< one a drive bus
   std::vector<DriveReportChannel*> drives;  ///< one a bus
+  std::vector<Wakeup*> wakeups{};           ///< of the tasks that switch drives off
 };
 
 /// The safety and control tasks of the daemon for any backend, and their queues and channels to the

@@ -58,6 +58,9 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   Enter(decision.status, in, request);
   Drive(due_ns);
   Publish(due_ns, levels);
+  if (Powered(before.state) && !Powered(status_.state)) {
+    for (Wakeup* wakeup : channels_.wakeups) wakeup->Wake();
+  }
 
   const bool tripped = status_ != before && status_.state == SafetyState::kTripped;
   if (requested || !recorded_ || status_ != before || !SameFacts(facts, last_facts_)) {

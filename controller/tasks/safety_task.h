@@ -9,6 +9,7 @@
 #include "controller/exchange/latched_request.h"
 #include "controller/exchange/spsc_queue.h"
 #include "controller/realtime/task.h"
+#include "controller/realtime/wakeup.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/safety/safety_monitor.h"
 #include "controller/safety/safety_record.h"
@@ -26,6 +27,7 @@ struct SafetyChannels {
   LatchedRequest* stop;                     ///< read: before every queued request
   LatchedRequest* disarm;                   ///< read: the same
   const std::atomic<bool>* shutting_down;   ///< read: stop and disarm the arm, start nothing
+  std::vector<Wakeup*> wakeups;             ///< woken when the power goes: the drives' buses
   std::vector<PermitChannel*> permits;      ///< written: one a reader (drive, control, operator)
   SpscQueue<RequestAnswer>* answers;        ///< written
   SpscQueue<SafetyRecord>* records;         ///< written

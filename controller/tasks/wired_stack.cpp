@@ -9,6 +9,7 @@ LoopWiring BusWires::Wiring(SafetyLines* lines) {
     wiring.commands.push_back(&bus.commands);
     wiring.permits.push_back(&bus.permits);
     wiring.drives.push_back(&bus.reports);
+    wiring.wakeups.push_back(&bus.wakeup);
   }
   return wiring;
 }
@@ -21,7 +22,8 @@ WiredStack::WiredStack(const RigConfig& config, const Design& design, const RigW
                                     .permits = &wires[i].permits,
                                     .frames = &wires[i].frames,
                                     .reports = &wires[i].reports,
-                                    .health = &wires[i].health});
+                                    .health = &wires[i].health,
+                                    .wakeup = &wires[i].wakeup});
   }
 }
 

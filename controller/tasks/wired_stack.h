@@ -24,6 +24,7 @@ struct BusWires {
     PermitChannel permits{PermitHistory(kNoPermit)};
     DriveReportChannel reports{DriveReportHistory(kNoDriveReport)};
     DriveReportChannel health{DriveReportHistory(kNoDriveReport)};
+    Wakeup wakeup;
   };
 
   explicit BusWires(const RigWires& rig) : wires(rig.buses.size()) {}

@@ -114,7 +114,8 @@ CanFrame CanopenDevice::CommandFor(const Node& node, DriveWish wish,
   DriveCommand drive{.controlword = ControlwordFor(node.state, wish), .torque_per_mille = 0};
   const std::size_t joint = node.config->role == CanopenRole::kDrive1 ? 0 : 1;
   const double torque_nm = command.torque_nm[joint];
-  if (wish == DriveWish::kOn && node.state == DriveState::kOperationEnabled &&
+  const bool expired = bus_->now_ns() > command.expires_ns;
+  if (wish == DriveWish::kOn && node.state == DriveState::kOperationEnabled && !expired &&
       std::isfinite(torque_nm)) {
     const double most = node.config->torque_range_per_mille();
     const double asked = node.config->sign * torque_nm / node.config->torque_per_mille_nm;
@@ -218,6 +219,22 @@ void CanopenDevice::FollowDrive(DriveWish wish, Node* node) noexcept {
   }
 }
 
+BusStatus CanopenDevice::SwitchOff() noexcept {
+  if (!open_ || configuring_) return BusStatus::kOk;  // the drives are off
+  // Also while frames of the last exchange wait: these come after them, and carry no torque.
+  return SendOff() ? BusStatus::kOk : Stuck();
+}
+
+bool CanopenDevice::SendOff() noexcept {
+  const BusCommand off{.torque_nm = {}, .enabled = false};
+  bool sent = true;
+  for (const Node& node : nodes()) {
+    if (!IsDrive(node.config->role)) continue;
+    sent = bus_->Send(CommandFor(node, DriveWish::kOff, off)) == SendResult::kSent && sent;
+  }
+  return bus_->Send(EncodeSync()) == SendResult::kSent && sent;
+}
+
 BusStatus CanopenDevice::Reconnect() noexcept {
   const bool anew = NeedsConfiguration(fault_.kind) || resets_ >= kResetsBeforeSetup;
   return configuring_ || anew ? ConfigureAnew() : ResetFaults();
@@ -290,12 +307,7 @@ std::string CanopenDevice::FaultText(const BusFault& fault) const {
 void CanopenDevice::Close() noexcept {
   if (!open_) return;
   open_ = false;
-  const BusCommand off{.torque_nm = {}, .enabled = false};
-  for (const Node& node : nodes()) {
-    if (!IsDrive(node.config->role)) continue;
-    static_cast<void>(bus_->Send(CommandFor(node, DriveWish::kOff, off)));
-  }
-  static_cast<void>(bus_->Send(EncodeSync()));
+  static_cast<void>(SendOff());
   // Without the cyclic traffic a drive must not be in the operational state. Only the drives: a
   // socket holds about six frames.
   for (const Node& node : nodes()) {

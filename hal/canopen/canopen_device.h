@@ -31,12 +31,14 @@ struct CanopenCounts {
 /// receives the PDOs that answer SYNC, until all have arrived or the answer time is over. All nodes
 /// sample, and all drives act, at the SYNC: it is the sampling instant, and every offset is 0.
 ///
-/// Torque is sent only while enabled and only to a drive that reported "operation enabled" in the
-/// last exchange. A fault latches: drives are switched off until Reconnect, which may be called
-/// while disarmed only; it resets the drives' faults, or configures all nodes again if one was
-/// lost. While the last frames wait for transmission no frames are added: at most one exchange is
-/// queued, and Reconnect drops it. If the daemon dies, the drives miss its heartbeat (1016) and
-/// remove their torque (6007) within master_timeout_ms.
+/// Torque is sent only while enabled, before the command expires, and only to a drive that reported
+/// "operation enabled" in the last exchange. SwitchOff sends a SYNC between two exchanges, so that
+/// the drives act on its controlword at once; the answers to it are stale and dropped. A fault
+/// latches: drives are switched off until Reconnect, which may be called while disarmed only; it
+/// resets the drives' faults, or configures all nodes again if one was lost. While the last frames
+/// wait for transmission no frames are added: at most one exchange is queued, and Reconnect drops
+/// it. If the daemon dies, the drives miss its heartbeat (1016) and remove their torque (6007)
+/// within master_timeout_ms.
 class CanopenDevice : public BusDevice {
  public:
   /// @param config  without problems
@@ -49,6 +51,7 @@ class CanopenDevice : public BusDevice {
   std::int64_t worst_case_ns() const noexcept override { return config_.worst_case_exchange_ns(); }
   void Open() override;
   [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
+  [[nodiscard]] BusStatus SwitchOff() noexcept override;
   [[nodiscard]] BusStatus Reconnect() noexcept override;
   BusFault FaultOf(BusStatus status) const noexcept override;
   std::string FaultText(const BusFault& fault) const override;
@@ -90,6 +93,8 @@ class CanopenDevice : public BusDevice {
   BusStatus Cycle(DriveWish wish, const BusCommand& command) noexcept;
   void Drain(std::int64_t until_ns) noexcept;
   bool Send(DriveWish wish, const BusCommand& command) noexcept;
+  /// Controlwords that switch the drives off, and a SYNC. False if a frame was not sent.
+  bool SendOff() noexcept;
   CanFrame CommandFor(const Node& node, DriveWish wish, const BusCommand& command) const noexcept;
   void Collect(std::int64_t until_ns) noexcept;
   BusStatus Stuck() noexcept;

@@ -106,12 +106,20 @@ BusStatus ComediDevice::Exchange(const BusCommand& command, SensorFrame* part) n
   return StatusOf(fault_);
 }
 
+BusStatus ComediDevice::SwitchOff() noexcept {
+  if (!open_) return BusStatus::kOk;
+  begin_ns_ = board_->now_ns();
+  Drive(kOff);
+  return StatusOf(fault_);
+}
+
 void ComediDevice::Drive(const BusCommand& command) noexcept {
   if (!config_.output) return;
   const ComediOutputConfig& out = *config_.output;
   for (std::size_t i = 0; i < channels_.drive.size(); ++i) {
     const ComediDriveConfig& drive = out.drive[i];
-    const bool on = command.enabled && fault_ == ComediFault::kNone;
+    const bool on =
+        command.enabled && fault_ == ComediFault::kNone && board_->now_ns() <= command.expires_ns;
     const double torque_nm = on ? command.torque_nm[static_cast<std::size_t>(drive.joint)] : 0.0;
     const DaqResult result = board_->Write(channels_.drive[i], DriveCode(out, drive, torque_nm));
     static_cast<void>(Went(result, ComediFault::kOutputRefused, i));

@@ -26,9 +26,9 @@ namespace flexarm {
 /// end of the scan, and every channel is sampled convert_interval before the next. A single read
 /// has the instant of its middle.
 ///
-/// Torque is sent only while enabled; the output is 0 V otherwise, while a fault lasts, and on
-/// Close. An output keeps its last voltage when this process dies: then the relay and the charge
-/// pump of the safety chain stop the arm.
+/// Torque is sent only while enabled and before the command expires; the output is 0 V otherwise,
+/// while a fault lasts, and on Close. An output keeps its last voltage when this process dies: then
+/// the relay and the charge pump of the safety chain stop the arm.
 ///
 /// The duration of an instruction depends on the board: comedi lets a stuck one busy-wait for a
 /// second at most, and no program can shorten that. After the first read that exceeds the declared
@@ -56,6 +56,9 @@ class ComediDevice final : public BusDevice {
   void Open() override;
 
   [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
+
+  /// Sets 0 V.
+  [[nodiscard]] BusStatus SwitchOff() noexcept override;
 
   /// Sets 0 V and restarts the scan; a later call returns kOk once a scan has arrived. A board that
   /// is gone stays gone: opening it again would allocate.

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "controller/realtime/wakeup.h"
+
 namespace flexarm {
 namespace {
 
@@ -64,6 +66,53 @@ TEST(LockstepExecutor, RunsInOrderOfInstantThenPriorityThenRegistration) {
                                      {"plant", 2},
                                      {"other", 2}}));
   EXPECT_EQ(executor.next_ns(), 3);
+}
+
+// Wakes another task in its activation at `at_ns`.
+class WakingTask final : public Task {
+ public:
+  WakingTask(Wakeup* wakeup, std::int64_t at_ns) : wakeup_(wakeup), at_ns_(at_ns) {}
+  Traits traits() const noexcept override {
+    return {.name = "waking", .period_ns = 1, .phase_ns = 0, .deadline_ns = 1, .priority = 90};
+  }
+  void Run(const Activation& activation) noexcept override {
+    if (activation.due_ns == at_ns_) wakeup_->Wake();
+  }
+
+ private:
+  Wakeup* wakeup_;
+  std::int64_t at_ns_;
+};
+
+class WokenTask final : public Task {
+ public:
+  WokenTask(Wakeup* wakeup, std::vector<Entry>* log) : wakeup_(wakeup), log_(log) {}
+  Traits traits() const noexcept override {
+    return {.name = "bus", .period_ns = 20, .phase_ns = 0, .deadline_ns = 1, .priority = 70};
+  }
+  void Run(const Activation& activation) noexcept override {
+    log_->push_back({"bus", activation.due_ns});
+  }
+  Wakeup* wakeup() noexcept override { return wakeup_; }
+  void Woken(std::int64_t now_ns) noexcept override { log_->push_back({"woken", now_ns}); }
+
+ private:
+  Wakeup* wakeup_;
+  std::vector<Entry>* log_;
+};
+
+TEST(LockstepExecutor, ATaskIsWokenAtTheInstantOfTheOneThatWakesIt) {
+  for (const std::int64_t at_ns : {std::int64_t{7}, std::int64_t{20}}) {
+    std::vector<Entry> log;
+    Wakeup wakeup;
+    WakingTask waking(&wakeup, at_ns);
+    WokenTask woken(&wakeup, &log);
+    LockstepExecutor executor;
+    executor.Add(woken);
+    executor.Add(waking);
+    executor.RunUntil(30);
+    EXPECT_EQ(log, (std::vector<Entry>{{"bus", 0}, {"woken", at_ns}, {"bus", 20}}));
+  }
 }
 
 TEST(LockstepExecutor, RunUntilExcludesTheEndAndContinuesFromThere) {

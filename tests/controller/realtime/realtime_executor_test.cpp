@@ -16,6 +16,7 @@
 #include "controller/realtime/clock.h"
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/realtime/realtime_setup.h"
+#include "controller/realtime/wakeup.h"
 #include "tests/support/loop_time.h"
 
 // Test machines guarantee no latency: these tests assert order and counts only, which hold for any
@@ -187,6 +188,42 @@ TEST(RealtimeExecutor, WritesATimingRecordPerActivationIfAQueueIsGiven) {
     EXPECT_GE(record.finished_ns, record.woke_ns);
   }
   EXPECT_FALSE(timing.Pop(&record));
+}
+
+// A task of a period of an hour that another task wakes.
+class SleepingTask final : public Task {
+ public:
+  Traits traits() const noexcept override { return Every(3'600'000 * kMs); }
+  void Run(const Activation&) noexcept override {}
+  Wakeup* wakeup() noexcept override { return &wakeup_; }
+  void Woken(std::int64_t now_ns) noexcept override {
+    woken_ns.store(now_ns);
+    ++woken;
+  }
+
+  std::atomic<int> woken{0};
+  std::atomic<std::int64_t> woken_ns{0};
+
+ private:
+  Wakeup wakeup_;
+};
+
+TEST(RealtimeExecutor, ATaskIsWokenBetweenItsActivations) {
+  SleepingTask task;
+  RealtimeExecutor executor(false);
+  executor.Add(task);
+  const std::int64_t epoch_ns = MonotonicNow();
+  executor.Start(epoch_ns);
+  while (executor.statistics(0).activations < 1) SleepUntil(MonotonicNow() + 1 * kMs);
+  for (int i = 1; i <= 10; ++i) {
+    task.wakeup()->Wake();
+    while (task.woken < i) SleepUntil(MonotonicNow() + 1 * kMs);
+  }
+  EXPECT_GT(task.woken_ns, 0) << "in the clock of the loop";
+  EXPECT_LE(task.woken_ns, MonotonicNow() - epoch_ns);
+  EXPECT_EQ(executor.statistics(0).activations, 1u) << "it is not due again";
+  executor.RequestStop();
+  task.wakeup()->Wake();
 }
 
 TEST(RealtimeExecutor, StopsOnRequestAndOnDestruction) {

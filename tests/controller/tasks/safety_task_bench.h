@@ -171,6 +171,7 @@ class SafetyTaskTest : public testing::Test {
   SpscQueue<OperatorRequest> requests_{100};
   LatchedRequest stop_, disarm_;
   std::atomic<bool> shutting_down_{false};
+  Wakeup wakeup_;
   SpscQueue<RequestAnswer> answers_{100};
   SpscQueue<SafetyRecord> records_{10'000};
   SafetyTask safety_{kLimits,
@@ -181,6 +182,7 @@ class SafetyTaskTest : public testing::Test {
                       .stop = &stop_,
                       .disarm = &disarm_,
                       .shutting_down = &shutting_down_,
+                      .wakeups = {&wakeup_},
                       .permits = {&drive_permits_, &operator_permits_},
                       .answers = &answers_,
                       .records = &records_}};

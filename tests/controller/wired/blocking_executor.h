@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "controller/realtime/task.h"
+#include "controller/realtime/wakeup.h"
 
 namespace flexarm {
 
@@ -56,7 +57,10 @@ class BlockingExecutor {
 
   /// Runs everything that is due before `end_ns`.
   void RunUntil(std::int64_t end_ns) {
-    while (Slot* next = Next(end_ns)) {
+    for (;;) {
+      WakeSlots();
+      Slot* next = Next(end_ns);
+      if (next == nullptr) break;
       now_ns_ = std::max(now_ns_, next->next_ns);
       next->blocked ? Resume(next) : Begin(next);
     }
@@ -88,11 +92,29 @@ class BlockingExecutor {
     std::int64_t due_ns = 0;   // of the activation under way
     std::int64_t next_ns = 0;  // when it is due again, or continues
     bool blocked = false;      // in the middle of an activation
+    bool woken = false;        // between two
     int missed_in_a_row = 0;
     Statistics statistics{};
     std::binary_semaphore go{0};
     std::thread thread;
   };
+
+  // A task is woken at the instant of the task that wakes it, unless it is in an activation.
+  void WakeSlots() {
+    for (const auto& slot : slots_) {
+      Wakeup* wakeup = slot->task->wakeup();
+      if (slot->blocked || wakeup == nullptr || !wakeup->Take()) continue;
+      slot->woken = true;
+      slot->thread.joinable() ? Continue(slot.get()) : RunTask(slot.get());
+      slot->woken = false;
+    }
+  }
+
+  void Continue(Slot* slot) {
+    running_ = slot;
+    slot->go.release();
+    back_.acquire();  // it has ended, or it waits
+  }
 
   // The task that is due first; of several, the one with the highest priority.
   Slot* Next(std::int64_t end_ns) {
@@ -116,9 +138,7 @@ class BlockingExecutor {
 
   void Resume(Slot* slot) {
     if (slot->thread.joinable()) {
-      running_ = slot;
-      slot->go.release();
-      back_.acquire();  // it has ended, or it waits
+      Continue(slot);
       if (slot->blocked) return;
     } else {
       RunTask(slot);
@@ -129,7 +149,8 @@ class BlockingExecutor {
     slot->next_ns = slot->due_ns + slot->traits.period_ns;
   }
 
-  static void RunTask(Slot* slot) {
+  void RunTask(Slot* slot) const {
+    if (slot->woken) return slot->task->Woken(now_ns_);
     slot->task->Run({.due_ns = slot->due_ns, .missed_in_a_row = slot->missed_in_a_row});
   }
 

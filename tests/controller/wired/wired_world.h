@@ -37,11 +37,12 @@ class WorldLines final : public SafetyLines {
     pump_ = outputs.pump_level;
   }
   bool PowerOn(std::int64_t now_ns) const {
-    return relay && now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
+    return (relay || welded) && now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
   }
 
   LineLevels levels = kHealthyLevels;
   bool relay = false;
+  bool welded = false;  // its contact does not open
 
  private:
   bool pump_ = false;
@@ -182,6 +183,10 @@ class OnTestTime final : public BusDevice {
   BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
     world_->wire.AdvanceTo(world_->monotonic_ns());
     return Wait(driver_->Exchange(command, part));
+  }
+  BusStatus SwitchOff() noexcept override {
+    world_->wire.AdvanceTo(world_->monotonic_ns());
+    return driver_->SwitchOff();
   }
   BusStatus Reconnect() noexcept override {
     world_->wire.AdvanceTo(world_->monotonic_ns());

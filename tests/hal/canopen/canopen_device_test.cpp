@@ -266,6 +266,52 @@ TEST(CanopenExchange, ADriveIsEnabledOnlyWhileCommanded) {
   EXPECT_EQ(bench.node(0).torque_per_mille(), 0);
 }
 
+// The command is looked at just before its frame: a thread that stood still sends no old torque.
+TEST(CanopenExchange, AnExpiredCommandCarriesNoTorque) {
+  CanopenBench bench;
+  ASSERT_TRUE(bench.Enable());
+  bench.NextPeriod();
+  const auto exchange = [&](std::int64_t expires_ns) {
+    return bench.device->Exchange(
+        {.torque_nm = {9.0, 3.0}, .enabled = true, .expires_ns = expires_ns}, &bench.frame);
+  };
+  ASSERT_EQ(exchange(bench.now_ns()), BusStatus::kOk);
+  EXPECT_EQ(bench.node(0).torque_per_mille(), 300);
+  bench.NextPeriod();
+  ASSERT_EQ(exchange(bench.now_ns() - 1), BusStatus::kOk);
+  EXPECT_EQ(bench.node(0).torque_per_mille(), 0);
+  EXPECT_EQ(bench.node(1).torque_per_mille(), 0);
+  EXPECT_EQ(bench.node(0).state(), DriveState::kOperationEnabled) << "only the torque";
+}
+
+TEST(CanopenExchange, SwitchOffActsBetweenTwoExchangesAndDisturbsNoReading) {
+  CanopenBench bench;
+  ASSERT_TRUE(bench.Enable());
+  ASSERT_EQ(bench.Exchange({.torque_nm = {9.0, 3.0}, .enabled = true}), BusStatus::kOk);
+  ASSERT_EQ(bench.node(0).torque_per_mille(), 300);
+  const std::int64_t begin_ns = bench.now_ns();
+  ASSERT_EQ(bench.device->SwitchOff(), BusStatus::kOk);
+  EXPECT_EQ(bench.now_ns(), begin_ns) << "it waits for nothing";
+  bench.wire.AdvanceTo(begin_ns + kMs / 2);  // two controlwords and a SYNC: 0.3 ms
+  EXPECT_EQ(bench.node(0).torque_per_mille(), 0);
+  EXPECT_EQ(bench.node(1).torque_per_mille(), 0);
+  EXPECT_EQ(bench.node(0).state(), DriveState::kSwitchOnDisabled);
+  for (int k = 0; k < 10; ++k) {
+    ASSERT_EQ(bench.Exchange(CanopenBench::kOff), BusStatus::kOk);
+    EXPECT_EQ(bench.frame.counter_valid, 0b1111U);
+  }
+  EXPECT_EQ(bench.device->counts().stale, 6U) << "the answers to the SYNC of SwitchOff";
+  EXPECT_TRUE(bench.EnableOpened());
+}
+
+TEST(CanopenExchange, SwitchOffOfAFullQueueFails) {
+  CanopenBench bench;
+  EXPECT_EQ(bench.device->SwitchOff(), BusStatus::kOk) << "not open: there is nothing to do";
+  ASSERT_TRUE(bench.Enable());
+  bench.master->SetTransmitQueue(2);
+  EXPECT_EQ(bench.device->SwitchOff(), BusStatus::kTimeout);
+}
+
 TEST(CanopenExchange, NoTorqueIsSentToADriveThatIsNotInOperation) {
   CanopenBench bench;
   bench.device->Open();

@@ -182,6 +182,26 @@ TEST(ComediDevice, WithoutPermissionTheVoltageIsZero) {
   EXPECT_NEAR(bench.board->output_v(0), 0.0, kOutputToleranceV);
 }
 
+TEST(ComediDevice, AnExpiredCommandIsZeroVolts) {
+  ComediBench bench;
+  bench.device->Open();
+  BusCommand command = Torque(20.0, 3.0);
+  command.expires_ns = bench.board->now_ns() - 1;
+  ASSERT_EQ(bench.Exchange(command), BusStatus::kOk);
+  EXPECT_NEAR(bench.board->output_v(1), 0.0, kOutputToleranceV);
+  EXPECT_NEAR(bench.board->output_v(0), 0.0, kOutputToleranceV);
+}
+
+TEST(ComediDevice, SwitchOffSetsTheVoltageToZeroBetweenTwoExchanges) {
+  ComediBench bench;
+  EXPECT_EQ(bench.device->SwitchOff(), BusStatus::kOk) << "not open: there is nothing to do";
+  bench.device->Open();
+  ASSERT_EQ(bench.Exchange(Torque(20.0, 3.0)), BusStatus::kOk);
+  ASSERT_EQ(bench.device->SwitchOff(), BusStatus::kOk);
+  EXPECT_NEAR(bench.board->output_v(1), 0.0, kOutputToleranceV);
+  EXPECT_NEAR(bench.board->output_v(0), 0.0, kOutputToleranceV);
+}
+
 TEST(ComediDevice, CloseSetsTheVoltageToZero) {
   for (const bool by_destructor : {false, true}) {
     ComediBench bench;
