@@ -33,11 +33,16 @@ constexpr std::size_t kEventDepth = 256;
 constexpr std::size_t kTimingDepth = 4'000;  // 60 s of the control task
 constexpr int kHighestPriority = SafetyTask::kPriority;
 
+/// The signals that end the daemon in order: also the end of its terminal, unless nohup(1) asked to
+/// survive that.
 sigset_t BlockEndSignals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  struct sigaction hang_up{};
+  const bool survives = sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler == SIG_IGN;
+  if (!survives) sigaddset(&signals, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread started later
   return signals;
 }
@@ -170,6 +175,7 @@ DaemonResult Daemon::Run() {
   }
   const sigset_t signals = BlockEndSignals();
   PrepareHost();
+  journal_.Start();
   for (Task* task : stack().tasks()) {
     executor_.Add(*task, task == &stack().control() ? &timing_ : nullptr);
   }
@@ -212,6 +218,9 @@ void Daemon::ReportThreads() {
 
 }  // namespace
 
-DaemonResult RunDaemon(const DaemonOptions& options) { return Daemon(options).Run(); }
+DaemonResult RunDaemon(const DaemonOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // the reader of stderr may go away; the loop goes on
+  return Daemon(options).Run();
+}
 
 }  // namespace flexarm

@@ -26,8 +26,9 @@ struct DaemonResult {
   std::int64_t log_errors = 0;
 };
 
-/// Runs the daemon until its experiment or its time ends, or SIGTERM or SIGINT arrives. Then it
-/// brings the arm to rest, disarms, closes the log and returns. Blocks those signals.
+/// Runs the daemon until its experiment or its time ends, or SIGTERM, SIGINT or SIGHUP arrives.
+/// Then it brings the arm to rest, disarms, closes the log and returns. Blocks those signals and
+/// ignores SIGPIPE; SIGHUP has no effect if it was ignored before, as under nohup(1).
 /// @throws RejectedError, RealtimeRejectedError, HalError, std::runtime_error before any motion
 DaemonResult RunDaemon(const DaemonOptions& options);
 

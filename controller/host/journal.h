@@ -2,17 +2,27 @@
 
 #include <string>
 
+#include "controller/host/journal_queue.h"
+
 namespace flexarm {
 
-/// The daemon's text log: to the journal when stderr is connected to it, else to stderr. Only for
-/// the recorder and operator threads and start-up: a line takes a lock and may block.
+/// The daemon's text log: to the journal when stderr is connected to it, else to stderr. A thread
+/// of its own writes the lines: a log that is blocked or closed never delays who reports one.
+/// Not real-time safe. Thread: lines any ordinary one, the rest one.
 class Journal {
  public:
   Journal();
 
-  void Info(const std::string& text);
-  void Error(const std::string& text);
-  void Report(bool is_error, const std::string& text) { is_error ? Error(text) : Info(text); }
+  /// Starts to write; lines reported before are kept until then. Call once the memory of the
+  /// process is prepared (PrepareRealtime) and the signals are blocked, which the thread inherits.
+  void Start() { queue_.Start(); }
+
+  void Info(const std::string& text) { Report(false, text); }
+  void Error(const std::string& text) { Report(true, text); }
+  void Report(bool is_error, const std::string& text);
+
+ private:
+  JournalQueue queue_;
 };
 
 }  // namespace flexarm

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The daemon as a process: real time, socket, signals, kill."""
 
+import contextlib
 import json
 import os
 import shutil
@@ -200,6 +201,57 @@ class Daemon(ProgramTest):
                                              "--calibration", self.folder / "none.json"), "none.json")
         self.assert_refused(self.run_program("flexarm", "replay", run, "--calibration", brought),
                             "--calibration")
+
+    def operate_until_the_end(self, daemon):
+        """Whatever became of stderr, the operator can see, move and stop the arm, and end it all."""
+        self.wait_for_state("Idle")
+        time.sleep(0.8)
+        self.operate("arm")
+        self.operate("run", self.experiment(LONG))
+        self.wait_for_state("Running")
+        self.operate("stop")
+        self.wait_for_state("Armed")
+        self.operate("run", self.experiment(LONG))
+        self.wait_for_state("Running")
+        daemon.send_signal(signal.SIGTERM)
+        self.assertEqual(daemon.wait(timeout=20), 0)
+        for run in (self.folder / "runs").glob("*.flexarm"):
+            self.assertIs(self.flexarm_json("info", run)["closed"], True)
+
+    @in_real_time
+    def test_a_full_pipe_that_is_never_read_delays_nothing(self):
+        unread, stderr = os.pipe()
+        try:
+            os.set_blocking(stderr, False)
+            with contextlib.suppress(BlockingIOError):
+                while True:
+                    os.write(stderr, b"x" * 4096)
+            os.set_blocking(stderr, True)
+            self.operate_until_the_end(self.start_daemon(stderr=stderr))
+        finally:
+            os.close(unread)
+            os.close(stderr)
+
+    @in_real_time
+    def test_the_daemon_survives_the_reader_of_its_messages(self):
+        reader, stderr = os.pipe()
+        daemon = self.start_daemon(stderr=stderr)
+        os.close(stderr)
+        os.close(reader)
+        self.operate_until_the_end(daemon)
+
+    @in_real_time
+    def test_a_hang_up_ends_in_a_stop_unless_nohup_was_given(self):
+        for before, ends in ((["nohup"], False), ([], True)):
+            daemon = self.start_daemon(before=before)
+            self.wait_for_state("Idle")
+            daemon.send_signal(signal.SIGHUP)
+            if ends:
+                self.assertEqual(daemon.wait(timeout=20), 0, self.daemon_log())
+            else:
+                with self.assertRaises(subprocess.TimeoutExpired):
+                    daemon.wait(timeout=1)
+                self.end_daemons()
 
     @in_real_time
     def test_a_term_signal_ends_in_a_safe_logged_stop(self):

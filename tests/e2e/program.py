@@ -152,14 +152,15 @@ class ProgramTest(unittest.TestCase):
         file.write_text(text, encoding="utf-8")
         return file
 
-    def start_daemon(self, *arguments):
-        """Starts the daemon with its own log folder and socket; the end of the test kills it."""
+    def start_daemon(self, *arguments, stderr=None, before=()):
+        """Starts the daemon with its own log folder and socket; the end of the test kills it. Its
+        stderr is daemon.log unless `stderr` is given; `before` is a command that starts it."""
         options = [] if realtime_permitted() else ["--without-realtime"]
         with open(self.folder / "daemon.log", "w", encoding="utf-8") as log:
             daemon = subprocess.Popen(
-                [BIN / "flexarmd", "--config", HIL, "--log-dir", self.folder / "runs",
+                [*before, BIN / "flexarmd", "--config", HIL, "--log-dir", self.folder / "runs",
                  "--socket", self.folder / "socket", *options, *map(str, arguments)],
-                cwd=self.folder, stdout=log, stderr=log)
+                cwd=self.folder, stdout=log, stderr=log if stderr is None else stderr)
 
         self.daemons.append(daemon)
         return daemon
