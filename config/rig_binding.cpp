@@ -232,9 +232,7 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   safety.Read("permit_timeout_ms", &out->permit_timeout_ms);
   safety.Read("missed_deadlines_to_trip", &out->missed_deadlines_to_trip);
   safety.Read("homing_contact_s", &out->homing_contact_s);
-  if (safety.Has("homing_torque_fraction")) {
-    safety.Read("homing_torque_fraction", &out->homing_torque_fraction);
-  }
+  safety.Read("homing_torque_fraction", &out->homing_torque_fraction);
 }
 
 void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {

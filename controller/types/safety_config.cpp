@@ -30,8 +30,8 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
                  "at rest both root strain rates are below this");
   list->Within("safety.rest_time_s", c.rest_time_s, 0.05, 10.0,
                "the duration of rest; an oscillation is slow at its turning points");
-  list->Within("safety.stop_timeout_s", c.stop_timeout_s, 0.1, 60.0,
-               "Stopping for longer than this trips");
+  list->Within("safety.stop_timeout_s", c.stop_timeout_s, 0.1, 10.0,
+               "Stopping for longer than this trips; the service ends within 15 s");
   list->Within("safety.permit_timeout_ms", c.permit_timeout_ms, 2.0, 20.0,
                "the permit is renewed every 1 ms; an older one means zero torque");
   list->Within("safety.missed_deadlines_to_trip", c.missed_deadlines_to_trip, 1, 10,

@@ -50,6 +50,8 @@ const BrokenText kContradiction[] = {
      "safety.rest_hub_rate_rad_s", "limits.hub_rate_rad_s[0]", "rest_hub_rate_rad_s"},
     {"StopShorterThanRest", "stop_timeout_s = 3.0", "stop_timeout_s = 0.5", "safety.stop_timeout_s",
      "safety.rest_time_s = 0.5"},
+    {"StopLongerThanTheServiceMayTake", "stop_timeout_s = 3.0", "stop_timeout_s = 12.0",
+     "safety.stop_timeout_s", "the service ends within 15 s"},
     {"TorqueBelowFriction", "torque_limit_nm = [30.0, 6.0]", "torque_limit_nm = [0.16, 6.0]",
      "limits.torque_limit_nm[0]", "joint1.coulomb_friction_nm = 0.16"},
     {"StrainTripAboveFullScale", "strain_limit = [1.9e-3, 1.9e-3]", "strain_limit = [1.9e-3, 2e-3]",
