@@ -75,13 +75,17 @@ RealtimeHost ReadRealtimeHost(int fifo_priority) {
           .kernel_version = named ? kernel.version : ""};
 }
 
+bool IsPreemptRt(const RealtimeHost& host) {
+  return host.kernel_version.find("PREEMPT_RT") != std::string::npos ||
+         host.kernel_version.find("PREEMPT RT") != std::string::npos;  // before Linux 5.4
+}
+
 std::vector<std::string> RealtimeFindings(const RealtimeHost& host) {
   std::vector<std::string> findings;
-  const bool preempt_rt = host.kernel_version.find("PREEMPT_RT") != std::string::npos ||
-                          host.kernel_version.find("PREEMPT RT") != std::string::npos;
-  findings.push_back(
-      "kernel: " + (host.kernel_version.empty() ? "unknown" : host.kernel_version) +
-      (preempt_rt ? " (PREEMPT_RT)" : " (not PREEMPT_RT: wake-ups may be late by milliseconds)"));
+  findings.push_back("kernel: " + (host.kernel_version.empty() ? "unknown" : host.kernel_version) +
+                     (IsPreemptRt(host)
+                          ? " (PREEMPT_RT)"
+                          : " (not PREEMPT_RT: wake-ups may be late by milliseconds)"));
   findings.push_back(host.fifo_error == 0 ? "SCHED_FIFO priority " +
                                                 std::to_string(host.fifo_priority) + ": permitted"
                                           : FifoRefusal(host));

@@ -30,6 +30,9 @@ class RealtimeRejectedError : public std::runtime_error {
 /// Starts and joins one SCHED_FIFO thread of `fifo_priority` to test whether it is permitted.
 RealtimeHost ReadRealtimeHost(int fifo_priority);
 
+/// True if the kernel says that it is PREEMPT_RT.
+bool IsPreemptRt(const RealtimeHost& host);
+
 /// One line per finding, good and bad, for the log. Never throws RealtimeRejectedError.
 std::vector<std::string> RealtimeFindings(const RealtimeHost& host);
 

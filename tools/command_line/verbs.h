@@ -27,6 +27,7 @@ void RegisterAnalyzeParametric(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
 void RegisterBenchmark(CLI::App& app, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);
+void RegisterCheckHost(CLI::App& app, Exit& exit);
 void RegisterCommission(CLI::App& app, Exit& exit);  ///< tare, zero, calibrate, pluck, home
 void RegisterConfig(CLI::App& app, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);

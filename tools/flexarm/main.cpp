@@ -21,6 +21,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterPlot(app, exit);
   RegisterExport(app, exit);
   RegisterCheck(app, exit);
+  RegisterCheckHost(app, exit);
   RegisterDiff(app, exit);
   RegisterOperate(app, exit);
   RegisterCommission(app, exit);

@@ -45,7 +45,7 @@ LAYERS = {
                                 "controller/types controller/runlog controller/tasks",
     "controller/operator": "model hal estimator controller/realtime controller/types "
                            "controller/runlog controller/tasks controller/commissioning",
-    "controller/host": "hal/wired controller/realtime controller/types "
+    "controller/host": "hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/operator",
     "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/types controller/runlog",

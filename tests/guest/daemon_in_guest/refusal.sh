@@ -51,6 +51,30 @@ plain 0 65536 --run-for 1 --without-realtime
 check "with --without-realtime it runs" equal $status 0
 check "and reports the consequences" says 'ordinary scheduling, unlocked memory'
 
+# What flexarm check-host says of one check: found CHECK KEY
+found() { jq -r ".checks[] | select(.name == \"$1\") | .$2" host.json; }
+judge() {  # judge RTPRIO MEMLOCK_BYTES: as a plain user
+  status=0
+  prlimit --rtprio="$1" --memlock="$2" setpriv --reuid=stranger --regid=nogroup --clear-groups \
+    flexarm check-host --json >host.json || status=$?
+}
+
+echo "== check-host"
+judge 0 65536
+jq -r '.checks[] | [.ok, .name, .value] | @tsv' host.json
+check "a plain user is not ready" equal "$status $(jq -r .verdict host.json)" "1 not-ready"
+check "the kernel is PREEMPT_RT" equal "$(found preempt-rt ok)" true
+check "the priority is missing" equal "$(found fifo-priority ok)" false
+check "with its limit" equal "$(found fifo-priority value | grep -o 'RLIMIT_RTPRIO is 0')" \
+  'RLIMIT_RTPRIO is 0'
+check "and its remedy" equal "$(found fifo-priority remedy | grep -o LimitRTPRIO)" LimitRTPRIO
+check "the memory is missing" equal "$(found memory-lock value)" '65536 bytes'
+judge 95 unlimited
+check "with both limits they are there" equal \
+  "$(found fifo-priority ok) $(found memory-lock ok)" "true true"
+check "the emulated machine's clock is named" equal "$(found clock-source value)" \
+  "$(cat /sys/devices/system/clocksource/clocksource0/current_clocksource)"
+
 echo "== the service without its limits"
 mkdir -p /run/systemd/system/flexarmd.service.d
 printf '[Service]\nLimitRTPRIO=0\nLimitMEMLOCK=64K\n' \
