@@ -30,7 +30,9 @@ PlanSchedule PlanScheduleOf(const RigConfig& config);
 /// and every loop has a bound. Large: 2 MB.
 class PlannerTask final : public Task {
  public:
-  static constexpr int kPriority = 50;
+  /// Below 50, at which the kernel runs the threads of interrupts: a plan takes milliseconds, which
+  /// the answers of a bus cannot wait.
+  static constexpr int kPriority = 45;
 
   /// @param config  with [controller.payload] and [controller.plan]
   /// @param design  with `scheduled` and its start_gains
