@@ -229,6 +229,7 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   safety.Read("rest_strain_rate_per_s", &out->rest_strain_rate_per_s);
   safety.Read("rest_time_s", &out->rest_time_s);
   safety.Read("stop_timeout_s", &out->stop_timeout_s);
+  safety.Read("fault_stop_s", &out->fault_stop_s);
   safety.Read("permit_timeout_ms", &out->permit_timeout_ms);
   safety.Read("missed_deadlines_to_trip", &out->missed_deadlines_to_trip);
   safety.Read("homing_contact_s", &out->homing_contact_s);

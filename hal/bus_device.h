@@ -67,6 +67,10 @@ class BusDevice {
   /// Bit i: the drive of joint i + 1 is on this bus.
   virtual std::uint32_t drives() const noexcept { return 0; }
 
+  /// Bit i: the drive of joint i + 1 has confirmed that it makes torque when commanded; by the last
+  /// exchange. A drive that reports nothing is on while it is commanded.
+  virtual std::uint32_t drives_on() const noexcept { return 0; }
+
   /// The digital inputs that an exchange reads; the other levels of its frame are 0.
   virtual LineLevels lines() const noexcept { return 0; }
 

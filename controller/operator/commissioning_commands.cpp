@@ -55,7 +55,7 @@ std::optional<ClientAnswer> CommissioningCommands::Answered(const RequestAnswer&
 
 ClientAnswer CommissioningCommands::Finish(nlohmann::json answer, const Permit& permit) {
   answer["state"] = ToString(permit.state);
-  if (permit.state == SafetyState::kTripped) answer["trip"] = ToString(permit.cause);
+  if (CauseLatched(permit.state)) answer["trip"] = ToString(permit.cause);
   targets_.stack->Calibrate(commissioner_.calibration());
   targets_.report(!answer.value("ok", false), EndLine(answer));
   return {.client = client_, .json = std::move(answer)};

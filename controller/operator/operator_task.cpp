@@ -76,7 +76,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
 
 void OperatorTask::FollowState() {
   now_.permit = context_.stack->operator_permits().Read().At(now_.now_ns - 1).value;
-  if (now_.permit.state == SafetyState::kTripped) {
+  if (CauseLatched(now_.permit.state)) {
     trip_.store(now_.permit.cause, std::memory_order_relaxed);
   }
   state_journal_.Follow(now_.now_ns, now_.permit);

@@ -16,7 +16,7 @@ void Shutdown::Begin(std::int64_t now_ns, std::int64_t end_ns) noexcept {
 
 void Shutdown::Update(std::int64_t now_ns, SafetyState state) noexcept {
   const bool late = now_ns - begun_ns_ > limit_ns_;
-  if (Powered(state) && !late) return;
+  if (RelayClosed(state) && !late) return;
   if (end_ns_ == INT64_MAX) end_ns_ = now_ns + kSettleNs;
   over_ = now_ns >= end_ns_;
 }

@@ -12,7 +12,7 @@ StateJournal::StateJournal(const LoopStack* stack, const SensorConfig* sensors, 
 
 void StateJournal::Follow(std::int64_t now_ns, const Permit& permit) {
   if (permit.state == state_) return;
-  const bool tripped = permit.state == SafetyState::kTripped;
+  const bool tripped = CauseLatched(permit.state) && !CauseLatched(state_);
   std::string text = std::string(ToString(state_)) + " -> " + ToString(permit.state);
   state_ = permit.state;
   if (tripped) {

@@ -25,7 +25,7 @@ nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
 
 nlohmann::json TripJson(const StatusSources& sources) {
   const Permit& permit = sources.now->permit;
-  if (permit.state != SafetyState::kTripped) return nullptr;
+  if (!CauseLatched(permit.state)) return nullptr;
   const Evidence& evidence = permit.evidence;
   return {{"name", ToString(permit.cause)},
           {"number", static_cast<int>(permit.cause)},

@@ -39,6 +39,9 @@ OperatorRequest UnattendedRun::NextRequest(std::int64_t due_ns, const Permit& pe
         if (!ran_) return Ask(RequestKind::kRun, soon_ns);
         progress_ = Progress::kDisarming;
         return Ask(RequestKind::kDisarm, soon_ns);
+      case SafetyState::kFaultStopping:
+      case SafetyState::kDisarming:
+        break;  // ends by itself
       case SafetyState::kRunning:
       case SafetyState::kStopping:
         progress_ = Progress::kRunning;

@@ -121,8 +121,7 @@ std::string RunRecording::ResultJson() const {
 
 void RunRecording::WriteEventsOf(const SafetyRecord& record) {
   if (record.facts.request != RequestKind::kNone) sink_->Event(RequestEvent(record));
-  const bool trips =
-      record.after.state == SafetyState::kTripped && record.before.state != SafetyState::kTripped;
+  const bool trips = CauseLatched(record.after.state) && !CauseLatched(record.before.state);
   if (!trips) return;
   sink_->Event(TripEvent(record));
   trip_ = record.after.cause;

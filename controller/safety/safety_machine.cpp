@@ -6,10 +6,12 @@ namespace {
 const char* WrongStateText(RequestKind request, SafetyState state) noexcept {
   using enum SafetyState;
   if (state == kStarting) return "The daemon is still starting. Try again in a moment.";
-  if (state == kTripped && request != RequestKind::kReset) {
+  if (CauseLatched(state) && request != RequestKind::kReset) {
     return "The arm has tripped. Remove the cause, press the reset button, then run `flexarm "
            "reset`.";
   }
+  if (state == kFaultStopping) return "The arm is being stopped. Try again in a second.";
+  if (state == kDisarming) return "The arm is being disarmed. Try again in a moment.";
   switch (request) {
     case RequestKind::kNone:
       break;
@@ -71,6 +73,8 @@ const char* ToString(Refusal refusal) noexcept {
       return "busy";
     case Refusal::kShuttingDown:
       return "shutting-down";
+    case Refusal::kDrivesOff:
+      return "drives-off";
   }
   return "corrupted";
 }
@@ -97,6 +101,10 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
       return "Another arm, run or reset has not been answered yet. Repeat the request.";
     case Refusal::kShuttingDown:
       return "The daemon is shutting down. Start it again first.";
+    case Refusal::kDrivesOff:
+      return "The drives have not confirmed that they are on. Check their supply and their "
+             "display, "
+             "then repeat the request.";
   }
   return "Unknown reason of refusal.";
 }

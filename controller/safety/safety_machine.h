@@ -18,15 +18,19 @@ struct SafetyFacts {
   std::uint8_t all_reported;     ///< every task has reported once
   std::uint8_t at_rest;          ///< a fresh report of the loop says that the arm is at rest
   std::uint8_t experiment_done;  ///< the reference of this run has ended
-  std::uint8_t stop_expired;     ///< Stopping has lasted longer than permitted
+  std::uint8_t stop_expired;     ///< Stopping, FaultStopping, Disarming: longer than permitted
   std::uint8_t reset_pressed;    ///< the reset button was pressed after the trip
   RequestKind request;           ///< request of the operator in this tick
   std::uint8_t shutting_down;    ///< the daemon ends: the arm is stopped and disarmed
-  std::uint8_t reserved;         ///< zero
+  std::uint8_t may_damp;    ///< fresh, valid sensors and healthy drives, and no cause beyond those
+                            ///< with which FaultStopping began
+  std::uint8_t drives_on;   ///< every drive has confirmed that it is enabled
+  std::uint8_t drives_off;  ///< every drive has confirmed, in this state, that it is disabled
+  std::array<std::uint8_t, 6> reserved;  ///< zero
 };
 static_assert(std::has_unique_object_representations_v<SafetyFacts>, "no padding: it is logged");
 
-/// State of the safety state machine. `cause` is kNone except in Tripped.
+/// State of the safety state machine. `cause` is kNone except in FaultStopping and Tripped.
 struct SafetyStatus {
   SafetyState state;
   TripCause cause;
@@ -52,10 +56,13 @@ constexpr TripCause LowestCause(TripCauses causes) noexcept {
 
 /// Safety state machine: a pure function of status and facts. No clock, no I/O, no memory.
 ///
-/// A cause that is present trips from every state. Tripped is left only towards Idle, by the
-/// operator's reset after the physical reset button, at rest, with no cause present. Torque becomes
-/// possible only by `run` from Armed. While the daemon shuts down nothing starts, and the arm is
-/// stopped and disarmed. At most one transition per tick. Real-time: safe.
+/// A cause that is present latches from every state: it trips, or, if all present are of stop
+/// category 1 and the arm may be damped, FaultStopping goes before Tripped. Tripped is left only
+/// towards Idle, by the operator's reset after the physical reset button, at rest, with no cause
+/// present. Torque becomes possible only by `run` from Armed, with the drives on. Armed is left
+/// through Disarming, in which the drives are switched off before the relay opens. While the daemon
+/// shuts down nothing starts, and the arm is stopped and disarmed. At most one transition per tick.
+/// Real-time: safe.
 constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts& facts) noexcept {
   using enum SafetyState;
   const RequestKind request = facts.request;
@@ -65,17 +72,18 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
     return SafetyDecision{{state, TripCause::kNone}, refusal};
   };
 
-  if (status.state > kTripped) {  // a corrupted byte
+  if (static_cast<int>(status.state) >= kSafetyStates) {  // a corrupted byte
     const TripCause cause =
         facts.present != 0 ? LowestCause(facts.present) : TripCause::kStateNotFinite;
     return {{kTripped, cause}, not_here};
   }
 
+  // Latched: the first cause is kept until the reset.
+  const bool known =
+      status.cause != TripCause::kNone && static_cast<int>(status.cause) < kTripCauses;
+  const SafetyStatus latched{kTripped, known ? status.cause : TripCause::kStateNotFinite};
+
   if (status.state == kTripped) {
-    // Latched: the first cause is kept until the reset.
-    const bool known =
-        status.cause != TripCause::kNone && static_cast<int>(status.cause) < kTripCauses;
-    const SafetyStatus latched{kTripped, known ? status.cause : TripCause::kStateNotFinite};
     if (request != RequestKind::kReset) return {latched, not_here};
     if (facts.present != 0) return {latched, Refusal::kCauseRemains};
     if (facts.all_reported == 0) return {latched, Refusal::kUnhealthy};
@@ -84,8 +92,16 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
     return go(kIdle, Refusal::kNone);
   }
 
+  if (status.state == kFaultStopping) {
+    const bool further = (facts.present & ~kCategory1Causes) != 0;
+    const bool ends =
+        !known || further || facts.may_damp == 0 || facts.at_rest != 0 || facts.stop_expired != 0;
+    return {{ends ? kTripped : kFaultStopping, latched.cause}, not_here};
+  }
+
   if (facts.present != 0) {
-    return {{kTripped, LowestCause(facts.present)},
+    const bool damped = TorqueAllowed(status.state) && Damped(facts.present, facts.may_damp != 0);
+    return {{damped ? kFaultStopping : kTripped, LowestCause(facts.present)},
             request == RequestKind::kNone ? Refusal::kNone : Refusal::kUnhealthy};
   }
 
@@ -99,11 +115,12 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       if (facts.at_rest == 0) return go(kIdle, Refusal::kNotAtRest);
       return go(kArmed, Refusal::kNone);
     case kArmed:
-      if (request == RequestKind::kDisarm) return go(kIdle, Refusal::kNone);
+      if (request == RequestKind::kDisarm) return go(kDisarming, Refusal::kNone);
       if (shutting_down) {
-        return go(kIdle, request == RequestKind::kRun ? Refusal::kShuttingDown : not_here);
+        return go(kDisarming, request == RequestKind::kRun ? Refusal::kShuttingDown : not_here);
       }
-      return request == RequestKind::kRun ? go(kRunning, Refusal::kNone) : go(kArmed, not_here);
+      if (request != RequestKind::kRun) return go(kArmed, not_here);
+      return facts.drives_on != 0 ? go(kRunning, Refusal::kNone) : go(kArmed, Refusal::kDrivesOff);
     case kRunning: {
       if (request == RequestKind::kStop) return go(kStopping, Refusal::kNone);
       const bool ends = facts.experiment_done != 0 || shutting_down;
@@ -115,6 +132,12 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       if (facts.stop_expired != 0) return {{kTripped, TripCause::kStopTimeout}, refusal};
       return go(kStopping, refusal);
     }
+    case kDisarming: {
+      const bool off = facts.drives_off != 0 || facts.stop_expired != 0;
+      return go(off ? kIdle : kDisarming,
+                request == RequestKind::kDisarm ? Refusal::kNone : not_here);
+    }
+    case kFaultStopping:
     case kTripped:
       break;  // handled above
   }

@@ -40,6 +40,7 @@ bool DriveReported(const SafetyInputs& in) noexcept { return in.drive.due_ns != 
 MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop) {
   return {.heartbeat_timeout_ns = std::llround(2e6 * loop.period_ms),
           .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
+          .fault_stop_ns = std::llround(1e9 * safety.fault_stop_s),
           .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,
           .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s)};
 }
@@ -53,6 +54,25 @@ bool SafetyMonitor::HomingContact(const SafetyInputs& in) noexcept {
   if ((~in.levels & in.may_open) == 0) return false;
   contact_ns_ += in.due_ns - since_ns;  // a tick that is late counts for the time since the last
   return contact_ns_ <= limits_.homing_contact_ns;
+}
+
+std::int64_t SafetyMonitor::StateLimitNs(SafetyState state) const noexcept {
+  if (state == SafetyState::kStopping) return limits_.stop_timeout_ns;
+  if (state == SafetyState::kFaultStopping) return limits_.fault_stop_ns;
+  return state == SafetyState::kDisarming ? kDisarmNs : INT64_MAX;
+}
+
+bool SafetyMonitor::MayDamp(const SafetyInputs& in, TripCauses present,
+                            bool control_alive) noexcept {
+  const TripCauses before = std::exchange(present_before_, present);
+  if (in.state != SafetyState::kFaultStopping) {
+    fault_causes_ = 0;
+  } else if (fault_causes_ == 0) {
+    fault_causes_ = before;
+  }
+  const bool further = fault_causes_ != 0 && (present & ~fault_causes_) != 0;
+  return limits_.fault_stop_ns > 0 && control_alive && in.control.may_damp &&
+         in.drive.power == DrivePower::kOn && !further;
 }
 
 SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
@@ -86,14 +106,19 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
   all_reported_ = all_reported_ || (ControlReported(in) && DriveReported(in));
   facts.all_reported = Flag(all_reported_);
   // A report from before the stop must not end Stopping.
-  const bool heard_here =
-      in.state != SafetyState::kStopping || in.control.due_ns > in.state_since_ns;
+  const bool stops = in.state == SafetyState::kStopping || in.state == SafetyState::kFaultStopping;
+  const bool heard_here = !stops || in.control.due_ns > in.state_since_ns;
   facts.at_rest = Flag(control_alive && in.control.at_rest && heard_here);
   facts.experiment_done =
       Flag(control_alive && in.control.experiment_done && in.state == SafetyState::kRunning &&
            in.control.due_ns > in.running_since_ns);
-  facts.stop_expired = Flag(in.state == SafetyState::kStopping &&
-                            AgeNs(in.due_ns, in.state_since_ns) > limits_.stop_timeout_ns);
+  const std::int64_t limit_ns = StateLimitNs(in.state);
+  facts.stop_expired =
+      Flag(limit_ns != INT64_MAX && AgeNs(in.due_ns, in.state_since_ns) > limit_ns);
+  facts.may_damp = Flag(MayDamp(in, facts.present, control_alive));
+  facts.drives_on = Flag(in.drive.power == DrivePower::kOn);
+  facts.drives_off =
+      Flag(in.drive.power == DrivePower::kOff && in.drive.due_ns > in.state_since_ns);
 
   const bool button_down = (in.levels & LineBit(Line::kResetButton)) != 0;
   const bool pressed_now = button_down && !button_was_down_;

@@ -15,6 +15,7 @@ struct LoopConfig;
 struct MonitorLimits {
   std::int64_t heartbeat_timeout_ns;  ///< two control periods, for control and drive side
   std::int64_t stop_timeout_ns;       ///< safety.stop_timeout_s
+  std::int64_t fault_stop_ns;         ///< safety.fault_stop_s
   int missed_deadlines_to_trip;       ///< safety.missed_deadlines_to_trip
   std::int64_t homing_contact_ns;     ///< how long a homing run may be on its switch in all
 };
@@ -52,16 +53,21 @@ struct SafetyInputs {
 
 /// Safety monitor: derives the inputs of the safety state machine from line levels and task
 /// reports, with all checks of time, levels and freshness. Its only memory is the reset button, the
-/// first reports, and how long homing has been on its switch. Reads no clock.
+/// first reports, the causes with which FaultStopping began, and how long homing has been on its
+/// switch. Reads no clock.
 ///
 /// A report counts only while its sender is alive; no cause is derived from a task before its first
-/// report. While Stopping, `at_rest` counts only from a step that was due after the stop, and
+/// report. While Stopping or FaultStopping, `at_rest` counts only from a step that was due after
+/// the stop, `drives_off` only from a report of the state at hand, and
 /// `experiment_done` only from a step that was due after the run began, so the last run cannot end
 /// the next one. The switch that a homing run searches for may open while that run is Running, for
 /// a bounded time in all: a switch that bounces gains none. The other switches trip as always.
 /// Real-time: safe.  Thread: safety.
 class SafetyMonitor {
  public:
+  /// Disarming waits so long for the drives to confirm that they are off.
+  static constexpr std::int64_t kDisarmNs = 100'000'000;
+
   explicit SafetyMonitor(const MonitorLimits& limits) noexcept : limits_(limits) {}
 
   /// Once per tick, in order of time.
@@ -74,10 +80,15 @@ class SafetyMonitor {
  private:
   /// True while homing is on the switch that it searches for, within the permitted time.
   bool HomingContact(const SafetyInputs& in) noexcept;
+  /// Longest time in the present state; INT64_MAX: without limit.
+  std::int64_t StateLimitNs(SafetyState state) const noexcept;
+  bool MayDamp(const SafetyInputs& in, TripCauses present, bool control_alive) noexcept;
 
   MonitorLimits limits_;
-  std::int64_t contact_ns_ = 0;  // of the present homing run
-  std::int64_t looked_ns_ = 0;   // the tick before
+  std::int64_t contact_ns_ = 0;    // of the present homing run
+  std::int64_t looked_ns_ = 0;     // the tick before
+  TripCauses present_before_ = 0;  // the tick before
+  TripCauses fault_causes_ = 0;    // those with which FaultStopping began
   bool all_reported_ = false;
   bool button_was_down_ = true;  // a button that is down from the start does not count
   bool reset_pressed_ = false;

@@ -16,7 +16,7 @@ namespace flexarm {
 struct SafetyRecord {
   std::int64_t due_ns;  ///< safety tick
   SafetyFacts facts;
-  Evidence evidence;             ///< of `after.cause`, written with the trip; else zero
+  Evidence evidence;             ///< of `after.cause`, written when it latches; else zero
   std::uint32_t request_number;  ///< of facts.request
   SafetyStatus before;
   SafetyStatus after;
@@ -24,6 +24,6 @@ struct SafetyRecord {
   std::array<std::uint8_t, 7> reserved;  ///< zero
 };
 static_assert(std::is_trivially_copyable_v<SafetyRecord>);
-static_assert(sizeof(SafetyRecord) == 64, "no padding: the bytes are logged");
+static_assert(sizeof(SafetyRecord) == 72, "no padding: the bytes are logged");
 
 }  // namespace flexarm

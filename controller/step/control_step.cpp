@@ -42,6 +42,7 @@ void Store(const FaultDetection::Verdict& verdict, StepOutput* out) noexcept {
   out->fault_limit = verdict.limit;
   out->fault_channel = verdict.channel;
   out->at_rest = verdict.at_rest ? 1 : 0;
+  out->may_damp = verdict.may_damp ? 1 : 0;
 }
 
 }  // namespace
@@ -191,9 +192,11 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   out.tick = input.tick;
   out.lyapunov_nm2 = std::numeric_limits<double>::quiet_NaN();
   Store(verdict, &out);
-  if (TorqueAllowed(input.safety_state) && verdict.faults == 0) {
+  // Stop category 1: damped from the sample on in which the cause is seen.
+  const bool damps = Damped(verdict.faults, verdict.may_damp);
+  if (TorqueAllowed(input.safety_state) && (verdict.faults == 0 || damps)) {
     const bool sensors_good = modes.valid[0] && modes.valid[1] && (counters.good & 3u) == 3u;
-    const LawOutput decision = Decide(input, x_next, sensors_good);
+    const LawOutput decision = damps ? Stop(input, x_next) : Decide(input, x_next, sensors_good);
     out.torque_nm = decision.torque_nm;
     out.limits = decision.limits;
     out.lyapunov_nm2 = decision.lyapunov_nm2;

@@ -65,6 +65,7 @@ FaultDetection::Verdict FaultDetection::Judge(const LoopFacts& facts) noexcept {
   JudgeStrain(facts);
   JudgeEstimate(facts);
   verdict_.at_rest = JudgeRest(facts);
+  verdict_.may_damp = MayDamp(facts);
   return verdict_;
 }
 
@@ -134,6 +135,22 @@ void FaultDetection::JudgeEstimate(const LoopFacts& facts) noexcept {
   const bool judged = facts.mode != LoopMode::kOpenLoop;
   Raise(TripCause::kEstimatorResidual, judged && worst > estimator_.innovation_limit_rad,
         estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2);
+}
+
+// Each comparison is false for NaN. The pluck test (kOpenLoop) has no torque but its own.
+bool FaultDetection::MayDamp(const LoopFacts& facts) const noexcept {
+  if (facts.mode == LoopMode::kOpenLoop || !facts.estimate->x.allFinite()) return false;
+  const Eigen::Index dof = facts.estimate->x.size() / 2;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double rate = std::fabs(facts.estimate->x(dof + static_cast<Eigen::Index>(i)));
+    const double strain = std::fabs(facts.modes->root_strain[i]);
+    const bool measured = facts.modes->valid[i] && (facts.counters->good >> i & 1U) != 0;
+    if (!measured || !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||
+        !(strain < kDampedTo * safety_.strain_limit[i])) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool FaultDetection::JudgeRest(const LoopFacts& facts) noexcept {

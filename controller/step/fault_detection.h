@@ -38,7 +38,12 @@ class FaultDetection {
     double value, limit;    ///< of the lowest fault
     std::uint16_t channel;  ///< 1-based; 0: none
     bool at_rest;           ///< hub and strain rates within their bounds for rest_time
+    bool may_damp;  ///< hubs and bending of both links are measured, and within kDampedTo limits
   };
+
+  /// After a cause of stop category 1 the arm is damped only while hub rates and strains stay below
+  /// this many times their limits. Beyond, damping does not work: a wrong sign, a broken link.
+  static constexpr double kDampedTo = 1.5;
 
   FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
                  std::uint32_t counters_present,
@@ -59,6 +64,7 @@ class FaultDetection {
   void JudgeStrain(const LoopFacts& facts) noexcept;
   void JudgeEstimate(const LoopFacts& facts) noexcept;
   bool JudgeRest(const LoopFacts& facts) noexcept;
+  bool MayDamp(const LoopFacts& facts) const noexcept;
   /// Counts the samples in a row with `present`, and raises `cause` from the `ticks`-th on.
   void Raise(TripCause cause, bool present, int ticks, double value, double limit,
              std::size_t channel) noexcept;

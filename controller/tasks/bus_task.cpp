@@ -44,7 +44,7 @@ void BusTask::Run(const Activation& activation) noexcept {
 
 void BusTask::Woken(std::int64_t now_ns) noexcept {
   const Permit& permit = channels_.permits->Read().Newest().value;
-  if (!enabled_ || Powered(permit.state)) return;
+  if (!enabled_ || DrivesEnabled(permit.state)) return;
   if (now_ns + kSoonNs >= next_due_ns_) return;  // the exchange switches them off
   enabled_ = false;
   gate_reasons_ |= kGateNotAllowed;
@@ -71,15 +71,24 @@ BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
            limits_);
   gate_reasons_ = device_->drives() != 0 ? gated.why : 0;
   for (std::size_t i = 0; i < 2; ++i) {
-    applied_nm_[i] = (device_->drives() >> i & 1u) != 0 ? gated.torque_nm[i] : 0.0;
+    // A drive that is still being enabled makes no torque, and the estimator is told none.
+    applied_nm_[i] = (device_->drives_on() >> i & 1u) != 0 ? gated.torque_nm[i] : 0.0;
   }
-  enabled_ = Powered(permit.state) && (gated.why & kGatePermitOld) == 0;
+  enabled_ = DrivesEnabled(permit.state) && (gated.why & kGatePermitOld) == 0;
   BusCommand out{.torque_nm = applied_nm_, .enabled = enabled_};
   if ((gated.why & kGateZeroed) == 0) {
     out.expires_ns = epoch_ns_ + std::min(permit.renewed_ns + limits_.permit_timeout_ns,
                                           command.from_ns + limits_.command_timeout_ns);
   }
   return out;
+}
+
+DrivePower BusTask::Power() const noexcept {
+  const std::uint32_t drives = device_->drives();
+  if (drives == 0) return DrivePower::kNone;
+  if (status_ != BusStatus::kOk) return DrivePower::kMixed;  // nothing was confirmed
+  const std::uint32_t on = device_->drives_on() & drives;
+  return on == 0 ? DrivePower::kOff : on == drives ? DrivePower::kOn : DrivePower::kMixed;
 }
 
 void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
@@ -109,7 +118,8 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
                  .fault = status_ == BusStatus::kOk ? BusFault{} : device_->FaultOf(status_),
                  .failed = failed_,
                  .recovered = recovered_,
-                 .levels = levels_});
+                 .levels = levels_,
+                 .power = Power()});
   channels_.reports->Publish(reports_);
   channels_.health->Publish(reports_);
 }

@@ -54,6 +54,7 @@ class BusTask final : public Task {
 
  private:
   BusCommand Command(std::int64_t due_ns) noexcept;
+  DrivePower Power() const noexcept;
   void Publish(std::int64_t due_ns, const SensorFrame& part) noexcept;
 
   BusDevice* device_;

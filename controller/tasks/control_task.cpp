@@ -55,7 +55,7 @@ FramePacket ControlTask::ReadFrames(std::int64_t sampled_ns) noexcept {
 }
 
 void ControlTask::FollowState(const Permit& permit) noexcept {
-  reset_ = reset_ || (Powered(permit.state) && !Powered(state_));
+  reset_ = reset_ || (DrivesEnabled(permit.state) && !DrivesEnabled(state_));
   if (permit.state == SafetyState::kRunning) {
     if (permit.run_number != run_number_) StartRun(permit);
     ++sample_;
@@ -168,7 +168,9 @@ void ControlTask::Publish(const Activation& activation, const StepInput& input,
   const std::int64_t published_ns = activation.due_ns + grid_.deadline_ns;
   const std::int64_t put_out_ns =
       input.sampling_instant_ns + grid_.period_ns + grid_.output_late_ns;
-  commands_.Push(output.faults != 0 ? published_ns : put_out_ns,
+  // A zero after a fault acts at once; damping torque is predicted for the usual instant.
+  const bool cut = output.faults != 0 && !Damped(output.faults, output.may_damp != 0);
+  commands_.Push(cut ? published_ns : put_out_ns,
                  {.torque_nm = output.torque_nm, .tick = output.tick});
   for (CommandChannel* channel : channels_.commands) channel->Publish(commands_);
   reports_.Push(published_ns, {.tick = output.tick,
@@ -180,7 +182,8 @@ void ControlTask::Publish(const Activation& activation, const StepInput& input,
                                             .detail = 0},
                                .at_rest = output.at_rest != 0,
                                .experiment_done = output.experiment_done != 0,
-                               .missed_in_a_row = activation.missed_in_a_row});
+                               .missed_in_a_row = activation.missed_in_a_row,
+                               .may_damp = output.may_damp != 0});
   channels_.reports->Publish(reports_);
 }
 

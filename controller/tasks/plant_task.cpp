@@ -48,14 +48,17 @@ void PlantTask::Run(const Activation& activation) noexcept {
   }
   if (frozen_) return;
   reports_.Push(activation.due_ns + kPeriodNs,
-                {.due_ns = activation.due_ns, .bus_ok = true, .drive_ok = true});
+                {.due_ns = activation.due_ns,
+                 .bus_ok = true,
+                 .drive_ok = true,
+                 .power = enabled_ ? DrivePower::kOn : DrivePower::kOff});
   channels_.reports->Publish(reports_);
 }
 
 void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
-  const bool enabled = Enabled(start_ns);
-  gate_reasons_ |= ApplyGate(start_ns, enabled, &drive_);
-  ApplyGate(start_ns, enabled, &reported_);
+  enabled_ = Enabled(start_ns);
+  gate_reasons_ |= ApplyGate(start_ns, &drive_);
+  ApplyGate(start_ns, &reported_);
   rig_.SetTorque(drive_.torque_nm);
   for (std::int64_t t = 0; t < kPeriodNs; t += rig_.step_ns()) rig_.Step();
   for (std::size_t i = 0; i < 2; ++i) applied_sum_nm_[i] += reported_.torque_nm[i];
@@ -64,7 +67,7 @@ void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
 
 // The slew limit applies from command to command: between two commands the drive holds its
 // set-point.
-std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept {
+std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, Drive* drive) noexcept {
   const std::int64_t acting_ns = start_ns - drive->delay_ns;
   const CommandHistory::Entry& command = channels_.commands->Read().At(acting_ns);
   const Permit& permit = channels_.permits->Read().At(start_ns).value;
@@ -78,7 +81,7 @@ std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, bool enabled, Drive* d
                                  .previous_nm = drive->torque_nm,
                                  .dt_s = fresh ? grid_.period_s() : 0.0},
                                 limits_);
-  drive->torque_nm = enabled ? gated.torque_nm : std::array<double, 2>{};
+  drive->torque_nm = enabled_ ? gated.torque_nm : std::array<double, 2>{};
   return gated.why;
 }
 
@@ -88,7 +91,9 @@ bool PlantTask::Enabled(std::int64_t start_ns) noexcept {
     pump_level_ = outputs.pump_level;
     pump_toggled_ns_ = start_ns;
   }
-  return outputs.relay_closed && AgeNs(start_ns, pump_toggled_ns_) <= SafetyLines::kPumpTimeoutNs;
+  const Permit& permit = channels_.permits->Read().At(start_ns).value;
+  return DrivesEnabled(permit.state) && outputs.relay_closed &&
+         AgeNs(start_ns, pump_toggled_ns_) <= SafetyLines::kPumpTimeoutNs;
 }
 
 void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {

@@ -73,7 +73,8 @@ class PlantTask final : public Task {
 
   void AdvanceSlice(std::int64_t start_ns) noexcept;
   /// @returns GateBits
-  std::uint32_t ApplyGate(std::int64_t start_ns, bool enabled, Drive* drive) noexcept;
+  std::uint32_t ApplyGate(std::int64_t start_ns, Drive* drive) noexcept;
+  /// The drives are enabled, and have power: relay and charge pump.
   bool Enabled(std::int64_t start_ns) noexcept;
   void HandleEvents(std::int64_t now_ns) noexcept;
   void FreezeControlTask() noexcept;
@@ -100,6 +101,7 @@ class PlantTask final : public Task {
   FramePacket packet_{};            // of the last sampling instant, until its readings are complete
   std::int64_t packet_ns_ = 0;
   bool packet_lost_ = false;
+  bool enabled_ = false;  // the drives, in the last slice
   bool pump_level_ = false;
   std::int64_t pump_toggled_ns_ = INT64_MIN;
   FrameHistory frames_{kNoFrame};

@@ -36,7 +36,7 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const DriveSide drive = ReadDrives(due_ns);
   const LineLevels levels =
       MergeRedundantLevels(channels_.lines->Read(due_ns), drive.report.levels);
-  const OperatorRequest request = TakeRequest(due_ns);
+  const OperatorRequest request = TakeRequest(due_ns, drive.report.power == DrivePower::kOn);
   const bool requested = request.kind != RequestKind::kNone;
 
   const SafetyInputs in{.due_ns = due_ns,
@@ -58,11 +58,11 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   Enter(decision.status, in, request);
   Drive(due_ns);
   Publish(due_ns, levels);
-  if (Powered(before.state) && !Powered(status_.state)) {
+  if (DrivesEnabled(before.state) && !DrivesEnabled(status_.state)) {
     for (Wakeup* wakeup : channels_.wakeups) wakeup->Wake();
   }
 
-  const bool tripped = status_ != before && status_.state == SafetyState::kTripped;
+  const bool tripped = CauseLatched(status_.state) && !CauseLatched(before.state);
   if (requested || !recorded_ || status_ != before || !SameFacts(facts, last_facts_)) {
     channels_.records->Push({.due_ns = due_ns,
                              .facts = facts,
@@ -107,6 +107,7 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
     side.report.bus_ok = side.report.bus_ok && report.bus_ok;
     side.report.drive_ok = side.report.drive_ok && report.drive_ok;
     side.report.levels = MergeRedundantLevels(side.report.levels, report.levels);
+    side.report.power = Joined(side.report.power, report.power);
     const std::int64_t alive_ns = history.Newest().value.due_ns;
     if (alive_ns < side.alive_ns) side.troubles.oldest_bus = bus;
     side.alive_ns = std::min(side.alive_ns, alive_ns);
@@ -114,7 +115,7 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
   return side;
 }
 
-OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns) noexcept {
+OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, bool drives_on) noexcept {
   while (waiting_count_ < kMaxWaiting && channels_.requests->Pop(&waiting_[waiting_count_])) {
     ++waiting_count_;
   }
@@ -124,8 +125,11 @@ OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns) noexcept {
   if (const std::uint32_t number = channels_.disarm->Take(); number != 0) {
     return {.kind = RequestKind::kDisarm, .number = number, .not_before_ns = due_ns};
   }
+  const bool enabling =
+      status_.state == SafetyState::kArmed && !drives_on && due_ns - state_since_ns_ <= kEnableNs;
   for (std::size_t i = 0; i < waiting_count_; ++i) {
     if (waiting_[i].not_before_ns > due_ns) continue;
+    if (enabling && waiting_[i].kind == RequestKind::kRun) continue;
     const OperatorRequest request = waiting_[i];
     --waiting_count_;
     for (std::size_t k = i; k < waiting_count_; ++k) waiting_[k] = waiting_[k + 1];
@@ -158,13 +162,16 @@ void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in,
       run_ = request.run;
     }
   }
-  evidence_ =
-      next.state == SafetyState::kTripped ? monitor_.EvidenceOf(next.cause, in) : Evidence{};
+  if (!CauseLatched(next.state)) {
+    evidence_ = {};
+  } else if (!CauseLatched(status_.state)) {
+    evidence_ = monitor_.EvidenceOf(next.cause, in);
+  }
   status_ = next;
 }
 
 void SafetyTask::Drive(std::int64_t due_ns) noexcept {
-  const bool closed = Powered(status_.state);
+  const bool closed = RelayClosed(status_.state);
   pump_level_ = closed && !pump_level_;
   channels_.lines->Write(due_ns, {.relay_closed = closed, .pump_level = pump_level_});
 }

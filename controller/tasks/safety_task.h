@@ -35,20 +35,22 @@ struct SafetyChannels {
 
 /// The safety task: 1 kHz, highest priority. Levels and reports in, relay and permit out.
 ///
-/// The relay is closed in Armed, Running and Stopping; the charge pump toggles every tick while it
-/// is closed. The permit is renewed every tick and valid from the tick's due instant. A permit
+/// The relay is closed in the states of RelayClosed; the charge pump toggles every tick while it is
+/// closed. The permit is renewed every tick and valid from the tick's due instant. A permit
 /// published at the due instant of another task may not be visible to it yet: a task that must
 /// agree with the lock-step run reads the permit before, At(due - 1).
 ///
 /// One request is judged per tick: a latched stop or disarm, else the first in order of arrival of
-/// those whose `not_before_ns` has passed. A stop or a disarm cancels the waiting arms and runs of
-/// lower numbers; a trip cancels all. The run that is granted is in the permit from that tick on.
-/// Real-time: safe after construction.
+/// those whose `not_before_ns` has passed; a run waits while the drives are being enabled. A stop
+/// or a disarm cancels the waiting arms and runs of lower numbers; a trip cancels all. The run that
+/// is granted is in the permit from that tick on. Real-time: safe after construction.
 class SafetyTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
   static constexpr int kPriority = 90;
   static constexpr std::size_t kMaxWaiting = 32;  ///< requests; others stay in the queue
+  /// A run waits so long after arming for the drives, which charge a circuit or release a brake.
+  static constexpr std::int64_t kEnableNs = 1'500'000'000;
 
   SafetyTask(const MonitorLimits& limits, SafetyChannels channels);
 
@@ -68,7 +70,7 @@ class SafetyTask final : public Task {
 
   DriveSide ReadDrives(std::int64_t due_ns) noexcept;
   /// Kind kNone: there is none in this tick.
-  OperatorRequest TakeRequest(std::int64_t due_ns) noexcept;
+  OperatorRequest TakeRequest(std::int64_t due_ns, bool drives_on) noexcept;
   /// Refuses the waiting arms and runs whose number is below `number`.
   void CancelBelow(std::uint32_t number, TripCauses present) noexcept;
   void Enter(const SafetyStatus& next, const SafetyInputs& in,

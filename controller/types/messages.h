@@ -65,17 +65,33 @@ struct ControlReport {
   bool at_rest;
   bool experiment_done;
   int missed_in_a_row;
+  bool may_damp = false;  ///< StepOutput::may_damp
 };
+
+/// What the drives of a bus, or of a rig, have confirmed.
+enum class DrivePower : std::uint8_t {
+  kNone,   ///< there are no drives
+  kOff,    ///< all are off
+  kOn,     ///< all are enabled
+  kMixed,  ///< neither, or not known
+};
+
+/// That of two buses together.
+constexpr DrivePower Joined(DrivePower a, DrivePower b) noexcept {
+  if (a == DrivePower::kNone) return b;
+  return b == DrivePower::kNone || a == b ? a : DrivePower::kMixed;
+}
 
 /// Drive side (plant task, or the buses) -> safety and control: heartbeat and status.
 struct DriveReport {
   std::int64_t due_ns;  ///< of its last run
   bool bus_ok;
   bool drive_ok;
-  BusFault fault{};                    ///< of the last exchange; none if it succeeded
-  std::uint32_t failed = 0;            ///< failed exchanges and attempts to reconnect
-  std::uint32_t recovered = 0;         ///< recoveries of a lost bus
-  LineLevels levels = kHealthyLevels;  ///< last read by the buses; healthy for other lines
+  BusFault fault{};                      ///< of the last exchange; none if it succeeded
+  std::uint32_t failed = 0;              ///< failed exchanges and attempts to reconnect
+  std::uint32_t recovered = 0;           ///< recoveries of a lost bus
+  LineLevels levels = kHealthyLevels;    ///< last read by the buses; healthy for other lines
+  DrivePower power = DrivePower::kNone;  ///< as confirmed in its last run
 };
 
 enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };
@@ -98,6 +114,7 @@ enum class Refusal : std::uint8_t {
   kCancelled,     ///< a planned arm or run, cancelled by a stop, a disarm or a trip
   kBusy,          ///< another arm, run or reset has not been answered yet
   kShuttingDown,  ///< the daemon ends: nothing may start
+  kDrivesOff,     ///< a drive has not confirmed that it is on
 };
 
 /// Safety -> operator: answer to a request.

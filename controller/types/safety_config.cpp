@@ -32,6 +32,9 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
                "the duration of rest; an oscillation is slow at its turning points");
   list->Within("safety.stop_timeout_s", c.stop_timeout_s, 0.1, 10.0,
                "Stopping for longer than this trips; the service ends within 15 s");
+  list->Within(
+      "safety.fault_stop_s", c.fault_stop_s, 0.0, 2.0,
+      "how long the arm is damped after a cause of stop category 1, before the power goes");
   list->Within("safety.permit_timeout_ms", c.permit_timeout_ms, 2.0, 20.0,
                "the permit is renewed every 1 ms; an older one means zero torque");
   list->Within("safety.missed_deadlines_to_trip", c.missed_deadlines_to_trip, 1, 10,

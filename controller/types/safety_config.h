@@ -21,6 +21,7 @@ struct SafetyConfig {
   double rest_strain_rate_per_s;  ///< at rest: both root strain rates below this
   double rest_time_s;             ///< for at least this long
   double stop_timeout_s;          ///< Stopping longer than this trips
+  double fault_stop_s;            ///< FaultStopping lasts this long at most; 0: it is not used
   double permit_timeout_ms;       ///< a permit older than this means zero torque
   int missed_deadlines_to_trip;   ///< consecutive missed deadlines of the control task
   double homing_contact_s;        ///< homing that is longer on its switch, in all, trips

@@ -6,22 +6,36 @@ namespace flexarm {
 
 /// States of the safety state machine (docs/safety.md). The value is logged: never renumber.
 enum class SafetyState : std::uint8_t {
-  kStarting = 0,  ///< until every task has reported once
-  kIdle = 1,      ///< relay open
-  kArmed = 2,     ///< relay closed, zero torque
-  kRunning = 3,   ///< the experiment
-  kStopping = 4,  ///< the controller damps the motion of the arm
-  kTripped = 5,   ///< latched: relay open, zero torque
+  kStarting = 0,       ///< until every task has reported once
+  kIdle = 1,           ///< relay open
+  kArmed = 2,          ///< relay closed, drives on, zero torque
+  kRunning = 3,        ///< the experiment
+  kStopping = 4,       ///< the controller damps the motion of the arm
+  kTripped = 5,        ///< latched: relay open, zero torque
+  kFaultStopping = 6,  ///< a cause has latched; the controller damps the arm before Tripped
+  kDisarming = 7,      ///< the drives are being switched off, then the relay opens
 };
+inline constexpr int kSafetyStates = 8;
 
 /// Torque is allowed only in these states.
 constexpr bool TorqueAllowed(SafetyState state) noexcept {
-  return state == SafetyState::kRunning || state == SafetyState::kStopping;
+  return state == SafetyState::kRunning || state == SafetyState::kStopping ||
+         state == SafetyState::kFaultStopping;
 }
 
-/// The relay is closed and the drives are enabled only in these states.
-constexpr bool Powered(SafetyState state) noexcept {
+/// The drives are enabled only in these states.
+constexpr bool DrivesEnabled(SafetyState state) noexcept {
   return state == SafetyState::kArmed || TorqueAllowed(state);
+}
+
+/// The relay is closed only in these states.
+constexpr bool RelayClosed(SafetyState state) noexcept {
+  return DrivesEnabled(state) || state == SafetyState::kDisarming;
+}
+
+/// A trip cause is latched in these states, and only in these.
+constexpr bool CauseLatched(SafetyState state) noexcept {
+  return state == SafetyState::kTripped || state == SafetyState::kFaultStopping;
 }
 
 constexpr const char* ToString(SafetyState state) noexcept {
@@ -38,6 +52,10 @@ constexpr const char* ToString(SafetyState state) noexcept {
       return "Stopping";
     case SafetyState::kTripped:
       return "Tripped";
+    case SafetyState::kFaultStopping:
+      return "FaultStopping";
+    case SafetyState::kDisarming:
+      return "Disarming";
   }
   return "corrupted";
 }

@@ -100,7 +100,8 @@ struct StepOutput {
   std::uint8_t experiment_done;    ///< the reference has ended
   std::uint32_t payload_warnings;  ///< PayloadWarningBit
   std::int8_t delay_found;         ///< samples by which torques act later than known, estimated
-  std::array<std::uint8_t, 3> reserved;
+  std::uint8_t may_damp;  ///< sensors are good enough to damp the arm after a cause of category 1
+  std::array<std::uint8_t, 2> reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);
 static_assert(sizeof(StepOutput) ==

@@ -42,6 +42,20 @@ constexpr TripCauses CauseBit(TripCause cause) noexcept {
   return TripCauses{1} << static_cast<unsigned>(cause);
 }
 
+/// Causes of stop category 1: the arm moves too far, too fast or bends too much, while sensors and
+/// drives are well. The controller damps it for a moment before the power goes (FaultStopping). All
+/// others are of category 0: the torque is off in the same tick.
+inline constexpr TripCauses kCategory1Causes =
+    CauseBit(TripCause::kSoftLimit1) | CauseBit(TripCause::kSoftLimit2) |
+    CauseBit(TripCause::kHubRate1) | CauseBit(TripCause::kHubRate2) |
+    CauseBit(TripCause::kBendingStrain1) | CauseBit(TripCause::kBendingStrain2);
+
+/// Whether the arm is damped when `causes` are present: at least one, all of category 1, and
+/// `may_damp` (StepOutput::may_damp).
+constexpr bool Damped(TripCauses causes, bool may_damp) noexcept {
+  return causes != 0 && (causes & ~kCategory1Causes) == 0 && may_damp;
+}
+
 /// Short machine name, as in JSON and in the log: "limit-switch-1-low". "none" for kNone.
 const char* ToString(TripCause cause) noexcept;
 

@@ -332,6 +332,14 @@ const CanopenDevice::Node* CanopenDevice::Drive(int joint) const noexcept {
   return nullptr;
 }
 
+std::uint32_t CanopenDevice::drives_on() const noexcept {
+  std::uint32_t on = 0;
+  for (int joint = 0; joint < 2; ++joint) {
+    if (drive_state(joint) == DriveState::kOperationEnabled) on |= 1U << joint;
+  }
+  return on;
+}
+
 DriveState CanopenDevice::drive_state(int joint) const noexcept {
   const Node* drive = Drive(joint);
   return drive == nullptr ? DriveState::kUnknown : drive->state;

@@ -48,6 +48,7 @@ class CanopenDevice : public BusDevice {
 
   const char* name() const noexcept override { return config_.interface.c_str(); }
   std::uint32_t drives() const noexcept override { return drives_; }
+  std::uint32_t drives_on() const noexcept override;
   std::int64_t worst_case_ns() const noexcept override { return config_.worst_case_exchange_ns(); }
   void Open() override;
   [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;

@@ -116,6 +116,7 @@ BusStatus ComediDevice::SwitchOff() noexcept {
 void ComediDevice::Drive(const BusCommand& command) noexcept {
   if (!config_.output) return;
   const ComediOutputConfig& out = *config_.output;
+  on_ = command.enabled && fault_ == ComediFault::kNone;
   for (std::size_t i = 0; i < channels_.drive.size(); ++i) {
     const ComediDriveConfig& drive = out.drive[i];
     const bool on =

@@ -46,6 +46,8 @@ class ComediDevice final : public BusDevice {
 
   const char* name() const noexcept override { return config_.device.c_str(); }
   std::uint32_t drives() const noexcept override { return drives_; }
+  /// An amplifier confirms nothing: those that the last output was allowed to command.
+  std::uint32_t drives_on() const noexcept override { return on_ ? drives_ : 0; }
   LineLevels lines() const noexcept override { return lines_; }
   /// Of an exchange, or of a reconnection, whichever is longer.
   std::int64_t worst_case_ns() const noexcept override;
@@ -104,6 +106,7 @@ class ComediDevice final : public BusDevice {
   std::uint32_t drives_ = 0;
   LineLevels lines_ = 0;
   bool open_ = false;
+  bool on_ = false;          // the last output could be a torque
   bool restarting_ = false;  // Reconnect waits for the first scan
   ComediFault fault_ = ComediFault::kNone;
   std::size_t fault_channel_ = kNoChannel;  // index in plan_.channels

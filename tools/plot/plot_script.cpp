@@ -22,6 +22,9 @@ const char* StateColour(SafetyState state) {
       return "#BFE3CF";
     case SafetyState::kStopping:
       return "#BBD7EE";
+    case SafetyState::kDisarming:
+      return "#F5DFA3";
+    case SafetyState::kFaultStopping:
     case SafetyState::kTripped:
       return "#E9A49C";
   }

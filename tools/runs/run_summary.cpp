@@ -64,8 +64,7 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
 
 std::optional<SafetyRecord> TripOf(const std::vector<SafetyRecord>& records) {
   for (const SafetyRecord& record : records) {
-    const bool trips =
-        record.after.state == SafetyState::kTripped && record.before.state != SafetyState::kTripped;
+    const bool trips = CauseLatched(record.after.state) && !CauseLatched(record.before.state);
     if (trips) return record;
   }
   return std::nullopt;

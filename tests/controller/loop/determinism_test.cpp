@@ -36,7 +36,8 @@ TEST(Determinism, TheRunPassesThroughEveryStateAndEndsInIdle) {
     if (record.after.state != states.back()) states.push_back(record.after.state);
   }
   using enum SafetyState;
-  EXPECT_EQ(states, (std::vector{kStarting, kIdle, kArmed, kRunning, kStopping, kArmed, kIdle}));
+  EXPECT_EQ(states, (std::vector{kStarting, kIdle, kArmed, kRunning, kStopping, kArmed, kDisarming,
+                                 kIdle}));
   const auto running = std::count_if(run->tick.begin(), run->tick.end(), [](const TickRecord& r) {
     return r.input.safety_state == kRunning;
   });

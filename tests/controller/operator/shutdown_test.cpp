@@ -25,7 +25,7 @@ struct ShutdownTest : testing::Test {
 };
 
 TEST_F(ShutdownTest, IsNotOverWhileTheArmHasPower) {
-  for (const SafetyState powered : {kArmed, kRunning, kStopping}) {
+  for (const SafetyState powered : {kArmed, kRunning, kStopping, kFaultStopping, kDisarming}) {
     At(0, powered);
     At(3'900, powered);
     EXPECT_FALSE(shutdown.over()) << ToString(powered);

@@ -106,8 +106,8 @@ TEST_F(DamagedFileTest, ABlobOfAnotherVersionIsNamed) {
 
 TEST_F(DamagedFileTest, AShortSafetyRecordIsNamed) {
   WriteRun(1);
-  Alter("UPDATE safety SET record = x'01000000'");
-  ExpectError("safety row 1 has 4 bytes, expected 68");
+  Alter("UPDATE safety SET record = x'02000000'");
+  ExpectError("safety row 1 has 4 bytes, expected " + std::to_string(4 + sizeof(SafetyRecord)));
 }
 
 TEST_F(DamagedFileTest, AMissingTableIsNamed) {

@@ -56,13 +56,18 @@ TEST_F(RecorderTest, ARunIsFromTheResetAfterArmUntilIdle) {
   Start(RunInMemory(&run));
   Ticks(0, 100, 12);
   Arm(10 * kTestPeriodNs + 1);
-  safety_.Push(MakeSafety(50 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm));
+  const SafetyRecord disarm = MakeSafety(49 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm);
+  safety_.Push(disarm);
+  SafetyRecord off = MakeSafety(50 * kTestPeriodNs, disarm.after, RequestKind::kNone);
+  off.facts.drives_off = 1;
+  off.after = NextSafetyState(off.before, off.facts).status;
+  safety_.Push(off);
   RunUntil(3 * kSecond);
   EXPECT_FALSE(recording_->is_open());
   ASSERT_EQ(run.tick.size(), 39U);
   EXPECT_EQ(run.tick.front().input.tick, 12);  // 11 was computed before the reset
   EXPECT_EQ(run.tick.back().input.tick, 50);
-  EXPECT_EQ(run.safety.size(), 2U);
+  EXPECT_EQ(run.safety.size(), 3U);
   EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs + 1);
   EXPECT_TRUE(errors_.empty());
 }

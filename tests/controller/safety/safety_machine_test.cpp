@@ -12,7 +12,7 @@ namespace {
 
 using enum SafetyState;
 
-constexpr auto kCorruptedState = static_cast<SafetyState>(6);
+constexpr auto kCorruptedState = static_cast<SafetyState>(kSafetyStates);
 constexpr auto kCorruptedRequest = static_cast<RequestKind>(77);
 
 constexpr SafetyStatus In(SafetyState state, TripCause cause = TripCause::kNone) {
@@ -23,6 +23,8 @@ constexpr SafetyFacts Healthy(RequestKind request = RequestKind::kNone) {
   SafetyFacts facts{};
   facts.all_reported = 1;
   facts.at_rest = 1;
+  facts.may_damp = 1;
+  facts.drives_on = 1;
   facts.request = request;
   return facts;
 }
@@ -44,7 +46,8 @@ constexpr SafetyState StateAfter(SafetyState from, const SafetyFacts& facts) {
 
 // Energy that a state permits: 0 nothing, 1 the relay, 2 torque.
 constexpr int Energy(SafetyState state) {
-  return TorqueAllowed(state) ? 2 : state == kArmed ? 1 : 0;
+  if (state == kRunning || state == kStopping || state == kFaultStopping) return 2;
+  return state == kArmed || state == kDisarming ? 1 : 0;
 }
 
 std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const SafetyDecision& to) {
@@ -55,7 +58,17 @@ std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const S
          " rest " + std::to_string(facts.at_rest) + " done " +
          std::to_string(facts.experiment_done) + " expired " + std::to_string(facts.stop_expired) +
          " pressed " + std::to_string(facts.reset_pressed) + " shutting down " +
-         std::to_string(facts.shutting_down);
+         std::to_string(facts.shutting_down) + " may damp " + std::to_string(facts.may_damp) +
+         " drives on " + std::to_string(facts.drives_on) + " off " +
+         std::to_string(facts.drives_off);
+}
+
+bool Corrupted(SafetyState state) { return static_cast<int>(state) >= kSafetyStates; }
+
+// Angle, rate and bending: docs/safety.md, "Stop categories".
+bool OfCategory1(TripCauses causes) {
+  constexpr TripCauses kAngleRateBending = 0b111111ULL << 6;  // numbers 6 to 11
+  return causes != 0 && (causes & ~kAngleRateBending) == 0;
 }
 
 // "" if the transition obeys every rule of docs/safety.md, else the violated rule. Written from the
@@ -63,23 +76,38 @@ std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const S
 const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
                        const SafetyDecision& decision) {
   const SafetyStatus& to = decision.status;
-  const bool corrupted = from.state > kTripped;
+  const bool corrupted = Corrupted(from.state);
   const bool healthy = facts.present == 0;
   const bool asked = facts.request != RequestKind::kNone;
   const bool moved = to.state != from.state;
 
-  if (to.state > kTripped) return "no state outside the six";
-  if ((to.state == kTripped) != (to.cause != TripCause::kNone)) {
-    return "a cause is named exactly while tripped";
+  const bool latches = to.state == kTripped || to.state == kFaultStopping;
+  const bool latched = from.state == kTripped || from.state == kFaultStopping;
+  if (Corrupted(to.state)) return "no state outside the eight";
+  if (latches != (to.cause != TripCause::kNone)) {
+    return "a cause is named exactly while one is latched";
   }
   if (static_cast<int>(to.cause) >= kTripCauses) return "the cause is a known one";
-  if (!healthy && to.state != kTripped) return "a cause trips from every state";
+  if (!healthy && !latches) return "a cause latches from every state";
+  if (to.state == kFaultStopping) {
+    if (Energy(from.state) < 2) return "only an arm that has torque is damped";
+    if (!healthy && !OfCategory1(facts.present)) return "only angle, rate, bending are damped";
+    if (facts.may_damp == 0) return "damping needs good sensors and drives";
+    if (from.state == to.state && (facts.stop_expired != 0 || facts.at_rest != 0)) {
+      return "damping ends at rest, and in time";
+    }
+  }
+  if (OfCategory1(facts.present) && facts.may_damp != 0 && Energy(from.state) == 2 &&
+      from.state != kFaultStopping && to.state != kFaultStopping) {
+    return "an arm that can be damped is";
+  }
   if (corrupted && to.state != kTripped) return "a corrupted state trips";
-  if (to.state == kTripped && moved && healthy && !corrupted &&
+  if (from.state == kFaultStopping && !latches) return "FaultStopping ends in Tripped";
+  if (to.state == kTripped && moved && healthy && !corrupted && !latched &&
       !(from.state == kStopping && facts.stop_expired != 0 && facts.at_rest == 0)) {
     return "nothing trips without a cause";
   }
-  if (to.state == kTripped && from.state != kTripped && !healthy) {
+  if (latches && !latched && !healthy) {
     for (int i = 1; i < kTripCauses; ++i) {
       if ((facts.present & (TripCauses{1} << i)) == 0) continue;
       if (static_cast<int>(to.cause) != i && (facts.present & 1) == 0) {
@@ -95,11 +123,23 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
     if (facts.at_rest == 0) return "a trip is left at rest only";
     if (facts.all_reported == 0) return "a trip is left when every task has reported only";
   }
-  if (from.state == kTripped && !moved && static_cast<int>(from.cause) < kTripCauses &&
+  if (latched && latches && static_cast<int>(from.cause) < kTripCauses &&
       from.cause != TripCause::kNone && to.cause != from.cause) {
     return "the first cause stays latched";
   }
-  if (Energy(to.state) > Energy(from.state)) {
+  if (to.state == kArmed && from.state == kDisarming) return "a disarm is not taken back";
+  if (from.state == kArmed && to.state == kIdle) return "the drives are off before the relay opens";
+  if (from.state == kDisarming && to.state != kDisarming) {
+    if (!latches && to.state != kIdle) return "Disarming ends in Idle";
+    if (healthy && facts.drives_off == 0 && facts.stop_expired == 0) {
+      return "the relay waits for the drives";
+    }
+  }
+  if (from.state == kDisarming && to.state == kDisarming &&
+      (facts.drives_off != 0 || facts.stop_expired != 0)) {
+    return "Disarming ends when the drives are off, and in time";
+  }
+  if (Energy(to.state) > Energy(from.state) && !corrupted) {
     if (to.state == kArmed) {
       if (from.state != kIdle) return "arming starts from Idle";
       if (facts.request != RequestKind::kArm) return "nothing arms by itself";
@@ -109,10 +149,10 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
       if (from.state != kArmed) return "torque starts from Armed";
       if (to.state != kRunning) return "torque starts with Running";
       if (facts.request != RequestKind::kRun) return "nothing runs by itself";
+      if (facts.drives_on == 0) return "nothing runs before the drives are on";
     }
   }
-  if (from.state == kRunning && to.state != kRunning && to.state != kStopping &&
-      to.state != kTripped) {
+  if (from.state == kRunning && to.state != kRunning && to.state != kStopping && !latches) {
     return "Running ends in Stopping";
   }
   if (from.state == kRunning && facts.experiment_done != 0 && to.state == kRunning) {
@@ -141,7 +181,8 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
         (facts.request == RequestKind::kRun && from.state == kArmed && to.state == kRunning) ||
         (facts.request == RequestKind::kStop && from.state == kRunning && to.state == kStopping) ||
         (facts.request == RequestKind::kStop && from.state == kStopping) ||
-        (facts.request == RequestKind::kDisarm && from.state == kArmed && to.state == kIdle) ||
+        (facts.request == RequestKind::kDisarm && from.state == kArmed && to.state == kDisarming) ||
+        (facts.request == RequestKind::kDisarm && from.state == kDisarming) ||
         (facts.request == RequestKind::kReset && from.state == kTripped && to.state == kIdle);
     if (!obeyed) return "a request that is not refused is carried out";
   }
@@ -150,12 +191,18 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
 
 std::vector<SafetyStatus> EveryStatus() {
   std::vector<SafetyStatus> all;
-  for (const SafetyState state : {kStarting, kIdle, kArmed, kRunning, kStopping, kCorruptedState}) {
+  for (const SafetyState state :
+       {kStarting, kIdle, kArmed, kRunning, kStopping, kDisarming, kCorruptedState}) {
     all.push_back(In(state));
   }
   all.push_back(In(static_cast<SafetyState>(255)));
   for (int cause = 0; cause <= kTripCauses; ++cause) {  // the first and the last are corrupted
     all.push_back(In(kTripped, static_cast<TripCause>(cause)));
+  }
+  for (const TripCause cause :
+       {TripCause::kNone, TripCause::kSoftLimit2, TripCause::kBendingStrain1, TripCause::kBusLost,
+        static_cast<TripCause>(kTripCauses)}) {
+    all.push_back(In(kFaultStopping, cause));
   }
   return all;
 }
@@ -174,12 +221,12 @@ constexpr RequestKind kEveryRequest[] = {
     RequestKind::kNone,   RequestKind::kArm,   RequestKind::kRun, RequestKind::kStop,
     RequestKind::kDisarm, RequestKind::kReset, kCorruptedRequest};
 
-// 34 statuses x 329 sets of causes x 64 flags x 7 requests: every case.
+// 40 statuses x 329 sets of causes x 512 flags x 7 requests: every case.
 TEST(SafetyMachine, EveryTransitionObeysTheRules) {
   long cases = 0;
   for (const SafetyStatus& from : EveryStatus()) {
     for (const TripCauses present : EverySetOfUpToTwoCauses()) {
-      for (unsigned flags = 0; flags < 64; ++flags) {
+      for (unsigned flags = 0; flags < 512; ++flags) {
         for (const RequestKind request : kEveryRequest) {
           SafetyFacts facts{};
           facts.present = present;
@@ -189,16 +236,19 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
           facts.stop_expired = (flags >> 3) & 1u;
           facts.reset_pressed = (flags >> 4) & 1u;
           facts.shutting_down = (flags >> 5) & 1u;
+          facts.may_damp = (flags >> 6) & 1u;
+          facts.drives_on = (flags >> 7) & 1u;
+          facts.drives_off = (flags >> 8) & 1u;
           facts.request = request;
           const SafetyDecision to = NextSafetyState(from, facts);
           const char* broken = BrokenRule(from, facts, to);
-          ASSERT_STREQ(broken, "") << Describe(from, facts, to);
+          if (*broken != '\0') FAIL() << broken << ": " << Describe(from, facts, to);
           ++cases;
         }
       }
     }
   }
-  EXPECT_EQ(cases, 34L * 329 * 64 * 7);
+  EXPECT_EQ(cases, 40L * 329 * 512 * 7);
 }
 
 TEST(SafetyMachine, AShutdownEndsARunInIdleWithoutARequest) {
@@ -207,7 +257,7 @@ TEST(SafetyMachine, AShutdownEndsARunInIdleWithoutARequest) {
   };
   EXPECT_EQ(StateAfter(kRunning, shutting_down(Healthy())), kStopping);
   EXPECT_EQ(StateAfter(kStopping, shutting_down(Healthy())), kArmed);
-  EXPECT_EQ(StateAfter(kArmed, shutting_down(Healthy())), kIdle);
+  EXPECT_EQ(StateAfter(kArmed, shutting_down(Healthy())), kDisarming);
   EXPECT_EQ(StateAfter(kIdle, shutting_down(Healthy())), kIdle);
   EXPECT_EQ(NextSafetyState(In(kIdle), shutting_down(Healthy(RequestKind::kArm))).refusal,
             Refusal::kShuttingDown);
@@ -228,7 +278,10 @@ TEST(SafetyMachine, GoesThroughAnExperimentAndBack) {
   EXPECT_EQ(StateAfter(kRunning, With(Healthy(), &SafetyFacts::experiment_done, 1)), kStopping);
   EXPECT_EQ(StateAfter(kStopping, With(Healthy(), &SafetyFacts::at_rest, 0)), kStopping);
   EXPECT_EQ(StateAfter(kStopping, Healthy()), kArmed);
-  EXPECT_EQ(StateAfter(kArmed, Healthy(RequestKind::kDisarm)), kIdle);
+  EXPECT_EQ(StateAfter(kArmed, Healthy(RequestKind::kDisarm)), kDisarming);
+  EXPECT_EQ(StateAfter(kDisarming, Healthy()), kDisarming);
+  EXPECT_EQ(StateAfter(kDisarming, With(Healthy(), &SafetyFacts::drives_off, 1)), kIdle);
+  EXPECT_EQ(StateAfter(kDisarming, With(Healthy(), &SafetyFacts::stop_expired, 1)), kIdle);
 }
 
 TEST(SafetyMachine, StoppingThatLastsTooLongTrips) {
@@ -238,6 +291,31 @@ TEST(SafetyMachine, StoppingThatLastsTooLongTrips) {
   EXPECT_EQ(StateAfter(kRunning, facts), kRunning) << "the time limit applies to Stopping only";
   facts.present = CauseBit(TripCause::kEmergencyStop);
   EXPECT_EQ(NextSafetyState(In(kStopping), facts).status, In(kTripped, TripCause::kEmergencyStop));
+}
+
+TEST(SafetyMachine, ACauseOfCategory1IsDampedBeforeThePowerGoes) {
+  SafetyFacts facts = With(Healthy(), &SafetyFacts::at_rest, 0);
+  facts.present = CauseBit(TripCause::kHubRate2) | CauseBit(TripCause::kSoftLimit1);
+  const SafetyStatus damped = In(kFaultStopping, TripCause::kSoftLimit1);
+  const SafetyStatus tripped = In(kTripped, TripCause::kSoftLimit1);
+  EXPECT_EQ(NextSafetyState(In(kRunning), facts).status, damped);
+  EXPECT_EQ(NextSafetyState(In(kStopping), facts).status, damped);
+  EXPECT_EQ(NextSafetyState(In(kArmed), facts).status, tripped) << "it has no torque";
+  EXPECT_EQ(NextSafetyState(damped, facts).status, damped);
+  EXPECT_EQ(NextSafetyState(damped, WithPresent(facts, 0)).status, damped) << "latched";
+  EXPECT_EQ(NextSafetyState(In(kRunning), With(facts, &SafetyFacts::may_damp, 0)).status, tripped);
+  for (const auto flag : {&SafetyFacts::at_rest, &SafetyFacts::stop_expired}) {
+    EXPECT_EQ(NextSafetyState(damped, With(facts, flag, 1)).status, tripped);
+  }
+  EXPECT_EQ(NextSafetyState(damped, With(facts, &SafetyFacts::may_damp, 0)).status, tripped);
+  facts.present |= CauseBit(TripCause::kBusLost);
+  EXPECT_EQ(NextSafetyState(In(kRunning), facts).status, tripped);
+  EXPECT_EQ(NextSafetyState(damped, facts).status, tripped);
+}
+
+TEST(SafetyMachine, ARunNeedsDrivesThatAreOn) {
+  const SafetyFacts off = With(Healthy(RequestKind::kRun), &SafetyFacts::drives_on, 0);
+  EXPECT_EQ(NextSafetyState(In(kArmed), off), (SafetyDecision{In(kArmed), Refusal::kDrivesOff}));
 }
 
 TEST(SafetyMachine, ATripIsLeftOnlyWithBothResetsAtRestWithTheCauseGone) {
@@ -277,9 +355,10 @@ TEST(SafetyMachine, RefusesWithTheReason) {
 
 TEST(SafetyMachine, EveryRefusalHasATextThatSaysWhatToDo) {
   for (const RequestKind request : kEveryRequest) {
-    for (const SafetyState state : {kStarting, kIdle, kArmed, kRunning, kStopping, kTripped}) {
+    for (const SafetyState state :
+         {kStarting, kIdle, kArmed, kRunning, kStopping, kTripped, kFaultStopping, kDisarming}) {
       EXPECT_STREQ(RefusalText(request, Refusal::kNone, state), "");
-      for (int i = 1; i <= static_cast<int>(Refusal::kShuttingDown); ++i) {
+      for (int i = 1; i <= static_cast<int>(Refusal::kDrivesOff); ++i) {
         EXPECT_STRNE(RefusalText(request, static_cast<Refusal>(i), state), "");
         EXPECT_STRNE(ToString(static_cast<Refusal>(i)), "corrupted");
       }
@@ -309,6 +388,9 @@ SafetyFacts DecodeFacts(std::uint32_t bits) {
   facts.stop_expired = ((bits >> 17) & 7u) == 0;
   facts.reset_pressed = (bits >> 20) & 1u;
   facts.request = static_cast<RequestKind>((bits >> 21) % 6);
+  facts.may_damp = (bits >> 24) & 1u;
+  facts.drives_on = ((bits >> 25) & 3u) != 0;
+  facts.drives_off = (bits >> 27) & 1u;
   return facts;
 }
 

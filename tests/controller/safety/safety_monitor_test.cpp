@@ -13,6 +13,7 @@ using enum SafetyState;
 
 constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
                                 .stop_timeout_ns = 3000 * kMs,
+                                .fault_stop_ns = 500 * kMs,
                                 .missed_deadlines_to_trip = 3,
                                 .homing_contact_ns = 500 * kMs};
 
@@ -22,7 +23,9 @@ SafetyInputs Fine() {
   ControlReport control = kNoControlReport;
   control.tick = 499;
   control.due_ns = due_ns - 20 * kMs;
-  DriveReport drive{.due_ns = due_ns - 1 * kMs, .bus_ok = true, .drive_ok = true};
+  control.may_damp = true;
+  DriveReport drive{
+      .due_ns = due_ns - 1 * kMs, .bus_ok = true, .drive_ok = true, .power = DrivePower::kOn};
   return {.due_ns = due_ns,
           .levels = kHealthyLevels,
           .control = control,
@@ -340,6 +343,67 @@ TEST_F(HomingContact, TheSwitchMayOpenOnlyWhileRunning) {
     EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High))
         << ToString(state);
   }
+}
+
+TEST(SafetyMonitor, MayDampNeedsGoodSensorsAndEveryDriveOn) {
+  EXPECT_EQ(SafetyMonitor(kLimits).Judge(Fine()).may_damp, 1);
+  SafetyInputs in = Fine();
+  in.control.may_damp = false;
+  EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).may_damp, 0);
+  in = Fine();
+  in.control_alive_ns = in.due_ns - 41 * kMs;
+  EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).may_damp, 0) << "an old report";
+  MonitorLimits without = kLimits;
+  without.fault_stop_ns = 0;
+  EXPECT_EQ(SafetyMonitor(without).Judge(Fine()).may_damp, 0);
+  for (const DrivePower power : {DrivePower::kNone, DrivePower::kOff, DrivePower::kMixed}) {
+    in = Fine();
+    in.drive.power = power;
+    EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).may_damp, 0);
+  }
+}
+
+TEST(SafetyMonitor, ACauseBeyondThoseOfItsBeginningEndsDamping) {
+  SafetyMonitor monitor(kLimits);
+  SafetyInputs in = Fine();
+  const auto next = [&](TripCauses causes) {
+    in.due_ns += kMs;
+    in.control.faults = causes;
+    in.control.due_ns = in.control_alive_ns = in.drive.due_ns = in.drive_alive_ns = in.due_ns;
+    return monitor.Judge(in).may_damp;
+  };
+  constexpr TripCauses kBegan = CauseBit(TripCause::kSoftLimit1) | CauseBit(TripCause::kHubRate1);
+  EXPECT_EQ(next(kBegan), 1);
+  in.state = kFaultStopping;
+  in.state_since_ns = in.due_ns;
+  EXPECT_EQ(next(kBegan), 1);
+  EXPECT_EQ(next(0), 1);
+  EXPECT_EQ(next(CauseBit(TripCause::kHubRate1)), 1) << "it was there at the beginning";
+  EXPECT_EQ(next(kBegan | CauseBit(TripCause::kBendingStrain2)), 0);
+}
+
+TEST(SafetyMonitor, FaultStoppingAndDisarmingHaveTheirOwnTimeLimits) {
+  for (const auto& [state, limit_ns] : {std::pair{kFaultStopping, kLimits.fault_stop_ns},
+                                        std::pair{kDisarming, SafetyMonitor::kDisarmNs}}) {
+    SafetyInputs in = Fine();
+    in.state = state;
+    in.state_since_ns = in.due_ns - limit_ns;
+    EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).stop_expired, 0) << ToString(state);
+    in.state_since_ns -= 1;
+    EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).stop_expired, 1) << ToString(state);
+  }
+}
+
+TEST(SafetyMonitor, DrivesAreOffOnlyByAReportOfThisState) {
+  SafetyInputs in = Fine();
+  in.state = kDisarming;
+  in.drive.power = DrivePower::kOff;
+  in.state_since_ns = in.drive.due_ns;
+  EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).drives_off, 0) << "it is from before";
+  in.state_since_ns -= 1;
+  EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).drives_off, 1);
+  in.drive.power = DrivePower::kMixed;
+  EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).drives_off, 0);
 }
 
 }  // namespace

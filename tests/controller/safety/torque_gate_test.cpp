@@ -67,11 +67,17 @@ TEST(Gate, AnOldPermitIsZeroAtOnce) {
   ExpectZeroed(in, kGatePermitOld);
 }
 
-TEST(Gate, OnlyRunningAndStoppingPassTorque) {
+// By docs/safety.md, "States".
+bool HasTorque(SafetyState state) {
+  return state == SafetyState::kRunning || state == SafetyState::kStopping ||
+         state == SafetyState::kFaultStopping;
+}
+
+TEST(Gate, OnlyRunningAndTheTwoStopsPassTorque) {
   for (int state = 0; state < 256; ++state) {
     GateInput in = FineInput();
     in.permit = static_cast<SafetyState>(state);
-    if (in.permit == SafetyState::kRunning || in.permit == SafetyState::kStopping) {
+    if (HasTorque(in.permit)) {
       EXPECT_EQ(Gate(in, kGateLimits).why, 0u) << state;
     } else {
       SCOPED_TRACE(state);
@@ -184,7 +190,7 @@ TEST(Gate, NeverExceedsItsLimitsForAnyInput) {
       in.previous_nm[joint] = *rc::gen::inRange(-1000, 1001) * 1e-3 * kGateLimits.torque_nm[joint];
     }
     const GateResult out = Gate(in, kGateLimits);
-    const bool allowed = in.permit == SafetyState::kRunning || in.permit == SafetyState::kStopping;
+    const bool allowed = HasTorque(in.permit);
     for (std::size_t joint = 0; joint < 2; ++joint) {
       const double torque = out.torque_nm[joint];
       RC_ASSERT(std::abs(torque) <= kGateLimits.torque_nm[joint]);  // false for NaN too

@@ -20,6 +20,7 @@ inline constexpr std::int64_t kPhaseNs = 5 * kMs;
 inline constexpr std::int64_t kDeadlineNs = 10 * kMs;
 inline constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
                                        .stop_timeout_ns = 3000 * kMs,
+                                       .fault_stop_ns = 500 * kMs,
                                        .missed_deadlines_to_trip = 3,
                                        .homing_contact_ns = 500 * kMs};
 
@@ -90,11 +91,14 @@ struct FakeDrive final : Task {
                                    limits);
     torque_nm = result.torque_nm;
     report.due_ns = activation.due_ns;
+    const bool on = !stuck_off && (stuck_on || DrivesEnabled(permit.state));
+    report.power = on ? DrivePower::kOn : DrivePower::kOff;
     history_.Push(activation.due_ns + kMs, report);
     out_->Publish(history_);
   }
 
   bool stopped = false;
+  bool stuck_on = false, stuck_off = false;  // what it reports
   std::array<double, 2> torque_nm{};
   DriveReport report{.due_ns = INT64_MIN, .bus_ok = true, .drive_ok = true};
 
@@ -138,6 +142,7 @@ class SafetyTaskTest : public testing::Test {
     ASSERT_EQ(safety_.status().state, SafetyState::kIdle);
     if (state == SafetyState::kIdle) return;
     ASSERT_EQ(Now(RequestKind::kArm), Refusal::kNone);
+    RunFor(5 * kMs);  // the drive confirms that it is on
     if (state == SafetyState::kArmed) return;
     ASSERT_EQ(Now(RequestKind::kRun), Refusal::kNone);
     control_.report.at_rest = false;

@@ -52,14 +52,60 @@ TEST_F(SafetyTaskTest, PlannedRequestsAreJudgedAtTheirTickInOrder) {
   EXPECT_FALSE(answers_.Pop(&answer));
 }
 
-TEST_F(SafetyTaskTest, RequestsThatArriveTogetherAreJudgedOneATickInOrder) {
+TEST_F(SafetyTaskTest, ARunWaitsUntilTheDrivesAreOn) {
   RunFor(100 * kMs);
   Ask(RequestKind::kArm);
   Ask(RequestKind::kRun);
   RunFor(kMs);
   EXPECT_EQ(safety_.status().state, kArmed);
   RunFor(kMs);
+  EXPECT_EQ(safety_.status().state, kArmed) << "the drive has not confirmed yet";
+  RunFor(3 * kMs);
   EXPECT_EQ(safety_.status().state, kRunning);
+}
+
+TEST_F(SafetyTaskTest, DrivesThatDoNotSwitchOnRefuseTheRun) {
+  drive_.stuck_off = true;
+  GoTo(kArmed);
+  const std::uint32_t run = Ask(RequestKind::kRun);
+  RunFor(SafetyTask::kEnableNs - 10 * kMs);
+  RequestAnswer answer{};
+  while (answers_.Pop(&answer)) EXPECT_NE(answer.number, run) << "it waits";
+  RunFor(20 * kMs);
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.number, run);
+  EXPECT_EQ(answer.refusal, Refusal::kDrivesOff);
+}
+
+TEST_F(SafetyTaskTest, TheRelayOpensWhenTheDrivesAreOffOrAfterAHundredMilliseconds) {
+  for (const bool confirms : {true, false}) {
+    GoTo(kArmed);
+    drive_.stuck_on = !confirms;
+    EXPECT_EQ(Now(RequestKind::kDisarm), Refusal::kNone);
+    EXPECT_EQ(safety_.status().state, kDisarming);
+    std::int64_t closed_ns = 0;
+    for (; lines_.written.back().outputs.relay_closed; closed_ns += kMs) RunFor(kMs);
+    EXPECT_EQ(safety_.status().state, kIdle);
+    EXPECT_LE(closed_ns, (confirms ? 4 : 101) * kMs);
+    EXPECT_GE(closed_ns, (confirms ? 1 : 100) * kMs);
+    drive_.stuck_on = false;
+  }
+}
+
+TEST_F(SafetyTaskTest, ASoftLimitKeepsThePowerForTheDampingThenTrips) {
+  GoTo(kRunning);
+  control_.report.may_damp = true;
+  control_.report.faults = CauseBit(TripCause::kSoftLimit2);
+  control_.report.evidence = {.value = 1.6, .limit = 1.5, .channel = 2, .detail = 0};
+  RunFor(45 * kMs);
+  EXPECT_EQ(safety_.status(), (SafetyStatus{kFaultStopping, TripCause::kSoftLimit2}));
+  EXPECT_TRUE(lines_.written.back().outputs.relay_closed);
+  EXPECT_EQ(drive_.torque_nm[0], 1.0);
+  control_.report.evidence = {};
+  const std::int64_t begun_ns = executor_.next_ns();
+  EXPECT_LE(RunUntilTripped(600 * kMs) - begun_ns, kLimits.fault_stop_ns);
+  EXPECT_EQ(permit().evidence.value, 1.6) << "of the cause, not of the end";
+  EXPECT_FALSE(lines_.written.back().outputs.relay_closed);
 }
 
 TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
@@ -80,7 +126,7 @@ TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
   EXPECT_FALSE(answers_.Pop(&answer))
       << "the planned disarm and the requests after the stop are kept";
   control_.report.at_rest = true;
-  RunFor(1000 * kMs);
+  RunFor(1000 * kMs + 5 * kMs);
   EXPECT_EQ(safety_.status().state, kIdle) << "armed at rest, then disarmed as planned";
   lines_.levels = 0;
   RunFor(kMs);

@@ -112,14 +112,13 @@ class Rig {
                             .number = ++number_,
                             .not_before_ns = INT64_MIN,
                             .run = {.experiment = planned_.get()}});
-    RunFor(3 * kMs);
     RequestAnswer answer{};
-    Refusal refusal = Refusal::kCancelled;
-    while (stack->answers().Pop(&answer)) {
-      refusal = answer.refusal;
-      present = answer.present;
-    }
-    return refusal;
+    // A run waits until the drives are on: three transitions of CiA 402, one a period.
+    bool answered = false;
+    EXPECT_TRUE(
+        RunUntil(200 * kMs, [&] { return answered = answered || stack->answers().Pop(&answer); }));
+    present = answer.present;
+    return answer.refusal;
   }
 
   Permit permit() { return stack->operator_permits().Read().Newest().value; }

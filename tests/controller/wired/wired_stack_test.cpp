@@ -38,6 +38,7 @@ class DriveBus final : public BusDevice {
 
   const char* name() const noexcept override { return "drives"; }
   std::uint32_t drives() const noexcept override { return 0b11; }
+  std::uint32_t drives_on() const noexcept override { return last.enabled ? 0b11 : 0; }
   std::int64_t worst_case_ns() const noexcept override { return 0; }
   void Open() override {}
   BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {

@@ -178,6 +178,7 @@ class OnTestTime final : public BusDevice {
 
   const char* name() const noexcept override { return driver_->name(); }
   std::uint32_t drives() const noexcept override { return driver_->drives(); }
+  std::uint32_t drives_on() const noexcept override { return driver_->drives_on(); }
   std::int64_t worst_case_ns() const noexcept override { return driver_->worst_case_ns(); }
   void Open() override { driver_->Open(); }
   BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {

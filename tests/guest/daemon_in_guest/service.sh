@@ -63,7 +63,7 @@ check "disarm is accepted" operate disarm
 check "the relay is open" within 2 in_state Idle
 sleep 1  # the recorder closes the log
 keep_log stop
-check "state by state" equal "$(states)" "Armed Running Stopping Armed Idle"
+check "state by state" equal "$(states)" "Armed Running Stopping Armed Disarming Idle"
 check "the log is closed" equal "$closed" true
 check "the log replays" replays
 
@@ -73,7 +73,7 @@ check "systemctl stop succeeds" systemctl stop flexarmd
 check "exit status 0" equal "$(service Result) $(service ExecMainCode) $(service ExecMainStatus)" \
   "success 1 0"  # 1 is CLD_EXITED
 keep_log term
-check "a controlled stop, state by state" equal "$(states)" "Armed Running Stopping Armed Idle"
+check "a controlled stop, state by state" equal "$(states)" "Armed Running Stopping Armed Disarming Idle"
 check "the log is closed" equal "$closed" true
 check "the log replays" replays
 
