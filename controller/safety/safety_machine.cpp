@@ -103,8 +103,7 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
       return "The daemon is shutting down. Start it again first.";
     case Refusal::kDrivesOff:
       return "The drives have not confirmed that they are on. Check their supply and their "
-             "display, "
-             "then repeat the request.";
+             "display, then repeat the request.";
   }
   return "Unknown reason of refusal.";
 }

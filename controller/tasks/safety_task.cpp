@@ -75,7 +75,17 @@ void SafetyTask::Run(const Activation& activation) noexcept {
     last_facts_ = facts;
     recorded_ = true;
   }
-  if (requested) Answer(request, decision.refusal, before.state, facts.present);
+  const bool disarms =
+      request.kind == RequestKind::kDisarm && status_.state == SafetyState::kDisarming;
+  if (disarms) {
+    disarm_ = request;
+  } else if (requested) {
+    Answer(request, decision.refusal, before.state, facts.present);
+  }
+  if (disarm_.number != 0 && status_.state != SafetyState::kDisarming) {  // the relay is open
+    Answer(disarm_, Refusal::kNone, before.state, facts.present);
+    disarm_ = {};
+  }
   if (tripped) {
     CancelBelow(UINT32_MAX, facts.present);
   } else if (request.kind == RequestKind::kStop || request.kind == RequestKind::kDisarm) {

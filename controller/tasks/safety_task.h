@@ -43,7 +43,9 @@ struct SafetyChannels {
 /// One request is judged per tick: a latched stop or disarm, else the first in order of arrival of
 /// those whose `not_before_ns` has passed; a run waits while the drives are being enabled. A stop
 /// or a disarm cancels the waiting arms and runs of lower numbers; a trip cancels all. The run that
-/// is granted is in the permit from that tick on. Real-time: safe after construction.
+/// is granted is in the permit from that tick on. A disarm is answered when the relay is open,
+/// because people reach into the arm then; one that comes while disarming takes the place of the
+/// one before. Real-time: safe after construction.
 class SafetyTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -91,6 +93,7 @@ class SafetyTask final : public Task {
   RunOrder run_{};
   bool pump_level_ = false;
   bool recorded_ = false;
+  OperatorRequest disarm_{};  // carried out, answered once the relay is open; number 0: none
   std::array<OperatorRequest, kMaxWaiting> waiting_{};
   std::size_t waiting_count_ = 0;
   PermitHistory permits_{kNoPermit};

@@ -310,5 +310,26 @@ TEST_F(FaultDetectionTest, AMovementRestartsTheHalfSecond) {
   EXPECT_LE(samples, 30) << "only the window of five samples may delay it";
 }
 
+// docs/safety.md, "Stop categories": 1.5 times the shipped limits, 8 and 10 rad/s, 1.9e-3.
+TEST_F(FaultDetectionTest, DampingNeedsHubsAndBendingMeasuredAndNotFarBeyondTheirLimits) {
+  const auto may_damp = [this](const auto& change) {
+    Facts facts;
+    change(&facts);
+    return monitor_.Judge(facts.Now()).may_damp;
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(may_damp([](Facts*) {}));
+  EXPECT_TRUE(may_damp([](Facts* f) { f->estimate.x(6) = -11.9; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->estimate.x(6) = -12.1; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->estimate.x(7) = 15.1; }));
+  EXPECT_TRUE(may_damp([](Facts* f) { f->modes.root_strain[0] = 2.8e-3; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->modes.root_strain[0] = -2.9e-3; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->modes.root_strain[1] = kNan; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->modes.valid[1] = false; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->counters.good = 0b1110; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->estimate.x(3) = kNan; }));
+  EXPECT_FALSE(may_damp([](Facts* f) { f->mode = LoopMode::kOpenLoop; }));
+}
+
 }  // namespace
 }  // namespace flexarm

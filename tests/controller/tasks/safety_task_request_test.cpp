@@ -81,13 +81,21 @@ TEST_F(SafetyTaskTest, TheRelayOpensWhenTheDrivesAreOffOrAfterAHundredMillisecon
   for (const bool confirms : {true, false}) {
     GoTo(kArmed);
     drive_.stuck_on = !confirms;
-    EXPECT_EQ(Now(RequestKind::kDisarm), Refusal::kNone);
+    RequestAnswer answer{};
+    while (answers_.Pop(&answer)) {
+    }
+    const std::uint32_t disarm = Ask(RequestKind::kDisarm);
+    RunFor(kMs);
     EXPECT_EQ(safety_.status().state, kDisarming);
+    EXPECT_FALSE(answers_.Pop(&answer)) << "the answer means that the relay is open";
     std::int64_t closed_ns = 0;
-    for (; lines_.written.back().outputs.relay_closed; closed_ns += kMs) RunFor(kMs);
+    for (; lines_.relay_closed(); closed_ns += kMs) RunFor(kMs);
     EXPECT_EQ(safety_.status().state, kIdle);
     EXPECT_LE(closed_ns, (confirms ? 4 : 101) * kMs);
     EXPECT_GE(closed_ns, (confirms ? 1 : 100) * kMs);
+    ASSERT_TRUE(answers_.Pop(&answer));
+    EXPECT_EQ(answer.number, disarm);
+    EXPECT_EQ(answer.refusal, Refusal::kNone);
     drive_.stuck_on = false;
   }
 }
@@ -99,13 +107,13 @@ TEST_F(SafetyTaskTest, ASoftLimitKeepsThePowerForTheDampingThenTrips) {
   control_.report.evidence = {.value = 1.6, .limit = 1.5, .channel = 2, .detail = 0};
   RunFor(45 * kMs);
   EXPECT_EQ(safety_.status(), (SafetyStatus{kFaultStopping, TripCause::kSoftLimit2}));
-  EXPECT_TRUE(lines_.written.back().outputs.relay_closed);
+  EXPECT_TRUE(lines_.relay_closed());
   EXPECT_EQ(drive_.torque_nm[0], 1.0);
   control_.report.evidence = {};
   const std::int64_t begun_ns = executor_.next_ns();
   EXPECT_LE(RunUntilTripped(600 * kMs) - begun_ns, kLimits.fault_stop_ns);
   EXPECT_EQ(permit().evidence.value, 1.6) << "of the cause, not of the end";
-  EXPECT_FALSE(lines_.written.back().outputs.relay_closed);
+  EXPECT_FALSE(lines_.relay_closed());
 }
 
 TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
