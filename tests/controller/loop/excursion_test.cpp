@@ -68,5 +68,25 @@ TEST(Excursion, DampingStopsTheElbowThatWouldCoast) {
   }
 }
 
+// The torque before the cause acts to the end of its period: damping torque is computed for the
+// instant at which that ends, unlike the zero of category 0, which acts at once.
+TEST(Excursion, DampingTorqueActsAtItsSamplingInstant) {
+  RigConfig config = ShippedRig();
+  config.safety.soft_angle_deg[1] = 30.6;  // lasts, unlike a rate: several steps with a fault
+  StackRun run(config, ShippedExperiment(), 0.2);
+  run.Run(8'000'000'000);
+  const auto seen = std::find_if(run.tick.begin(), run.tick.end(),
+                                 [](const TickRecord& tick) { return tick.output.faults != 0; });
+  ASSERT_NE(seen, run.tick.end());
+  ASSERT_EQ(seen->input.safety_state, SafetyState::kRunning);
+  for (auto tick = seen; tick != seen + 4; ++tick) {
+    EXPECT_NE(tick->output.faults, 0u);
+    for (std::size_t i = 0; i < 2; ++i) {  // round-off of a mean over 20 slices
+      EXPECT_NEAR((tick + 1)->input.applied_torque_nm[i], (tick - 1)->output.torque_nm[i], 1e-12);
+    }
+  }
+  EXPECT_NE((seen + 1)->output.torque_nm, seen->output.torque_nm);
+}
+
 }  // namespace
 }  // namespace flexarm

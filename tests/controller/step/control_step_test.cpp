@@ -100,6 +100,31 @@ TEST_F(ControlStepTest, TorqueIsZeroInEveryStateButRunningAndTheTwoStops) {
   }
 }
 
+// docs/safety.md, "Stop categories". The reference of Moving would ask for another torque.
+TEST_F(ControlStepTest, ACauseOfCategory1IsDampedFromItsSampleOnAndAnyOtherIsZero) {
+  RigConfig config = config_;
+  config.safety.soft_angle_deg = {0.1, 0.1};  // 3 counts of hub 1 are 0.43 degrees
+  ControlStep running(config, ShippedDesign()), stopping(config, ShippedDesign());
+  const auto at = [](int k, SafetyState state) {
+    StepInput input = Moving(k, state);
+    input.frame.counter[0] = input.frame.counter[2] = k < 3 ? 0 : 3;
+    return input;
+  };
+  for (int k = 0; k < 6; ++k) {
+    const StepOutput out = running.Step(at(k, SafetyState::kRunning));
+    const StepOutput stop =
+        stopping.Step(at(k, k < 3 ? SafetyState::kRunning : SafetyState::kFaultStopping));
+    EXPECT_EQ(out.faults, k < 3 ? 0 : CauseBit(TripCause::kSoftLimit1)) << k;
+    EXPECT_EQ(out.torque_nm, stop.torque_nm) << k;
+    EXPECT_NE(out.torque_nm[0], 0.0) << k;
+  }
+  StepInput input = at(6, SafetyState::kRunning);
+  input.frame.sampled_at_ns -= 100'000'000;  // a stale frame as well
+  const StepOutput out = running.Step(input);
+  EXPECT_NE(out.faults & CauseBit(TripCause::kStaleFrame), 0u);
+  EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0}));
+}
+
 // docs/theory/control-law.md 6.1: y_e = K (x_m - x). At zero with a pure angle reference the rest
 // is the feedforward of a resting reference, the first two columns of S21, which are zero. So u = K
 // x_m except for the adaptive part, of the order of r^2 T = 1e-2 of it.

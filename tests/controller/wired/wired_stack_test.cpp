@@ -38,7 +38,7 @@ class DriveBus final : public BusDevice {
 
   const char* name() const noexcept override { return "drives"; }
   std::uint32_t drives() const noexcept override { return 0b11; }
-  std::uint32_t drives_on() const noexcept override { return last.enabled ? 0b11 : 0; }
+  std::uint32_t drives_on() const noexcept override { return last.enabled && confirms ? 0b11 : 0; }
   std::int64_t worst_case_ns() const noexcept override { return 0; }
   void Open() override {}
   BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
@@ -61,6 +61,7 @@ class DriveBus final : public BusDevice {
 
   std::int64_t exchanges = -1;  // the first is at instant 0
   int reconnects = 0;
+  bool confirms = true;  // that the drives are on
   std::int64_t fail_from = INT64_MAX, fail_until = INT64_MAX;
   BusStatus failure = BusStatus::kTimeout;
   BusCommand last{};
@@ -166,6 +167,16 @@ TEST_F(WiredStackTest, TheDriveBusGetsNoTorqueBeforeTheRunAndNoneAfter) {
   EXPECT_FALSE(drives_.last.enabled);
   EXPECT_EQ(drives_.last.torque_nm, (std::array<double, 2>{0.0, 0.0}));
   EXPECT_FALSE(lines_.relay);
+}
+
+TEST_F(WiredStackTest, TheEstimatorIsToldNoTorqueOfADriveThatIsNotOn) {
+  const auto told = [this] { return ticks_.back().input.applied_torque_nm; };
+  RunUntil(2'000 * kMs);
+  ASSERT_EQ(permit().state, SafetyState::kRunning);
+  EXPECT_NE(told(), (std::array<double, 2>{0.0, 0.0}));
+  drives_.confirms = false;
+  RunUntil(2'100 * kMs);
+  EXPECT_EQ(told(), (std::array<double, 2>{0.0, 0.0}));
 }
 
 TEST_F(WiredStackTest, OneFailedExchangeIsSurvivedTwoAreALostBus) {
