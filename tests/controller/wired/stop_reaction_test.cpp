@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+
+#include "tests/controller/wired/hostile_rig.h"
+
+namespace flexarm {
+namespace {
+
+// Reaction at the simulated drives, over the phase of the event in the period of the buses. One
+// tick of safety, which sees the event, and the frames on the wire: two controlwords and a SYNC at
+// 1 Mbit/s take 0.3 ms. With the torque of the last exchange until the next, 20 ms.
+class StopReaction : public HostileBus, public testing::WithParamInterface<int> {
+ protected:
+  // In a period of the buses, `GetParam` ms after its begin, with torque at both drives.
+  void StartInPhase() {
+    StartRun();
+    ASSERT_TRUE(rig_->RunUntil(500 * kMs, [this] {
+      return rig_->executor.now_ns() % kPeriodNs == GetParam() * kMs &&
+             rig_->world->drives_make_torque();
+    }));
+  }
+
+  // From now until no drive makes torque, ms; relay open at the end.
+  double TorqueLasts_ms() {
+    const std::int64_t begin_ns = rig_->executor.now_ns();
+    EXPECT_TRUE(rig_->RunUntil(50 * kMs, [this] { return !rig_->world->drives_make_torque(); }));
+    EXPECT_FALSE(rig_->world->lines.relay);
+    EXPECT_TRUE(rig_->tripped()) << ToString(rig_->permit().state);
+    return static_cast<double>(rig_->executor.now_ns() - begin_ns) * 1e-6;
+  }
+};
+
+TEST_P(StopReaction, ALimitSwitchEndsTheTorqueAtTheDrivesWithinTwoMilliseconds) {
+  StartInPhase();
+  rig_->world->lines.levels &= ~LineBit(Line::kLimit2High);
+  EXPECT_LE(TorqueLasts_ms(), 2.0);
+  EXPECT_EQ(rig_->permit().cause, TripCause::kLimitSwitch2High);
+  rig_->RunFor(200 * kMs);
+  EXPECT_EQ(rig_->Failed(), 0U) << "the buses go on";
+}
+
+INSTANTIATE_TEST_SUITE_P(Phase, StopReaction, testing::Range(0, 20));
+
+class StopReactionOf : public StopReaction {};
+
+TEST_P(StopReactionOf, AnEmergencyStopOnAWeldedRelayIsTheSame) {
+  StartInPhase();
+  rig_->world->lines.welded = true;
+  rig_->world->lines.levels &= ~LineBit(Line::kEmergencyStop);
+  EXPECT_LE(TorqueLasts_ms(), 2.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Phase, StopReactionOf, testing::Values(0, 1, 10, 19));
+
+}  // namespace
+}  // namespace flexarm
