@@ -29,7 +29,7 @@ class ProgramTest : public RunLogTest {
 
   // Runs `flexarm ARGUMENTS` in the test's folder, through the shell.
   Answer Run(const std::string& arguments) {
-    const std::string command = "cd '" + folder_.string() + "' && '" FLEXARM_PROGRAM "' " +
+    const std::string command = "cd '" + folder_.string() + "' && " + ProgramFor(arguments) + " " +
                                 arguments + " >out 2>err </dev/null";
     const int status = std::system(command.c_str());
     EXPECT_TRUE(WIFEXITED(status)) << arguments;
@@ -48,6 +48,14 @@ class ProgramTest : public RunLogTest {
     EXPECT_EQ(answer.out, "") << arguments;
     EXPECT_EQ(answer.err.find("flexarm: "), 0U) << answer.err;
     EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
+  }
+
+  // An emulated program cannot start a second one, so a study's program is started directly then.
+  static std::string ProgramFor(const std::string& arguments) {
+    const std::string emulator = FLEXARM_EMULATOR;
+    if (emulator.empty()) return "'" FLEXARM_PROGRAM "'";
+    const bool is_study = IsStudy(arguments.substr(0, arguments.find(' ')));
+    return emulator + (is_study ? " '" FLEXARM_STUDY_PROGRAM "'" : " '" FLEXARM_PROGRAM "'");
   }
 
   // A log of an arm at rest that the loop holds for `ticks` ticks, as the recorder writes it.
