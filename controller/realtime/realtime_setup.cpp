@@ -113,11 +113,14 @@ std::vector<std::string> PrepareRealtime(int fifo_priority) {
   std::vector<std::string> refusals;
   if (host.fifo_error != 0) refusals.push_back(FifoRefusal(host));
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) refusals.push_back(LockRefusal(host, errno));
-  // Freed memory stays in the process, and large blocks come from the locked heap, so that later
-  // allocations cause no page fault.
-  if (mallopt(M_TRIM_THRESHOLD, -1) != 1 || mallopt(M_MMAP_MAX, 0) != 1) {
+  // Freed memory stays in the process, and large blocks and those of all threads come from the one
+  // locked heap, so that later allocations cause no page fault and no thread maps 64 MiB of its
+  // own.
+  if (mallopt(M_TRIM_THRESHOLD, -1) != 1 || mallopt(M_MMAP_MAX, 0) != 1 ||
+      mallopt(M_ARENA_MAX, 1) != 1) {
     refusals.push_back(
-        "malloc does not accept M_TRIM_THRESHOLD and M_MMAP_MAX: run with the C library's own "
+        "malloc does not accept M_TRIM_THRESHOLD, M_MMAP_MAX and M_ARENA_MAX: run with the C "
+        "library's own "
         "malloc, or use --without-realtime");
   }
   if (!refusals.empty()) {

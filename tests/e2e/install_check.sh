@@ -34,7 +34,8 @@ done < <(find "$(dirname "$hil")" -maxdepth 1 -name '*.toml')
 
 unit=$(find . -name flexarmd.service)
 [[ -n $unit ]] || fail "no service is installed"
-for line in 'Type=notify' 'WatchdogSec=' 'LimitRTPRIO=' 'LimitMEMLOCK=' 'ExecStart='; do
+for line in 'Type=notify' 'WatchdogSec=' 'LimitRTPRIO=' 'LimitMEMLOCK=' 'ExecStart=' \
+  'ExecStopPost=' 'OOMScoreAdjust=-' 'LimitCORE=0'; do
   grep -q "^$line" "$unit" || fail "flexarmd.service has no $line"
 done
 daemon=$(sed -n 's/^ExecStart=[-@:+!]*\([^ ]*\).*/\1/p' "$unit" | head -n 1)
@@ -44,13 +45,24 @@ if [[ -n $started && $started != *[%$]* && ! -e .$started ]]; then
   fail "the service reads $started, which is not installed"
 fi
 
+awake=$(find . -name flexarm-awake.service)
+wanted=$(sed -n 's/^Wants=//p' "$unit")
+[[ ${awake##*/} == "$wanted" ]] || fail "the service wants $wanted, which is not installed"
+# The command that ends the power after a crash.
+stop_post=$(sed -n 's/^ExecStopPost=//p' "$unit")
+read -r program verb option config <<<"$stop_post"
+[[ $option == --config && -e .$config ]] || fail "ExecStopPost=$stop_post"
+# The installed rig.toml extends a file by its path without the folder of this test: $hil is that file.
+".$program" "$verb" --config "$hil" || fail "ExecStopPost=$stop_post fails"
+
 if command -v systemd-analyze >/dev/null; then
-  # systemd looks for the program on this machine: the path of the installed one is inserted.
+  # systemd looks for the programs on this machine: the folder of the installed ones is inserted.
   mkdir verify
-  sed "s#^\(ExecStart=[-@:+!]*\)/#\1$machine/#" "$unit" >verify/flexarmd.service
-  said=$(systemd-analyze verify --man=no verify/flexarmd.service 2>&1) || fail "the unit: $said"
+  sed "s#^\(Exec[A-Za-z]*=[-@:+!]*\)${daemon%/*}/#\1$machine${daemon%/*}/#" "$unit" >verify/flexarmd.service
+  cp "$awake" verify
+  said=$(systemd-analyze verify --man=no verify/*.service 2>&1) || fail "the unit: $said"
   # Ignored settings give exit code 0. Messages about other units of this machine are skipped.
-  if grep -F flexarmd.service <<<"$said"; then fail "systemd ignores a part of the unit"; fi
+  if grep -E "flexarm(d|-awake)[.]service" <<<"$said"; then fail "systemd ignores a part of the unit"; fi
 else
   echo "systemd-analyze is not installed: the unit was not verified"
 fi

@@ -26,6 +26,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterOperate(app, exit);
   RegisterCommission(app, exit);
   RegisterRig(app, exit);
+  RegisterLinesOff(app, exit);
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "controller/realtime/realtime_executor.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <limits>
 #include <stdexcept>
@@ -294,6 +296,35 @@ TEST(RealtimeExecutor, WithoutFifoEveryThreadIsOrdinary) {
   executor.Add(control);
   RunFor(executor, MonotonicNow() + kLeadNs, 1);
   EXPECT_EQ(control.policy, SCHED_OTHER);
+}
+
+class NamedTask final : public RecordingTask {
+ public:
+  explicit NamedTask(const char* name) : RecordingTask(Named(name)) {}
+  void Body(const Activation&) noexcept override {
+    pthread_getname_np(pthread_self(), thread_name.data(), thread_name.size());
+  }
+
+  std::array<char, 16> thread_name{};
+
+ private:
+  static Traits Named(const char* name) {
+    Traits traits = Every(5 * kMs);
+    traits.name = name;
+    return traits;
+  }
+};
+
+TEST(RealtimeExecutor, NamesEachThreadAndKeepsTheEndOfALongName) {
+  NamedTask shortest("operator"), longest("fifteen-letters"), first("strain-amplifier-1"),
+      second("strain-amplifier-2");
+  RealtimeExecutor executor(false);
+  for (NamedTask* task : {&shortest, &longest, &first, &second}) executor.Add(*task);
+  RunFor(executor, MonotonicNow() + kLeadNs, 1);
+  EXPECT_STREQ(shortest.thread_name.data(), "operator");
+  EXPECT_STREQ(longest.thread_name.data(), "fifteen-letters");
+  EXPECT_STREQ(first.thread_name.data(), "strain-a~fier-1");
+  EXPECT_STREQ(second.thread_name.data(), "strain-a~fier-2");
 }
 
 // In a child process without any right: exits with 7 and the message if Start refuses.

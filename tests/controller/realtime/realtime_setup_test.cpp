@@ -5,8 +5,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace flexarm {
 namespace {
@@ -96,6 +99,32 @@ TEST(PrepareRealtimeDeathTest, RefusesWithEveryCauseAndRemedyWhenNothingIsPermit
       testing::ExitedWithCode(7),
       "RLIMIT_RTPRIO is 0.*LimitRTPRIO=99.*--without-realtime.*RLIMIT_MEMLOCK is 0 bytes.*"
       "LimitMEMLOCK=infinity");
+}
+
+// True if a block that another thread allocates lies on the heap below the break, which is locked.
+bool AllThreadsShareTheHeap() {
+  bool shared = false;
+  std::thread other([&shared] {
+    const std::vector<char> block(1'000'000);
+    shared = reinterpret_cast<std::uintptr_t>(block.data()) <
+             reinterpret_cast<std::uintptr_t>(sbrk(0));
+  });
+  other.join();
+  return shared;
+}
+
+[[noreturn]] void PrepareAndLookAtTheHeap() {
+  PrepareRealtime(90);
+  _exit(AllThreadsShareTheHeap() ? 0 : 8);
+}
+
+TEST(PrepareRealtimeDeathTest, AllThreadsAllocateFromTheLockedHeap) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer intercepts mlockall and mallopt";
+  if (geteuid() != 0 || ReadRealtimeHost(90).fifo_error != 0) {
+    GTEST_SKIP() << "real time is not permitted here";
+  }
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(PrepareAndLookAtTheHeap(), testing::ExitedWithCode(0), "");
 }
 
 TEST(PrepareRealtimeDeathTest, SucceedsWhereFifoAndLockingArePermitted) {

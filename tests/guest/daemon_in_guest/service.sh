@@ -36,6 +36,9 @@ check "the service starts" systemctl start flexarmd
 check "it is active after its ready notification" equal "$(service ActiveState)" active
 main=$(service MainPID)
 check "it runs as flexarm" equal "$(ps -o user= -p "$main")" flexarm
+check "the kernel ends it last when memory runs out" equal "$(cat "/proc/$main/oom_score_adj")" -900
+check "it writes no core dump" equal \
+  "$(awk '/^Max core file size/ { print $5, $6 }' "/proc/$main/limits")" "0 0"
 check "it has only the capability that restarts a CAN interface" \
   grep -q '^CapEff:\s*0000000000001000$' "/proc/$main/status"  # bit 12, CAP_NET_ADMIN
 check "its control thread still runs as FIFO 80" equal \
@@ -111,6 +114,8 @@ kill -KILL "$(service MainPID)"
 check "systemd sees it" within 5 service_is failed
 check "with this reason" equal "$(service Result) $(service ExecMainStatus)" "signal 9"
 left_behind killed "$seen"
+check "the command that ends the power ran after it" equal "$(service ExecStopPost |
+  sed -n 's/.*argv\[\]=\([^ ]*\) \([^ ]*\) .*status=\([0-9]*\).*/\2 \3/p')" "lines-off 0"
 sleep 2
 check "it is not started again" equal "$(service ActiveState) $(service NRestarts)" "failed 0"
 
