@@ -1,5 +1,7 @@
 #include "controller/commissioning/commissioner.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -154,7 +156,17 @@ void Commissioner::StartZero(const Json& command, SafetyState state) {
         !(*found)[1].is_number()) {
       throw RejectedError("angle_deg must be two numbers");
     }
-    for (std::size_t i = 0; i < 2; ++i) hub_rad[i] = (*found)[i].get<double>() * kRadPerDeg;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double angle_deg = (*found)[i].get<double>();
+      const double most_deg = config_.safety.soft_angle_deg[i];
+      if (!(std::fabs(angle_deg) <= most_deg)) {  // also refuses a NaN
+        throw RejectedError(fmt::format(
+            "angle_deg of joint {} is {:g}: at most {:g} (limits.soft_angle_deg), because an arm "
+            "beyond its soft limit trips",
+            i + 1, angle_deg, most_deg));
+      }
+      hub_rad[i] = angle_deg * kRadPerDeg;
+    }
   }
   StartRest("zero", state, [this, hub_rad](const RestReadings& readings) {
     Adopt(Zero(config_.sensors, readings, hub_rad, calibration_));

@@ -20,6 +20,7 @@ for program in flexarmd flexarm flexarm-study; do
   [[ -n $file ]] || fail "$program is not installed"
   "$file" --version
   "$file" --help >/dev/null
+  readelf --dynamic "$file" | grep -q 'NOW' || fail "$program looks functions up when they are called"
 done
 flexarm=$(find . -type f -name flexarm -path '*/bin/*')
 

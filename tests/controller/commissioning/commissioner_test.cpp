@@ -304,6 +304,11 @@ TEST(Commissioner, RefusesInvalidArguments) {
   EXPECT_THAT(refusal({{"command", "calibrate"}, {"link", 1}, {"force_n", 5}, {"at_m", 2.0}}),
               HasSubstr("lie on link 1"));
   EXPECT_THAT(refusal({{"command", "zero"}, {"angle_deg", {1}}}), HasSubstr("two numbers"));
+  for (const double outside_deg : {1e300, -1000.0, 90.1}) {  // the rig's soft limit is 90 deg
+    EXPECT_THAT(refusal({{"command", "zero"}, {"angle_deg", {0.0, outside_deg}}}),
+                HasSubstr("of joint 2 is"))
+        << outside_deg;
+  }
 }
 
 TEST(Commissioner, RefusesASecondCommandWhileBusy) {

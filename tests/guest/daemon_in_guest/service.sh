@@ -115,7 +115,7 @@ check "systemd sees it" within 5 service_is failed
 check "with this reason" equal "$(service Result) $(service ExecMainStatus)" "signal 9"
 left_behind killed "$seen"
 check "the command that ends the power ran after it" equal "$(service ExecStopPost |
-  sed -n 's/.*argv\[\]=\([^ ]*\) \([^ ]*\) .*status=\([0-9]*\).*/\2 \3/p')" "lines-off 0"
+  sed -n 's/.*argv\[\]=[^ ]* \([^ ]*\) .*code=\([a-z]*\) ; status=\([0-9]*\).*/\1 \2 \3/p')" "lines-off exited 0"
 sleep 2
 check "it is not started again" equal "$(service ActiveState) $(service NRestarts)" "failed 0"
 
