@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -75,7 +76,8 @@ struct Commissioner::Job {
   RestMeter rest{1};
   FromRest from_rest;
   FromRun from_run;
-  std::uint32_t run_number = 0;  // of its motion
+  std::uint32_t run_number = 0;         // of its motion
+  std::int64_t granted_ns = INT64_MAX;  // not before its motion was granted
   std::vector<TickRecord> run;
 };
 
@@ -97,6 +99,10 @@ Commissioner::~Commissioner() = default;
 void Commissioner::Abort() { job_.reset(); }
 
 void Commissioner::Expect(std::uint32_t run_number) { job_->run_number = run_number; }
+
+void Commissioner::Granted(std::uint32_t run_number, std::int64_t now_ns) {
+  if (busy() && run_number == job_->run_number) job_->granted_ns = now_ns;
+}
 
 bool Commissioner::Knows(const std::string& command) {
   return command == "tare" || command == "zero" || command == "calibrate" || command == "pluck" ||
@@ -291,7 +297,11 @@ void Commissioner::Take(const TickRecord& tick) {
     } else {
       const bool own = tick.run_number == job_->run_number;
       if (own && state == SafetyState::kRunning) job_->run.push_back(tick);
-      if ((own && TorqueAllowed(state)) || job_->run.empty()) return;
+      if (own && TorqueAllowed(state)) return;
+      if (job_->run.empty()) {
+        if (TorqueAllowed(state) || tick.input.now_ns < job_->granted_ns) return;
+        throw RejectedError("the arm was stopped before it moved: `flexarm status` names the trip");
+      }
       answer = job_->from_run(job_->run);
     }
   } catch (const std::exception& error) {

@@ -55,6 +55,10 @@ class Commissioner {
   /// The number of the run that is the motion of this command: no other run is judged.
   void Expect(std::uint32_t run_number);
 
+  /// A run was granted, at `now_ns` or before; another than the expected one is ignored. A run that
+  /// trips before a step sees it has no sample: from now_ns on, torque off is the command's end.
+  void Granted(std::uint32_t run_number, std::int64_t now_ns);
+
   /// Takes every step of the loop, in order.
   void Take(const TickRecord& tick);
 

@@ -46,11 +46,14 @@ std::optional<ClientAnswer> CommissioningCommands::TakeAnswer(const Permit& perm
 }
 
 std::optional<ClientAnswer> CommissioningCommands::Answered(const RequestAnswer& answer,
-                                                            const Permit& permit) {
-  const bool refused = answer.refusal != Refusal::kNone && answer.number == request_;
-  if (!refused || !commissioner_.busy()) return std::nullopt;
+                                                            const OperatorSnapshot& now) {
+  if (answer.number != request_ || !commissioner_.busy()) return std::nullopt;
+  if (answer.refusal == Refusal::kNone) {
+    commissioner_.Granted(answer.number, now.now_ns);
+    return std::nullopt;
+  }
   commissioner_.Abort();
-  return Finish(RefusalJson(answer.kind, answer.refusal, answer.state), permit);
+  return Finish(RefusalJson(answer.kind, answer.refusal, answer.state), now.permit);
 }
 
 ClientAnswer CommissioningCommands::Finish(nlohmann::json answer, const Permit& permit) {

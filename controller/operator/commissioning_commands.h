@@ -53,7 +53,7 @@ class CommissioningCommands {
 
   /// Every answer of the safety task.
   /// @returns the answer of the command whose motion the safety task has refused; empty: none
-  std::optional<ClientAnswer> Answered(const RequestAnswer& answer, const Permit& permit);
+  std::optional<ClientAnswer> Answered(const RequestAnswer& answer, const OperatorSnapshot& now);
 
  private:
   ClientAnswer Finish(nlohmann::json answer, const Permit& permit);

@@ -96,7 +96,7 @@ void OperatorTask::TakeAnswers() {
     unattended_.Answered(answer);
     context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
     experiments_.Answered(now_.now_ns, answer);
-    Reply(commissioning_.Answered(answer, now_.permit));
+    Reply(commissioning_.Answered(answer, now_));
     for (const int client : requests_.TakeClientsOf(answer)) {
       Reply(client, AnswerJson(answer, now_.permit.state));
     }

@@ -93,6 +93,15 @@ class Bench {
   Commissioner& commissioner() { return commissioner_; }
   const RigConfig& config() const { return config_; }
   void Press(Line line, int level) { stack_.Press({.line = line, .level = level}); }
+  /// `later_ns` after now the run of `motion` is asked for, and 2 ms later, when it has been
+  /// granted, the emergency stop is pressed.
+  void StopAsSoonAsGranted(const CommissioningMotion& motion, std::int64_t later_ns) {
+    executor_.RunUntil(now_ns_ + later_ns);
+    commissioner_.Expect(
+        Ask(RequestKind::kRun, {.experiment = motion.planned.get(), .may_open = motion.may_open}));
+    executor_.RunUntil(now_ns_ + later_ns + 2'000'000);
+    Press(Line::kEmergencyStop, 0);
+  }
   void PressFor(Line line, std::int64_t duration_ns) {
     Press(line, 0);
     executor_.RunUntil(now_ns_ + duration_ns);
@@ -111,6 +120,11 @@ class Bench {
         most_torque_nm_[i] =
             std::max(most_torque_nm_[i], std::fabs(last_.input.applied_torque_nm[i]));
       }
+    }
+    RequestAnswer answer{};
+    while (stack_.answers().Pop(&answer)) {
+      const bool granted = answer.kind == RequestKind::kRun && answer.refusal == Refusal::kNone;
+      if (granted) commissioner_.Granted(answer.number, now_ns_);
     }
     while (stack_.truth_records()->Pop(&truth_)) {
     }
@@ -274,6 +288,24 @@ TEST(Commissioner, AnotherRunIsNotItsMotion) {
   EXPECT_EQ(bench.Answer(10.0)["error"], "no answer");
   EXPECT_TRUE(bench.commissioner().busy());
   EXPECT_EQ(bench.commissioner().calibration(), Calibration{});
+}
+
+// A trip between the grant and the next step, up to 20 ms later, leaves a run without a sample.
+TEST(Commissioner, AMotionThatTripsBeforeItsFirstStepIsAnswered) {
+  int before_it_moved = 0;
+  for (std::int64_t later_ms = 0; later_ms < 20; ++later_ms) {
+    Bench bench;
+    bench.Arm();
+    const CommissioningMotion motion = bench.commissioner().Start(
+        {{"command", "home"}, {"joint", 1}, {"side", "low"}}, bench.state());
+    bench.StopAsSoonAsGranted(motion, later_ms * 1'000'000);
+    const Json answer = bench.Answer(1.0);
+    EXPECT_EQ(answer["ok"], false) << later_ms;
+    EXPECT_NE(answer["error"], "no answer") << later_ms;
+    EXPECT_FALSE(bench.commissioner().busy()) << later_ms;
+    if (answer.dump().find("before it moved") != std::string::npos) ++before_it_moved;
+  }
+  EXPECT_GT(before_it_moved, 10);
 }
 
 TEST(Commissioner, RefusesCommandsThatTheStateForbids) {

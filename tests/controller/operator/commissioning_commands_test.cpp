@@ -26,7 +26,7 @@ class CommissioningCommandsTest : public OperatorParts {
 
   std::optional<ClientAnswer> AnswerOf(std::uint32_t number, Refusal refusal) {
     return commissioning_.Answered(OperatorParts::Answered(RequestKind::kRun, number, refusal),
-                                   now_.permit);
+                                   now_);
   }
 
   // Still steps, as many as a measurement of the config takes, but the last.
