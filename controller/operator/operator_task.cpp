@@ -10,8 +10,6 @@
 namespace flexarm {
 namespace {
 
-constexpr std::int64_t kAliveNs = 100'000'000;  // an older heartbeat starves the watchdog
-
 std::optional<ExperimentLoader::Order> OrderOf(const std::optional<Experiment>& experiment,
                                                const ExperimentLoader& loader) {
   if (!experiment) return std::nullopt;
@@ -68,7 +66,9 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     FollowUnattended();
     FollowShutdown();
     experiments_.FreeReleased();
-    if (LoopIsAlive()) context_.alive(now_.now_ns, ToString(now_.permit.state));
+    if (loop_watch_.Follow(now_, context_.report)) {
+      context_.alive(now_.now_ns, ToString(now_.permit.state));
+    }
   } catch (const std::exception& error) {
     context_.report(true, std::string("operator: ") + error.what());
   }
@@ -130,11 +130,6 @@ void OperatorTask::FollowShutdown() {
   if (!shutdown_.begun() || done()) return;
   shutdown_.Update(now_.now_ns, now_.permit.state);
   if (shutdown_.over()) done_.store(true, std::memory_order_release);
-}
-
-bool OperatorTask::LoopIsAlive() const {
-  const std::int64_t oldest_ns = now_.now_ns - kAliveNs;  // renewed_ns may be INT64_MIN
-  return now_.permit.renewed_ns > oldest_ns && now_.tick.input.now_ns > oldest_ns;
 }
 
 nlohmann::json OperatorTask::Status() {

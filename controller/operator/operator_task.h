@@ -9,6 +9,7 @@
 #include "controller/operator/command_dispatch.h"
 #include "controller/operator/commissioning_commands.h"
 #include "controller/operator/experiment_loader.h"
+#include "controller/operator/loop_watch.h"
 #include "controller/operator/operator_context.h"
 #include "controller/operator/operator_snapshot.h"
 #include "controller/operator/operator_socket.h"
@@ -61,8 +62,6 @@ class OperatorTask final : public Task {
   void FollowUnattended();
   void BeginShutdown();
   void FollowShutdown();
-  /// Safety and control have both run lately.
-  bool LoopIsAlive() const;
   nlohmann::json Status();
   void Reply(int client, const nlohmann::json& answer);
   void Reply(const std::optional<ClientAnswer>& answer);
@@ -75,6 +74,7 @@ class OperatorTask final : public Task {
   CommissioningCommands commissioning_;
   RunWarnings warnings_;
   StateJournal state_journal_;
+  LoopWatch loop_watch_;
   BusJournal bus_journal_;
   CommandDispatch dispatch_;
   UnattendedRun unattended_;

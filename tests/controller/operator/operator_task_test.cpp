@@ -378,6 +378,7 @@ TEST_F(OperatorTaskTest, TheWatchdogIsFedOnlyWhileControlRuns) {
   Run(1.0);
   EXPECT_EQ(alive_ns_, last_ns);
   EXPECT_LT(last_ns, now_ns_ - 1'000 * kMs);
+  EXPECT_GE(journal_.Find("not notified: the control thread"), 0);
 }
 
 }  // namespace
