@@ -288,7 +288,9 @@ void ReadTiming(TableReader root, RigConfig* config) {
             {{"next_tick", OutputTiming::kNextTick}, {"at_once", OutputTiming::kAtOnce}});
   loop.Read("output_after_ms", &config->loop.output_after_ms);
   loop.Read("actuation_delay_ms", &config->loop.actuation_delay_ms);
-  root.Table("daemon").Read("socket", &config->daemon.socket);
+  TableReader daemon = root.Table("daemon");
+  daemon.Read("socket", &config->daemon.socket);
+  daemon.Read("state_directory", &config->daemon.state_directory);
   root.Table("log").Read("directory", &config->daemon.log_directory);
 }
 

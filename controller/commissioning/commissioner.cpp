@@ -18,10 +18,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-void RequireIdle(const std::string& command, SafetyState state) {
-  if (state == SafetyState::kIdle) return;
-  throw RejectedError(command + " needs the state Idle, but the state is " + ToString(state) +
-                      ": run `flexarm disarm`, or `flexarm reset` after a trip");
+// Tare and zero are possible after a trip, because wrong zeros can be its cause, and a reset wants
+// the cause gone.
+bool RemovesACause(const std::string& command) { return command == "tare" || command == "zero"; }
+
+void RequireRelayOpen(const std::string& command, SafetyState state) {
+  const bool also_tripped = RemovesACause(command);
+  if (state == SafetyState::kIdle || (also_tripped && state == SafetyState::kTripped)) return;
+  throw RejectedError(command + " needs the state Idle" + (also_tripped ? " or Tripped" : "") +
+                      ", but the state is " + ToString(state) + ": run `flexarm disarm`" +
+                      (also_tripped ? "" : ", or `flexarm reset` after a trip"));
 }
 
 void RequireArmed(const std::string& command, SafetyState state) {
@@ -73,6 +79,7 @@ Json EncoderJson(const SensorConfig& sensors, const Calibration& calibration) {
 // Exactly one of the two continuations is set.
 struct Commissioner::Job {
   std::string command;
+  SafetyState state = SafetyState::kIdle;  // in which it measures
   RestMeter rest{1};
   FromRest from_rest;
   FromRun from_run;
@@ -145,9 +152,10 @@ CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) 
 }
 
 void Commissioner::StartRest(const std::string& command, SafetyState state, FromRest then) {
-  RequireIdle(command, state);
+  RequireRelayOpen(command, state);
   const double ticks = config_.commissioning.measure_s / config_.loop.period_s();
   job_ = std::make_unique<Job>(Job{.command = command,
+                                   .state = state,
                                    .rest = RestMeter(static_cast<int>(std::lround(ticks))),
                                    .from_rest = std::move(then),
                                    .from_run = {},
@@ -288,9 +296,9 @@ void Commissioner::Take(const TickRecord& tick) {
   Json answer;
   try {
     if (job_->from_rest) {
-      if (state != SafetyState::kIdle) {
-        throw RejectedError(
-            "the arm left the state Idle during the measurement; repeat the command");
+      if (state != job_->state) {
+        throw RejectedError(std::string("the arm left the state ") + ToString(job_->state) +
+                            " during the measurement; repeat the command");
       }
       if (!job_->rest.Take(tick)) return;
       answer = job_->from_rest(job_->rest.Result());

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "controller/host/journal.h"
 #include "controller/host/run_info.h"
 #include "controller/host/service_manager.h"
+#include "controller/latch/trip_latch.h"
 #include "controller/law/design.h"
 #include "controller/operator/operator_task.h"
 #include "controller/realtime/clock.h"
@@ -105,6 +107,9 @@ class Daemon {
         backend_(MakeBackend(options, design_)),
         events_(kEventDepth),
         timing_(kTimingDepth),
+        latch_(options.config.daemon.state_directory,
+               std::filesystem::absolute(options.config.daemon.log_directory).string(),
+               [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         recording_(
             MakeRunInfo(options.config, design_, "monotonic", options.config.backend),
             RunsInDirectory(options.config.daemon.log_directory),
@@ -124,6 +129,7 @@ class Daemon {
   LoopStack& stack() { return *backend_.stack; }
   OperatorContext Context();
   void PrepareHost();
+  void RestoreTrip();
   void Wait(const sigset_t& signals);
   void ReportThreads();
 
@@ -134,6 +140,7 @@ class Daemon {
   Backend backend_;
   EventQueue events_;
   SpscQueue<TimingRecord> timing_;
+  TripLatch latch_;
   RunRecording recording_;
   RecorderTask recorder_;
   RealtimeExecutor executor_;
@@ -143,6 +150,7 @@ class Daemon {
 OperatorContext Daemon::Context() {
   return {
       .stack = &stack(),
+      .latch = &latch_,
       .events = &events_,
       .design = &design_,
       .config = &options_.config,
@@ -166,6 +174,13 @@ void Daemon::PrepareHost() {
   for (const std::string& finding : PrepareRealtime(kHighestPriority)) journal_.Info(finding);
 }
 
+// Not before the host is prepared: a daemon that may not run leaves no folder.
+void Daemon::RestoreTrip() {
+  if (const std::optional<HeldTrip> trip = latch_.Open()) {
+    stack().StartTripped(trip->cause, trip->evidence);
+  }
+}
+
 DaemonResult Daemon::Run() {
   journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " +
                 options_.config.rig_name + ", backend " + options_.config.backend);
@@ -177,6 +192,7 @@ DaemonResult Daemon::Run() {
   }
   const sigset_t signals = BlockEndSignals();
   PrepareHost();
+  RestoreTrip();
   journal_.Start();
   for (Task* task : stack().tasks()) {
     executor_.Add(*task, task == &stack().control() ? &timing_ : nullptr);

@@ -60,8 +60,11 @@ nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
     return nullptr;
   }
   if (const std::optional<RequestKind> kind = RequestByName(name)) {
-    if (targets_.requests->Ask(*kind, now.now_ns, client) != 0) return nullptr;
-    return Refused(*kind, Refusal::kBusy, now.permit.state);
+    const RequestTracker::Asked asked = targets_.requests->Ask(*kind, now.now_ns, client);
+    if (asked.number != 0) return nullptr;
+    nlohmann::json refused = Refused(*kind, asked.refusal, now.permit.state);
+    if (!asked.why.empty()) refused["error"] = asked.why + ". " + std::string(refused["error"]);
+    return refused;
   }
   return Failure("no such command: '" + name + "'",
                  "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "

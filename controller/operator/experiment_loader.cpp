@@ -21,7 +21,7 @@ std::uint32_t ExperimentLoader::AskForRun(std::int64_t now_ns, int client, Order
   const RunOrder run{.experiment = order.planned.get(), .may_open = order.may_open};
   // Kept before it is asked for: the safety task may grant it at once.
   asked_.push_back({.number = 0, .order = std::move(order)});
-  asked_.back().number = requests_->Ask(RequestKind::kRun, now_ns, client, run);
+  asked_.back().number = requests_->Ask(RequestKind::kRun, now_ns, client, run).number;
   return asked_.back().number;
 }
 

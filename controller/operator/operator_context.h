@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "controller/latch/trip_latch.h"
 #include "controller/operator/journal_report.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/tasks/loop_stack.h"
@@ -15,6 +16,7 @@ namespace flexarm {
 /// What the operator task needs of its daemon. What is pointed to outlives the task.
 struct OperatorContext {
   LoopStack* stack;
+  TripLatch* latch;    ///< open before the first period
   EventQueue* events;  ///< to the recorder
   const Design* design;
   const RigConfig* config;

@@ -20,7 +20,7 @@ std::optional<ExperimentLoader::Order> OrderOf(const std::optional<Experiment>& 
 
 OperatorTask::OperatorTask(OperatorContext context)
     : context_(std::move(context)),
-      requests_(context_.stack),
+      requests_(context_.stack, context_.latch),
       experiments_(context_.stack, &requests_, context_.events, context_.design, context_.grid,
                    context_.limits),
       unattended_order_(OrderOf(context_.unattended, experiments_)),
@@ -62,6 +62,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     bus_journal_.Follow(now_.now_ns, context_.stack->buses(), context_.report);
     TakeTicks();
     TakeAnswers();
+    FollowLatch();
     if (socket_) Serve();
     FollowUnattended();
     FollowShutdown();
@@ -76,8 +77,12 @@ void OperatorTask::Run(const Activation& activation) noexcept {
 
 void OperatorTask::FollowState() {
   now_.permit = context_.stack->operator_permits().Read().At(now_.now_ns - 1).value;
+  const std::optional<HeldTrip>& held = context_.latch->trip();
   if (CauseLatched(now_.permit.state)) {
     trip_.store(now_.permit.cause, std::memory_order_relaxed);
+    if (held) from_before_ = held->before_start;
+  } else if (std::exchange(from_before_, false)) {
+    trip_.store(TripCause::kNone, std::memory_order_relaxed);  // none of this daemon's
   }
   state_journal_.Follow(now_.now_ns, now_.permit);
 }
@@ -92,15 +97,24 @@ void OperatorTask::TakeTicks() {
 
 void OperatorTask::TakeAnswers() {
   RequestAnswer answer{};
-  while (context_.stack->answers().Pop(&answer)) {
-    unattended_.Answered(answer);
-    context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
-    experiments_.Answered(now_.now_ns, answer);
-    Reply(commissioning_.Answered(answer, now_));
-    for (const int client : requests_.TakeClientsOf(answer)) {
-      Reply(client, AnswerJson(answer, now_.permit.state));
-    }
+  while (context_.stack->answers().Pop(&answer)) Take(answer);
+}
+
+void OperatorTask::Take(const RequestAnswer& answer) {
+  unattended_.Answered(answer);
+  context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
+  experiments_.Answered(now_.now_ns, answer);
+  Reply(commissioning_.Answered(answer, now_));
+  for (const int client : requests_.TakeClientsOf(answer)) {
+    Reply(client, AnswerJson(answer, now_.permit.state));
   }
+}
+
+// After the answers, of the newest permit: the safety task publishes a permit before the answer of
+// its tick, so an arm that was answered is in it.
+void OperatorTask::FollowLatch() {
+  const Permit& newest = context_.stack->operator_permits().Read().Newest().value;
+  context_.latch->Follow(now_.now_ns, newest, requests_.busy());
 }
 
 void OperatorTask::Serve() {
@@ -113,7 +127,16 @@ void OperatorTask::Serve() {
 void OperatorTask::FollowUnattended() {
   if (!context_.unattended || shutdown_requested_.load(std::memory_order_relaxed)) return;
   const OperatorRequest request = unattended_.Update(now_.now_ns, now_.permit);
-  if (request.kind != RequestKind::kNone) requests_.AskPlanned(request);
+  if (request.kind != RequestKind::kNone) {
+    const RequestTracker::Asked asked = requests_.AskPlanned(request);
+    if (asked.refusal != Refusal::kNone) {
+      Take({.number = request.number,
+            .kind = request.kind,
+            .refusal = asked.refusal,
+            .state = now_.permit.state,
+            .present = 0});
+    }
+  }
   if (unattended_.progress() == UnattendedRun::Progress::kRefused) {
     refused_.store(true, std::memory_order_relaxed);
   }
@@ -140,6 +163,7 @@ nlohmann::json OperatorTask::Status() {
                      .experiment = experiments_.name(),
                      .buses = context_.stack->buses(),
                      .bus_text = context_.stack->BusText(permit.cause, permit.evidence),
+                     .latch = context_.latch,
                      .threads = context_.thread_status()});
 }
 

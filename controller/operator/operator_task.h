@@ -51,6 +51,7 @@ class OperatorTask final : public Task {
   bool done() const noexcept { return done_.load(std::memory_order_acquire); }
 
   // Any thread, after done().
+  /// The newest trip; kNone also after the reset of one from before the start.
   TripCause trip() const noexcept { return trip_.load(std::memory_order_relaxed); }
   bool refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
 
@@ -58,6 +59,8 @@ class OperatorTask final : public Task {
   void FollowState();
   void TakeTicks();
   void TakeAnswers();
+  void Take(const RequestAnswer& answer);
+  void FollowLatch();
   void Serve();
   void FollowUnattended();
   void BeginShutdown();
@@ -84,6 +87,7 @@ class OperatorTask final : public Task {
   std::atomic<bool> done_{false};
   std::atomic<bool> refused_{false};
   std::atomic<TripCause> trip_{TripCause::kNone};
+  bool from_before_ = false;  // that trip: it is none of this daemon's once it is reset
 };
 
 }  // namespace flexarm

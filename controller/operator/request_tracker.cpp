@@ -1,6 +1,7 @@
 #include "controller/operator/request_tracker.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace flexarm {
 namespace {
@@ -12,9 +13,17 @@ bool Latched(RequestKind kind) {
 
 }  // namespace
 
-std::uint32_t RequestTracker::Ask(RequestKind kind, std::int64_t now_ns, int client,
-                                  const RunOrder& run) {
-  if (!Latched(kind) && busy()) return 0;
+RequestTracker::Asked RequestTracker::Prepare(RequestKind kind) {
+  if (kind != RequestKind::kArm) return {};
+  std::string why = latch_->PrepareArm(stack_->operator_permits().Read().Newest().value);
+  if (why.empty()) return {};
+  return {.number = 0, .refusal = Refusal::kNotKept, .why = std::move(why)};
+}
+
+RequestTracker::Asked RequestTracker::Ask(RequestKind kind, std::int64_t now_ns, int client,
+                                          const RunOrder& run) {
+  if (!Latched(kind) && busy()) return {.number = 0, .refusal = Refusal::kBusy};
+  if (Asked refused = Prepare(kind); refused.refusal != Refusal::kNone) return refused;
   const std::uint32_t number = next_number_++;
   if (client != kNoClient) {
     waiting_.push_back({.number = number, .kind = kind, .client = client});
@@ -27,12 +36,14 @@ std::uint32_t RequestTracker::Ask(RequestKind kind, std::int64_t now_ns, int cli
     judged_ = number;
     stack_->requests().Push({.kind = kind, .number = number, .not_before_ns = now_ns, .run = run});
   }
-  return number;
+  return {.number = number};
 }
 
-void RequestTracker::AskPlanned(const OperatorRequest& request) {
+RequestTracker::Asked RequestTracker::AskPlanned(const OperatorRequest& request) {
+  if (Asked refused = Prepare(request.kind); refused.refusal != Refusal::kNone) return refused;
   if (!Latched(request.kind)) judged_ = request.number;
   stack_->requests().Push(request);
+  return {.number = request.number};
 }
 
 std::vector<int> RequestTracker::TakeClientsOf(const RequestAnswer& answer) {

@@ -27,6 +27,7 @@ nlohmann::json TripJson(const StatusSources& sources) {
   const Permit& permit = sources.now->permit;
   if (!CauseLatched(permit.state)) return nullptr;
   const Evidence& evidence = permit.evidence;
+  const std::optional<HeldTrip>& held = sources.latch->trip();
   return {{"name", ToString(permit.cause)},
           {"number", static_cast<int>(permit.cause)},
           {"value", evidence.value},
@@ -34,7 +35,10 @@ nlohmann::json TripJson(const StatusSources& sources) {
           {"channel", evidence.channel},
           {"channel_name", TripChannelName(permit.cause, evidence.channel, *sources.sensors)},
           {"text", OperatorText(permit.cause)},
-          {"bus", TextOrNull(sources.bus_text)}};
+          {"bus", TextOrNull(sources.bus_text)},
+          {"time_utc", TextOrNull(held ? held->time_utc : std::string())},
+          {"before_start", held && held->before_start},
+          {"record_problem", TextOrNull(held ? held->record_problem : std::string())}};
 }
 
 }  // namespace
@@ -59,6 +63,7 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"delay_margin_ms", sources.delay->margin_ms()},
           {"levels", in.frame.levels},
           {"trip", TripJson(sources)},
+          {"latch_problem", TextOrNull(sources.latch->problem())},
           {"buses", BusesJson(sources.buses)},
           {"threads", sources.threads}};
 }

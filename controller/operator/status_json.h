@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/latch/trip_latch.h"
 #include "controller/operator/delay_monitor.h"
 #include "controller/operator/operator_snapshot.h"
 #include "controller/tasks/bus_health.h"
@@ -19,6 +20,7 @@ struct StatusSources {
   std::string experiment;        ///< name of the one that is loaded; empty: none
   std::vector<BusHealth> buses;  ///< empty: the backend has none
   std::string bus_text;          ///< LoopStack::BusText of the trip; empty: of no bus
+  const TripLatch* latch;        ///< when the trip was, and whether it is kept
   nlohmann::json threads;        ///< OperatorContext::thread_status
 };
 

@@ -75,6 +75,8 @@ const char* ToString(Refusal refusal) noexcept {
       return "shutting-down";
     case Refusal::kDrivesOff:
       return "drives-off";
+    case Refusal::kNotKept:
+      return "not-kept";
   }
   return "corrupted";
 }
@@ -104,6 +106,9 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
     case Refusal::kDrivesOff:
       return "The drives have not confirmed that they are on. Check their supply and their "
              "display, then repeat the request.";
+    case Refusal::kNotKept:
+      return "The daemon could not write to its state folder, so a trip would not survive a "
+             "restart. Make room or give permission there, then repeat the request.";
   }
   return "Unknown reason of refusal.";
 }

@@ -54,6 +54,11 @@ class LoopStack {
   /// task runs.
   virtual void SetEpoch(std::int64_t /*epoch_ns*/) noexcept {}
 
+  /// The arm starts Tripped, by a trip from before the start. Before any task runs.
+  void StartTripped(TripCause cause, const Evidence& evidence) noexcept {
+    safety_.StartTripped(cause, evidence);
+  }
+
   // For the operator: one thread.
   /// For arm, run and reset, and for planned requests. A request of the operator is pushed only
   /// when the one before is answered (RequestTracker), so the queue never fills.

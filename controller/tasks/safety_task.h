@@ -59,6 +59,12 @@ class SafetyTask final : public Task {
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
 
+  /// Before the first tick: the arm starts Tripped, by a trip from before the start.
+  void StartTripped(TripCause cause, const Evidence& evidence) noexcept {
+    status_ = {SafetyState::kTripped, cause};
+    evidence_ = evidence;
+  }
+
   /// Safety thread only, or when no thread runs.
   SafetyStatus status() const noexcept { return status_; }
 

@@ -115,6 +115,7 @@ enum class Refusal : std::uint8_t {
   kBusy,          ///< another arm, run or reset has not been answered yet
   kShuttingDown,  ///< the daemon ends: nothing may start
   kDrivesOff,     ///< a drive has not confirmed that it is on
+  kNotKept,       ///< the latch file could not be written, so a trip would not survive a restart
 };
 
 /// Safety -> operator: answer to a request.

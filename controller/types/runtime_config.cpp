@@ -46,6 +46,8 @@ std::vector<Problem> DaemonConfig::Problems() const {
                "must be a path of 1 to 107 bytes: a Unix socket's address holds no more");
   list.Require(socket.find('$') == std::string::npos, "daemon.socket", socket,
                "must be the path itself: environment variables are not expanded");
+  list.Require(!state_directory.empty(), "daemon.state_directory", state_directory,
+               "must name the directory that keeps a trip over a restart");
   list.Require(!log_directory.empty(), "log.directory", log_directory,
                "must name the directory that holds the run logs");
   return list.Take();

@@ -33,8 +33,9 @@ struct LoopConfig {
 
 /// Sections [daemon] and [log].
 struct DaemonConfig {
-  std::string socket;         ///< path of the operator's Unix socket; $VAR is not expanded
-  std::string log_directory;  ///< key log.directory: where run logs go
+  std::string socket;           ///< path of the operator's Unix socket; $VAR is not expanded
+  std::string state_directory;  ///< what must survive a restart: the latch file; one a daemon
+  std::string log_directory;    ///< key log.directory: where run logs go
 
   std::vector<Problem> Problems() const;
 };

@@ -97,6 +97,14 @@ constexpr std::array<Row, kTripCauses> kRows{{
     {kStopTimeout, "stop-timeout", kJoint,
      "The arm did not come to rest within safety.stop_timeout_s. Wait until it is at rest; check "
      "the gains and the rest limits."},
+    {kEndedWhileArmed, "ended-while-armed", TripChannel::kNone,
+     "The daemon before this one ended while the arm was armed: it crashed, was killed, or the "
+     "computer lost its power. Check the arm and the journal; then press the reset button and run "
+     "`flexarm reset`."},
+    {kTripRecordUnreadable, "trip-record-unreadable", TripChannel::kNone,
+     "The file that keeps a trip over a restart, safety-latch.json in daemon.state_directory, "
+     "cannot be read, so the arm may have tripped before. Check the arm, the disk and the file's "
+     "permissions; then press the reset button and run `flexarm reset`, which removes the file."},
 }};
 
 static_assert(

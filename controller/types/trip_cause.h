@@ -32,8 +32,10 @@ enum class TripCause : std::uint8_t {
   kStateNotFinite = 23,
   kEstimatorResidual = 24,
   kStopTimeout = 25,
+  kEndedWhileArmed = 26,
+  kTripRecordUnreadable = 27,
 };
-inline constexpr int kTripCauses = 26;
+inline constexpr int kTripCauses = 28;
 
 /// Set of causes, bit i is cause number i.
 using TripCauses = std::uint64_t;

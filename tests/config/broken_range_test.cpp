@@ -112,6 +112,8 @@ const BrokenText kRange[] = {
     {"LongPeriod", "period_ms = 20.0", "period_ms = 101.0", "loop.period_ms", "5 .. 100"},
     {"LongSocket", "flexarmd.sock", std::string(107, 'x'), "daemon.socket", "107 bytes"},
     {"SocketWithAVariable", "/run/flexarm", "$HOME", "daemon.socket", "not expanded"},
+    {"NoStateDirectory", "state_directory = \"runs\"", "state_directory = \"\"",
+     "daemon.state_directory", "a trip"},
     {"NoLogDirectory", "directory = \"runs\"", "directory = \"\"", "log.directory", "run logs"},
 };
 INSTANTIATE_TEST_SUITE_P(Range, BrokenConfig, ::testing::ValuesIn(kRange), NameOfCase);

@@ -268,7 +268,7 @@ TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
   const RigConfig c =
       HilWith({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
                "loop.output=at_once", "loop.output_after_ms=14", "loop.actuation_delay_ms=3",
-               "daemon.socket=/tmp/s", "log.directory=/tmp/d"});
+               "daemon.socket=/tmp/s", "daemon.state_directory=/tmp/k", "log.directory=/tmp/d"});
   EXPECT_EQ(c.loop.period_ms, 18.0);
   EXPECT_EQ(c.loop.acquire_before_ms, 9.0);
   EXPECT_EQ(c.loop.step_deadline_ms, 4.0);
@@ -277,6 +277,7 @@ TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
   EXPECT_EQ(c.loop.actuation_delay_ms, 3.0);
   EXPECT_EQ(HilWith({}).loop.output, OutputTiming::kNextTick);
   EXPECT_EQ(c.daemon.socket, "/tmp/s");
+  EXPECT_EQ(c.daemon.state_directory, "/tmp/k");
   EXPECT_EQ(c.daemon.log_directory, "/tmp/d");
 }
 

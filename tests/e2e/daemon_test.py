@@ -144,12 +144,118 @@ class Daemon(ProgramTest):
         self.operate("sim", "emergency-stop", "1")
         self.operate("reset", expect=1)  # the button has not been pressed
         time.sleep(2.0)                  # the arm comes to rest
+        self.reset_with_the_button()
+
+    def reset_with_the_button(self):
         self.operate("sim", "reset-button", "1")
         self.operate("sim", "reset-button", "0")
         end = time.monotonic() + 20
         while self.run_program("flexarm", "reset", "--socket", self.folder / "socket").returncode:
             self.assertLess(time.monotonic(), end, "never at rest")
             time.sleep(0.2)
+        self.wait_for_state("Idle")
+
+    def assert_tripped_from_before(self, cause):
+        status = self.wait_for_state("Tripped")
+        self.assertEqual(status["trip"]["name"], cause)
+        self.assertIs(status["trip"]["before_start"], True)
+        time.sleep(0.8)  # at rest
+        self.assertIn("tripped", self.operate("arm", expect=1).stderr)
+        self.assertIn("button", self.operate("reset", expect=1).stderr)
+        self.assertIn("before the daemon's start", self.operate("status").stdout)
+        self.assertIn("from before this start: " + cause, self.daemon_log())
+        return status["trip"]
+
+    @in_real_time
+    def test_a_trip_survives_a_kill_until_button_and_reset(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        time.sleep(0.8)
+        self.operate("arm")
+        self.operate("run", self.experiment(LONG))
+        self.wait_for_state("Running")
+        self.operate("sim", "limit-2-high", "0")
+        trip = self.wait_for_state("Tripped")["trip"]
+        self.assertEqual(trip["name"], "limit-switch-2-high")
+        self.assertIs(trip["before_start"], False)
+        self.end_daemons()  # kill -9
+        for _ in range(2):
+            daemon = self.start_daemon()  # the switch of its simulated arm is closed
+            self.assertEqual(self.assert_tripped_from_before("limit-switch-2-high")["time_utc"],
+                             trip["time_utc"])
+            daemon.send_signal(signal.SIGTERM)
+            self.assertEqual(daemon.wait(timeout=20), 1, "it is still tripped")
+        daemon = self.start_daemon()
+        self.wait_for_state("Tripped")
+        time.sleep(0.8)
+        self.reset_with_the_button()
+        self.operate("arm")
+        self.operate("disarm")
+        daemon.send_signal(signal.SIGTERM)
+        self.assertEqual(daemon.wait(timeout=20), 0, self.daemon_log())
+        self.start_daemon()
+        self.wait_for_state("Idle")
+
+    @in_real_time
+    def test_a_daemon_killed_while_armed_starts_tripped(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        time.sleep(0.8)
+        self.operate("arm")
+        self.end_daemons()  # kill -9
+        self.start_daemon()
+        self.assert_tripped_from_before("ended-while-armed")
+        self.reset_with_the_button()
+        self.operate("arm")
+
+    @in_real_time
+    def test_a_latch_file_that_cannot_be_read_is_a_trip(self):
+        file = self.folder / "runs" / "safety-latch.json"
+        file.parent.mkdir()
+        file.write_bytes(b"{\"flexarm\": \0")
+        self.start_daemon()
+        status = self.wait_for_state("Tripped")
+        self.assertEqual(status["trip"]["name"], "trip-record-unreadable")
+        self.assertIn(str(file), status["trip"]["record_problem"])
+        self.assertIn(str(file), self.operate("status").stdout)
+        time.sleep(0.8)
+        self.reset_with_the_button()
+        self.assertFalse(file.exists())
+
+    @in_real_time
+    def test_without_a_state_folder_nothing_is_armed(self):
+        self.start_daemon("--state-dir", self.folder / "state")
+        self.wait_for_state("Idle")
+        shutil.rmtree(self.folder / "state")
+        time.sleep(0.8)
+        refused = self.operate("arm", expect=1).stderr
+        self.assertIn("safety-latch.json", refused)
+        self.assertIn("restart", refused)
+        self.wait_for_state("Idle")
+
+    @in_real_time
+    def test_a_wrong_zero_that_trips_is_corrected_while_tripped(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        self.operate("zero", "--angle-deg", "0", "120")
+        self.assertEqual(self.wait_for_state("Tripped")["trip"]["name"], "soft-limit-2")
+        self.operate("sim", "reset-button", "1")
+        self.operate("sim", "reset-button", "0")
+        self.operate("reset", expect=1)  # the cause is still there
+        self.operate("zero")
+        time.sleep(0.8)
+        self.reset_with_the_button()
+        self.operate("arm")
+
+    @despite_stalls
+    def test_a_second_daemon_on_the_same_state_folder_is_refused(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        options = [] if realtime_permitted() else ["--without-realtime"]
+        second = self.run_program("flexarmd", "--config", HIL, "--log-dir", self.folder / "other",
+                                  "--state-dir", self.folder / "runs",
+                                  "--socket", self.folder / "socket2", *options)
+        self.assert_refused(second, str(self.folder / "runs"), "--state-dir")
         self.wait_for_state("Idle")
 
     @in_real_time

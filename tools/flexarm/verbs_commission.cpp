@@ -63,8 +63,9 @@ void AddTare(CLI::App& app, Exit& exit) {
   CLI::App* verb =
       options->daemon.AddVerb(app, "tare", "Tare: measure the zeros of the strain channels");
   verb->footer(
-      "Only in Idle, at rest, with nothing touching the links, so that they are not bent. If a\n"
-      "channel is unsteady, missing or far from its zero, it is named and no zero is changed.\n"
+      "Only in Idle or Tripped, at rest, with nothing touching the links, so that they are not\n"
+      "bent. If a channel is unsteady, missing or far from its zero, it is named and no zero is\n"
+      "changed.\n"
       "Example: flexarm tare");
   verb->callback([options, &exit] { exit.code = Run(*options, {{"command", "tare"}}); });
 }
@@ -78,8 +79,9 @@ void AddZero(CLI::App& app, Exit& exit) {
       ->expected(2)
       ->type_name("A B");
   verb->footer(
-      "Only in Idle, at rest. Examples: flexarm zero                     both at zero\n"
-      "                                 flexarm zero --angle-deg 0 90    on a jig");
+      "Only in Idle or Tripped, at rest. After a trip by wrong zeros: zero, button, reset.\n"
+      "Examples: flexarm zero                     both at zero\n"
+      "          flexarm zero --angle-deg 0 90    on a jig");
   verb->callback([options, &exit] {
     Json command{{"command", "zero"}};
     if (!options->angle_deg.empty()) command["angle_deg"] = options->angle_deg;

@@ -23,6 +23,20 @@ struct OperateOptions {
   bool watch = false;
 };
 
+// When the trip was, and whether by this daemon or before its start.
+void PrintTripTime(const Json& trip) {
+  const auto text = [&trip](const char* key) {
+    const auto found = trip.find(key);
+    return found != trip.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  const std::string time = text("time_utc"), problem = text("record_problem");
+  const bool before = trip.value("before_start", false);
+  if (!time.empty()) {
+    std::printf("               %s%s\n", time.c_str(), before ? ", before the daemon's start" : "");
+  }
+  if (!problem.empty()) std::printf("               %s\n", problem.c_str());
+}
+
 void PrintStatus(const Json& s) {
   std::printf("state          %s\n", s.value("state", "-").c_str());
   if (s.contains("trip") && s["trip"].is_object()) {
@@ -31,6 +45,10 @@ void PrintStatus(const Json& s) {
     if (s["trip"].contains("bus") && s["trip"]["bus"].is_string()) {
       std::printf("               %s\n", s["trip"]["bus"].get<std::string>().c_str());
     }
+    PrintTripTime(s["trip"]);
+  }
+  if (s.contains("latch_problem") && s["latch_problem"].is_string()) {
+    std::printf("latch file     %s\n", s["latch_problem"].get<std::string>().c_str());
   }
   std::printf("time           %.2f s (tick %lld)\n", s.value("time_s", 0.0),
               static_cast<long long>(s.value("tick", std::int64_t{0})));

@@ -21,6 +21,7 @@ struct Options {
   std::optional<double> run_for_s;
   std::vector<std::string> overrides;
   std::string log_directory;
+  std::string state_directory;
   std::string socket;
   bool without_realtime = false;
 };
@@ -40,7 +41,10 @@ void AddOptions(CLI::App* app, Options* options) {
   app->add_option("--set", options->overrides, "Replace a value of the config; repeatable")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  app->add_option("--log-dir", options->log_directory, "log.directory of the config")
+  app->add_option("--log-dir", options->log_directory,
+                  "log.directory of the config, and daemon.state_directory too")
+      ->type_name("DIR");
+  app->add_option("--state-dir", options->state_directory, "daemon.state_directory of the config")
       ->type_name("DIR");
   app->add_option("--socket", options->socket, "daemon.socket of the config")->type_name("PATH");
 }
@@ -51,6 +55,9 @@ RigConfig Load(const Options& options) {
   if (!options.log_directory.empty()) {
     overrides.push_back("log.directory=" + quoted(options.log_directory));
   }
+  const std::string& state =
+      options.state_directory.empty() ? options.log_directory : options.state_directory;
+  if (!state.empty()) overrides.push_back("daemon.state_directory=" + quoted(state));
   if (!options.socket.empty()) overrides.push_back("daemon.socket=" + quoted(options.socket));
   return LoadConfig(options.config, overrides);
 }

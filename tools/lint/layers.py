@@ -41,13 +41,15 @@ LAYERS = {
     "controller/tasks": "hal hal/sim controller/exchange controller/realtime controller/types "
                         "controller/safety controller/law controller/reference "
                         "controller/planner controller/step",
+    "controller/latch": "controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks",
     "controller/operator": "model hal estimator controller/realtime controller/types "
-                           "controller/runlog controller/tasks controller/commissioning",
+                           "controller/runlog controller/tasks controller/latch "
+                           "controller/commissioning",
     "controller/host": "hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
-                       "controller/operator",
+                       "controller/latch controller/operator",
     "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/types controller/runlog",
     "tools/support": "controller/runlog",
     "tools/runs": "controller/runlog config",

@@ -102,6 +102,19 @@ TEST_F(CommandDispatchTest, ARequestGoesToTheSafetyTaskWhateverTheState) {
   }
 }
 
+TEST_F(CommandDispatchTest, AnArmThatCannotBeKeptIsRefusedWithTheFileAndTheRemedy) {
+  now_.permit.state = SafetyState::kIdle;
+  std::filesystem::remove_all(folder_.path());
+  const Json answer = Answer({{"command", "arm"}});
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_EQ(answer["refusal"], "not-kept");
+  EXPECT_EQ(answer["state"], "Idle");
+  EXPECT_THAT(answer.value("error", ""),
+              testing::AllOf(HasSubstr(TripLatch::kFile), HasSubstr("No such file"),
+                             HasSubstr("would not survive a restart")));
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
 TEST_F(CommandDispatchTest, AStopAndADisarmAreLatchedHoweverManyCome) {
   for (int i = 0; i < 300; ++i) {
     EXPECT_TRUE(Answer({{"command", "stop"}}).is_null());
@@ -198,7 +211,8 @@ TEST_F(UnprovenRigTest, ARunIsRefusedUntilTheWiringIsProven) {
 }
 
 TEST_F(CommandDispatchTest, ACommissioningCommandIsBegunOrRefusedByItsReason) {
-  EXPECT_THAT(Answer({{"command", "tare"}}).value("error", ""), HasSubstr("needs the state Idle"));
+  EXPECT_THAT(Answer({{"command", "tare"}}).value("error", ""),
+              HasSubstr("needs the state Idle or Tripped"));
   EXPECT_THAT(Answer({{"command", "home"}, {"joint", 3}}).value("error", ""), HasSubstr("1 or 2"));
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
   EXPECT_TRUE(Answer({{"command", "pluck"}}).is_null()) << "its answer comes later";

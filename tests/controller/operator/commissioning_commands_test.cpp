@@ -63,7 +63,7 @@ TEST_F(CommissioningCommandsTest, AMotionIsARunThatIsAskedForWithItsSwitch) {
 
 // A run that is not answered yet could be the motion's, and the other way round.
 TEST_F(CommissioningCommandsTest, NothingBeginsWhileARequestIsInFlight) {
-  const std::uint32_t arm = requests_.Ask(RequestKind::kArm, 0, 6);
+  const std::uint32_t arm = requests_.Ask(RequestKind::kArm, 0, 6).number;
   EXPECT_THROW(commissioning_.Start({{"command", "pluck"}}, 7, now_), RejectedError);
   EXPECT_EQ(stack_.TakeRequests().size(), 1u);
   Answered(RequestKind::kArm, arm, Refusal::kWrongState);

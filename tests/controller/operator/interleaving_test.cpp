@@ -17,6 +17,7 @@
 
 #include "controller/operator/operator_task.h"
 #include "controller/realtime/lockstep_executor.h"
+#include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/operator_records.h"
 #include "tests/controller/operator/socket_peer.h"
 #include "tests/controller/operator/still_stack.h"
@@ -41,8 +42,10 @@ class Session {
                     // After a trip the elbow turns until friction stops it.
                     "sim.switch_angle_deg=[360.0, 360.0]", "limits.soft_angle_deg=[350.0, 350.0]"});
     stack_ = std::make_unique<SimulatedStack>(config_, ShippedDesign(), 0.1);
+    latch_.Open();
     operator_ = std::make_unique<OperatorTask>(
         OperatorContext{.stack = stack_.get(),
+                        .latch = &latch_,
                         .events = &events_,
                         .design = &ShippedDesign(),
                         .config = &config_,
@@ -211,6 +214,8 @@ class Session {
   const std::string path_ = SocketPath();
   RigConfig config_;
   EventQueue events_{1'000};
+  LatchFolder state_;
+  TripLatch latch_{state_.path(), "/runs", [](bool, const std::string&) {}};
   std::unique_ptr<SimulatedStack> stack_;
   std::unique_ptr<OperatorTask> operator_;
   LockstepExecutor executor_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controller/operator/commissioning_commands.h"
+#include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/operator_records.h"
 #include "tests/controller/operator/still_stack.h"
 #include "tests/support/loop_time.h"
@@ -18,6 +19,7 @@ class OperatorParts : public testing::Test {
   explicit OperatorParts(RigConfig config) : config_(std::move(config)) {
     now_.now_ns = 60 * kMs;
     now_.permit.state = SafetyState::kArmed;
+    latch_.Open();
   }
 
   // The answer of the safety task to the request `number`, taken by every part.
@@ -36,7 +38,9 @@ class OperatorParts : public testing::Test {
   StillStack stack_{config_};
   EventQueue events_{64};
   RecordedJournal journal_;
-  RequestTracker requests_{&stack_};
+  LatchFolder folder_;
+  TripLatch latch_{folder_.path(), "/runs", [](bool, const std::string&) {}};
+  RequestTracker requests_{&stack_, &latch_};
   ExperimentLoader experiments_{
       &stack_, &requests_, &events_, &ShippedDesign(), LoopGrid(config_.loop), ShippedLimits()};
   CommissioningCommands commissioning_{config_,

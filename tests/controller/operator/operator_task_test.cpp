@@ -11,6 +11,7 @@
 
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/types/rejected_error.h"
+#include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/operator_records.h"
 #include "tests/controller/operator/socket_peer.h"
 #include "tests/controller/operator/still_stack.h"
@@ -38,6 +39,7 @@ class OperatorTaskTest : public testing::Test {
 
   OperatorContext Context() {
     return {.stack = stack_.get(),
+            .latch = latch_.get(),
             .events = &events_,
             .design = &ShippedDesign(),
             .config = &config_,
@@ -57,6 +59,10 @@ class OperatorTaskTest : public testing::Test {
     overrides.push_back("log.directory='" + folder().string() + "'");
     config_ = ShippedRig(overrides);
     stack_ = std::make_unique<SimulatedStack>(config_, ShippedDesign(), 0.1);
+    latch_ = std::make_unique<TripLatch>(state_.path(), folder().string(), journal_.Report());
+    if (const std::optional<HeldTrip> trip = latch_->Open()) {
+      stack_->StartTripped(trip->cause, trip->evidence);
+    }
     OperatorContext context = Context();
     if (!unattended.empty()) context.unattended = ParseExperiment(unattended, "unattended");
     operator_ = std::make_unique<OperatorTask>(context);
@@ -64,6 +70,23 @@ class OperatorTaskTest : public testing::Test {
     executor_.Add(stack_->control());
     executor_.Add(stack_->plant());
     executor_.Add(*operator_);
+  }
+
+  // The daemon is killed: nothing is brought to an end.
+  void Kill() {
+    operator_.reset();
+    latch_.reset();
+    executor_ = LockstepExecutor();
+    stack_.reset();
+    journal_.lines.clear();
+    now_ns_ = 0;
+  }
+
+  // The physical button, once the arm is at rest.
+  void PressReset() {
+    Run(3.0);
+    Press("reset-button", 1);
+    Press("reset-button", 0);
   }
 
   // The same, until it is Idle and has seen the arm at rest.
@@ -131,6 +154,8 @@ class OperatorTaskTest : public testing::Test {
   EventQueue events_{1'000};
   RecordedJournal journal_;
   std::unique_ptr<SimulatedStack> stack_;
+  LatchFolder state_;
+  std::unique_ptr<TripLatch> latch_;
   std::unique_ptr<OperatorTask> operator_;
   LockstepExecutor executor_;
   std::int64_t now_ns_ = 0;
@@ -231,6 +256,91 @@ TEST_F(OperatorTaskTest, ATripIsInTheStatusUntilButtonAndReset) {
   EXPECT_EQ(operator_->trip(), TripCause::kEmergencyStop) << "for the exit code";
 }
 
+TEST_F(OperatorTaskTest, AfterAKillTheTripIsThereUntilButtonAndReset) {
+  StartAtRest();
+  Ask("arm");
+  AskRun(TomlOfMove(20.0));
+  Run(0.5);
+  Press("emergency-stop", 0);
+  Run(kPeriod_s);
+  const Json before = Ask("status")["trip"];
+  for (int start = 0; start < 2; ++start) {
+    Kill();
+    Start();
+    Run(1.0);
+    const Json status = Ask("status");
+    EXPECT_EQ(status["state"], "Tripped");
+    EXPECT_EQ(status["trip"]["name"], "emergency-stop");
+    EXPECT_EQ(status["trip"]["before_start"], true);
+    EXPECT_EQ(status["trip"]["time_utc"], before["time_utc"]);
+    EXPECT_GE(journal_.Find("from before this start: emergency-stop"), 0);
+    EXPECT_EQ(Ask("arm")["refusal"], "wrong-state");
+    EXPECT_EQ(Ask("reset")["refusal"], "no-reset");
+    EXPECT_EQ(operator_->trip(), TripCause::kEmergencyStop);
+  }
+  PressReset();
+  EXPECT_EQ(Ask("reset")["state"], "Idle");
+  Run(kPeriod_s);
+  EXPECT_EQ(operator_->trip(), TripCause::kNone) << "none of this daemon's, for the exit code";
+  EXPECT_EQ(Ask("arm")["ok"], true);
+  EXPECT_EQ(Ask("disarm")["ok"], true);
+  Kill();
+  StartAtRest();
+}
+
+TEST_F(OperatorTaskTest, AfterAKillWhileArmedTheDaemonStartsTripped) {
+  StartAtRest();
+  ASSERT_EQ(Ask("arm")["ok"], true);
+  Kill();
+  Start();
+  Run(0.1);
+  EXPECT_EQ(Ask("status")["trip"]["name"], "ended-while-armed");
+  PressReset();
+  EXPECT_EQ(Ask("reset")["state"], "Idle");
+}
+
+TEST_F(OperatorTaskTest, AShutdownWhileArmedLeavesNoTrip) {
+  StartAtRest();
+  Ask("arm");
+  operator_->RequestShutdown();
+  EXPECT_GT(RunUntilDone(7.0), 0.0);
+  Kill();
+  StartAtRest();
+}
+
+TEST_F(OperatorTaskTest, WithoutRoomNothingIsArmedAttendedOrNot) {
+  Start({}, TomlOfMove(2.0));
+  std::filesystem::remove_all(state_.path());
+  EXPECT_GT(RunUntilDone(5.0), 0.0);
+  EXPECT_TRUE(operator_->refused());
+  EXPECT_GE(journal_.Find("arm: refused: The daemon could not write"), 0);
+  const Json answer = Ask("arm");
+  EXPECT_EQ(answer["refusal"], "not-kept");
+  EXPECT_THAT(answer.value("error", ""), HasSubstr(TripLatch::kFile));
+  EXPECT_EQ(State(), "Idle");
+}
+
+// A wrong zero trips at once; a reset wants the cause gone, which takes another zero.
+TEST_F(OperatorTaskTest, AWrongZeroThatTripsIsCorrectedWhileTripped) {
+  StartAtRest();
+  EXPECT_EQ(Ask({{"command", "zero"}, {"angle_deg", {0.0, 120.0}}}, 2.0)["ok"], true);
+  EXPECT_TRUE(ComesTo("Tripped"));
+  EXPECT_EQ(Ask("status")["trip"]["name"], "soft-limit-2");
+  PressReset();
+  EXPECT_EQ(Ask("reset")["refusal"], "cause-remains");
+  EXPECT_THAT(Ask(Json{{"command", "calibrate"}, {"link", 1}, {"force_n", 1}, {"at_m", 0.5}})
+                  .value("error", ""),
+              HasSubstr("needs the state Idle"));
+  const Json zeroed = Ask({{"command", "zero"}, {"angle_deg", {0.0, 0.0}}}, 2.0);
+  EXPECT_EQ(zeroed["ok"], true) << zeroed;
+  EXPECT_EQ(zeroed["state"], "Tripped") << "zero alone resets nothing";
+  EXPECT_EQ(Ask({{"command", "tare"}}, 2.0)["ok"], true);
+  Run(1.0);
+  EXPECT_EQ(State(), "Tripped");
+  EXPECT_EQ(Ask("reset")["state"], "Idle");
+  EXPECT_EQ(Ask("arm")["ok"], true);
+}
+
 TEST_F(OperatorTaskTest, AShutdownWhileRunningStopsAndDisarms) {
   StartAtRest();
   Ask("arm");
@@ -303,8 +413,8 @@ TEST_F(OperatorTaskTest, ACommissioningCommandInAWrongStateIsRefused) {
   StartAtRest();
   EXPECT_THAT(Ask("pluck").value("error", ""), HasSubstr("flexarm arm"));
   Ask("arm");
-  EXPECT_THAT(Ask("tare").value("error", ""), HasSubstr("needs the state Idle"));
-  EXPECT_THAT(Ask("zero").value("error", ""), HasSubstr("needs the state Idle"));
+  EXPECT_THAT(Ask("tare").value("error", ""), HasSubstr("needs the state Idle or Tripped"));
+  EXPECT_THAT(Ask("zero").value("error", ""), HasSubstr("needs the state Idle or Tripped"));
   EXPECT_EQ(State(), "Armed");
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/still_stack.h"
 
 namespace flexarm {
@@ -20,13 +21,20 @@ RequestAnswer AnswerTo(std::uint32_t number, RequestKind kind) {
 }
 
 struct RequestTrackerTest : testing::Test {
+  RequestTrackerTest() { latch.Open(); }
+
+  std::uint32_t Ask(RequestKind kind, int client, const RunOrder& run = {}) {
+    return tracker.Ask(kind, 40, client, run).number;
+  }
+
   StillStack stack;
-  RequestTracker tracker{&stack};
+  LatchFolder folder;
+  TripLatch latch{folder.path(), "/runs", [](bool, const std::string&) {}};
+  RequestTracker tracker{&stack, &latch};
 };
 
 TEST_F(RequestTrackerTest, ARequestCountsFromNowOnWithTheNextNumber) {
-  EXPECT_EQ(tracker.Ask(RequestKind::kRun, 40, 7, {.experiment = nullptr, .may_open = 0b10}),
-            1'001u)
+  EXPECT_EQ(Ask(RequestKind::kRun, 7, {.experiment = nullptr, .may_open = 0b10}), 1'001u)
       << "unattended ones are 1, 2, ..";
   const std::vector<OperatorRequest> made = stack.TakeRequests();
   ASSERT_EQ(made.size(), 1u);
@@ -37,8 +45,8 @@ TEST_F(RequestTrackerTest, ARequestCountsFromNowOnWithTheNextNumber) {
 }
 
 TEST_F(RequestTrackerTest, AStopAndADisarmAreLatchedAndNotQueued) {
-  EXPECT_EQ(tracker.Ask(RequestKind::kStop, 40, 7), 1'001u);
-  EXPECT_EQ(tracker.Ask(RequestKind::kDisarm, 40, 8), 1'002u);
+  EXPECT_EQ(Ask(RequestKind::kStop, 7), 1'001u);
+  EXPECT_EQ(Ask(RequestKind::kDisarm, 8), 1'002u);
   EXPECT_THAT(stack.TakeRequests(), IsEmpty());
   EXPECT_EQ(stack.stop().Take(), 1'001u);
   EXPECT_EQ(stack.stop().Take(), 0u);
@@ -47,12 +55,13 @@ TEST_F(RequestTrackerTest, AStopAndADisarmAreLatchedAndNotQueued) {
 
 TEST_F(RequestTrackerTest, OneArmRunOrResetAtATime) {
   for (const RequestKind first : {RequestKind::kArm, RequestKind::kRun, RequestKind::kReset}) {
-    const std::uint32_t number = tracker.Ask(first, 0, 7);
+    const std::uint32_t number = Ask(first, 7);
     EXPECT_TRUE(tracker.busy());
     for (const RequestKind next : {RequestKind::kArm, RequestKind::kRun, RequestKind::kReset}) {
-      EXPECT_EQ(tracker.Ask(next, 0, 8), 0u) << ToString(first) << ", " << ToString(next);
+      EXPECT_EQ(tracker.Ask(next, 0, 8).refusal, Refusal::kBusy)
+          << ToString(first) << ", " << ToString(next);
     }
-    EXPECT_NE(tracker.Ask(RequestKind::kStop, 0, 8), 0u) << "a stop is always made";
+    EXPECT_NE(Ask(RequestKind::kStop, 8), 0u) << "a stop is always made";
     EXPECT_EQ(stack.TakeRequests().size(), 1u);
     EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(number, first)), ElementsAre(7));
     EXPECT_FALSE(tracker.busy());
@@ -61,16 +70,37 @@ TEST_F(RequestTrackerTest, OneArmRunOrResetAtATime) {
 
 TEST_F(RequestTrackerTest, ARequestOfAnUnattendedRunKeepsItBusyToo) {
   tracker.AskPlanned({.kind = RequestKind::kArm, .number = 1, .not_before_ns = 100});
-  EXPECT_EQ(tracker.Ask(RequestKind::kArm, 0, 7), 0u);
+  EXPECT_EQ(Ask(RequestKind::kArm, 7), 0u);
   EXPECT_EQ(stack.TakeRequests().size(), 1u);
   EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1, RequestKind::kArm)), IsEmpty());
   tracker.AskPlanned({.kind = RequestKind::kDisarm, .number = 2, .not_before_ns = 100});
   EXPECT_FALSE(tracker.busy()) << "a disarm adds no energy";
 }
 
+TEST_F(RequestTrackerTest, AnArmIsAskedForOnlyOnceTheLatchFileSaysSo) {
+  EXPECT_NE(Ask(RequestKind::kReset, 7), 0u);
+  EXPECT_FALSE(folder.Has(TripLatch::kFile)) << "of arms alone";
+  tracker.TakeClientsOf(AnswerTo(1'001, RequestKind::kReset));
+  stack.TakeRequests();
+  {
+    const FullDisk full;
+    const RequestTracker::Asked refused = tracker.Ask(RequestKind::kArm, 0, 7);
+    EXPECT_EQ(refused.number, 0u);
+    EXPECT_EQ(refused.refusal, Refusal::kNotKept);
+    EXPECT_THAT(refused.why, testing::HasSubstr(TripLatch::kFile));
+    const OperatorRequest planned{.kind = RequestKind::kArm, .number = 1, .not_before_ns = 100};
+    EXPECT_EQ(tracker.AskPlanned(planned).refusal, Refusal::kNotKept);
+    EXPECT_THAT(stack.TakeRequests(), IsEmpty());
+    EXPECT_FALSE(tracker.busy());
+    EXPECT_NE(Ask(RequestKind::kStop, 7), 0u) << "a stop needs no file";
+  }
+  EXPECT_NE(Ask(RequestKind::kArm, 7), 0u);
+  EXPECT_TRUE(folder.Has(TripLatch::kFile)) << "before the safety task can grant it";
+}
+
 TEST_F(RequestTrackerTest, EachClientGetsTheAnswerToItsOwnRequestOnce) {
-  tracker.Ask(RequestKind::kArm, 0, 7);
-  tracker.Ask(RequestKind::kStop, 0, 8);
+  Ask(RequestKind::kArm, 7);
+  Ask(RequestKind::kStop, 8);
   EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'002, RequestKind::kStop)), ElementsAre(8))
       << "answered before the arm, which was made before it";
   EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'001, RequestKind::kArm)), ElementsAre(7));
@@ -79,8 +109,8 @@ TEST_F(RequestTrackerTest, EachClientGetsTheAnswerToItsOwnRequestOnce) {
 }
 
 TEST_F(RequestTrackerTest, StopsThatAreNotAnsweredYetShareAnAnswer) {
-  for (int client = 0; client < 300; ++client) tracker.Ask(RequestKind::kStop, 0, client);
-  tracker.Ask(RequestKind::kDisarm, 0, 1'000);
+  for (int client = 0; client < 300; ++client) Ask(RequestKind::kStop, client);
+  Ask(RequestKind::kDisarm, 1'000);
   const std::uint32_t newest = stack.stop().Take();
   EXPECT_EQ(newest, 1'300u);
   EXPECT_EQ(tracker.TakeClientsOf(AnswerTo(newest, RequestKind::kStop)).size(), 300u);
@@ -89,7 +119,7 @@ TEST_F(RequestTrackerTest, StopsThatAreNotAnsweredYetShareAnAnswer) {
 
 TEST_F(RequestTrackerTest, AnAnswerThatNoClientWaitsForGoesToNone) {
   tracker.Ask(RequestKind::kRun, 0);
-  tracker.Ask(RequestKind::kDisarm, 0, 7);
+  Ask(RequestKind::kDisarm, 7);
   EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1, RequestKind::kArm)), IsEmpty())
       << "of an unattended run";
   EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'001, RequestKind::kRun)), IsEmpty());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/controller/latch/latch_folder.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
@@ -26,13 +27,16 @@ struct StatusJsonTest : testing::Test {
     now.tick.output.payload_kg = std::numeric_limits<double>::quiet_NaN();
   }
 
-  Json Status() const {
+  Json Status() const { return StatusOf(latch); }
+
+  Json StatusOf(const TripLatch& of) const {
     return StatusJson({.now = &now,
                        .delay = &delay,
                        .sensors = &sensors,
                        .experiment = experiment,
                        .buses = buses,
                        .bus_text = bus_text,
+                       .latch = &of,
                        .threads = Json::array({"control"})});
   }
 
@@ -42,6 +46,8 @@ struct StatusJsonTest : testing::Test {
   std::string experiment;
   std::vector<BusHealth> buses;
   std::string bus_text;
+  LatchFolder folder;
+  TripLatch latch{folder.path(), "/runs", [](bool, const std::string&) {}};
 };
 
 TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
@@ -99,6 +105,35 @@ TEST_F(StatusJsonTest, ATripHasItsCauseItsValuesAndItsChannel) {
   EXPECT_EQ(trip["channel_name"], "strain_2_02");
   EXPECT_EQ(trip["text"], OperatorText(TripCause::kStrainSaturated));
   EXPECT_TRUE(trip["bus"].is_null());
+}
+
+TEST_F(StatusJsonTest, ATripHasItsTimeAndWhetherItIsFromBeforeTheStart) {
+  now.permit.state = SafetyState::kTripped;
+  now.permit.cause = TripCause::kSoftLimit1;
+  latch.Open();
+  latch.Follow(0, now.permit, false);
+  EXPECT_EQ(Status()["trip"]["before_start"], false);
+  EXPECT_EQ(Status()["trip"]["time_utc"], latch.trip()->time_utc);
+  TripLatch next(folder.path() / "next", "/runs", [](bool, const std::string&) {});
+  std::filesystem::create_directory(folder.path() / "next");
+  std::filesystem::copy(folder.file(TripLatch::kFile), folder.path() / "next");
+  next.Open();
+  EXPECT_EQ(StatusOf(next)["trip"]["before_start"], true);
+  EXPECT_EQ(StatusOf(next)["trip"]["time_utc"], latch.trip()->time_utc);
+  EXPECT_TRUE(StatusOf(next)["latch_problem"].is_null());
+}
+
+TEST_F(StatusJsonTest, ARecordThatCannotBeReadOrWrittenIsNamed) {
+  folder.Put(TripLatch::kFile, "garbage");
+  latch.Open();
+  now.permit.state = SafetyState::kTripped;
+  now.permit.cause = TripCause::kTripRecordUnreadable;
+  EXPECT_NE(Status()["trip"]["record_problem"].get<std::string>().find("JSON"), std::string::npos);
+  EXPECT_TRUE(Status()["trip"]["time_utc"].is_null());
+  now.permit.cause = TripCause::kSoftLimit1;  // another trip
+  std::filesystem::remove_all(folder.path());
+  latch.Follow(0, now.permit, false);
+  EXPECT_NE(Status()["latch_problem"].get<std::string>().find(TripLatch::kFile), std::string::npos);
 }
 
 TEST_F(StatusJsonTest, ATripOfABusNamesTheDevice) {

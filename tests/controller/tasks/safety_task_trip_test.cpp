@@ -10,6 +10,49 @@ namespace {
 
 using enum SafetyState;
 
+TEST_F(SafetyTaskTest, ATripFromBeforeTheStartIsLatchedFromTheFirstTick) {
+  const Evidence evidence{.value = 1.6, .limit = 1.5, .channel = 2, .detail = 0};
+  const SafetyStatus tripped{kTripped, TripCause::kSoftLimit2};
+  safety_.StartTripped(TripCause::kSoftLimit2, evidence);
+  lines_.levels = kHealthyLevels | LineBit(Line::kResetButton);  // held from the start: counts not
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kWrongState);
+  EXPECT_EQ(permit().state, kTripped);
+  EXPECT_EQ(permit().cause, TripCause::kSoftLimit2);
+  EXPECT_EQ(permit().evidence.value, 1.6);
+  EXPECT_EQ(permit().evidence.channel, 2u);
+  EXPECT_EQ(Now(RequestKind::kReset), Refusal::kUnhealthy) << "not every task has reported";
+  RunFor(100 * kMs);
+  EXPECT_EQ(safety_.status(), tripped) << "though every task has reported";
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kWrongState);
+  EXPECT_EQ(Now(RequestKind::kRun), Refusal::kWrongState);
+  EXPECT_EQ(Now(RequestKind::kReset), Refusal::kNoReset);
+  lines_.levels = kHealthyLevels;
+  RunFor(kMs);
+  lines_.levels = kHealthyLevels | LineBit(Line::kResetButton);
+  RunFor(kMs);
+  lines_.levels = kHealthyLevels;
+  control_.report.at_rest = false;
+  RunFor(50 * kMs);
+  EXPECT_EQ(Now(RequestKind::kReset), Refusal::kNotAtRest);
+  control_.report.at_rest = true;
+  RunFor(50 * kMs);
+  for (const FakeLines::Written& written : lines_.written) {
+    EXPECT_FALSE(written.outputs.relay_closed);
+    EXPECT_FALSE(written.outputs.pump_level);
+  }
+  EXPECT_EQ(Now(RequestKind::kReset), Refusal::kNone);
+  EXPECT_EQ(safety_.status().state, kIdle);
+  GoTo(kRunning);
+  // The records describe the whole run, from the trip on: replay repeats them.
+  const std::vector<SafetyRecord> records = Records();
+  EXPECT_EQ(records.front().before, tripped);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const SafetyDecision decision{.status = records[i].after, .refusal = records[i].refusal};
+    EXPECT_EQ(NextSafetyState(records[i].before, records[i].facts), decision) << i;
+    if (i > 0) EXPECT_EQ(records[i].before, records[i - 1].after) << i;
+  }
+}
+
 TEST_F(SafetyTaskTest, EverySwitchOpensTheRelayAtTheNextTickAndZeroesTheTorqueWithinTwoMs) {
   const struct {
     Line line;

@@ -36,10 +36,19 @@ stop_rig() {
   exec 3>&-
 }
 
+# With a state folder of its own, in which no daemon before it has tripped.
 start_daemon() {
-  flexarmd --config wire.toml --log-dir runs --socket "$FLEXARM_SOCKET" 2>daemon.log &
+  kept=$(mktemp -d "$PWD/state.XXXXXX")
+  restart_daemon Idle
+}
+
+# restart_daemon STATE: with the state folder of the daemon before; STATE is the safety state in
+# which it must start.
+restart_daemon() {
+  flexarmd --config wire.toml --log-dir runs --state-dir "$kept" --socket "$FLEXARM_SOCKET" \
+    2>daemon.log &
   daemon=$!
-  check "the daemon is idle" within 30 grep -q 'Starting -> Idle' daemon.log
+  check "the daemon starts in $1" within 30 grep -q "Starting -> $1" daemon.log
   sleep 1 # at rest for half a second
 }
 

@@ -125,4 +125,19 @@ left=$(ls -t runs/*.flexarm | head -n 1)
 check "the log left behind replays" equal \
   "$(flexarm replay "$left" --json | jq -c '[.bit_exact, .safety_exact]')" "[true,true]"
 stop_rig
+
+echo "== and started again"
+start_rig
+restart_daemon Tripped
+check "the trip says why" equal "$(flexarm status --json | jq -c '[.trip.name, .trip.before_start]')" \
+  '["ended-while-armed",true]'
+check "it cannot be armed" refused flexarm arm
+check "nor reset without the button" refused flexarm reset
+check "the hardware has no power" equal "$(hardware)" "$dead"
+check "reset" press_and_reset
+check "and armed" flexarm arm
+kill -TERM $daemon
+wait $daemon
+check "flexarmd ends with 0: the trip was reset" equal $? 0
+stop_rig
 conclude
