@@ -207,6 +207,7 @@ void ReadController(TableReader controller, ControllerConfig* out) {
   controller.Read("adaptation_bound", &out->adaptation_bound);
   controller.Read("pd_stiffness_nm_per_rad", &out->pd_stiffness_nm_per_rad);
   controller.Read("pd_damping_nms_per_rad", &out->pd_damping_nms_per_rad);
+  controller.Read("payload_range_kg", &out->payload_range_kg);
   controller.Read("prediction", &out->prediction);
   controller.Read("adaptation", &out->adaptation);
   if (controller.Has("payload")) {

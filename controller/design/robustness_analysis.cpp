@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -26,7 +27,7 @@ using Eigen::VectorXd;
 constexpr int kPlantModes = 4;
 constexpr std::array<double, 3> kElbow_deg = {0.0, 45.0, 90.0};
 constexpr std::array<double, 3> kGains = {1.0, 0.7, 1.4};
-constexpr Index kMaxDelayPeriods = 5;
+constexpr double kLongestDelay_s = 0.1;  // additional delay: the end of the search for the margin
 
 // The required margins: the gain factors that the analysis applies, and more delay than the lag of
 // the motor and the unmodelled latency of a sensor.
@@ -145,11 +146,37 @@ LinearEstimator DifferenceOf(const Design& design, double period_s) {
   return out;
 }
 
+// `ekf-payload` enters as the Kalman filter for the payload of the design.
 LinearEstimator EstimatorOf(const ControlConfig& config, const Design& design) {
   const double period_s = config.loop.period_s();
-  return config.estimator.kind == EstimatorKind::kKalman
-             ? KalmanOf(design, OwnDelayOf(config.loop).rest_s, period_s)
-             : DifferenceOf(design, period_s);
+  switch (config.estimator.kind) {
+    case EstimatorKind::kKalman:
+    case EstimatorKind::kPayload:
+      return KalmanOf(design, OwnDelayOf(config.loop).rest_s, period_s);
+    case EstimatorKind::kDifference:
+    case EstimatorKind::kPolynomial:
+      break;
+  }
+  return DifferenceOf(design, period_s);
+}
+
+/// A delay as whole periods and the remainder, 0 <= rest_s < period_s.
+struct PeriodsAndRest {
+  Index periods;
+  double rest_s;
+};
+
+PeriodsAndRest SplitDelay(double delay_s, double period_s) {
+  constexpr double kRounding = 1e-9;  // of a period: a delay of whole periods has no remainder
+  const double periods = std::floor(delay_s / period_s + kRounding);
+  return {.periods = static_cast<Index>(periods),
+          .rest_s = std::max(delay_s - periods * period_s, 0.0)};
+}
+
+// Torques in the state of the loop: of as many steps as the longest delay reaches back.
+Index TorquesOf(const OwnDelay& own, double period_s) {
+  const Index periods = SplitDelay(own.rest_s + kLongestDelay_s, period_s).periods;
+  return periods + 2 + std::max(own.whole, Index{0});
 }
 
 /// The loop around one plant.
@@ -163,10 +190,11 @@ class Loop {
         K_(FeedbackGain(design, config.controller)),
         own_(OwnDelayOf(config.loop)),
         first_u_(plant.A.rows() + estimator_.A.rows()),
-        inputs_(2 * (kMaxDelayPeriods + 2 + std::max(own_.whole, Index{0}))) {}
+        inputs_(2 * TorquesOf(own_, config.loop.period_s())) {}
 
   // State [x; z; u_0; u_1; ..], u_i the torque computed at step k-1-i. Relative to k Ts it acts at
-  // (whole - i) Ts + rest with the compensated delay, and delay_s later in the plant.
+  // (whole - i) Ts + rest with the compensated delay, and delay_s later in the plant:
+  // 0 <= delay_s <= kLongestDelay_s.
   double SpectralRadius(double gain, double delay_s) const {
     const Index nx = plant_.A.rows(), nz = estimator_.A.rows();
     MatrixXd loop = MatrixXd::Zero(first_u_ + inputs_, first_u_ + inputs_);
@@ -180,6 +208,7 @@ class Loop {
     loop.middleRows(first_u_, 2) = asked;
     loop.block(first_u_ + 2, first_u_, inputs_ - 2, inputs_ - 2).setIdentity();
     AddPlant(own_.rest_s + delay_s, asked, &loop);
+    if (!loop.allFinite()) return std::numeric_limits<double>::quiet_NaN();
     return loop.eigenvalues().cwiseAbs().maxCoeff();
   }
 
@@ -218,16 +247,15 @@ class Loop {
   void AddPlant(double late_s, const MatrixXd& asked, MatrixXd* loop) const {
     const Index nx = plant_.A.rows();
     const double period_s = config_.loop.period_s();
-    const Index periods = std::min(static_cast<Index>(late_s / period_s), kMaxDelayPeriods);
+    const auto [periods, rest_s] = SplitDelay(late_s, period_s);
     const Index newest = own_.whole + periods;  // -1: the torque of the present step
-    late_s -= static_cast<double>(periods) * period_s;
-    const DiscreteModel rest = ZeroOrderHold(plant_.A, plant_.B, period_s - late_s);
+    const DiscreteModel rest = ZeroOrderHold(plant_.A, plant_.B, period_s - rest_s);
     loop->topRows(nx) = rest.B * (newest < 0 ? asked : Torque(newest));
-    if (late_s <= 0.0) {
+    if (rest_s <= 0.0) {
       loop->topLeftCorner(nx, nx) += rest.A;
       return;
     }
-    const DiscreteModel before = ZeroOrderHold(plant_.A, plant_.B, late_s);
+    const DiscreteModel before = ZeroOrderHold(plant_.A, plant_.B, rest_s);
     loop->topLeftCorner(nx, nx) += rest.A * before.A;
     loop->topRows(nx) += rest.A * before.B * Torque(newest + 1);
   }
@@ -251,22 +279,29 @@ double Edge(double stable, double end, const Radius& radius) {
   bool found = false;
   for (int i = 1; i <= kSteps && !found; ++i) {
     const double at = stable + (end - stable) * std::pow(static_cast<double>(i) / kSteps, 3.0);
-    found = radius(at) >= 1.0;
+    found = !(radius(at) < 1.0);  // NaN is not stable
     (found ? outside : inside) = at;
   }
   for (int i = 0; found && i < kHalvings; ++i) {
     const double middle = 0.5 * (inside + outside);
-    (radius(middle) >= 1.0 ? outside : inside) = middle;
+    (radius(middle) < 1.0 ? inside : outside) = middle;
   }
   return outside;
 }
 
+// Orders spectral radii: one that is not a number is the worst.
+double Badness(double spectral_radius) {
+  return std::isnan(spectral_radius) ? std::numeric_limits<double>::infinity() : spectral_radius;
+}
+
 double DelayOf(const Loop& loop) {
-  return Edge(0.0, 0.1, [&loop](double delay_s) { return loop.SpectralRadius(1.0, delay_s); });
+  return Edge(0.0, kLongestDelay_s,
+              [&loop](double delay_s) { return loop.SpectralRadius(1.0, delay_s); });
 }
 
 LoopMargins MarginsOf(const Loop& loop) {
-  if (loop.SpectralRadius(1.0, 0.0) >= 1.0) return {.gain_up = 1.0, .gain_down = 1.0, .delay_s = 0};
+  if (!(loop.SpectralRadius(1.0, 0.0) < 1.0))
+    return {.gain_up = 1.0, .gain_down = 1.0, .delay_s = 0};
   const auto with_gain = [&loop](double gain) { return loop.SpectralRadius(gain, 0.0); };
   return {.gain_up = Edge(1.0, 100.0, with_gain),
           .gain_down = Edge(1.0, 0.0, with_gain),
@@ -277,13 +312,14 @@ LoopMargins MarginsOf(const Loop& loop) {
 
 const RobustnessCase& RobustnessAnalysis::worst() const {
   return *std::max_element(cases.begin(), cases.end(), [](const auto& a, const auto& b) {
-    return a.spectral_radius < b.spectral_radius;
+    return Badness(a.spectral_radius) < Badness(b.spectral_radius);
   });
 }
 
 const RobustnessCase& RobustnessAnalysis::worst_required() const {
   return *std::max_element(cases.begin(), cases.end(), [](const auto& a, const auto& b) {
-    return (a.required ? a.spectral_radius : 0.0) < (b.required ? b.spectral_radius : 0.0);
+    return (a.required ? Badness(a.spectral_radius) : 0.0) <
+           (b.required ? Badness(b.spectral_radius) : 0.0);
   });
 }
 
@@ -309,12 +345,6 @@ RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& 
   const Plant nominal = PlantAt(config, own_kg, 0.0);
   robustness.margins = MarginsOf(Loop(config, design, nominal));
   return robustness;
-}
-
-double DelayMargin_s(const ControlConfig& config, const Design& design) {
-  const Plant plant = PlantAt(config, config.arm.payload_mass_kg, 0.0);
-  const Loop loop(config, design, plant);
-  return loop.SpectralRadius(1.0, 0.0) < 1.0 ? DelayOf(loop) : 0.0;
 }
 
 std::vector<DesignCheck> ChecksOf(const RobustnessAnalysis& robustness) {

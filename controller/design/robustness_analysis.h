@@ -52,10 +52,6 @@ struct RobustnessAnalysis {
 RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& design,
                                      const std::vector<double>& payload_kg);
 
-/// LoopMargins::delay_s alone; 0 if the loop is unstable without additional delay.
-/// @throws std::runtime_error if the arm has no linear model
-double DelayMargin_s(const ControlConfig& config, const Design& design);
-
 /// The results as checks of the design: "robustness-spectral-radius", "gain-margin-up",
 /// "gain-margin-down", "delay-margin-ms".
 std::vector<DesignCheck> ChecksOf(const RobustnessAnalysis& robustness);

@@ -7,6 +7,7 @@
 
 #include "controller/design/design_controller.h"
 #include "controller/design/design_json.h"
+#include "controller/design/design_verdict.h"
 #include "controller/types/rejected_error.h"
 
 namespace flexarm {
@@ -43,10 +44,7 @@ Design DesignFor(const ControlConfig& config) {
   Design design = config.controller.gains_file.empty() ? NewDesign(config) : ReadDesign(config);
   for (const DesignCheck& check : design.checks) {
     if (check.passed() || check.waived) continue;
-    std::ostringstream text;
-    text << "design check '" << check.name << "' failed: " << check.value << " must be "
-         << (check.below ? "below " : "above ") << check.limit;
-    throw RejectedError(text.str());
+    throw RejectedError("a check of the design failed: " + CheckText(check));
   }
   return design;
 }

@@ -6,11 +6,12 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
-#include "controller/design/robustness_analysis.h"
+#include "controller/design/design_verdict.h"
 #include "controller/design/run_design.h"
+#include "controller/host/arm_verdicts.h"
+#include "controller/host/check_host.h"
 #include "controller/host/journal.h"
 #include "controller/host/run_info.h"
 #include "controller/host/service_manager.h"
@@ -104,6 +105,7 @@ class Daemon {
   explicit Daemon(const DaemonOptions& options)
       : options_(options),
         design_(DesignFor(options.config)),
+        verdict_(JudgeDesign(options.config, design_)),
         backend_(MakeBackend(options, design_)),
         events_(kEventDepth),
         timing_(kTimingDepth),
@@ -128,6 +130,7 @@ class Daemon {
  private:
   LoopStack& stack() { return *backend_.stack; }
   OperatorContext Context();
+  void ReportDesign();
   void PrepareHost();
   void RestoreTrip();
   void Wait(const sigset_t& signals);
@@ -137,6 +140,7 @@ class Daemon {
   Journal journal_;
   ServiceManager service_;
   Design design_;
+  DesignVerdict verdict_;
   Backend backend_;
   EventQueue events_;
   SpscQueue<TimingRecord> timing_;
@@ -155,14 +159,30 @@ OperatorContext Daemon::Context() {
       .design = &design_,
       .config = &options_.config,
       .grid = LoopGrid(options_.config.loop),
-      .delay_margin_s = DelayMargin_s(options_.config, design_),
+      .delay_margin_s = verdict_.delay_margin_s(),
       .limits = MotionLimitsOf(options_.config),
+      .arm_checks = {.design = DesignVerdictOf(verdict_),
+                     .simulated = stack().simulated(),
+                     .check_host =
+                         [this] {
+                           return HostVerdictOf(CheckHost(options_.config), options_.realtime);
+                         }},
       .socket = options_.config.daemon.socket,
       .unattended = options_.experiment,
       .parse_experiment = options_.parse_experiment,
       .report = [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
       .thread_status = [this] { return ThreadStatus(executor_); },
       .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); }};
+}
+
+void Daemon::ReportDesign() {
+  for (const DesignCheck& check : verdict_.checks) {
+    const std::string waived = check.waived ? " (failed, waived with --force)" : "";
+    journal_.Report(!check.passed(), "design: " + CheckText(check) + waived);
+  }
+  const bool sound = verdict_.result == DesignVerdict::Result::kSound;
+  journal_.Report(!sound, std::string("design: ") + ToString(verdict_.result) +
+                              (sound ? "" : ": " + verdict_.found));
 }
 
 void Daemon::PrepareHost() {
@@ -184,12 +204,7 @@ void Daemon::RestoreTrip() {
 DaemonResult Daemon::Run() {
   journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " +
                 options_.config.rig_name + ", backend " + options_.config.backend);
-  for (const DesignCheck& check : design_.checks) {
-    std::ostringstream text;
-    text << "design: " << check.name << " = " << check.value << ", must be "
-         << (check.below ? "below " : "above ") << check.limit;
-    journal_.Info(text.str());
-  }
+  ReportDesign();
   const sigset_t signals = BlockEndSignals();
   PrepareHost();
   RestoreTrip();

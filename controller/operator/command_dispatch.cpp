@@ -23,9 +23,9 @@ nlohmann::json Refused(RequestKind kind, Refusal refusal, SafetyState state) {
   return json;
 }
 
+// Those that the safety task alone judges.
 std::optional<RequestKind> RequestByName(const std::string& name) {
-  for (const RequestKind kind :
-       {RequestKind::kArm, RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
+  for (const RequestKind kind : {RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
     if (name == ToString(kind)) return kind;
   }
   return std::nullopt;
@@ -54,17 +54,17 @@ nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
   const std::string name = command["command"];
   if (name == "status") return targets_.status();
   if (name == "sim") return SetLine(command, now.permit.state);
+  if (name == "arm") return targets_.arm->Start(command, client, now);
   if (name == "run") return StartRun(command, client, now);
   if (Commissioner::Knows(name)) {
     targets_.commissioning->Start(command, client, now);
     return nullptr;
   }
   if (const std::optional<RequestKind> kind = RequestByName(name)) {
+    if (*kind != RequestKind::kReset) targets_.arm->Cancel();
     const RequestTracker::Asked asked = targets_.requests->Ask(*kind, now.now_ns, client);
     if (asked.number != 0) return nullptr;
-    nlohmann::json refused = Refused(*kind, asked.refusal, now.permit.state);
-    if (!asked.why.empty()) refused["error"] = asked.why + ". " + std::string(refused["error"]);
-    return refused;
+    return Refused(*kind, asked.refusal, now.permit.state);
   }
   return Failure("no such command: '" + name + "'",
                  "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "

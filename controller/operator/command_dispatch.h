@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "controller/operator/arm_command.h"
 #include "controller/operator/commissioning_commands.h"
 #include "controller/operator/experiment_loader.h"
 #include "controller/operator/journal_report.h"
@@ -25,6 +26,7 @@ class CommandDispatch {
     RequestTracker* requests;
     ExperimentLoader* experiments;
     CommissioningCommands* commissioning;
+    ArmCommand* arm;
     std::function<nlohmann::json()> status;
     /// Throws std::exception with the reasons.
     std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;

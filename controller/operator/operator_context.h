@@ -7,6 +7,7 @@
 #include <string>
 
 #include "controller/latch/trip_latch.h"
+#include "controller/operator/arm_verdict.h"
 #include "controller/operator/journal_report.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/tasks/loop_stack.h"
@@ -23,6 +24,7 @@ struct OperatorContext {
   LoopGrid grid;
   double delay_margin_s;  ///< of the design (controller/design/robustness_analysis.h)
   MotionLimits limits;
+  ArmChecks arm_checks;
   std::string socket;                    ///< path; empty: no socket
   std::optional<Experiment> unattended;  ///< run once without a person
   /// Reads an experiment that a client sent. Throws std::exception with the reasons.

@@ -6,6 +6,7 @@
 
 #include "controller/operator/request_answers.h"
 #include "controller/operator/status_json.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
@@ -28,23 +29,32 @@ OperatorTask::OperatorTask(OperatorContext context)
                                         .experiments = &experiments_,
                                         .requests = &requests_,
                                         .report = context_.report}),
+      overrides_(context_.events, context_.report),
+      arm_(context_.arm_checks,
+           {.requests = &requests_, .overrides = &overrides_, .report = context_.report}),
       warnings_(context_.grid.period_ns, context_.delay_margin_s, context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
       dispatch_({.stack = context_.stack,
                  .requests = &requests_,
                  .experiments = &experiments_,
                  .commissioning = &commissioning_,
+                 .arm = &arm_,
                  .status = [this] { return Status(); },
                  .parse_experiment = context_.parse_experiment,
                  .report = context_.report}),
       unattended_(unattended_order_ ? unattended_order_->planned.get() : nullptr,
                   Shutdown::kSettleNs),
       shutdown_(Shutdown::LimitNs(context_.config->safety)) {
+  if (unattended_order_) RequireArm();
   if (!context_.socket.empty()) socket_ = std::make_unique<OperatorSocket>(context_.socket);
   if (unattended_order_) experiments_.Announce(now_.now_ns, *unattended_order_);
 }
 
 OperatorTask::~OperatorTask() = default;
+
+void OperatorTask::RequireArm() const {
+  if (const std::string why = arm_.WhyNotUnattended(); !why.empty()) throw RejectedError(why);
+}
 
 Task::Traits OperatorTask::traits() const noexcept {
   return {.name = "operator",
@@ -63,6 +73,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     TakeTicks();
     TakeAnswers();
     FollowLatch();
+    Reply(arm_.Follow(now_));
     if (socket_) Serve();
     FollowUnattended();
     FollowShutdown();
@@ -85,6 +96,7 @@ void OperatorTask::FollowState() {
     trip_.store(TripCause::kNone, std::memory_order_relaxed);  // none of this daemon's
   }
   state_journal_.Follow(now_.now_ns, now_.permit);
+  overrides_.Follow(now_.permit);
 }
 
 void OperatorTask::TakeTicks() {
@@ -104,6 +116,7 @@ void OperatorTask::Take(const RequestAnswer& answer) {
   unattended_.Answered(answer);
   context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
   experiments_.Answered(now_.now_ns, answer);
+  overrides_.Answered(now_.now_ns, answer);
   Reply(commissioning_.Answered(answer, now_));
   for (const int client : requests_.TakeClientsOf(answer)) {
     Reply(client, AnswerJson(answer, now_.permit.state));
@@ -164,7 +177,10 @@ nlohmann::json OperatorTask::Status() {
                      .buses = context_.stack->buses(),
                      .bus_text = context_.stack->BusText(permit.cause, permit.evidence),
                      .latch = context_.latch,
-                     .threads = context_.thread_status()});
+                     .threads = context_.thread_status(),
+                     .host = arm_.HostStatus(),
+                     .design = arm_.DesignStatus(),
+                     .overrides = overrides_.Json()});
 }
 
 void OperatorTask::Reply(int client, const nlohmann::json& answer) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
+#include "controller/operator/arm_command.h"
 #include "controller/operator/command_dispatch.h"
 #include "controller/operator/commissioning_commands.h"
 #include "controller/operator/experiment_loader.h"
@@ -13,6 +14,7 @@
 #include "controller/operator/operator_context.h"
 #include "controller/operator/operator_snapshot.h"
 #include "controller/operator/operator_socket.h"
+#include "controller/operator/override_record.h"
 #include "controller/operator/request_tracker.h"
 #include "controller/operator/run_warnings.h"
 #include "controller/operator/shutdown.h"
@@ -33,6 +35,7 @@ class OperatorTask final : public Task {
   static constexpr std::int64_t kPeriodNs = 20'000'000;
 
   /// @throws RejectedError if the socket cannot be used, or the unattended experiment is impossible
+  ///         or its arm request would be refused
   /// @throws InputError if the calibration file is not for these sensors
   explicit OperatorTask(OperatorContext context);
   ~OperatorTask() override;
@@ -56,6 +59,7 @@ class OperatorTask final : public Task {
   bool refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
 
  private:
+  void RequireArm() const;
   void FollowState();
   void TakeTicks();
   void TakeAnswers();
@@ -75,6 +79,8 @@ class OperatorTask final : public Task {
   ExperimentLoader experiments_;
   std::optional<ExperimentLoader::Order> unattended_order_;
   CommissioningCommands commissioning_;
+  OverrideRecord overrides_;
+  ArmCommand arm_;
   RunWarnings warnings_;
   StateJournal state_journal_;
   LoopWatch loop_watch_;

@@ -65,7 +65,10 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"trip", TripJson(sources)},
           {"latch_problem", TextOrNull(sources.latch->problem())},
           {"buses", BusesJson(sources.buses)},
-          {"threads", sources.threads}};
+          {"threads", sources.threads},
+          {"host", sources.host},
+          {"design", sources.design},
+          {"overrides", sources.overrides}};
 }
 
 }  // namespace flexarm

@@ -22,6 +22,9 @@ struct StatusSources {
   std::string bus_text;          ///< LoopStack::BusText of the trip; empty: of no bus
   const TripLatch* latch;        ///< when the trip was, and whether it is kept
   nlohmann::json threads;        ///< OperatorContext::thread_status
+  nlohmann::json host;           ///< ArmCommand::HostStatus
+  nlohmann::json design;         ///< ArmCommand::DesignStatus
+  nlohmann::json overrides;      ///< OverrideRecord::Json
 };
 
 /// The answer to the command "status". Every key has its unit in its name, or is without unit;

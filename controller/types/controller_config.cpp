@@ -89,6 +89,11 @@ std::vector<Problem> ControllerConfig::Problems() const {
               "no adaptation while y_e = C_p (x_m - x) is smaller; 0: no dead zone");
   list.Positive("adaptation_bound", adaptation_bound, 1e6,
                 "the largest distance of the gains from their initial values");
+  list.EachWithin("payload_range_kg", payload_range_kg, 0.0, 100.0,
+                  "the payloads with which the loop must be stable");
+  list.Require(!(payload_range_kg[0] > payload_range_kg[1]), "payload_range_kg",
+               NumberText(payload_range_kg[0]) + " .. " + NumberText(payload_range_kg[1]),
+               "must be the least payload, then the greatest");
   if (payload) CheckPayload(*payload, &list);
   if (plan) CheckPlan(*plan, &list);
   return list.Take();

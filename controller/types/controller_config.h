@@ -63,7 +63,9 @@ struct ControllerConfig {
   double adaptation_bound;                        ///< largest |K_I - K_I(0)|, Frobenius, > 0
   std::array<double, 2> pd_stiffness_nm_per_rad;  ///< of the PD laws, on th1 th2
   std::array<double, 2> pd_damping_nms_per_rad;   ///< on their rates
-  bool prediction;                                ///< one-sample open-loop prediction
+  std::array<double, 2> payload_range_kg;  ///< least and greatest payload that the arm may carry:
+                                           ///< the loop must be stable with each between them
+  bool prediction;                         ///< one-sample open-loop prediction
   bool adaptation;  ///< false: u = u* + y_e, the same feedforward and feedback
 
   /// The degree of stability used in the design: 0 for sobel-original and lqg.

@@ -214,6 +214,7 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
                "controller.adaptation_dead_zone_nm=0.5", "controller.adaptation_bound=0.7",
                "controller.pd_stiffness_nm_per_rad=[11, 12]",
                "controller.pd_damping_nms_per_rad=[13, 14]", "controller.nominal=T12",
+               "controller.payload_range_kg=[0.1, 0.6]",
                "controller.state_weight=[1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3]"})
           .controller;
   EXPECT_EQ(c.nominal, kT12);
@@ -230,6 +231,7 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
   EXPECT_EQ(c.adaptation_bound, 0.7);
   EXPECT_EQ(c.pd_stiffness_nm_per_rad, (std::array{11.0, 12.0}));
   EXPECT_EQ(c.pd_damping_nms_per_rad, (std::array{13.0, 14.0}));
+  EXPECT_EQ(c.payload_range_kg, (std::array{0.1, 0.6}));
   EXPECT_TRUE(HilWith({}).controller.state_weight.empty());
   for (const NamedLayout& model : kNominalModels) {
     EXPECT_EQ(HilWith({"controller.nominal=" + std::string(model.name)}).controller.nominal,

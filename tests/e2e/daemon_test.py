@@ -42,24 +42,6 @@ to_deg = [30.0, -30.0]
 
 
 class Daemon(ProgramTest):
-    def wait_for_state(self, *states, within_s=20):
-        """Waits until the daemon is in one of the states and returns its status."""
-        end = time.monotonic() + within_s
-        status = {}
-        while time.monotonic() < end:
-            result = self.run_program("flexarm", "status", "--socket", self.folder / "socket", "--json")
-            if result.returncode == 0:
-                status = json.loads(result.stdout)
-                if status["state"] in states:
-                    return status
-            time.sleep(0.05)
-        self.fail(f"not {states} within {within_s} s: {status}\n{self.daemon_log()}")
-
-    def operate(self, *command, expect=0):
-        result = self.run_program("flexarm", *command, "--socket", self.folder / "socket")
-        self.assertEqual(result.returncode, expect, f"{command}: {result.stdout}{result.stderr}")
-        return result
-
     @in_real_time
     def test_an_unattended_run_ends_in_idle_with_a_log_that_replays(self):
         daemon = self.start_daemon("--experiment", self.experiment(SHORT))

@@ -152,18 +152,36 @@ class ProgramTest(unittest.TestCase):
         file.write_text(text, encoding="utf-8")
         return file
 
-    def start_daemon(self, *arguments, stderr=None, before=()):
+    def start_daemon(self, *arguments, config=HIL, stderr=None, before=()):
         """Starts the daemon with its own log folder and socket; the end of the test kills it. Its
         stderr is daemon.log unless `stderr` is given; `before` is a command that starts it."""
         options = [] if realtime_permitted() else ["--without-realtime"]
         with open(self.folder / "daemon.log", "w", encoding="utf-8") as log:
             daemon = subprocess.Popen(
-                [*before, BIN / "flexarmd", "--config", HIL, "--log-dir", self.folder / "runs",
+                [*before, BIN / "flexarmd", "--config", config, "--log-dir", self.folder / "runs",
                  "--socket", self.folder / "socket", *options, *map(str, arguments)],
                 cwd=self.folder, stdout=log, stderr=log if stderr is None else stderr)
 
         self.daemons.append(daemon)
         return daemon
+
+    def wait_for_state(self, *states, within_s=20):
+        """Waits until the daemon is in one of the states and returns its status."""
+        end = time.monotonic() + within_s
+        status = {}
+        while time.monotonic() < end:
+            result = self.run_program("flexarm", "status", "--socket", self.folder / "socket", "--json")
+            if result.returncode == 0:
+                status = json.loads(result.stdout)
+                if status["state"] in states:
+                    return status
+            time.sleep(0.05)
+        self.fail(f"not {states} within {within_s} s: {status}\n{self.daemon_log()}")
+
+    def operate(self, *command, expect=0):
+        result = self.run_program("flexarm", *command, "--socket", self.folder / "socket")
+        self.assertEqual(result.returncode, expect, f"{command}: {result.stdout}{result.stderr}")
+        return result
 
     def end_daemons(self):
         while self.daemons:

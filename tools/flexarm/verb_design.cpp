@@ -4,12 +4,12 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <stdexcept>
 #include <vector>
 
 #include "controller/design/design_controller.h"
 #include "controller/design/design_json.h"
-#include "controller/design/robustness_analysis.h"
+#include "controller/design/design_verdict.h"
 #include "controller/law/design.h"
 #include "controller/types/rejected_error.h"
 #include "tools/command_line/options.h"
@@ -22,7 +22,7 @@ namespace {
 struct DesignOptions {
   ConfigOptions config;
   std::filesystem::path output;
-  std::vector<double> payload_kg = {0.0, 0.01, 0.1, 0.2, 0.5, 1.0};
+  std::vector<double> payload_kg;  ///< empty: those of the config
   bool force = false;
   bool json = false;
 };
@@ -126,28 +126,17 @@ void PrintText(const Design& design, const RobustnessAnalysis& robustness,
   if (design.sound()) std::printf("\ngains written to %s\n", file.c_str());
 }
 
-// Names the worst required case if the loop is unstable with it; else empty.
-std::string Where(const RobustnessAnalysis& robustness) {
-  const RobustnessCase& worst = robustness.worst_required();
-  if (worst.spectral_radius < 1.0) return "";
-  std::ostringstream text;
-  text << "; the loop is unstable with " << worst.payload_kg << " kg, elbow at " << worst.theta2_deg
-       << " deg, gains x " << worst.gain;
-  return text.str();
-}
-
 int Run(const DesignOptions& options) {
   RigConfig config = options.config.Load();
   config.controller.gains_file.clear();  // designs also if the config names gains
   Design design = DesignController(config);
-  const RobustnessAnalysis robustness = AnalyzeRobustness(config, design, options.payload_kg);
-  for (const DesignCheck& check : ChecksOf(robustness)) design.checks.push_back(check);
-  std::string failed;
-  for (DesignCheck& check : design.checks) {
-    if (check.passed()) continue;
-    failed += (failed.empty() ? "" : ", ") + check.name;
-    check.waived = options.force;
-  }
+  const DesignVerdict verdict = JudgeDesign(
+      config, design,
+      options.payload_kg.empty() ? CheckedPayloads_kg(config.controller) : options.payload_kg);
+  if (!verdict.robustness) throw std::runtime_error(verdict.found);
+  const RobustnessAnalysis& robustness = *verdict.robustness;
+  design.checks = verdict.checks;
+  for (DesignCheck& check : design.checks) check.waived = options.force && !check.passed();
   const std::string hash = DesignHash(config);
   const Conditioning conditioning = ConditioningOf(config, design);
   if (design.sound()) WriteText(options.output, DesignToJson(design, hash) + '\n');
@@ -157,7 +146,7 @@ int Run(const DesignOptions& options) {
     PrintText(design, robustness, conditioning, options.output);
   }
   if (!design.sound()) {
-    std::cerr << "flexarm: no gains were written: failed: " << failed << Where(robustness)
+    std::cerr << "flexarm: no gains were written: failed: " << verdict.found
               << "; --force writes them anyway and records that in the file\n";
     return Exit::kFailed;
   }
@@ -173,9 +162,9 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
       "Design the reference model, gains and filter of a rig, check them and write them to a file");
   options->config.AddTo(verb, true);
   AddOutput(verb, &options->output, "Gains file to write (JSON)");
-  verb->add_option(
-          "--payload-kg", options->payload_kg,
-          "Payloads with which the closed loop must be stable, kg (default: 0 0.01 0.1 0.2 0.5 1)")
+  verb->add_option("--payload-kg", options->payload_kg,
+                   "Payloads with which the closed loop must be stable, kg (default: six of "
+                   "controller.payload_range_kg)")
       ->check(CLI::Range(0.0, 100.0))
       ->expected(1, -1);
   verb->add_flag("--force", options->force,
@@ -187,7 +176,10 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
       "written.\n"
       "The robustness analysis closes the loop around the arm with four bending modes a link, at\n"
       "three elbow angles, with every payload, and with the gains x 0.7 and x 1.4. The gain and\n"
-      "delay margins are checked too.\n"
+      "delay margins are checked too. The daemon makes the same checks with the payloads of\n"
+      "controller.payload_range_kg, and does not arm what fails them. Gains of --force it arms on "
+      "the\n"
+      "simulated backend; on a wired rig `flexarm arm` needs --override-design REASON as well.\n"
       "To run with these gains, set [controller] gains = \"FILE\" in the config. Without that key\n"
       "the daemon designs the gains at start.\n"
       "Example: flexarm design -c config/thesis-rig.toml -o gains.json");

@@ -6,6 +6,8 @@
 #include <iostream>
 #include <memory>
 
+#include "controller/design/design_verdict.h"
+#include "controller/design/run_design.h"
 #include "controller/host/simulation.h"
 #include "controller/runlog/errors.h"
 #include "controller/types/law_table.h"
@@ -49,7 +51,12 @@ void ShowProgress(double simulated_s) {
   std::fflush(stderr);
 }
 
-nlohmann::ordered_json ToJson(const SimulationResult& result, const std::filesystem::path& run) {
+nlohmann::ordered_json ToJson(const DesignVerdict& design) {
+  return {{"verdict", ToString(design.result)}, {"found", design.found}};
+}
+
+nlohmann::ordered_json ToJson(const SimulationResult& result, const DesignVerdict& design,
+                              const std::filesystem::path& run) {
   nlohmann::ordered_json json;
   json["completed"] = result.completed;
   json["trip"] = result.trip == TripCause::kNone ? nlohmann::ordered_json(nullptr)
@@ -59,6 +66,7 @@ nlohmann::ordered_json ToJson(const SimulationResult& result, const std::filesys
   json["move_duration_s"] = result.move_duration_s;
   json["delay_found"] = result.delay_found;
   json["realtime_factor"] = NumberOrNull(result.realtime_factor);
+  json["design"] = ToJson(design);
   json["run"] =
       run.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(run.string());
   return json;
@@ -97,18 +105,29 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
   if (!run.empty()) std::printf("run                       %s\n", run.c_str());
 }
 
+void WarnOfDesign(const DesignVerdict& design) {
+  if (design.result == DesignVerdict::Result::kSound) return;
+  const bool forced = design.result == DesignVerdict::Result::kForced;
+  std::cerr << "flexarm: warning: "
+            << (forced ? "the gains failed checks, which --force waived: "
+                       : "the daemon does not arm this design, it was rejected: ")
+            << design.found << '\n';
+}
+
 int Run(const SimulateOptions& options) {
   SimulationRequest request;
   request.config = LoadWithOptions(options);
   request.experiment = LoadExperiment(ExperimentFile(options.experiment, options.config.file));
   request.payload_kg = options.payload_kg;
   if (!options.output.empty()) request.log = options.output;
+  const DesignVerdict design = JudgeDesign(request.config, DesignFor(request.config));
+  WarnOfDesign(design);
   const bool show = isatty(STDERR_FILENO) == 1 && !options.json;
   const SimulationResult result =
       Simulate(request, show ? std::function<void(double)>(ShowProgress) : nullptr);
   if (show) std::fprintf(stderr, "\r\033[K");
   if (options.json) {
-    std::cout << ToJson(result, options.output).dump(2) << '\n';
+    std::cout << ToJson(result, design, options.output).dump(2) << '\n';
   } else {
     PrintText(result, options.output);
   }
@@ -152,7 +171,8 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
       ->type_name("RUN");
   AddJson(verb, &options->json);
   verb->footer(
-      "Prints tracking errors, settling time of the tip and peak torques; `flexarm plot` draws\n"
+      "Prints tracking errors, settling time of the tip and peak torques, and warns of a design\n"
+      "that `flexarm design` rejects and the daemon does not arm; `flexarm plot` draws\n"
       "the run log. The same config and seed give the same run, tick for tick. Exit code 1 if the\n"
       "run tripped.\n"
       "Examples: flexarm simulate -c config/hil.toml\n"

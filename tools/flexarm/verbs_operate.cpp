@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "controller/operator/arm_verdict.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
+#include "tools/flexarm/override_options.h"
 
 namespace flexarm {
 namespace {
@@ -21,6 +23,7 @@ struct OperateOptions {
   std::string line;
   int level = 0;
   bool watch = false;
+  OverrideOptions overrides;
 };
 
 // When the trip was, and whether by this daemon or before its start.
@@ -37,8 +40,24 @@ void PrintTripTime(const Json& trip) {
   if (!problem.empty()) std::printf("               %s\n", problem.c_str());
 }
 
+// Verdict of one check before arming, and what it found.
+void PrintVerdict(const Json& s, const char* key) {
+  if (!s.contains(key) || !s[key].is_object()) return;
+  std::printf("%-14s %s\n", key, s[key].value("verdict", "-").c_str());
+  for (const Json& finding : s[key].value("findings", Json::array())) {
+    std::printf("               %s%s: %s\n", finding.value("advice", false) ? "advice: " : "",
+                finding.value("name", "").c_str(), finding.value("text", "").c_str());
+  }
+}
+
 void PrintStatus(const Json& s) {
   std::printf("state          %s\n", s.value("state", "-").c_str());
+  for (const Json& given : s.value("overrides", Json::array())) {
+    std::printf("override       %s: %s\n", given.value("condition", "").c_str(),
+                given.value("reason", "").c_str());
+  }
+  PrintVerdict(s, "host");
+  PrintVerdict(s, "design");
   if (s.contains("trip") && s["trip"].is_object()) {
     std::printf("trip           %s: %s\n", s["trip"].value("name", "").c_str(),
                 s["trip"].value("text", "").c_str());
@@ -124,6 +143,27 @@ void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, c
   });
 }
 
+void RegisterArm(CLI::App& app, Exit& exit) {
+  const auto arm = std::make_shared<OperateOptions>();
+  CLI::App* verb = arm->daemon.AddVerb(app, "arm", "Close the relay: zero torque, ready to run");
+  arm->overrides.AddTo(verb, "--override-host", kHostCondition,
+                       "Arm a wired rig although this machine is not good enough for one");
+  arm->overrides.AddTo(verb, "--override-design", kDesignCondition,
+                       "Arm a wired rig although its gains were written with design --force");
+  verb->footer(
+      "Only from Idle, at rest, with no fault present, with a design that `flexarm design`\n"
+      "accepts, and on a wired rig with a machine that `flexarm check-host` finds ready. The\n"
+      "REASON of an override, one line of up to 200 bytes, is in the journal, in the run's log\n"
+      "and, until the arm is disarmed, in the status (docs/safety.md).\n"
+      "Examples: flexarm arm\n"
+      "          flexarm arm --override-host \"bench test, drives without power\"");
+  verb->callback([arm, &exit] {
+    Json command = {{"command", "arm"}};
+    arm->overrides.PutInto(&command);
+    exit.code = arm->daemon.Conclude(arm->daemon.Ask(command));
+  });
+}
+
 }  // namespace
 
 void RegisterOperate(CLI::App& app, Exit& exit) {
@@ -135,8 +175,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
   verb->footer("Example: flexarm status --watch");
   verb->callback([status, &exit] { exit.code = Status(*status); });
 
-  AddCommand(app, exit, "arm", "Close the relay: zero torque, ready to run",
-             "Only from Idle, at rest, with no fault present. Example: flexarm arm");
+  RegisterArm(app, exit);
 
   const auto run = std::make_shared<OperateOptions>();
   verb = run->daemon.AddVerb(app, "run", "Run an experiment on the armed arm");

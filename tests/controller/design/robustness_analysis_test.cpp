@@ -46,7 +46,7 @@ class LoopInTime {
                     .L = design_.filter_L,
                     .A_rate = design_.filter_A_rate,
                     .B_rate = design_.filter_B_rate},
-                   kPeriod_s, Stiffness()),
+                   config.loop.period_s(), Stiffness()),
         filter_(config.sensors.strain_input, kStep_s, 20),
         fit_(Fit(config)) {
     gain_ = gain * FeedbackGain(design_, config.controller);
@@ -57,12 +57,13 @@ class LoopInTime {
 
   // |x_hat| after `periods` periods.
   double Run(int periods) {
+    const auto steps = static_cast<int>(std::lround(config_.loop.period_s() / kStep_s));
     double size = 0.0;
     for (int k = 0; k < periods; ++k) {
       const StateVector x = estimator_.Update(Counters(), Modes(), {before_(0), before_(1)}).x;
       const Eigen::VectorXd next = design_.A * x + design_.B * now_;
       before_ = now_;
-      for (int i = 0; i < kSteps; ++i) {  // the torque of the plant is late by late_steps_
+      for (int i = 0; i < steps; ++i) {  // the torque of the plant is late by late_steps_
         pipeline_.push_back(before_);
         const auto due = static_cast<std::ptrdiff_t>(pipeline_.size()) - 1 - late_steps_;
         Step(due < 0 ? Eigen::Vector2d(Eigen::Vector2d::Zero())
@@ -75,8 +76,7 @@ class LoopInTime {
   }
 
  private:
-  static constexpr double kPeriod_s = 0.02, kStep_s = 2e-4;
-  static constexpr int kSteps = 100;
+  static constexpr double kStep_s = 2e-4;
 
   static ArmModel Frictionless(ArmParameters arm, double payload_kg) {
     arm.payload_mass_kg = payload_kg;
@@ -212,6 +212,25 @@ TEST(RobustnessAnalysis, TheDelayMarginIsThatOfTheTimeDomainLoop) {
   EXPECT_GT(growth(margin_s + 0.0003), 1.0);
 }
 
+// The same where the margin is longer than five periods of the loop, more of which the analysis
+// once could not represent. Measured: 99.4 ms at a period of 10 ms.
+TEST(RobustnessAnalysis, ADelayMarginOfManyPeriodsIsThatOfTheTimeDomainLoop) {
+  const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/thesis-rig-printed.toml",
+                                      {"loop.period_ms=10", "loop.acquire_before_ms=2",
+                                       "loop.step_deadline_ms=2", "controller.name=lqr-cgt"});
+  const Design design = DesignController(config);
+  const double margin_s = AnalyzeRobustness(config, design, {}).margins.delay_s;
+  ASSERT_GT(margin_s, 5.0 * config.loop.period_s());
+  ASSERT_LT(margin_s, 0.1) << "the end of the search is no margin";
+  const auto growth = [&](double delay_s) {
+    LoopInTime loop(config, design, config.arm.payload_mass_kg, 0.0, 1.0, delay_s);
+    const double early = loop.Run(1500);
+    return std::pow(loop.Run(1500) / early, 1.0 / 1500.0);
+  };
+  EXPECT_LT(growth(margin_s - 0.002), 1.0);
+  EXPECT_GT(growth(margin_s + 0.002), 1.0);
+}
+
 // A torque that acts a microsecond before or after a sampling instant is another case in the
 // analysis, but the same loop: radius and margin are continuous. A loop with a longer prediction
 // tolerates less additional delay. Measured: 27.2, 27.3 and 27.3 ms, with 20 ms declared 9.1 ms.
@@ -222,7 +241,6 @@ TEST(RobustnessAnalysis, TheMarginsAreContinuousWhereTheDelayPassesAWholePeriod)
     config.loop.output_after_ms = config.loop.period_ms + late_ms;
     config.loop.actuation_delay_ms = std::max(late_ms, 0.0);
     const RobustnessAnalysis robustness = AnalyzeRobustness(config, ShippedDesign(), {});
-    EXPECT_DOUBLE_EQ(robustness.margins.delay_s, DelayMargin_s(config, ShippedDesign()));
     return std::pair(robustness.worst_required().spectral_radius, robustness.margins.delay_s);
   };
   constexpr double kShort_ms = 1e-3;

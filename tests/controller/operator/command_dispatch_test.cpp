@@ -39,6 +39,7 @@ class CommandDispatchTest : public OperatorParts {
                              .requests = &requests_,
                              .experiments = &experiments_,
                              .commissioning = &commissioning_,
+                             .arm = &arm_,
                              .status = [] { return Json{{"ok", true}, {"tick", 12}}; },
                              .parse_experiment = ParseExperiment,
                              .report = journal_.Report()}};

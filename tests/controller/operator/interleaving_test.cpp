@@ -43,21 +43,22 @@ class Session {
                     "sim.switch_angle_deg=[360.0, 360.0]", "limits.soft_angle_deg=[350.0, 350.0]"});
     stack_ = std::make_unique<SimulatedStack>(config_, ShippedDesign(), 0.1);
     latch_.Open();
-    operator_ = std::make_unique<OperatorTask>(
-        OperatorContext{.stack = stack_.get(),
-                        .latch = &latch_,
-                        .events = &events_,
-                        .design = &ShippedDesign(),
-                        .config = &config_,
-                        .grid = LoopGrid(config_.loop),
-                        .delay_margin_s = 0.009,
-                        .limits = ShippedLimits(),
-                        .socket = path_,
-                        .unattended = {},
-                        .parse_experiment = ParseExperiment,
-                        .report = [](bool, const std::string&) {},
-                        .thread_status = [] { return Json::array(); },
-                        .alive = [](std::int64_t, const std::string&) {}});
+    operator_ = std::make_unique<OperatorTask>(OperatorContext{
+        .stack = stack_.get(),
+         .latch = &latch_,
+        .events = &events_,
+        .design = &ShippedDesign(),
+        .config = &config_,
+        .grid = LoopGrid(config_.loop),
+        .delay_margin_s = 0.009,
+        .limits = ShippedLimits(),
+        .arm_checks = {.design = {.result = ArmVerdict::Result::kPassed}, .simulated = true},
+        .socket = path_,
+        .unattended = {},
+        .parse_experiment = ParseExperiment,
+        .report = [](bool, const std::string&) {},
+        .thread_status = [] { return Json::array(); },
+        .alive = [](std::int64_t, const std::string&) {}});
     for (Task* task : stack_->tasks()) executor_.Add(*task);
     executor_.Add(*operator_);
     for (auto& client : clients_) client = std::make_unique<SocketPeer>(path_);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "controller/operator/arm_command.h"
 #include "controller/operator/commissioning_commands.h"
 #include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/operator_records.h"
@@ -48,6 +49,9 @@ class OperatorParts : public testing::Test {
                                         .experiments = &experiments_,
                                         .requests = &requests_,
                                         .report = journal_.Report()}};
+  OverrideRecord overrides_{&events_, journal_.Report()};
+  ArmCommand arm_{ArmChecks{.design = {.result = ArmVerdict::Result::kPassed}, .simulated = true},
+                  {.requests = &requests_, .overrides = &overrides_, .report = journal_.Report()}};
   OperatorSnapshot now_;
   std::vector<int> clients_;  // of the newest answer
 };

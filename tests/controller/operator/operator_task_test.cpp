@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/types/rejected_error.h"
@@ -46,6 +49,7 @@ class OperatorTaskTest : public testing::Test {
             .grid = LoopGrid(config_.loop),
             .delay_margin_s = 0.009,
             .limits = ShippedLimits(),
+            .arm_checks = arm_checks_,
             .socket = path_,
             .unattended = {},
             .parse_experiment = ParseExperiment,
@@ -158,6 +162,7 @@ class OperatorTaskTest : public testing::Test {
   std::unique_ptr<TripLatch> latch_;
   std::unique_ptr<OperatorTask> operator_;
   LockstepExecutor executor_;
+  ArmChecks arm_checks_{.design = {.result = ArmVerdict::Result::kPassed}, .simulated = true};
   std::int64_t now_ns_ = 0;
   std::int64_t alive_ns_ = -1;  // of the newest period in which the watchdog was fed
 };
@@ -180,6 +185,62 @@ TEST_F(OperatorTaskTest, ArmsRunsStopsAndDisarms) {
   const std::vector<RunEvent> logged = TakeEvents(&events_);
   ASSERT_EQ(logged.size(), 1u);
   EXPECT_EQ(logged[0].kind, "experiment");
+}
+
+TEST_F(OperatorTaskTest, ARejectedDesignIsNotArmed) {
+  arm_checks_.design = {
+      .result = ArmVerdict::Result::kFailed,
+      .findings = {{.name = "rejected", .text = "radius 1.87", .remedy = "tune"}}};
+  StartAtRest();
+  const Json answer = Ask("arm");
+  EXPECT_EQ(answer["refusal"], "design-rejected");
+  EXPECT_THAT(answer.value("error", ""), HasSubstr("radius 1.87"));
+  EXPECT_EQ(answer["remedy"], "tune");
+  EXPECT_EQ(State(), "Idle");
+  EXPECT_EQ(Ask("status")["design"]["verdict"], "rejected");
+}
+
+TEST_F(OperatorTaskTest, AnUnattendedRunWithARejectedDesignDoesNotStart) {
+  arm_checks_.design.result = ArmVerdict::Result::kFailed;
+  EXPECT_THROW(Start({}, TomlOfMove(2.0)), RejectedError);
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+// A wired rig, as far as the operator's task can tell, on a machine that is not good enough.
+TEST_F(OperatorTaskTest, AnOverrideArmsIsLoggedAfterTheArmAndEndsWhenTheArmIsIdle) {
+  arm_checks_.simulated = false;
+  arm_checks_.check_host = [] {
+    return ArmVerdict{.result = ArmVerdict::Result::kFailed,
+                      .findings = {{.name = "preempt-rt", .text = "none", .remedy = "boot it"}}};
+  };
+  StartAtRest();
+  // The check runs on a thread of its own, in a time that is not simulated.
+  const auto answer_to = [this](const Json& command) {
+    SocketPeer client(path_);
+    client.Send(command.dump() + "\n");
+    for (int i = 0; i < 500; ++i) {
+      if (Json answer = AnswerTo(&client, kPeriod_s); !answer.is_null()) return answer;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return Json();
+  };
+  EXPECT_EQ(answer_to({{"command", "arm"}})["refusal"], "host-not-ready");
+  EXPECT_EQ(State(), "Idle");
+  EXPECT_EQ(answer_to({{"command", "arm"}, {"overrides", {{"host", "test"}}}})["state"], "Armed");
+  EXPECT_EQ(Ask("status")["overrides"][0]["reason"], "test");
+  EXPECT_EQ(Ask("status")["host"]["verdict"], "not-ready");
+
+  std::int64_t armed_ns = INT64_MAX;
+  for (SafetyRecord record{}; stack_->safety_records().Pop(&record);) {
+    if (record.after.state == SafetyState::kArmed) armed_ns = std::min(armed_ns, record.due_ns);
+  }
+  const std::vector<RunEvent> logged = TakeEvents(&events_);
+  ASSERT_EQ(logged.size(), 1u);
+  EXPECT_EQ(logged[0].kind, "override");
+  EXPECT_GT(logged[0].time_ns, armed_ns) << "the recorder opens the run's log with the arm";
+
+  EXPECT_EQ(Ask("disarm")["state"], "Idle");
+  EXPECT_EQ(Ask("status")["overrides"], Json::array());
 }
 
 TEST_F(OperatorTaskTest, ARunEndsByItselfAndTheNextBeginsWhereItEnded) {

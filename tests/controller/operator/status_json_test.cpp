@@ -37,7 +37,10 @@ struct StatusJsonTest : testing::Test {
                        .buses = buses,
                        .bus_text = bus_text,
                        .latch = &of,
-                       .threads = Json::array({"control"})});
+                       .threads = Json::array({"control"}),
+                       .host = nullptr,
+                       .design = {{"verdict", "forced"}},
+                       .overrides = Json::array({"host"})});
   }
 
   OperatorSnapshot now;
@@ -67,6 +70,9 @@ TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
   EXPECT_EQ(status["at_rest"], true);
   EXPECT_DOUBLE_EQ(status["delay_margin_ms"], 9.0);
   EXPECT_EQ(status["threads"], Json({"control"}));
+  EXPECT_TRUE(status["host"].is_null());
+  EXPECT_EQ(status["design"]["verdict"], "forced");
+  EXPECT_EQ(status["overrides"], Json({"host"}));
 }
 
 TEST_F(StatusJsonTest, WhatThereIsNotIsNull) {

@@ -42,7 +42,7 @@ check "reset" press_and_reset
 sleep 1
 
 echo "== plucked"
-check "armed" flexarm arm
+check "armed" arm_rig
 check "no run before the wiring is proven" says 'flexarm pluck' run $experiment
 plucked 1 "inverted 3" "strain_1_04: is inverted"
 plucked 1 "swapped 1 5" "strain_1_02, strain_1_06: are exchanged"
@@ -67,7 +67,7 @@ stop_rig
 start_rig
 start_daemon
 check "zeros come from the file" test -s runs/calibration.json
-check "armed, with the wiring not yet proven" flexarm arm
+check "armed, with the wiring not yet proven" arm_rig
 check "no run before that" says 'flexarm pluck' run $experiment
 kill -TERM $daemon
 wait $daemon

@@ -28,7 +28,7 @@ said() { (($(grep -cE -- "$2" daemon.log) >= $1)); }
 round=0
 misbehaves() {
   round=$((round + 1))
-  flexarm arm >/dev/null || check "armed" false
+  arm_rig >/dev/null || check "armed" false
   echo "amplifier $1 $2" >&3
   check "$1 $2: trips" within 5 said $round 'Armed -> Tripped'
   check "$1 $2: named" grep -qE -- "-> Tripped: bus-lost: modbus '$1' .*: $3\. " \
