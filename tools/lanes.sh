@@ -141,9 +141,10 @@ lane_release() {  # all tests but those of whole programs, release build
 }
 
 lane_campaigns() {  # random campaigns at their whole size; `release` runs a sample of each
-  build release operator_loop_test
-  FLEXARM_CAMPAIGN=whole build/release/tests/controller/operator/operator_loop_test \
-    --gtest_filter='*.Campaign*'
+  build release operator_loop_test sensor_loss_loop_test
+  for program in operator/operator_loop_test loop/sensor_loss_loop_test; do
+    FLEXARM_CAMPAIGN=whole "build/release/tests/controller/$program" --gtest_filter='*.Campaign*'
+  done
 }
 
 lane_step-cost() {  # instructions of one control step are within their limits

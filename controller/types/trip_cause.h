@@ -34,8 +34,10 @@ enum class TripCause : std::uint8_t {
   kStopTimeout = 25,
   kEndedWhileArmed = 26,
   kTripRecordUnreadable = 27,
+  kNoStrainReading1 = 28,
+  kNoStrainReading2 = 29,
 };
-inline constexpr int kTripCauses = 28;
+inline constexpr int kTripCauses = 30;
 
 /// Set of causes, bit i is cause number i.
 using TripCauses = std::uint64_t;
