@@ -8,8 +8,9 @@ namespace flexarm {
 
 /// The digital lines of the safety chain, which the safety task reads and drives every millisecond.
 ///
-/// Both calls are bounded by `kBudgetNs`, never allocate and never throw: real-time safe. Only the
-/// safety thread calls them.
+/// A call takes `kBudgetNs` at most, never allocates and never throws: real-time safe. It says
+/// whether it succeeded and how long it took; the safety monitor judges both
+/// (controller/safety/line_calls.h). Only the safety thread calls.
 class SafetyLines {
  public:
   static constexpr std::int64_t kBudgetNs = 200'000;
@@ -21,13 +22,24 @@ class SafetyLines {
     bool pump_level;    ///< charge pump: the drives are enabled only while this toggles
   };
 
+  /// How one call went.
+  struct [[nodiscard]] Call {
+    bool ok = true;            ///< false: the lines could not be read or set
+    std::int64_t took_ns = 0;  ///< 0: lines inside the process, which answer at once
+  };
+
+  struct Reading {
+    LineLevels levels;  ///< 0, every switch open, if the call failed
+    Call call{};
+  };
+
   virtual ~SafetyLines() = default;
 
   /// Levels that held at `now_ns`, the task's due instant.
-  virtual LineLevels Read(std::int64_t now_ns) noexcept = 0;
+  virtual Reading Read(std::int64_t now_ns) noexcept = 0;
 
   /// Outputs that hold from `now_ns` on.
-  virtual void Write(std::int64_t now_ns, const Outputs& outputs) noexcept = 0;
+  virtual Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept = 0;
 };
 
 }  // namespace flexarm

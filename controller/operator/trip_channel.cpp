@@ -3,6 +3,23 @@
 #include "controller/runlog/csv.h"
 
 namespace flexarm {
+namespace {
+
+const char* NameOf(LineTrouble trouble) noexcept {
+  switch (trouble) {
+    case LineTrouble::kReadFailed:
+      return "read failed";
+    case LineTrouble::kWriteFailed:
+      return "write failed";
+    case LineTrouble::kReadSlow:
+      return "read too slow";
+    case LineTrouble::kWriteSlow:
+      return "write too slow";
+  }
+  return "";
+}
+
+}  // namespace
 
 std::string TripChannelName(TripCause cause, std::uint32_t channel, const SensorConfig& sensors) {
   if (channel == 0) return {};
@@ -15,6 +32,8 @@ std::string TripChannelName(TripCause cause, std::uint32_t channel, const Sensor
       return channel <= kCounters ? CounterName(static_cast<int>(channel) - 1) : std::string();
     case TripChannel::kJoint:
       return "joint " + std::to_string(channel);
+    case TripChannel::kLineTrouble:
+      return NameOf(static_cast<LineTrouble>(channel));
     case TripChannel::kNone:
     case TripChannel::kBus:  // LoopStack::BusText names it
       return {};

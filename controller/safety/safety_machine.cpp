@@ -93,7 +93,8 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
       return "A cause of a trip is still present: see `flexarm status`. Remove it, then repeat the "
              "request.";
     case Refusal::kNoReset:
-      return "The reset button has not been pressed since the trip. Press it at the rig, then "
+      return "The reset button has not been pressed since the trip. Press it at the rig for 50 ms "
+             "or longer, then "
              "repeat the request.";
     case Refusal::kUnhealthy:
       return "A cause of a trip is present, or a task has not reported yet: see `flexarm status`.";

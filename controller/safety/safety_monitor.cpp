@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/safety/line_filter.h"
 #include "controller/safety/torque_gate.h"
 #include "controller/types/runtime_config.h"
 #include "controller/types/safety_config.h"
@@ -42,7 +43,8 @@ MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& lo
           .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
           .fault_stop_ns = std::llround(1e9 * safety.fault_stop_s),
           .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,
-          .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s)};
+          .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s),
+          .lines_stall_ns = std::llround(1e6 * safety.permit_timeout_ms)};
 }
 
 bool SafetyMonitor::HomingContact(const SafetyInputs& in) noexcept {
@@ -81,8 +83,10 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
 
   const LineLevels excused = HomingContact(in) ? in.may_open & kLimitLines : 0;
   for (const Switch& s : kSwitches) {
+    if (!in.levels_known) continue;
     if (((in.levels | excused) & LineBit(s.line)) == 0) add(s.cause);  // normally closed
   }
+  if (line_calls_.Judge(in.line_calls)) add(TripCause::kSafetyLines);
 
   const bool control_alive =
       ControlReported(in) && AgeNs(in.due_ns, in.control_alive_ns) <= limits_.heartbeat_timeout_ns;
@@ -103,7 +107,7 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
     if (!in.drive.drive_ok) add(TripCause::kDriveFault);
   }
 
-  all_reported_ = all_reported_ || (ControlReported(in) && DriveReported(in));
+  all_reported_ = all_reported_ || (in.levels_known && ControlReported(in) && DriveReported(in));
   facts.all_reported = Flag(all_reported_);
   // A report from before the stop must not end Stopping.
   const bool stops = in.state == SafetyState::kStopping || in.state == SafetyState::kFaultStopping;
@@ -121,7 +125,9 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
       Flag(in.drive.power == DrivePower::kOff && in.drive.due_ns > in.state_since_ns);
 
   const bool button_down = (in.levels & LineBit(Line::kResetButton)) != 0;
-  const bool pressed_now = button_down && !button_was_down_;
+  // A press counts when it has lasted for kPressNs: one that began before the trip is no answer.
+  const bool pressed_now = button_down && !button_was_down_ &&
+                           AgeNs(in.due_ns, in.state_since_ns) >= LineFilter::kPressNs;
   button_was_down_ = button_down;
   reset_pressed_ = in.state == SafetyState::kTripped && (reset_pressed_ || pressed_now);
   facts.reset_pressed = Flag(reset_pressed_);
@@ -143,6 +149,7 @@ Evidence SafetyMonitor::EvidenceOf(TripCause cause, const SafetyInputs& in) cons
     if (s.cause == cause && (in.levels & LineBit(s.line)) == 0) return evidence(0.0, 1.0, s.joint);
   }
   if (in.control.faults != 0 && LowestCause(in.control.faults) == cause) return in.control.evidence;
+  if (cause == TripCause::kSafetyLines) return LineCallMonitor::EvidenceOf(in.line_calls);
   if (cause == TripCause::kStaleFrame) {
     return of_bus(Seconds(AgeNs(in.due_ns, in.drive_alive_ns)),
                   Seconds(limits_.heartbeat_timeout_ns),

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "controller/safety/line_calls.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/types/messages.h"
 #include "hal/sensor_frame.h"
@@ -18,6 +19,7 @@ struct MonitorLimits {
   std::int64_t fault_stop_ns;         ///< safety.fault_stop_s
   int missed_deadlines_to_trip;       ///< safety.missed_deadlines_to_trip
   std::int64_t homing_contact_ns;     ///< how long a homing run may be on its switch in all
+  std::int64_t lines_stall_ns;        ///< longest call of the lines: safety.permit_timeout_ms
 };
 
 MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop);
@@ -37,7 +39,7 @@ struct DriveTroubles {
 /// Inputs of one safety tick.
 struct SafetyInputs {
   std::int64_t due_ns;
-  LineLevels levels;
+  LineLevels levels;              ///< what the lines count as (LineFilter)
   ControlReport control;          ///< the one that holds at `due_ns`
   std::int64_t control_alive_ns;  ///< due instant of the newest one published; INT64_MIN: none
   DriveReport drive;              ///< the one that holds at `due_ns`
@@ -49,26 +51,29 @@ struct SafetyInputs {
   std::int64_t state_since_ns;
   std::int64_t running_since_ns;  ///< INT64_MIN: never
   LineLevels may_open;            ///< the limit switch that the run searches for (RunOrder)
+  bool levels_known = true;       ///< false: too few samples to say that a switch is open
+  LineCalls line_calls{};
 };
 
 /// Safety monitor: derives the inputs of the safety state machine from line levels and task
 /// reports, with all checks of time, levels and freshness. Its only memory is the reset button, the
-/// first reports, the causes with which FaultStopping began, and how long homing has been on its
-/// switch. Reads no clock.
+/// first reports, the causes with which FaultStopping began, how long homing has been on its
+/// switch, and which ticks the lines were slow in. Reads no clock.
 ///
 /// A report counts only while its sender is alive; no cause is derived from a task before its first
-/// report. While Stopping or FaultStopping, `at_rest` counts only from a step that was due after
-/// the stop, `drives_off` only from a report of the state at hand, and
-/// `experiment_done` only from a step that was due after the run began, so the last run cannot end
-/// the next one. The switch that a homing run searches for may open while that run is Running, for
-/// a bounded time in all: a switch that bounces gains none. The other switches trip as always.
-/// Real-time: safe.  Thread: safety.
+/// report, nor from a switch before its level is known: until both are, `all_reported` is 0. While
+/// Stopping or FaultStopping, `at_rest` counts only from a step that was due after the stop,
+/// `drives_off` only from a report of the state at hand, and `experiment_done` only from a step
+/// that was due after the run began, so the last run cannot end the next one. The switch that a
+/// homing run searches for may open while that run is Running, for a bounded time in all: a switch
+/// that bounces gains none. The other switches trip as always. Real-time: safe.  Thread: safety.
 class SafetyMonitor {
  public:
   /// Disarming waits so long for the drives to confirm that they are off.
   static constexpr std::int64_t kDisarmNs = 100'000'000;
 
-  explicit SafetyMonitor(const MonitorLimits& limits) noexcept : limits_(limits) {}
+  explicit SafetyMonitor(const MonitorLimits& limits) noexcept
+      : limits_(limits), line_calls_(limits.lines_stall_ns) {}
 
   /// Once per tick, in order of time.
   SafetyFacts Judge(const SafetyInputs& in) noexcept;
@@ -85,6 +90,7 @@ class SafetyMonitor {
   bool MayDamp(const SafetyInputs& in, TripCauses present, bool control_alive) noexcept;
 
   MonitorLimits limits_;
+  LineCallMonitor line_calls_;
   std::int64_t contact_ns_ = 0;    // of the present homing run
   std::int64_t looked_ns_ = 0;     // the tick before
   TripCauses present_before_ = 0;  // the tick before

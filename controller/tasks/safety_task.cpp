@@ -34,8 +34,8 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const std::int64_t due_ns = activation.due_ns;
   const ControlReportHistory& control = channels_.control->Read();
   const DriveSide drive = ReadDrives(due_ns);
-  const LineLevels levels =
-      MergeRedundantLevels(channels_.lines->Read(due_ns), drive.report.levels);
+  const SafetyLines::Reading read = channels_.lines->Read(due_ns);
+  const LineLevels levels = filter_.Next(MergeRedundantLevels(read.levels, drive.report.levels));
   const OperatorRequest request = TakeRequest(due_ns, drive.report.power == DrivePower::kOn);
   const bool requested = request.kind != RequestKind::kNone;
 
@@ -51,7 +51,9 @@ void SafetyTask::Run(const Activation& activation) noexcept {
                         .state = status_.state,
                         .state_since_ns = state_since_ns_,
                         .running_since_ns = running_since_ns_,
-                        .may_open = run_.may_open};
+                        .may_open = run_.may_open,
+                        .levels_known = filter_.known(),
+                        .line_calls = {.read = read.call, .write = written_}};
   const SafetyFacts facts = monitor_.Judge(in);
   const SafetyStatus before = status_;
   const SafetyDecision decision = NextSafetyState(before, facts);
@@ -183,7 +185,7 @@ void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in,
 void SafetyTask::Drive(std::int64_t due_ns) noexcept {
   const bool closed = RelayClosed(status_.state);
   pump_level_ = closed && !pump_level_;
-  channels_.lines->Write(due_ns, {.relay_closed = closed, .pump_level = pump_level_});
+  written_ = channels_.lines->Write(due_ns, {.relay_closed = closed, .pump_level = pump_level_});
 }
 
 void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {

@@ -10,6 +10,7 @@
 #include "controller/exchange/spsc_queue.h"
 #include "controller/realtime/task.h"
 #include "controller/realtime/wakeup.h"
+#include "controller/safety/line_filter.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/safety/safety_monitor.h"
 #include "controller/safety/safety_record.h"
@@ -97,6 +98,8 @@ class SafetyTask final : public Task {
   std::int64_t running_since_ns_ = INT64_MIN;
   std::uint32_t run_number_ = 0;  // of the present run, or of the last
   RunOrder run_{};
+  LineFilter filter_;
+  SafetyLines::Call written_{};  // the write of the last tick: this tick judges it
   bool pump_level_ = false;
   bool recorded_ = false;
   OperatorRequest disarm_{};  // carried out, answered once the relay is open; number 0: none

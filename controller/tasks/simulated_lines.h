@@ -14,20 +14,21 @@ using OutputHistory = History<SafetyLines::Outputs, 24>;
 using OutputChannel = LatestValue<OutputHistory>;
 
 /// The safety chain of the simulated rig: channels to the plant task, which simulates the switches,
-/// the relay and the charge pump.
+/// the relay and the charge pump. A call waits for nothing: it takes 0 ns and never fails.
 class SimulatedLines final : public SafetyLines {
  public:
   SimulatedLines(LevelChannel* levels, OutputChannel* outputs)
       : levels_(levels), channel_(outputs) {}
 
   // A level published at this instant may not be visible yet: read the one before.
-  LineLevels Read(std::int64_t now_ns) noexcept override {
-    return levels_->Read().At(now_ns - 1).value;
+  Reading Read(std::int64_t now_ns) noexcept override {
+    return {.levels = levels_->Read().At(now_ns - 1).value};
   }
 
-  void Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+  Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
     history_.Push(now_ns, outputs);
     channel_->Publish(history_);
+    return {};
   }
 
  private:

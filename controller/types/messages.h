@@ -33,7 +33,7 @@ constexpr bool Homes(const RunOrder& run) noexcept { return run.may_open != 0; }
 struct Evidence {
   double value;           ///< measured value
   double limit;           ///< limit that it exceeded
-  std::uint32_t channel;  ///< joint, counter, strain row or bus, 1-based; 0: none
+  std::uint32_t channel;  ///< joint, counter, strain row, bus or LineTrouble, 1-based; 0: none
   std::uint32_t detail;   ///< of a bus: its BusFault, as bits; else 0
 };
 

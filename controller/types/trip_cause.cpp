@@ -14,7 +14,8 @@ struct Row {
 
 using enum TripCause;
 constexpr TripChannel kJoint = TripChannel::kJoint, kStrain = TripChannel::kStrain,
-                      kCounter = TripChannel::kCounter, kBus = TripChannel::kBus;
+                      kCounter = TripChannel::kCounter, kBus = TripChannel::kBus,
+                      kLineTrouble = TripChannel::kLineTrouble;
 
 // All that is said of a cause, in the order of their numbers. A new cause has its number in the
 // header, its row here, and the code that detects it.
@@ -113,6 +114,11 @@ constexpr std::array<Row, kTripCauses> kRows{{
      "The bending of link 2 is not known: for two samples too few of its gauges gave a good "
      "reading, or those that did are too close together. Check the amplifier of link 2, its cables "
      "and its bus."},
+    {kSafetyLines, "safety-lines", kLineTrouble,
+     "The lines of the switches, the relay and the charge pump cannot be relied upon: a read or a "
+     "write failed, or took longer than 0.2 ms. Check that the GPIO chip of hal.gpiod is still "
+     "there (`gpiodetect`), that it is part of the processor or of a PCI card, and that the kernel "
+     "is PREEMPT_RT; see docs/hardware.md."},
 }};
 
 static_assert(

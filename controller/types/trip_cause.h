@@ -36,8 +36,9 @@ enum class TripCause : std::uint8_t {
   kTripRecordUnreadable = 27,
   kNoStrainReading1 = 28,
   kNoStrainReading2 = 29,
+  kSafetyLines = 30,
 };
-inline constexpr int kTripCauses = 30;
+inline constexpr int kTripCauses = 31;
 
 /// Set of causes, bit i is cause number i.
 using TripCauses = std::uint64_t;
@@ -64,7 +65,16 @@ constexpr bool Damped(TripCauses causes, bool may_damp) noexcept {
 const char* ToString(TripCause cause) noexcept;
 
 /// What Evidence::channel counts for a cause, 1-based.
-enum class TripChannel : std::uint8_t { kNone, kJoint, kStrain, kCounter, kBus };
+enum class TripChannel : std::uint8_t { kNone, kJoint, kStrain, kCounter, kBus, kLineTrouble };
+
+/// What is wrong with the lines of the safety chain: the channel of kSafetyLines. Logged: never
+/// renumber.
+enum class LineTrouble : std::uint8_t {
+  kReadFailed = 1,
+  kWriteFailed = 2,
+  kReadSlow = 3,
+  kWriteSlow = 4,
+};
 TripChannel ChannelOf(TripCause cause) noexcept;
 
 /// Text for the operator: what happened, what it means, what to do.

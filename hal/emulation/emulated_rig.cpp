@@ -93,6 +93,10 @@ void EmulatedRig::Show(std::int64_t now_ns) noexcept {
     if (counter >= 0) node.node->SetPosition(frame.counter[static_cast<std::size_t>(counter)]);
   }
   for (const auto& amplifier : amplifiers_) amplifier->Show(frame);
+  // A contact outweighs the pull-down that the daemon requests, but the simulated chip has one pull
+  // for both: one input a step is written again.
+  refreshed_ = (refreshed_ + 1) % kLines;
+  gpio_.Forget(lines_.input[refreshed_]);
   for (int i = 0; i < kLines; ++i) {
     const bool level = (frame.levels & LineBit(static_cast<Line>(i))) != 0;
     gpio_.Pull(lines_.input[static_cast<std::size_t>(i)], level);

@@ -68,6 +68,7 @@ class EmulatedRig {
   GpioSim gpio_;
   std::vector<Node> nodes_;
   std::vector<std::unique_ptr<SimulatedAmplifier>> amplifiers_;
+  std::size_t refreshed_ = 0;  // input written again in the last step
   bool pump_level_ = false;
   std::int64_t pump_toggled_ns_ = INT64_MIN;
   Observed observed_{};

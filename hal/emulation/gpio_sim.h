@@ -16,8 +16,12 @@ class GpioSim {
   GpioSim(const GpioSim&) = delete;
   GpioSim& operator=(const GpioSim&) = delete;
 
-  /// Sets the level of an input. Writes only changes.
+  /// Sets the level of an input. Writes only changes, and what was forgotten.
   void Pull(int offset, bool high) noexcept;
+
+  /// The level of an input may no longer be what was written: a request with a pull-down changes
+  /// it.
+  void Forget(int offset) noexcept { At(offset).pulled = -1; }
 
   /// Level of an output; false if it cannot be read.
   bool Value(int offset) noexcept;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 
 #include "hal/gpiod/gpiod_config.h"
 
@@ -13,12 +14,18 @@ namespace flexarm {
 /// Real-time: Read and Write are one ioctl each.
 class GpioRequest {
  public:
-  /// Requests the inputs as the hardware biases them, then relay and pump as outputs at 0.
+  /// Requests the inputs with pull-down, so that a cut wire reads 0, and reads that back; then
+  /// relay and pump as outputs at 0. The read-back shows that the kernel took the flag, not that
+  /// the chip has such resistors: a driver without them is no error to the kernel, and the flag
+  /// reads as set. So the circuit has resistors of its own (docs/hardware.md).
   /// @throws HalError naming chip, line, and the process that holds the line, if any
   explicit GpioRequest(const GpiodConfig& config);
   ~GpioRequest();  ///< relay and pump to 0, then releases the lines
   GpioRequest(const GpioRequest&) = delete;
   GpioRequest& operator=(const GpioRequest&) = delete;
+
+  /// Name of the chip in the kernel: "gpiochip0".
+  const std::string& chip_name() const noexcept { return chip_name_; }
 
   /// The level of each input, 0 or 1, by Line. False if they cannot be read.
   bool Read(std::array<int, kLines>* levels) noexcept;
@@ -29,9 +36,13 @@ class GpioRequest {
  private:
   struct Handles;
   std::unique_ptr<Handles> handles_;
+  std::string chip_name_;
 };
 
 /// Name of an output line in messages, by its index.
 inline constexpr std::array<const char*, 2> kGpioOutputs = {"relay", "pump"};
+
+/// The refusal of a chip that does not report the pull-down of an input.
+std::string NoPullDown(const GpiodConfig& config, Line line);
 
 }  // namespace flexarm

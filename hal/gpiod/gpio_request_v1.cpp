@@ -54,8 +54,15 @@ struct GpioRequest::Handles {
     gpiod_line_bulk_init(&outputs);
     gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.relay, kGpioOutputs[0]));
     gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.pump, kGpioOutputs[1]));
-    if (gpiod_line_request_bulk_input(&inputs, kConsumer) != 0) {
-      Fail(config, "the input lines cannot be requested");
+    if (gpiod_line_request_bulk_input_flags(&inputs, kConsumer,
+                                            GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN) != 0) {
+      Fail(config, "the input lines cannot be requested with pull-down");
+    }
+    for (unsigned i = 0; i < kLines; ++i) {
+      gpiod_line* line = gpiod_line_bulk_get_line(&inputs, i);
+      if (gpiod_line_update(line) != 0 || gpiod_line_bias(line) != GPIOD_LINE_BIAS_PULL_DOWN) {
+        throw HalError(NoPullDown(config, static_cast<Line>(i)));
+      }
     }
     const std::array<int, 2> low = {0, 0};
     if (gpiod_line_request_bulk_output(&outputs, kConsumer, low.data()) != 0) {
@@ -68,7 +75,8 @@ struct GpioRequest::Handles {
   gpiod_line_bulk outputs;  // relay, pump
 };
 
-GpioRequest::GpioRequest(const GpiodConfig& config) : handles_(std::make_unique<Handles>(config)) {}
+GpioRequest::GpioRequest(const GpiodConfig& config)
+    : handles_(std::make_unique<Handles>(config)), chip_name_(gpiod_chip_name(handles_->chip)) {}
 
 GpioRequest::~GpioRequest() { static_cast<void>(Write(0, 0)); }
 

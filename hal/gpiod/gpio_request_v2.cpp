@@ -67,13 +67,14 @@ void CheckFree(const GpiodConfig& config, gpiod_chip* chip, unsigned offset,
 
 // Null if the kernel refuses, with errno.
 gpiod_line_request* RequestLines(gpiod_chip* chip, const std::vector<unsigned>& offsets,
-                                 gpiod_line_direction direction) {
+                                 gpiod_line_direction direction, gpiod_line_bias bias) {
   const Settings settings(gpiod_line_settings_new());
   const LineConfig lines(gpiod_line_config_new());
   const RequestConfig request(gpiod_request_config_new());
   if (settings == nullptr || lines == nullptr || request == nullptr) return nullptr;
   gpiod_request_config_set_consumer(request.get(), kConsumer);
   if (gpiod_line_settings_set_direction(settings.get(), direction) != 0 ||
+      gpiod_line_settings_set_bias(settings.get(), bias) != 0 ||
       gpiod_line_settings_set_output_value(settings.get(), GPIOD_LINE_VALUE_INACTIVE) != 0 ||
       gpiod_line_config_add_line_settings(lines.get(), offsets.data(), offsets.size(),
                                           settings.get()) != 0) {
@@ -104,6 +105,9 @@ struct GpioRequest::Handles {
 GpioRequest::GpioRequest(const GpiodConfig& config) : handles_(std::make_unique<Handles>()) {
   const Chip chip = OpenChip(config);
   if (chip == nullptr) Fail(config, "cannot be opened");
+  const ChipInfo chip_info(gpiod_chip_get_info(chip.get()));
+  if (chip_info == nullptr) Fail(config, "does not say its name");
+  chip_name_ = gpiod_chip_info_get_name(chip_info.get());
   std::vector<unsigned> inputs;
   for (std::size_t i = 0; i < kLines; ++i) {
     inputs.push_back(static_cast<unsigned>(config.input[i]));
@@ -114,9 +118,19 @@ GpioRequest::GpioRequest(const GpiodConfig& config) : handles_(std::make_unique<
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     CheckFree(config, chip.get(), outputs[i], kGpioOutputs[i]);
   }
-  handles_->inputs = RequestLines(chip.get(), inputs, GPIOD_LINE_DIRECTION_INPUT);
-  if (handles_->inputs == nullptr) Fail(config, "the input lines cannot be requested");
-  handles_->outputs = RequestLines(chip.get(), outputs, GPIOD_LINE_DIRECTION_OUTPUT);
+  handles_->inputs =
+      RequestLines(chip.get(), inputs, GPIOD_LINE_DIRECTION_INPUT, GPIOD_LINE_BIAS_PULL_DOWN);
+  if (handles_->inputs == nullptr) {
+    Fail(config, "the input lines cannot be requested with pull-down");
+  }
+  for (std::size_t i = 0; i < kLines; ++i) {
+    const LineInfo info(gpiod_chip_get_line_info(chip.get(), inputs[i]));
+    if (info == nullptr || gpiod_line_info_get_bias(info.get()) != GPIOD_LINE_BIAS_PULL_DOWN) {
+      throw HalError(NoPullDown(config, static_cast<Line>(i)));
+    }
+  }
+  handles_->outputs =
+      RequestLines(chip.get(), outputs, GPIOD_LINE_DIRECTION_OUTPUT, GPIOD_LINE_BIAS_AS_IS);
   if (handles_->outputs == nullptr) Fail(config, "the output lines cannot be requested");
 }
 

@@ -8,16 +8,20 @@ namespace flexarm {
 
 /// The safety chain on GPIO lines, through libgpiod of either generation.
 ///
-/// Every call reads levels, not edges. If a read fails every contact counts as open, which trips.
+/// Every call reads levels, not edges. If a read fails every contact counts as open. The calls are
+/// not timed: TimedLines does that.
 /// Real-time: Read and Write are one ioctl each.  Thread: safety, after construction.
 class GpiodLines final : public SafetyLines {
  public:
-  /// Requests the lines; relay and pump start at 0.
-  /// @throws HalError naming chip, line, and the process that holds the line, if any
+  /// Requests the lines, as GpioRequest does.
+  /// @throws HalError
   explicit GpiodLines(const GpiodConfig& config) : request_(config) {}
 
-  LineLevels Read(std::int64_t now_ns) noexcept override;
-  void Write(std::int64_t now_ns, const Outputs& outputs) noexcept override;
+  Reading Read(std::int64_t now_ns) noexcept override;
+  Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override;
+
+  /// Name of the chip in the kernel: "gpiochip0".
+  const std::string& chip_name() const noexcept { return request_.chip_name(); }
 
  private:
   GpioRequest request_;

@@ -12,7 +12,8 @@ namespace flexarm {
 /// The devices of a real rig, created from its config.
 class HardwareRig {
  public:
-  /// Opens the safety chain first, then every bus: identified, configured, read back.
+  /// Opens the safety chain first, on a chip that answers in time, then every bus: identified,
+  /// configured, read back.
   /// @throws HalError of the first device that fails; opened devices are closed
   HardwareRig(const HalConfig& config, const BusClocks& clocks);
   ~HardwareRig();  ///< closes the buses, torque off, then releases the lines

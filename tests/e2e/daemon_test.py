@@ -130,6 +130,7 @@ class Daemon(ProgramTest):
 
     def reset_with_the_button(self):
         self.operate("sim", "reset-button", "1")
+        time.sleep(0.1)                  # a press of 50 ms counts
         self.operate("sim", "reset-button", "0")
         end = time.monotonic() + 20
         while self.run_program("flexarm", "reset", "--socket", self.folder / "socket").returncode:

@@ -216,7 +216,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
       ->type_name("LEVEL");
   verb->footer(
       "Examples: flexarm sim emergency-stop 0    the emergency stop is pressed\n"
-      "          flexarm sim reset-button 1      pressed; then 0: released");
+      "          flexarm sim reset-button 1      pressed; 50 ms later 0: released");
   verb->callback([sim, &exit] {
     exit.code = sim->daemon.Conclude(
         sim->daemon.Ask({{"command", "sim"}, {"line", sim->line}, {"level", sim->level}}));

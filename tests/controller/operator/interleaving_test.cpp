@@ -125,8 +125,17 @@ class Session {
         return Json{{"command", "sim"}, {"line", "limit-1-low"}, {"level", Below(8) > 0 ? 1 : 0}}
             .dump();
       default:
-        return Json{{"command", "sim"}, {"line", "reset-button"}, {"level", Below(2)}}.dump();
+        return Json{{"command", "sim"}, {"line", "reset-button"}, {"level", Button()}}.dump();
     }
+  }
+
+  // 1: pressed. A press counts after 50 ms: it is released four polls of 20 ms later at the
+  // earliest.
+  int Button() {
+    const int wanted = Below(2);
+    if (wanted > button_) pressed_polls_ = 0;
+    if (wanted == 1 || pressed_polls_ >= 4) button_ = wanted;
+    return button_;
   }
 
   // Up to three commands of each client in one poll, in a random order.
@@ -142,6 +151,7 @@ class Session {
   }
 
   void Poll() {
+    ++pressed_polls_;
     const std::int64_t poll_ns = now_ns_;  // the operator task is due there and reads what was sent
     const bool stop_sent = std::exchange(stop_sent_, false);
     now_ns_ += kPeriodNs;
@@ -228,6 +238,8 @@ class Session {
   long runs_asked_ = 0, running_ticks_ = 0, homing_ticks_ = 0;
   std::vector<std::uint32_t> granted_;
   std::vector<std::string> announced_;
+  int button_ = 0;
+  int pressed_polls_ = 0;
   std::map<std::uint32_t, std::string> names_;  // of the runs that moved, by number
 };
 

@@ -311,6 +311,7 @@ TEST_F(OperatorTaskTest, ATripIsInTheStatusUntilButtonAndReset) {
   EXPECT_EQ(Ask("reset")["refusal"], "no-reset");
   Run(3.0);  // at rest
   Press("reset-button", 1);
+  Run(0.06);
   Press("reset-button", 0);
   EXPECT_EQ(Ask("reset")["state"], "Idle");
   EXPECT_TRUE(Ask("status")["trip"].is_null());

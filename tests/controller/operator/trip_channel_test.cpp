@@ -14,6 +14,11 @@ TEST(TripChannelName, IsWhatTheConfigCallsIt) {
   EXPECT_EQ(TripChannelName(TripCause::kStrainSaturated, 4, sensors), "strain_2_02");
   EXPECT_EQ(TripChannelName(TripCause::kEncoderJump, 3, sensors), "rotor1");
   EXPECT_EQ(TripChannelName(TripCause::kSoftLimit2, 2, sensors), "joint 2");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 1, sensors), "read failed");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 2, sensors), "write failed");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 3, sensors), "read too slow");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 4, sensors), "write too slow");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 99, sensors), "") << "a corrupt number";
   EXPECT_EQ(TripChannelName(TripCause::kStaleFrame, 0, sensors), "");
   EXPECT_EQ(TripChannelName(TripCause::kStrainStuck, 99, sensors), "") << "a corrupt number";
 }

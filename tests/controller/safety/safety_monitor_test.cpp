@@ -15,7 +15,8 @@ constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
                                 .stop_timeout_ns = 3000 * kMs,
                                 .fault_stop_ns = 500 * kMs,
                                 .missed_deadlines_to_trip = 3,
-                                .homing_contact_ns = 500 * kMs};
+                                .homing_contact_ns = 500 * kMs,
+                                .lines_stall_ns = 5 * kMs};
 
 // Running for a second, without a fault.
 SafetyInputs Fine() {

@@ -35,6 +35,7 @@ TEST(TripCause, NamesAreThoseOfTheirNumbers) {
   EXPECT_STREQ(ToString(static_cast<TripCause>(18)), "stale-frame");
   EXPECT_STREQ(ToString(static_cast<TripCause>(22)), "control-heartbeat-lost");
   EXPECT_STREQ(ToString(static_cast<TripCause>(25)), "stop-timeout");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(26)), "safety-lines");
 }
 
 TEST(TripCause, ACorruptedNumberIsNamedAsSuch) {

@@ -22,7 +22,8 @@ inline constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
                                        .stop_timeout_ns = 3000 * kMs,
                                        .fault_stop_ns = 500 * kMs,
                                        .missed_deadlines_to_trip = 3,
-                                       .homing_contact_ns = 500 * kMs};
+                                       .homing_contact_ns = 500 * kMs,
+                                       .lines_stall_ns = 5 * kMs};
 
 struct FakeLines final : SafetyLines {
   struct Written {
@@ -30,13 +31,15 @@ struct FakeLines final : SafetyLines {
     Outputs outputs;
   };
 
-  LineLevels Read(std::int64_t) noexcept override { return levels; }
-  void Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+  Reading Read(std::int64_t) noexcept override { return {.levels = levels, .call = read}; }
+  Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
     written.push_back({now_ns, outputs});
+    return write;
   }
   bool relay_closed() const { return written.back().outputs.relay_closed; }
 
   LineLevels levels = kHealthyLevels;
+  Call read, write;  // how the calls go
   std::vector<Written> written;
 };
 

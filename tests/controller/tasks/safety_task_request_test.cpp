@@ -137,7 +137,7 @@ TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
   RunFor(1000 * kMs + 5 * kMs);
   EXPECT_EQ(safety_.status().state, kIdle) << "armed at rest, then disarmed as planned";
   lines_.levels = 0;
-  RunFor(kMs);
+  RunFor(2 * kMs);
   while (answers_.Pop(&answer)) {
   }
   EXPECT_EQ(answer.number, later_run);

@@ -29,7 +29,7 @@ TEST_F(SafetyTaskTest, ATripFromBeforeTheStartIsLatchedFromTheFirstTick) {
   lines_.levels = kHealthyLevels;
   RunFor(kMs);
   lines_.levels = kHealthyLevels | LineBit(Line::kResetButton);
-  RunFor(kMs);
+  RunFor(LineFilter::kPressNs);
   lines_.levels = kHealthyLevels;
   control_.report.at_rest = false;
   RunFor(50 * kMs);
@@ -53,7 +53,7 @@ TEST_F(SafetyTaskTest, ATripFromBeforeTheStartIsLatchedFromTheFirstTick) {
   }
 }
 
-TEST_F(SafetyTaskTest, EverySwitchOpensTheRelayAtTheNextTickAndZeroesTheTorqueWithinTwoMs) {
+TEST_F(SafetyTaskTest, EverySwitchOpensTheRelayAtItsSecondSampleAndZeroesTheTorqueWithinThreeMs) {
   const struct {
     Line line;
     TripCause cause;
@@ -79,8 +79,10 @@ TEST_F(SafetyTaskTest, EverySwitchOpensTheRelayAtTheNextTickAndZeroesTheTorqueWi
     }
     const std::int64_t opened_ns = executor_.next_ns();
     lines_.levels &= ~LineBit(c.line);
-    RunFor(kMs);  // the tick at which the level is open
-    EXPECT_EQ(lines_.written.back().now_ns, opened_ns);
+    RunFor(kMs);  // the first tick at which the level is open, up to 1 ms after the contact
+    EXPECT_EQ(safety_.status().state, kRunning) << "one sample may be interference";
+    RunFor(kMs);
+    EXPECT_EQ(lines_.written.back().now_ns, opened_ns + kMs);
     EXPECT_FALSE(lines_.relay_closed());
     EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, c.cause}));
     RunFor(kMs);  // the drive's next tick
@@ -188,14 +190,19 @@ TEST_F(SafetyTaskTest, StoppingLongerThanAllowedTripsThreeSecondsAfterTheStop) {
 TEST_F(SafetyTaskTest, NoArmingWithoutRequestAndResetNeedsButtonAndOperator) {
   GoTo(kRunning);
   lines_.levels &= ~LineBit(Line::kEmergencyStop);
-  RunFor(kMs);
+  RunFor(2 * kMs);
   ASSERT_EQ(safety_.status().state, kTripped);
   EXPECT_EQ(Now(RequestKind::kReset), Refusal::kCauseRemains);
   lines_.levels |= LineBit(Line::kEmergencyStop);
+  RunFor(kMs);
   EXPECT_EQ(Now(RequestKind::kReset), Refusal::kNoReset);
   EXPECT_EQ(Now(RequestKind::kArm), Refusal::kWrongState);
   lines_.levels |= LineBit(Line::kResetButton);
-  RunFor(10 * kMs);
+  RunFor(49 * kMs);
+  lines_.levels &= ~LineBit(Line::kResetButton);
+  EXPECT_EQ(Now(RequestKind::kReset), Refusal::kNoReset) << "a press is 50 ms long";
+  lines_.levels |= LineBit(Line::kResetButton);
+  RunFor(50 * kMs);
   lines_.levels &= ~LineBit(Line::kResetButton);
   RunFor(10'000 * kMs);
   EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, TripCause::kEmergencyStop}));

@@ -235,7 +235,7 @@ class HostileBus : public testing::Test {
     EXPECT_TRUE(rig_->RunUntil(6000 * kMs, [this] { return rig_->AllBack(); })) << Lost();
     EXPECT_TRUE(rig_->tripped()) << "only the bus comes back by itself";
     rig_->world->lines.levels |= LineBit(Line::kResetButton);
-    rig_->RunFor(20 * kMs);
+    rig_->RunFor(60 * kMs);
     rig_->world->lines.levels = kHealthyLevels;
     Refusal refusal = Refusal::kNotAtRest;
     for (int k = 0; k < 100 && refusal != Refusal::kNone; ++k) {

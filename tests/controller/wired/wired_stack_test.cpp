@@ -97,9 +97,10 @@ class GaugeBus final : public BusDevice {
 
 class Lines final : public SafetyLines {
  public:
-  LineLevels Read(std::int64_t) noexcept override { return levels; }
-  void Write(std::int64_t, const Outputs& outputs) noexcept override {
+  Reading Read(std::int64_t) noexcept override { return {.levels = levels}; }
+  Call Write(std::int64_t, const Outputs& outputs) noexcept override {
     relay = outputs.relay_closed;
+    return {};
   }
 
   LineLevels levels = kHealthyLevels;
@@ -247,7 +248,7 @@ TEST_F(WiredStackTest, ASwitchOfTheSafetyChainTripsThoughTheBusReadsItAsClosed) 
 TEST_F(WiredStackTest, AFailedExchangeOpensNoSwitchAndAButtonOnTheBusIsPressed) {
   RunUntil(200 * kMs);
   gauges_.levels |= LineBit(Line::kResetButton);
-  RunUntil(now_ns_ + 40 * kMs);
+  RunUntil(now_ns_ + 100 * kMs);  // the exchange, then 50 ms
   EXPECT_EQ(permit().levels, kHealthyLevels | LineBit(Line::kResetButton));
   gauges_.levels = 0;
   gauges_.status = BusStatus::kTimeout;

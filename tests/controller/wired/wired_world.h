@@ -30,17 +30,20 @@ namespace flexarm {
 /// The switches, the button, the relay and the charge pump.
 class WorldLines final : public SafetyLines {
  public:
-  LineLevels Read(std::int64_t) noexcept override { return levels; }
-  void Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+  Reading Read(std::int64_t) noexcept override { return {.levels = levels, .call = read}; }
+  Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+    if (!write.ok) return write;  // the lines keep their levels
     relay = outputs.relay_closed;
     if (outputs.pump_level != pump_) pump_toggled_ns_ = now_ns;
     pump_ = outputs.pump_level;
+    return write;
   }
   bool PowerOn(std::int64_t now_ns) const {
     return (relay || welded) && now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
   }
 
   LineLevels levels = kHealthyLevels;
+  Call read, write;  // how the calls go
   bool relay = false;
   bool welded = false;  // its contact does not open
 
