@@ -275,6 +275,32 @@ void CheckOutput(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out)
                   "one exchange, at the sampling instant"});
 }
 
+// A simulated arm in process does not trip on late threads. Where metal moves, a permit that a
+// drive may have found too old must trip, and so must one failure in ten, whatever its pattern.
+void CheckTimingLimits(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
+  if (!log->Clear({"hal.backend"}) || c.backend != "wired") return;
+  constexpr const char* kOverrun = "safety.overrun_to_trip_ms";
+  if (log->Clear({kOverrun, "safety.permit_timeout_ms"}) &&
+      !(c.safety.overrun_to_trip_ms <= c.safety.permit_timeout_ms)) {
+    out->push_back(
+        {kOverrun, NumberText(c.safety.overrun_to_trip_ms),
+         "must be at most safety.permit_timeout_ms = " + NumberText(c.safety.permit_timeout_ms) +
+             " with hal.backend = \"wired\": after a longer stall the drives have "
+             "lost their torque, and only a reset may give it back"});
+  }
+  const auto require_a_tenth = [&](const char* key, int limit) {
+    if (!log->Clear({key, "safety.window_periods"})) return;
+    if (10 * limit <= c.safety.window_periods) return;
+    out->push_back({key, NumberText(limit),
+                    "must be at most a tenth of safety.window_periods = " +
+                        NumberText(c.safety.window_periods) +
+                        " with hal.backend = \"wired\": one in ten must trip"});
+  };
+  require_a_tenth("safety.missed_deadlines_in_window", c.safety.missed_deadlines_in_window);
+  require_a_tenth("safety.failed_exchanges_in_window", c.safety.failed_exchanges_in_window);
+  require_a_tenth("safety.slow_exchanges_in_window", c.safety.slow_exchanges_in_window);
+}
+
 }  // namespace
 
 void CheckCrossRules(const RigConfig& config, ProblemLog* log) {
@@ -293,6 +319,7 @@ void CheckCrossRules(const RigConfig& config, ProblemLog* log) {
   CheckGrid(config, log, &problems);
   CheckSkew(config, log, &problems);
   CheckOutput(config, log, &problems);
+  CheckTimingLimits(config, log, &problems);
   log->AddRules(problems);
 }
 

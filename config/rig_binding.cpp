@@ -233,6 +233,11 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   safety.Read("fault_stop_s", &out->fault_stop_s);
   safety.Read("permit_timeout_ms", &out->permit_timeout_ms);
   safety.Read("missed_deadlines_to_trip", &out->missed_deadlines_to_trip);
+  safety.Read("overrun_to_trip_ms", &out->overrun_to_trip_ms);
+  safety.Read("window_periods", &out->window_periods);
+  safety.Read("missed_deadlines_in_window", &out->missed_deadlines_in_window);
+  safety.Read("failed_exchanges_in_window", &out->failed_exchanges_in_window);
+  safety.Read("slow_exchanges_in_window", &out->slow_exchanges_in_window);
   safety.Read("homing_contact_s", &out->homing_contact_s);
   safety.Read("homing_torque_fraction", &out->homing_torque_fraction);
 }

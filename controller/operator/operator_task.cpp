@@ -36,6 +36,7 @@ OperatorTask::OperatorTask(OperatorContext context)
       warnings_(context_.grid.period_ns, context_.delay_margin_s,
                 StrainColumns(context_.config->sensors), context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
+      timing_warnings_(context_.events, context_.report),
       dispatch_({.stack = context_.stack,
                  .requests = &requests_,
                  .experiments = &experiments_,
@@ -72,6 +73,9 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     BeginShutdown();  // its line precedes those of its effects
     FollowState();
     bus_journal_.Follow(now_.now_ns, context_.stack->buses(), context_.report);
+    if (!context_.stack->late_threads_trip()) {
+      timing_warnings_.Follow(now_.now_ns, context_.stack->timing());
+    }
     TakeTicks();
     TakeAnswers();
     FollowLatch();
@@ -183,7 +187,9 @@ nlohmann::json OperatorTask::Status() {
                      .threads = context_.thread_status(),
                      .host = arm_.HostStatus(),
                      .design = arm_.DesignStatus(),
-                     .overrides = overrides_.Json()});
+                     .overrides = overrides_.Json(),
+                     .timing = context_.stack->timing(),
+                     .late_threads_trip = context_.stack->late_threads_trip()});
 }
 
 void OperatorTask::Reply(int client, const nlohmann::json& answer) {

@@ -19,6 +19,7 @@
 #include "controller/operator/run_warnings.h"
 #include "controller/operator/shutdown.h"
 #include "controller/operator/state_journal.h"
+#include "controller/operator/timing_warnings.h"
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/task.h"
 #include "controller/tasks/bus_health.h"
@@ -85,6 +86,7 @@ class OperatorTask final : public Task {
   StateJournal state_journal_;
   LoopWatch loop_watch_;
   BusJournal bus_journal_;
+  TimingWarnings timing_warnings_;
   CommandDispatch dispatch_;
   UnattendedRun unattended_;
   Shutdown shutdown_;

@@ -18,7 +18,12 @@ nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
                    {"ok", bus.ok},
                    {"fault", TextOrNull(bus.fault)},
                    {"failed", bus.failed},
-                   {"recovered", bus.recovered}});
+                   {"recovered", bus.recovered},
+                   {"failed_in_window", bus.failed_in_window},
+                   {"slow", bus.slow},
+                   {"slow_in_window", bus.slow_in_window},
+                   {"longest_ms", bus.longest_ms},
+                   {"declared_ms", bus.declared_ms}});
   }
   return all;
 }
@@ -43,6 +48,14 @@ nlohmann::json TripJson(const StatusSources& sources) {
 
 }  // namespace
 
+nlohmann::json TimingJson(const TimingCounts& counts, bool trips) {
+  return {{"trips", trips},
+          {"safety_overruns", counts.safety_overruns},
+          {"safety_worst_ms", static_cast<double>(counts.oldest_permit_ns) * 1e-6},
+          {"deadlines_missed_in_a_row", counts.deadlines_missed},
+          {"deadlines_often_missed", counts.deadlines_often_missed}};
+}
+
 nlohmann::json StatusJson(const StatusSources& sources) {
   const OperatorSnapshot& now = *sources.now;
   const StepInput& in = now.tick.input;
@@ -65,6 +78,7 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"levels", in.frame.levels},
           {"trip", TripJson(sources)},
           {"latch_problem", TextOrNull(sources.latch->problem())},
+          {"timing", TimingJson(sources.timing, sources.late_threads_trip)},
           {"buses", BusesJson(sources.buses)},
           {"threads", sources.threads},
           {"host", sources.host},

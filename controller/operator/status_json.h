@@ -26,7 +26,12 @@ struct StatusSources {
   nlohmann::json host;                        ///< ArmCommand::HostStatus
   nlohmann::json design;                      ///< ArmCommand::DesignStatus
   nlohmann::json overrides;                   ///< OverrideRecord::Json
+  TimingCounts timing{};                      ///< LoopStack::timing
+  bool late_threads_trip = true;
 };
+
+/// Part "timing" of the status. @param trips  late threads trip
+nlohmann::json TimingJson(const TimingCounts& counts, bool trips);
 
 /// The answer to the command "status". Every key has its unit in its name, or is without unit;
 /// "trip" is null but in Tripped. Pure function. Not real-time safe.

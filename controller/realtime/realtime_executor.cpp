@@ -126,6 +126,7 @@ void* RealtimeExecutor::Main(void* argument) noexcept {
   PrefaultStack();
   const FlushDenormals flush;
   thread.executor->Loop(thread);
+  thread.task->Ended();
   return nullptr;
 }
 
@@ -143,6 +144,7 @@ void RealtimeExecutor::Loop(Thread& thread) noexcept {
   Counters& counters = thread.counters;
   int missed_in_a_row = 0;
   std::int64_t finished_ns = INT64_MIN;
+  std::int64_t run_ns = 0;
   for (std::int64_t due_ns = traits.phase_ns; due_ns < end_ns_; due_ns += traits.period_ns) {
     AwaitDue(*thread.task, due_ns);
     if (stop_.load(std::memory_order_relaxed)) return;
@@ -161,8 +163,12 @@ void RealtimeExecutor::Loop(Thread& thread) noexcept {
       if (due_ns >= end_ns_) return;
     }
 
-    thread.task->Run({.due_ns = due_ns, .missed_in_a_row = missed_in_a_row});
+    thread.task->Run({.due_ns = due_ns,
+                      .missed_in_a_row = missed_in_a_row,
+                      .late_ns = woke_ns - due_ns,
+                      .previous_run_ns = run_ns});
     finished_ns = MonotonicNow() - epoch_ns_;
+    run_ns = finished_ns - woke_ns;
 
     if (finished_ns > due_ns + traits.deadline_ns) {
       ++missed_in_a_row;
@@ -172,7 +178,7 @@ void RealtimeExecutor::Loop(Thread& thread) noexcept {
     }
     Increase<std::int64_t>(counters.total_lateness_ns, lateness_ns);
     Raise(counters.worst_lateness_ns, lateness_ns);
-    Raise(counters.worst_run_ns, finished_ns - woke_ns);
+    Raise(counters.worst_run_ns, run_ns);
     Increase<std::uint64_t>(counters.activations, 1);
     if (thread.timing != nullptr) {
       thread.timing->Push({.tick = (due_ns - traits.phase_ns) / traits.period_ns,

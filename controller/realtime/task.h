@@ -23,6 +23,9 @@ class Task {
   struct Activation {
     std::int64_t due_ns;  ///< on the grid phase + n period, in the clock of the loop
     int missed_in_a_row;  ///< consecutive missed deadlines and skipped periods just before
+    // Only to watch the host: what a task computes must not depend on them. 0 in lock step.
+    std::int64_t late_ns = 0;          ///< from `due_ns` until now
+    std::int64_t previous_run_ns = 0;  ///< duration of the activation before
   };
 
   virtual ~Task() = default;
@@ -33,6 +36,10 @@ class Task {
   virtual Wakeup* wakeup() noexcept { return nullptr; }
   /// Between two activations, after `wakeup` was woken. @param now_ns  in the clock of the loop
   virtual void Woken(std::int64_t /*now_ns*/) noexcept {}
+
+  /// On the task's thread after its last activation, when the executor stops; other threads may
+  /// hang. Not in lock step.
+  virtual void Ended() noexcept {}
 };
 
 }  // namespace flexarm

@@ -1,11 +1,13 @@
 #include "controller/safety/safety_monitor.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "controller/safety/line_filter.h"
 #include "controller/safety/torque_gate.h"
+#include "controller/safety/windowed_count.h"
 #include "controller/types/runtime_config.h"
 #include "controller/types/safety_config.h"
 
@@ -38,13 +40,21 @@ bool DriveReported(const SafetyInputs& in) noexcept { return in.drive.due_ns != 
 
 }  // namespace
 
-MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop) {
+static_assert(kLongestWindow <= WindowedCount::kLongest);
+
+MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop,
+                                bool late_threads_trip) {
   return {.heartbeat_timeout_ns = std::llround(2e6 * loop.period_ms),
           .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
           .fault_stop_ns = std::llround(1e9 * safety.fault_stop_s),
           .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,
           .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s),
-          .lines_stall_ns = std::llround(1e6 * safety.permit_timeout_ms)};
+          .lines_stall_ns = std::llround(1e6 * safety.permit_timeout_ms),
+          .overrun_ns = std::llround(1e6 * safety.overrun_to_trip_ms),
+          .missed_in_window = safety.missed_deadlines_in_window,
+          .failed_in_window = safety.failed_exchanges_in_window,
+          .slow_in_window = safety.slow_exchanges_in_window,
+          .late_threads_trip = late_threads_trip};
 }
 
 bool SafetyMonitor::HomingContact(const SafetyInputs& in) noexcept {
@@ -77,6 +87,32 @@ bool SafetyMonitor::MayDamp(const SafetyInputs& in, TripCauses present,
          in.drive.power == DrivePower::kOn && !further;
 }
 
+TripCauses SafetyMonitor::LateThreads(const SafetyInputs& in, bool control_alive) noexcept {
+  TripCauses late = 0;
+  if (in.permit_age_ns > limits_.overrun_ns) late |= CauseBit(TripCause::kSafetyOverrun);
+  if (control_alive && in.control.missed_in_a_row >= limits_.missed_deadlines_to_trip) {
+    late |= CauseBit(TripCause::kMissedDeadlines);
+  }
+  if (control_alive && in.control.missed_in_window >= limits_.missed_in_window) {
+    late |= CauseBit(TripCause::kDeadlinesOftenMissed);
+  }
+  const TripCauses begun = late & ~std::exchange(late_before_, late);
+  // Each late tick is an overrun of its own; a deadline that was missed stays in several reports.
+  if ((late & CauseBit(TripCause::kSafetyOverrun)) != 0) ++timing_.safety_overruns;
+  if ((begun & CauseBit(TripCause::kMissedDeadlines)) != 0) ++timing_.deadlines_missed;
+  if ((begun & CauseBit(TripCause::kDeadlinesOftenMissed)) != 0) ++timing_.deadlines_often_missed;
+  timing_.oldest_permit_ns = std::max(timing_.oldest_permit_ns, in.permit_age_ns);
+  return late;
+}
+
+// Counted from the first tick that sees the shutdown, so that it holds whatever other threads
+// do.
+bool SafetyMonitor::ShutdownExpired(const SafetyInputs& in) noexcept {
+  if (!in.shutting_down) return false;
+  if (shutdown_since_ns_ == INT64_MIN) shutdown_since_ns_ = in.due_ns;
+  return RelayClosed(in.state) && AgeNs(in.due_ns, shutdown_since_ns_) > ShutdownLimitNs();
+}
+
 SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
   SafetyFacts facts{};
   const auto add = [&facts](TripCause cause) { facts.present |= CauseBit(cause); };
@@ -92,12 +128,13 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
       ControlReported(in) && AgeNs(in.due_ns, in.control_alive_ns) <= limits_.heartbeat_timeout_ns;
   if (control_alive) {
     facts.present |= in.control.faults;
-    if (in.control.missed_in_a_row >= limits_.missed_deadlines_to_trip) {
-      add(TripCause::kMissedDeadlines);
-    }
   } else if (ControlReported(in)) {
     add(TripCause::kControlHeartbeatLost);
   }
+
+  const TripCauses late = LateThreads(in, control_alive);
+  if (limits_.late_threads_trip) facts.present |= late;
+  if (ShutdownExpired(in)) add(TripCause::kShutdownTimeout);
 
   if (DriveReported(in)) {
     if (AgeNs(in.due_ns, in.drive_alive_ns) > limits_.heartbeat_timeout_ns) {
@@ -105,6 +142,8 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
     }
     if (!in.drive.bus_ok) add(TripCause::kBusLost);
     if (!in.drive.drive_ok) add(TripCause::kDriveFault);
+    if (in.drive.failed_in_window >= limits_.failed_in_window) add(TripCause::kBusUnreliable);
+    if (in.drive.slow_in_window >= limits_.slow_in_window) add(TripCause::kBusTooSlow);
   }
 
   all_reported_ = all_reported_ || (in.levels_known && ControlReported(in) && DriveReported(in));
@@ -157,6 +196,21 @@ Evidence SafetyMonitor::EvidenceOf(TripCause cause, const SafetyInputs& in) cons
   }
   if (cause == TripCause::kBusLost) return of_bus(0.0, 1.0, in.troubles.lost);
   if (cause == TripCause::kDriveFault) return of_bus(0.0, 1.0, in.troubles.drive);
+  if (cause == TripCause::kBusUnreliable) {
+    return of_bus(in.drive.failed_in_window, limits_.failed_in_window, in.troubles.unreliable);
+  }
+  if (cause == TripCause::kBusTooSlow) {
+    return of_bus(in.drive.slow_in_window, limits_.slow_in_window, in.troubles.slow);
+  }
+  if (cause == TripCause::kSafetyOverrun) {
+    return evidence(Seconds(in.permit_age_ns), Seconds(limits_.overrun_ns), 0);
+  }
+  if (cause == TripCause::kDeadlinesOftenMissed) {
+    return evidence(in.control.missed_in_window, limits_.missed_in_window, 0);
+  }
+  if (cause == TripCause::kShutdownTimeout) {
+    return evidence(Seconds(AgeNs(in.due_ns, shutdown_since_ns_)), Seconds(ShutdownLimitNs()), 0);
+  }
   if (cause == TripCause::kMissedDeadlines) {
     return evidence(in.control.missed_in_a_row, limits_.missed_deadlines_to_trip, 0);
   }

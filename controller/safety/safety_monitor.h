@@ -20,9 +20,16 @@ struct MonitorLimits {
   int missed_deadlines_to_trip;       ///< safety.missed_deadlines_to_trip
   std::int64_t homing_contact_ns;     ///< how long a homing run may be on its switch in all
   std::int64_t lines_stall_ns;        ///< longest call of the lines: safety.permit_timeout_ms
+  std::int64_t overrun_ns;            ///< safety.overrun_to_trip_ms
+  int missed_in_window;               ///< safety.missed_deadlines_in_window
+  int failed_in_window;               ///< safety.failed_exchanges_in_window
+  int slow_in_window;                 ///< safety.slow_exchanges_in_window
+  /// False: late threads are counted but do not trip, because the arm is simulated in process.
+  bool late_threads_trip = true;
 };
 
-MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop);
+MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop,
+                                bool late_threads_trip);
 
 /// The bus behind a fault of the drive side, numbered from 1, and its fault. 0: none, or the drive
 /// side has no bus.
@@ -33,6 +40,8 @@ struct DriveTroubles {
   };
   Trouble lost{};                ///< the first bus that is lost
   Trouble drive{};               ///< the first bus with a drive fault
+  Trouble unreliable{};          ///< the bus with the most failed exchanges in its window
+  Trouble slow{};                ///< the bus with the most slow exchanges in its window
   std::uint32_t oldest_bus = 0;  ///< the bus whose newest report is the oldest
 };
 
@@ -53,12 +62,14 @@ struct SafetyInputs {
   LineLevels may_open;            ///< the limit switch that the run searches for (RunOrder)
   bool levels_known = true;       ///< false: too few samples to say that a switch is open
   LineCalls line_calls{};
+  std::int64_t permit_age_ns = 0;  ///< of the permit that this tick renews; 0: it is the first
 };
 
 /// Safety monitor: derives the inputs of the safety state machine from line levels and task
 /// reports, with all checks of time, levels and freshness. Its only memory is the reset button, the
 /// first reports, the causes with which FaultStopping began, how long homing has been on its
-/// switch, and which ticks the lines were slow in. Reads no clock.
+/// switch, which ticks the lines were slow in, when the shutdown began, and how often threads were
+/// late. Reads no clock.
 ///
 /// A report counts only while its sender is alive; no cause is derived from a task before its first
 /// report, nor from a switch before its level is known: until both are, `all_reported` is 0. While
@@ -66,11 +77,18 @@ struct SafetyInputs {
 /// `drives_off` only from a report of the state at hand, and `experiment_done` only from a step
 /// that was due after the run began, so the last run cannot end the next one. The switch that a
 /// homing run searches for may open while that run is Running, for a bounded time in all: a switch
-/// that bounces gains none. The other switches trip as always. Real-time: safe.  Thread: safety.
+/// that bounces gains none. The other switches trip as always.
+///
+/// A shutdown whose arm still has power kShutdownMarginNs after the longest stop trips.
+/// Real-time: safe.  Thread: safety.
 class SafetyMonitor {
  public:
   /// Disarming waits so long for the drives to confirm that they are off.
   static constexpr std::int64_t kDisarmNs = 100'000'000;
+
+  /// The shutdown may take so much longer than safety.stop_timeout_s. The operator task waits
+  /// longer (Shutdown::LimitNs), so that the relay is open before the threads end.
+  static constexpr std::int64_t kShutdownMarginNs = 500'000'000;
 
   explicit SafetyMonitor(const MonitorLimits& limits) noexcept
       : limits_(limits), line_calls_(limits.lines_stall_ns) {}
@@ -82,7 +100,16 @@ class SafetyMonitor {
   /// in s.
   Evidence EvidenceOf(TripCause cause, const SafetyInputs& in) const noexcept;
 
+  /// Late threads so far, whether they trip or not.
+  const TimingCounts& timing() const noexcept { return timing_; }
+
  private:
+  /// Causes by which threads are late, whether they trip or not; counts those that are new.
+  TripCauses LateThreads(const SafetyInputs& in, bool control_alive) noexcept;
+  bool ShutdownExpired(const SafetyInputs& in) noexcept;
+  std::int64_t ShutdownLimitNs() const noexcept {
+    return limits_.stop_timeout_ns + kShutdownMarginNs;
+  }
   /// True while homing is on the switch that it searches for, within the permitted time.
   bool HomingContact(const SafetyInputs& in) noexcept;
   /// Longest time in the present state; INT64_MAX: without limit.
@@ -95,6 +122,9 @@ class SafetyMonitor {
   std::int64_t looked_ns_ = 0;     // the tick before
   TripCauses present_before_ = 0;  // the tick before
   TripCauses fault_causes_ = 0;    // those with which FaultStopping began
+  TripCauses late_before_ = 0;     // LateThreads, the tick before
+  TimingCounts timing_{};
+  std::int64_t shutdown_since_ns_ = INT64_MIN;
   bool all_reported_ = false;
   bool button_was_down_ = true;  // a button that is down from the start does not count
   bool reset_pressed_ = false;

@@ -14,9 +14,14 @@ namespace flexarm {
 struct BusHealth {
   std::string name;
   bool ok;
-  std::string fault;        ///< error of its last exchange, with device and node; empty: none
-  std::uint32_t failed;     ///< number of failed exchanges and attempts to reconnect
-  std::uint32_t recovered;  ///< number of recoveries after a loss
+  std::string fault;         ///< error of its last exchange, with device and node; empty: none
+  std::uint32_t failed;      ///< number of failed exchanges and attempts to reconnect
+  std::uint32_t recovered;   ///< number of recoveries after a loss
+  std::uint32_t slow = 0;    ///< number of exchanges that took longer than the bus declares
+  double longest_ms = 0.0;   ///< longest exchange
+  double declared_ms = 0.0;  ///< what the bus declares as the longest
+  int failed_in_window = 0;  ///< among the last safety.window_periods
+  int slow_in_window = 0;
 };
 
 /// Reports to the journal when a bus is lost or reconnected, and, at most once a second, exchanges

@@ -1,6 +1,7 @@
 #include "controller/tasks/bus_task.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "controller/types/rig_config.h"
 
@@ -16,7 +17,10 @@ BusTask::BusTask(const RigConfig& config, BusDevice* device, BusChannels channel
     : device_(device),
       grid_(config.loop),
       limits_(MakeGateLimits(config.safety, grid_)),
-      channels_(channels) {}
+      channels_(channels),
+      failed_lately_(config.safety.window_periods),
+      slow_lately_(config.safety.window_periods),
+      worst_case_ns_(device->worst_case_ns()) {}
 
 Task::Traits BusTask::traits() const noexcept {
   return {.name = device_->name(),
@@ -26,12 +30,23 @@ Task::Traits BusTask::traits() const noexcept {
           .priority = kPriority};
 }
 
+// The activation before was one call of the device, and the time around it is small.
+void BusTask::CountDuration(const Activation& activation) noexcept {
+  if (!std::exchange(ran_, true)) return;
+  const bool slow = activation.previous_run_ns > worst_case_ns_;
+  slow_lately_.Push(slow);
+  slow_ += slow ? 1 : 0;
+  longest_ns_ = std::max(longest_ns_, activation.previous_run_ns);
+}
+
 void BusTask::Run(const Activation& activation) noexcept {
+  CountDuration(activation);
   next_due_ns_ = activation.due_ns + grid_.period_ns;
   const BusCommand command = Command(activation.due_ns);
   SensorFrame part{};
   const bool may_reconnect = failures_ > 0 && !command.enabled;
   status_ = may_reconnect ? device_->Reconnect() : device_->Exchange(command, &part);
+  if (!may_reconnect) failed_lately_.Push(status_ != BusStatus::kOk);
   if (status_ == BusStatus::kOk) {
     if (failures_ >= kFailuresToLose) ++recovered_;
     failures_ = 0;
@@ -119,7 +134,11 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
                  .failed = failed_,
                  .recovered = recovered_,
                  .levels = levels_,
-                 .power = Power()});
+                 .power = Power(),
+                 .failed_in_window = failed_lately_.count(),
+                 .slow_in_window = slow_lately_.count(),
+                 .slow = slow_,
+                 .longest_ns = longest_ns_});
   channels_.reports->Publish(reports_);
   channels_.health->Publish(reports_);
 }

@@ -6,6 +6,7 @@
 #include "controller/realtime/task.h"
 #include "controller/realtime/wakeup.h"
 #include "controller/safety/torque_gate.h"
+#include "controller/safety/windowed_count.h"
 #include "controller/step/actuation_queue.h"
 #include "controller/types/frame_packet.h"
 #include "controller/types/loop_grid.h"
@@ -34,8 +35,10 @@ struct BusChannels {
 /// command expires with the permit, which the device looks at before each output. When a state
 /// without power begins, the safety task wakes the task, which switches its drives off at once, or
 /// when the exchange that is under way has ended. A bus
-/// that fails twice in a row is lost; it is reconnected only while the arm is disarmed. Real-time:
-/// as far as its device is; it does not allocate.
+/// that fails twice in a row is lost; it is reconnected only while the arm is disarmed. Failed
+/// exchanges, and calls that took longer than the device declares, are also counted in a window,
+/// wherever they lie in it; an attempt to reconnect is no failed exchange. Real-time: as far as its
+/// device is; it does not allocate.
 class BusTask final : public Task {
  public:
   static constexpr int kPriority = 70;
@@ -54,6 +57,7 @@ class BusTask final : public Task {
 
  private:
   BusCommand Command(std::int64_t due_ns) noexcept;
+  void CountDuration(const Activation& activation) noexcept;
   DrivePower Power() const noexcept;
   void Publish(std::int64_t due_ns, const SensorFrame& part) noexcept;
 
@@ -69,6 +73,12 @@ class BusTask final : public Task {
   bool enabled_ = false;          // the drives, by the last exchange
   std::int64_t next_due_ns_ = 0;  // of the next exchange
   int failures_ = 0;              // in a row
+  WindowedCount failed_lately_;
+  WindowedCount slow_lately_;
+  std::int64_t worst_case_ns_;  // declared by the device
+  bool ran_ = false;
+  std::uint32_t slow_ = 0;
+  std::int64_t longest_ns_ = 0;
   std::uint32_t failed_ = 0;
   std::uint32_t gate_reasons_ = 0,
                 gate_before_ = 0;  // GateBits of the newest torque and the one before

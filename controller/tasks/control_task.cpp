@@ -6,8 +6,9 @@
 
 namespace flexarm {
 
-ControlTask::ControlTask(const LoopConfig& loop, ControlStep* step, ControlChannels channels)
-    : grid_(loop), step_(step), channels_(std::move(channels)) {}
+ControlTask::ControlTask(const LoopConfig& loop, int window_periods, ControlStep* step,
+                         ControlChannels channels)
+    : grid_(loop), step_(step), channels_(std::move(channels)), missed_(window_periods) {}
 
 Task::Traits ControlTask::traits() const noexcept {
   return {.name = "control",
@@ -17,7 +18,18 @@ Task::Traits ControlTask::traits() const noexcept {
           .priority = kPriority};
 }
 
+// What has been decided since the last activation: whether that kept its deadline, and periods
+// without an activation, which missed theirs.
+void ControlTask::CountDeadlines(const Activation& activation) noexcept {
+  const std::int64_t before_ns = std::exchange(due_before_ns_, activation.due_ns);
+  if (before_ns == INT64_MIN) return;
+  const std::int64_t skipped = (activation.due_ns - before_ns) / grid_.period_ns - 1;
+  missed_.Push(activation.missed_in_a_row > skipped);
+  missed_.PushFailures(skipped);
+}
+
 void ControlTask::Run(const Activation& activation) noexcept {
+  CountDeadlines(activation);
   // Values published at the due instant itself may not be visible yet.
   const std::int64_t seen_ns = activation.due_ns - 1;
   const PermitHistory& permits = channels_.permits->Read();
@@ -183,7 +195,8 @@ void ControlTask::Publish(const Activation& activation, const StepInput& input,
                                .at_rest = output.at_rest != 0,
                                .experiment_done = output.experiment_done != 0,
                                .missed_in_a_row = activation.missed_in_a_row,
-                               .may_damp = output.may_damp != 0});
+                               .may_damp = output.may_damp != 0,
+                               .missed_in_window = missed_.count()});
   channels_.reports->Publish(reports_);
 }
 

@@ -6,6 +6,7 @@
 
 #include "controller/exchange/spsc_queue.h"
 #include "controller/realtime/task.h"
+#include "controller/safety/windowed_count.h"
 #include "controller/step/control_step.h"
 #include "controller/tasks/homing_reference.h"
 #include "controller/tasks/plan_follower.h"
@@ -45,7 +46,9 @@ class ControlTask final : public Task {
  public:
   static constexpr int kPriority = 80;
 
-  ControlTask(const LoopConfig& loop, ControlStep* step, ControlChannels channels);
+  /// @param window_periods  SafetyConfig::window_periods, for the count of missed deadlines
+  ControlTask(const LoopConfig& loop, int window_periods, ControlStep* step,
+              ControlChannels channels);
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
@@ -54,6 +57,7 @@ class ControlTask final : public Task {
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
  private:
+  void CountDeadlines(const Activation& activation) noexcept;
   FramePacket ReadFrames(std::int64_t sampled_ns) noexcept;
   void FollowState(const Permit& permit) noexcept;
   void StartRun(const Permit& permit) noexcept;
@@ -82,6 +86,8 @@ class ControlTask final : public Task {
   bool reset_ = true;                             // the next step is a reset
   std::array<std::int64_t, kCounters> counts_{};  // of the last step
   std::array<double, 2> hub_angle_rad_{};         // of the last step
+  WindowedCount missed_;                          // deadlines
+  std::int64_t due_before_ns_ = INT64_MIN;        // of the last activation
   CommandHistory commands_{kNoCommand};
   ControlReportHistory reports_{kNoControlReport};
 };

@@ -29,7 +29,8 @@ std::unique_ptr<PlanFollower> FollowerOf(const RigConfig& config, PlannerTask* p
 }  // namespace
 
 LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWiring& wiring)
-    : requests_(kOperatorDepth),
+    : late_threads_trip_(wiring.metal_moves),
+      requests_(kOperatorDepth),
       answers_(kOperatorDepth),
       tick_records_(kTickDepth),
       operator_ticks_(kOperatorTickDepth),
@@ -37,7 +38,7 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
       step_(config, design),
       planner_(PlannerOf(config, design)),
       follower_(FollowerOf(config, planner_.get())),
-      safety_(MakeMonitorLimits(config.safety, config.loop),
+      safety_(MakeMonitorLimits(config.safety, config.loop, wiring.metal_moves),
               {.lines = wiring.lines,
                .control = &control_reports_,
                .drives = wiring.drives,
@@ -48,8 +49,9 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
                .wakeups = wiring.wakeups,
                .permits = Joined({&control_permits_, &operator_permits_}, wiring.permits),
                .answers = &answers_,
-               .records = &safety_records_}),
-      control_(config.loop, &step_,
+               .records = &safety_records_,
+               .timing = &timing_}),
+      control_(config.loop, config.safety.window_periods, &step_,
                {.frames = wiring.frames,
                 .permits = &control_permits_,
                 .calibrations = &calibrations_,

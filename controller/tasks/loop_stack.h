@@ -30,6 +30,8 @@ struct LoopWiring {
   std::vector<PermitChannel*> permits;      ///< one a drive bus
   std::vector<DriveReportChannel*> drives;  ///< one a bus
   std::vector<Wakeup*> wakeups{};           ///< of the tasks that switch drives off
+  /// False: the arm is simulated in process. Late threads are counted then, but do not trip.
+  bool metal_moves = true;
 };
 
 /// The safety and control tasks of the daemon for any backend, and their queues and channels to the
@@ -74,6 +76,10 @@ class LoopStack {
   void Calibrate(const Calibration& calibration) noexcept { calibrations_.Publish(calibration); }
   /// Experiments of runs with a lower number than this are no longer used.
   virtual std::uint32_t released_experiments() const noexcept { return control_.released(); }
+  /// How late the threads of the loop were.
+  const TimingCounts& timing() noexcept { return timing_.Read(); }
+  /// Whether late threads trip.
+  bool late_threads_trip() const noexcept { return late_threads_trip_; }
   /// Health of the buses. Empty: this backend has none.
   virtual std::vector<BusHealth> buses() { return {}; }
   /// Bus, device, node and error behind a trip; empty: the trip is not of a bus.
@@ -99,6 +105,8 @@ class LoopStack {
   PermitChannel operator_permits_{PermitHistory(kNoPermit)};
   ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
   CalibrationChannel calibrations_{Calibration{}};
+  TimingChannel timing_{TimingCounts{}};
+  bool late_threads_trip_;
   SpscQueue<OperatorRequest> requests_;
   LatchedRequest stop_, disarm_;
   std::atomic<bool> shutting_down_{false};

@@ -53,7 +53,8 @@ void SafetyTask::Run(const Activation& activation) noexcept {
                         .running_since_ns = running_since_ns_,
                         .may_open = run_.may_open,
                         .levels_known = filter_.known(),
-                        .line_calls = {.read = read.call, .write = written_}};
+                        .line_calls = {.read = read.call, .write = written_},
+                        .permit_age_ns = PermitAgeNs(activation)};
   const SafetyFacts facts = monitor_.Judge(in);
   const SafetyStatus before = status_;
   const SafetyDecision decision = NextSafetyState(before, facts);
@@ -95,6 +96,17 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   }
 }
 
+void SafetyTask::Ended() noexcept {
+  channels_.lines->Write(permits_.Newest().value.renewed_ns + kPeriodNs,
+                         {.relay_closed = false, .pump_level = false});
+}
+
+// On the grid, plus how late this tick is: what a drive that looked just now would have found.
+std::int64_t SafetyTask::PermitAgeNs(const Activation& activation) const noexcept {
+  const std::int64_t renewed_ns = permits_.Newest().value.renewed_ns;
+  return renewed_ns == INT64_MIN ? 0 : activation.due_ns + activation.late_ns - renewed_ns;
+}
+
 void SafetyTask::Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
                         TripCauses present) noexcept {
   channels_.answers->Push({.number = request.number,
@@ -120,6 +132,14 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
     side.report.drive_ok = side.report.drive_ok && report.drive_ok;
     side.report.levels = MergeRedundantLevels(side.report.levels, report.levels);
     side.report.power = Joined(side.report.power, report.power);
+    if (report.failed_in_window > side.report.failed_in_window) {
+      side.report.failed_in_window = report.failed_in_window;
+      side.troubles.unreliable = {bus, report.fault};
+    }
+    if (report.slow_in_window > side.report.slow_in_window) {
+      side.report.slow_in_window = report.slow_in_window;
+      side.troubles.slow = {bus, report.fault};
+    }
     const std::int64_t alive_ns = history.Newest().value.due_ns;
     if (alive_ns < side.alive_ns) side.troubles.oldest_bus = bus;
     side.alive_ns = std::min(side.alive_ns, alive_ns);
@@ -198,6 +218,9 @@ void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {
                          .run_number = run_number_,
                          .run = run_});
   for (PermitChannel* channel : channels_.permits) channel->Publish(permits_);
+  if (timing_ == monitor_.timing()) return;
+  timing_ = monitor_.timing();
+  channels_.timing->Publish(timing_);
 }
 
 }  // namespace flexarm

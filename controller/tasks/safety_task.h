@@ -32,6 +32,7 @@ struct SafetyChannels {
   std::vector<PermitChannel*> permits;      ///< written: one a reader (drive, control, operator)
   SpscQueue<RequestAnswer>* answers;        ///< written
   SpscQueue<SafetyRecord>* records;         ///< written
+  TimingChannel* timing;                    ///< written when it changes: for the operator task
 };
 
 /// The safety task: 1 kHz, highest priority. Levels and reports in, relay and permit out.
@@ -46,7 +47,10 @@ struct SafetyChannels {
 /// or a disarm cancels the waiting arms and runs of lower numbers; a trip cancels all. The run that
 /// is granted is in the permit from that tick on. A disarm is answered when the relay is open,
 /// because people reach into the arm then; one that comes while disarming takes the place of the
-/// one before. Real-time: safe after construction.
+/// one before.
+///
+/// A tick that comes late is judged like any other before it touches the lines: where late threads
+/// trip, relay and pump stay off from it on. Real-time: safe after construction.
 class SafetyTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -59,6 +63,8 @@ class SafetyTask final : public Task {
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
+  /// Opens the relay: whatever the other threads do, nothing watches the arm from here on.
+  void Ended() noexcept override;
 
   /// Before the first tick: the arm starts Tripped, by a trip from before the start.
   void StartTripped(TripCause cause, const Evidence& evidence) noexcept {
@@ -87,6 +93,8 @@ class SafetyTask final : public Task {
   void Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
               TripCauses present) noexcept;
   void Drive(std::int64_t due_ns) noexcept;
+  /// Age of the permit that this tick renews; 0: it is the first.
+  std::int64_t PermitAgeNs(const Activation& activation) const noexcept;
   void Publish(std::int64_t due_ns, LineLevels levels) noexcept;
 
   SafetyChannels channels_;
@@ -106,6 +114,7 @@ class SafetyTask final : public Task {
   std::array<OperatorRequest, kMaxWaiting> waiting_{};
   std::size_t waiting_count_ = 0;
   PermitHistory permits_{kNoPermit};
+  TimingCounts timing_{};  // as last published
 };
 
 }  // namespace flexarm

@@ -23,7 +23,8 @@ struct SimulatedWires {
   SimulatedLines lines{&levels, &outputs};
 };
 
-/// The daemon's real-time tasks with the simulated rig in process, for either executor.
+/// The daemon's real-time tasks with the simulated rig in process, for either executor. No metal
+/// moves: late threads are counted and do not trip.
 class SimulatedStack final : private SimulatedWires, public LoopStack {
  public:
   /// @param payload_kg  of the plant; the design has that of the config

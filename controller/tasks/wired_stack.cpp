@@ -1,6 +1,13 @@
 #include "controller/tasks/wired_stack.h"
 
+#include "controller/types/rounded_text.h"
+
 namespace flexarm {
+namespace {
+
+constexpr double kMsPerNs = 1e-6;
+
+}  // namespace
 
 LoopWiring BusWires::Wiring(SafetyLines* lines) {
   LoopWiring wiring{.lines = lines, .frames = {}, .commands = {}, .permits = {}, .drives = {}};
@@ -15,7 +22,10 @@ LoopWiring BusWires::Wiring(SafetyLines* lines) {
 }
 
 WiredStack::WiredStack(const RigConfig& config, const Design& design, const RigWires& rig)
-    : BusWires(rig), LoopStack(config, design, Wiring(rig.lines)), devices_(rig.buses) {
+    : BusWires(rig),
+      LoopStack(config, design, Wiring(rig.lines)),
+      devices_(rig.buses),
+      window_periods_(config.safety.window_periods) {
   for (std::size_t i = 0; i < wires.size(); ++i) {
     tasks_.emplace_back(config, rig.buses[i],
                         BusChannels{.commands = &wires[i].commands,
@@ -47,18 +57,37 @@ std::vector<BusHealth> WiredStack::buses() {
                    .ok = report.bus_ok || report.due_ns == INT64_MIN,  // ok before its first run
                    .fault = well ? std::string() : devices_[i]->FaultText(report.fault),
                    .failed = report.failed,
-                   .recovered = report.recovered});
+                   .recovered = report.recovered,
+                   .slow = report.slow,
+                   .longest_ms = static_cast<double>(report.longest_ns) * kMsPerNs,
+                   .declared_ms = static_cast<double>(devices_[i]->worst_case_ns()) * kMsPerNs,
+                   .failed_in_window = report.failed_in_window,
+                   .slow_in_window = report.slow_in_window});
   }
   return all;
 }
 
+std::string WiredStack::Share(const Evidence& evidence) const {
+  return RoundedText(evidence.value, 3) + " of the last " + std::to_string(window_periods_) +
+         " exchanges ";
+}
+
 std::string WiredStack::BusText(TripCause cause, const Evidence& evidence) const {
-  const bool of_bus = cause == TripCause::kBusLost || cause == TripCause::kDriveFault ||
-                      cause == TripCause::kStaleFrame;
-  if (!of_bus || evidence.detail == 0) return {};
   if (evidence.channel < 1 || evidence.channel > devices_.size()) return {};
   const BusDevice& device = *devices_[evidence.channel - 1];
   const BusFault fault = FaultFromBits(evidence.detail);
+  if (cause == TripCause::kBusTooSlow) {
+    return device.name() + (": " + Share(evidence)) + "took longer than the " +
+           RoundedText(static_cast<double>(device.worst_case_ns()) * kMsPerNs, 3) +
+           " ms it declares";
+  }
+  if (cause == TripCause::kBusUnreliable) {
+    const std::string last = evidence.detail == 0 ? "" : "; the last: " + device.FaultText(fault);
+    return device.name() + (": " + Share(evidence)) + "failed" + last;
+  }
+  const bool of_bus = cause == TripCause::kBusLost || cause == TripCause::kDriveFault ||
+                      cause == TripCause::kStaleFrame;
+  if (!of_bus || evidence.detail == 0) return {};
   if (fault.kind == kBusHangs) return std::string(device.name()) + ": its exchange does not end";
   return device.FaultText(fault);
 }

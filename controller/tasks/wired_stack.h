@@ -46,7 +46,11 @@ class WiredStack final : private BusWires, public LoopStack {
   std::string BusText(TripCause cause, const Evidence& evidence) const override;
 
  private:
+  /// "16 of the last 200 exchanges "
+  std::string Share(const Evidence& evidence) const;
+
   std::vector<BusDevice*> devices_;
+  int window_periods_;
   std::deque<BusTask> tasks_;
 };
 

@@ -65,7 +65,18 @@ struct ControlReport {
   bool at_rest;
   bool experiment_done;
   int missed_in_a_row;
-  bool may_damp = false;  ///< StepOutput::may_damp
+  bool may_damp = false;     ///< StepOutput::may_damp
+  int missed_in_window = 0;  ///< missed deadlines among the last safety.window_periods
+};
+
+/// Safety task -> operator: how late the threads of the loop were, since the start.
+struct TimingCounts {
+  std::uint32_t safety_overruns = 0;         ///< ticks that found a permit older than allowed
+  std::int64_t oldest_permit_ns = 0;         ///< the oldest permit that a tick renewed
+  std::uint32_t deadlines_missed = 0;        ///< times that too many were missed in a row,
+  std::uint32_t deadlines_often_missed = 0;  ///< or in the window
+
+  friend constexpr bool operator==(const TimingCounts&, const TimingCounts&) = default;
 };
 
 /// What the drives of a bus, or of a rig, have confirmed.
@@ -92,6 +103,10 @@ struct DriveReport {
   std::uint32_t recovered = 0;           ///< recoveries of a lost bus
   LineLevels levels = kHealthyLevels;    ///< last read by the buses; healthy for other lines
   DrivePower power = DrivePower::kNone;  ///< as confirmed in its last run
+  int failed_in_window = 0;              ///< failed exchanges among the last
+  int slow_in_window = 0;                ///< those that took longer than the bus declares
+  std::uint32_t slow = 0;                ///< the same, since the start
+  std::int64_t longest_ns = 0;           ///< longest exchange or attempt to reconnect
 };
 
 enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };
@@ -135,6 +150,7 @@ using DriveReportHistory = History<DriveReport, 4>;
 using PermitChannel = LatestValue<PermitHistory>;
 using ControlReportChannel = LatestValue<ControlReportHistory>;
 using DriveReportChannel = LatestValue<DriveReportHistory>;
+using TimingChannel = LatestValue<TimingCounts>;
 
 /// Values of the channels before the first message.
 inline constexpr Permit kNoPermit{.state = SafetyState::kStarting,

@@ -39,6 +39,10 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
                "the permit is renewed every 1 ms; an older one means zero torque");
   list->Within("safety.missed_deadlines_to_trip", c.missed_deadlines_to_trip, 1, 10,
                "consecutive deadlines of the control task");
+  list->Within("safety.overrun_to_trip_ms", c.overrun_to_trip_ms, 2.0, 1000.0,
+               "a safety tick that finds an older permit, renewed every 1 ms, trips");
+  list->Within("safety.window_periods", c.window_periods, 10, kLongestWindow,
+               "the limits ..._in_window count in the last so many periods");
   list->Within("safety.homing_contact_s", c.homing_contact_s, 0.1, 10.0,
                "how long homing may be on the switch that it searches for, in all");
   list->Positive("safety.homing_torque_fraction", c.homing_torque_fraction, 1.0,
@@ -59,6 +63,14 @@ std::vector<Problem> SafetyConfig::Problems() const {
                  "must be below limits.hub_rate_rad_s[" + NumberText(i) +
                      "] = " + NumberText(hub_rate_rad_s[i]) + ", or an arm at rest could trip");
   }
+  const auto within_window = [&](const char* key, int limit) {
+    list.Within(key, limit, 1, window_periods,
+                "so many of the last safety.window_periods = " + NumberText(window_periods) +
+                    " trip, wherever they lie");
+  };
+  within_window("safety.missed_deadlines_in_window", missed_deadlines_in_window);
+  within_window("safety.failed_exchanges_in_window", failed_exchanges_in_window);
+  within_window("safety.slow_exchanges_in_window", slow_exchanges_in_window);
   list.Require(
       stop_timeout_s > rest_time_s, "safety.stop_timeout_s", NumberText(stop_timeout_s),
       "must be above safety.rest_time_s = " + NumberText(rest_time_s) + ", or every stop trips");

@@ -7,6 +7,9 @@
 
 namespace flexarm {
 
+/// Largest safety.window_periods.
+inline constexpr int kLongestWindow = 256;
+
 /// Sections [limits] and [safety].
 struct SafetyConfig {
   // [limits]
@@ -17,15 +20,20 @@ struct SafetyConfig {
   std::array<double, 2> strain_limit;    ///< |fitted surface strain at the root| beyond this trips
   double plan_fraction;  ///< share of each limit for a move without duration_s, 0 to 1
   // [safety]
-  double rest_hub_rate_rad_s;     ///< at rest: both hub rates below this
-  double rest_strain_rate_per_s;  ///< at rest: both root strain rates below this
-  double rest_time_s;             ///< for at least this long
-  double stop_timeout_s;          ///< Stopping longer than this trips
-  double fault_stop_s;            ///< FaultStopping lasts this long at most; 0: it is not used
-  double permit_timeout_ms;       ///< a permit older than this means zero torque
-  int missed_deadlines_to_trip;   ///< consecutive missed deadlines of the control task
-  double homing_contact_s;        ///< homing that is longer on its switch, in all, trips
-  double homing_torque_fraction;  ///< share of limits.torque_limit_nm while homing, 0 to 1
+  double rest_hub_rate_rad_s;      ///< at rest: both hub rates below this
+  double rest_strain_rate_per_s;   ///< at rest: both root strain rates below this
+  double rest_time_s;              ///< for at least this long
+  double stop_timeout_s;           ///< Stopping longer than this trips
+  double fault_stop_s;             ///< FaultStopping lasts this long at most; 0: it is not used
+  double permit_timeout_ms;        ///< a permit older than this means zero torque
+  int missed_deadlines_to_trip;    ///< consecutive missed deadlines of the control task
+  double overrun_to_trip_ms;       ///< a safety tick that renews an older permit than this trips
+  int window_periods;              ///< the next three limits look at the last so many periods
+  int missed_deadlines_in_window;  ///< so many missed deadlines of the control task among them trip
+  int failed_exchanges_in_window;  ///< so many failed exchanges of one bus among them trip
+  int slow_exchanges_in_window;    ///< so many that took longer than the bus declares trip
+  double homing_contact_s;         ///< homing that is longer on its switch, in all, trips
+  double homing_torque_fraction;   ///< share of limits.torque_limit_nm while homing, 0 to 1
 
   std::vector<Problem> Problems() const;
 };

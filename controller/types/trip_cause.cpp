@@ -119,6 +119,24 @@ constexpr std::array<Row, kTripCauses> kRows{{
      "write failed, or took longer than 0.2 ms. Check that the GPIO chip of hal.gpiod is still "
      "there (`gpiodetect`), that it is part of the processor or of a PCI card, and that the kernel "
      "is PREEMPT_RT; see docs/hardware.md."},
+    {kSafetyOverrun, "safety-overrun", TripChannel::kNone,
+     "The safety thread ran later than safety.overrun_to_trip_ms and did not watch the "
+     "arm. Run `flexarm check-host`; check that the kernel is PREEMPT_RT and that the cores are "
+     "isolated, and remove other load from the computer; see docs/timing.md."},
+    {kDeadlinesOftenMissed, "deadlines-often-missed", TripChannel::kNone,
+     "The controller missed safety.missed_deadlines_in_window of its last deadlines, not in a row: "
+     "the computer is too busy. Run `flexarm check-host`, and remove other load from the computer; "
+     "see docs/timing.md."},
+    {kBusUnreliable, "bus-unreliable", kBus,
+     "A bus to the rig fails again and again, without being lost. Check its plugs, its "
+     "termination, its shielding and its power supply. A reset is possible after good exchanges: "
+     "see `flexarm status`."},
+    {kBusTooSlow, "bus-too-slow", kBus,
+     "Exchanges with a bus take longer than its driver declares, so the loop gets its readings too "
+     "late. Check the bus, its interface and the load of the computer; see docs/timing.md."},
+    {kShutdownTimeout, "shutdown-timeout", TripChannel::kNone,
+     "The arm did not come to rest in time while the daemon was shutting down, so its power was "
+     "switched off. Wait until it is at rest; check the gains and the rest limits."},
 }};
 
 static_assert(

@@ -37,8 +37,13 @@ enum class TripCause : std::uint8_t {
   kNoStrainReading1 = 28,
   kNoStrainReading2 = 29,
   kSafetyLines = 30,
+  kSafetyOverrun = 31,
+  kDeadlinesOftenMissed = 32,
+  kBusUnreliable = 33,
+  kBusTooSlow = 34,
+  kShutdownTimeout = 35,
 };
-inline constexpr int kTripCauses = 31;
+inline constexpr int kTripCauses = 36;
 
 /// Set of causes, bit i is cause number i.
 using TripCauses = std::uint64_t;

@@ -98,6 +98,28 @@ TEST(HalConfig, AnExchangeThatDoesNotFitBeforeTheStepIsRefused) {
                              testing::HasSubstr("drive1 430 us, drive2 430 us, hub1 295 us")));
 }
 
+// Where metal moves, no limit on late threads and unreliable buses can be switched off.
+TEST(HalConfig, ALateSafetyThreadTripsBeforeADriveFindsItsPermitTooOld) {
+  const auto refusal = [](const std::vector<std::string>& overrides) {
+    return MessageOf<ConfigError>([&] { LoadConfig(kFile, overrides); });
+  };
+  EXPECT_THAT(refusal({"safety.overrun_to_trip_ms=5.5"}),
+              testing::AllOf(testing::HasSubstr("safety.overrun_to_trip_ms"),
+                             testing::HasSubstr("at most safety.permit_timeout_ms = 5")));
+  EXPECT_NO_THROW(LoadConfig(kFile, {"safety.overrun_to_trip_ms=4.5"}));
+  EXPECT_NO_THROW(LoadConfig(kFile, {"safety.overrun_to_trip_ms=8", "safety.permit_timeout_ms=8"}));
+  EXPECT_NO_THROW(
+      LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", {"safety.overrun_to_trip_ms=500"}))
+      << "simulated: counted only";
+  for (const std::string key : {"missed_deadlines", "failed_exchanges", "slow_exchanges"}) {
+    const std::string limit = "safety." + key + "_in_window";
+    EXPECT_THAT(refusal({limit + "=21"}),
+                testing::AllOf(testing::HasSubstr(limit), testing::HasSubstr("a tenth of")));
+    EXPECT_NO_THROW(LoadConfig(kFile, {limit + "=20"})) << key;
+    EXPECT_NO_THROW(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", {limit + "=200"})) << key;
+  }
+}
+
 TEST(HalConfig, AnUnknownBackendIsRefused) {
   EXPECT_THAT(Complaint("backend = \"wired\"", "backend = \"real\""),
               testing::HasSubstr("one of \"sim\" \"wired\""));

@@ -249,7 +249,10 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
                "limits.strain_limit=[1e-4, 2e-4]", "limits.plan_fraction=0.7",
                "safety.rest_hub_rate_rad_s=0.1", "safety.rest_strain_rate_per_s=0.2",
                "safety.rest_time_s=0.3", "safety.stop_timeout_s=0.4", "safety.permit_timeout_ms=6",
-               "safety.missed_deadlines_to_trip=4", "safety.homing_torque_fraction=0.25"})
+               "safety.missed_deadlines_to_trip=4", "safety.homing_torque_fraction=0.25",
+               "safety.overrun_to_trip_ms=7", "safety.window_periods=30",
+               "safety.missed_deadlines_in_window=11", "safety.failed_exchanges_in_window=12",
+               "safety.slow_exchanges_in_window=13"})
           .safety;
   EXPECT_EQ(s.torque_limit_nm, (std::array{1.0, 2.0}));
   EXPECT_EQ(s.slew_limit_nm_per_s, (std::array{3.0, 4.0}));
@@ -263,6 +266,11 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
   EXPECT_EQ(s.stop_timeout_s, 0.4);
   EXPECT_EQ(s.permit_timeout_ms, 6.0);
   EXPECT_EQ(s.missed_deadlines_to_trip, 4);
+  EXPECT_EQ(s.overrun_to_trip_ms, 7.0);
+  EXPECT_EQ(s.window_periods, 30);
+  EXPECT_EQ(s.missed_deadlines_in_window, 11);
+  EXPECT_EQ(s.failed_exchanges_in_window, 12);
+  EXPECT_EQ(s.slow_exchanges_in_window, 13);
   EXPECT_EQ(s.homing_torque_fraction, 0.25);
 }
 

@@ -96,12 +96,23 @@ void PrintStatus(const Json& s) {
     }
     std::printf("\n");
   }
+  if (s.contains("timing") && s["timing"].is_object()) {
+    const Json& timing = s["timing"];
+    std::printf(
+        "late threads   safety %u times, worst %.1f ms; deadlines missed in a row %u times, "
+        "often %u times; %s\n",
+        timing.value("safety_overruns", 0U), timing.value("safety_worst_ms", 0.0),
+        timing.value("deadlines_missed_in_a_row", 0U), timing.value("deadlines_often_missed", 0U),
+        timing.value("trips", true) ? "each trips" : "simulated arm: no trip");
+  }
   for (const Json& bus : s.value("buses", Json::array())) {
-    std::printf("%-14s %s, %u failed exchanges, recovered %u times%s%s\n",
-                bus.value("name", "").c_str(), bus.value("ok", false) ? "ok" : "lost",
-                bus.value("failed", 0U), bus.value("recovered", 0U),
-                bus["fault"].is_string() ? "; " : "",
-                bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
+    std::printf(
+        "%-14s %s, %u failed exchanges, recovered %u times, longest exchange %.1f of %.1f "
+        "ms, %u longer%s%s\n",
+        bus.value("name", "").c_str(), bus.value("ok", false) ? "ok" : "lost",
+        bus.value("failed", 0U), bus.value("recovered", 0U), bus.value("longest_ms", 0.0),
+        bus.value("declared_ms", 0.0), bus.value("slow", 0U), bus["fault"].is_string() ? "; " : "",
+        bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
   }
   for (const Json& thread : s.value("threads", Json::array())) {
     std::printf(

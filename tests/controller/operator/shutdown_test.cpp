@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "controller/safety/safety_monitor.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/loop_time.h"
 
@@ -60,6 +61,14 @@ TEST(Shutdown, ItsLimitIsAboveTheLongestStop) {
     const RigConfig rig = ShippedRig({std::string("safety.stop_timeout_s=") + stop_s});
     EXPECT_GT(Shutdown::LimitNs(rig.safety), std::llround(1e9 * rig.safety.stop_timeout_s));
   }
+}
+
+// The relay is open before this task gives up waiting: it looks once in 20 ms, and later.
+TEST(Shutdown, ItsLimitIsAboveThatOfTheSafetyTask) {
+  const SafetyConfig safety = ShippedRig().safety;
+  const std::int64_t safety_ns =
+      std::llround(1e9 * safety.stop_timeout_s) + SafetyMonitor::kShutdownMarginNs;
+  EXPECT_GT(Shutdown::LimitNs(safety), safety_ns + 100 * kMs);
 }
 
 TEST(Shutdown, EndsWhenTheDaemonWouldHaveEndedAnyway) {

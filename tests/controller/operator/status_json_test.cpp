@@ -158,7 +158,16 @@ TEST_F(StatusJsonTest, ATripOfABusNamesTheDevice) {
   now.permit.state = SafetyState::kTripped;
   now.permit.cause = TripCause::kBusLost;
   bus_text = "can0: node 5 is silent";
-  buses = {{.name = "can0", .ok = false, .fault = "node 5 is silent", .failed = 3, .recovered = 1},
+  buses = {{.name = "can0",
+            .ok = false,
+            .fault = "node 5 is silent",
+            .failed = 3,
+            .recovered = 1,
+            .slow = 5,
+            .longest_ms = 7.5,
+            .declared_ms = 6.0,
+            .failed_in_window = 2,
+            .slow_in_window = 4},
            {.name = "modbus", .ok = true, .fault = "", .failed = 0, .recovered = 0}};
   const Json status = Status();
   EXPECT_EQ(status["trip"]["bus"], "can0: node 5 is silent");
@@ -166,8 +175,27 @@ TEST_F(StatusJsonTest, ATripOfABusNamesTheDevice) {
                                       {"ok", false},
                                       {"fault", "node 5 is silent"},
                                       {"failed", 3},
-                                      {"recovered", 1}}));
+                                      {"recovered", 1},
+                                      {"failed_in_window", 2},
+                                      {"slow", 5},
+                                      {"slow_in_window", 4},
+                                      {"longest_ms", 7.5},
+                                      {"declared_ms", 6.0}}));
   EXPECT_TRUE(status["buses"][1]["fault"].is_null());
+}
+
+TEST_F(StatusJsonTest, LateThreadsAreCountedAndSayWhetherTheyTrip) {
+  EXPECT_EQ(Status()["timing"]["trips"], true);
+  EXPECT_EQ(TimingJson({.safety_overruns = 7,
+                        .oldest_permit_ns = 21'500'000,
+                        .deadlines_missed = 3,
+                        .deadlines_often_missed = 2},
+                       false),
+            Json({{"trips", false},
+                  {"safety_overruns", 7},
+                  {"safety_worst_ms", 21.5},
+                  {"deadlines_missed_in_a_row", 3},
+                  {"deadlines_often_missed", 2}}));
 }
 
 TEST_F(StatusJsonTest, ACauseThatIsNoLongerLatchedIsNoTrip) {

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <limits>
@@ -163,6 +164,60 @@ TEST(RealtimeExecutor, PassesTheNumberOfConsecutiveMissesToEachActivation) {
     missed = record.finished_ns > record.due_ns + 10 * kMs ? missed + 1 : 0;
     next_ns = activation.due_ns + 10 * kMs;
   }
+}
+
+// What the executor measures is what it logs.
+TEST(RealtimeExecutor, TellsEachActivationHowLateItIsAndHowLongTheOneBeforeTook) {
+  OverrunningTask task(Every(10 * kMs));
+  task.epoch_ns = MonotonicNow() + kLeadNs;
+  SpscQueue<TimingRecord> timing(1000);
+  RealtimeExecutor executor(false);
+  executor.Add(task, &timing);
+  RunFor(executor, task.epoch_ns, 10);
+  std::int64_t took_ns = 0;
+  std::int64_t longest_ns = 0;
+  for (const Task::Activation& activation : task.activations) {
+    TimingRecord record{};
+    ASSERT_TRUE(timing.Pop(&record));
+    EXPECT_EQ(activation.late_ns, record.woke_ns - record.due_ns);
+    EXPECT_EQ(activation.previous_run_ns, took_ns);
+    took_ns = record.finished_ns - record.woke_ns;
+    longest_ns = std::max(longest_ns, activation.previous_run_ns);
+  }
+  EXPECT_GE(longest_ns, 25 * kMs) << "the third";
+}
+
+// The safety task opens the relay in its Ended: it must not wait for a thread that hangs.
+TEST(RealtimeExecutor, ATaskEndsAlthoughAnotherHangs) {
+  struct HangingTask final : RecordingTask {
+    using RecordingTask::RecordingTask;
+    void Body(const Activation&) noexcept override {
+      hangs = true;
+      while (!released) SleepUntil(MonotonicNow() + 1 * kMs);
+      hangs = false;
+    }
+    std::atomic<bool> hangs{false}, released{false};
+  };
+  struct EndingTask final : RecordingTask {
+    using RecordingTask::RecordingTask;
+    void Ended() noexcept override { ended = true; }
+    std::atomic<bool> ended{false};
+  };
+  HangingTask hanging(Every(10 * kMs));
+  EndingTask ending(Every(1 * kMs));
+  RealtimeExecutor executor(false);
+  executor.Add(hanging);  // joined first
+  executor.Add(ending);
+  executor.Start(MonotonicNow() + kLeadNs);
+  while (!hanging.hangs) SleepUntil(MonotonicNow() + 1 * kMs);
+  EXPECT_FALSE(ending.ended);
+  executor.RequestStop();
+  const std::int64_t end_ns = MonotonicNow() + 10'000 * kMs;
+  while (!ending.ended && MonotonicNow() < end_ns) SleepUntil(MonotonicNow() + 1 * kMs);
+  EXPECT_TRUE(ending.ended);
+  EXPECT_TRUE(hanging.hangs) << "it still does";
+  hanging.released = true;
+  executor.Join();
 }
 
 TEST(RealtimeExecutor, AnEpochInThePastSkipsThePassedPeriods) {

@@ -16,7 +16,11 @@ constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
                                 .fault_stop_ns = 500 * kMs,
                                 .missed_deadlines_to_trip = 3,
                                 .homing_contact_ns = 500 * kMs,
-                                .lines_stall_ns = 5 * kMs};
+                                .lines_stall_ns = 5 * kMs,
+                                .overrun_ns = 5 * kMs,
+                                .missed_in_window = 16,
+                                .failed_in_window = 17,
+                                .slow_in_window = 18};
 
 // Running for a second, without a fault.
 SafetyInputs Fine() {
@@ -146,6 +150,91 @@ TEST(SafetyMonitor, DeadlinesMissedInARowTripAtTheConfiguredNumber) {
   ExpectEvidence(TripCause::kMissedDeadlines, in, 3.0, 3.0, 0);
 }
 
+TEST(SafetyMonitor, APermitOlderThanAllowedIsAnOverrunInThatTickOnly) {
+  SafetyInputs in = Fine();
+  in.permit_age_ns = 5 * kMs;
+  EXPECT_EQ(PresentIn(in), 0u);
+  in.permit_age_ns = 5 * kMs + 1;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kSafetyOverrun));
+  in.permit_age_ns = 21 * kMs;
+  ExpectEvidence(TripCause::kSafetyOverrun, in, 0.021, 0.005, 0);
+}
+
+TEST(SafetyMonitor, DeadlinesMissedInTheWindowTripAtTheConfiguredNumber) {
+  SafetyInputs in = Fine();
+  in.control.missed_in_window = 15;
+  EXPECT_EQ(PresentIn(in), 0u);
+  in.control.missed_in_window = 16;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kDeadlinesOftenMissed));
+  ExpectEvidence(TripCause::kDeadlinesOftenMissed, in, 16.0, 16.0, 0);
+  in.control_alive_ns = in.due_ns - 41 * kMs;
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kControlHeartbeatLost)) << "an old report";
+}
+
+TEST(SafetyMonitor, ExchangesThatFailOrAreSlowInTheWindowTripAndNameTheBus) {
+  SafetyInputs in = Fine();
+  in.drive.failed_in_window = 16;
+  in.drive.slow_in_window = 17;
+  EXPECT_EQ(PresentIn(in), 0u);
+  in.drive.failed_in_window = 17;
+  in.troubles.unreliable = {.bus = 2, .fault = {.kind = 1, .node = 3, .code = 0}};
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kBusUnreliable));
+  ExpectEvidence(TripCause::kBusUnreliable, in, 17.0, 17.0, 2);
+  EXPECT_EQ(
+      FaultFromBits(SafetyMonitor(kLimits).EvidenceOf(TripCause::kBusUnreliable, in).detail).node,
+      3);
+  in.drive.failed_in_window = 0;
+  in.drive.slow_in_window = 18;
+  in.troubles.slow = {.bus = 3, .fault = {}};
+  EXPECT_EQ(PresentIn(in), CauseBit(TripCause::kBusTooSlow));
+  ExpectEvidence(TripCause::kBusTooSlow, in, 18.0, 18.0, 3);
+}
+
+TEST(SafetyMonitor, LateThreadsOfASimulatedArmAreCountedAndDoNotTrip) {
+  MonitorLimits limits = kLimits;
+  limits.late_threads_trip = false;
+  SafetyMonitor monitor(limits);
+  SafetyInputs in = Fine();
+  in.permit_age_ns = 100 * kMs;
+  in.control.missed_in_a_row = 3;
+  in.control.missed_in_window = 16;
+  EXPECT_EQ(monitor.Judge(in).present, 0u);
+  EXPECT_EQ(monitor.Judge(in).present, 0u);
+  EXPECT_EQ(monitor.timing(), (TimingCounts{.safety_overruns = 2,
+                                            .oldest_permit_ns = 100 * kMs,
+                                            .deadlines_missed = 1,
+                                            .deadlines_often_missed = 1}));
+  in.drive.bus_ok = false;
+  EXPECT_EQ(monitor.Judge(in).present, CauseBit(TripCause::kBusLost)) << "everything else trips";
+}
+
+TEST(SafetyMonitor, AShutdownWithPowerLeftTripsAfterItsLimit) {
+  constexpr std::int64_t kLimitNs = kLimits.stop_timeout_ns + SafetyMonitor::kShutdownMarginNs;
+  SafetyMonitor monitor(kLimits);
+  SafetyInputs in = Fine();
+  const auto present_after = [&](std::int64_t after_ns) {
+    in.due_ns = Fine().due_ns + after_ns;
+    in.control_alive_ns = in.drive_alive_ns = in.due_ns - kMs;
+    return monitor.Judge(in).present;
+  };
+  EXPECT_EQ(present_after(0), 0u);
+  in.shutting_down = true;
+  EXPECT_EQ(present_after(1'000 * kMs), 0u) << "it begins here";
+  EXPECT_EQ(present_after(1'000 * kMs + kLimitNs), 0u);
+  EXPECT_EQ(present_after(1'001 * kMs + kLimitNs), CauseBit(TripCause::kShutdownTimeout));
+  const Evidence evidence = monitor.EvidenceOf(TripCause::kShutdownTimeout, in);
+  EXPECT_DOUBLE_EQ(evidence.value, 3.501);
+  EXPECT_DOUBLE_EQ(evidence.limit, 3.5);
+  for (const SafetyState state : {kArmed, kRunning, kStopping, kFaultStopping, kDisarming}) {
+    in.state = state;
+    EXPECT_NE(present_after(1'002 * kMs + kLimitNs) & CauseBit(TripCause::kShutdownTimeout), 0u);
+  }
+  for (const SafetyState state : {kStarting, kIdle, kTripped}) {
+    in.state = state;
+    EXPECT_EQ(present_after(1'003 * kMs + kLimitNs), 0u) << "the relay is open";
+  }
+}
+
 TEST(SafetyMonitor, FaultsOfTheLoopCountWhileItIsAlive) {
   SafetyInputs in = Fine();
   in.control.faults = CauseBit(TripCause::kHubRate2) | CauseBit(TripCause::kEstimatorResidual);
@@ -261,15 +350,26 @@ TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   SafetyConfig safety{};
   safety.stop_timeout_s = 3.0;
   safety.missed_deadlines_to_trip = 5;
-  const MonitorLimits limits = MakeMonitorLimits(safety, {.period_ms = 20.0,
-                                                          .acquire_before_ms = 5.0,
-                                                          .step_deadline_ms = 5.0,
-                                                          .output = OutputTiming::kNextTick,
-                                                          .output_after_ms = 15.0,
-                                                          .actuation_delay_ms = 0.0});
+  safety.overrun_to_trip_ms = 4.5;
+  safety.missed_deadlines_in_window = 6;
+  safety.failed_exchanges_in_window = 7;
+  safety.slow_exchanges_in_window = 8;
+  const LoopConfig loop{.period_ms = 20.0,
+                        .acquire_before_ms = 5.0,
+                        .step_deadline_ms = 5.0,
+                        .output = OutputTiming::kNextTick,
+                        .output_after_ms = 15.0,
+                        .actuation_delay_ms = 0.0};
+  const MonitorLimits limits = MakeMonitorLimits(safety, loop, true);
   EXPECT_EQ(limits.heartbeat_timeout_ns, 40 * kMs);
   EXPECT_EQ(limits.stop_timeout_ns, 3000 * kMs);
   EXPECT_EQ(limits.missed_deadlines_to_trip, 5);
+  EXPECT_EQ(limits.overrun_ns, 4'500'000);
+  EXPECT_EQ(limits.missed_in_window, 6);
+  EXPECT_EQ(limits.failed_in_window, 7);
+  EXPECT_EQ(limits.slow_in_window, 8);
+  EXPECT_TRUE(limits.late_threads_trip);
+  EXPECT_FALSE(MakeMonitorLimits(safety, loop, false).late_threads_trip);
 }
 
 // A homing run searches for one limit switch, which may open during the run, for a limited time.

@@ -23,7 +23,11 @@ inline constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
                                        .fault_stop_ns = 500 * kMs,
                                        .missed_deadlines_to_trip = 3,
                                        .homing_contact_ns = 500 * kMs,
-                                       .lines_stall_ns = 5 * kMs};
+                                       .lines_stall_ns = 5 * kMs,
+                                       .overrun_ns = 5 * kMs,
+                                       .missed_in_window = 16,
+                                       .failed_in_window = 16,
+                                       .slow_in_window = 16};
 
 struct FakeLines final : SafetyLines {
   struct Written {
@@ -111,12 +115,34 @@ struct FakeDrive final : Task {
   DriveReportChannel* out_;
 };
 
+// A task whose thread may wake late: it skips whole periods, as under RealtimeExecutor.
+struct LateTask final : Task {
+  explicit LateTask(Task* task) : task_(task) {}
+  Traits traits() const noexcept override { return task_->traits(); }
+  void Run(const Activation& activation) noexcept override {
+    if (delay_ns >= traits().period_ns) {
+      delay_ns -= traits().period_ns;
+      ++skipped_;
+      return;
+    }
+    task_->Run({.due_ns = activation.due_ns, .missed_in_a_row = skipped_, .late_ns = delay_ns});
+    delay_ns = 0;
+    skipped_ = 0;
+  }
+
+  std::int64_t delay_ns = 0;  // of the next activation
+
+ private:
+  Task* task_;
+  int skipped_ = 0;
+};
+
 class SafetyTaskTest : public testing::Test {
  protected:
-  SafetyTaskTest() {
+  explicit SafetyTaskTest(const MonitorLimits& limits = kLimits) : limits_(limits) {
     executor_.Add(drive_);
     executor_.Add(control_);
-    executor_.Add(safety_);
+    executor_.Add(late_);
   }
 
   void RunFor(std::int64_t duration_ns) { executor_.RunUntil(executor_.next_ns() + duration_ns); }
@@ -169,8 +195,20 @@ class SafetyTaskTest : public testing::Test {
     return all_records_;
   }
 
+  // Presses and releases the button, and resets.
+  Refusal Reset() {
+    control_.report.at_rest = true;
+    control_.report.faults = 0;
+    lines_.levels |= LineBit(Line::kResetButton);
+    RunFor(100 * kMs);
+    lines_.levels = kHealthyLevels;
+    RunFor(kMs);
+    return Now(RequestKind::kReset);
+  }
+
   const Permit& permit() { return operator_permits_.Read().Newest().value; }
 
+  const MonitorLimits limits_;
   FakeLines lines_;
   ControlReportChannel reports_{ControlReportHistory(kNoControlReport)};
   DriveReportChannel drive_reports_{DriveReportHistory(kNoDriveReport)};
@@ -182,7 +220,8 @@ class SafetyTaskTest : public testing::Test {
   Wakeup wakeup_;
   SpscQueue<RequestAnswer> answers_{100};
   SpscQueue<SafetyRecord> records_{10'000};
-  SafetyTask safety_{kLimits,
+  TimingChannel timing_{TimingCounts{}};
+  SafetyTask safety_{limits_,
                      {.lines = &lines_,
                       .control = &reports_,
                       .drives = {&drive_reports_},
@@ -193,7 +232,9 @@ class SafetyTaskTest : public testing::Test {
                       .wakeups = {&wakeup_},
                       .permits = {&drive_permits_, &operator_permits_},
                       .answers = &answers_,
-                      .records = &records_}};
+                      .records = &records_,
+                      .timing = &timing_}};
+  LateTask late_{&safety_};
   FakeControl control_{&reports_};
   FakeDrive drive_{&drive_permits_, &drive_reports_};
   LockstepExecutor executor_;

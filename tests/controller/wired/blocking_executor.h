@@ -94,6 +94,8 @@ class BlockingExecutor {
     bool blocked = false;      // in the middle of an activation
     bool woken = false;        // between two
     int missed_in_a_row = 0;
+    std::int64_t began_ns = 0;
+    std::int64_t previous_run_ns = 0;
     Statistics statistics{};
     std::binary_semaphore go{0};
     std::thread thread;
@@ -133,6 +135,7 @@ class BlockingExecutor {
     slot->statistics.skipped += behind;
     slot->statistics.late += now_ns_ > slot->due_ns ? 1 : 0;
     ++slot->statistics.activations;
+    slot->began_ns = now_ns_;
     Resume(slot);
   }
 
@@ -146,12 +149,16 @@ class BlockingExecutor {
     const bool missed = now_ns_ > slot->due_ns + slot->traits.deadline_ns;
     slot->statistics.missed += missed ? 1 : 0;
     slot->missed_in_a_row = missed ? slot->missed_in_a_row + 1 : 0;
+    slot->previous_run_ns = now_ns_ - slot->began_ns;
     slot->next_ns = slot->due_ns + slot->traits.period_ns;
   }
 
   void RunTask(Slot* slot) const {
     if (slot->woken) return slot->task->Woken(now_ns_);
-    slot->task->Run({.due_ns = slot->due_ns, .missed_in_a_row = slot->missed_in_a_row});
+    slot->task->Run({.due_ns = slot->due_ns,
+                     .missed_in_a_row = slot->missed_in_a_row,
+                     .late_ns = slot->began_ns - slot->due_ns,
+                     .previous_run_ns = slot->previous_run_ns});
   }
 
   void Loop(Slot* slot) {

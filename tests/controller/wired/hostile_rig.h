@@ -144,7 +144,8 @@ class Rig {
     // The driver waits on the bus, whose time is ahead of the others' during a call.
     WiredWorld* there = world.get();
     buses.push_back(std::make_unique<OnTestTime>(
-        drivers_.back().get(), &executor, there, [there](std::int64_t call_ns, BusStatus) {
+        drivers_.back().get(), &executor, there, drivers_.back()->worst_case_ns(),
+        [there](std::int64_t call_ns, BusStatus) {
           return std::max(call_ns, there->wire.now_ns() - there->epoch_ns);
         }));
   }
@@ -158,7 +159,7 @@ class Rig {
     const ModbusPlan plan = PlanModbus(config);
     const std::int64_t worst_ns = std::max(plan.exchange_worst_ns, plan.reconnect_worst_ns);
     buses.push_back(std::make_unique<OnTestTime>(
-        drivers_.back().get(), &executor, world.get(),
+        drivers_.back().get(), &executor, world.get(), worst_ns,
         [this, i, worst_ns](std::int64_t call_ns, BusStatus status) {
           if (i == 0 && hangs_ns > 0) return call_ns + hangs_ns;
           return call_ns + (status == BusStatus::kOk ? kHalfMs : worst_ns);

@@ -3,142 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <vector>
 
-#include "controller/design/run_design.h"
-#include "controller/operator/unattended_run.h"
-#include "controller/realtime/lockstep_executor.h"
 #include "controller/runlog/metrics.h"
 #include "controller/types/rejected_error.h"
-#include "hal/sim/simulated_rig.h"
-#include "tests/controller/loop/simulated_runs.h"
+#include "tests/controller/wired/two_bus_rig.h"
 #include "tests/support/loop_time.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
-
-/// The arm behind two buses: encoders and drives on one, gauges on the other.
-struct World {
-  explicit World(const RigConfig& config) : rig(config.arm, config.sensors, config.sim) {}
-
-  void AdvanceTo(std::int64_t instant_ns) {
-    for (; now_ns < instant_ns; now_ns += rig.step_ns()) rig.Step();
-  }
-
-  SimulatedRig rig;
-  std::int64_t now_ns = 0;
-  SensorFrame frame{};
-};
-
-class DriveBus final : public BusDevice {
- public:
-  explicit DriveBus(World* world) : world_(world) {}
-
-  const char* name() const noexcept override { return "drives"; }
-  std::uint32_t drives() const noexcept override { return 0b11; }
-  std::uint32_t drives_on() const noexcept override { return last.enabled && confirms ? 0b11 : 0; }
-  std::int64_t worst_case_ns() const noexcept override { return 0; }
-  void Open() override {}
-  BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
-    ++exchanges;
-    last = command;
-    world_->AdvanceTo(exchanges * 20 * kMs);
-    world_->rig.SetTorque(command.enabled ? command.torque_nm : std::array<double, 2>{});
-    world_->frame = world_->rig.Sample(world_->now_ns);
-    *part = world_->frame;
-    part->strain_valid = 0;
-    return exchanges >= fail_from && exchanges < fail_until ? failure : BusStatus::kOk;
-  }
-  BusStatus Reconnect() noexcept override {
-    ++reconnects;
-    ++exchanges;
-    world_->AdvanceTo(exchanges * 20 * kMs);
-    return exchanges < fail_until ? failure : BusStatus::kOk;
-  }
-  void Close() noexcept override {}
-
-  std::int64_t exchanges = -1;  // the first is at instant 0
-  int reconnects = 0;
-  bool confirms = true;  // that the drives are on
-  std::int64_t fail_from = INT64_MAX, fail_until = INT64_MAX;
-  BusStatus failure = BusStatus::kTimeout;
-  BusCommand last{};
-
- private:
-  World* world_;
-};
-
-class GaugeBus final : public BusDevice {
- public:
-  explicit GaugeBus(World* world) : world_(world) {}
-
-  const char* name() const noexcept override { return "gauges"; }
-  std::int64_t worst_case_ns() const noexcept override { return 0; }
-  void Open() override {}
-  BusStatus Exchange(const BusCommand&, SensorFrame* part) noexcept override {
-    *part = world_->frame;
-    part->counter_valid = 0;
-    part->levels = levels;
-    return status;
-  }
-  LineLevels lines() const noexcept override { return own_lines; }
-  BusStatus Reconnect() noexcept override { return status; }
-  void Close() noexcept override {}
-
-  BusStatus status = BusStatus::kOk;
-  LineLevels own_lines = LineBit(Line::kLimit2High) | LineBit(Line::kResetButton);
-  LineLevels levels = LineBit(Line::kLimit2High);
-
- private:
-  World* world_;
-};
-
-class Lines final : public SafetyLines {
- public:
-  Reading Read(std::int64_t) noexcept override { return {.levels = levels}; }
-  Call Write(std::int64_t, const Outputs& outputs) noexcept override {
-    relay = outputs.relay_closed;
-    return {};
-  }
-
-  LineLevels levels = kHealthyLevels;
-  bool relay = false;
-};
-
-class WiredStackTest : public testing::Test {
- protected:
-  WiredStackTest() {
-    for (Task* task : stack_.tasks()) executor_.Add(*task);
-  }
-
-  void RunUntil(std::int64_t end_ns) {
-    for (; now_ns_ < end_ns; now_ns_ += 20 * kMs) {
-      executor_.RunUntil(now_ns_ + 20 * kMs);
-      TickRecord record{};
-      while (stack_.tick_records().Pop(&record)) ticks_.push_back(record);
-      const OperatorRequest request = operator_.Update(now_ns_, permit());
-      if (request.kind != RequestKind::kNone) stack_.requests().Push(request);
-    }
-  }
-
-  Permit permit() { return stack_.operator_permits().Read().Newest().value; }
-
-  const RigConfig config_ = ShippedRig();
-  const Experiment experiment_ = ShippedExperiment();
-  const Design design_ = DesignFor(config_);
-  const PlannedExperiment planned_{experiment_, design_, 0.02, {0.0, 0.0}, MotionLimitsOf(config_)};
-  World world_{config_};
-  DriveBus drives_{&world_};
-  GaugeBus gauges_{&world_};
-  Lines lines_;
-  WiredStack stack_{config_, design_, {.buses = {&drives_, &gauges_}, .lines = &lines_}};
-  LockstepExecutor executor_;
-  UnattendedRun operator_{&planned_};
-  std::vector<TickRecord> ticks_;
-  std::int64_t now_ns_ = 0;
-};
 
 // The bars of the in-process backend: the same arm and instants, with other wiring.
 TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend) {

@@ -176,13 +176,19 @@ class OnTestTime final : public BusDevice {
   /// Instant at which a call returns, from its start and its status.
   using Returns = std::function<std::int64_t(std::int64_t call_ns, BusStatus status)>;
 
-  OnTestTime(BusDevice* driver, BlockingExecutor* executor, WiredWorld* world, Returns returns)
-      : driver_(driver), executor_(executor), world_(world), returns_(std::move(returns)) {}
+  /// @param worst_ns  what the rig's device declares
+  OnTestTime(BusDevice* driver, BlockingExecutor* executor, WiredWorld* world,
+             std::int64_t worst_ns, Returns returns)
+      : driver_(driver),
+        executor_(executor),
+        world_(world),
+        worst_ns_(worst_ns),
+        returns_(std::move(returns)) {}
 
   const char* name() const noexcept override { return driver_->name(); }
   std::uint32_t drives() const noexcept override { return driver_->drives(); }
   std::uint32_t drives_on() const noexcept override { return driver_->drives_on(); }
-  std::int64_t worst_case_ns() const noexcept override { return driver_->worst_case_ns(); }
+  std::int64_t worst_case_ns() const noexcept override { return worst_ns_; }
   void Open() override { driver_->Open(); }
   BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
     world_->wire.AdvanceTo(world_->monotonic_ns());
@@ -212,6 +218,7 @@ class OnTestTime final : public BusDevice {
   BusDevice* driver_;
   BlockingExecutor* executor_;
   WiredWorld* world_;
+  std::int64_t worst_ns_;
   Returns returns_;
 };
 
