@@ -106,8 +106,9 @@ class GaugeBus final : public BusDevice {
 class ClosedLines final : public SafetyLines {
  public:
   Reading Read(std::int64_t) noexcept override { return {.levels = levels}; }
-  void Write(std::int64_t, const Outputs& outputs) noexcept override {
+  Call Write(std::int64_t, const Outputs& outputs) noexcept override {
     relay = outputs.relay_closed;
+    return {};
   }
 
   LineLevels levels = kHealthyLevels;
