@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/payload_knowledge.h"
 #include "tests/controller/latch/latch_folder.h"
 #include "tests/support/loop_time.h"
 
