@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hal/bus_fault.h"
+#include "hal/count_epochs.h"
 #include "hal/sensor_frame.h"
 
 namespace flexarm {
@@ -51,13 +52,16 @@ struct BusCommand {
   bool enabled;                     ///< false: the drives must be off, for any torque
   /// CLOCK_MONOTONIC: later than this no torque is sent. Looked at just before each output.
   std::int64_t expires_ns = INT64_MAX;
+  /// The operator resets: faults of the drives are acknowledged. Only while not enabled.
+  bool acknowledge = false;
 };
 
 /// One bus, board or serial line. It has its own thread, because its calls may block.
 ///
 /// Order: Open, then Exchange once a period, and SwitchOff at any time between; after a failed one
-/// Reconnect, until it succeeds, but only while the arm is disarmed. Thread: the bus's own; Open
-/// and Close when no thread runs.
+/// Reconnect, while needs_reconnect(), until it succeeds, but only while the arm is disarmed. A
+/// drive in fault is no reason to reconnect: it answers, and its fault stays until an Exchange with
+/// `acknowledge`. Thread: the bus's own; Open and Close when no thread runs.
 class BusDevice {
  public:
   virtual ~BusDevice() = default;
@@ -71,6 +75,18 @@ class BusDevice {
   /// exchange. A drive that reports nothing is on while it is commanded.
   virtual std::uint32_t drives_on() const noexcept { return 0; }
 
+  /// Of the counters that this device reads; 0 for the others. A counter starts again when its
+  /// device lost power or was reset.
+  virtual CountEpochs count_epochs() const noexcept { return {}; }
+
+  /// After a failed exchange: true if Reconnect must recover the device, false if the next Exchange
+  /// can succeed.
+  virtual bool needs_reconnect() const noexcept { return true; }
+
+  /// A message of a drive that is no fault, because the power is off: FaultText gives its text.
+  /// Kind 0: none. It is shown while it lasts.
+  virtual BusFault notice() const noexcept { return {}; }
+
   /// The digital inputs that an exchange reads; the other levels of its frame are 0.
   virtual LineLevels lines() const noexcept { return 0; }
 
@@ -82,7 +98,9 @@ class BusDevice {
   virtual void Open() = 0;
 
   /// Writes `command`, then reads. On return only this bus's readings in `part` are valid;
-  /// sampled_at_ns and offsets in CLOCK_MONOTONIC. On failure no reading is valid.
+  /// sampled_at_ns and offsets in CLOCK_MONOTONIC. On failure no reading is valid, except with
+  /// kDriveFault, no needs_reconnect() and a sampled_at_ns that is not 0: all devices have
+  /// answered, the drives are off.
   [[nodiscard]] virtual BusStatus Exchange(const BusCommand& command,
                                            SensorFrame* part) noexcept = 0;
 

@@ -92,13 +92,13 @@ Commissioner::Commissioner(const RigConfig& config)
     : config_(config),
       file_(std::filesystem::path(config.daemon.log_directory) /
             config.commissioning.calibration_file),
-      gains_(config.arm, config.sensors) {
-  const AnglesAtStart angles = config.commissioning.angles_at_start;
-  angle_known_.fill(angles != AnglesAtStart::kLost);
+      gains_(config.arm, config.sensors),
+      angles_(config.commissioning.angles_at_start, config.sensors) {
   const std::optional<Calibration> found = ReadCalibration(file_, config.sensors);
   if (!found) return;
   calibration_ = *found;
-  if (angles != AnglesAtStart::kAbsolute) calibration_.counter_zero = {};
+  if (config.commissioning.angles_at_start == AnglesAtStart::kAbsolute) return;
+  calibration_.counter_zero = {};
 }
 
 Commissioner::~Commissioner() = default;
@@ -121,10 +121,7 @@ std::string Commissioner::WhyNoRun() const {
     return "The wiring has not been tested since the daemon started. Run `flexarm pluck` first.";
   }
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    if (angle_known_[joint]) continue;
-    return "The angle of joint " + std::to_string(joint + 1) +
-           " has been unknown since the daemon started. Run `flexarm zero` or `flexarm home` "
-           "first.";
+    if (!angles_.knows(joint)) return angles_.Text(joint);
   }
   return {};
 }
@@ -184,7 +181,7 @@ void Commissioner::StartZero(const Json& command, SafetyState state) {
   }
   StartRest("zero", state, [this, hub_rad](const RestReadings& readings) {
     Adopt(Zero(config_.sensors, readings, hub_rad, calibration_));
-    angle_known_.fill(true);
+    for (std::size_t joint = 0; joint < 2; ++joint) angles_.Know(joint);
     return Json{{"encoder", EncoderJson(config_.sensors, calibration_)}};
   });
 }
@@ -279,7 +276,7 @@ Json Commissioner::Home(const std::vector<TickRecord>& run, std::size_t joint, L
                                                                    360.0 * encoder.counts_per_turn);
     }
     Adopt(found);
-    angle_known_[joint] = true;
+    angles_.Know(joint);
     return {{"encoder", EncoderJson(config_.sensors, calibration_)},
             {"contact_before_deg", tick.output.angle_rad[joint] / kRadPerDeg},
             {"contact_deg", switch_deg}};
@@ -289,8 +286,19 @@ Json Commissioner::Home(const std::vector<TickRecord>& run, std::size_t joint, L
                       " deg of it by hand, and check the switch");
 }
 
+void Commissioner::Follow(const CountEpochs& epochs) { EndIfLost(angles_.Follow(epochs)); }
+
+void Commissioner::EndIfLost(std::uint8_t joints) {
+  if (joints == 0 || job_ == nullptr) return;
+  const std::size_t joint = (joints & 1U) != 0 ? 0 : 1;
+  answer_ = std::make_unique<Json>(
+      Json{{"ok", false}, {"command", job_->command}, {"error", angles_.Text(joint)}});
+  job_.reset();
+}
+
 void Commissioner::Take(const TickRecord& tick) {
-  if (job_ == nullptr) return;
+  EndIfLost(angles_.Follow(tick));
+  if (job_ == nullptr) return angles_.BeginAtZero(tick, &calibration_);
   const SafetyState state = tick.input.safety_state;
   const Calibration before = calibration_;
   Json answer;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/commissioning/angle_knowledge.h"
 #include "controller/commissioning/calibrate.h"
 #include "controller/commissioning/pluck.h"
 #include "controller/tasks/planned_experiment.h"
@@ -42,6 +43,10 @@ class Commissioner {
   /// The calibration for the loop.
   const Calibration& calibration() const { return calibration_; }
 
+  /// Which joint angles are known. The calibration of a joint that is not is that of its counts
+  /// alone, and not in the file.
+  const AngleKnowledge& angles() const { return angles_; }
+
   /// Why no experiment may run yet, and what to do; empty if one may.
   std::string WhyNoRun() const;
 
@@ -58,6 +63,9 @@ class Commissioner {
   /// A run was granted, at `now_ns` or before; another than the expected one is ignored. A run that
   /// trips before a step sees it has no sample: from now_ns on, torque off is the command's end.
   void Granted(std::uint32_t run_number, std::int64_t now_ns);
+
+  /// The newest epochs of the counters, before the steps of the same period.
+  void Follow(const CountEpochs& epochs);
 
   /// Takes every step of the loop, in order.
   void Take(const TickRecord& tick);
@@ -81,6 +89,9 @@ class Commissioner {
   nlohmann::json Home(const std::vector<TickRecord>& run, std::size_t joint, Line line,
                       double switch_deg);
   nlohmann::json Pluck(const std::vector<TickRecord>& run);
+  /// Ends a command during which the angles of `joints` became unknown: it would calibrate counts
+  /// that no longer hold.
+  void EndIfLost(std::uint8_t joints);
   /// Saves `calibration` and returns it from then on.
   void Adopt(const Calibration& calibration);
 
@@ -89,7 +100,7 @@ class Commissioner {
   Calibration calibration_{};
   GainCalibration gains_;
   bool proven_ = false;
-  std::array<bool, 2> angle_known_{};
+  AngleKnowledge angles_;
   std::unique_ptr<Job> job_;
   std::unique_ptr<nlohmann::json> answer_;
 };

@@ -19,7 +19,29 @@ std::string EndLine(const nlohmann::json& answer) {
 
 CommissioningCommands::CommissioningCommands(const RigConfig& config, Targets targets)
     : targets_(std::move(targets)), commissioner_(config) {
+  Publish(0b11);
+}
+
+void CommissioningCommands::Publish(std::uint8_t unknown_before) {
+  const std::uint8_t unknown = angles().unknown();
   targets_.stack->Calibrate(commissioner_.calibration());
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    const bool now = (unknown & ~unknown_before & 1U << joint) != 0;
+    if (now) targets_.report(true, angles().Text(joint));
+  }
+}
+
+void CommissioningCommands::Follow(const CountEpochs& epochs) {
+  const std::uint8_t before = angles().unknown();
+  commissioner_.Follow(epochs);
+  if (angles().unknown() != before) Publish(before);
+}
+
+void CommissioningCommands::Take(const TickRecord& tick) {
+  const std::uint8_t before = angles().unknown();
+  const Calibration calibration = commissioner_.calibration();
+  commissioner_.Take(tick);
+  if (angles().unknown() != before || commissioner_.calibration() != calibration) Publish(before);
 }
 
 void CommissioningCommands::Start(const nlohmann::json& command, int client,
@@ -59,7 +81,7 @@ std::optional<ClientAnswer> CommissioningCommands::Answered(const RequestAnswer&
 ClientAnswer CommissioningCommands::Finish(nlohmann::json answer, const Permit& permit) {
   answer["state"] = ToString(permit.state);
   if (CauseLatched(permit.state)) answer["trip"] = ToString(permit.cause);
-  targets_.stack->Calibrate(commissioner_.calibration());
+  Publish(angles().unknown());
   targets_.report(!answer.value("ok", false), EndLine(answer));
   return {.client = client_, .json = std::move(answer)};
 }

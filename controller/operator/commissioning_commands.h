@@ -45,8 +45,14 @@ class CommissioningCommands {
   /// Why no experiment may run yet, and what to do; empty: it may.
   std::string WhyNoRun() const { return commissioner_.WhyNoRun(); }
 
+  /// Once a period, before Take: LoopStack::count_epochs.
+  void Follow(const CountEpochs& epochs);
+
   /// Every step of the loop, in order.
-  void Take(const TickRecord& tick) { commissioner_.Take(tick); }
+  void Take(const TickRecord& tick);
+
+  /// Which joint angles are known.
+  const AngleKnowledge& angles() const { return commissioner_.angles(); }
 
   /// The answer of a command that has ended, once; empty: none has.
   std::optional<ClientAnswer> TakeAnswer(const Permit& permit);
@@ -56,6 +62,8 @@ class CommissioningCommands {
   std::optional<ClientAnswer> Answered(const RequestAnswer& answer, const OperatorSnapshot& now);
 
  private:
+  /// Hands calibration and unknown angles to the loop; reports an angle that became unknown.
+  void Publish(std::uint8_t unknown_before);
   ClientAnswer Finish(nlohmann::json answer, const Permit& permit);
 
   Targets targets_;

@@ -76,6 +76,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     if (!context_.stack->late_threads_trip()) {
       timing_warnings_.Follow(now_.now_ns, context_.stack->timing());
     }
+    commissioning_.Follow(context_.stack->count_epochs());
     TakeTicks();
     TakeAnswers();
     FollowLatch();
@@ -180,6 +181,7 @@ nlohmann::json OperatorTask::Status() {
                      .delay = &warnings_.delay(),
                      .sensors = &context_.config->sensors,
                      .missing_gauges = warnings_.missing_gauges(),
+                     .angles = &commissioning_.angles(),
                      .experiment = experiments_.name(),
                      .buses = context_.stack->buses(),
                      .bus_text = context_.stack->BusText(permit.cause, permit.evidence),

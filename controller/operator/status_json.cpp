@@ -11,12 +11,22 @@ nlohmann::json TextOrNull(const std::string& text) {
   return text.empty() ? nlohmann::json(nullptr) : nlohmann::json(text);
 }
 
+nlohmann::json AnglesJson(const AngleKnowledge& angles, const StepOutput& out) {
+  nlohmann::json all = nlohmann::json::array();
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    all.push_back(angles.knows(joint) ? nlohmann::json(out.angle_rad[joint] * kDegPerRad)
+                                      : nlohmann::json(nullptr));
+  }
+  return all;
+}
+
 nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
   nlohmann::json all = nlohmann::json::array();
   for (const BusHealth& bus : buses) {
     all.push_back({{"name", bus.name},
                    {"ok", bus.ok},
                    {"fault", TextOrNull(bus.fault)},
+                   {"notice", TextOrNull(bus.notice)},
                    {"failed", bus.failed},
                    {"recovered", bus.recovered},
                    {"failed_in_window", bus.failed_in_window},
@@ -65,7 +75,9 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"time_s", static_cast<double>(now.now_ns) * 1e-9},
           {"tick", in.tick},
           {"experiment", TextOrNull(sources.experiment)},
-          {"joint_angle_deg", {out.angle_rad[0] * kDegPerRad, out.angle_rad[1] * kDegPerRad}},
+          {"joint_angle_deg", AnglesJson(*sources.angles, out)},
+          {"joint_angle_unknown",
+           {TextOrNull(sources.angles->Text(0)), TextOrNull(sources.angles->Text(1))}},
           {"torque_nm", out.torque_nm},
           {"modal_m", out.modal_m},
           {"root_strain", out.root_strain},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/commissioning/angle_knowledge.h"
 #include "controller/latch/trip_latch.h"
 #include "controller/operator/delay_monitor.h"
 #include "controller/operator/operator_snapshot.h"
@@ -17,6 +18,7 @@ struct StatusSources {
   const OperatorSnapshot* now;
   const DelayMonitor* delay;
   const SensorConfig* sensors;
+  const AngleKnowledge* angles;
   std::vector<std::string> missing_gauges{};  ///< RunWarnings
   std::string experiment;                     ///< name of the one that is loaded; empty: none
   std::vector<BusHealth> buses;               ///< empty: the backend has none
@@ -34,7 +36,8 @@ struct StatusSources {
 nlohmann::json TimingJson(const TimingCounts& counts, bool trips);
 
 /// The answer to the command "status". Every key has its unit in its name, or is without unit;
-/// "trip" is null but in Tripped. Pure function. Not real-time safe.
+/// "trip" is null but in Tripped; an angle is null while it is unknown, "joint_angle_unknown" says
+/// why. Pure function. Not real-time safe.
 nlohmann::json StatusJson(const StatusSources& sources);
 
 }  // namespace flexarm

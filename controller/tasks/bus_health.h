@@ -22,10 +22,13 @@ struct BusHealth {
   double declared_ms = 0.0;  ///< what the bus declares as the longest
   int failed_in_window = 0;  ///< among the last safety.window_periods
   int slow_in_window = 0;
+  bool in_fault = false;  ///< it answers, and `fault` is a drive's, until the operator resets
+  std::string notice{};   ///< what a drive reports that is no fault (BusDevice::notice)
 };
 
-/// Reports to the journal when a bus is lost or reconnected, and, at most once a second, exchanges
-/// that failed without a loss of the bus. Thread: operator.
+/// Reports to the journal when a bus is lost or reconnected, a drive's fault with its end, a notice
+/// of a drive, and, at most once a second, exchanges that failed without a loss of the bus. Thread:
+/// operator.
 class BusJournal {
  public:
   using Report = std::function<void(bool is_error, const std::string& text)>;
@@ -36,9 +39,13 @@ class BusJournal {
  private:
   struct Reported {
     bool ok = true;
+    bool in_fault = false;
+    std::string notice{};
     std::uint32_t failed = 0;
     std::int64_t at_ns = INT64_MIN;
   };
+  static void FollowDrives(const BusHealth& bus, const Report& report, Reported* reported);
+
   std::vector<Reported> reported_;
 };
 

@@ -20,7 +20,8 @@ BusTask::BusTask(const RigConfig& config, BusDevice* device, BusChannels channel
       channels_(channels),
       failed_lately_(config.safety.window_periods),
       slow_lately_(config.safety.window_periods),
-      worst_case_ns_(device->worst_case_ns()) {}
+      worst_case_ns_(device->worst_case_ns()),
+      counts_(config.sensors) {}
 
 Task::Traits BusTask::traits() const noexcept {
   return {.name = device_->name(),
@@ -44,17 +45,29 @@ void BusTask::Run(const Activation& activation) noexcept {
   next_due_ns_ = activation.due_ns + grid_.period_ns;
   const BusCommand command = Command(activation.due_ns);
   SensorFrame part{};
-  const bool may_reconnect = failures_ > 0 && !command.enabled;
-  status_ = may_reconnect ? device_->Reconnect() : device_->Exchange(command, &part);
-  if (!may_reconnect) failed_lately_.Push(status_ != BusStatus::kOk);
-  if (status_ == BusStatus::kOk) {
+  Work(command, &part);
+  Publish(activation.due_ns, part);
+}
+
+void BusTask::Work(const BusCommand& command, SensorFrame* part) noexcept {
+  const bool in_fault = answered_ && status_ == BusStatus::kDriveFault;
+  exchanged_ = failures_ == 0 || command.enabled || !device_->needs_reconnect();
+  status_ = exchanged_ ? device_->Exchange(command, part) : device_->Reconnect();
+  const bool read = exchanged_ && part->sampled_at_ns != 0;
+  const bool in_fault_only =
+      status_ == BusStatus::kDriveFault && read && !device_->needs_reconnect();
+  answered_ = status_ == BusStatus::kOk || in_fault_only;
+  if (exchanged_) failed_lately_.Push(!answered_);
+  if (answered_) {
     if (failures_ >= kFailuresToLose) ++recovered_;
     failures_ = 0;
   } else {
     failures_ = std::min(failures_ + 1, kFailuresToLose);
-    ++failed_;
   }
-  Publish(activation.due_ns, part);
+  // A fault that stays until the operator resets is counted once.
+  if (status_ != BusStatus::kOk && !(answered_ && in_fault)) ++failed_;
+  if (!exchanged_) counts_.Reconnected();
+  if (answered_ && exchanged_) counts_.Take(*part);
 }
 
 void BusTask::Woken(std::int64_t now_ns) noexcept {
@@ -95,6 +108,7 @@ BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
     out.expires_ns = epoch_ns_ + std::min(permit.renewed_ns + limits_.permit_timeout_ns,
                                           command.from_ns + limits_.command_timeout_ns);
   }
+  out.acknowledge = permit.acknowledge && !enabled_ && (gated.why & kGatePermitOld) == 0;
   return out;
 }
 
@@ -106,10 +120,16 @@ DrivePower BusTask::Power() const noexcept {
   return on == 0 ? DrivePower::kOff : on == drives ? DrivePower::kOn : DrivePower::kMixed;
 }
 
+CountEpochs BusTask::Epochs() const noexcept {
+  CountEpochs epochs = device_->count_epochs();
+  for (std::size_t i = 0; i < epochs.size(); ++i) epochs[i] += counts_.epochs()[i];
+  return epochs;
+}
+
 void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
   FramePacket packet{};
   packet.frame.sampled_at_ns = due_ns;  // after a failed exchange no reading is valid
-  if (status_ == BusStatus::kOk) {
+  if (answered_ && exchanged_) {
     packet.frame = part;
     packet.frame.sampled_at_ns -= epoch_ns_;
     levels_ = (part.levels & device_->lines()) | (kHealthyLevels & ~device_->lines());
@@ -138,7 +158,9 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
                  .failed_in_window = failed_lately_.count(),
                  .slow_in_window = slow_lately_.count(),
                  .slow = slow_,
-                 .longest_ns = longest_ns_});
+                 .longest_ns = longest_ns_,
+                 .notice = device_->notice(),
+                 .count_epochs = Epochs()});
   channels_.reports->Publish(reports_);
   channels_.health->Publish(reports_);
 }

@@ -8,6 +8,7 @@
 #include "controller/safety/torque_gate.h"
 #include "controller/safety/windowed_count.h"
 #include "controller/step/actuation_queue.h"
+#include "controller/tasks/count_watch.h"
 #include "controller/types/frame_packet.h"
 #include "controller/types/loop_grid.h"
 #include "controller/types/messages.h"
@@ -35,10 +36,12 @@ struct BusChannels {
 /// command expires with the permit, which the device looks at before each output. When a state
 /// without power begins, the safety task wakes the task, which switches its drives off at once, or
 /// when the exchange that is under way has ended. A bus
-/// that fails twice in a row is lost; it is reconnected only while the arm is disarmed. Failed
-/// exchanges, and calls that took longer than the device declares, are also counted in a window,
-/// wherever they lie in it; an attempt to reconnect is no failed exchange. Real-time: as far as its
-/// device is; it does not allocate.
+/// that fails twice in a row is lost; it is reconnected only while the arm is disarmed. A drive in
+/// fault loses no bus while the device answers: the exchanges go on, with the drives off, and
+/// acknowledge the fault only when the permit says that the operator resets. Failed exchanges, and
+/// calls that took longer than the device declares, are also counted in a window, wherever they lie
+/// in it; an attempt to reconnect is no failed exchange. Real-time: as far as its device is; it
+/// does not allocate.
 class BusTask final : public Task {
  public:
   static constexpr int kPriority = 70;
@@ -58,7 +61,10 @@ class BusTask final : public Task {
  private:
   BusCommand Command(std::int64_t due_ns) noexcept;
   void CountDuration(const Activation& activation) noexcept;
+  /// Exchange or Reconnect, and the count of failures.
+  void Work(const BusCommand& command, SensorFrame* part) noexcept;
   DrivePower Power() const noexcept;
+  CountEpochs Epochs() const noexcept;
   void Publish(std::int64_t due_ns, const SensorFrame& part) noexcept;
 
   BusDevice* device_;
@@ -69,7 +75,10 @@ class BusTask final : public Task {
   std::array<double, 2> applied_nm_{};  // torque of the last exchange
   std::int64_t applied_tick_ = -1;      // tick of its command
   ActuationQueue applied_;              // with the instant at which each acted
+  CountWatch counts_;
   BusStatus status_ = BusStatus::kOk;
+  bool answered_ = false;         // the last exchange; also if a drive is in fault
+  bool exchanged_ = false;        // it was an exchange, not a reconnection
   bool enabled_ = false;          // the drives, by the last exchange
   std::int64_t next_due_ns_ = 0;  // of the next exchange
   int failures_ = 0;              // in a row

@@ -82,6 +82,8 @@ class LoopStack {
   bool late_threads_trip() const noexcept { return late_threads_trip_; }
   /// Health of the buses. Empty: this backend has none.
   virtual std::vector<BusHealth> buses() { return {}; }
+  /// Of all counters, BusDevice::count_epochs with what the buses' tasks have found.
+  virtual CountEpochs count_epochs() { return {}; }
   /// Bus, device, node and error behind a trip; empty: the trip is not of a bus.
   virtual std::string BusText(TripCause /*cause*/, const Evidence& /*evidence*/) const {
     return {};

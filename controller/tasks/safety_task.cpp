@@ -7,6 +7,11 @@
 namespace flexarm {
 namespace {
 
+// What a drive in fault, or a bus that comes back, causes until it is well.
+constexpr TripCauses kDriveSideCauses =
+    CauseBit(TripCause::kBusLost) | CauseBit(TripCause::kDriveFault) |
+    CauseBit(TripCause::kStaleFrame) | CauseBit(TripCause::kNoCounterReading);
+
 using FactBytes = std::array<std::uint8_t, sizeof(SafetyFacts)>;
 
 bool SameFacts(const SafetyFacts& a, const SafetyFacts& b) noexcept {
@@ -36,7 +41,7 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const DriveSide drive = ReadDrives(due_ns);
   const SafetyLines::Reading read = channels_.lines->Read(due_ns);
   const LineLevels levels = filter_.Next(MergeRedundantLevels(read.levels, drive.report.levels));
-  const OperatorRequest request = TakeRequest(due_ns, drive.report.power == DrivePower::kOn);
+  const OperatorRequest request = TakeRequest(due_ns, drive.report);
   const bool requested = request.kind != RequestKind::kNone;
 
   const SafetyInputs in{.due_ns = due_ns,
@@ -147,7 +152,8 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
   return side;
 }
 
-OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, bool drives_on) noexcept {
+OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, const DriveReport& drives) noexcept {
+  acknowledge_ = false;
   while (waiting_count_ < kMaxWaiting && channels_.requests->Pop(&waiting_[waiting_count_])) {
     ++waiting_count_;
   }
@@ -157,17 +163,36 @@ OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, bool drives_on) noe
   if (const std::uint32_t number = channels_.disarm->Take(); number != 0) {
     return {.kind = RequestKind::kDisarm, .number = number, .not_before_ns = due_ns};
   }
-  const bool enabling =
-      status_.state == SafetyState::kArmed && !drives_on && due_ns - state_since_ns_ <= kEnableNs;
+  const bool enabling = status_.state == SafetyState::kArmed && drives.power != DrivePower::kOn &&
+                        due_ns - state_since_ns_ <= kEnableNs;
   for (std::size_t i = 0; i < waiting_count_; ++i) {
     if (waiting_[i].not_before_ns > due_ns) continue;
     if (enabling && waiting_[i].kind == RequestKind::kRun) continue;
+    if (Acknowledges(waiting_[i], due_ns, drives)) continue;
     const OperatorRequest request = waiting_[i];
     --waiting_count_;
     for (std::size_t k = i; k < waiting_count_; ++k) waiting_[k] = waiting_[k + 1];
     return request;
   }
   return {.kind = RequestKind::kNone, .number = 0, .not_before_ns = due_ns};
+}
+
+// Only a reset that nothing but the drives stands in the way of: a cause that the operator can
+// remove, or a button that was not pressed, refuses it before any fault is acknowledged.
+bool SafetyTask::Acknowledges(const OperatorRequest& reset, std::int64_t due_ns,
+                              const DriveReport& drives) noexcept {
+  if (reset.kind != RequestKind::kReset || status_.state != SafetyState::kTripped) return false;
+  const bool faulty = !drives.drive_ok || !drives.bus_ok;
+  const bool others = (last_facts_.present & ~kDriveSideCauses) != 0;
+  if (acknowledging_ != reset.number) {
+    if (!faulty || others || last_facts_.reset_pressed == 0) return false;
+    acknowledging_ = reset.number;
+    acknowledging_since_ns_ = due_ns;
+  }
+  const bool well = !faulty && last_facts_.present == 0 && last_facts_.at_rest != 0;
+  if (well || others || due_ns - acknowledging_since_ns_ > kAcknowledgeNs) return false;
+  acknowledge_ = faulty;
+  return true;
 }
 
 void SafetyTask::CancelBelow(std::uint32_t number, TripCauses present) noexcept {
@@ -216,7 +241,8 @@ void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {
                          .evidence = evidence_,
                          .levels = levels,
                          .run_number = run_number_,
-                         .run = run_});
+                         .run = run_,
+                         .acknowledge = acknowledge_});
   for (PermitChannel* channel : channels_.permits) channel->Publish(permits_);
   if (timing_ == monitor_.timing()) return;
   timing_ = monitor_.timing();

@@ -43,7 +43,8 @@ struct SafetyChannels {
 /// agree with the lock-step run reads the permit before, At(due - 1).
 ///
 /// One request is judged per tick: a latched stop or disarm, else the first in order of arrival of
-/// those whose `not_before_ns` has passed; a run waits while the drives are being enabled. A stop
+/// those whose `not_before_ns` has passed; a run waits while the drives are being enabled, and a
+/// reset while the drives acknowledge their faults: `acknowledge` is in the permit then. A stop
 /// or a disarm cancels the waiting arms and runs of lower numbers; a trip cancels all. The run that
 /// is granted is in the permit from that tick on. A disarm is answered when the relay is open,
 /// because people reach into the arm then; one that comes while disarming takes the place of the
@@ -58,6 +59,9 @@ class SafetyTask final : public Task {
   static constexpr std::size_t kMaxWaiting = 32;  ///< requests; others stay in the queue
   /// A run waits so long after arming for the drives, which charge a circuit or release a brake.
   static constexpr std::int64_t kEnableNs = 1'500'000'000;
+  /// A reset waits so long for the drives to leave their faults, and for the arm to be at rest
+  /// then.
+  static constexpr std::int64_t kAcknowledgeNs = 2'000'000'000;
 
   SafetyTask(const MonitorLimits& limits, SafetyChannels channels);
 
@@ -85,7 +89,10 @@ class SafetyTask final : public Task {
 
   DriveSide ReadDrives(std::int64_t due_ns) noexcept;
   /// Kind kNone: there is none in this tick.
-  OperatorRequest TakeRequest(std::int64_t due_ns, bool drives_on) noexcept;
+  OperatorRequest TakeRequest(std::int64_t due_ns, const DriveReport& drives) noexcept;
+  /// True while `reset`, which is due, waits for the drives.
+  bool Acknowledges(const OperatorRequest& reset, std::int64_t due_ns,
+                    const DriveReport& drives) noexcept;
   /// Refuses the waiting arms and runs whose number is below `number`.
   void CancelBelow(std::uint32_t number, TripCauses present) noexcept;
   void Enter(const SafetyStatus& next, const SafetyInputs& in,
@@ -107,7 +114,10 @@ class SafetyTask final : public Task {
   std::uint32_t run_number_ = 0;  // of the present run, or of the last
   RunOrder run_{};
   LineFilter filter_;
-  SafetyLines::Call written_{};  // the write of the last tick: this tick judges it
+  SafetyLines::Call written_{};      // the write of the last tick: this tick judges it
+  std::uint32_t acknowledging_ = 0;  // number of the reset that waits for the drives; 0: none
+  std::int64_t acknowledging_since_ns_ = 0;
+  bool acknowledge_ = false;  // in this tick
   bool pump_level_ = false;
   bool recorded_ = false;
   OperatorRequest disarm_{};  // carried out, answered once the relay is open; number 0: none

@@ -52,17 +52,30 @@ std::vector<BusHealth> WiredStack::buses() {
   std::vector<BusHealth> all;
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     const DriveReport& report = wires[i].health.Read().Newest().value;
-    const bool well = report.fault == BusFault{};
+    const auto text = [&](const BusFault& fault) {
+      return fault == BusFault{} ? std::string() : devices_[i]->FaultText(fault);
+    };
     all.push_back({.name = devices_[i]->name(),
                    .ok = report.bus_ok || report.due_ns == INT64_MIN,  // ok before its first run
-                   .fault = well ? std::string() : devices_[i]->FaultText(report.fault),
+                   .fault = text(report.fault),
                    .failed = report.failed,
                    .recovered = report.recovered,
                    .slow = report.slow,
                    .longest_ms = static_cast<double>(report.longest_ns) * kMsPerNs,
                    .declared_ms = static_cast<double>(devices_[i]->worst_case_ns()) * kMsPerNs,
                    .failed_in_window = report.failed_in_window,
-                   .slow_in_window = report.slow_in_window});
+                   .slow_in_window = report.slow_in_window,
+                   .in_fault = report.bus_ok && !report.drive_ok,
+                   .notice = text(report.notice)});
+  }
+  return all;
+}
+
+CountEpochs WiredStack::count_epochs() {
+  CountEpochs all{};
+  for (Bus& bus : wires) {
+    const CountEpochs& of_bus = bus.health.Read().Newest().value.count_epochs;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] += of_bus[i];
   }
   return all;
 }

@@ -43,6 +43,7 @@ class WiredStack final : private BusWires, public LoopStack {
   void SetEpoch(std::int64_t epoch_ns) noexcept override;
 
   std::vector<BusHealth> buses() override;
+  CountEpochs count_epochs() override;
   std::string BusText(TripCause cause, const Evidence& evidence) const override;
 
  private:

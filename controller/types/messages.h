@@ -9,6 +9,7 @@
 #include "controller/types/step_types.h"
 #include "controller/types/trip_cause.h"
 #include "hal/bus_fault.h"
+#include "hal/count_epochs.h"
 
 // Messages between tasks. Every value is stamped with the instant from which it is valid (History),
 // so that the values read depend on the time grid and not on the scheduler.
@@ -53,6 +54,7 @@ struct Permit {
   LineLevels levels;              ///< digital inputs as read in that tick
   std::uint32_t run_number = 0;   ///< of the granted request, ascending; 0: none yet
   RunOrder run{};                 ///< that run: the present one, or the last
+  bool acknowledge = false;       ///< the operator resets: drives acknowledge their faults
 };
 
 /// Control task -> safety: heartbeat, and facts that only the loop can detect. Valid from the
@@ -107,6 +109,8 @@ struct DriveReport {
   int slow_in_window = 0;                ///< those that took longer than the bus declares
   std::uint32_t slow = 0;                ///< the same, since the start
   std::int64_t longest_ns = 0;           ///< longest exchange or attempt to reconnect
+  BusFault notice{};                     ///< BusDevice::notice
+  CountEpochs count_epochs{};            ///< of its counters
 };
 
 enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };

@@ -13,10 +13,6 @@ namespace {
 // A single lost frame can occur on any bus; three in a row at 50 Hz are 60 ms without a drive.
 constexpr int kMissedIsSilent = 3;
 constexpr int kStuckIsFault = 3;
-// A drive charges its intermediate circuit or releases a brake: a second at 50 Hz.
-constexpr int kFramesToEnable = 50;
-constexpr int kFramesToDisable = 5;
-constexpr int kResetsBeforeSetup = 6;
 // More than a full socket holds: bounds the time of a call under a flood of frames.
 constexpr int kMostFrames = 1024;
 
@@ -49,39 +45,35 @@ void CanopenDevice::Open() {
   }
   counts_ = {};
   open_ = true;
-  configuring_ = false;
-  BeginOperation();
-}
-
-void CanopenDevice::BeginOperation() noexcept {
-  fault_ = {};
-  resets_ = stuck_ = 0;
-  first_ = true;
-  for (Node& node : nodes()) {
-    const CanopenNodeConfig* const config = node.config;
-    node = Node{.config = config};
-  }
+  fault_ = kept_ = {};
+  EndSetup();
 }
 
 BusStatus CanopenDevice::Exchange(const BusCommand& command, SensorFrame* part) noexcept {
   *part = SensorFrame{};
   const bool on = command.enabled && !configuring_;
-  const BusStatus status = Cycle(on ? DriveWish::kOn : DriveWish::kOff, command);
-  if (fault_.kind != CanopenFaultKind::kNone) return FaultStatus();
-  if (status != BusStatus::kOk) return status;
+  const bool acknowledges =
+      command.acknowledge && !on && !needs_reconnect() && fault_.kind != CanopenFaultKind::kNone;
+  const BusStatus status =
+      acknowledges ? Acknowledge() : Cycle(on ? DriveWish::kOn : DriveWish::kOff, command);
+  if (status == BusStatus::kOk && !needs_reconnect()) Read(part);
+  return fault_.kind != CanopenFaultKind::kNone ? FaultStatus() : status;
+}
+
+void CanopenDevice::Read(SensorFrame* part) const noexcept {
   part->sampled_at_ns = sampled_ns_;
-  for (const Node& node : nodes()) {
+  for (const Node& node : std::span(nodes_).first(node_count_)) {
     const int counter = node.config->counter();
     if (counter < 0) continue;
     part->counter[static_cast<std::size_t>(counter)] = node.counts;
     part->counter_valid |= 1U << static_cast<unsigned>(counter);
   }
-  return BusStatus::kOk;
 }
 
 BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexcept {
   const std::int64_t until_ns = bus_->now_ns() + answer_ns();
   malformed_ = nullptr;
+  if (wish != DriveWish::kOn) MarkOff();
   Drain(until_ns);
   if (BusIsGone()) return FaultStatus();
   CheckHeartbeats();
@@ -107,21 +99,6 @@ void CanopenDevice::Drain(std::int64_t until_ns) noexcept {
     Handle(received);
     if (bus_->now_ns() >= until_ns) return;
   }
-}
-
-CanFrame CanopenDevice::CommandFor(const Node& node, DriveWish wish,
-                                   const BusCommand& command) const noexcept {
-  DriveCommand drive{.controlword = ControlwordFor(node.state, wish), .torque_per_mille = 0};
-  const std::size_t joint = node.config->role == CanopenRole::kDrive1 ? 0 : 1;
-  const double torque_nm = command.torque_nm[joint];
-  const bool expired = bus_->now_ns() > command.expires_ns;
-  if (wish == DriveWish::kOn && node.state == DriveState::kOperationEnabled && !expired &&
-      std::isfinite(torque_nm)) {
-    const double most = node.config->torque_range_per_mille();
-    const double asked = node.config->sign * torque_nm / node.config->torque_per_mille_nm;
-    drive.torque_per_mille = static_cast<std::int16_t>(std::lround(std::clamp(asked, -most, most)));
-  }
-  return EncodeDriveCommand(node.config->node_id, drive);
 }
 
 bool CanopenDevice::Send(DriveWish wish, const BusCommand& command) noexcept {
@@ -194,97 +171,6 @@ void CanopenDevice::CheckHeartbeats() noexcept {
   }
 }
 
-void CanopenDevice::FollowDrive(DriveWish wish, Node* node) noexcept {
-  using enum DriveState;
-  node->state = DecodeDriveState(node->statusword);
-  const bool operating = node->state == kOperationEnabled;
-  if ((node->state == kFault || node->state == kFaultReactionActive) &&
-      wish != DriveWish::kResetFault) {
-    return Latch(CanopenFaultKind::kDriveFault, node, node->statusword);
-  }
-  const bool follows = (wish == DriveWish::kOn) == operating;
-  node->waiting = follows ? 0 : node->waiting + 1;
-  if (wish == DriveWish::kOn) {
-    if (node->was_enabled && !operating) {
-      Latch(CanopenFaultKind::kLeftOperation, node, node->statusword);
-    } else if (node->waiting > kFramesToEnable) {
-      Latch(CanopenFaultKind::kNotEnabled, node, node->statusword);
-    }
-    node->was_enabled = node->was_enabled || operating;
-  } else {
-    node->was_enabled = false;
-    if (node->waiting > kFramesToDisable) {
-      Latch(CanopenFaultKind::kNotDisabled, node, node->statusword);
-    }
-  }
-}
-
-BusStatus CanopenDevice::SwitchOff() noexcept {
-  if (!open_ || configuring_) return BusStatus::kOk;  // the drives are off
-  // Also while frames of the last exchange wait: these come after them, and carry no torque.
-  return SendOff() ? BusStatus::kOk : Stuck();
-}
-
-bool CanopenDevice::SendOff() noexcept {
-  const BusCommand off{.torque_nm = {}, .enabled = false};
-  bool sent = true;
-  for (const Node& node : nodes()) {
-    if (!IsDrive(node.config->role)) continue;
-    sent = bus_->Send(CommandFor(node, DriveWish::kOff, off)) == SendResult::kSent && sent;
-  }
-  return bus_->Send(EncodeSync()) == SendResult::kSent && sent;
-}
-
-BusStatus CanopenDevice::Reconnect() noexcept {
-  const bool anew = NeedsConfiguration(fault_.kind) || resets_ >= kResetsBeforeSetup;
-  return configuring_ || anew ? ConfigureAnew() : ResetFaults();
-}
-
-BusStatus CanopenDevice::ConfigureAnew() noexcept {
-  if (!configuring_) {
-    const CanState state = bus_->state();
-    const bool well = state == CanState::kActive || state == CanState::kPassive;
-    // The restart may take the time of a whole call: the next call configures the nodes.
-    if ((!well || bus_->unsent()) && !bus_->Restart()) return FaultStatus();
-    setup_.Begin();
-    configuring_ = true;
-    return BusStatus::kTimeout;
-  }
-  switch (setup_.Advance(bus_->now_ns() + answer_ns())) {
-    case NodeSetup::Progress::kBusy:
-      return BusStatus::kTimeout;
-    case NodeSetup::Progress::kFailed:
-      configuring_ = false;
-      fault_ = {setup_.without_answer() ? CanopenFaultKind::kSetupSilent
-                                        : CanopenFaultKind::kSetupRefused,
-                setup_.failed_node_id(), setup_.failed_index()};
-      return FaultStatus();
-    case NodeSetup::Progress::kDone:
-      break;
-  }
-  configuring_ = false;
-  BeginOperation();
-  return BusStatus::kOk;
-}
-
-BusStatus CanopenDevice::ResetFaults() noexcept {
-  fault_ = {};
-  const bool even = resets_++ % 2 == 0;  // the reset acts on its rising edge: off in between
-  const BusStatus status =
-      Cycle(even ? DriveWish::kResetFault : DriveWish::kOff, {.torque_nm = {}, .enabled = false});
-  if (fault_.kind != CanopenFaultKind::kNone) return FaultStatus();
-  if (status != BusStatus::kOk) return status;
-  for (const Node& node : nodes()) {
-    if (!IsDrive(node.config->role)) continue;
-    if (node.state == DriveState::kFault || node.state == DriveState::kFaultReactionActive) {
-      Latch(CanopenFaultKind::kDriveFault, &node, node.statusword);
-      return FaultStatus();
-    }
-  }
-  resets_ = 0;
-  return BusStatus::kOk;
-}
-
 // Faults that have not latched yet are of one exchange: a node did not answer, or sent a bad reply.
 BusFault CanopenDevice::FaultOf(BusStatus /*status*/) const noexcept {
   using enum CanopenFaultKind;
@@ -324,40 +210,15 @@ CanopenDevice::Node* CanopenDevice::Find(int node_id) noexcept {
   return nullptr;
 }
 
-const CanopenDevice::Node* CanopenDevice::Drive(int joint) const noexcept {
-  const CanopenRole role = joint == 0 ? CanopenRole::kDrive1 : CanopenRole::kDrive2;
-  for (const Node& node : nodes_) {
-    if (node.config != nullptr && node.config->role == role) return &node;
-  }
-  return nullptr;
-}
-
-std::uint32_t CanopenDevice::drives_on() const noexcept {
-  std::uint32_t on = 0;
-  for (int joint = 0; joint < 2; ++joint) {
-    if (drive_state(joint) == DriveState::kOperationEnabled) on |= 1U << joint;
-  }
-  return on;
-}
-
-DriveState CanopenDevice::drive_state(int joint) const noexcept {
-  const Node* drive = Drive(joint);
-  return drive == nullptr ? DriveState::kUnknown : drive->state;
-}
-
-double CanopenDevice::drive_torque_nm(int joint) const noexcept {
-  const Node* drive = Drive(joint);
-  if (drive == nullptr) return 0.0;
-  return drive->config->sign * drive->config->torque_per_mille_nm * drive->torque_per_mille;
-}
-
 std::int64_t CanopenDevice::answer_ns() const noexcept {
   return std::llround(config_.answer_timeout_ms * 1e6);
 }
 
 void CanopenDevice::Latch(CanopenFaultKind kind, const Node* node, unsigned code) noexcept {
-  if (fault_.kind != CanopenFaultKind::kNone) return;  // the first is the cause
-  fault_ = {kind, node == nullptr ? 0 : node->config->node_id, static_cast<std::uint16_t>(code)};
+  const CanopenFault found{kind, node == nullptr ? 0 : node->config->node_id,
+                           static_cast<std::uint16_t>(code)};
+  if (!NeedsAcknowledgement(config_, found)) lost_ = true;
+  if (fault_.kind == CanopenFaultKind::kNone) fault_ = found;  // the first is the cause
 }
 
 }  // namespace flexarm

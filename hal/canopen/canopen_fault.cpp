@@ -48,6 +48,10 @@ const char* ToString(CanopenFaultKind kind) {
       return "does not match the config, object";
     case CanopenFaultKind::kSetupSilent:
       return "does not answer during its configuration, object";
+    case CanopenFaultKind::kNoSupply:
+      return "is switched on but gets no supply, emergency message";
+    case CanopenFaultKind::kSupplyOff:
+      return "has no supply while the relay is open, emergency message";
   }
   return "?";
 }
@@ -77,17 +81,21 @@ BusStatus StatusOf(const CanopenConfig& config, const CanopenFault& fault) noexc
     case CanopenFaultKind::kLeftOperation:
     case CanopenFaultKind::kNotEnabled:
     case CanopenFaultKind::kNotDisabled:
+    case CanopenFaultKind::kNoSupply:
+    case CanopenFaultKind::kSupplyOff:
       break;
   }
   const CanopenNodeConfig* node = NodeOf(config, fault.node_id);
   return node != nullptr && IsDrive(node->role) ? BusStatus::kDriveFault : BusStatus::kDisconnected;
 }
 
-bool NeedsConfiguration(CanopenFaultKind kind) noexcept {
+bool NeedsAcknowledgement(const CanopenConfig& config, const CanopenFault& fault) noexcept {
   using enum CanopenFaultKind;
-  constexpr std::array kLost = {kHeartbeatLost, kNotOperational, kSilent,       kTransmitStuck,
-                                kBusOff,        kInterfaceDown,  kSetupRefused, kSetupSilent};
-  return std::find(kLost.begin(), kLost.end(), kind) != kLost.end();
+  constexpr std::array kOfDrive = {kEmergency,  kDriveFault,  kLeftOperation,
+                                   kNotEnabled, kNotDisabled, kNoSupply};
+  if (std::find(kOfDrive.begin(), kOfDrive.end(), fault.kind) == kOfDrive.end()) return false;
+  const CanopenNodeConfig* node = NodeOf(config, fault.node_id);
+  return node != nullptr && IsDrive(node->role);
 }
 
 BusFault Packed(const CanopenFault& fault) noexcept {

@@ -61,13 +61,22 @@ void CanopenDevice::HandleFeedback(const ReceivedFrame& received, Node* node) no
   malformed_ = node;
 }
 
-void CanopenDevice::HandleEmergency(const ReceivedFrame& received, const Node* node) noexcept {
+void CanopenDevice::HandleEmergency(const ReceivedFrame& received, Node* node) noexcept {
   const auto emergency = DecodeEmergency(received.frame);
   if (!emergency) {
     ++counts_.malformed;
   } else if (emergency->code != 0) {  // 0: the error is cleared; the statusword shows it too
-    Latch(CanopenFaultKind::kEmergency, node, emergency->code);
+    TakeEmergency(emergency->code, node);
   }
+}
+
+void CanopenDevice::TakeEmergency(std::uint16_t code, Node* node) noexcept {
+  const bool of_supply = IsDrive(node->config->role) && SupplyEmergency(code);
+  if (of_supply) {
+    node->no_supply = code;
+    node->without_fault = 0;
+  }
+  if (!of_supply || node->was_enabled) Latch(CanopenFaultKind::kEmergency, node, code);
 }
 
 void CanopenDevice::HandleHeartbeat(const ReceivedFrame& received, Node* node) noexcept {
@@ -76,6 +85,7 @@ void CanopenDevice::HandleHeartbeat(const ReceivedFrame& received, Node* node) n
     ++counts_.malformed;
     return;
   }
+  if (*state == NmtState::kBooting) LoseCount(*node);  // it lost power, or was reset
   node->heartbeat_ns = std::max(node->heartbeat_ns, received.at_ns);
   if (*state != NmtState::kOperational) {
     Latch(CanopenFaultKind::kNotOperational, node, static_cast<unsigned>(*state));

@@ -145,6 +145,7 @@ void NodeSetup::Begin() noexcept {
   node_ = step_ = 0;
   phase_ = Phase::kBegin;
   failure_ = Failure::kNone;
+  emergency_ = {};
 }
 
 NodeSetup::Progress NodeSetup::Advance(std::int64_t until_ns) noexcept {
@@ -223,13 +224,26 @@ void NodeSetup::Ask(Phase phase) noexcept {
 
 void NodeSetup::Handle(const ReceivedFrame& received) noexcept {
   const int node_id = config_.node[node_].node_id;
-  if (received.own || received.at_ns <= asked_ns_) return;  // an answer to an older request
+  if (received.own) return;
+  HandleEmergency(received);
+  if (received.at_ns <= asked_ns_) return;  // an answer to an older request
   if (phase_ == Phase::kListening && received.frame.id == CobId(kCobHeartbeat, node_id)) {
     const NmtState wanted =
         step().action == SetupAction::kAwaitBoot ? NmtState::kBooting : NmtState::kOperational;
     if (DecodeHeartbeat(received.frame) == wanted) NextStep();
   } else if (phase_ != Phase::kListening && received.frame.id == CobId(kCobSdoReply, node_id)) {
     HandleReply(received.frame);
+  }
+}
+
+// The reset ends what a node reported before; a node without supply reports it again.
+void NodeSetup::HandleEmergency(const ReceivedFrame& received) noexcept {
+  for (std::size_t i = 0; i <= node_; ++i) {
+    if (received.frame.id != CobId(kCobEmergency, config_.node[i].node_id)) continue;
+    const bool was_reset =
+        i < node_ || step().action != SetupAction::kAwaitBoot || received.at_ns > asked_ns_;
+    const auto emergency = DecodeEmergency(received.frame);
+    if (was_reset && emergency) emergency_[i] = emergency->code;
   }
 }
 

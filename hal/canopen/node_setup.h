@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -56,6 +57,9 @@ class NodeSetup {
   /// Node of the step that failed, and the index of its object: 0 if it is not an SDO transfer.
   int failed_node_id() const noexcept { return config_.node[node_].node_id; }
   std::uint16_t failed_index() const noexcept { return step().object.index; }
+  /// Code of the newest emergency that the node of row `node` of the config has sent since its
+  /// reset by this setup; 0: none.
+  std::uint16_t emergency(std::size_t node) const noexcept { return emergency_[node]; }
   /// Text of the failure: interface, node, object, found and expected. Not real-time.
   std::string FailureText() const;
 
@@ -77,6 +81,7 @@ class NodeSetup {
   void Ask(Phase phase) noexcept;
   void Handle(const ReceivedFrame& received) noexcept;
   void HandleReply(const CanFrame& frame) noexcept;
+  void HandleEmergency(const ReceivedFrame& received) noexcept;
 
   const CanopenConfig& config_;
   CanBus* bus_;
@@ -88,6 +93,7 @@ class NodeSetup {
   std::int64_t deadline_ns_ = 0;
   Failure failure_ = Failure::kNone;
   std::uint32_t found_ = 0;
+  std::array<std::uint16_t, kMaxCanopenNodes> emergency_{};
 };
 
 }  // namespace flexarm

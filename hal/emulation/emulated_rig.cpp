@@ -18,20 +18,24 @@ const GpiodConfig& LinesOf(const HalConfig& hal) {
 }  // namespace
 
 EmulatedRig::EmulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
-                         const SimConfig& sim, const HalConfig& hal, const BusClocks& clocks)
+                         const SimConfig& sim, const HalConfig& hal, const BusClocks& clocks,
+                         const std::optional<DriveSupplyModel>& supply)
     : rig_(arm, sensors, sim), lines_(LinesOf(hal)), gpio_(lines_.chip) {
-  for (const CanopenConfig& bus : ConfigsOf<CanopenWiring>(hal)) AddNodes(bus, clocks);
+  for (const CanopenConfig& bus : ConfigsOf<CanopenWiring>(hal)) AddNodes(bus, clocks, supply);
   for (const ModbusDeviceConfig& device : ConfigsOf<ModbusWiring>(hal)) {
     amplifiers_.push_back(std::make_unique<SimulatedAmplifier>(device, sensors));
   }
 }
 
-void EmulatedRig::AddNodes(const CanopenConfig& bus, const BusClocks& clocks) {
+void EmulatedRig::AddNodes(const CanopenConfig& bus, const BusClocks& clocks,
+                           const std::optional<DriveSupplyModel>& supply) {
   for (const CanopenNodeConfig& config : bus.node) {
     Node node{.config = config,
               .bus = std::make_unique<SocketCanBus>(bus.interface, clocks),
               .node = nullptr};
-    node.node = std::make_unique<SimulatedNode>(node.bus.get(), SimulatedNodeOf(config));
+    SimulatedNodeConfig simulated = SimulatedNodeOf(config);
+    if (IsDrive(config.role)) simulated.supply = supply;
+    node.node = std::make_unique<SimulatedNode>(node.bus.get(), simulated);
     node.node->Start();
     nodes_.push_back(std::move(node));
   }
@@ -75,6 +79,7 @@ void EmulatedRig::DriveArm(bool power) noexcept {
   bool active = false;
   for (const Node& node : nodes_) {
     if (!IsDrive(node.config.role)) continue;
+    node.node->Feed(power);
     active = active || node.node->torque_per_mille() != 0;
     if (!power) continue;
     torque_nm[static_cast<std::size_t>(node.config.role)] =

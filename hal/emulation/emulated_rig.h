@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -35,9 +36,11 @@ class EmulatedRig {
   };
 
   /// @param arm  with the actual payload of the plant
+  /// @param supply  of the CANopen drives, fed through the relay; none: they are always supplied
   /// @throws HalError
   EmulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
-              const HalConfig& hal, const BusClocks& clocks);
+              const HalConfig& hal, const BusClocks& clocks,
+              const std::optional<DriveSupplyModel>& supply = std::nullopt);
 
   /// Simulates one millisecond, up to `now_ns` of CLOCK_MONOTONIC.
   void Step(std::int64_t now_ns) noexcept;
@@ -58,7 +61,8 @@ class EmulatedRig {
     std::unique_ptr<SimulatedNode> node;
   };
 
-  void AddNodes(const CanopenConfig& bus, const BusClocks& clocks);
+  void AddNodes(const CanopenConfig& bus, const BusClocks& clocks,
+                const std::optional<DriveSupplyModel>& supply);
   bool PowerOn(std::int64_t now_ns) noexcept;
   void DriveArm(bool power) noexcept;
   void Show(std::int64_t now_ns) noexcept;

@@ -31,7 +31,8 @@ const char* const kRigCommands =
   amplifier NAME scaled C F  F times the gain
   amplifier NAME wrong-word-order
   node ROLE well             ROLE as in [[hal.canopen.node]]: drive1 .. rotor2
-  node ROLE silent           without power; `well` restores power
+  node ROLE silent           does not answer, as without power; `well` ends it
+  node ROLE power-cycle      loses its power for a moment: its encoder counts from 0
   node ROLE no-answer        to SYNC; its heartbeat continues
   node ROLE no-heartbeat     its answers continue
   node ROLE short-pdo        PDOs one byte too short
@@ -118,6 +119,8 @@ std::string CommandNode(std::istringstream& words, SimulatedNode* node) {
     node->Misbehave({.cuts_pdos = true});
   } else if (what == "another-product") {
     node->Misbehave({.another_product = true});
+  } else if (what == "power-cycle") {
+    node->PowerCycle();
   } else if (what == "emcy") {
     char* end = nullptr;
     const unsigned long number = std::strtoul(code.c_str(), &end, 0);

@@ -29,6 +29,7 @@ SimulatedNodeConfig SimulatedNodeOf(const CanopenNodeConfig& config) {
 
 SimulatedNode::SimulatedNode(CanBus* bus, const SimulatedNodeConfig& config)
     : bus_(bus), config_(config) {
+  if (config.supply) supply_.emplace(*config.supply);
   FillDictionary();
 }
 
@@ -110,15 +111,18 @@ void SimulatedNode::Set(CanopenObject object, std::uint32_t value) noexcept {
 }
 
 void SimulatedNode::SetPosition(std::uint32_t counts) noexcept {
-  Set(config_.drive ? kObjectPosition : kObjectEncoderPosition, counts);
+  turned_to_ = counts;
+  Set(config_.drive ? kObjectPosition : kObjectEncoderPosition, turned_to_ - counts_from_);
 }
 
-int SimulatedNode::torque_per_mille() const noexcept {
-  if (state_ != DriveState::kOperationEnabled) return 0;
-  if (Value(kObjectModeDisplay) != kCyclicTorqueMode) return 0;
-  const int most = static_cast<int>(Value(kObjectMaxTorque));
-  const auto target = static_cast<std::int16_t>(Value(kObjectTargetTorque));
-  return std::clamp(static_cast<int>(target), -most, most);
+void SimulatedNode::LoseCount() noexcept {
+  counts_from_ = turned_to_;
+  SetPosition(turned_to_);
+}
+
+void SimulatedNode::PowerCycle() noexcept {
+  LoseCount();
+  Boot();
 }
 
 void SimulatedNode::Transmit(const CanFrame& frame) noexcept {
@@ -126,14 +130,16 @@ void SimulatedNode::Transmit(const CanFrame& frame) noexcept {
 }
 
 void SimulatedNode::Boot() noexcept {
-  const std::uint32_t position = Value(config_.drive ? kObjectPosition : kObjectEncoderPosition);
   FillDictionary();
-  SetPosition(position);
-  RemoveTorque(DriveState::kSwitchOnDisabled);
+  SetPosition(turned_to_);
+  state_ = DriveState::kSwitchOnDisabled;
+  RemoveTorque(state_);
   last_control_ = 0;
   master_heard_ns_.reset();
   nmt_ = NmtState::kPreOperational;
   Transmit(EncodeHeartbeat(config_.node_id, NmtState::kBooting));
+  supply_fault_ = false;
+  if (supply_) supply_->Boot();
 }
 
 void SimulatedNode::Run() noexcept {
@@ -141,6 +147,7 @@ void SimulatedNode::Run() noexcept {
   while (bus_->Receive(&received)) {
     if (!wrong_.silent) Handle(received.frame);
   }
+  if (!wrong_.silent) FollowSupply();
   const std::int64_t now = bus_->now_ns();
   const std::int64_t producer_ns = kMillisecondNs * std::int64_t{Value(kObjectProducerHeartbeat)};
   if (producer_ns > 0 && now >= next_heartbeat_ns_) {
@@ -182,8 +189,7 @@ void SimulatedNode::HandleNmt(const NmtOrder& order) noexcept {
       RemoveTorque(DriveState::kSwitchOnDisabled);
       return;
     case NmtCommand::kResetNode:
-      SetPosition(0);
-      Boot();
+      PowerCycle();
       return;
     case NmtCommand::kResetCommunication:
       Boot();
@@ -260,47 +266,6 @@ void SimulatedNode::HandleSync() noexcept {
   }
 }
 
-void SimulatedNode::TakeCommand() noexcept {
-  if (command_) {
-    std::size_t offset = 0;
-    for (std::uint32_t sub = 1; sub <= Value({kObjectRpdoMapping, 0}); ++sub) {
-      const std::uint32_t mapped = Value({kObjectRpdoMapping, static_cast<std::uint8_t>(sub)});
-      const std::size_t bytes = (mapped & 0xFFU) / 8U;
-      if (offset + bytes > command_->length) break;
-      std::uint32_t value = 0;
-      for (std::size_t i = 0; i < bytes; ++i) {
-        value |= std::uint32_t{command_->data[offset + i]} << (8U * i);
-      }
-      Set({static_cast<std::uint16_t>(mapped >> 16U), static_cast<std::uint8_t>(mapped >> 8U)},
-          value);
-      offset += bytes;
-    }
-    command_.reset();
-  }
-  Follow(static_cast<std::uint16_t>(Value(kObjectControlword)));
-}
-
-void SimulatedNode::Follow(std::uint16_t control) noexcept {
-  using enum DriveState;
-  const bool reset_edge = (control & ~last_control_ & kControlFaultReset) != 0;
-  last_control_ = control;
-  if (state_ == kFault) {
-    if (reset_edge) state_ = kSwitchOnDisabled;
-    return;
-  }
-  // Voltage off, or quick stop, which ends without voltage as there is no speed control.
-  if ((control & 0x02U) == 0 || (control & 0x04U) == 0) {
-    state_ = kSwitchOnDisabled;
-  } else if ((control & 0x07U) == kControlShutdown) {
-    state_ = kReadyToSwitchOn;
-  } else if ((state_ == kReadyToSwitchOn || state_ == kOperationEnabled) &&
-             (control & 0x0FU) == kControlSwitchOn) {
-    state_ = kSwitchedOn;
-  } else if (state_ == kSwitchedOn && (control & 0x0FU) == kControlEnableOperation) {
-    state_ = kOperationEnabled;
-  }
-}
-
 void SimulatedNode::SendPdo() noexcept {
   Set(kObjectStatusword, wrong_.statusword.value_or(EncodeDriveState(state_)));
   Set(kObjectActualTorque, static_cast<std::uint16_t>(torque_per_mille()));
@@ -317,13 +282,6 @@ void SimulatedNode::SendPdo() noexcept {
   Transmit(frame);
 }
 
-void SimulatedNode::RemoveTorque(DriveState next) noexcept {
-  state_ = next;
-  command_.reset();
-  Set(kObjectControlword, 0);
-  Set(kObjectTargetTorque, 0);
-}
-
 void SimulatedNode::LoseMaster() noexcept {
   master_heard_ns_.reset();
   if (nmt_ != NmtState::kOperational) return;
@@ -338,6 +296,7 @@ void SimulatedNode::LoseMaster() noexcept {
 
 void SimulatedNode::RaiseFault(std::uint16_t code) noexcept {
   if (config_.drive) RemoveTorque(DriveState::kFault);
+  supply_fault_ = false;
   Transmit(
       EncodeEmergency(config_.node_id, {.code = code, .error_register = 0x01, .vendor_bytes = {}}));
 }

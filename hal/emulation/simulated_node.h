@@ -11,6 +11,7 @@
 #include "hal/canopen/drive_state.h"
 #include "hal/canopen/object_dictionary.h"
 #include "hal/canopen/sdo.h"
+#include "hal/emulation/drive_supply.h"
 
 namespace flexarm {
 
@@ -21,7 +22,8 @@ struct SimulatedNodeConfig {
   std::uint32_t vendor;
   std::uint32_t product;
   std::uint32_t serial;
-  std::uint32_t rated_torque_mnm;  ///< of a drive's motor
+  std::uint32_t rated_torque_mnm;                         ///< of a drive's motor
+  std::optional<DriveSupplyModel> supply = std::nullopt;  ///< of a drive; none: always supplied
 };
 
 /// The simulated node that matches a rig's config.
@@ -45,7 +47,8 @@ struct Misbehaviour {
 /// dictionary with SDO server, PDOs as mapped, on SYNC, heartbeat producer and consumer. A drive
 /// that misses the heartbeat of its master reacts as configured in 6007.
 ///
-/// NMT reset resets everything; the encoder's position survives a reset of communication only.
+/// NMT reset resets everything; the encoder's position survives a reset of communication only:
+/// after the others it counts from 0. With a supply model, a drive without DC link is in fault.
 /// Real-time: Run is safe. Thread: that of its bus.
 class SimulatedNode {
  public:
@@ -60,8 +63,12 @@ class SimulatedNode {
   int torque_per_mille() const noexcept;
   DriveState state() const noexcept { return state_; }
   NmtState nmt() const noexcept { return nmt_; }
-  /// Sets the position in 6064 or 6004.
+  /// Turns the encoder to `counts`; 6064 or 6004 is what it has counted since it lost its count.
   void SetPosition(std::uint32_t counts) noexcept;
+  /// Loses power and gets it again at once: counts from 0 and sends the boot-up message.
+  void PowerCycle() noexcept;
+  /// The relay feeds the drive. Without supply model: no effect.
+  void Feed(bool fed) noexcept;
   /// The value of an object; 0 if there is none.
   std::uint32_t Value(CanopenObject object) const noexcept;
 
@@ -97,6 +104,9 @@ class SimulatedNode {
   void Follow(std::uint16_t control) noexcept;
   void SendPdo() noexcept;
   void Boot() noexcept;
+  void LoseCount() noexcept;
+  void FollowSupply() noexcept;
+  bool Supplied() const noexcept { return !supply_ || supply_->up(bus_->now_ns()); }
   void LoseMaster() noexcept;
   void RemoveTorque(DriveState next) noexcept;
 
@@ -108,6 +118,11 @@ class SimulatedNode {
   NmtState nmt_ = NmtState::kBooting;
   DriveState state_ = DriveState::kSwitchOnDisabled;
   std::uint16_t last_control_ = 0;
+  std::optional<DriveSupply> supply_;
+  bool supply_fault_ = false;  // the fault state is that of the supply
+  std::int64_t switched_on_ns_ = 0;
+  std::uint32_t turned_to_ = 0;      // the encoder, by SetPosition
+  std::uint32_t counts_from_ = 0;    // where it last lost its count
   std::optional<CanFrame> command_;  // received RPDO, applied at SYNC
   std::int64_t next_heartbeat_ns_ = 0;
   std::optional<std::int64_t> master_heard_ns_;

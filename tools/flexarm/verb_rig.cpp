@@ -27,6 +27,7 @@ struct RigOptions {
   ConfigOptions config;
   std::optional<double> payload_kg;
   std::optional<double> run_for_s;
+  bool relay_feeds_drives = false;
   bool json = false;
 };
 
@@ -85,7 +86,8 @@ int Run(const RigOptions& options) {
   ArmParameters arm = config.arm;
   if (options.payload_kg) arm.payload_mass_kg = *options.payload_kg;
   EmulatedRig rig(arm, config.sensors, config.sim, config.hal,
-                  {.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow});
+                  {.monotonic_ns = MonotonicNow, .realtime_ns = RealtimeNow},
+                  options.relay_feeds_drives ? std::optional(DriveSupplyModel{}) : std::nullopt);
   std::signal(SIGTERM, AskEnd);
   std::signal(SIGINT, AskEnd);
   std::cerr << "flexarm rig: emulating " << config.rig_name << "; commands on stdin\n";
@@ -126,6 +128,8 @@ void RegisterRig(CLI::App& app, Exit& exit) {
   verb->add_option("--run-for", options->run_for_s, "End after this time")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
+  verb->add_flag("--relay-feeds-drives", options->relay_feeds_drives,
+                 "The relay feeds the CANopen drives: without it they report undervoltage");
   AddJson(verb, &options->json);
   verb->footer(
       std::string(

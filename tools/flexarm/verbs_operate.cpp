@@ -72,8 +72,16 @@ void PrintStatus(const Json& s) {
   std::printf("time           %.2f s (tick %lld)\n", s.value("time_s", 0.0),
               static_cast<long long>(s.value("tick", std::int64_t{0})));
   const auto pair = [&s](const char* key) { return s.value(key, std::vector<double>{0.0, 0.0}); };
-  std::printf("joint angle    %.2f, %.2f deg\n", pair("joint_angle_deg")[0],
-              pair("joint_angle_deg")[1]);
+  const std::string separator[] = {"joint angle    ", ", "};
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    const Json& angle = s["joint_angle_deg"][joint];
+    std::printf("%s", separator[joint].c_str());
+    angle.is_number() ? std::printf("%.2f", angle.get<double>()) : std::printf("unknown");
+  }
+  std::printf(" deg\n");
+  for (const Json& why : s.value("joint_angle_unknown", Json::array())) {
+    if (why.is_string()) std::printf("               %s\n", why.get<std::string>().c_str());
+  }
   std::printf("torque asked   %.3f, %.3f N m\n", pair("torque_nm")[0], pair("torque_nm")[1]);
   std::printf("at rest        %s\n", s.value("at_rest", false) ? "yes" : "no");
   if (const auto gauges = s.value("gauges_missing", std::vector<std::string>{}); !gauges.empty()) {

@@ -35,6 +35,7 @@ struct StatusJsonTest : testing::Test {
                        .delay = &delay,
                        .sensors = &sensors,
                        .missing_gauges = missing_gauges,
+                       .angles = &angles,
                        .experiment = experiment,
                        .buses = buses,
                        .bus_text = bus_text,
@@ -49,6 +50,7 @@ struct StatusJsonTest : testing::Test {
   DelayMonitor delay{kPeriodNs, 0.009};
   SensorConfig sensors{};
   std::vector<std::string> missing_gauges;
+  AngleKnowledge angles{AnglesAtStart::kAtZero, sensors};
   std::string experiment;
   std::vector<BusHealth> buses;
   std::string bus_text;
@@ -175,6 +177,7 @@ TEST_F(StatusJsonTest, ATripOfABusNamesTheDevice) {
   EXPECT_EQ(status["buses"][0], Json({{"name", "can0"},
                                       {"ok", false},
                                       {"fault", "node 5 is silent"},
+                                      {"notice", nullptr},
                                       {"failed", 3},
                                       {"recovered", 1},
                                       {"failed_in_window", 2},
@@ -197,6 +200,18 @@ TEST_F(StatusJsonTest, LateThreadsAreCountedAndSayWhetherTheyTrip) {
                   {"safety_worst_ms", 21.5},
                   {"deadlines_missed_in_a_row", 3},
                   {"deadlines_often_missed", 2}}));
+}
+
+TEST_F(StatusJsonTest, AnUnknownAngleIsNullAndSaysWhy) {
+  const AngleKnowledge lost{AnglesAtStart::kLost, sensors};
+  angles = lost;
+  angles.Know(0);
+  now.tick.output.angle_rad = {M_PI / 6.0, 0.5, 0.0, 0.0};
+  const Json status = Status();
+  EXPECT_NEAR(status["joint_angle_deg"][0], 30.0, 1e-12);
+  EXPECT_TRUE(status["joint_angle_deg"][1].is_null());
+  EXPECT_TRUE(status["joint_angle_unknown"][0].is_null());
+  EXPECT_EQ(status["joint_angle_unknown"][1], lost.Text(1));
 }
 
 TEST_F(StatusJsonTest, ACauseThatIsNoLongerLatchedIsNoTrip) {

@@ -51,6 +51,35 @@ TEST(BusJournal, ReportsFailuresWithoutALossAtMostOnceASecond) {
       "error: can0: 1 failed exchanges without loss of the bus; the last: can0: no answer in time");
 }
 
+// It stays until the operator resets: said once, and not as a failed exchange again and again.
+TEST(BusJournal, ReportsADrivesFaultAndItsEndOnce) {
+  Journal journal;
+  BusHealth bus = Bus(true, "can0: node 1 (drive1): emergency message 0x2310", 1);
+  bus.in_fault = true;
+  journal.Follow(0, {Bus(true, "", 0)});
+  for (int k = 1; k < 200; ++k) journal.Follow(k * 20 * kMs, {bus});
+  journal.Follow(4'000 * kMs, {Bus(true, "", 1)});
+  EXPECT_EQ(journal.lines,
+            (std::vector<std::string>{
+                "error: drive in fault: can0: node 1 (drive1): emergency message 0x2310. It stays "
+                "so until `flexarm reset`",
+                "can0: no drive is in fault any more"}));
+}
+
+TEST(BusJournal, ReportsANoticeWhenItChanges) {
+  Journal journal;
+  BusHealth bus = Bus(true, "", 0);
+  journal.Follow(0, {bus});
+  bus.notice = "can0: node 1 (drive1): has no supply while the relay is open";
+  journal.Follow(20 * kMs, {bus});
+  journal.Follow(40 * kMs, {bus});
+  bus.notice = "";
+  journal.Follow(60 * kMs, {bus});
+  EXPECT_EQ(journal.lines,
+            (std::vector<std::string>{"can0: node 1 (drive1): has no supply while the relay is "
+                                      "open"}));
+}
+
 TEST(BusJournal, ReportsEachBusSeparately) {
   Journal journal;
   BusHealth other = Bus(true, "", 0);

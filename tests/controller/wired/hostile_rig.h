@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "controller/commissioning/commissioner.h"
 #include "controller/design/run_design.h"
 #include "controller/runlog/safety_rows.h"
 #include "controller/tasks/wired_stack.h"
@@ -32,6 +34,10 @@ inline std::int64_t Clock() noexcept { return the_world->monotonic_ns(); }
 
 inline RigConfig WiredConfig(ModbusTransport transport) {
   RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil-wire.toml", {});
+  config.daemon.log_directory =
+      testing::TempDir() + "/flexarm-wired-" + std::to_string(getpid()) + "-calibration";
+  std::filesystem::remove_all(config.daemon.log_directory);
+  std::filesystem::create_directories(config.daemon.log_directory);
   std::vector<ModbusDeviceConfig> devices = ConfigsOf<ModbusWiring>(config.hal);
   for (ModbusDeviceConfig& device : devices) {
     device.port = 0;
@@ -56,10 +62,12 @@ inline RigConfig WiredConfig(ModbusTransport transport) {
 /// The rig with its drivers and the daemon's tasks.
 class Rig {
  public:
-  explicit Rig(ModbusTransport transport) : config_(WiredConfig(transport)) {
+  explicit Rig(ModbusTransport transport,
+               const std::optional<DriveSupplyModel>& supply = std::nullopt)
+      : config_(WiredConfig(transport)) {
     const sched_param parameters{.sched_priority = 10};  // where permitted: before ordinary threads
     sched_setscheduler(0, SCHED_FIFO, &parameters);
-    world = std::make_unique<WiredWorld>(config_, &executor);
+    world = std::make_unique<WiredWorld>(config_, &executor, supply);
     the_world = world.get();
     AddCan();
     for (std::size_t i = 0; i < world->amplifiers.size(); ++i) AddAmplifier(i);
@@ -87,8 +95,12 @@ class Rig {
     const std::int64_t end_ns = executor.now_ns() + duration_ns;
     for (std::int64_t t = executor.now_ns(); t < end_ns; t += kMs) {
       executor.RunUntil(std::min(t + kMs, end_ns));
-      TickRecord record{};
-      while (stack->tick_records().Pop(&record)) Look(record);
+      commissioner.Follow(stack->count_epochs());
+      while (stack->tick_records().Pop(&last)) {
+        Look(last);
+        commissioner.Take(last);
+      }
+      stack->Calibrate(commissioner.calibration());
     }
   }
 
@@ -104,12 +116,31 @@ class Rig {
                             .not_before_ns = INT64_MIN,
                             .run = {.experiment = planned_.get()}});
     RequestAnswer answer{};
-    // A run waits until the drives are on: three transitions of CiA 402, one a period.
+    // A run waits until the drives are on: three transitions of CiA 402, one a period. A reset
+    // waits until they have left their faults.
+    const std::int64_t longest_ns = kind == RequestKind::kReset ? 2050 * kMs : 1550 * kMs;
     bool answered = false;
-    EXPECT_TRUE(
-        RunUntil(200 * kMs, [&] { return answered = answered || stack->answers().Pop(&answer); }));
+    EXPECT_TRUE(RunUntil(longest_ns, [&] {
+      while (!answered && stack->answers().Pop(&answer)) answered = answer.number == number_;
+      return answered;
+    }));
     present = answer.present;
     return answer.refusal;
+  }
+
+  void Disarm() {
+    stack->disarm().Set(++number_);
+    EXPECT_TRUE(RunUntil(200 * kMs, [this] { return permit().state == SafetyState::kIdle; }));
+  }
+  void Stop() {
+    stack->stop().Set(++number_);
+    EXPECT_TRUE(RunUntil(4000 * kMs, [this] { return permit().state == SafetyState::kArmed; }));
+  }
+  void PressButton() {
+    world->lines.levels |= LineBit(Line::kResetButton);
+    RunFor(60 * kMs);  // 50 ms count as a press
+    world->lines.levels = kHealthyLevels;
+    RunFor(20 * kMs);
   }
 
   Permit permit() { return stack->operator_permits().Read().Newest().value; }
@@ -132,6 +163,8 @@ class Rig {
   MemoryBus* master = nullptr;
   std::int64_t hangs_ns = 0;  // an exchange with the first amplifier takes this long, if not 0
   std::int64_t ticks = 0;
+  TickRecord last{};
+  bool looks_at_counters = true;
   TripCauses present = 0;  // at the last request
   int stale = 0;           // readings that were not present at their stated instant
 
@@ -175,7 +208,7 @@ class Rig {
       const std::int64_t at_ns = in.frame.sampled_at_ns + in.frame.strain_offset_ns[i];
       stale += world->Showed(i, in.frame.strain[i], at_ns) ? 0 : 1;
     }
-    for (std::size_t i = 0; i < kCounters; ++i) {
+    for (std::size_t i = 0; i < kCounters && looks_at_counters; ++i) {
       if ((in.frame.counter_valid >> i & 1u) == 0) continue;
       const std::int64_t at_ns = in.frame.sampled_at_ns + in.frame.counter_offset_ns[i];
       stale += world->CounterWas(i, in.frame.counter[i], at_ns) ? 0 : 1;
@@ -188,18 +221,28 @@ class Rig {
   std::vector<std::unique_ptr<BusDevice>> drivers_;
   std::unique_ptr<PlannedExperiment> planned_;
   std::uint32_t number_ = 0;
+
+ public:
+  Commissioner commissioner{config_};
 };
 
 class HostileBus : public testing::Test {
  protected:
-  // In mid-run, between two moves: an arm without torque must not drift out of its limits before it
-  // can be armed again.
-  void StartRun(ModbusTransport transport = ModbusTransport::kTcp) {
-    rig_ = std::make_unique<Rig>(transport);
+  // At rest.
+  void StartIdle(ModbusTransport transport = ModbusTransport::kTcp,
+                 const std::optional<DriveSupplyModel>& supply = std::nullopt) {
+    rig_ = std::make_unique<Rig>(transport, supply);
     ASSERT_TRUE(rig_->RunUntil(2000 * kMs, [this] {
       return rig_->permit().state == SafetyState::kIdle;
     })) << ToString(rig_->permit().cause);
-    rig_->RunFor(600 * kMs);  // at rest
+    rig_->RunFor(600 * kMs);
+  }
+
+  // In mid-run, between two moves: an arm without torque must not drift out of its limits before it
+  // can be armed again.
+  void StartRun(ModbusTransport transport = ModbusTransport::kTcp,
+                const std::optional<DriveSupplyModel>& supply = std::nullopt) {
+    ASSERT_NO_FATAL_FAILURE(StartIdle(transport, supply));
     ASSERT_EQ(rig_->Ask(RequestKind::kArm), Refusal::kNone);
     ASSERT_EQ(rig_->Ask(RequestKind::kRun), Refusal::kNone);
     rig_->RunFor(2000 * kMs);
@@ -235,18 +278,21 @@ class HostileBus : public testing::Test {
     mend();
     EXPECT_TRUE(rig_->RunUntil(6000 * kMs, [this] { return rig_->AllBack(); })) << Lost();
     EXPECT_TRUE(rig_->tripped()) << "only the bus comes back by itself";
-    rig_->world->lines.levels |= LineBit(Line::kResetButton);
-    rig_->RunFor(60 * kMs);
-    rig_->world->lines.levels = kHealthyLevels;
+    rig_->PressButton();
+    ExpectReset();
+    EXPECT_EQ(rig_->Ask(RequestKind::kArm), Refusal::kNone);
+    rig_->RunFor(200 * kMs);
+    EXPECT_EQ(rig_->permit().state, SafetyState::kArmed) << ToString(rig_->permit().cause);
+  }
+
+  // The button has been pressed.
+  void ExpectReset() {
     Refusal refusal = Refusal::kNotAtRest;
     for (int k = 0; k < 100 && refusal != Refusal::kNone; ++k) {
       rig_->RunFor(50 * kMs);  // the arm comes to rest, and the loop gets healthy reports
       refusal = rig_->Ask(RequestKind::kReset);
     }
     EXPECT_EQ(refusal, Refusal::kNone) << CauseNames(rig_->present);
-    EXPECT_EQ(rig_->Ask(RequestKind::kArm), Refusal::kNone);
-    rig_->RunFor(200 * kMs);
-    EXPECT_EQ(rig_->permit().state, SafetyState::kArmed) << ToString(rig_->permit().cause);
   }
 
   std::string Lost() {

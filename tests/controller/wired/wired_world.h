@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -62,8 +63,10 @@ class WiredWorld final : public Task {
     SensorFrame frame;
   };
 
-  WiredWorld(const RigConfig& config, BlockingExecutor* executor)
-      : executor_(executor), rig_(config.arm, config.sensors, config.sim) {
+  /// @param supply  of the drives; none: they are always supplied
+  WiredWorld(const RigConfig& config, BlockingExecutor* executor,
+             const std::optional<DriveSupplyModel>& supply = std::nullopt)
+      : executor_(executor), rig_(config.arm, config.sensors, config.sim), supply_(supply) {
     const CanopenConfig can = ConfigsOf<CanopenWiring>(config.hal).at(0);
     for (const CanopenNodeConfig& node : can.node) AddNode(node);
     for (const ModbusDeviceConfig& device : ConfigsOf<ModbusWiring>(config.hal)) {
@@ -85,6 +88,7 @@ class WiredWorld final : public Task {
     wire.AdvanceTo(monotonic_ns());
     std::array<double, 2> torque_nm{};
     for (const Node& node : nodes_) {
+      node.node->Feed(lines.PowerOn(activation.due_ns) && !supply_fails);
       if (!IsDrive(node.config.role) || !lines.PowerOn(activation.due_ns)) continue;
       torque_nm[static_cast<std::size_t>(node.config.role)] =
           node.config.sign * node.node->torque_per_mille() * node.config.torque_per_mille_nm;
@@ -102,6 +106,7 @@ class WiredWorld final : public Task {
     }
     std::abort();
   }
+  std::array<double, 2> hub_angle_rad() const { return rig_.truth().hub_angle_rad; }
   bool drives_make_torque() {
     return node(CanopenRole::kDrive1).torque_per_mille() != 0 ||
            node(CanopenRole::kDrive2).torque_per_mille() != 0;
@@ -126,6 +131,7 @@ class WiredWorld final : public Task {
   MemoryWire wire{1'000'000};
   std::vector<std::unique_ptr<SimulatedAmplifier>> amplifiers;
   WorldLines lines;
+  bool supply_fails = false;  // of the drives with a supply model, whatever the relay does
 
  private:
   static constexpr std::int64_t kSliceNs = 1'000'000;
@@ -137,7 +143,9 @@ class WiredWorld final : public Task {
 
   void AddNode(const CanopenNodeConfig& config) {
     auto bus = std::make_unique<MemoryBus>(&wire, "vcan0");
-    auto node = std::make_unique<SimulatedNode>(bus.get(), SimulatedNodeOf(config));
+    SimulatedNodeConfig simulated = SimulatedNodeOf(config);
+    if (IsDrive(config.role)) simulated.supply = supply_;
+    auto node = std::make_unique<SimulatedNode>(bus.get(), simulated);
     node->Start();
     wire.AddRunner([node = node.get()] { node->Run(); });
     nodes_.push_back({.config = config, .bus = std::move(bus), .node = std::move(node)});
@@ -165,6 +173,7 @@ class WiredWorld final : public Task {
 
   BlockingExecutor* executor_;
   SimulatedRig rig_;
+  std::optional<DriveSupplyModel> supply_;
   std::vector<Node> nodes_;
   std::deque<Shown> shown_;
 };
@@ -189,6 +198,9 @@ class OnTestTime final : public BusDevice {
   std::uint32_t drives() const noexcept override { return driver_->drives(); }
   std::uint32_t drives_on() const noexcept override { return driver_->drives_on(); }
   std::int64_t worst_case_ns() const noexcept override { return worst_ns_; }
+  CountEpochs count_epochs() const noexcept override { return driver_->count_epochs(); }
+  bool needs_reconnect() const noexcept override { return driver_->needs_reconnect(); }
+  BusFault notice() const noexcept override { return driver_->notice(); }
   void Open() override { driver_->Open(); }
   BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
     world_->wire.AdvanceTo(world_->monotonic_ns());

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Inside the guest, on virtual time: the unchanged daemon with its real drivers (CANopen over
 # SocketCAN, Modbus/TCP, GPIO lines) against `flexarm rig`, which emulates the devices. A whole
-# experiment, then a limit switch, a silent drive, bus-off and a killed daemon; the script checks
-# the resulting outputs at the devices. Leaves the experiment's log as /mnt/out/wire.flexarm.
+# experiment, then a limit switch, a silent drive, bus-off, a drive's fault and a killed daemon; the
+# script checks the resulting outputs at the devices. Leaves the experiment's log as /mnt/out/wire.flexarm.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
 
@@ -134,12 +134,32 @@ check "once" equal "$(bus vcan0 recovered)" 1
 check "nothing arms by itself" equal "$(state)" Tripped
 check "reset" press_and_reset
 check "and armed again" arm_rig
+angle_unknown() { flexarm run "$experiment" 2>&1 | grep -q 'angle of joint 1 is unknown'; }
+check "no run: the nodes were configured again, and their counts may be lost" angle_unknown
 check "the recovery follows the trip, the reset follows the recovery" equal \
   "$(grep -oE -- '-> Tripped|vcan0: reconnected|Tripped -> Idle' daemon.log | paste -sd,)" \
   "-> Tripped,vcan0: reconnected,Tripped -> Idle"
 kill -TERM $daemon
 wait $daemon
 FLEXARM_SOCKET=$PWD/flexarmd.sock
+stop_rig
+
+echo "== a drive's fault stays until the operator resets"
+emergency='vcan0: node 1 (drive1): emergency message 0x2310'
+start_rig
+start_daemon
+echo node drive1 emcy 0x2310 >&3
+check "the trip names it" within 5 grep -q -- "-> Tripped: drive-fault: $emergency" daemon.log
+sleep 2
+check "it is still there" equal "$(bus vcan0 fault)" "$emergency"
+check "of a bus that answers" bus_is_ok vcan0
+check "reset" press_and_reset
+check "it is gone" equal "$(bus vcan0 fault)" null
+check "and the angles are known" equal \
+  "$(flexarm status --json | jq -c .joint_angle_unknown)" '[null,null]'
+start_run
+kill -TERM $daemon
+wait $daemon
 stop_rig
 
 echo "== the daemon is killed during a run"
@@ -165,7 +185,7 @@ check "it cannot be armed" refused flexarm arm
 check "nor reset without the button" refused flexarm reset
 check "the hardware has no power" equal "$(hardware)" "$dead"
 check "reset" press_and_reset
-check "and armed" flexarm arm
+check "and armed" arm_rig
 kill -TERM $daemon
 wait $daemon
 check "flexarmd ends with 0: the trip was reset" equal $? 0

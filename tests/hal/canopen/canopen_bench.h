@@ -63,6 +63,7 @@ class CanopenBench {
   static constexpr std::size_t kNodes = 6;
   static constexpr std::int64_t kPeriod_ns = 20 * kMs;
   static constexpr BusCommand kOff{.torque_nm = {}, .enabled = false};
+  static constexpr BusCommand kAcknowledge{.torque_nm = {}, .enabled = false, .acknowledge = true};
 
   /// @param wired  the actual nodes on the wire, in the order of the config's nodes
   explicit CanopenBench(const CanopenConfig& config = BenchConfig(),
@@ -98,9 +99,10 @@ class CanopenBench {
     NextPeriod();
     return device->Exchange(command, &frame);
   }
-  BusStatus Reconnect() {
+  /// One step back from a failure, with the operator's acknowledgement of drive faults.
+  BusStatus Recover() {
     NextPeriod();
-    return device->Reconnect();
+    return device->needs_reconnect() ? device->Reconnect() : device->Exchange(kAcknowledge, &frame);
   }
   void NextPeriod() { wire.AdvanceTo((now_ns() / kPeriod_ns + 1) * kPeriod_ns); }
 
@@ -117,10 +119,10 @@ class CanopenBench {
            node(1).state() == DriveState::kOperationEnabled;
   }
 
-  /// Last result of Reconnect, after at most `attempts` calls.
-  BusStatus ReconnectUntilOk(int attempts) {
+  /// Last result of Recover, after at most `attempts` calls.
+  BusStatus RecoverUntilOk(int attempts) {
     BusStatus status = BusStatus::kTimeout;
-    for (int k = 0; k < attempts && status != BusStatus::kOk; ++k) status = Reconnect();
+    for (int k = 0; k < attempts && status != BusStatus::kOk; ++k) status = Recover();
     return status;
   }
 

@@ -356,11 +356,11 @@ TEST(CanopenExchange, DoesNotAllocate) {
     for (int k = 0; k < 500; ++k) static_cast<void>(bench.Exchange(kOn));
     bench.node(1).RaiseFault(0x2310);
     for (int k = 0; k < 10; ++k) static_cast<void>(bench.Exchange(kOn));
-    for (int k = 0; k < 10; ++k) static_cast<void>(bench.Reconnect());
+    for (int k = 0; k < 10; ++k) static_cast<void>(bench.Recover());
     bench.node(2).Misbehave({.silent = true});
     for (int k = 0; k < 10; ++k) static_cast<void>(bench.Exchange(CanopenBench::kOff));
     bench.node(2).Misbehave({});
-    for (int k = 0; k < 100; ++k) static_cast<void>(bench.Reconnect());
+    for (int k = 0; k < 100; ++k) static_cast<void>(bench.Recover());
   }
   EXPECT_EQ(bench.Exchange(CanopenBench::kOff), BusStatus::kOk) << "the bus has recovered by then";
 }

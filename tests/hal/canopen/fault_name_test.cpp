@@ -24,7 +24,7 @@ class CanopenFaultNames : public testing::Test {
   std::string Reconnecting(const std::string& until) {
     std::string text;
     for (int k = 0; k < 400 && text != until; ++k) {
-      const BusStatus status = bench_.Reconnect();
+      const BusStatus status = bench_.Recover();
       if (status == BusStatus::kOk) return "ok";
       text = bench_.device->FaultText(bench_.device->FaultOf(status));
     }

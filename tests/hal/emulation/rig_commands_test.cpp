@@ -197,13 +197,14 @@ TEST_F(NodeOf, EachNodeFaultIsInjectedAndRemoved) {
                {3, "no-answer", "can0: node 12 (hub2): does not answer SYNC"},
                {0, "no-heartbeat", "can0: node 1 (drive1): heartbeat lost"},
                {4, "short-pdo", "can0: node 13 (rotor1): sends a malformed PDO"},
+               {2, "power-cycle", "can0: node 11 (hub1): left the operational state, NMT state"},
                {0, "emcy 0x2310", "can0: node 1 (drive1): emergency message 0x2310"}};
   ASSERT_TRUE(bench_.Enable());
   for (const auto& c : cases) {
     SCOPED_TRACE(c.words);
     EXPECT_EQ(After(c.node, c.words), c.named);
     EXPECT_NE(After(c.node, "well", 3), "");
-    EXPECT_EQ(bench_.ReconnectUntilOk(400), BusStatus::kOk);
+    EXPECT_EQ(bench_.RecoverUntilOk(800), BusStatus::kOk);
     ASSERT_TRUE(bench_.EnableOpened());
   }
 }
