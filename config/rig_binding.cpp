@@ -240,6 +240,7 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   safety.Read("slow_exchanges_in_window", &out->slow_exchanges_in_window);
   safety.Read("homing_contact_s", &out->homing_contact_s);
   safety.Read("homing_torque_fraction", &out->homing_torque_fraction);
+  safety.Read("prove_days", &out->prove_days);
 }
 
 void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {

@@ -61,6 +61,9 @@ class TripLatch {
   /// @param awaiting  an arm, run or reset is not answered yet: the arm may be Idle no longer
   void Follow(std::int64_t now_ns, const Permit& newest, bool awaiting);
 
+  /// The state folder, for its other files; nullptr before Open.
+  const StateFolder* folder() const { return folder_ ? &*folder_ : nullptr; }
+
   /// The trip that is latched; empty: none.
   const std::optional<HeldTrip>& trip() const { return trip_; }
 

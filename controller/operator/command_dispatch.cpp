@@ -56,6 +56,10 @@ nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
   if (name == "sim") return SetLine(command, now.permit.state);
   if (name == "arm") return targets_.arm->Start(command, client, now);
   if (name == "run") return StartRun(command, client, now);
+  if (name == "prove-switches") {
+    targets_.switches->Start(client, now.permit.state);
+    return nullptr;
+  }
   if (Commissioner::Knows(name)) {
     targets_.commissioning->Start(command, client, now);
     return nullptr;
@@ -68,7 +72,7 @@ nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
   }
   return Failure("no such command: '" + name + "'",
                  "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
-                 "home, sim");
+                 "home, prove-switches, sim");
 }
 
 nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command, SafetyState state) {
@@ -101,12 +105,23 @@ nlohmann::json CommandDispatch::StartRun(const nlohmann::json& command, int clie
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
     return Failure(why, "then run");
   }
+  const std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
+  const ConditionDecision decision = Judge(unmet, OverridesOf(command, {kSwitchesCondition}));
+  if (decision.refused != nullptr) {
+    return {{"ok", false},
+            {"refusal", decision.refused->refusal},
+            {"error", decision.refused->found},
+            {"remedy", decision.refused->remedy},
+            {"command", "run"},
+            {"state", ToString(state)}};
+  }
   const std::string name = command.value("name", "experiment");
   const std::array<double, kCounters>& angle_rad = now.tick.output.angle_rad;
-  targets_.experiments->AskForRun(
+  const std::uint32_t number = targets_.experiments->AskForRun(
       now.now_ns, client,
       targets_.experiments->Plan(targets_.parse_experiment(command.value("experiment", ""), name),
                                  {angle_rad[0], angle_rad[1]}));
+  targets_.overrides->Asked(number, decision.used);
   return nullptr;
 }
 

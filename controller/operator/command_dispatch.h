@@ -9,6 +9,8 @@
 #include "controller/operator/experiment_loader.h"
 #include "controller/operator/journal_report.h"
 #include "controller/operator/operator_snapshot.h"
+#include "controller/operator/override_record.h"
+#include "controller/operator/prove_switches.h"
 #include "controller/operator/request_tracker.h"
 #include "controller/tasks/loop_stack.h"
 
@@ -26,6 +28,8 @@ class CommandDispatch {
     RequestTracker* requests;
     ExperimentLoader* experiments;
     CommissioningCommands* commissioning;
+    ProveSwitches* switches;
+    OverrideRecord* overrides;
     ArmCommand* arm;
     std::function<nlohmann::json()> status;
     /// Throws std::exception with the reasons.

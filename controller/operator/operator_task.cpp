@@ -30,6 +30,7 @@ OperatorTask::OperatorTask(OperatorContext context)
                                         .experiments = &experiments_,
                                         .requests = &requests_,
                                         .report = context_.report}),
+      switches_(*context_.config, context_.latch, context_.report),
       overrides_(context_.events, context_.report),
       arm_(context_.arm_checks,
            {.requests = &requests_, .overrides = &overrides_, .report = context_.report}),
@@ -41,6 +42,8 @@ OperatorTask::OperatorTask(OperatorContext context)
                  .requests = &requests_,
                  .experiments = &experiments_,
                  .commissioning = &commissioning_,
+                 .switches = &switches_,
+                 .overrides = &overrides_,
                  .arm = &arm_,
                  .status = [this] { return Status(); },
                  .parse_experiment = context_.parse_experiment,
@@ -109,9 +112,11 @@ void OperatorTask::FollowState() {
 void OperatorTask::TakeTicks() {
   while (context_.stack->operator_ticks().Pop(&now_.tick)) {
     commissioning_.Take(now_.tick);
+    switches_.Take(now_.tick);
     warnings_.Take(now_.now_ns, now_.tick);
   }
   Reply(commissioning_.TakeAnswer(now_.permit));
+  Reply(switches_.TakeAnswer(now_.permit));
 }
 
 void OperatorTask::TakeAnswers() {
@@ -190,6 +195,7 @@ nlohmann::json OperatorTask::Status() {
                      .host = arm_.HostStatus(),
                      .design = arm_.DesignStatus(),
                      .overrides = overrides_.Json(),
+                     .switches = switches_.Json(),
                      .timing = context_.stack->timing(),
                      .late_threads_trip = context_.stack->late_threads_trip()});
 }

@@ -15,6 +15,7 @@
 #include "controller/operator/operator_snapshot.h"
 #include "controller/operator/operator_socket.h"
 #include "controller/operator/override_record.h"
+#include "controller/operator/prove_switches.h"
 #include "controller/operator/request_tracker.h"
 #include "controller/operator/run_warnings.h"
 #include "controller/operator/shutdown.h"
@@ -80,6 +81,7 @@ class OperatorTask final : public Task {
   ExperimentLoader experiments_;
   std::optional<ExperimentLoader::Order> unattended_order_;
   CommissioningCommands commissioning_;
+  ProveSwitches switches_;
   OverrideRecord overrides_;
   ArmCommand arm_;
   RunWarnings warnings_;

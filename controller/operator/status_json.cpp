@@ -95,7 +95,8 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"threads", sources.threads},
           {"host", sources.host},
           {"design", sources.design},
-          {"overrides", sources.overrides}};
+          {"overrides", sources.overrides},
+          {"switches", sources.switches}};
 }
 
 }  // namespace flexarm

@@ -28,6 +28,7 @@ struct StatusSources {
   nlohmann::json host;                        ///< ArmCommand::HostStatus
   nlohmann::json design;                      ///< ArmCommand::DesignStatus
   nlohmann::json overrides;                   ///< OverrideRecord::Json
+  nlohmann::json switches;                    ///< ProveSwitches::Json
   TimingCounts timing{};                      ///< LoopStack::timing
   bool late_threads_trip = true;
 };

@@ -47,6 +47,8 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
                "how long homing may be on the switch that it searches for, in all");
   list->Positive("safety.homing_torque_fraction", c.homing_torque_fraction, 1.0,
                  "the share of limits.torque_limit_nm that homing may use");
+  list->Within("safety.prove_days", c.prove_days, 1.0, 366.0,
+               "how long a proof of the switches permits runs");
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ struct SafetyConfig {
   int slow_exchanges_in_window;    ///< so many that took longer than the bus declares trip
   double homing_contact_s;         ///< homing that is longer on its switch, in all, trips
   double homing_torque_fraction;   ///< share of limits.torque_limit_nm while homing, 0 to 1
+  double prove_days;               ///< how long a proof of the switches permits runs; a wired rig
 
   std::vector<Problem> Problems() const;
 };

@@ -112,6 +112,7 @@ const BrokenText kRange[] = {
      "safety.permit_timeout_ms", "2 .. 20"},
     {"NeverMissed", "missed_deadlines_to_trip = 3", "missed_deadlines_to_trip = 0",
      "safety.missed_deadlines_to_trip", "1 .. 10"},
+    {"ProofForEver", "prove_days = 90.0", "prove_days = 4000.0", "safety.prove_days", "1 .. 366"},
     {"OverrunNeverTrips", "overrun_to_trip_ms = 5.0", "overrun_to_trip_ms = 0.0",
      "safety.overrun_to_trip_ms", "2 .. 1000"},
     {"OverrunInDays", "overrun_to_trip_ms = 5.0", "overrun_to_trip_ms = 1e9",

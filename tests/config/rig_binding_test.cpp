@@ -252,7 +252,7 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
                "safety.missed_deadlines_to_trip=4", "safety.homing_torque_fraction=0.25",
                "safety.overrun_to_trip_ms=7", "safety.window_periods=30",
                "safety.missed_deadlines_in_window=11", "safety.failed_exchanges_in_window=12",
-               "safety.slow_exchanges_in_window=13"})
+               "safety.slow_exchanges_in_window=13", "safety.prove_days=14"})
           .safety;
   EXPECT_EQ(s.torque_limit_nm, (std::array{1.0, 2.0}));
   EXPECT_EQ(s.slew_limit_nm_per_s, (std::array{3.0, 4.0}));
@@ -272,6 +272,7 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
   EXPECT_EQ(s.failed_exchanges_in_window, 12);
   EXPECT_EQ(s.slow_exchanges_in_window, 13);
   EXPECT_EQ(s.homing_torque_fraction, 0.25);
+  EXPECT_EQ(s.prove_days, 14.0);
 }
 
 TEST(RigBinding, PutsTimesAndPathsInTheirFields) {

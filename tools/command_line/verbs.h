@@ -39,6 +39,7 @@ void RegisterLinesOff(CLI::App& app, Exit& exit);
 void RegisterModes(CLI::App& app, Exit& exit);
 void RegisterOperate(CLI::App& app, Exit& exit);  ///< status, arm, run, stop, disarm, reset, sim
 void RegisterPlot(CLI::App& app, Exit& exit);
+void RegisterProveSwitches(CLI::App& app, Exit& exit);
 void RegisterReplay(CLI::App& app, Exit& exit);
 void RegisterReport(CLI::App& app, Exit& exit);
 void RegisterRig(CLI::App& app, Exit& exit);

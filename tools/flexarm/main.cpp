@@ -25,6 +25,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterDiff(app, exit);
   RegisterOperate(app, exit);
   RegisterCommission(app, exit);
+  RegisterProveSwitches(app, exit);
   RegisterRig(app, exit);
   RegisterLinesOff(app, exit);
 }

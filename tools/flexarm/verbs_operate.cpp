@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "controller/operator/arm_verdict.h"
+#include "controller/operator/prove_switches.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
@@ -152,10 +153,11 @@ int Status(const OperateOptions& options) {
 
 int RunExperiment(const OperateOptions& options) {
   const Experiment experiment = LoadExperiment(options.experiment);  // throws with file and line
-  return options.daemon.Conclude(
-      options.daemon.Ask({{"command", "run"},
-                          {"name", options.experiment.filename().string()},
-                          {"experiment", experiment.text}}));
+  Json command{{"command", "run"},
+               {"name", options.experiment.filename().string()},
+               {"experiment", experiment.text}};
+  options.overrides.PutInto(&command);
+  return options.daemon.Conclude(options.daemon.Ask(command));
 }
 
 void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
@@ -206,9 +208,13 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
   verb->add_option("experiment", run->experiment, "Experiment, a TOML file")
       ->required()
       ->type_name("EXPERIMENT");
+  run->overrides.AddTo(verb, "--override-switches", kSwitchesCondition,
+                       "Run a wired rig although its switches have not been proved");
   verb->footer(
       "Only from Armed. The daemon first compares the reference with the limits of the rig: a\n"
-      "refusal names the row, the joint, the value and the limit (docs/experiments.md).\n"
+      "refusal names the row, the joint, the value and the limit (docs/experiments.md). A wired "
+      "rig\n"
+      "needs the proof of its switches (flexarm prove-switches).\n"
       "Example: flexarm run config/experiments/square-30deg.toml");
   verb->callback([run, &exit] { exit.code = RunExperiment(*run); });
 

@@ -44,7 +44,7 @@ LAYERS = {
     "controller/latch": "controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks",
-    "controller/operator": "model hal estimator controller/realtime controller/types "
+    "controller/operator": "model hal hal/gpiod estimator controller/realtime controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
     "controller/host": "hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "

@@ -39,6 +39,8 @@ class CommandDispatchTest : public OperatorParts {
                              .requests = &requests_,
                              .experiments = &experiments_,
                              .commissioning = &commissioning_,
+                             .switches = &switches_,
+                             .overrides = &overrides_,
                              .arm = &arm_,
                              .status = [] { return Json{{"ok", true}, {"tick", 12}}; },
                              .parse_experiment = ParseExperiment,

@@ -7,6 +7,7 @@
 
 #include "controller/operator/arm_command.h"
 #include "controller/operator/commissioning_commands.h"
+#include "controller/operator/prove_switches.h"
 #include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/operator_records.h"
 #include "tests/controller/operator/still_stack.h"
@@ -49,6 +50,8 @@ class OperatorParts : public testing::Test {
                                         .experiments = &experiments_,
                                         .requests = &requests_,
                                         .report = journal_.Report()}};
+  std::int64_t unix_s_ = 1'700'000'000;
+  ProveSwitches switches_{config_, &latch_, journal_.Report(), [this] { return unix_s_; }};
   OverrideRecord overrides_{&events_, journal_.Report()};
   ArmCommand arm_{ArmChecks{.design = {.result = ArmVerdict::Result::kPassed}, .simulated = true},
                   {.requests = &requests_, .overrides = &overrides_, .report = journal_.Report()}};

@@ -43,7 +43,8 @@ struct StatusJsonTest : testing::Test {
                        .threads = Json::array({"control"}),
                        .host = nullptr,
                        .design = {{"verdict", "forced"}},
-                       .overrides = Json::array({"host"})});
+                       .overrides = Json::array({"host"}),
+                       .switches = {{"proved", true}}});
   }
 
   OperatorSnapshot now;
@@ -78,6 +79,7 @@ TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
   EXPECT_TRUE(status["host"].is_null());
   EXPECT_EQ(status["design"]["verdict"], "forced");
   EXPECT_EQ(status["overrides"], Json({"host"}));
+  EXPECT_EQ(status["switches"]["proved"], true);
 }
 
 TEST_F(StatusJsonTest, GaugesThatAreMissingAreNamedAndUnknownStrainIsNull) {

@@ -49,7 +49,8 @@ plucked 1 "swapped 1 5" "strain_1_02, strain_1_06: are exchanged"
 plucked 2 "scaled 14 1.5" "strain_2_05: reads 1."
 plucked 2 "stuck 10" "strain_2_01: does not move"
 check "with correct wiring pluck passes" flexarm pluck
-check "then a run is allowed" flexarm run $experiment
+check "no run before the switches are proved" says 'flexarm prove-switches' run $experiment
+check "then a run is allowed" flexarm run --override-switches "emulated machine" $experiment
 armed() { [[ $(state) == Armed ]]; }
 within 30 armed
 check "disarmed" flexarm disarm

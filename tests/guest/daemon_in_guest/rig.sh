@@ -55,9 +55,30 @@ restart_daemon() {
 # The machine is emulated, and its clock is that of its host: it need not be good enough for a rig.
 arm_rig() { flexarm arm --override-host "emulated machine"; }
 
+# A person at the rig who proves each switch, as `flexarm prove-switches` asks.
+prove_switches() {
+  local switch
+  flexarm prove-switches >prove.txt &
+  local proof=$!
+  within 5 grep -q 'step 1 of' prove.txt
+  for switch in limit-1-low limit-1-high limit-2-low limit-2-high emergency-stop; do
+    operate_switch $switch 0 1  # by hand
+    operate_switch $switch 0 1  # the connector
+  done
+  operate_switch reset-button 1 0
+  wait $proof
+}
+operate_switch() {  # operate_switch LINE AWAY BACK: for 0.1 s
+  echo "press $1 $2" >&3
+  sleep 0.1
+  echo "press $1 $3" >&3
+  sleep 0.1
+}
+
+# With the switches as the proof has left them: a run without one needs an override.
 start_run() {
   check "armed" arm_rig
-  check "running" flexarm run $experiment
+  check "running" flexarm run --override-switches "emulated machine" $experiment
 }
 
 # The present outputs at the devices: torque, relay, charge pump.
