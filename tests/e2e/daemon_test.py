@@ -218,11 +218,16 @@ class Daemon(ProgramTest):
 
     @in_real_time
     def test_a_wrong_zero_that_trips_is_corrected_while_tripped(self):
-        self.start_daemon()
+        absolute = ("--set", "commissioning.angles_at_start=absolute")  # the zeros of the file hold
+        daemon = self.start_daemon(*absolute)
         self.wait_for_state("Idle")
-        self.operate("zero", "--angle-deg", "0", "120")
+        self.operate("zero", "--angle-deg", "0", "80")
+        daemon.terminate()
+        self.assertEqual(daemon.wait(30), 0)
+        self.start_daemon(*absolute, "--set", "limits.soft_angle_deg=[90.0, 70.0]")
         self.assertEqual(self.wait_for_state("Tripped")["trip"]["name"], "soft-limit-2")
         self.operate("sim", "reset-button", "1")
+        time.sleep(0.1)  # 50 ms count as a press
         self.operate("sim", "reset-button", "0")
         self.operate("reset", expect=1)  # the cause is still there
         self.operate("zero")

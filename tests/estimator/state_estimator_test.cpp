@@ -310,7 +310,7 @@ struct Loss {
 // an estimate. `lost(k)` says what sample k lacks.
 template <typename Lost>
 double RestOfAnError(const KalmanDesign& design, const StateLayout& layout, int samples,
-                     const Lost& lost) {
+                     Lost lost) {
   StateEstimator right = Kalman(design, layout), wrong = Kalman(design, layout);
   right.Update(Angles(0, 0, 0, 0), Bend({}), {0.0, 0.0});
   wrong.Update(Angles(0.1, -0.1, 0.1, -0.1), Bend({0.02, 0.002, -0.02, 0.002}), {0.0, 0.0});
@@ -344,7 +344,7 @@ TEST(KalmanFilter, IsStableWhateverSamplesAreLostOneAtATime) {
           1e-4)
           << bits;
     }
-    const auto at_random = [&, before = false](int) mutable {
+    auto at_random = [&, before = false](int) mutable {
       before = !before && random() % 2 == 0;
       return before ? Loss{.counters = static_cast<std::uint32_t>(random() % 16),
                            .links = static_cast<std::uint32_t>(random() % 4)}

@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kLongest_s = 3'600.0;  // each step has a time of its own, which the daemon watches
+constexpr double kLongestProof_s =
+    3'600.0;  // each step has a time of its own, which the daemon watches
 constexpr auto kLook = std::chrono::milliseconds(200);
 
 // "step 3 of 11: unplug the connector of ..", each text once.
@@ -31,7 +32,7 @@ void PrintStep(const Json& switches, std::string* shown) {
 
 int Prove(const DaemonClient& daemon) {
   std::future<Json> answer = std::async(std::launch::async, [&daemon] {
-    return daemon.Ask({{"command", "prove-switches"}}, kLongest_s);
+    return daemon.Ask({{"command", "prove-switches"}}, kLongestProof_s);
   });
   std::string shown;
   while (answer.wait_for(kLook) != std::future_status::ready) {

@@ -147,6 +147,7 @@ class FaultyStack final : private FaultyWires, public LoopStack {
                 .control = &control_}) {}
 
   FaultTask& fault_task() { return faults; }
+  const std::vector<SensorFrame>& sampled_frames() const { return faults.sampled(); }
   SpscQueue<TruthRecord>* truth_records() noexcept override { return &truth; }
   std::vector<Task*> drive_tasks() override { return {&plant_, &faults}; }
   Task& control() override { return control_; }
@@ -192,7 +193,7 @@ class FaultyRun {
   }
 
   Permit permit() { return stack_.operator_permits().Read().Newest().value; }
-  const std::vector<SensorFrame>& sampled() { return stack_.fault_task().sampled(); }
+  const std::vector<SensorFrame>& sampled() const { return stack_.sampled_frames(); }
   std::int64_t now_ns() const { return now_ns_; }
 
   std::vector<TickRecord> tick;

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "controller/types/rejected_error.h"
+#include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/operator_records.h"
 #include "tests/controller/operator/still_stack.h"
 #include "tests/support/loop_time.h"
@@ -34,7 +35,10 @@ ArmVerdict NotReady() {
 // A wired rig in Idle, whose machine is checked when the test lets the check end.
 class ArmCommandTest : public testing::Test {
  protected:
-  ArmCommandTest() { now_.permit.state = SafetyState::kIdle; }
+  ArmCommandTest() {
+    now_.permit.state = SafetyState::kIdle;
+    latch_.Open();
+  }
 
   ArmCommand& Make(Result design = Result::kPassed) {
     arm_ = std::make_unique<ArmCommand>(
@@ -70,7 +74,9 @@ class ArmCommandTest : public testing::Test {
   StillStack stack_;
   EventQueue events_{8};
   RecordedJournal journal_;
-  RequestTracker requests_{&stack_};
+  LatchFolder folder_;
+  TripLatch latch_{folder_.path(), "/runs", [](bool, const std::string&) {}};
+  RequestTracker requests_{&stack_, &latch_};
   OverrideRecord overrides_{&events_, journal_.Report()};
   OperatorSnapshot now_;
   ArmVerdict verdict_{.result = Result::kPassed, .findings = {}};  // of the check
