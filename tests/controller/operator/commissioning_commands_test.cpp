@@ -112,6 +112,31 @@ TEST_F(CommissioningCommandsTest, AMeasurementIsAnsweredToItsClientWhenItHasEnde
   EXPECT_THAT(journal_.lines[0].second, HasSubstr("tare: done, kept in " + Folder()));
 }
 
+TEST_F(CommissioningCommandsTest, AnAngleThatBecomesUnknownIsReportedOnceAndRefusesARun) {
+  commissioning_.Follow(CountEpochs{});
+  EXPECT_EQ(commissioning_.WhyNoRun(), "");
+  for (int k = 0; k < 3; ++k) commissioning_.Follow(CountEpochs{0, 1, 0, 0});
+  const std::string text = commissioning_.angles().Text(1);
+  EXPECT_THAT(text, HasSubstr("The angle of joint 2 is unknown: its encoder lost power"));
+  EXPECT_EQ(commissioning_.WhyNoRun(), text);
+  ASSERT_EQ(journal_.lines.size(), 1u);
+  EXPECT_TRUE(journal_.lines[0].first);
+  EXPECT_EQ(journal_.lines[0].second, text);
+}
+
+TEST_F(CommissioningCommandsTest, ALossOfCountAnswersTheCommandThatItSpoils) {
+  now_.permit.state = SafetyState::kIdle;
+  commissioning_.Start({{"command", "zero"}}, 9, now_);
+  MeasureButOne();
+  commissioning_.Follow(CountEpochs{1, 0, 0, 0});
+  commissioning_.Take(last_);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->client, 9);
+  EXPECT_EQ(answer->json["ok"], false);
+  EXPECT_EQ(commissioning_.angles().unknown(), 0b01) << "it has zeroed nothing";
+}
+
 TEST_F(CommissioningCommandsTest, AMeasurementThatFailsIsAnError) {
   now_.permit.state = SafetyState::kIdle;
   commissioning_.Start({{"command", "zero"}}, 9, now_);

@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(Supply, DrivePowerCycles,
                          NameOfSupply);
 
 // Every fifth one runs the experiment for a moment.
-TEST_P(DrivePowerCycles, ACampaignOfArmsAndDisarmsNeverTrips) {
+TEST_P(DrivePowerCycles, CampaignOfArmsAndDisarmsNeverTrips) {
   ASSERT_NO_FATAL_FAILURE(StartIdle(ModbusTransport::kTcp, GetParam()));
   const long cycles = CampaignCases(10, 100);
   for (long cycle = 0; cycle < cycles; ++cycle) {
