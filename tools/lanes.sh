@@ -141,11 +141,14 @@ lane_release() {  # all tests but those of whole programs, release build
 }
 
 lane_campaigns() {  # random campaigns at their whole size; `release` runs a sample of each
-  build release operator_loop_test sensor_loss_loop_test wired_loop_test
+  build release operator_loop_test loop_loop_test sensor_loss_loop_test wired_loop_test
   local program
-  for program in operator/operator_loop_test loop/sensor_loss_loop_test wired/wired_loop_test; do
+  for program in operator/operator_loop_test loop/{loop,sensor_loss}_loop_test wired/wired_loop_test; do
     FLEXARM_CAMPAIGN=whole "build/release/tests/controller/$program" --gtest_filter='*.Campaign*'
   done
+  build tsan wired_threads_test
+  use_environment_of tsan
+  FLEXARM_CAMPAIGN=whole build/tsan/tests/controller/wired_threads/wired_threads_test
 }
 
 lane_step-cost() {  # instructions of one control step are within their limits
@@ -222,7 +225,7 @@ lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop
 }
 
 # Queues, executors and the bodies of the threads.
-threaded_tests=(tests/controller/{exchange,realtime,tasks,operator,host})
+threaded_tests=(tests/controller/{exchange,realtime,tasks,operator,host,wired_threads})
 
 lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
   build tsan "${threaded_tests[@]/%//all}" flexarm flexarmd
