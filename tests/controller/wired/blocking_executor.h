@@ -78,6 +78,11 @@ class BlockingExecutor {
     slot->blocked = false;
   }
 
+  /// From now on the task neither runs nor continues, as if its thread hung.
+  void Stall(const Task& task) {
+    for (const auto& slot : slots_) slot->stalled = slot->stalled || slot->task == &task;
+  }
+
   Statistics statistics(const Task& task) const {
     for (const auto& slot : slots_) {
       if (slot->task == &task) return slot->statistics;
@@ -93,6 +98,7 @@ class BlockingExecutor {
     std::int64_t next_ns = 0;  // when it is due again, or continues
     bool blocked = false;      // in the middle of an activation
     bool woken = false;        // between two
+    bool stalled = false;
     int missed_in_a_row = 0;
     std::int64_t began_ns = 0;
     std::int64_t previous_run_ns = 0;
@@ -105,7 +111,7 @@ class BlockingExecutor {
   void WakeSlots() {
     for (const auto& slot : slots_) {
       Wakeup* wakeup = slot->task->wakeup();
-      if (slot->blocked || wakeup == nullptr || !wakeup->Take()) continue;
+      if (slot->blocked || slot->stalled || wakeup == nullptr || !wakeup->Take()) continue;
       slot->woken = true;
       slot->thread.joinable() ? Continue(slot.get()) : RunTask(slot.get());
       slot->woken = false;
@@ -123,7 +129,7 @@ class BlockingExecutor {
     Slot* next = nullptr;
     for (const auto& slot : slots_) {
       const bool sooner = next == nullptr || slot->next_ns < next->next_ns;
-      if (slot->next_ns < end_ns && sooner) next = slot.get();
+      if (!slot->stalled && slot->next_ns < end_ns && sooner) next = slot.get();
     }
     return next;
   }

@@ -40,13 +40,15 @@ class WorldLines final : public SafetyLines {
     return write;
   }
   bool PowerOn(std::int64_t now_ns) const {
-    return (relay || welded) && now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
+    const bool pumped = now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
+    return (relay || welded) && (pumped || pump_stuck);
   }
 
   LineLevels levels = kHealthyLevels;
   Call read, write;  // how the calls go
   bool relay = false;
-  bool welded = false;  // its contact does not open
+  bool welded = false;      // its contact does not open
+  bool pump_stuck = false;  // the monostable of the charge pump stays on
 
  private:
   bool pump_ = false;
