@@ -122,7 +122,7 @@ class Session {
       case 13:
         return Json{{"command", Below(2) == 0 ? "tare" : "zero"}}.dump();
       case 14:
-        return Json{{"command", "sim"}, {"line", "limit-1-low"}, {"level", Below(8) > 0 ? 1 : 0}}
+        return Json{{"command", "sim"}, {"line", "limit-1-low"}, {"level", Below(16) > 0 ? 1 : 0}}
             .dump();
       default:
         return Json{{"command", "sim"}, {"line", "reset-button"}, {"level", Button()}}.dump();
