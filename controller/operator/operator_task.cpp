@@ -6,7 +6,6 @@
 
 #include "controller/operator/request_answers.h"
 #include "controller/operator/status_json.h"
-#include "controller/runlog/csv.h"
 #include "controller/types/rejected_error.h"
 
 namespace flexarm {
@@ -34,8 +33,7 @@ OperatorTask::OperatorTask(OperatorContext context)
       overrides_(context_.events, context_.report),
       arm_(context_.arm_checks,
            {.requests = &requests_, .overrides = &overrides_, .report = context_.report}),
-      warnings_(context_.grid.period_ns, context_.delay_margin_s,
-                StrainColumns(context_.config->sensors), context_.events, context_.report),
+      warnings_(context_.grid.period_ns, context_.delay_margin_s, context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
       timing_warnings_(context_.events, context_.report),
       dispatch_({.stack = context_.stack,
@@ -185,7 +183,6 @@ nlohmann::json OperatorTask::Status() {
   return StatusJson({.now = &now_,
                      .delay = &warnings_.delay(),
                      .sensors = &context_.config->sensors,
-                     .missing_gauges = warnings_.missing_gauges(),
                      .angles = &commissioning_.angles(),
                      .experiment = experiments_.name(),
                      .buses = context_.stack->buses(),

@@ -18,7 +18,6 @@ struct StatusSources {
   const OperatorSnapshot* now;
   const DelayMonitor* delay;
   const SensorConfig* sensors;
-  std::vector<std::string> missing_gauges{};  ///< RunWarnings
   const AngleKnowledge* angles;
   std::string experiment;        ///< name of the one that is loaded; empty: none
   std::vector<BusHealth> buses;  ///< empty: the backend has none

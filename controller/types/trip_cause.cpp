@@ -106,14 +106,6 @@ constexpr std::array<Row, kTripCauses> kRows{{
      "The file that keeps a trip over a restart, safety-latch.json in daemon.state_directory, "
      "cannot be read, so the arm may have tripped before. Check the arm, the disk and the file's "
      "permissions; then press the reset button and run `flexarm reset`, which removes the file."},
-    {kNoStrainReading1, "no-strain-reading-1", kJoint,
-     "The bending of link 1 is not known: for two samples too few of its gauges gave a good "
-     "reading, or those that did are too close together. Check the amplifier of link 1, its cables "
-     "and its bus."},
-    {kNoStrainReading2, "no-strain-reading-2", kJoint,
-     "The bending of link 2 is not known: for two samples too few of its gauges gave a good "
-     "reading, or those that did are too close together. Check the amplifier of link 2, its cables "
-     "and its bus."},
     {kSafetyLines, "safety-lines", kLineTrouble,
      "The lines of the switches, the relay and the charge pump cannot be relied upon: a read or a "
      "write failed, or took longer than 0.2 ms. Check that the GPIO chip of hal.gpiod is still "

@@ -34,16 +34,14 @@ enum class TripCause : std::uint8_t {
   kStopTimeout = 25,
   kEndedWhileArmed = 26,
   kTripRecordUnreadable = 27,
-  kNoStrainReading1 = 28,
-  kNoStrainReading2 = 29,
-  kSafetyLines = 30,
-  kSafetyOverrun = 31,
-  kDeadlinesOftenMissed = 32,
-  kBusUnreliable = 33,
-  kBusTooSlow = 34,
-  kShutdownTimeout = 35,
+  kSafetyLines = 28,
+  kSafetyOverrun = 29,
+  kDeadlinesOftenMissed = 30,
+  kBusUnreliable = 31,
+  kBusTooSlow = 32,
+  kShutdownTimeout = 33,
 };
-inline constexpr int kTripCauses = 36;
+inline constexpr int kTripCauses = 34;
 
 /// Set of causes, bit i is cause number i.
 using TripCauses = std::uint64_t;

@@ -124,19 +124,6 @@ TEST_F(StrainJudgement, ChannelsOfAnArmAtRestAreNotStuck) {
   for (int k = 0; k < 500; ++k) EXPECT_EQ(fit.Fit(FrameOf(kBent)).stuck, 0u);
 }
 
-TEST_F(StrainJudgement, ALinkWhoseGoodChannelsAllRepeatIsTold) {
-  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
-  SensorFrame frame = FrameOf(kBent);
-  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0, 0})) << "the first frame";
-  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0x3FF, 0xFFC00}));
-  ++frame.strain[4];
-  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0, 0xFFC00}));
-  frame.strain_valid &= ~(1U << 12);
-  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0x3FF, 0xFEC00}));
-  frame.strain_valid = 0x3FF;
-  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0x3FF, 0})) << "no good channel";
-}
-
 TEST_F(StrainJudgement, ResetClearsTheStuckDetection) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
   fit.Fit(FrameOf({}));

@@ -35,7 +35,9 @@ TEST(TripCause, NamesAreThoseOfTheirNumbers) {
   EXPECT_STREQ(ToString(static_cast<TripCause>(18)), "stale-frame");
   EXPECT_STREQ(ToString(static_cast<TripCause>(22)), "control-heartbeat-lost");
   EXPECT_STREQ(ToString(static_cast<TripCause>(25)), "stop-timeout");
-  EXPECT_STREQ(ToString(static_cast<TripCause>(26)), "safety-lines");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(26)), "ended-while-armed");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(28)), "safety-lines");
+  EXPECT_STREQ(ToString(static_cast<TripCause>(33)), "shutdown-timeout");
 }
 
 TEST(TripCause, ACorruptedNumberIsNamedAsSuch) {

@@ -46,7 +46,7 @@ class LateSafetyThread : public SafetyTaskTest, public testing::WithParamInterfa
       case kTripped:
         GoTo(kRunning);
         lines_.levels &= ~LineBit(Line::kEmergencyStop);
-        RunFor(kMs);
+        RunFor(2 * kMs);  // its second sample
         lines_.levels = kHealthyLevels;
         break;
     }

@@ -20,7 +20,7 @@ class SafetyTaskReset : public SafetyTaskTest {
   }
   void PressButton() {
     lines_.levels |= LineBit(Line::kResetButton);
-    RunFor(5 * kMs);
+    RunFor(60 * kMs);  // 50 ms count as a press
     lines_.levels = kHealthyLevels;
     RunFor(5 * kMs);
   }
