@@ -68,13 +68,20 @@ TEST(DesignVerdict, AnUnstableLoopIsRejectedWithItsFiguresAndWhereItIsWorst) {
 TEST(DesignVerdict, ThePayloadsAreThoseOfTheConfig) {
   EXPECT_THAT(CheckedPayloads_kg(ShippedRig().controller),
               ElementsAre(0.0, DoubleEq(0.01), DoubleEq(0.1), DoubleEq(0.2), 0.5, 1.0));
-  RigConfig config = ShippedRig({"controller.payload_range_kg=[0.1, 0.1]"});
+  const RigConfig config = ShippedRig({"controller.payload_range_kg=[0.1, 0.1]"});
   EXPECT_EQ(JudgeDesign(config, ShippedDesign()).robustness->cases.size(), 9u)
       << "one payload, three elbow angles, three gains";
-  config = ShippedRig({"controller.payload_range_kg=[0.0, 40.0]"});
-  const DesignVerdict heavy = JudgeDesign(config, ShippedDesign());
+  // This design is stable with 0.3 kg (0.9994) and unstable with 0.5 kg (1.0073).
+  const auto with = [](const std::string& range) {
+    const RigConfig rig =
+        LoadConfig(FLEXARM_SOURCE_DIR "/config/quanser-2dsfl.toml",
+                   {"controller.torque_weight=5", "controller.payload_range_kg=" + range});
+    return JudgeDesign(rig, DesignController(rig));
+  };
+  EXPECT_EQ(with("[0.157, 0.3]").result, Result::kSound);
+  const DesignVerdict heavy = with("[0.157, 0.5]");
   EXPECT_EQ(heavy.result, Result::kRejected);
-  EXPECT_THAT(heavy.found, HasSubstr("kg, elbow at"));
+  EXPECT_THAT(heavy.found, HasSubstr("unstable with 0.5 kg, elbow at 90 deg"));
 }
 
 TEST(DesignVerdict, AWaivedCheckIsForcedOnlyIfEveryFailedOneIsWaived) {
