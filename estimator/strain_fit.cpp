@@ -1,6 +1,7 @@
 #include "estimator/strain_fit.h"
 
 #include <cmath>
+#include <limits>
 
 #include "estimator/polynomial_fit.h"
 #include "estimator/root_strain.h"
@@ -9,6 +10,7 @@
 namespace flexarm {
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMaxOutliersPerLink = 2;
 
 // Smallest determinant of the normalised normal equations at which two modes are separable: the
@@ -149,6 +151,7 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
                            const std::array<double, 4>& modal_rate_m_s) noexcept {
   const std::int64_t age_ns = instant_ns - frame.sampled_at_ns;
   FittedModes out{};
+  out.root_strain.fill(kUnknown);
   std::array<double, kMaxStrainChannels> strain{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
     const std::uint32_t bit = std::uint32_t{1} << i;
@@ -174,7 +177,7 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
     const std::size_t i = static_cast<std::size_t>(link);
     out.used &= ~stuck;
     out.valid[i] = false;
-    out.root_strain[i] = 0.0;
+    out.root_strain[i] = kUnknown;
     out.modal_m[2 * i] = last_modal_[2 * i];
     out.modal_m[2 * i + 1] = last_modal_[2 * i + 1];
     FitLink(link, strain, &out);

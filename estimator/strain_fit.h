@@ -17,7 +17,8 @@ namespace flexarm {
 struct FittedModes {
   std::array<double, 4> modal_m;  ///< f11 f12 f21 f22; the last good fit if not valid
   std::array<bool, 2> valid;      ///< per link: enough good channels
-  /// Surface strain of the fit at the root of each link, or of the section where it bends most.
+  /// Surface strain of the fit at the root of each link, or of the section where it bends most;
+  /// NaN, unknown, if not valid.
   std::array<double, 2> root_strain;
   std::array<double, 2> residual;  ///< rms of channel minus fit, unit strain
   std::uint32_t used;              ///< bit i: channel i was used
@@ -51,6 +52,10 @@ class StrainFit {
   /// @param modal_rate_m_s  at that instant, of the coordinates as the gauges read them
   FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
                   const std::array<double, 4>& modal_rate_m_s) noexcept;
+  /// Bit i: channel i is a gauge of that link; 0 if the link has too few to separate its modes.
+  std::array<std::uint32_t, 2> gauges() const noexcept {
+    return {solvable_[0] ? LinkMask(0) : 0, solvable_[1] ? LinkMask(1) : 0};
+  }
   /// Treats every reading as taken at the frame's instant.
   FittedModes Fit(const SensorFrame& frame) noexcept { return Fit(frame, frame.sampled_at_ns, {}); }
 

@@ -14,6 +14,10 @@
 namespace flexarm {
 namespace {
 
+constexpr TripCauses kStateLost = CauseBit(TripCause::kStateNotFinite) |
+                                  CauseBit(TripCause::kNoStrainReading1) |
+                                  CauseBit(TripCause::kNoStrainReading2);
+
 void Store(const StateVector& x, std::array<double, kMaxNominalStates>* out) noexcept {
   for (Eigen::Index i = 0; i < x.size(); ++i) (*out)[static_cast<std::size_t>(i)] = x(i);
 }
@@ -62,7 +66,8 @@ ControlStep::ControlStep(const ControlConfig& config, const Design& design,
       fit_(config.arm, config.sensors, config.estimator),
       observer_(MakeObserver(config, design)),
       fault_detection_(config.safety, config.estimator, period_s_,
-                       config.sensors.counters_present(), config.arm.joint_stiffness_nm_per_rad()),
+                       config.sensors.counters_present(), fit_.gauges(),
+                       config.arm.joint_stiffness_nm_per_rad()),
       delay_(config.loop.period_ns(), config.loop.actuation_delay_ms >= config.loop.period_ms),
       law_(std::move(law)),
       stop_(design.K_stop, design.layout, period_s_) {}
@@ -185,8 +190,8 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
       prediction_ ? observer_->Predict(estimate.x, delay_.Pending(input, observer_->delay_found()))
                   : estimate.x;
   // A reset needs the cause of the trip to be gone: a state that stayed not finite would prevent it
-  // for ever.
-  if ((verdict.faults & CauseBit(TripCause::kStateNotFinite)) != 0) observer_->Restart();
+  // for ever, and so would one that drifted while a link was not measured.
+  if ((verdict.faults & kStateLost) != 0) observer_->Restart();
 
   StepOutput out{};
   out.tick = input.tick;

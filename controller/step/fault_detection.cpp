@@ -25,11 +25,13 @@ constexpr TripCause PerJoint(TripCause joint1, std::size_t i) noexcept {
 
 FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator,
                                double period_s, std::uint32_t counters_present,
+                               const std::array<std::uint32_t, 2>& gauges,
                                const std::array<double, 2>& joint_stiffness_nm_per_rad)
     : safety_(safety),
       estimator_(estimator),
       period_s_(period_s),
       counters_present_(counters_present),
+      gauges_(gauges),
       joint_stiffness_(joint_stiffness_nm_per_rad),
       // Not before the window is full.
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
@@ -74,13 +76,14 @@ void FaultDetection::JudgeJoints(const LoopFacts& facts) noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     const double angle = std::fabs(facts.counters->angle_rad[i]);
     const double soft = safety_.soft_angle_deg[i] * kRadPerDeg;
-    Raise(PerJoint(TripCause::kSoftLimit1, i), angle > soft && facts.mode != LoopMode::kRegulate, 1,
-          angle, soft, i + 1);
+    Raise(PerJoint(TripCause::kSoftLimit1, i),
+          !(angle <= soft) && facts.mode != LoopMode::kRegulate, 1, angle, soft, i + 1);
     const double rate = std::fabs(facts.estimate->x(dof + static_cast<Eigen::Index>(i)));
     Raise(PerJoint(TripCause::kHubRate1, i), rate > safety_.hub_rate_rad_s[i], kRateTicks, rate,
           safety_.hub_rate_rad_s[i], i + 1);
     const double strain = std::fabs(facts.modes->root_strain[i]);
-    Raise(PerJoint(TripCause::kBendingStrain1, i), strain > safety_.strain_limit[i], 1, strain,
+    Raise(PerJoint(TripCause::kBendingStrain1, i),
+          facts.modes->valid[i] && !(strain <= safety_.strain_limit[i]), 1, strain,
           safety_.strain_limit[i], i + 1);
   }
 }
@@ -117,6 +120,10 @@ void FaultDetection::JudgeCounters(const LoopFacts& facts) noexcept {
 
 void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
   const FittedModes& modes = *facts.modes;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Raise(PerJoint(TripCause::kNoStrainReading1, i), gauges_[i] != 0 && !modes.valid[i],
+          kMissingTicks, std::popcount(modes.used & gauges_[i]), estimator_.modes_per_link, i + 1);
+  }
   const int ticks = estimator_.fault_ticks;
   const bool judged = facts.mode != LoopMode::kOpenLoop;
   Raise(TripCause::kStrainStuck, judged && modes.stuck != 0, ticks, 0.0,
@@ -159,19 +166,23 @@ bool FaultDetection::JudgeRest(const LoopFacts& facts) noexcept {
     hub_before_.fill({facts.counters->angle_rad[0], facts.counters->angle_rad[1]});
     root_strain_before_ = facts.modes->root_strain;
   }
-  bool slow = true;
+  bool slow = true, complete = true;
   for (std::size_t i = 0; i < 2; ++i) {
     const double angle = facts.counters->angle_rad[i];
     const double hub_rate =
         (angle - hub_before_[ring_][i]) / (static_cast<double>(kRestWindow) * period_s_);
     hub_before_[ring_][i] = angle;
+    slow = slow && std::fabs(hub_rate) < safety_.rest_hub_rate_rad_s;
+    if (!facts.modes->valid[i]) {  // unknown: this sample is no evidence of rest
+      complete = complete && gauges_[i] == 0;
+      continue;
+    }
     const double strain_rate = (facts.modes->root_strain[i] - root_strain_before_[i]) / period_s_;
-    slow = slow && std::fabs(hub_rate) < safety_.rest_hub_rate_rad_s &&
-           std::fabs(strain_rate) < safety_.rest_strain_rate_per_s;
+    slow = slow && std::fabs(strain_rate) < safety_.rest_strain_rate_per_s;
     root_strain_before_[i] = facts.modes->root_strain[i];
   }
   ring_ = (ring_ + 1) % kRestWindow;
-  rest_ticks_ = slow ? std::min(rest_ticks_ + 1, rest_ticks_needed_) : 0;
+  rest_ticks_ = slow ? std::min(rest_ticks_ + (complete ? 1 : 0), rest_ticks_needed_) : 0;
   return rest_ticks_ == rest_ticks_needed_;
 }
 

@@ -46,7 +46,7 @@ class FaultDetection {
   static constexpr double kDampedTo = 1.5;
 
   FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
-                 std::uint32_t counters_present,
+                 std::uint32_t counters_present, const std::array<std::uint32_t, 2>& gauges,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 
   /// Resets all state: the results depend on later samples only, so that a log, which begins at a
@@ -73,6 +73,7 @@ class FaultDetection {
   EstimatorConfig estimator_;
   double period_s_;
   std::uint32_t counters_present_;
+  std::array<std::uint32_t, 2> gauges_;  // StrainFit::gauges
   std::array<double, 2> joint_stiffness_;
   int rest_ticks_needed_;
   int rest_ticks_ = 0;

@@ -129,6 +129,12 @@ constexpr std::array<Row, kTripCauses> kRows{{
     {kShutdownTimeout, "shutdown-timeout", TripChannel::kNone,
      "The arm did not come to rest in time while the daemon was shutting down, so its power was "
      "switched off. Wait until it is at rest; check the gains and the rest limits."},
+    {kNoStrainReading1, "no-strain-reading-1", kJoint,
+     "The bending of link 1 is not known: for two samples too few of its gauges gave a good "
+     "reading. Check the amplifier of link 1, its cables and its bus."},
+    {kNoStrainReading2, "no-strain-reading-2", kJoint,
+     "The bending of link 2 is not known: for two samples too few of its gauges gave a good "
+     "reading. Check the amplifier of link 2, its cables and its bus."},
 }};
 
 static_assert(

@@ -40,8 +40,10 @@ enum class TripCause : std::uint8_t {
   kBusUnreliable = 31,
   kBusTooSlow = 32,
   kShutdownTimeout = 33,
+  kNoStrainReading1 = 34,
+  kNoStrainReading2 = 35,
 };
-inline constexpr int kTripCauses = 34;
+inline constexpr int kTripCauses = 36;
 
 /// Set of causes, bit i is cause number i.
 using TripCauses = std::uint64_t;

@@ -63,11 +63,52 @@ class FaultDetectionTest : public testing::Test {
   }
 
   const RigConfig config_ = ShippedRig();
-  FaultDetection monitor_{config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96}};
+  FaultDetection monitor_{config_.safety, config_.estimator, kPeriod_s,
+                          0b1111,         {0x3FF, 0xFFC00},  {761.59, 497.96}};
 };
 
 TEST_F(FaultDetectionTest, AHealthyArmRaisesNoFault) {
   for (int k = 0; k < 100; ++k) EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
+}
+
+// Gauges that answer without a good reading: the bending is unknown, which is no bending of 0.
+TEST_F(FaultDetectionTest, LostStrainIsAFaultOfItsLinkInTheSecondSample) {
+  Facts facts;
+  facts.modes.valid[1] = false;
+  facts.modes.root_strain[1] = std::numeric_limits<double>::quiet_NaN();
+  facts.modes.used = 0x3FF | 1U << 12;  // one gauge of link 2 is left
+  Expect(TripCause::kNoStrainReading2, 2, facts, 1.0, config_.estimator.modes_per_link, 2);
+  facts.modes.valid = {false, true};
+  facts.modes.used = 0xFFC00;
+  Expect(TripCause::kNoStrainReading1, 2, facts, 0.0, config_.estimator.modes_per_link, 1);
+}
+
+TEST_F(FaultDetectionTest, ALinkWithoutGaugesMissesNone) {
+  FaultDetection ungauged(config_.safety, config_.estimator, kPeriod_s, 0b1111, {0x3FF, 0},
+                          {761.59, 497.96});
+  Facts facts;
+  facts.modes.valid[1] = false;
+  facts.modes.root_strain[1] = std::numeric_limits<double>::quiet_NaN();
+  bool at_rest = false;
+  for (int k = 0; k < 100; ++k) {
+    const auto verdict = ungauged.Judge(facts.Now());
+    EXPECT_EQ(verdict.faults, 0u);
+    at_rest = verdict.at_rest;
+  }
+  EXPECT_TRUE(at_rest);
+}
+
+// Every second sample lacks the strain of a link: it counts for rest neither way.
+TEST_F(FaultDetectionTest, ASampleWithoutStrainIsNoEvidenceOfRest) {
+  const int needed = static_cast<int>(std::ceil(config_.safety.rest_time_s / kPeriod_s));
+  Facts lost;
+  lost.modes.valid[0] = false;
+  lost.modes.root_strain[0] = std::numeric_limits<double>::quiet_NaN();
+  int samples = 0;
+  while (!monitor_.Judge(samples % 2 == 0 ? Facts().Now() : lost.Now()).at_rest) {
+    ASSERT_LT(++samples, 10 * needed);
+  }
+  EXPECT_GE(samples, 2 * (needed - 1));
 }
 
 TEST_F(FaultDetectionTest, SoftLimitsTripInTheSameSample) {
@@ -241,7 +282,8 @@ TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
   Facts elsewhere;
   elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
   elsewhere.modes.root_strain = {2e-4, 1e-4};
-  FaultDetection fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  FaultDetection fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, {0x3FF, 0xFFC00},
+                       {761.59, 497.96});
   for (int k = 0; k < 38; ++k) monitor_.Judge(elsewhere.Now());  // 38: not a full ring
   monitor_.Reset();
   for (int k = 1; k <= 60; ++k) {
@@ -259,7 +301,8 @@ TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
 TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestWithAShortRestTime) {
   SafetyConfig safety = config_.safety;
   safety.rest_time_s = 0.05;
-  FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, {761.59, 497.96});
+  FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, {0x3FF, 0xFFC00},
+                       {761.59, 497.96});
   Facts moving;
   for (int k = 0; k < 20; ++k) {
     moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;

@@ -86,6 +86,7 @@ class GaugeBus final : public BusDevice {
   BusStatus Exchange(const BusCommand&, SensorFrame* part) noexcept override {
     *part = world_->frame;
     part->counter_valid = 0;
+    part->strain_valid &= ~lost;
     part->levels = levels;
     return fails && fails(exchanges++) ? BusStatus::kTimeout : status;
   }
@@ -95,6 +96,7 @@ class GaugeBus final : public BusDevice {
 
   BusStatus status = BusStatus::kOk;
   std::function<bool(std::int64_t exchange)> fails;  // numbered from 0; empty: none does
+  std::uint32_t lost = 0;  // bit i: gauge i answers without a good reading
   LineLevels own_lines = LineBit(Line::kLimit2High) | LineBit(Line::kResetButton);
   LineLevels levels = LineBit(Line::kLimit2High);
   std::int64_t exchanges = 0;

@@ -92,6 +92,24 @@ TEST_F(WiredStackTest, ALostBusIsNamedInTheTripAndInTheHealth) {
       << "the trip keeps what caused it";
 }
 
+// The bus is well, its gauges give no good reading: the bending limit must not compare a 0.
+struct LostGauges : WiredStackTest, testing::WithParamInterface<std::uint32_t> {};
+
+TEST_P(LostGauges, TripByTheNameOfTheirLink) {
+  RunUntil(3'000 * kMs);
+  ASSERT_EQ(permit().state, SafetyState::kRunning) << ToString(permit().cause);
+  gauges_.lost = GetParam();
+  RunUntil(now_ns_ + 80 * kMs);  // two samples, the report of the second, the bus after it
+  EXPECT_EQ(permit().state, SafetyState::kTripped);
+  EXPECT_EQ(permit().cause, (GetParam() & 0x3FEU) != 0 ? TripCause::kNoStrainReading1
+                                                       : TripCause::kNoStrainReading2)
+      << ToString(permit().cause);
+  EXPECT_EQ(drives_.last.torque_nm, (std::array{0.0, 0.0}));
+}
+
+// All, all of a link, all of link 1 but one.
+INSTANTIATE_TEST_SUITE_P(Of, LostGauges, testing::Values(0xFFFFFU, 0x3FFU, 0xFFC00U, 0x3FEU));
+
 TEST_F(WiredStackTest, ADriveFaultTripsWithItsOwnCause) {
   RunUntil(2'000 * kMs);
   drives_.failure = BusStatus::kDriveFault;
