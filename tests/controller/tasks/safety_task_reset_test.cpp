@@ -61,8 +61,8 @@ TEST_F(SafetyTaskReset, WaitsForTheArmToBeAtRestAfterwards) {
   TripByADrive();
   PressButton();
   const std::uint32_t reset = Ask(RequestKind::kReset);
-  RunFor(20 * kMs);
   control_.report.at_rest = false;  // the readings come back, and a rest takes half a second
+  RunFor(60 * kMs);
   drive_.report.drive_ok = true;
   RunFor(500 * kMs);
   EXPECT_FALSE(AnswerTo(reset).has_value());
