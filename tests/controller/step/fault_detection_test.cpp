@@ -170,7 +170,8 @@ TEST_F(FaultDetectionTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
 }
 
 TEST_F(FaultDetectionTest, AnEncoderThatTheRigLacksDoesNotTrip) {
-  FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {761.59, 497.96});
+  FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {0x3FF, 0xFFC00},
+                           {761.59, 497.96});
   Facts facts;
   facts.counters.good = 0b0011;
   facts.counters.missing_ticks = {0, 0, 500, 500};
