@@ -18,10 +18,10 @@ BusTask::BusTask(const RigConfig& config, BusDevice* device, BusChannels channel
       grid_(config.loop),
       limits_(MakeGateLimits(config.safety, grid_)),
       channels_(channels),
+      counts_(config.sensors),
       failed_lately_(config.safety.window_periods),
       slow_lately_(config.safety.window_periods),
-      worst_case_ns_(device->worst_case_ns()),
-      counts_(config.sensors) {}
+      worst_case_ns_(device->worst_case_ns()) {}
 
 Task::Traits BusTask::traits() const noexcept {
   return {.name = device_->name(),

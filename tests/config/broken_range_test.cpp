@@ -131,7 +131,8 @@ const BrokenText kRange[] = {
     {"SocketWithAVariable", "/run/flexarm", "$HOME", "daemon.socket", "not expanded"},
     {"NoStateDirectory", "state_directory = \"runs\"", "state_directory = \"\"",
      "daemon.state_directory", "a trip"},
-    {"NoLogDirectory", "directory = \"runs\"", "directory = \"\"", "log.directory", "run logs"},
+    {"NoLogDirectory", "[log]\ndirectory = \"runs\"", "[log]\ndirectory = \"\"", "log.directory",
+     "run logs"},
 };
 INSTANTIATE_TEST_SUITE_P(Range, BrokenConfig, ::testing::ValuesIn(kRange), NameOfCase);
 

@@ -10,19 +10,20 @@
 #include "controller/design/design_controller.h"
 #include "controller/reference/reference.h"
 #include "controller/step/control_step.h"
+#include "model/arm/arm_model.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/controller/step/step_at_rest.h"
 
 namespace flexarm {
 namespace {
 
-// Readings of drives and encoders of an arm that follows its reference without vibration: hub
-// angles of the reference, torque with friction, rotors with the torsion of that torque. No strain
-// reading is valid.
-StepInput Followed(const ReferenceTable& table, int k, const ArmParameters& arm) {
+// Readings of drives, encoders and gauges of an arm that follows its reference without vibration:
+// hub angles and bending of the reference, torque with friction, rotors with the torsion of that
+// torque.
+StepInput Followed(const ReferenceTable& table, int k, const RigConfig& config) {
+  const ArmParameters& arm = config.arm;
   StepInput input = AtRest(k, SafetyState::kRunning);
   input.reset = k == 0 ? 1 : 0;
-  input.frame.strain_valid = 0;
   const ReferenceSample& now = table.At(k - 1);  // sample k is one period ahead: see `path`
   for (std::size_t i = 0; i < 2; ++i) {
     const double rate_rad_s = now.x_m[6 + i];
@@ -35,6 +36,15 @@ StepInput Followed(const ReferenceTable& table, int k, const ArmParameters& arm)
     const auto rotor = std::lround(rotor_rad * counts_per_turn / (2.0 * M_PI));
     input.frame.counter[i] = static_cast<std::uint32_t>(hub) & 0xFFu;
     input.frame.counter[2 + i] = static_cast<std::uint32_t>(rotor) & (i == 0 ? 0xFFu : 0xFFFFu);
+  }
+  const ArmModel model(arm, ModeCount{.link1 = 2, .link2 = 2});
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(model.dof());
+  q.tail(4) << now.x_m[2], now.x_m[3], now.x_m[4], now.x_m[5];
+  for (std::size_t i = 0; i < config.sensors.strain.size(); ++i) {
+    const StrainChannelConfig& row = config.sensors.strain[i];
+    const double volts = model.Strain(row.link, row.position_m, q) * row.gain_v_per_unit;
+    input.frame.strain[i] = static_cast<std::int32_t>(
+        std::lround(volts / config.sensors.strain_input.volts_per_count()));
   }
   return input;
 }
@@ -70,7 +80,7 @@ TEST(ControlStepWithPayload, AMoveRaisesTheStandardDeviationOfThePayload) {
     bool moved = false;
     double sigma_before_kg = 0.0;
     for (int k = 0; k <= table.periods(); ++k) {
-      StepInput input = Followed(arm_moves, k, config.arm);
+      StepInput input = Followed(arm_moves, k, config);
       input.path = table.PathAround(k);
       const StepOutput out = step.Step(input);
       if (IsMoving(input.path[1]) && !moved && ++moves == 2) {

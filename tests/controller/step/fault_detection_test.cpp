@@ -78,7 +78,9 @@ TEST_F(FaultDetectionTest, LostStrainIsAFaultOfItsLinkInTheSecondSample) {
   facts.modes.root_strain[1] = std::numeric_limits<double>::quiet_NaN();
   facts.modes.used = 0x3FF | 1U << 12;  // one gauge of link 2 is left
   Expect(TripCause::kNoStrainReading2, 2, facts, 1.0, config_.estimator.modes_per_link, 2);
-  facts.modes.valid = {false, true};
+  facts = Facts();
+  facts.modes.valid[0] = false;
+  facts.modes.root_strain[0] = std::numeric_limits<double>::quiet_NaN();
   facts.modes.used = 0xFFC00;
   Expect(TripCause::kNoStrainReading1, 2, facts, 0.0, config_.estimator.modes_per_link, 1);
 }

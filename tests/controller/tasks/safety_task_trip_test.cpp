@@ -49,7 +49,9 @@ TEST_F(SafetyTaskTest, ATripFromBeforeTheStartIsLatchedFromTheFirstTick) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     const SafetyDecision decision{.status = records[i].after, .refusal = records[i].refusal};
     EXPECT_EQ(NextSafetyState(records[i].before, records[i].facts), decision) << i;
-    if (i > 0) EXPECT_EQ(records[i].before, records[i - 1].after) << i;
+    if (i > 0) {
+      EXPECT_EQ(records[i].before, records[i - 1].after) << i;
+    }
   }
 }
 

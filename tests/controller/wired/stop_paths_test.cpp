@@ -59,6 +59,7 @@ class StopPaths : public HostileBus {
     double longest_ms = 0.0;
     for (const int phase_ms : phases_ms) {
       SCOPED_TRACE(path.name + " at " + std::to_string(phase_ms) + " ms");
+      rig_.reset();  // one rig at a time: its drivers share a clock
       StartRun();
       if (HasFatalFailure()) return longest_ms;
       WiredWorld& world = *rig_->world;
@@ -99,7 +100,9 @@ TEST_F(StopPaths, CampaignTheTableOfTheDocumentIsWhatIsMeasured) {
       const double measured_ms = TorqueLasts_ms(path, kPowerFaults[i], phases_ms);
       std::printf("%s, power fault %zu: %g ms\n", path.name.c_str(), i, measured_ms);
       EXPECT_LE(measured_ms, path.longest_ms[i]) << path.name;
-      if (whole) EXPECT_EQ(measured_ms, path.longest_ms[i]) << path.name;
+      if (whole) {
+        EXPECT_EQ(measured_ms, path.longest_ms[i]) << path.name;
+      }
       row += " " + std::to_string(path.longest_ms[i]) + " ms |";
     }
     EXPECT_NE(document.find(row + "\n"), std::string::npos) << "docs/safety.md needs: " << row;

@@ -82,7 +82,9 @@ class UnreliableRig : public WiredStackTest, public testing::WithParamInterface<
         GetParam().percent == 10 && !GetParam().regular ? 600 : config_.safety.window_periods;
     EXPECT_LE(PeriodsUntilTrip(stated + 1), stated + 1);
     EXPECT_THAT(permit().cause, testing::AnyOf(window, in_a_row)) << ToString(permit().cause);
-    if (GetParam().regular && GetParam().percent <= 50) EXPECT_EQ(permit().cause, window);
+    if (GetParam().regular && GetParam().percent <= 50) {
+      EXPECT_EQ(permit().cause, window) << ToString(permit().cause);
+    }
     EXPECT_FALSE(lines_.relay);
   }
 };
