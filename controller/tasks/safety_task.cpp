@@ -102,7 +102,7 @@ void SafetyTask::Run(const Activation& activation) noexcept {
 }
 
 void SafetyTask::Ended() noexcept {
-  // Nobody is left to judge the call: the charge pump, which stands still now, is behind it.
+  // No later tick judges the call: the charge pump, which stands still now, is behind it.
   static_cast<void>(channels_.lines->Write(permits_.Newest().value.renewed_ns + kPeriodNs,
                                            {.relay_closed = false, .pump_level = false}));
 }
