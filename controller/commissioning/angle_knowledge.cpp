@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "controller/types/safety_state.h"
+#include "controller/types/trip_cause.h"
 
 namespace flexarm {
 namespace {
@@ -40,6 +41,8 @@ std::uint8_t AngleKnowledge::Follow(const CountEpochs& epochs) {
 }
 
 std::uint8_t AngleKnowledge::Follow(const TickRecord& tick) {
+  // A reading that is only late is not used either, and loses no count.
+  if ((tick.output.faults & CauseBit(TripCause::kEncoderJump)) == 0) return 0;
   const std::uint32_t rejected = tick.input.frame.counter_valid & ~tick.output.counters_used;
   return Lose(rejected, "its encoder jumped");
 }

@@ -58,7 +58,9 @@ class Gates(ProgramTest):
                 simulated = self.folder / rig.name
                 simulated.write_text(f'extends = "{rig}"\n[hal]\nbackend = "sim"\n',
                                      encoding="utf-8")
-                self.start_daemon(config=simulated)
+                # It is killed while armed, so the next one has a state folder of its own.
+                self.start_daemon("--state-dir", self.folder / f"state of {rig.name}",
+                                  config=simulated)
                 status = self.wait_for_state("Idle")
                 self.assertEqual(status["design"]["verdict"], "sound")
                 self.assertIsNone(status["host"], "no machine is too bad for a simulated arm")

@@ -62,6 +62,8 @@ TEST(AngleKnowledge, AJumpCostsTheAngle) {
   tick.output.counters_used = 0b1101;
   EXPECT_EQ(angles.Follow(tick), 0) << "a reading that is missing is no jump";
   tick.input.frame.counter_valid = 0b1111;
+  EXPECT_EQ(angles.Follow(tick), 0) << "nor is one that came too late";
+  tick.output.faults = CauseBit(TripCause::kEncoderJump);
   EXPECT_EQ(angles.Follow(tick), 0b10);
   EXPECT_THAT(angles.Text(1), HasSubstr("its encoder jumped"));
 }
@@ -71,6 +73,7 @@ TEST(AngleKnowledge, AnAbsoluteEncoderKeepsItsAngle) {
   EXPECT_EQ(angles.Follow(CountEpochs{1, 1, 1, 1}), 0);
   TickRecord tick = Tick();
   tick.output.counters_used = 0;
+  tick.output.faults = CauseBit(TripCause::kEncoderJump);
   EXPECT_EQ(angles.Follow(tick), 0);
   EXPECT_EQ(angles.unknown(), 0);
 }
