@@ -45,7 +45,7 @@ class Session {
     latch_.Open();
     operator_ = std::make_unique<OperatorTask>(OperatorContext{
         .stack = stack_.get(),
-         .latch = &latch_,
+        .latch = &latch_,
         .events = &events_,
         .design = &ShippedDesign(),
         .config = &config_,

@@ -383,8 +383,8 @@ TEST_F(OperatorTaskTest, WithoutRoomNothingIsArmedAttendedOrNot) {
   EXPECT_EQ(State(), "Idle");
 }
 
-// A wrong zero in the calibration file trips at the start; a reset wants the cause gone, which takes
-// another zero.
+// A wrong zero in the calibration file trips at the start; a reset wants the cause gone, which
+// takes another zero.
 TEST_F(OperatorTaskTest, AWrongZeroThatTripsIsCorrectedWhileTripped) {
   const std::string absolute = "commissioning.angles_at_start='absolute'";  // the file's zeros hold
   StartAtRest({absolute});

@@ -106,8 +106,8 @@ bool AllThreadsShareTheHeap() {
   bool shared = false;
   std::thread other([&shared] {
     const std::vector<char> block(1'000'000);
-    shared = reinterpret_cast<std::uintptr_t>(block.data()) <
-             reinterpret_cast<std::uintptr_t>(sbrk(0));
+    shared =
+        reinterpret_cast<std::uintptr_t>(block.data()) < reinterpret_cast<std::uintptr_t>(sbrk(0));
   });
   other.join();
   return shared;
