@@ -16,9 +16,12 @@ check "no other process may change the direction of the relay's line" busy gpio_
 check "nor drive it" busy gpio_set 6
 check "nor take a limit switch's" busy gpio_set 0
 check "every switch is proved" prove_switches
-check "the program said what to do" equal "$(grep -c '^step .*: unplug' prove.txt)" 5
+check "the program said what to do" grep -q '^step .*: unplug the connector' prove.txt
 check "switches that opened have tripped" equal "$(state)" Tripped
 check "the button of the proof permits the reset" flexarm reset
+kill -TERM $daemon
+wait $daemon
+restart_daemon Idle  # the proof is in its state folder
 # The rest holds whether or not this machine is good enough: arm follows what check-host says.
 verdict=$(flexarm check-host -c wire.toml --json | jq -r .verdict)
 judged() { [[ $(flexarm status --json | jq -r .host.verdict) == "$verdict" ]]; }
