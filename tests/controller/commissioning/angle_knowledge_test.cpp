@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "controller/types/trip_cause.h"
+
 namespace flexarm {
 namespace {
 
