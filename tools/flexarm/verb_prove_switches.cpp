@@ -41,7 +41,7 @@ int Prove(const DaemonClient& daemon) {
   }
   const Json end = answer.get();
   if (end.value("ok", false) && !daemon.json) {
-    std::cout << "every switch is proved; press the reset button, then run `flexarm reset`\n";
+    std::cout << "every switch is proved; run `flexarm reset`\n";
   }
   return daemon.Conclude(end);
 }
