@@ -27,7 +27,7 @@ void PrintStep(const Json& switches, std::string* shown) {
                            switches.value("text", "");
   if (text == *shown) return;
   *shown = text;
-  std::cout << text << std::endl;
+  std::cout << text << '\n' << std::flush;
 }
 
 int Prove(const DaemonClient& daemon) {

@@ -73,10 +73,9 @@ void PrintStatus(const Json& s) {
   std::printf("time           %.2f s (tick %lld)\n", s.value("time_s", 0.0),
               static_cast<long long>(s.value("tick", std::int64_t{0})));
   const auto pair = [&s](const char* key) { return s.value(key, std::vector<double>{0.0, 0.0}); };
-  const std::string separator[] = {"joint angle    ", ", "};
   for (std::size_t joint = 0; joint < 2; ++joint) {
     const Json& angle = s["joint_angle_deg"][joint];
-    std::printf("%s", separator[joint].c_str());
+    std::printf("%s", joint == 0 ? "joint angle    " : ", ");
     angle.is_number() ? std::printf("%.2f", angle.get<double>()) : std::printf("unknown");
   }
   std::printf(" deg\n");
