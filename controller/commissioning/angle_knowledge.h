@@ -35,7 +35,8 @@ class AngleKnowledge {
   std::string Text(std::size_t joint) const;
 
   /// Lets the angles of an unknown joint begin at 0 where it stands, so that its hub and its rotor
-  /// agree, whatever their counts are. Only without torque, when it reads more than a turn at rest.
+  /// agree, whatever their counts are. Only without torque, and when hub or rotor reads further
+  /// from 0 than the play of a joint at rest.
   void BeginAtZero(const TickRecord& tick, Calibration* calibration) const;
 
  private:

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
+#include "controller/safety/windowed_count.h"
 #include "controller/types/messages.h"
 #include "controller/types/trip_cause.h"
 #include "hal/safety_lines.h"
@@ -37,9 +37,9 @@ class LineCallMonitor {
   /// Once per tick. @returns true while the lines cannot be relied upon
   constexpr bool Judge(const LineCalls& calls) noexcept {
     const std::int64_t longest_ns = Longest(calls).took_ns;
-    slow_ = slow_ << 1 | (longest_ns > SafetyLines::kBudgetNs ? 1u : 0u);
+    slow_.Push(longest_ns > SafetyLines::kBudgetNs);
     return !calls.read.ok || !calls.write.ok || longest_ns > stall_ns_ ||
-           std::popcount(slow_) >= kSlowTicks;
+           slow_.count() >= kSlowTicks;
   }
 
   /// The call that failed, else the longest: its time and the budget in s, and a LineTrouble.
@@ -61,8 +61,7 @@ class LineCallMonitor {
   }
 
   std::int64_t stall_ns_;
-  std::uint32_t slow_ = 0;  // bit i: i ticks ago
+  WindowedCount slow_{kWindowTicks};
 };
-static_assert(LineCallMonitor::kWindowTicks == 32, "the bits of slow_");
 
 }  // namespace flexarm
