@@ -213,8 +213,9 @@ TEST(Gate, NeverExceedsItsLimitsForAnyInput) {
     zeroed += (out.why & kGateZeroed) != 0;
   });
   EXPECT_TRUE(held);
-  EXPECT_GT(passed, 500) << "the cases must reach what they are to test";
-  EXPECT_GT(zeroed, 500);
+  // Shares, not numbers: the first property of a program sets how many cases all of it run.
+  EXPECT_GT(20 * passed, passed + zeroed) << "the cases must reach what they are to test";
+  EXPECT_GT(20 * zeroed, passed + zeroed);
 }
 
 }  // namespace
