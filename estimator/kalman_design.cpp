@@ -81,7 +81,7 @@ Eigen::MatrixXd ProcessNoise(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G,
 }
 
 // The filter's Riccati equation is the controller's of the transposed system.
-Eigen::MatrixXd FilterCovariance(const NominalModel& nominal, const Eigen::MatrixXd& A_t,
+Eigen::MatrixXd SteadyCovariance(const NominalModel& nominal, const Eigen::MatrixXd& A_t,
                                  const Eigen::MatrixXd& C_t, const Eigen::MatrixXd& W,
                                  const Eigen::MatrixXd& R) {
   try {
@@ -116,7 +116,7 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
                                          ForceSigma(layout, estimator), period_s);
 
   const Eigen::MatrixXd A_t = discrete.A.transpose(), C_t = C.transpose();
-  const Eigen::MatrixXd P = FilterCovariance(nominal, A_t, C_t, W, R);
+  const Eigen::MatrixXd P = SteadyCovariance(nominal, A_t, C_t, W, R);
   const Eigen::MatrixXd CP = C * P, S = CP * C_t + R;
   const Eigen::MatrixXd gain = S.llt().solve(CP).transpose();
 
@@ -126,6 +126,9 @@ KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig&
                       .L = Eigen::MatrixXd::Zero(system.A.rows(), C_all.rows()),
                       .A_rate = system.A,
                       .B_rate = system.B,
+                      .W = W,
+                      .P = P,
+                      .R = R_all,
                       .residual = DareResidual(A_t, C_t, W, R, P)};
   for (std::size_t i = 0; i < present.size(); ++i) {
     design.L.col(present[i]) = gain.col(static_cast<Eigen::Index>(i));

@@ -20,6 +20,8 @@ namespace flexarm {
 struct KalmanDesign {
   Eigen::MatrixXd A, B, C, L;
   Eigen::MatrixXd A_rate, B_rate;  ///< the same system continuous: x' = A_rate x + B_rate u, 1/s
+  Eigen::MatrixXd W, P;            ///< covariances: of the process noise, of x - x(k|k-1)
+  Eigen::VectorXd R;               ///< variances of the outputs; of an absent encoder 1
   double residual;                 ///< of the filter's Riccati equation, relative
 };
 

@@ -40,7 +40,8 @@ class Observer {
 
   /// Starts a new run: clears all states.
   virtual void Reset() noexcept = 0;
-  /// The state was not finite: the next Update starts from its measurement.
+  /// The state was not finite, or the arm was not measured: the next Update starts from its
+  /// measurement.
   virtual void Restart() noexcept = 0;
 
   /// Predicted rates of the modal coordinates as the gauges read them, behind their filters, at the

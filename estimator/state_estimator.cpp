@@ -12,14 +12,20 @@ StateEstimator::StateEstimator(const EstimatorConfig& config, const FilterGains&
       hold_({.A = gains.A, .B = gains.B}, gains.A_rate, gains.B_rate, period_s),
       C_(gains.C),
       L_(gains.L),
+      covariance_(gains.A, gains.C, gains.W, gains.R, gains.P),
       modal_rate_x_(gains.C.bottomRows(2 * gains.layout.modes_per_link) * gains.A_rate),
       modal_rate_u_(gains.C.bottomRows(2 * gains.layout.modes_per_link) * gains.B_rate) {
+  for (Eigen::Index i = 0; i < L_.cols(); ++i) {
+    if (!L_.col(i).isZero(0.0)) needed_ |= std::uint32_t{1} << i;
+  }
   Reset();
 }
 
 void StateEstimator::Reset() noexcept {
   x_ = FilterVector::Zero(L_.rows());
   y_before_ = OutputVector::Zero(C_.rows());
+  covariance_.Reset();
+  missing_ = {};
   started_ = false;
 }
 
@@ -100,13 +106,16 @@ StateEstimator::Estimate StateEstimator::UpdateKalman(const OutputVector& y, std
   FilterVector x = x_;
   hold_.Advance(applied, &x);
   const OutputVector predicted = C_.lazyProduct(x);
+  const bool complete = (good & needed_) == needed_;
+  const bool steady = complete && covariance_.steady();
   Estimate out{};
   for (Eigen::Index i = 0; i < y.size(); ++i) {
     if ((good >> i & 1u) == 0) continue;
     const double innovation = y(i) - predicted(i);
     out.innovation[static_cast<std::size_t>(i)] = innovation;
-    x += L_.col(i) * innovation;
+    if (steady) x += L_.col(i) * innovation;
   }
+  if (!steady) covariance_.Correct(y, good & needed_, complete, &x);
   x_ = x;
   out.x = x_.head(layout_.states());
   return out;
@@ -116,10 +125,15 @@ StateEstimator::Estimate StateEstimator::UpdateDifference(const OutputVector& y,
                                                           std::uint32_t good) noexcept {
   for (int i = 0; i < layout_.dof(); ++i) {
     const int row = layout_.output(i), rate = layout_.rate(i);
-    const double change = (good >> row & 1u) != 0 ? y(row) - y_before_(row) : x_(rate) * period_s_;
-    x_(rate) = change / period_s_;
-    y_before_(row) += change;
-    x_(i) = y_before_(row);
+    int& missing = missing_[static_cast<std::size_t>(row)];
+    ++missing;  // periods since the last reading
+    if ((good >> row & 1u) != 0) {
+      x_(rate) = (y(row) - y_before_(row)) / (missing * period_s_);
+      x_(i) = y_before_(row) = y(row);
+      missing = 0;
+    } else {
+      x_(i) = y_before_(row) + missing * period_s_ * x_(rate);
+    }
   }
   Estimate out{};
   out.x = x_.head(layout_.states());

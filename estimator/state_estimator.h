@@ -6,6 +6,7 @@
 
 #include "estimator/counter_decoder.h"
 #include "estimator/estimator_config.h"
+#include "estimator/filter_covariance.h"
 #include "estimator/fractional_zero_order_hold.h"
 #include "estimator/piecewise_torque.h"
 #include "estimator/state_estimate.h"
@@ -19,14 +20,20 @@ struct FilterGains {
   StateLayout layout;
   Eigen::MatrixXd A, B, C, L;
   Eigen::MatrixXd A_rate, B_rate;  ///< continuous, for the fractions of a period
+  Eigen::MatrixXd W, P;            ///< covariances: of the process noise, of the prediction
+  Eigen::VectorXd R;               ///< variances of the outputs
 };
 
 /// State estimator of the nominal model at k Ts, from decoded counters and fitted modal
 /// coordinates.
 ///
-/// `kalman`: steady-state Kalman filter; an input that is not good does not change the state (its
-/// gain column is skipped). `difference`: coordinates as measured and backward differences, as in
-/// the thesis: the rates lag by half a sample.
+/// `kalman`: Kalman filter, steady-state while every sample has all outputs. A sample that lacks
+/// some is corrected by the others, with the gain of exactly these (FilterCovariance). Two such
+/// samples in a row are a fault (controller/step/fault_detection.h).
+///
+/// `difference`: coordinates as measured and backward differences, as in the thesis: the rates lag
+/// by half a sample. A missing coordinate is extrapolated at its last rate; the next reading gives
+/// the mean rate since the last one.
 /// Real-time: Reset and Update are safe.
 class StateEstimator {
  public:
@@ -54,9 +61,9 @@ class StateEstimator {
   }
 
  private:
-  using FilterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 24, 1>;
-  using FilterMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 24, 24>;
-  using OutputVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
+  using FilterVector = FilterCovariance::State;
+  using FilterMatrix = FilterCovariance::Square;
+  using OutputVector = FilterCovariance::Outputs;
 
   OutputVector Measure(const DecodedCounters& counters, const FittedModes& modes,
                        const std::array<double, 2>& torque_nm, std::uint32_t* good) const noexcept;
@@ -71,9 +78,12 @@ class StateEstimator {
   std::array<double, 2> joint_stiffness_;
   FractionalZeroOrderHold hold_;
   FilterMatrix C_, L_;
+  std::uint32_t needed_ = 0;  // bit i: output i has a sensor, and so a gain
+  FilterCovariance covariance_;
   FilterMatrix modal_rate_x_, modal_rate_u_;  // rates of the last outputs, from state and torque
   FilterVector x_;                            // kalman: x(k|k) with the gauge filter's states
-  OutputVector y_before_;                     // difference
+  OutputVector y_before_;                     // difference: the last readings
+  std::array<int, 8> missing_{};              // difference: samples since then
   bool started_ = false;
 };
 

@@ -1,5 +1,7 @@
 #include "estimator/strain_fit.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -46,6 +48,7 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     const StrainChannelConfig& row = sensors.strain[i];
     Channel& c = channel_[i];
     c.link = row.link - 1;
+    link_mask_[static_cast<std::size_t>(c.link)] |= std::uint32_t{1} << i;
     const double unit = row.face * sensors.strain_input.volts_per_count() / row.gain_v_per_unit;
     c.config_unit_per_count = unit;
     c.config_offset_counts = row.offset_counts;
@@ -56,13 +59,20 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
   }
   for (std::size_t link = 0; link < 2; ++link) {
     root_shape_[link] = RootStrainShape(arm.link[link], modes[link]);
+    const int count = std::popcount(LinkMask(static_cast<int>(link)));
+    gauges_needed_[link] = std::min(modes_ + 1, count);
   }
   // Columns of the pseudo-inverse: the fit to a unit strain on one channel, with all channels used.
   for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
     std::array<double, kMaxStrainChannels> unit{};
     unit[i] = 1.0;
     std::array<double, 4> modal{};
-    if (!Solve(channel_[i].link, LinkMask(channel_[i].link), unit, &modal)) continue;
+    Variance variance{};
+    if (!Solve(channel_[i].link, LinkMask(channel_[i].link), unit, &modal, &variance)) continue;
+    constexpr double kMost = kMostSpread * kMostSpread;
+    most_[static_cast<std::size_t>(channel_[i].link)] = {
+        .modal_m2 = {kMost * variance.modal_m2[0], kMost * variance.modal_m2[1]},
+        .root = kMost * variance.root};
     solvable_[static_cast<std::size_t>(channel_[i].link)] = true;
     const std::size_t first = channel_[i].link == 0 ? 0 : 2;
     channel_[i].inverse = {modal[first], modal[first + 1]};
@@ -106,14 +116,6 @@ void StrainFit::Reset(const Calibration& calibration) noexcept {
   }
 }
 
-std::uint32_t StrainFit::LinkMask(int link) const noexcept {
-  std::uint32_t mask = 0;
-  for (int i = 0; i < channels_; ++i) {
-    if (channel_[static_cast<std::size_t>(i)].link == link) mask |= std::uint32_t{1} << i;
-  }
-  return mask;
-}
-
 double StrainFit::Predicted(const Channel& channel,
                             const std::array<double, 4>& modal) const noexcept {
   const std::size_t first = channel.link == 0 ? 0 : 2;
@@ -123,7 +125,7 @@ double StrainFit::Predicted(const Channel& channel,
 // Weighted normal equations [a b; b c] f = [d; e] over the used channels of a link.
 bool StrainFit::Solve(int link, std::uint32_t used,
                       const std::array<double, kMaxStrainChannels>& strain,
-                      std::array<double, 4>* modal) const noexcept {
+                      std::array<double, 4>* modal, Variance* variance) const noexcept {
   double a = 0.0, b = 0.0, c = 0.0, d = 0.0, e = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
     const Channel& channel = channel_[i];
@@ -135,16 +137,31 @@ bool StrainFit::Solve(int link, std::uint32_t used,
     e += channel.weight * channel.shape[1] * strain[i];
   }
   const std::size_t first = link == 0 ? 0 : 2;
+  const std::array<double, 2>& root = root_shape_[static_cast<std::size_t>(link)];
   if (!(a > 0.0)) return false;
   if (modes_ == 1) {
     (*modal)[first] = d / a;
+    *variance = {.modal_m2 = {1.0 / a, 0.0}, .root = root[0] * root[0] / a};
     return true;
   }
   const double determinant = a * c - b * b;
   if (!(determinant > kMinSeparation * a * c)) return false;
   (*modal)[first] = (c * d - b * e) / determinant;
   (*modal)[first + 1] = (a * e - b * d) / determinant;
+  *variance = {
+      .modal_m2 = {c / determinant, a / determinant},
+      .root = (root[0] * root[0] * c - 2.0 * root[0] * root[1] * b + root[1] * root[1] * a) /
+              determinant};
   return true;
+}
+
+// False for NaN.
+bool StrainFit::Determines(std::size_t link, std::uint32_t used,
+                           const Variance& variance) const noexcept {
+  const Variance& most = most_[link];
+  return std::popcount(used & LinkMask(static_cast<int>(link))) >= gauges_needed_[link] &&
+         variance.modal_m2[0] <= most.modal_m2[0] && variance.modal_m2[1] <= most.modal_m2[1] &&
+         variance.root <= most.root;
 }
 
 FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
@@ -170,7 +187,7 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
   }
   out.modal_m = last_modal_;
   for (int link = 0; link < 2; ++link) FitLink(link, strain, &out);
-  JudgeStuck(frame, &out);
+  const std::uint32_t repeats = JudgeStuck(frame, strain, &out);
   for (int link = 0; link < 2; ++link) {  // fit again without the stuck channels
     const std::uint32_t stuck = out.stuck & out.used & LinkMask(link);
     if (stuck == 0) continue;
@@ -181,6 +198,11 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
     out.modal_m[2 * i] = last_modal_[2 * i];
     out.modal_m[2 * i + 1] = last_modal_[2 * i + 1];
     FitLink(link, strain, &out);
+  }
+  for (int link = 0; link < 2; ++link) {
+    const std::uint32_t used = out.used & LinkMask(link);
+    out.gauges[static_cast<std::size_t>(link)] = std::popcount(used);
+    out.repeated[static_cast<std::size_t>(link)] = (used & ~repeats) == 0 ? used : 0;
   }
   last_modal_ = out.modal_m;
   return out;
@@ -199,8 +221,10 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
         modal[first] += channel_[i].inverse[0] * strain[i];
         modal[first + 1] += channel_[i].inverse[1] * strain[i];
       }
-    } else if (!Solve(link, out->used, strain, &modal)) {
-      return;
+    } else {
+      Variance variance{};
+      if (!Solve(link, out->used, strain, &modal, &variance)) return;
+      if (!Determines(static_cast<std::size_t>(link), out->used, variance)) return;
     }
     double worst = 0.0, sum = 0.0;
     std::uint32_t worst_bit = 0;
@@ -221,29 +245,50 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
     out->used &= ~worst_bit;
     out->worst_outlier = std::fmax(out->worst_outlier, worst);
   }
+  const double root_strain = RootStrain(static_cast<std::size_t>(link), modal);
+  if (!std::isfinite(root_strain)) return;  // a gain or zero that is not a number
   out->valid[static_cast<std::size_t>(link)] = true;
   out->modal_m[first] = modal[first];
   out->modal_m[first + 1] = modal[first + 1];
-  const std::array<double, 2>& root = root_shape_[static_cast<std::size_t>(link)];
-  out->root_strain[static_cast<std::size_t>(link)] =
-      root[0] * modal[first] + root[1] * modal[first + 1];
+  out->root_strain[static_cast<std::size_t>(link)] = root_strain;
 }
 
-// A channel is stuck when its raw value has not changed while the fit at its station has moved by
-// more than the limit.
-void StrainFit::JudgeStuck(const SensorFrame& frame, FittedModes* out) noexcept {
+// A channel is stuck when its raw value has not changed while the bending at its station has moved
+// by more than the limit. Stuck channels pull the fit with them, a pair near the root by more than
+// half: the bending is that of the link's other channels, without all that repeat their value in
+// this sample, if their noise moves it by a tenth of the limit at most.
+std::uint32_t StrainFit::JudgeStuck(const SensorFrame& frame,
+                                    const std::array<double, kMaxStrainChannels>& strain,
+                                    FittedModes* out) noexcept {
+  std::uint32_t repeats = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
+    const Channel& c = channel_[i];
+    if (c.seen && frame.strain[i] == c.last_raw) repeats |= std::uint32_t{1} << i;
+  }
+  repeats &= frame.strain_valid;
+  std::array<double, 4> modal = out->modal_m;
+  for (int link = 0; link < 2; ++link) {
+    const std::uint32_t others = out->used & LinkMask(link) & ~repeats;
+    std::array<double, 4> apart = modal;
+    Variance variance{};
+    const bool solved = Solve(link, others, strain, &apart, &variance);
+    if (solved && std::popcount(others) >= gauges_needed_[static_cast<std::size_t>(link)] &&
+        variance.root <= stuck_limit_ * stuck_limit_ / 100.0) {
+      modal = apart;
+    }
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
     Channel& c = channel_[i];
-    const double fitted = Predicted(c, out->modal_m);
+    const double bent = Predicted(c, modal);
     if (!c.seen || frame.strain[i] != c.last_raw) {
       c.seen = true;
       c.last_raw = frame.strain[i];
-      c.strain_at_change = fitted;
-    } else if ((frame.strain_valid >> i & 1u) != 0 &&
-               std::fabs(fitted - c.strain_at_change) > stuck_limit_) {
+      c.strain_at_change = bent;
+    } else if ((repeats >> i & 1u) != 0 && std::fabs(bent - c.strain_at_change) > stuck_limit_) {
       out->stuck |= std::uint32_t{1} << i;
     }
   }
+  return repeats;
 }
 
 }  // namespace flexarm

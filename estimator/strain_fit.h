@@ -16,8 +16,8 @@ namespace flexarm {
 /// Modal coordinates fitted to the strain channels of one sample.
 struct FittedModes {
   std::array<double, 4> modal_m;  ///< f11 f12 f21 f22; the last good fit if not valid
-  std::array<bool, 2> valid;      ///< per link: enough good channels
-  /// Surface strain of the fit at the root of each link, or of the section where it bends most;
+  std::array<bool, 2> valid;      ///< per link: its good gauges determine the modes
+  /// Surface strain of the fit at the root of each link, or of the section where it bends most.
   /// NaN, unknown, if not valid.
   std::array<double, 2> root_strain;
   std::array<double, 2> residual;  ///< rms of channel minus fit, unit strain
@@ -25,7 +25,11 @@ struct FittedModes {
   std::uint32_t saturated;         ///< bit i: at an end of the converter's range
   std::uint32_t stuck;             ///< bit i: constant while its link bends
   std::uint32_t outlier;           ///< bit i: too far from the fit of the other channels
-  double worst_outlier;            ///< its distance from the fit, unit strain
+  std::array<int, 2> gauges;       ///< per link: channels used
+  /// Per link: its used channels if each repeats its last value to the bit, else 0. Noise makes
+  /// that rare, and an arm that bends impossible.
+  std::array<std::uint32_t, 2> repeated;
+  double worst_outlier;  ///< its distance from the fit, unit strain
 };
 
 /// Weighted least-squares fit of one or two modal coordinates per link to the strain channels.
@@ -39,9 +43,18 @@ struct FittedModes {
 /// one product with a precomputed pseudo-inverse; otherwise the 2 x 2 normal equations of the good
 /// ones are solved. A channel that is saturated, stuck, or farther from the fit than the limit is
 /// excluded in the same sample; outliers are removed worst first, at most two per link.
+///
+/// The fit of a link is valid while its good channels determine the modes nearly as well as all of
+/// them: no coordinate, and not the strain at the root, has more than kMostSpread times the
+/// standard deviation that it has with every channel good; and at least gauges_needed() are left.
 /// Real-time: Reset and Fit are safe.
 class StrainFit {
  public:
+  /// Bound on the standard deviation of a fitted quantity relative to that with all channels. The
+  /// modal noise that the observers are designed for (estimator.modal_sigma_m) is larger than this
+  /// times the noise of the gauges, so their gains stay those of the remaining readings.
+  static constexpr double kMostSpread = 2.0;
+
   StrainFit(const ArmParameters& arm, const SensorConfig& sensors, const EstimatorConfig& config);
 
   void Reset(const Calibration& calibration) noexcept;
@@ -52,12 +65,16 @@ class StrainFit {
   /// @param modal_rate_m_s  at that instant, of the coordinates as the gauges read them
   FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
                   const std::array<double, 4>& modal_rate_m_s) noexcept;
-  /// Bit i: channel i is a gauge of that link; 0 if the link has too few to separate its modes.
-  std::array<std::uint32_t, 2> gauges() const noexcept {
-    return {solvable_[0] ? LinkMask(0) : 0, solvable_[1] ? LinkMask(1) : 0};
-  }
   /// Treats every reading as taken at the frame's instant.
   FittedModes Fit(const SensorFrame& frame) noexcept { return Fit(frame, frame.sampled_at_ns, {}); }
+
+  /// Channels that a valid fit of each link needs at least: one more than it has modes, so that
+  /// they check each other; all of a link that has no more than modes.
+  const std::array<int, 2>& gauges_needed() const noexcept { return gauges_needed_; }
+  /// Surface strain at the root of a link, 0 or 1, bent as the modal coordinates f11 f12 f21 f22.
+  double RootStrain(std::size_t link, const std::array<double, 4>& modal_m) const noexcept {
+    return root_shape_[link][0] * modal_m[2 * link] + root_shape_[link][1] * modal_m[2 * link + 1];
+  }
 
  private:
   struct Channel {
@@ -75,15 +92,28 @@ class StrainFit {
     bool seen = false;
   };
 
+  /// Variances of a link's fit that are due to the noise of its channels.
+  struct Variance {
+    std::array<double, 2> modal_m2;
+    double root;  ///< of RootStrain
+  };
+
   double Predicted(const Channel& channel, const std::array<double, 4>& modal) const noexcept;
-  std::uint32_t LinkMask(int link) const noexcept;
+  std::uint32_t LinkMask(int link) const noexcept {
+    return link_mask_[static_cast<std::size_t>(link)];
+  }
   void FitPolynomials(const ArmParameters& arm, const SensorConfig& sensors,
                       const std::array<LinkModes, 2>& modes);
+  /// @param variance  of the result
   bool Solve(int link, std::uint32_t used, const std::array<double, kMaxStrainChannels>& strain,
-             std::array<double, 4>* modal) const noexcept;
+             std::array<double, 4>* modal, Variance* variance) const noexcept;
+  bool Determines(std::size_t link, std::uint32_t used, const Variance& variance) const noexcept;
   void FitLink(int link, const std::array<double, kMaxStrainChannels>& strain,
                FittedModes* out) noexcept;
-  void JudgeStuck(const SensorFrame& frame, FittedModes* out) noexcept;
+  /// @returns bit i: valid channel i repeats its last value
+  std::uint32_t JudgeStuck(const SensorFrame& frame,
+                           const std::array<double, kMaxStrainChannels>& strain,
+                           FittedModes* out) noexcept;
 
   int modes_;
   int channels_;
@@ -94,6 +124,9 @@ class StrainFit {
   std::array<Channel, kMaxStrainChannels> channel_;
   std::array<bool, 2> solvable_{};                     // a link's channels separate its modes
   std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j'' there
+  std::array<std::uint32_t, 2> link_mask_{};           // bit i: channel i is on the link
+  std::array<int, 2> gauges_needed_{};
+  std::array<Variance, 2> most_{};  // of a valid fit
   std::array<double, 4> last_modal_{};
 };
 

@@ -226,6 +226,9 @@ Design DesignController(const ControlConfig& config) {
   design.filter_L = filter.L;
   design.filter_A_rate = filter.A_rate;
   design.filter_B_rate = filter.B_rate;
+  design.filter_W = filter.W;
+  design.filter_P = filter.P;
+  design.filter_R = filter.R;
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(filter.A.rows(), filter.A.rows());
   design.checks.push_back({"filter-riccati-residual", filter.residual, 1e-9, true});
   design.checks.push_back(

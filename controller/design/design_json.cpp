@@ -87,6 +87,9 @@ void ForEachMatrix(D& design, F&& visit) {
   visit("filter_L", design.filter_L);
   visit("filter_A_rate", design.filter_A_rate);
   visit("filter_B_rate", design.filter_B_rate);
+  visit("filter_W", design.filter_W);
+  visit("filter_P", design.filter_P);
+  visit("filter_R", design.filter_R);
   visit("shaper", design.shaper);
   visit("rigid_inertia_kgm2", design.rigid_inertia_kgm2);
 }
@@ -276,6 +279,9 @@ void RequireShapes(const Design& d) {
   require("filter_L", d.filter_L, nf, outputs);
   require("filter_A_rate", d.filter_A_rate, nf, nf);
   require("filter_B_rate", d.filter_B_rate, nf, 2);
+  require("filter_W", d.filter_W, nf, nf);
+  require("filter_P", d.filter_P, nf, nf);
+  require("filter_R", d.filter_R, outputs, 1);
 }
 
 }  // namespace

@@ -47,6 +47,7 @@ struct Design {
   Eigen::MatrixXd Ufx, Ufu;            ///< (7.25): u_f = -+Ufx x_m + Ufu u_m
   Eigen::MatrixXd filter_A, filter_B, filter_C, filter_L;  ///< estimator/kalman_design.h
   Eigen::MatrixXd filter_A_rate, filter_B_rate;            ///< the same, continuous
+  Eigen::MatrixXd filter_W, filter_P, filter_R;            ///< covariances; R: one column
   Eigen::RowVectorXd
       shaper;  ///< weights of the samples of an input shaper (input_shaper.h); [1]: none
   std::vector<double> payload_model;         ///< of `ekf-payload`: PayloadModelConstants; or empty

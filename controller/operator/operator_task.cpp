@@ -6,6 +6,7 @@
 
 #include "controller/operator/request_answers.h"
 #include "controller/operator/status_json.h"
+#include "controller/runlog/csv.h"
 #include "controller/types/rejected_error.h"
 
 namespace flexarm {
@@ -33,7 +34,8 @@ OperatorTask::OperatorTask(OperatorContext context)
       overrides_(context_.events, context_.report),
       arm_(context_.arm_checks,
            {.requests = &requests_, .overrides = &overrides_, .report = context_.report}),
-      warnings_(context_.grid.period_ns, context_.delay_margin_s, context_.events, context_.report),
+      warnings_(context_.grid.period_ns, context_.delay_margin_s,
+                StrainColumns(context_.config->sensors), context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
       timing_warnings_(context_.events, context_.report),
       dispatch_({.stack = context_.stack,
@@ -184,6 +186,7 @@ nlohmann::json OperatorTask::Status() {
                      .delay = &warnings_.delay(),
                      .sensors = &context_.config->sensors,
                      .angles = &commissioning_.angles(),
+                     .missing_gauges = warnings_.missing_gauges(),
                      .experiment = experiments_.name(),
                      .buses = context_.stack->buses(),
                      .bus_text = context_.stack->BusText(permit.cause, permit.evidence),

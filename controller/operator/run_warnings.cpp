@@ -7,18 +7,23 @@
 
 namespace flexarm {
 
-RunWarnings::RunWarnings(std::int64_t period_ns, double delay_margin_s, EventQueue* events,
-                         JournalReport report)
+RunWarnings::RunWarnings(std::int64_t period_ns, double delay_margin_s,
+                         std::vector<std::string> gauges, EventQueue* events, JournalReport report)
     : period_ns_(period_ns),
       events_(events),
       report_(std::move(report)),
-      delay_(period_ns, delay_margin_s) {}
+      delay_(period_ns, delay_margin_s),
+      gauges_(std::move(gauges)),
+      gauge_monitor_(gauges_.size()) {}
 
 void RunWarnings::Take(std::int64_t now_ns, const TickRecord& tick) {
   now_ns_ = now_ns;
   if (delay_.Take(tick.input)) WarnOfDelayMargin();
   WarnOfPayload(tick, payload_.Take(tick.input, tick.output));
   if (found_delay_.Take(tick.input, tick.output)) WarnOfDelayFound(tick.output);
+  if (const std::uint32_t missing = gauge_monitor_.Take(tick.input, tick.output); missing != 0) {
+    WarnOfGauges(missing);
+  }
 }
 
 void RunWarnings::WarnOfDelayMargin() {
@@ -43,6 +48,22 @@ void RunWarnings::WarnOfDelayFound(const StepOutput& output) {
       "; the loop compensates for this delay until the arm is armed again; set "
       "loop.actuation_delay_ms";
   Warn("delay-found", text, figures);
+}
+
+std::vector<std::string> RunWarnings::NamesOf(std::uint32_t channels) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < gauges_.size(); ++i) {
+    if ((channels >> i & 1U) != 0) names.push_back(gauges_[i]);
+  }
+  return names;
+}
+
+void RunWarnings::WarnOfGauges(std::uint32_t missing) {
+  const nlohmann::json figures{{"gauges", NamesOf(missing)}};
+  const std::string text =
+      "gauges give no good reading, and the bending is fitted without them: " + figures.dump() +
+      "; check their cables and their amplifier";
+  Warn("gauges-missing", text, figures);
 }
 
 void RunWarnings::WarnOfPayload(const TickRecord& tick, std::uint32_t warnings) {

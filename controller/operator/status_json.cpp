@@ -81,6 +81,7 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"torque_nm", out.torque_nm},
           {"modal_m", out.modal_m},
           {"root_strain", out.root_strain},
+          {"gauges_missing", sources.missing_gauges},
           {"at_rest", out.at_rest != 0},
           {"payload", PayloadJson(in, out)},
           {"delay_ms", sources.delay->delay_ms()},

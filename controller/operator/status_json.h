@@ -19,16 +19,17 @@ struct StatusSources {
   const DelayMonitor* delay;
   const SensorConfig* sensors;
   const AngleKnowledge* angles;
-  std::string experiment;        ///< name of the one that is loaded; empty: none
-  std::vector<BusHealth> buses;  ///< empty: the backend has none
-  std::string bus_text;          ///< LoopStack::BusText of the trip; empty: of no bus
-  const TripLatch* latch;        ///< when the trip was, and whether it is kept
-  nlohmann::json threads;        ///< OperatorContext::thread_status
-  nlohmann::json host;           ///< ArmCommand::HostStatus
-  nlohmann::json design;         ///< ArmCommand::DesignStatus
-  nlohmann::json overrides;      ///< OverrideRecord::Json
-  nlohmann::json switches;       ///< ProveSwitches::Json
-  TimingCounts timing{};         ///< LoopStack::timing
+  std::vector<std::string> missing_gauges{};  ///< RunWarnings
+  std::string experiment;                     ///< name of the one that is loaded; empty: none
+  std::vector<BusHealth> buses;               ///< empty: the backend has none
+  std::string bus_text;                       ///< LoopStack::BusText of the trip; empty: of no bus
+  const TripLatch* latch;                     ///< when the trip was, and whether it is kept
+  nlohmann::json threads;                     ///< OperatorContext::thread_status
+  nlohmann::json host;                        ///< ArmCommand::HostStatus
+  nlohmann::json design;                      ///< ArmCommand::DesignStatus
+  nlohmann::json overrides;                   ///< OverrideRecord::Json
+  nlohmann::json switches;                    ///< ProveSwitches::Json
+  TimingCounts timing{};                      ///< LoopStack::timing
   bool late_threads_trip = true;
 };
 

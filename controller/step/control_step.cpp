@@ -14,9 +14,9 @@
 namespace flexarm {
 namespace {
 
-constexpr TripCauses kStateLost = CauseBit(TripCause::kStateNotFinite) |
-                                  CauseBit(TripCause::kNoStrainReading1) |
-                                  CauseBit(TripCause::kNoStrainReading2);
+constexpr TripCauses kStateLost =
+    CauseBit(TripCause::kStateNotFinite) | CauseBit(TripCause::kNoCounterReading) |
+    CauseBit(TripCause::kNoStrainReading1) | CauseBit(TripCause::kNoStrainReading2);
 
 void Store(const StateVector& x, std::array<double, kMaxNominalStates>* out) noexcept {
   for (Eigen::Index i = 0; i < x.size(); ++i) (*out)[static_cast<std::size_t>(i)] = x(i);
@@ -66,7 +66,7 @@ ControlStep::ControlStep(const ControlConfig& config, const Design& design,
       fit_(config.arm, config.sensors, config.estimator),
       observer_(MakeObserver(config, design)),
       fault_detection_(config.safety, config.estimator, period_s_,
-                       config.sensors.counters_present(), fit_.gauges(),
+                       config.sensors.counters_present(), fit_.gauges_needed(),
                        config.arm.joint_stiffness_nm_per_rad()),
       delay_(config.loop.period_ns(), config.loop.actuation_delay_ms >= config.loop.period_ms),
       law_(std::move(law)),
@@ -109,6 +109,16 @@ StateEstimate ControlStep::Observe(const StepInput& input, const SensorFrame& fr
        .applied = &applied,
        .applied_by_delay = observer_->wants_torque_by_delay() ? &by_delay : nullptr,
        .tip_m_s2 = tip_accelerometer_ ? TipReading(frame, *tip_accelerometer_) : std::nullopt});
+}
+
+std::array<double, 2> ControlStep::RootStrain(const double* modal_m) const noexcept {
+  std::array<double, 4> all_m{};
+  const auto modes = static_cast<std::size_t>(layout_.modes_per_link);
+  for (std::size_t mode = 0; mode < modes; ++mode) {
+    all_m[mode] = modal_m[mode];
+    all_m[2 + mode] = modal_m[modes + mode];
+  }
+  return {fit_.RootStrain(0, all_m), fit_.RootStrain(1, all_m)};
 }
 
 LawOutput ControlStep::Decide(const StepInput& input, const StateVector& x,
@@ -179,18 +189,21 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   FollowPath(input);
   const StateEstimate estimate = Observe(input, frame, counters, modes, applied);
 
-  const FaultDetection::Verdict verdict =
-      fault_detection_.Judge({.counters = &counters,
-                              .modes = &modes,
-                              .estimate = &estimate,
-                              .applied_torque_nm = input.applied_torque_nm,
-                              .frame_age_s = frame_age_s,
-                              .mode = input.mode});
+  const FaultDetection::Verdict verdict = fault_detection_.Judge(
+      {.counters = &counters,
+       .modes = &modes,
+       .estimate = &estimate,
+       .model_root_strain = RootStrain(estimate.x.data() + layout_.mode(0, 0)),
+       .root_innovation =
+           RootStrain(estimate.innovation.data() + layout_.output(layout_.mode(0, 0))),
+       .applied_torque_nm = input.applied_torque_nm,
+       .frame_age_s = frame_age_s,
+       .mode = input.mode});
   const StateVector x_next =
       prediction_ ? observer_->Predict(estimate.x, delay_.Pending(input, observer_->delay_found()))
                   : estimate.x;
   // A reset needs the cause of the trip to be gone: a state that stayed not finite would prevent it
-  // for ever, and so would one that drifted while a link was not measured.
+  // for ever, and so would one that drifted while the arm was not measured.
   if ((verdict.faults & kStateLost) != 0) observer_->Restart();
 
   StepOutput out{};

@@ -47,6 +47,9 @@ class ControlStep {
   StateEstimate Observe(const StepInput& input, const SensorFrame& frame,
                         const DecodedCounters& counters, const FittedModes& modes,
                         const PiecewiseTorque& applied) noexcept;
+  /// Surface strain at the root of each link.
+  /// @param modal_m  f11.. f21.., as many as the nominal model has
+  std::array<double, 2> RootStrain(const double* modal_m) const noexcept;
   LawOutput Decide(const StepInput& input, const StateVector& x, bool sensors_good) noexcept;
   LawOutput Follow(const StepInput& input, const StateVector& x, bool sensors_good) noexcept;
   LawOutput Stop(const StepInput& input, const StateVector& x) noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "model/units.h"
 
@@ -10,7 +11,7 @@ namespace flexarm {
 namespace {
 
 constexpr int kRateTicks = 2;
-constexpr int kMissingTicks = 2;  // no valid reading for two periods
+constexpr int kMissingTicks = 2;  // samples in a row that lack a reading
 constexpr double kStalePeriods = 2.0;
 
 std::size_t FirstChannel(std::uint32_t mask) noexcept {
@@ -25,13 +26,13 @@ constexpr TripCause PerJoint(TripCause joint1, std::size_t i) noexcept {
 
 FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator,
                                double period_s, std::uint32_t counters_present,
-                               const std::array<std::uint32_t, 2>& gauges,
+                               const std::array<int, 2>& gauges_needed,
                                const std::array<double, 2>& joint_stiffness_nm_per_rad)
     : safety_(safety),
       estimator_(estimator),
       period_s_(period_s),
       counters_present_(counters_present),
-      gauges_(gauges),
+      gauges_needed_(gauges_needed),
       joint_stiffness_(joint_stiffness_nm_per_rad),
       // Not before the window is full.
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
@@ -40,7 +41,9 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
 void FaultDetection::Reset() noexcept {
   in_a_row_ = {};
   rest_ticks_ = 0;
+  incomplete_ticks_ = 0;
   ring_ = 0;
+  ticks_ = 0;
   started_ = false;
 }
 
@@ -58,33 +61,66 @@ void FaultDetection::Raise(TripCause cause, bool present, int ticks, double valu
   in_a_row = ticks;  // saturated: cannot overflow
 }
 
+// The cause of an unknown value is raised where the sensor is judged as well, with its evidence;
+// here it keeps a NaN from passing.
+void FaultDetection::RaiseUnlessWithin(TripCause beyond, TripCause unknown, int ticks, double value,
+                                       double limit, std::size_t joint) noexcept {
+  const bool known = !std::isnan(value);
+  Raise(beyond, known && !(value <= limit), ticks, value, limit, joint);
+  if (!known) Raise(unknown, true, 1, value, limit, joint);
+}
+
 FaultDetection::Verdict FaultDetection::Judge(const LoopFacts& facts) noexcept {
   verdict_ = {};
-  Raise(TripCause::kStaleFrame, facts.frame_age_s > kStalePeriods * period_s_, 1, facts.frame_age_s,
-        kStalePeriods * period_s_, 0);
-  JudgeJoints(facts);
+  const double stale_s = kStalePeriods * period_s_;
+  Raise(TripCause::kStaleFrame, !(facts.frame_age_s <= stale_s), 1, facts.frame_age_s, stale_s, 0);
+  const Monitored monitored = Monitor(facts);
   JudgeCounters(facts);
   JudgeStrain(facts);
+  JudgeJoints(facts, monitored);
   JudgeEstimate(facts);
   verdict_.at_rest = JudgeRest(facts);
   verdict_.may_damp = MayDamp(facts);
   return verdict_;
 }
 
-void FaultDetection::JudgeJoints(const LoopFacts& facts) noexcept {
+double FaultDetection::Bridged(bool read, double reading, double model) const noexcept {
+  if (read) return reading;
+  return incomplete_ticks_ < kMissingTicks ? model : std::numeric_limits<double>::quiet_NaN();
+}
+
+// Two sensors that fail in turn leave no complete sample either: the count is of samples, not of
+// readings of one sensor.
+FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexcept {
+  const DecodedCounters& counters = *facts.counters;
+  const FittedModes& modes = *facts.modes;
+  const bool complete =
+      (counters.good & counters_present_) == counters_present_ && modes.valid[0] && modes.valid[1];
+  incomplete_ticks_ = complete ? 0 : std::min(incomplete_ticks_ + 1, kMissingTicks);
+  Monitored monitored{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    monitored.hub_rad[i] = Bridged((counters.good >> i & 1U) != 0, counters.angle_rad[i],
+                                   facts.estimate->x(static_cast<Eigen::Index>(i)));
+    monitored.root_strain[i] =
+        Bridged(modes.valid[i], modes.root_strain[i], facts.model_root_strain[i]);
+  }
+  return monitored;
+}
+
+void FaultDetection::JudgeJoints(const LoopFacts& facts, const Monitored& monitored) noexcept {
+  using enum TripCause;
   const Eigen::Index dof = facts.estimate->x.size() / 2;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double angle = std::fabs(facts.counters->angle_rad[i]);
-    const double soft = safety_.soft_angle_deg[i] * kRadPerDeg;
-    Raise(PerJoint(TripCause::kSoftLimit1, i),
-          !(angle <= soft) && facts.mode != LoopMode::kRegulate, 1, angle, soft, i + 1);
+    if (facts.mode != LoopMode::kRegulate) {
+      RaiseUnlessWithin(PerJoint(kSoftLimit1, i), kNoCounterReading, 1,
+                        std::fabs(monitored.hub_rad[i]), safety_.soft_angle_deg[i] * kRadPerDeg,
+                        i + 1);
+    }
     const double rate = std::fabs(facts.estimate->x(dof + static_cast<Eigen::Index>(i)));
-    Raise(PerJoint(TripCause::kHubRate1, i), rate > safety_.hub_rate_rad_s[i], kRateTicks, rate,
-          safety_.hub_rate_rad_s[i], i + 1);
-    const double strain = std::fabs(facts.modes->root_strain[i]);
-    Raise(PerJoint(TripCause::kBendingStrain1, i),
-          facts.modes->valid[i] && !(strain <= safety_.strain_limit[i]), 1, strain,
-          safety_.strain_limit[i], i + 1);
+    RaiseUnlessWithin(PerJoint(kHubRate1, i), kStateNotFinite, kRateTicks, rate,
+                      safety_.hub_rate_rad_s[i], i + 1);
+    RaiseUnlessWithin(PerJoint(kBendingStrain1, i), PerJoint(kNoStrainReading1, i), 1,
+                      std::fabs(monitored.root_strain[i]), safety_.strain_limit[i], i + 1);
   }
 }
 
@@ -93,14 +129,9 @@ void FaultDetection::JudgeCounters(const LoopFacts& facts) noexcept {
   Raise(TripCause::kEncoderJump, counters.jumped != 0, 1, 0.0, estimator_.max_joint_rate_rad_s,
         FirstChannel(counters.jumped));
 
-  std::uint32_t silent = 0;
-  int longest = 0;
-  for (std::size_t i = 0; i < kCounters; ++i) {
-    if ((counters_present_ >> i & 1u) == 0 || counters.missing_ticks[i] < kMissingTicks) continue;
-    silent |= std::uint32_t{1} << i;
-    longest = std::max(longest, counters.missing_ticks[i]);
-  }
-  Raise(TripCause::kNoCounterReading, silent != 0, 1, longest, kMissingTicks, FirstChannel(silent));
+  const std::uint32_t silent = counters_present_ & ~counters.good;
+  Raise(TripCause::kNoCounterReading, silent != 0 && incomplete_ticks_ >= kMissingTicks, 1,
+        incomplete_ticks_, kMissingTicks, FirstChannel(silent));
 
   double worst = 0.0;
   std::size_t joint = 0;
@@ -109,38 +140,48 @@ void FaultDetection::JudgeCounters(const LoopFacts& facts) noexcept {
     if ((counters.good & both) != both) continue;
     const double torsion = facts.applied_torque_nm[i] / joint_stiffness_[i];
     const double apart = std::fabs(counters.angle_rad[i + 2] - counters.angle_rad[i] - torsion);
-    if (apart <= worst) continue;
+    if (apart <= worst || std::isnan(worst)) continue;
     worst = apart;
     joint = i + 1;
   }
   const bool judged = facts.mode != LoopMode::kOpenLoop;
-  Raise(TripCause::kHubAgainstRotor, judged && worst > estimator_.hub_rotor_limit_rad,
+  Raise(TripCause::kHubAgainstRotor, judged && !(worst <= estimator_.hub_rotor_limit_rad),
         estimator_.fault_ticks, worst, estimator_.hub_rotor_limit_rad, joint);
 }
 
 void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
   const FittedModes& modes = *facts.modes;
-  for (std::size_t i = 0; i < 2; ++i) {
-    Raise(PerJoint(TripCause::kNoStrainReading1, i), gauges_[i] != 0 && !modes.valid[i],
-          kMissingTicks, std::popcount(modes.used & gauges_[i]), estimator_.modes_per_link, i + 1);
-  }
   const int ticks = estimator_.fault_ticks;
   const bool judged = facts.mode != LoopMode::kOpenLoop;
-  Raise(TripCause::kStrainStuck, judged && modes.stuck != 0, ticks, 0.0,
-        estimator_.strain_stuck_limit, FirstChannel(modes.stuck));
+  // A link whose gauges all repeat themselves has no other gauge to compare with: the model is.
+  std::uint32_t stuck = modes.stuck;
+  double left = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double innovation = std::fabs(facts.root_innovation[i]);
+    if (modes.repeated[i] == 0 || innovation <= estimator_.strain_stuck_limit) continue;
+    stuck |= modes.repeated[i];
+    left = innovation;
+  }
+  Raise(TripCause::kStrainStuck, judged && stuck != 0, ticks, left, estimator_.strain_stuck_limit,
+        FirstChannel(stuck));
   Raise(TripCause::kStrainSaturated, modes.saturated != 0, ticks, 0.0, 0.0,
         FirstChannel(modes.saturated));
   Raise(TripCause::kStrainOutOfFamily, judged && modes.outlier != 0, ticks, modes.worst_outlier,
         estimator_.strain_family_limit, FirstChannel(modes.outlier));
+  for (std::size_t i = 0; i < 2; ++i) {
+    Raise(PerJoint(TripCause::kNoStrainReading1, i),
+          !modes.valid[i] && incomplete_ticks_ >= kMissingTicks, 1, modes.gauges[i],
+          gauges_needed_[i], i + 1);
+  }
 }
 
 void FaultDetection::JudgeEstimate(const LoopFacts& facts) noexcept {
   const StateEstimator::Estimate& estimate = *facts.estimate;
   Raise(TripCause::kStateNotFinite, !estimate.x.allFinite(), 1, 0.0, 0.0, 0);
   const double hub1 = std::fabs(estimate.innovation[0]), hub2 = std::fabs(estimate.innovation[1]);
-  const double worst = std::fmax(hub1, hub2);
+  const double worst = hub1 > hub2 || std::isnan(hub1) ? hub1 : hub2;  // NaN if one is
   const bool judged = facts.mode != LoopMode::kOpenLoop;
-  Raise(TripCause::kEstimatorResidual, judged && worst > estimator_.innovation_limit_rad,
+  Raise(TripCause::kEstimatorResidual, judged && !(worst <= estimator_.innovation_limit_rad),
         estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2);
 }
 
@@ -160,29 +201,38 @@ bool FaultDetection::MayDamp(const LoopFacts& facts) const noexcept {
   return true;
 }
 
+// A sample that lacks a reading is no evidence of rest, nor of motion: its rates would be those of
+// the model. Two in a row end the rest.
 bool FaultDetection::JudgeRest(const LoopFacts& facts) noexcept {
+  ++ticks_;
+  if (incomplete_ticks_ > 0) {
+    if (incomplete_ticks_ >= kMissingTicks) rest_ticks_ = 0;
+    return rest_ticks_ == rest_ticks_needed_;
+  }
+  const Posture now{.hub_rad = {facts.counters->angle_rad[0], facts.counters->angle_rad[1]},
+                    .root_strain = facts.modes->root_strain,
+                    .tick = ticks_};
   if (!started_) {  // as if the arm had been at rest here before
     started_ = true;
-    hub_before_.fill({facts.counters->angle_rad[0], facts.counters->angle_rad[1]});
-    root_strain_before_ = facts.modes->root_strain;
+    before_.fill(now);
+    for (Posture& posture : before_) --posture.tick;
   }
-  bool slow = true, complete = true;
+  const Posture& oldest = before_[ring_];
+  const Posture& last = before_[(ring_ + kRestWindow - 1) % kRestWindow];
+  const auto rate = [this](double change, std::int64_t ticks) {
+    return std::fabs(change) / (static_cast<double>(ticks) * period_s_);
+  };
+  bool slow = true;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double angle = facts.counters->angle_rad[i];
-    const double hub_rate =
-        (angle - hub_before_[ring_][i]) / (static_cast<double>(kRestWindow) * period_s_);
-    hub_before_[ring_][i] = angle;
-    slow = slow && std::fabs(hub_rate) < safety_.rest_hub_rate_rad_s;
-    if (!facts.modes->valid[i]) {  // unknown: this sample is no evidence of rest
-      complete = complete && gauges_[i] == 0;
-      continue;
-    }
-    const double strain_rate = (facts.modes->root_strain[i] - root_strain_before_[i]) / period_s_;
-    slow = slow && std::fabs(strain_rate) < safety_.rest_strain_rate_per_s;
-    root_strain_before_[i] = facts.modes->root_strain[i];
+    slow = slow &&
+           rate(now.hub_rad[i] - oldest.hub_rad[i], now.tick - oldest.tick) <
+               safety_.rest_hub_rate_rad_s &&
+           rate(now.root_strain[i] - last.root_strain[i], now.tick - last.tick) <
+               safety_.rest_strain_rate_per_s;
   }
+  before_[ring_] = now;
   ring_ = (ring_ + 1) % kRestWindow;
-  rest_ticks_ = slow ? std::min(rest_ticks_ + (complete ? 1 : 0), rest_ticks_needed_) : 0;
+  rest_ticks_ = slow ? std::min(rest_ticks_ + 1, rest_ticks_needed_) : 0;
   return rest_ticks_ == rest_ticks_needed_;
 }
 

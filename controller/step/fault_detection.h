@@ -18,12 +18,19 @@ struct LoopFacts {
   const DecodedCounters* counters;
   const FittedModes* modes;
   const StateEstimator::Estimate* estimate;
+  std::array<double, 2> model_root_strain;  ///< of the links as `estimate` bends them
+  std::array<double, 2> root_innovation;    ///< the fit's strain there minus the predicted one
   std::array<double, 2> applied_torque_nm;
   double frame_age_s;  ///< age of the newest frame at the sampling instant
   LoopMode mode;
 };
 
 /// Checks of the control step: soft limits, rates, strain, sensors, estimator.
+///
+/// Each monitored quantity has a value or is unknown, NaN. The value is the reading; in one sample
+/// that lacks a reading of any sensor it is the model's, from the estimate; in the second such
+/// sample in a row, what lacks a reading is unknown. An unknown quantity passes no limit: it is a
+/// fault in that sample, under the name of the sensor that is missing.
 ///
 /// Violations of angle and strain limits and encoder jumps are faults in the sample in which they
 /// occur; hub rates after two samples; faults of single sensors and of the estimator after
@@ -46,7 +53,7 @@ class FaultDetection {
   static constexpr double kDampedTo = 1.5;
 
   FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
-                 std::uint32_t counters_present, const std::array<std::uint32_t, 2>& gauges,
+                 std::uint32_t counters_present, const std::array<int, 2>& gauges_needed,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 
   /// Resets all state: the results depend on later samples only, so that a log, which begins at a
@@ -59,7 +66,20 @@ class FaultDetection {
   /// period already exceeds the bound on the rate at rest.
   static constexpr std::size_t kRestWindow = 5;
 
-  void JudgeJoints(const LoopFacts& facts) noexcept;
+  /// What the limits are compared with.
+  struct Monitored {
+    std::array<double, 2> hub_rad, root_strain;
+  };
+  /// A complete sample, for the rates of the samples after it.
+  struct Posture {
+    std::array<double, 2> hub_rad, root_strain;
+    std::int64_t tick;
+  };
+  Monitored Monitor(const LoopFacts& facts) noexcept;
+  /// `reading`, or what stands for it in this sample.
+  double Bridged(bool read, double reading, double model) const noexcept;
+
+  void JudgeJoints(const LoopFacts& facts, const Monitored& monitored) noexcept;
   void JudgeCounters(const LoopFacts& facts) noexcept;
   void JudgeStrain(const LoopFacts& facts) noexcept;
   void JudgeEstimate(const LoopFacts& facts) noexcept;
@@ -68,20 +88,23 @@ class FaultDetection {
   /// Counts the samples in a row with `present`, and raises `cause` from the `ticks`-th on.
   void Raise(TripCause cause, bool present, int ticks, double value, double limit,
              std::size_t channel) noexcept;
+  /// Raises `beyond` unless value <= limit, or `unknown` if the value is NaN.
+  void RaiseUnlessWithin(TripCause beyond, TripCause unknown, int ticks, double value, double limit,
+                         std::size_t joint) noexcept;
 
   SafetyConfig safety_;
   EstimatorConfig estimator_;
   double period_s_;
   std::uint32_t counters_present_;
-  std::array<std::uint32_t, 2> gauges_;  // StrainFit::gauges
+  std::array<int, 2> gauges_needed_;
   std::array<double, 2> joint_stiffness_;
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
-  std::array<std::array<double, 2>, kRestWindow>
-      hub_before_{};  // ring buffer of the last hub angles
-  std::size_t ring_ = 0;
-  std::array<double, 2> root_strain_before_{};
-  bool started_ = false;  // false: the two above are not set yet
+  int incomplete_ticks_ = 0;  // samples in a row that lacked a reading, up to kMissingTicks
+  std::array<Posture, kRestWindow> before_{};  // ring buffer of the last complete samples
+  std::size_t ring_ = 0;                       // the oldest
+  std::int64_t ticks_ = 0;                     // samples since Reset
+  bool started_ = false;                       // false: before_ is not set yet
   std::array<int, kTripCauses> in_a_row_{};
   Verdict verdict_{};
 };

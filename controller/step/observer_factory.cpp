@@ -19,7 +19,10 @@ std::unique_ptr<Observer> MakeObserver(const ControlConfig& config, const Design
                           .C = design.filter_C,
                           .L = design.filter_L,
                           .A_rate = design.filter_A_rate,
-                          .B_rate = design.filter_B_rate};
+                          .B_rate = design.filter_B_rate,
+                          .W = design.filter_W,
+                          .P = design.filter_P,
+                          .R = design.filter_R};
   return std::make_unique<NominalObserver>(  // start-up
       StateEstimator(config.estimator, gains, period_s, config.arm.joint_stiffness_nm_per_rad()),
       FractionalZeroOrderHold({.A = design.A, .B = design.B}, design.A_rate, design.B_rate,

@@ -131,10 +131,12 @@ constexpr std::array<Row, kTripCauses> kRows{{
      "switched off. Wait until it is at rest; check the gains and the rest limits."},
     {kNoStrainReading1, "no-strain-reading-1", kJoint,
      "The bending of link 1 is not known: for two samples too few of its gauges gave a good "
-     "reading. Check the amplifier of link 1, its cables and its bus."},
+     "reading, or those that did are too close together. Check the amplifier of link 1, its cables "
+     "and its bus."},
     {kNoStrainReading2, "no-strain-reading-2", kJoint,
      "The bending of link 2 is not known: for two samples too few of its gauges gave a good "
-     "reading. Check the amplifier of link 2, its cables and its bus."},
+     "reading, or those that did are too close together. Check the amplifier of link 2, its cables "
+     "and its bus."},
 }};
 
 static_assert(

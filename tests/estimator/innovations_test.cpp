@@ -72,7 +72,10 @@ std::vector<VectorXd> Innovations(const Truth& truth) {
                             .C = design.C,
                             .L = design.L,
                             .A_rate = design.A_rate,
-                            .B_rate = design.B_rate},
+                            .B_rate = design.B_rate,
+                            .W = design.W,
+                            .P = design.P,
+                            .R = design.R},
                            kPeriod_s, kStiffness);
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;

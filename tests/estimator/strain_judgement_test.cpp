@@ -113,15 +113,30 @@ TEST_F(StrainJudgement, AStuckChannelIsExcludedInTheSampleThatShowsIt) {
       EXPECT_EQ(out.used & (1u << i), 0u) << "channel " << i;
       ExpectBend(out, bend, i);
     }
-    // At the free ends there is hardly any strain: the limit is 102 counts, plus a margin.
-    const bool moves_enough = std::abs(FrameOf({0.06, 0.0, -0.06, 0.0}).strain[i]) > 110;
-    EXPECT_EQ(found, moves_enough) << i;
+    // At the free ends there is hardly any strain. The limit is 102 counts; the fit to the other
+    // channels errs by their quantisation, a count at the station.
+    const double moves = FrameOf({0.06, 0.0, -0.06, 0.0}).strain[i] - rest.strain[i];
+    EXPECT_TRUE(found || std::abs(moves) < 104) << i;
+    EXPECT_TRUE(!found || std::abs(moves) > 100) << i;
   }
 }
 
 TEST_F(StrainJudgement, ChannelsOfAnArmAtRestAreNotStuck) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
   for (int k = 0; k < 500; ++k) EXPECT_EQ(fit.Fit(FrameOf(kBent)).stuck, 0u);
+}
+
+TEST_F(StrainJudgement, ALinkWhoseGoodChannelsAllRepeatIsTold) {
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  SensorFrame frame = FrameOf(kBent);
+  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0, 0})) << "the first frame";
+  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0x3FF, 0xFFC00}));
+  ++frame.strain[4];
+  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0, 0xFFC00}));
+  frame.strain_valid &= ~(1U << 12);
+  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0x3FF, 0xFEC00}));
+  frame.strain_valid = 0x3FF;
+  EXPECT_EQ(fit.Fit(frame).repeated, (std::array<std::uint32_t, 2>{0x3FF, 0})) << "no good channel";
 }
 
 TEST_F(StrainJudgement, ResetClearsTheStuckDetection) {

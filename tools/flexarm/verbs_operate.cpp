@@ -84,6 +84,11 @@ void PrintStatus(const Json& s) {
   }
   std::printf("torque asked   %.3f, %.3f N m\n", pair("torque_nm")[0], pair("torque_nm")[1]);
   std::printf("at rest        %s\n", s.value("at_rest", false) ? "yes" : "no");
+  if (const auto gauges = s.value("gauges_missing", std::vector<std::string>{}); !gauges.empty()) {
+    std::printf("gauges missing");
+    for (const std::string& gauge : gauges) std::printf(" %s", gauge.c_str());
+    std::printf("\n");
+  }
   std::printf("delay          %.2f ms, longest %.2f ms; %.1f ms of margin left\n",
               s.value("delay_ms", 0.0), s.value("delay_max_ms", 0.0),
               s.value("delay_margin_ms", 0.0));

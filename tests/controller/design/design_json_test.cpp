@@ -37,6 +37,8 @@ void ExpectSameBits(const Design& a, const Design& b) {
   EXPECT_TRUE(SameBits(a.Ufx, b.Ufx) && SameBits(a.Ufu, b.Ufu));
   EXPECT_TRUE(SameBits(a.filter_A, b.filter_A) && SameBits(a.filter_B, b.filter_B));
   EXPECT_TRUE(SameBits(a.filter_C, b.filter_C) && SameBits(a.filter_L, b.filter_L));
+  EXPECT_TRUE(SameBits(a.filter_W, b.filter_W) && SameBits(a.filter_P, b.filter_P));
+  EXPECT_TRUE(SameBits(a.filter_R, b.filter_R));
   EXPECT_TRUE(SameBits(a.rigid_inertia_kgm2, b.rigid_inertia_kgm2));
 }
 
@@ -148,7 +150,7 @@ TEST(DesignJson, GainsOfAnotherConfigAreRefusedWithBothHashes) {
 
 TEST(DesignJson, EachMissingMatrixIsNamed) {
   for (const char* name : {"A", "Am", "K", "K_stop", "P", "G", "S11", "S22", "Ufx", "filter_L",
-                           "rigid_inertia_kgm2"}) {
+                           "filter_P", "rigid_inertia_kgm2"}) {
     nlohmann::json json = ShippedJson();
     json.erase(name);
     EXPECT_THAT(RefusalOf(json.dump()), HasSubstr(std::string(name) + "' is missing"));

@@ -45,7 +45,10 @@ class LoopInTime {
                     .C = design_.filter_C,
                     .L = design_.filter_L,
                     .A_rate = design_.filter_A_rate,
-                    .B_rate = design_.filter_B_rate},
+                    .B_rate = design_.filter_B_rate,
+                    .W = design_.filter_W,
+                    .P = design_.filter_P,
+                    .R = design_.filter_R},
                    config.loop.period_s(), Stiffness()),
         filter_(config.sensors.strain_input, kStep_s, 20),
         fit_(Fit(config)) {

@@ -15,7 +15,10 @@ using Json = nlohmann::json;
 using testing::HasSubstr;
 
 struct RunWarningsTest : testing::Test {
-  RunWarningsTest() { tick.input.safety_state = SafetyState::kRunning; }
+  RunWarningsTest() {
+    tick.input.safety_state = SafetyState::kRunning;
+    tick.output.strain_used = 0b11;
+  }
 
   // One step of which a warning comes; returns it, after comparing it with the journal.
   RunEvent TheWarning(std::int64_t now_ns) {
@@ -32,7 +35,7 @@ struct RunWarningsTest : testing::Test {
 
   EventQueue events{64};
   RecordedJournal journal;
-  RunWarnings warnings{kPeriodNs, 0.008, &events, journal.Report()};
+  RunWarnings warnings{kPeriodNs, 0.008, {"strain_1_01", "strain_2_01"}, &events, journal.Report()};
   TickRecord tick{};
 };
 
@@ -63,6 +66,31 @@ TEST_F(RunWarningsTest, AWarningOfThePayloadHasItsFigures) {
   const RunEvent warning = TheWarning(0);
   EXPECT_EQ(warning.name, "payload-model-mismatch");
   EXPECT_EQ(Json::parse(warning.value_json)["kg"], 0.4);
+}
+
+TEST_F(RunWarningsTest, AGaugeThatIsMissingForThreeSamplesIsNamed) {
+  tick.output.strain_used = 0b01;
+  warnings.Take(0, tick);
+  warnings.Take(kPeriodNs, tick);
+  EXPECT_TRUE(TakeEvents(&events).empty());
+  EXPECT_TRUE(warnings.missing_gauges().empty());
+  const RunEvent warning = TheWarning(2 * kPeriodNs);
+  EXPECT_EQ(warning.name, "gauges-missing");
+  EXPECT_EQ(Json::parse(warning.value_json), Json({{"gauges", {"strain_2_01"}}}));
+  EXPECT_THAT(warnings.missing_gauges(), testing::ElementsAre("strain_2_01"));
+  warnings.Take(3 * kPeriodNs, tick);
+  EXPECT_TRUE(TakeEvents(&events).empty()) << "once a run";
+  tick.output.strain_used = 0b11;
+  warnings.Take(4 * kPeriodNs, tick);
+  EXPECT_TRUE(warnings.missing_gauges().empty()) << "for the status: at once";
+}
+
+TEST_F(RunWarningsTest, AGaugeThatMissesSingleSamplesIsNoNews) {
+  for (int k = 0; k < 30; ++k) {
+    tick.output.strain_used = k % 3 == 0 ? 0b11 : 0b10;
+    warnings.Take(k * kPeriodNs, tick);
+  }
+  EXPECT_TRUE(TakeEvents(&events).empty());
 }
 
 TEST_F(RunWarningsTest, SeveralOfOneStepComeInTheirOrder) {

@@ -35,6 +35,7 @@ struct StatusJsonTest : testing::Test {
                        .delay = &delay,
                        .sensors = &sensors,
                        .angles = &angles,
+                       .missing_gauges = missing_gauges,
                        .experiment = experiment,
                        .buses = buses,
                        .bus_text = bus_text,
@@ -50,6 +51,7 @@ struct StatusJsonTest : testing::Test {
   DelayMonitor delay{kPeriodNs, 0.009};
   SensorConfig sensors{};
   AngleKnowledge angles{AnglesAtStart::kAtZero, sensors};
+  std::vector<std::string> missing_gauges;
   std::string experiment;
   std::vector<BusHealth> buses;
   std::string bus_text;
@@ -78,6 +80,16 @@ TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
   EXPECT_EQ(status["design"]["verdict"], "forced");
   EXPECT_EQ(status["overrides"], Json({"host"}));
   EXPECT_EQ(status["switches"]["proved"], true);
+}
+
+TEST_F(StatusJsonTest, GaugesThatAreMissingAreNamedAndUnknownStrainIsNull) {
+  EXPECT_EQ(Status()["gauges_missing"], Json::array());
+  missing_gauges = {"strain_1_03"};
+  now.tick.output.root_strain = {1e-4, std::numeric_limits<double>::quiet_NaN()};
+  const Json status = Json::parse(Status().dump());
+  EXPECT_EQ(status["gauges_missing"], Json({"strain_1_03"}));
+  EXPECT_DOUBLE_EQ(status["root_strain"][0], 1e-4);
+  EXPECT_TRUE(status["root_strain"][1].is_null());
 }
 
 TEST_F(StatusJsonTest, WhatThereIsNotIsNull) {

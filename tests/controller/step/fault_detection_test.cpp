@@ -16,12 +16,16 @@
 namespace flexarm {
 namespace {
 
+constexpr std::array<int, 2> kGaugesNeeded = {3, 3};
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 // Inputs of a healthy arm at rest at zero.
 struct Facts {
   DecodedCounters counters{};
   FittedModes modes{};
   StateEstimator::Estimate estimate{};
   std::array<double, 2> torque_nm{};
+  std::array<double, 2> model_root_strain{}, root_innovation{};
   double frame_age_s = 0.0;
   LoopMode mode = LoopMode::kFollow;
 
@@ -29,12 +33,15 @@ struct Facts {
     counters.good = 0b1111;
     modes.valid = {true, true};
     modes.used = 0xFFFFF;
+    modes.gauges = {10, 10};
     estimate.x = StateVector::Zero(12);
   }
   LoopFacts Now() const {
     return {.counters = &counters,
             .modes = &modes,
             .estimate = &estimate,
+            .model_root_strain = model_root_strain,
+            .root_innovation = root_innovation,
             .applied_torque_nm = torque_nm,
             .frame_age_s = frame_age_s,
             .mode = mode};
@@ -43,6 +50,20 @@ struct Facts {
 
 class FaultDetectionTest : public testing::Test {
  protected:
+  // As StrainFit without enough gauges of a link.
+  static Facts Unfitted(std::size_t link, int gauges) {
+    Facts facts;
+    facts.modes.valid[link] = false;
+    facts.modes.root_strain[link] = kNan;
+    facts.modes.gauges[link] = gauges;
+    return facts;
+  }
+  static Facts WithoutCounter(std::size_t counter) {
+    Facts facts;
+    facts.counters.good &= ~(1U << counter);
+    return facts;
+  }
+
   // Judges `facts` repeatedly; expects only `cause`, with its evidence, from the `ticks`-th sample
   // on, and no fault once the inputs are healthy again.
   void Expect(TripCause cause, int ticks, const Facts& facts, double value, double limit,
@@ -64,40 +85,11 @@ class FaultDetectionTest : public testing::Test {
 
   const RigConfig config_ = ShippedRig();
   FaultDetection monitor_{config_.safety, config_.estimator, kPeriod_s,
-                          0b1111,         {0x3FF, 0xFFC00},  {761.59, 497.96}};
+                          0b1111,         kGaugesNeeded,     {761.59, 497.96}};
 };
 
 TEST_F(FaultDetectionTest, AHealthyArmRaisesNoFault) {
   for (int k = 0; k < 100; ++k) EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
-}
-
-// Gauges that answer without a good reading: the bending is unknown, which is no bending of 0.
-TEST_F(FaultDetectionTest, LostStrainIsAFaultOfItsLinkInTheSecondSample) {
-  Facts facts;
-  facts.modes.valid[1] = false;
-  facts.modes.root_strain[1] = std::numeric_limits<double>::quiet_NaN();
-  facts.modes.used = 0x3FF | 1U << 12;  // one gauge of link 2 is left
-  Expect(TripCause::kNoStrainReading2, 2, facts, 1.0, config_.estimator.modes_per_link, 2);
-  facts = Facts();
-  facts.modes.valid[0] = false;
-  facts.modes.root_strain[0] = std::numeric_limits<double>::quiet_NaN();
-  facts.modes.used = 0xFFC00;
-  Expect(TripCause::kNoStrainReading1, 2, facts, 0.0, config_.estimator.modes_per_link, 1);
-}
-
-TEST_F(FaultDetectionTest, ALinkWithoutGaugesMissesNone) {
-  FaultDetection ungauged(config_.safety, config_.estimator, kPeriod_s, 0b1111, {0x3FF, 0},
-                          {761.59, 497.96});
-  Facts facts;
-  facts.modes.valid[1] = false;
-  facts.modes.root_strain[1] = std::numeric_limits<double>::quiet_NaN();
-  bool at_rest = false;
-  for (int k = 0; k < 100; ++k) {
-    const auto verdict = ungauged.Judge(facts.Now());
-    EXPECT_EQ(verdict.faults, 0u);
-    at_rest = verdict.at_rest;
-  }
-  EXPECT_TRUE(at_rest);
 }
 
 // Every second sample lacks the strain of a link: it counts for rest neither way.
@@ -161,18 +153,95 @@ TEST_F(FaultDetectionTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
   EXPECT_DOUBLE_EQ(verdict.limit, 14.0);
 }
 
-// No valid counter reading for two periods.
-TEST_F(FaultDetectionTest, TwoPeriodsWithoutAReadingTripAndOneDoesNot) {
-  Facts facts;
-  facts.counters.good = 0b1101;
-  facts.counters.missing_ticks = {0, 1, 0, 0};
-  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
-  facts.counters.missing_ticks = {0, 2, 0, 0};
-  Expect(TripCause::kNoCounterReading, 1, facts, 2.0, 2.0, 2);
+// The second sample in a row that lacks a reading: of each counter, by itself.
+TEST_F(FaultDetectionTest, TwoSamplesWithoutACounterTripAndOneDoesNot) {
+  for (std::uint16_t i = 0; i < 4; ++i) {
+    Expect(TripCause::kNoCounterReading, 2, WithoutCounter(i), 2.0, 2.0,
+           static_cast<std::uint16_t>(i + 1));
+  }
+}
+
+// Evidence: the gauges that are left, and how many it takes.
+TEST_F(FaultDetectionTest, TwoSamplesWithoutAFitTripAndOneDoesNot) {
+  Expect(TripCause::kNoStrainReading1, 2, Unfitted(0, 2), 2.0, 3.0, 1);
+  Expect(TripCause::kNoStrainReading2, 2, Unfitted(1, 0), 0.0, 3.0, 2);
+}
+
+TEST_F(FaultDetectionTest, EverySecondSampleWithoutAReadingDoesNotTrip) {
+  for (int k = 0; k < 20; ++k) {
+    EXPECT_EQ(monitor_.Judge(Unfitted(0, 0).Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(WithoutCounter(1).Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
+  }
+}
+
+// Sensors that fail in turn: none misses two samples, and yet the observer has no complete sample.
+TEST_F(FaultDetectionTest, TwoSensorsThatFailInTurnTrip) {
+  EXPECT_EQ(monitor_.Judge(Unfitted(0, 0).Now()).faults, 0u);
+  EXPECT_EQ(monitor_.Judge(WithoutCounter(3).Now()).faults, CauseBit(TripCause::kNoCounterReading));
+  EXPECT_EQ(monitor_.Judge(Unfitted(1, 0).Now()).faults, CauseBit(TripCause::kNoStrainReading2));
+  EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
+}
+
+// The model stands for one missing reading: its angle and its bending have the limits of a reading.
+TEST_F(FaultDetectionTest, AMissingReadingIsJudgedByTheModelForOneSample) {
+  Facts angle = WithoutCounter(1);
+  angle.estimate.x(1) = -90.1 * kRadPerDeg;
+  EXPECT_EQ(monitor_.Judge(angle.Now()).faults, CauseBit(TripCause::kSoftLimit2));
+  monitor_.Reset();
+  Facts bent = Unfitted(1, 0);
+  bent.model_root_strain = {0.0, -1.95e-3};
+  const auto verdict = monitor_.Judge(bent.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kBendingStrain2));
+  EXPECT_DOUBLE_EQ(verdict.value, 1.95e-3);
+  EXPECT_FALSE(verdict.may_damp) << "the bending is not measured";
+  bent.model_root_strain = {1.95e-3, 0.0};  // of link 1 there is a reading
+  monitor_.Reset();
+  EXPECT_EQ(monitor_.Judge(bent.Now()).faults, 0u);
+}
+
+// A NaN in any monitored quantity is a fault in that sample, whatever it came from.
+TEST_F(FaultDetectionTest, NoLimitIsPassedByNaN) {
+  const auto trips = [this](const auto& change, int ticks = 1) {
+    monitor_.Reset();
+    TripCauses faults = 0;
+    for (int k = 0; k < ticks; ++k) {
+      Facts facts;
+      change(&facts);
+      const auto verdict = monitor_.Judge(facts.Now());
+      EXPECT_FALSE(verdict.may_damp && Damped(verdict.faults, true));
+      faults = verdict.faults;
+    }
+    return faults;
+  };
+  EXPECT_NE(trips([](Facts* f) { f->counters.angle_rad[0] = kNan; }), 0u);
+  EXPECT_NE(trips([](Facts* f) { f->counters.angle_rad[1] = kNan; }), 0u);
+  EXPECT_NE(trips([](Facts* f) { f->modes.root_strain[0] = kNan; }), 0u);
+  EXPECT_NE(trips([](Facts* f) { f->modes.root_strain[1] = kNan; }), 0u);
+  EXPECT_NE(trips([](Facts* f) { f->estimate.x(6) = kNan; }), 0u);
+  EXPECT_NE(trips([](Facts* f) { f->frame_age_s = kNan; }), 0u);
+  const int ticks = config_.estimator.fault_ticks;
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    EXPECT_NE(trips([joint](Facts* f) { f->torque_nm[joint] = kNan; }, ticks), 0u) << joint;
+    EXPECT_NE(trips([joint](Facts* f) { f->estimate.innovation[joint] = kNan; }, ticks), 0u);
+    EXPECT_NE(trips([joint](Facts* f) { f->counters.angle_rad[2 + joint] = kNan; }, ticks), 0u);
+  }
+}
+
+TEST_F(FaultDetectionTest, AnArmThatIsNotMeasuredIsNotAtRest) {
+  for (int k = 0; k < 40; ++k) monitor_.Judge(Facts().Now());
+  ASSERT_TRUE(monitor_.Judge(Facts().Now()).at_rest);
+  EXPECT_TRUE(monitor_.Judge(WithoutCounter(0).Now()).at_rest) << "one sample is bridged";
+  EXPECT_FALSE(monitor_.Judge(Unfitted(0, 0).Now()).at_rest);
+  EXPECT_FALSE(monitor_.Judge(Unfitted(0, 0).Now()).at_rest);
+  int samples = 0;
+  while (!monitor_.Judge(Facts().Now()).at_rest && samples < 100) ++samples;
+  EXPECT_GE(samples, 24) << "the rest begins again";
 }
 
 TEST_F(FaultDetectionTest, AnEncoderThatTheRigLacksDoesNotTrip) {
-  FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, {0x3FF, 0xFFC00},
+  FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, kGaugesNeeded,
                            {761.59, 497.96});
   Facts facts;
   facts.counters.good = 0b0011;
@@ -201,7 +270,9 @@ TEST_F(FaultDetectionTest, HubAgainstRotorIsNotJudgedWithoutBothReadings) {
   Facts facts;
   facts.counters.angle_rad = {0.0, 0.0, 0.5, 0.0};
   facts.counters.good = 0b1011;
-  for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(monitor_.Judge(facts.Now()).faults & CauseBit(TripCause::kHubAgainstRotor), 0u);
+  }
 }
 
 TEST_F(FaultDetectionTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
@@ -215,6 +286,19 @@ TEST_F(FaultDetectionTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
   facts.modes.outlier = 1u << 0;
   facts.modes.worst_outlier = 7e-4;
   Expect(TripCause::kStrainOutOfFamily, 3, facts, 7e-4, 4e-4, 1);
+}
+
+// All gauges of a link repeat themselves while the model bends it: nothing else tells. At rest they
+// may, and so may the gauges of a model that errs.
+TEST_F(FaultDetectionTest, ALinkWhoseGaugesAllRepeatIsJudgedByTheModel) {
+  Facts facts;
+  facts.modes.repeated = {0, 0xFFC00};
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  facts.root_innovation = {9e-4, -1.2e-4};
+  Expect(TripCause::kStrainStuck, 3, facts, 1.2e-4, 1e-4, 11);
+  facts.modes.repeated = {0, 0};
+  monitor_.Reset();
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
 }
 
 TEST_F(FaultDetectionTest, AnIntermittentStrainFaultDoesNotTrip) {
@@ -285,7 +369,7 @@ TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
   Facts elsewhere;
   elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
   elsewhere.modes.root_strain = {2e-4, 1e-4};
-  FaultDetection fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, {0x3FF, 0xFFC00},
+  FaultDetection fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, kGaugesNeeded,
                        {761.59, 497.96});
   for (int k = 0; k < 38; ++k) monitor_.Judge(elsewhere.Now());  // 38: not a full ring
   monitor_.Reset();
@@ -304,7 +388,7 @@ TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
 TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestWithAShortRestTime) {
   SafetyConfig safety = config_.safety;
   safety.rest_time_s = 0.05;
-  FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, {0x3FF, 0xFFC00},
+  FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, kGaugesNeeded,
                        {761.59, 497.96});
   Facts moving;
   for (int k = 0; k < 20; ++k) {
@@ -363,7 +447,6 @@ TEST_F(FaultDetectionTest, DampingNeedsHubsAndBendingMeasuredAndNotFarBeyondThei
     change(&facts);
     return monitor_.Judge(facts.Now()).may_damp;
   };
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(may_damp([](Facts*) {}));
   EXPECT_TRUE(may_damp([](Facts* f) { f->estimate.x(6) = -11.9; }));
   EXPECT_FALSE(may_damp([](Facts* f) { f->estimate.x(6) = -12.1; }));
