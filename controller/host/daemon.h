@@ -15,7 +15,8 @@ struct DaemonOptions {
   RigConfig config;
   std::optional<Experiment> experiment;  ///< run once, unattended; then the daemon ends
   std::optional<double> run_for_s;       ///< end after this long
-  bool realtime = true;                  ///< false: --without-realtime
+  bool realtime = true;                  ///< false: --without-realtime; a simulated loop
+                                         ///< runs in lock step then, behind the clock
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
 };
 
