@@ -213,6 +213,7 @@ void ReadGpiod(TableReader gpiod, GpiodConfig* out) {
   for (std::size_t i = 0; i < kKeys.size(); ++i) gpiod.Read(kKeys[i], &out->input[i]);
   gpiod.Read("relay", &out->relay);
   gpiod.Read("pump", &out->pump);
+  if (gpiod.Has("relay_contact")) gpiod.Read("relay_contact", &out->relay_contact.emplace());
 }
 
 // A bus from its row, by a function that reads the keys of its config.

@@ -6,6 +6,13 @@
 
 namespace flexarm {
 
+/// What the mirror contact of the relay says of the relay's main contacts.
+enum class RelayContact : std::uint8_t {
+  kNone,    ///< there is no such line
+  kOpen,    ///< the mirror contact is closed: the main contacts are open for certain
+  kClosed,  ///< or welded, or the wire of the mirror contact is cut
+};
+
 /// The digital lines of the safety chain, which the safety task reads and drives every millisecond.
 ///
 /// A call takes `kBudgetNs` at most, never allocates and never throws: real-time safe. It says
@@ -31,6 +38,7 @@ class SafetyLines {
   struct Reading {
     LineLevels levels;  ///< 0, every switch open, if the call failed
     Call call{};
+    RelayContact relay = RelayContact::kNone;
   };
 
   virtual ~SafetyLines() = default;

@@ -15,6 +15,10 @@ const char* NameOf(LineTrouble trouble) noexcept {
       return "read too slow";
     case LineTrouble::kWriteSlow:
       return "write too slow";
+    case LineTrouble::kRelayStuckClosed:
+      return "relay stays closed";
+    case LineTrouble::kRelayStuckOpen:
+      return "relay stays open";
   }
   return "";
 }

@@ -77,6 +77,8 @@ const char* ToString(Refusal refusal) noexcept {
       return "drives-off";
     case Refusal::kNotKept:
       return "not-kept";
+    case Refusal::kRelayClosed:
+      return "relay-closed";
   }
   return "corrupted";
 }
@@ -104,6 +106,11 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
       return "Another arm, run or reset has not been answered yet. Repeat the request.";
     case Refusal::kShuttingDown:
       return "The daemon is shutting down. Start it again first.";
+    case Refusal::kRelayClosed:
+      return "The mirror contact of the relay says that the relay is closed, though it was told to "
+             "open. A relay needs 0.1 s at most: repeat the request. If it is refused again, the "
+             "relay is welded or the wire of its contact is cut: switch the power off and repair "
+             "it.";
     case Refusal::kDrivesOff:
       return "The drives have not confirmed that they are on. Check their supply and their "
              "display, then repeat the request.";

@@ -26,7 +26,8 @@ struct SafetyFacts {
                             ///< with which FaultStopping began
   std::uint8_t drives_on;   ///< every drive has confirmed that it is enabled
   std::uint8_t drives_off;  ///< every drive has confirmed, in this state, that it is disabled
-  std::array<std::uint8_t, 6> reserved;  ///< zero
+  std::uint8_t relay_stays_closed;       ///< its contact is closed, though it was told to open
+  std::array<std::uint8_t, 5> reserved;  ///< zero
 };
 static_assert(std::has_unique_object_representations_v<SafetyFacts>, "no padding: it is logged");
 
@@ -112,6 +113,7 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       if (request != RequestKind::kArm) return go(kIdle, not_here);
       if (shutting_down) return go(kIdle, Refusal::kShuttingDown);
       if (facts.all_reported == 0) return go(kIdle, Refusal::kUnhealthy);
+      if (facts.relay_stays_closed != 0) return go(kIdle, Refusal::kRelayClosed);
       if (facts.at_rest == 0) return go(kIdle, Refusal::kNotAtRest);
       return go(kArmed, Refusal::kNone);
     case kArmed:

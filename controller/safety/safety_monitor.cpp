@@ -74,6 +74,13 @@ std::int64_t SafetyMonitor::StateLimitNs(SafetyState state) const noexcept {
   return state == SafetyState::kDisarming ? kDisarmNs : INT64_MAX;
 }
 
+bool SafetyMonitor::LinesFail(const SafetyInputs& in) noexcept {
+  const bool calls_fail = line_calls_.Judge(in.line_calls);
+  const bool relay_fails = relay_.Judge(in.due_ns, RelayClosed(in.state), in.relay);
+  lines_evidence_ = calls_fail ? LineCallMonitor::EvidenceOf(in.line_calls) : relay_.evidence();
+  return calls_fail || relay_fails;
+}
+
 bool SafetyMonitor::MayDamp(const SafetyInputs& in, TripCauses present,
                             bool control_alive) noexcept {
   const TripCauses before = std::exchange(present_before_, present);
@@ -122,7 +129,7 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
     if (!in.levels_known) continue;
     if (((in.levels | excused) & LineBit(s.line)) == 0) add(s.cause);  // normally closed
   }
-  if (line_calls_.Judge(in.line_calls)) add(TripCause::kSafetyLines);
+  if (LinesFail(in)) add(TripCause::kSafetyLines);
 
   const bool control_alive =
       ControlReported(in) && AgeNs(in.due_ns, in.control_alive_ns) <= limits_.heartbeat_timeout_ns;
@@ -163,6 +170,8 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
   facts.drives_off =
       Flag(in.drive.power == DrivePower::kOff && in.drive.due_ns > in.state_since_ns);
 
+  facts.relay_stays_closed = Flag(in.relay == RelayContact::kClosed && !RelayClosed(in.state));
+
   const bool button_down = (in.levels & LineBit(Line::kResetButton)) != 0;
   // A press counts when it has lasted for kPressNs: one that began before the trip is no answer.
   const bool pressed_now = button_down && !button_was_down_ &&
@@ -188,7 +197,7 @@ Evidence SafetyMonitor::EvidenceOf(TripCause cause, const SafetyInputs& in) cons
     if (s.cause == cause && (in.levels & LineBit(s.line)) == 0) return evidence(0.0, 1.0, s.joint);
   }
   if (in.control.faults != 0 && LowestCause(in.control.faults) == cause) return in.control.evidence;
-  if (cause == TripCause::kSafetyLines) return LineCallMonitor::EvidenceOf(in.line_calls);
+  if (cause == TripCause::kSafetyLines) return lines_evidence_;
   if (cause == TripCause::kStaleFrame) {
     return of_bus(Seconds(AgeNs(in.due_ns, in.drive_alive_ns)),
                   Seconds(limits_.heartbeat_timeout_ns),

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "controller/safety/line_calls.h"
+#include "controller/safety/relay_contact.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/types/messages.h"
 #include "hal/sensor_frame.h"
@@ -63,13 +64,14 @@ struct SafetyInputs {
   bool levels_known = true;       ///< false: too few samples to say that a switch is open
   LineCalls line_calls{};
   std::int64_t permit_age_ns = 0;  ///< of the permit that this tick renews; 0: it is the first
+  RelayContact relay = RelayContact::kNone;  ///< it was told RelayClosed(state)
 };
 
 /// Safety monitor: derives the inputs of the safety state machine from line levels and task
 /// reports, with all checks of time, levels and freshness. Its only memory is the reset button, the
 /// first reports, the causes with which FaultStopping began, how long homing has been on its
-/// switch, which ticks the lines were slow in, when the shutdown began, and how often threads were
-/// late. Reads no clock.
+/// switch, which ticks the lines were slow in, since when the relay contradicts its command, when
+/// the shutdown began, and how often threads were late. Reads no clock.
 ///
 /// A report counts only while its sender is alive; no cause is derived from a task before its first
 /// report, nor from a switch before its level is known: until both are, `all_reported` is 0. While
@@ -114,10 +116,13 @@ class SafetyMonitor {
   bool HomingContact(const SafetyInputs& in) noexcept;
   /// Longest time in the present state; INT64_MAX: without limit.
   std::int64_t StateLimitNs(SafetyState state) const noexcept;
+  bool LinesFail(const SafetyInputs& in) noexcept;
   bool MayDamp(const SafetyInputs& in, TripCauses present, bool control_alive) noexcept;
 
   MonitorLimits limits_;
   LineCallMonitor line_calls_;
+  RelayContactMonitor relay_;
+  Evidence lines_evidence_{};      // of kSafetyLines, in the last tick
   std::int64_t contact_ns_ = 0;    // of the present homing run
   std::int64_t looked_ns_ = 0;     // the tick before
   TripCauses present_before_ = 0;  // the tick before

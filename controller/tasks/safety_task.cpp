@@ -59,7 +59,8 @@ void SafetyTask::Run(const Activation& activation) noexcept {
                         .may_open = run_.may_open,
                         .levels_known = filter_.known(),
                         .line_calls = {.read = read.call, .write = written_},
-                        .permit_age_ns = PermitAgeNs(activation)};
+                        .permit_age_ns = PermitAgeNs(activation),
+                        .relay = read.relay};
   const SafetyFacts facts = monitor_.Judge(in);
   const SafetyStatus before = status_;
   const SafetyDecision decision = NextSafetyState(before, facts);

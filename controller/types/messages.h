@@ -135,6 +135,7 @@ enum class Refusal : std::uint8_t {
   kShuttingDown,  ///< the daemon ends: nothing may start
   kDrivesOff,     ///< a drive has not confirmed that it is on
   kNotKept,       ///< the latch file could not be written, so a trip would not survive a restart
+  kRelayClosed,   ///< the contact of the open relay is closed
 };
 
 /// Safety -> operator: answer to a request.

@@ -79,6 +79,8 @@ enum class LineTrouble : std::uint8_t {
   kWriteFailed = 2,
   kReadSlow = 3,
   kWriteSlow = 4,
+  kRelayStuckClosed = 5,
+  kRelayStuckOpen = 6,
 };
 TripChannel ChannelOf(TripCause cause) noexcept;
 

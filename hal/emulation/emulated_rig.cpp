@@ -106,6 +106,10 @@ void EmulatedRig::Show(std::int64_t now_ns) noexcept {
     const bool level = (frame.levels & LineBit(static_cast<Line>(i))) != 0;
     gpio_.Pull(lines_.input[static_cast<std::size_t>(i)], level);
   }
+  if (lines_.relay_contact) {
+    gpio_.Forget(*lines_.relay_contact);
+    gpio_.Pull(*lines_.relay_contact, !observed_.relay_closed);
+  }
 }
 
 }  // namespace flexarm

@@ -3,10 +3,23 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hal/gpiod/gpiod_config.h"
 
 namespace flexarm {
+
+/// Every Line, and the relay's mirror contact.
+inline constexpr std::size_t kMostGpioInputs = kLines + 1;
+
+/// An input of the safety chain.
+struct GpioInput {
+  std::string name;  ///< of the line in messages
+  unsigned offset;
+};
+
+/// Every Line, then the relay's mirror contact if there is one.
+std::vector<GpioInput> InputsOf(const GpiodConfig& config);
 
 /// The lines of the safety chain, requested from the kernel and held: no other process can
 /// reconfigure one. The only interface to libgpiod: gpio_request_v1.cpp is for its first generation
@@ -27,8 +40,8 @@ class GpioRequest {
   /// Name of the chip in the kernel: "gpiochip0".
   const std::string& chip_name() const noexcept { return chip_name_; }
 
-  /// The level of each input, 0 or 1, by Line. False if they cannot be read.
-  bool Read(std::array<int, kLines>* levels) noexcept;
+  /// The level of each input, 0 or 1, in the order of InputsOf. False if they cannot be read.
+  bool Read(std::array<int, kMostGpioInputs>* levels) noexcept;
 
   /// Sets both outputs, 0 or 1. False if they cannot be set.
   bool Write(int relay, int pump) noexcept;
@@ -43,6 +56,6 @@ class GpioRequest {
 inline constexpr std::array<const char*, 2> kGpioOutputs = {"relay", "pump"};
 
 /// The refusal of a chip that does not report the pull-down of an input.
-std::string NoPullDown(const GpiodConfig& config, Line line);
+std::string NoPullDown(const GpiodConfig& config, const GpioInput& input);
 
 }  // namespace flexarm

@@ -5,7 +5,6 @@
 
 #include "hal/bus_device.h"
 #include "hal/gpiod/gpio_request.h"
-#include "hal/line_names.h"
 
 namespace flexarm {
 namespace {
@@ -16,9 +15,9 @@ constexpr const char* kConsumer = "flexarmd";
   throw HalError("gpiod " + config.chip + ": " + what + " (" + std::strerror(errno) + ")");
 }
 
-gpiod_line* LineAt(const GpiodConfig& config, gpiod_chip* chip, int offset,
+gpiod_line* LineAt(const GpiodConfig& config, gpiod_chip* chip, unsigned offset,
                    const std::string& name) {
-  gpiod_line* line = gpiod_chip_get_line(chip, static_cast<unsigned>(offset));
+  gpiod_line* line = gpiod_chip_get_line(chip, offset);
   if (line == nullptr) Fail(config, name + " = line " + std::to_string(offset) + " does not exist");
   if (gpiod_line_is_used(line)) {
     const char* consumer = gpiod_line_consumer(line);
@@ -46,22 +45,24 @@ struct GpioRequest::Handles {
   Handles& operator=(const Handles&) = delete;
 
   void Request(const GpiodConfig& config) {
+    const std::vector<GpioInput> wanted = InputsOf(config);
     gpiod_line_bulk_init(&inputs);
-    for (int i = 0; i < kLines; ++i) {
-      gpiod_line_bulk_add(&inputs, LineAt(config, chip, config.input[static_cast<std::size_t>(i)],
-                                          ToString(static_cast<Line>(i))));
+    for (const GpioInput& input : wanted) {
+      gpiod_line_bulk_add(&inputs, LineAt(config, chip, input.offset, input.name));
     }
     gpiod_line_bulk_init(&outputs);
-    gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.relay, kGpioOutputs[0]));
-    gpiod_line_bulk_add(&outputs, LineAt(config, chip, config.pump, kGpioOutputs[1]));
+    gpiod_line_bulk_add(&outputs,
+                        LineAt(config, chip, static_cast<unsigned>(config.relay), kGpioOutputs[0]));
+    gpiod_line_bulk_add(&outputs,
+                        LineAt(config, chip, static_cast<unsigned>(config.pump), kGpioOutputs[1]));
     if (gpiod_line_request_bulk_input_flags(&inputs, kConsumer,
                                             GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN) != 0) {
       Fail(config, "the input lines cannot be requested with pull-down");
     }
-    for (unsigned i = 0; i < kLines; ++i) {
+    for (unsigned i = 0; i < wanted.size(); ++i) {
       gpiod_line* line = gpiod_line_bulk_get_line(&inputs, i);
       if (gpiod_line_update(line) != 0 || gpiod_line_bias(line) != GPIOD_LINE_BIAS_PULL_DOWN) {
-        throw HalError(NoPullDown(config, static_cast<Line>(i)));
+        throw HalError(NoPullDown(config, wanted[i]));
       }
     }
     const std::array<int, 2> low = {0, 0};
@@ -80,7 +81,7 @@ GpioRequest::GpioRequest(const GpiodConfig& config)
 
 GpioRequest::~GpioRequest() { static_cast<void>(Write(0, 0)); }
 
-bool GpioRequest::Read(std::array<int, kLines>* levels) noexcept {
+bool GpioRequest::Read(std::array<int, kMostGpioInputs>* levels) noexcept {
   return gpiod_line_get_value_bulk(&handles_->inputs, levels->data()) == 0;
 }
 

@@ -7,7 +7,6 @@
 
 #include "hal/bus_device.h"
 #include "hal/gpiod/gpio_request.h"
-#include "hal/line_names.h"
 
 namespace flexarm {
 namespace {
@@ -108,10 +107,11 @@ GpioRequest::GpioRequest(const GpiodConfig& config) : handles_(std::make_unique<
   const ChipInfo chip_info(gpiod_chip_get_info(chip.get()));
   if (chip_info == nullptr) Fail(config, "does not say its name");
   chip_name_ = gpiod_chip_info_get_name(chip_info.get());
+  const std::vector<GpioInput> wanted = InputsOf(config);
   std::vector<unsigned> inputs;
-  for (std::size_t i = 0; i < kLines; ++i) {
-    inputs.push_back(static_cast<unsigned>(config.input[i]));
-    CheckFree(config, chip.get(), inputs.back(), ToString(static_cast<Line>(i)));
+  for (const GpioInput& input : wanted) {
+    inputs.push_back(input.offset);
+    CheckFree(config, chip.get(), input.offset, input.name);
   }
   const std::vector<unsigned> outputs = {static_cast<unsigned>(config.relay),
                                          static_cast<unsigned>(config.pump)};
@@ -123,10 +123,10 @@ GpioRequest::GpioRequest(const GpiodConfig& config) : handles_(std::make_unique<
   if (handles_->inputs == nullptr) {
     Fail(config, "the input lines cannot be requested with pull-down");
   }
-  for (std::size_t i = 0; i < kLines; ++i) {
-    const LineInfo info(gpiod_chip_get_line_info(chip.get(), inputs[i]));
+  for (const GpioInput& input : wanted) {
+    const LineInfo info(gpiod_chip_get_line_info(chip.get(), input.offset));
     if (info == nullptr || gpiod_line_info_get_bias(info.get()) != GPIOD_LINE_BIAS_PULL_DOWN) {
-      throw HalError(NoPullDown(config, static_cast<Line>(i)));
+      throw HalError(NoPullDown(config, input));
     }
   }
   handles_->outputs =
@@ -136,10 +136,12 @@ GpioRequest::GpioRequest(const GpiodConfig& config) : handles_(std::make_unique<
 
 GpioRequest::~GpioRequest() { static_cast<void>(Write(0, 0)); }
 
-bool GpioRequest::Read(std::array<int, kLines>* levels) noexcept {
-  std::array<gpiod_line_value, kLines> values{};
+bool GpioRequest::Read(std::array<int, kMostGpioInputs>* levels) noexcept {
+  std::array<gpiod_line_value, kMostGpioInputs> values{};
   if (gpiod_line_request_get_values(handles_->inputs, values.data()) != 0) return false;
-  for (std::size_t i = 0; i < kLines; ++i) (*levels)[i] = values[i] == GPIOD_LINE_VALUE_ACTIVE;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    (*levels)[i] = values[i] == GPIOD_LINE_VALUE_ACTIVE;
+  }
   return true;
 }
 

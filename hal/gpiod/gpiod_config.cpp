@@ -36,6 +36,7 @@ std::vector<Problem> GpiodConfig::Problems() const {
   }
   check("relay", relay);
   check("pump", pump);
+  if (relay_contact) check("relay_contact", *relay_contact);
   return list.Take();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct GpiodConfig {
   std::array<int, kLines> input;  ///< keys by ToString(Line), with underscores: limit_1_low, ..
   int relay;
   int pump;
+  /// A mirror contact of the relay: closed, 1, exactly while all of its main contacts are open.
+  std::optional<int> relay_contact = {};
 
   /// Violated rules; every line needs its own offset.
   std::vector<Problem> Problems() const;

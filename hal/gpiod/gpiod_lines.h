@@ -15,7 +15,8 @@ class GpiodLines final : public SafetyLines {
  public:
   /// Requests the lines, as GpioRequest does.
   /// @throws HalError
-  explicit GpiodLines(const GpiodConfig& config) : request_(config) {}
+  explicit GpiodLines(const GpiodConfig& config)
+      : request_(config), has_contact_(config.relay_contact.has_value()) {}
 
   Reading Read(std::int64_t now_ns) noexcept override;
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override;
@@ -25,6 +26,7 @@ class GpiodLines final : public SafetyLines {
 
  private:
   GpioRequest request_;
+  bool has_contact_;
 };
 
 }  // namespace flexarm

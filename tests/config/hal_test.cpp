@@ -32,13 +32,18 @@ std::string WiringWith(const std::string& from, const std::string& to) {
   return wired;
 }
 
-// The problems of the shipped wiring after `from` is replaced by `to`.
-std::string Complaint(const std::string& from, const std::string& to) {
+// The shipped wiring after `from` is replaced by `to`.
+RigConfig Loaded(const std::string& from, const std::string& to) {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string name =
       testing::TempDir() + "/" + test->name() + ".toml";  // tests run in parallel
   std::ofstream(name) << WiringWith(from, to);
-  return MessageOf<ConfigError>([&] { LoadConfig(name); });
+  return LoadConfig(name);
+}
+
+// Its problems.
+std::string Complaint(const std::string& from, const std::string& to) {
+  return MessageOf<ConfigError>([&] { Loaded(from, to); });
 }
 
 TEST(HalConfig, TheShippedWiringIsRead) {
@@ -54,6 +59,16 @@ TEST(HalConfig, TheShippedWiringIsRead) {
   EXPECT_EQ(modbus[1].map[9].index, 19);
   ASSERT_TRUE(config.hal.gpiod.has_value());
   EXPECT_EQ(config.hal.gpiod->relay, 6);
+}
+
+TEST(HalConfig, AMirrorContactOfTheRelayIsOptional) {
+  EXPECT_EQ(LoadConfig(kFile).hal.gpiod->relay_contact, std::nullopt);
+  const RigConfig with = Loaded("pump = 7", "pump = 7\nrelay_contact = 8");
+  EXPECT_EQ(with.hal.gpiod->relay_contact, 8);
+  EXPECT_THAT(Complaint("pump = 7", "pump = 7\nrelay_contact = 6"),
+              testing::HasSubstr("relay_contact"));
+  EXPECT_THAT(Complaint("pump = 7", "pump = 7\nrelay_contact = \"no\""),
+              testing::HasSubstr("relay_contact"));
 }
 
 TEST(HalConfig, TheLoggedTextGivesTheSameWiringAgain) {

@@ -212,7 +212,7 @@ TEST_F(GpioInGuest, ALostChipReadsAsOpenContactsAndFailsToWrite) {
 
 TEST_F(GpioInGuest, ARequestReportsWhatTheKernelRefuses) {
   GpioRequest request(chip_.Config());
-  std::array<int, kLines> levels{};
+  std::array<int, kMostGpioInputs> levels{};
   EXPECT_TRUE(request.Read(&levels));
   EXPECT_TRUE(request.Write(1, 1));
   chip_.Remove();

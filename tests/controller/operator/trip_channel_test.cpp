@@ -18,6 +18,8 @@ TEST(TripChannelName, IsWhatTheConfigCallsIt) {
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 2, sensors), "write failed");
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 3, sensors), "read too slow");
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 4, sensors), "write too slow");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 5, sensors), "relay stays closed");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 6, sensors), "relay stays open");
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 99, sensors), "") << "a corrupt number";
   EXPECT_EQ(TripChannelName(TripCause::kStaleFrame, 0, sensors), "");
   EXPECT_EQ(TripChannelName(TripCause::kStrainStuck, 99, sensors), "") << "a corrupt number";

@@ -106,7 +106,7 @@ TEST_F(DamagedFileTest, ABlobOfAnotherVersionIsNamed) {
 
 TEST_F(DamagedFileTest, AShortSafetyRecordIsNamed) {
   WriteRun(1);
-  Alter("UPDATE safety SET record = x'02000000'");
+  Alter("UPDATE safety SET record = x'03000000'");
   ExpectError("safety row 1 has 4 bytes, expected " + std::to_string(4 + sizeof(SafetyRecord)));
 }
 

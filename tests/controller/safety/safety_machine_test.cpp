@@ -60,7 +60,8 @@ std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const S
          " pressed " + std::to_string(facts.reset_pressed) + " shutting down " +
          std::to_string(facts.shutting_down) + " may damp " + std::to_string(facts.may_damp) +
          " drives on " + std::to_string(facts.drives_on) + " off " +
-         std::to_string(facts.drives_off);
+         std::to_string(facts.drives_off) + " relay stays closed " +
+         std::to_string(facts.relay_stays_closed);
 }
 
 bool Corrupted(SafetyState state) { return static_cast<int>(state) >= kSafetyStates; }
@@ -144,6 +145,7 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
       if (from.state != kIdle) return "arming starts from Idle";
       if (facts.request != RequestKind::kArm) return "nothing arms by itself";
       if (facts.at_rest == 0) return "a moving arm is not armed";
+      if (facts.relay_stays_closed != 0) return "a relay that has not opened is not armed";
       if (facts.all_reported == 0) return "arming needs a report of every task";
     } else {
       if (from.state != kArmed) return "torque starts from Armed";
@@ -221,12 +223,12 @@ constexpr RequestKind kEveryRequest[] = {
     RequestKind::kNone,   RequestKind::kArm,   RequestKind::kRun, RequestKind::kStop,
     RequestKind::kDisarm, RequestKind::kReset, kCorruptedRequest};
 
-// 50 statuses x 634 sets of causes x 512 flags x 7 requests: every case.
+// 50 statuses x 634 sets of causes x 1024 flags x 7 requests: every case.
 TEST(SafetyMachine, EveryTransitionObeysTheRules) {
   long cases = 0;
   for (const SafetyStatus& from : EveryStatus()) {
     for (const TripCauses present : EverySetOfUpToTwoCauses()) {
-      for (unsigned flags = 0; flags < 512; ++flags) {
+      for (unsigned flags = 0; flags < 1024; ++flags) {
         for (const RequestKind request : kEveryRequest) {
           SafetyFacts facts{};
           facts.present = present;
@@ -239,6 +241,7 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
           facts.may_damp = (flags >> 6) & 1u;
           facts.drives_on = (flags >> 7) & 1u;
           facts.drives_off = (flags >> 8) & 1u;
+          facts.relay_stays_closed = (flags >> 9) & 1u;
           facts.request = request;
           const SafetyDecision to = NextSafetyState(from, facts);
           const char* broken = BrokenRule(from, facts, to);
@@ -248,7 +251,7 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
       }
     }
   }
-  EXPECT_EQ(cases, 50L * 634 * 512 * 7);
+  EXPECT_EQ(cases, 50L * 634 * 1024 * 7);
 }
 
 TEST(SafetyMachine, AShutdownEndsARunInIdleWithoutARequest) {
@@ -344,6 +347,8 @@ TEST(SafetyMachine, RefusesWithTheReason) {
   };
   EXPECT_EQ(refusal(kIdle, With(Healthy(RequestKind::kArm), &SafetyFacts::at_rest, 0)),
             Refusal::kNotAtRest);
+  EXPECT_EQ(refusal(kIdle, With(Healthy(RequestKind::kArm), &SafetyFacts::relay_stays_closed, 1)),
+            Refusal::kRelayClosed);
   EXPECT_EQ(refusal(kIdle, Healthy(RequestKind::kRun)), Refusal::kWrongState);
   EXPECT_EQ(refusal(kRunning, Healthy(RequestKind::kDisarm)), Refusal::kWrongState);
   EXPECT_EQ(refusal(kStopping, Healthy(RequestKind::kDisarm)), Refusal::kWrongState);
@@ -358,7 +363,7 @@ TEST(SafetyMachine, EveryRefusalHasATextThatSaysWhatToDo) {
     for (const SafetyState state :
          {kStarting, kIdle, kArmed, kRunning, kStopping, kTripped, kFaultStopping, kDisarming}) {
       EXPECT_STREQ(RefusalText(request, Refusal::kNone, state), "");
-      for (int i = 1; i <= static_cast<int>(Refusal::kDrivesOff); ++i) {
+      for (int i = 1; i <= static_cast<int>(Refusal::kRelayClosed); ++i) {
         EXPECT_STRNE(RefusalText(request, static_cast<Refusal>(i), state), "");
         EXPECT_STRNE(ToString(static_cast<Refusal>(i)), "corrupted");
       }

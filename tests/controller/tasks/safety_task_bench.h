@@ -35,7 +35,9 @@ struct FakeLines final : SafetyLines {
     Outputs outputs;
   };
 
-  Reading Read(std::int64_t) noexcept override { return {.levels = levels, .call = read}; }
+  Reading Read(std::int64_t) noexcept override {
+    return {.levels = levels, .call = read, .relay = relay};
+  }
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
     written.push_back({now_ns, outputs});
     return write;
@@ -44,6 +46,7 @@ struct FakeLines final : SafetyLines {
 
   LineLevels levels = kHealthyLevels;
   Call read, write;  // how the calls go
+  RelayContact relay = RelayContact::kNone;
   std::vector<Written> written;
 };
 

@@ -84,6 +84,61 @@ TEST_F(SafetyTaskLines, LinesThatAreSlowOrFailCanNeitherBeArmedNorReset) {
   EXPECT_EQ(Now(RequestKind::kReset), Refusal::kNone);
 }
 
+// The contact follows 50 ms after the command, as that of a contactor.
+TEST_F(SafetyTaskLines, AContactorThatTakesFiftyMillisecondsIsFine) {
+  lines_.relay = RelayContact::kOpen;
+  GoTo(kIdle);
+  ASSERT_EQ(Now(RequestKind::kArm), Refusal::kNone);
+  RunFor(50 * kMs);
+  lines_.relay = RelayContact::kClosed;
+  RunFor(1000 * kMs);
+  EXPECT_EQ(safety_.status().state, kArmed);
+  Ask(RequestKind::kDisarm);
+  RunFor(50 * kMs);
+  EXPECT_EQ(safety_.status().state, kIdle);
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kRelayClosed) << "it is not known to be open yet";
+  lines_.relay = RelayContact::kOpen;
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kNone);
+}
+
+TEST_F(SafetyTaskLines, ARelayThatDoesNotPullInTripsAfterTenthOfASecond) {
+  lines_.relay = RelayContact::kOpen;
+  GoTo(kIdle);
+  ASSERT_EQ(Now(RequestKind::kArm), Refusal::kNone);
+  const std::int64_t armed_ns = executor_.next_ns() - kMs;
+  EXPECT_EQ(RunUntilTripped(1000 * kMs), armed_ns + 101 * kMs);
+  EXPECT_EQ(permit().cause, TripCause::kSafetyLines);
+  EXPECT_EQ(permit().evidence.channel, static_cast<std::uint32_t>(LineTrouble::kRelayStuckOpen));
+  EXPECT_DOUBLE_EQ(permit().evidence.value, 0.101);
+  EXPECT_DOUBLE_EQ(permit().evidence.limit, 0.1);
+}
+
+TEST_F(SafetyTaskLines, AWeldedRelayIsNotArmedAndTripsAndCannotBeReset) {
+  lines_.relay = RelayContact::kOpen;
+  GoTo(kArmed);
+  lines_.relay = RelayContact::kClosed;
+  RunFor(200 * kMs);
+  Ask(RequestKind::kDisarm);
+  RunFor(20 * kMs);
+  ASSERT_EQ(safety_.status().state, kIdle);
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kRelayClosed);
+  RunUntilTripped(100 * kMs);
+  EXPECT_EQ(permit().cause, TripCause::kSafetyLines);
+  EXPECT_EQ(permit().evidence.channel, static_cast<std::uint32_t>(LineTrouble::kRelayStuckClosed));
+  lines_.levels |= LineBit(Line::kResetButton);
+  RunFor(60 * kMs);
+  EXPECT_EQ(Now(RequestKind::kReset), Refusal::kCauseRemains);
+}
+
+TEST_F(SafetyTaskLines, ARelayThatIsWeldedAtTheStartIsNeverArmed) {
+  lines_.relay = RelayContact::kClosed;
+  RunFor(50 * kMs);
+  EXPECT_EQ(safety_.status().state, kIdle);
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kRelayClosed);
+  RunFor(100 * kMs);
+  EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, TripCause::kSafetyLines}));
+}
+
 TEST_F(SafetyTaskLines, InterferenceOfOneSampleOnEveryLineChangesNothing) {
   GoTo(kRunning);
   for (int i = 0; i < 100; ++i) {

@@ -63,6 +63,22 @@ TEST_P(StopReactionOf, AWriteThatFailsIsNamedAndTheDrivesAreOffThoughTheRelayIsS
   EXPECT_FALSE(rig_->world->lines.PowerOn(rig_->executor.now_ns()));
 }
 
+// The trip is the emergency stop's; the weld shows when the relay should have opened, and keeps the
+// arm from being used again.
+TEST_P(StopReactionOf, AWeldedRelayWithAMirrorContactIsNotArmedAgain) {
+  StartInPhase();
+  rig_->world->lines.has_contact = true;
+  rig_->world->lines.welded = true;
+  rig_->world->lines.levels &= ~LineBit(Line::kEmergencyStop);
+  EXPECT_LE(TorqueLasts_ms(), 3.0);
+  rig_->world->lines.levels = kHealthyLevels | LineBit(Line::kResetButton);
+  rig_->RunFor(3000 * kMs);
+  EXPECT_EQ(rig_->Ask(RequestKind::kReset), Refusal::kCauseRemains);
+  rig_->world->lines.welded = false;
+  rig_->RunFor(20 * kMs);
+  EXPECT_EQ(rig_->Ask(RequestKind::kReset), Refusal::kNone);
+}
+
 INSTANTIATE_TEST_SUITE_P(Phase, StopReactionOf, testing::Values(0, 1, 10, 19));
 
 }  // namespace

@@ -31,7 +31,10 @@ namespace flexarm {
 /// The switches, the button, the relay and the charge pump.
 class WorldLines final : public SafetyLines {
  public:
-  Reading Read(std::int64_t) noexcept override { return {.levels = levels, .call = read}; }
+  Reading Read(std::int64_t) noexcept override {
+    const RelayContact contact = relay || welded ? RelayContact::kClosed : RelayContact::kOpen;
+    return {.levels = levels, .call = read, .relay = has_contact ? contact : RelayContact::kNone};
+  }
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
     if (!write.ok) return write;  // the lines keep their levels
     relay = outputs.relay_closed;
@@ -47,8 +50,9 @@ class WorldLines final : public SafetyLines {
   LineLevels levels = kHealthyLevels;
   Call read, write;  // how the calls go
   bool relay = false;
-  bool welded = false;      // its contact does not open
-  bool pump_stuck = false;  // the monostable of the charge pump stays on
+  bool welded = false;       // its contact does not open
+  bool pump_stuck = false;   // the monostable of the charge pump stays on
+  bool has_contact = false;  // a mirror contact
 
  private:
   bool pump_ = false;

@@ -8,7 +8,7 @@ namespace flexarm {
 /// A GPIO chip behind the functions of libgpiod, which fake_gpiod_v1.cpp and fake_gpiod_v2.cpp
 /// replace in the test's program: what a driver, a kernel and wires may do that gpio-sim does not.
 struct FakeChip {
-  static constexpr int kLines = 8;
+  static constexpr int kLines = 9;
   enum class Wire { kClosed, kFloats };  // to + through the contact; to nothing
 
   std::string name = "gpiochip0";

@@ -93,6 +93,29 @@ TEST_F(GpioRequestTest, CallsThatFailSayThatTheyFailed) {
   EXPECT_EQ(read.levels, 0U) << "every contact counts as open";
 }
 
+// Closed, 1, is an open relay; a cut wire reads as a closed one.
+TEST_F(GpioRequestTest, TheMirrorContactIsReadIfThereIsOne) {
+  EXPECT_EQ(GpiodLines(config_).Read(0).relay, RelayContact::kNone);
+  GpiodConfig config = config_;
+  config.relay_contact = 8;
+  GpiodLines lines(config);
+  EXPECT_TRUE(TheChip().pulled_down[8]);
+  EXPECT_EQ(lines.Read(0).relay, RelayContact::kOpen);
+  EXPECT_EQ(lines.Read(0).levels, kAll);
+  TheChip().wire[8] = Wire::kFloats;
+  EXPECT_EQ(lines.Read(0).relay, RelayContact::kClosed);
+  EXPECT_EQ(lines.Read(0).levels, kAll);
+  TheChip().reads = false;
+  EXPECT_FALSE(lines.Read(0).call.ok);
+}
+
+TEST_F(GpioRequestTest, AMirrorContactOnAUsedLineIsAConfigProblem) {
+  GpiodConfig config = config_;
+  config.relay_contact = config.pump;
+  ASSERT_EQ(config.Problems().size(), 1U);
+  EXPECT_EQ(config.Problems()[0].key, "hal.gpiod.relay_contact");
+}
+
 TEST_F(GpioRequestTest, RelayAndPumpAreLowBeforeAndAfter) {
   TheChip().output[6] = TheChip().output[7] = 1;
   {
