@@ -213,6 +213,12 @@ void ReadGpiod(TableReader gpiod, GpiodConfig* out) {
   for (std::size_t i = 0; i < kKeys.size(); ++i) gpiod.Read(kKeys[i], &out->input[i]);
   gpiod.Read("relay", &out->relay);
   gpiod.Read("pump", &out->pump);
+  if (gpiod.Has("drive_voltage")) {
+    TableReader voltage = gpiod.Table("drive_voltage");
+    DriveVoltageTimes& times = out->drive_voltage.emplace();
+    voltage.Read("rise_ms", &times.rise_ms);
+    voltage.Read("fall_ms", &times.fall_ms);
+  }
   if (gpiod.Has("relay_contact")) gpiod.Read("relay_contact", &out->relay_contact.emplace());
 }
 

@@ -7,6 +7,7 @@
 
 #include "hal/bus_fault.h"
 #include "hal/count_epochs.h"
+#include "hal/drive_voltage.h"
 #include "hal/sensor_frame.h"
 
 namespace flexarm {
@@ -74,6 +75,9 @@ class BusDevice {
   /// Bit i: the drive of joint i + 1 has confirmed that it makes torque when commanded; by the last
   /// exchange. A drive that reports nothing is on while it is commanded.
   virtual std::uint32_t drives_on() const noexcept { return 0; }
+
+  /// Voltage that its drives reported in the last exchange; counts only if that has answered.
+  virtual DriveVoltage voltage() const noexcept { return {}; }
 
   /// Of the counters that this device reads; 0 for the others. A counter starts again when its
   /// device lost power or was reset.

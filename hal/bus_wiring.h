@@ -87,6 +87,8 @@ class BusWiring {
   virtual std::vector<ExclusiveUse> Exclusive() const { return {}; }
   virtual BusCost Cost() const = 0;
   virtual std::vector<DriveFigures> Drives() const { return {}; }
+  /// Whether its drives report their voltage (BusDevice::voltage).
+  virtual bool reports_voltage() const noexcept { return false; }
 
   /// The driver, not opened.
   virtual std::unique_ptr<BusDevice> MakeDevice(const BusClocks& clocks) const = 0;

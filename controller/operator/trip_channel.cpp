@@ -19,6 +19,14 @@ const char* NameOf(LineTrouble trouble) noexcept {
       return "relay stays closed";
     case LineTrouble::kRelayStuckOpen:
       return "relay stays open";
+    case LineTrouble::kPumpStuckOn:
+      return "charge pump stuck on";
+    case LineTrouble::kVoltageMissing:
+      return "no drive voltage";
+    case LineTrouble::kVoltageStaysOn:
+      return "drive voltage stays on";
+    case LineTrouble::kVoltageUnknown:
+      return "drive voltage not known";
   }
   return "";
 }

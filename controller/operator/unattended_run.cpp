@@ -41,6 +41,9 @@ OperatorRequest UnattendedRun::NextRequest(std::int64_t due_ns, const Permit& pe
         return Ask(RequestKind::kDisarm, soon_ns);
       case SafetyState::kFaultStopping:
       case SafetyState::kDisarming:
+      case SafetyState::kTestingPump:
+      case SafetyState::kTestingRelay:
+      case SafetyState::kTestingPower:
         break;  // ends by itself
       case SafetyState::kRunning:
       case SafetyState::kStopping:

@@ -130,8 +130,8 @@ void RunRecording::WriteEventsOf(const SafetyRecord& record) {
 
 void RunRecording::Safety(const SafetyRecord& record) noexcept {
   Guarded([&] {
-    const bool arms =
-        record.before.state == SafetyState::kIdle && record.after.state == SafetyState::kArmed;
+    const bool arms = record.before.state == SafetyState::kIdle &&
+                      (record.after.state == SafetyState::kArmed || TestsPower(record.after.state));
     if (arms && sink_ != nullptr) Close();
     if (arms) Open(record.due_ns);
     state_ = record.after.state;

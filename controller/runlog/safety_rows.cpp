@@ -27,9 +27,10 @@ void InsertSafety(SqliteStatement* insert, const SafetyRecord& record, std::int6
   text(ToString(record.after.state));
   text(ToString(record.after.cause));
   text(CauseNames(facts.present));
-  for (const std::uint8_t flag : {facts.all_reported, facts.at_rest, facts.experiment_done,
-                                  facts.stop_expired, facts.reset_pressed, facts.may_damp,
-                                  facts.drives_on, facts.drives_off, facts.relay_stays_closed}) {
+  for (const std::uint8_t flag :
+       {facts.all_reported, facts.at_rest, facts.experiment_done, facts.stop_expired,
+        facts.reset_pressed, facts.may_damp, facts.drives_on, facts.drives_off, facts.tests_power,
+        facts.power_follows}) {
     integer(flag);
   }
   text(ToString(facts.request));

@@ -21,7 +21,7 @@ CREATE TABLE safety (
   present TEXT,
   all_reported INTEGER, at_rest INTEGER, experiment_done INTEGER, stop_expired INTEGER,
   reset_pressed INTEGER, may_damp INTEGER, drives_on INTEGER, drives_off INTEGER,
-  relay_stays_closed INTEGER,
+  tests_power INTEGER, power_follows INTEGER,
   request TEXT, request_number INTEGER, refusal TEXT,
   evidence_value REAL, evidence_limit REAL, evidence_channel INTEGER,
   record BLOB NOT NULL
@@ -29,7 +29,7 @@ CREATE TABLE safety (
 )sql";
 
 inline constexpr const char* kInsertSafety =
-    "INSERT INTO safety VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    "INSERT INTO safety VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 inline constexpr const char* kSelectSafety = "SELECT number, record FROM safety ORDER BY number";
 
 /// Executes a prepared kInsertSafety.

@@ -21,13 +21,15 @@ class RelayContactMonitor {
   /// Once per tick. @param told_closed  the relay's command until this tick
   /// @returns true while the contact contradicts the command for too long
   constexpr bool Judge(std::int64_t due_ns, bool told_closed, RelayContact contact) noexcept {
-    const bool agrees =
-        contact == RelayContact::kNone || (contact == RelayContact::kClosed) == told_closed;
-    if (agrees || agreed_ns_ == INT64_MIN) agreed_ns_ = due_ns;
+    agrees_ = contact == RelayContact::kNone || (contact == RelayContact::kClosed) == told_closed;
+    if (agrees_ || agreed_ns_ == INT64_MIN) agreed_ns_ = due_ns;
     contradicts_ns_ = due_ns - agreed_ns_;
     told_closed_ = told_closed;
     return contradicts_ns_ > kFollowNs;
   }
+
+  /// Of the last tick: the contact says what the relay was told, or there is none.
+  constexpr bool agrees() const noexcept { return agrees_; }
 
   /// Of the last tick: how long the contact has contradicted the command, and kFollowNs, in s.
   constexpr Evidence evidence() const noexcept {
@@ -41,6 +43,7 @@ class RelayContactMonitor {
  private:
   std::int64_t agreed_ns_ = INT64_MIN;  // the last tick in which it agreed; INT64_MIN: no tick yet
   std::int64_t contradicts_ns_ = 0;
+  bool agrees_ = true;
   bool told_closed_ = false;
 };
 

@@ -11,6 +11,7 @@ const char* WrongStateText(RequestKind request, SafetyState state) noexcept {
            "reset`.";
   }
   if (state == kFaultStopping) return "The arm is being stopped. Try again in a second.";
+  if (TestsPower(state)) return "The arm is being armed. Try again in a moment.";
   if (state == kDisarming) return "The arm is being disarmed. Try again in a moment.";
   switch (request) {
     case RequestKind::kNone:
@@ -107,8 +108,10 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
     case Refusal::kShuttingDown:
       return "The daemon is shutting down. Start it again first.";
     case Refusal::kRelayClosed:
-      return "The mirror contact of the relay says that the relay is closed, though it was told to "
-             "open. A relay needs 0.1 s at most: repeat the request. If it is refused again, the "
+      return "Relay and charge pump are off, but the relay's mirror contact or the drives' voltage "
+             "does not say that the power is off. A relay needs 0.1 s, the voltage "
+             "hal.gpiod.drive_voltage.fall_ms: repeat the request then. If it is refused again, "
+             "the "
              "relay is welded or the wire of its contact is cut: switch the power off and repair "
              "it.";
     case Refusal::kDrivesOff:

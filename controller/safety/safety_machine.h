@@ -22,12 +22,14 @@ struct SafetyFacts {
   std::uint8_t reset_pressed;    ///< the reset button was pressed after the trip
   RequestKind request;           ///< request of the operator in this tick
   std::uint8_t shutting_down;    ///< the daemon ends: the arm is stopped and disarmed
-  std::uint8_t may_damp;    ///< fresh, valid sensors and healthy drives, and no cause beyond those
-                            ///< with which FaultStopping began
-  std::uint8_t drives_on;   ///< every drive has confirmed that it is enabled
-  std::uint8_t drives_off;  ///< every drive has confirmed, in this state, that it is disabled
-  std::uint8_t relay_stays_closed;       ///< its contact is closed, though it was told to open
-  std::array<std::uint8_t, 5> reserved;  ///< zero
+  std::uint8_t may_damp;     ///< fresh, valid sensors and healthy drives, and no cause beyond those
+                             ///< with which FaultStopping began
+  std::uint8_t drives_on;    ///< every drive has confirmed that it is enabled
+  std::uint8_t drives_off;   ///< every drive has confirmed, in this state, that it is disabled
+  std::uint8_t tests_power;  ///< the drives' voltage is a witness: arming tests the power path
+  std::uint8_t power_follows;  ///< what the witnesses say of the power path is what relay and pump
+                               ///< should make of it; also 1 without a witness
+  std::array<std::uint8_t, 4> reserved;  ///< zero
 };
 static_assert(std::has_unique_object_representations_v<SafetyFacts>, "no padding: it is logged");
 
@@ -55,15 +57,22 @@ constexpr TripCause LowestCause(TripCauses causes) noexcept {
                                             : TripCause::kStateNotFinite;
 }
 
+/// The state after a test of the power path that has passed.
+constexpr SafetyState AfterTest(SafetyState test) noexcept {
+  if (test == SafetyState::kTestingPump) return SafetyState::kTestingRelay;
+  return test == SafetyState::kTestingRelay ? SafetyState::kTestingPower : SafetyState::kArmed;
+}
+
 /// Safety state machine: a pure function of status and facts. No clock, no I/O, no memory.
 ///
 /// A cause that is present latches from every state: it trips, or, if all present are of stop
 /// category 1 and the arm may be damped, FaultStopping goes before Tripped. Tripped is left only
 /// towards Idle, by the operator's reset after the physical reset button, at rest, with no cause
-/// present. Torque becomes possible only by `run` from Armed, with the drives on. Armed is left
-/// through Disarming, in which the drives are switched off before the relay opens. While the daemon
-/// shuts down nothing starts, and the arm is stopped and disarmed. At most one transition per tick.
-/// Real-time: safe.
+/// present. With a witness of the power path, arming goes through a test of the charge pump, of the
+/// relay, and of both, with the drives off; a stop, a disarm or a moving arm ends it. Torque
+/// becomes possible only by `run` from Armed, with the drives on. Armed is left through Disarming,
+/// in which the drives are switched off before the relay opens. While the daemon shuts down nothing
+/// starts, and the arm is stopped and disarmed. At most one transition per tick. Real-time: safe.
 constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts& facts) noexcept {
   using enum SafetyState;
   const RequestKind request = facts.request;
@@ -113,9 +122,17 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       if (request != RequestKind::kArm) return go(kIdle, not_here);
       if (shutting_down) return go(kIdle, Refusal::kShuttingDown);
       if (facts.all_reported == 0) return go(kIdle, Refusal::kUnhealthy);
-      if (facts.relay_stays_closed != 0) return go(kIdle, Refusal::kRelayClosed);
+      if (facts.power_follows == 0) return go(kIdle, Refusal::kRelayClosed);
       if (facts.at_rest == 0) return go(kIdle, Refusal::kNotAtRest);
-      return go(kArmed, Refusal::kNone);
+      return go(facts.tests_power != 0 ? kTestingPump : kArmed, Refusal::kNone);
+    case kTestingPump:
+    case kTestingRelay:
+    case kTestingPower:
+      if (request == RequestKind::kDisarm || request == RequestKind::kStop) {
+        return go(kIdle, Refusal::kNone);
+      }
+      if (shutting_down || facts.at_rest == 0) return go(kIdle, not_here);
+      return go(facts.power_follows != 0 ? AfterTest(status.state) : status.state, not_here);
     case kArmed:
       if (request == RequestKind::kDisarm) return go(kDisarming, Refusal::kNone);
       if (shutting_down) {

@@ -43,18 +43,25 @@ bool DriveReported(const SafetyInputs& in) noexcept { return in.drive.due_ns != 
 static_assert(kLongestWindow <= WindowedCount::kLongest);
 
 MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop,
-                                bool late_threads_trip) {
-  return {.heartbeat_timeout_ns = std::llround(2e6 * loop.period_ms),
-          .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
-          .fault_stop_ns = std::llround(1e9 * safety.fault_stop_s),
-          .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,
-          .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s),
-          .lines_stall_ns = std::llround(1e6 * safety.permit_timeout_ms),
-          .overrun_ns = std::llround(1e6 * safety.overrun_to_trip_ms),
-          .missed_in_window = safety.missed_deadlines_in_window,
-          .failed_in_window = safety.failed_exchanges_in_window,
-          .slow_in_window = safety.slow_exchanges_in_window,
-          .late_threads_trip = late_threads_trip};
+                                bool late_threads_trip,
+                                const std::optional<DriveVoltageTimes>& voltage) {
+  MonitorLimits limits{.heartbeat_timeout_ns = std::llround(2e6 * loop.period_ms),
+                       .stop_timeout_ns = std::llround(1e9 * safety.stop_timeout_s),
+                       .fault_stop_ns = std::llround(1e9 * safety.fault_stop_s),
+                       .missed_deadlines_to_trip = safety.missed_deadlines_to_trip,
+                       .homing_contact_ns = std::llround(1e9 * safety.homing_contact_s),
+                       .lines_stall_ns = std::llround(1e6 * safety.permit_timeout_ms),
+                       .overrun_ns = std::llround(1e6 * safety.overrun_to_trip_ms),
+                       .missed_in_window = safety.missed_deadlines_in_window,
+                       .failed_in_window = safety.failed_exchanges_in_window,
+                       .slow_in_window = safety.slow_exchanges_in_window,
+                       .late_threads_trip = late_threads_trip};
+  if (voltage) {
+    limits.power = {.rise_ns = std::llround(1e6 * voltage->rise_ms),
+                    .fall_ns = std::llround(1e6 * voltage->fall_ms),
+                    .report_ns = std::llround(3e6 * loop.period_ms)};
+  }
+  return limits;
 }
 
 bool SafetyMonitor::HomingContact(const SafetyInputs& in) noexcept {
@@ -77,8 +84,15 @@ std::int64_t SafetyMonitor::StateLimitNs(SafetyState state) const noexcept {
 bool SafetyMonitor::LinesFail(const SafetyInputs& in) noexcept {
   const bool calls_fail = line_calls_.Judge(in.line_calls);
   const bool relay_fails = relay_.Judge(in.due_ns, RelayClosed(in.state), in.relay);
-  lines_evidence_ = calls_fail ? LineCallMonitor::EvidenceOf(in.line_calls) : relay_.evidence();
-  return calls_fail || relay_fails;
+  const bool power_fails = power_path_.Judge({.due_ns = in.due_ns,
+                                              .state = in.state,
+                                              .state_since_ns = in.state_since_ns,
+                                              .voltage = in.drive.voltage,
+                                              .reported_ns = in.drive.due_ns});
+  lines_evidence_ = calls_fail    ? LineCallMonitor::EvidenceOf(in.line_calls)
+                    : relay_fails ? relay_.evidence()
+                                  : power_path_.evidence();
+  return calls_fail || relay_fails || power_fails;
 }
 
 bool SafetyMonitor::MayDamp(const SafetyInputs& in, TripCauses present,
@@ -170,7 +184,8 @@ SafetyFacts SafetyMonitor::Judge(const SafetyInputs& in) noexcept {
   facts.drives_off =
       Flag(in.drive.power == DrivePower::kOff && in.drive.due_ns > in.state_since_ns);
 
-  facts.relay_stays_closed = Flag(in.relay == RelayContact::kClosed && !RelayClosed(in.state));
+  facts.tests_power = Flag(limits_.power.witness());
+  facts.power_follows = Flag(relay_.agrees() && power_path_.follows());
 
   const bool button_down = (in.levels & LineBit(Line::kResetButton)) != 0;
   // A press counts when it has lasted for kPressNs: one that began before the trip is no answer.

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "controller/safety/line_calls.h"
+#include "controller/safety/power_path.h"
 #include "controller/safety/relay_contact.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/types/messages.h"
@@ -27,10 +29,12 @@ struct MonitorLimits {
   int slow_in_window;                 ///< safety.slow_exchanges_in_window
   /// False: late threads are counted but do not trip, because the arm is simulated in process.
   bool late_threads_trip = true;
+  PowerPathLimits power{};  ///< of the drives' voltage as a witness
 };
 
 MonitorLimits MakeMonitorLimits(const SafetyConfig& safety, const LoopConfig& loop,
-                                bool late_threads_trip);
+                                bool late_threads_trip,
+                                const std::optional<DriveVoltageTimes>& voltage = std::nullopt);
 
 /// The bus behind a fault of the drive side, numbered from 1, and its fault. 0: none, or the drive
 /// side has no bus.
@@ -70,8 +74,8 @@ struct SafetyInputs {
 /// Safety monitor: derives the inputs of the safety state machine from line levels and task
 /// reports, with all checks of time, levels and freshness. Its only memory is the reset button, the
 /// first reports, the causes with which FaultStopping began, how long homing has been on its
-/// switch, which ticks the lines were slow in, since when the relay contradicts its command, when
-/// the shutdown began, and how often threads were late. Reads no clock.
+/// switch, which ticks the lines were slow in, since when relay or voltage contradict the
+/// command, when the shutdown began, and how often threads were late. Reads no clock.
 ///
 /// A report counts only while its sender is alive; no cause is derived from a task before its first
 /// report, nor from a switch before its level is known: until both are, `all_reported` is 0. While
@@ -93,7 +97,7 @@ class SafetyMonitor {
   static constexpr std::int64_t kShutdownMarginNs = 500'000'000;
 
   explicit SafetyMonitor(const MonitorLimits& limits) noexcept
-      : limits_(limits), line_calls_(limits.lines_stall_ns) {}
+      : limits_(limits), line_calls_(limits.lines_stall_ns), power_path_(limits.power) {}
 
   /// Once per tick, in order of time.
   SafetyFacts Judge(const SafetyInputs& in) noexcept;
@@ -122,6 +126,7 @@ class SafetyMonitor {
   MonitorLimits limits_;
   LineCallMonitor line_calls_;
   RelayContactMonitor relay_;
+  PowerPathMonitor power_path_;
   Evidence lines_evidence_{};      // of kSafetyLines, in the last tick
   std::int64_t contact_ns_ = 0;    // of the present homing run
   std::int64_t looked_ns_ = 0;     // the tick before

@@ -160,7 +160,8 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
                  .slow = slow_,
                  .longest_ns = longest_ns_,
                  .notice = device_->notice(),
-                 .count_epochs = Epochs()});
+                 .count_epochs = Epochs(),
+                 .voltage = answered_ && exchanged_ ? device_->voltage() : DriveVoltage{}});
   channels_.reports->Publish(reports_);
   channels_.health->Publish(reports_);
 }

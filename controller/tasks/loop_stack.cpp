@@ -26,6 +26,11 @@ std::unique_ptr<PlanFollower> FollowerOf(const RigConfig& config, PlannerTask* p
                                         &planner->plans());
 }
 
+// A rig without relay has no witness of it.
+std::optional<DriveVoltageTimes> VoltageOf(const RigConfig& config) {
+  return config.hal.gpiod ? config.hal.gpiod->drive_voltage : std::nullopt;
+}
+
 }  // namespace
 
 LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWiring& wiring)
@@ -38,7 +43,7 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
       step_(config, design),
       planner_(PlannerOf(config, design)),
       follower_(FollowerOf(config, planner_.get())),
-      safety_(MakeMonitorLimits(config.safety, config.loop, wiring.metal_moves),
+      safety_(MakeMonitorLimits(config.safety, config.loop, wiring.metal_moves, VoltageOf(config)),
               {.lines = wiring.lines,
                .control = &control_reports_,
                .drives = wiring.drives,

@@ -88,12 +88,19 @@ void SafetyTask::Run(const Activation& activation) noexcept {
       request.kind == RequestKind::kDisarm && status_.state == SafetyState::kDisarming;
   if (disarms) {
     disarm_ = request;
+  } else if (request.kind == RequestKind::kArm && TestsPower(status_.state) &&
+             !TestsPower(before.state)) {
+    arm_ = request;
   } else if (requested) {
     Answer(request, decision.refusal, before.state, facts.present);
   }
   if (disarm_.number != 0 && status_.state != SafetyState::kDisarming) {  // the relay is open
     Answer(disarm_, Refusal::kNone, before.state, facts.present);
     disarm_ = {};
+  }
+  if (arm_.number != 0 && !TestsPower(status_.state)) {
+    Answer(arm_, RefusalOfArm(facts), before.state, facts.present);
+    arm_ = {};
   }
   if (tripped) {
     CancelBelow(UINT32_MAX, facts.present);
@@ -138,6 +145,7 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
     side.report.bus_ok = side.report.bus_ok && report.bus_ok;
     side.report.drive_ok = side.report.drive_ok && report.drive_ok;
     side.report.levels = MergeRedundantLevels(side.report.levels, report.levels);
+    side.report.voltage = Joined(side.report.voltage, report.voltage);
     side.report.power = Joined(side.report.power, report.power);
     if (report.failed_in_window > side.report.failed_in_window) {
       side.report.failed_in_window = report.failed_in_window;
@@ -229,9 +237,20 @@ void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in,
   status_ = next;
 }
 
+// Of the tests of the power path, which have ended.
+Refusal SafetyTask::RefusalOfArm(const SafetyFacts& facts) const noexcept {
+  if (status_.state == SafetyState::kArmed) return Refusal::kNone;
+  if (CauseLatched(status_.state)) return Refusal::kUnhealthy;
+  if (facts.shutting_down != 0) return Refusal::kShuttingDown;
+  return facts.at_rest == 0 ? Refusal::kNotAtRest : Refusal::kCancelled;
+}
+
 void SafetyTask::Drive(std::int64_t due_ns) noexcept {
-  const bool closed = RelayClosed(status_.state);
-  pump_level_ = closed && !pump_level_;
+  // The charge pump of the test before must have died away: never both while one is tested.
+  const bool pump_dies = status_.state == SafetyState::kTestingRelay &&
+                         due_ns - state_since_ns_ < 2 * SafetyLines::kPumpTimeoutNs;
+  const bool closed = RelayClosed(status_.state) && !pump_dies;
+  pump_level_ = PumpRuns(status_.state) && !pump_level_;
   written_ = channels_.lines->Write(due_ns, {.relay_closed = closed, .pump_level = pump_level_});
 }
 

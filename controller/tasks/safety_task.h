@@ -37,8 +37,8 @@ struct SafetyChannels {
 
 /// The safety task: 1 kHz, highest priority. Levels and reports in, relay and permit out.
 ///
-/// The relay is closed in the states of RelayClosed; the charge pump toggles every tick while it is
-/// closed. The permit is renewed every tick and valid from the tick's due instant. A permit
+/// The relay is closed in the states of RelayClosed; the charge pump toggles every tick in those of
+/// PumpRuns. The permit is renewed every tick and valid from the tick's due instant. A permit
 /// published at the due instant of another task may not be visible to it yet: a task that must
 /// agree with the lock-step run reads the permit before, At(due - 1).
 ///
@@ -48,7 +48,7 @@ struct SafetyChannels {
 /// or a disarm cancels the waiting arms and runs of lower numbers; a trip cancels all. The run that
 /// is granted is in the permit from that tick on. A disarm is answered when the relay is open,
 /// because people reach into the arm then; one that comes while disarming takes the place of the
-/// one before.
+/// one before. An arm is answered when the tests of the power path, if there are any, are over.
 ///
 /// A tick that comes late is judged like any other before it touches the lines: where late threads
 /// trip, relay and pump stay off from it on. Real-time: safe after construction.
@@ -99,6 +99,7 @@ class SafetyTask final : public Task {
              const OperatorRequest& request) noexcept;
   void Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
               TripCauses present) noexcept;
+  Refusal RefusalOfArm(const SafetyFacts& facts) const noexcept;
   void Drive(std::int64_t due_ns) noexcept;
   /// Age of the permit that this tick renews; 0: it is the first.
   std::int64_t PermitAgeNs(const Activation& activation) const noexcept;
@@ -120,6 +121,7 @@ class SafetyTask final : public Task {
   bool acknowledge_ = false;  // in this tick
   bool pump_level_ = false;
   bool recorded_ = false;
+  OperatorRequest arm_{};     // the power path is being tested; number 0: none
   OperatorRequest disarm_{};  // carried out, answered once the relay is open; number 0: none
   std::array<OperatorRequest, kMaxWaiting> waiting_{};
   std::size_t waiting_count_ = 0;

@@ -10,6 +10,7 @@
 #include "controller/types/trip_cause.h"
 #include "hal/bus_fault.h"
 #include "hal/count_epochs.h"
+#include "hal/drive_voltage.h"
 
 // Messages between tasks. Every value is stamped with the instant from which it is valid (History),
 // so that the values read depend on the time grid and not on the scheduler.
@@ -111,6 +112,7 @@ struct DriveReport {
   std::int64_t longest_ns = 0;           ///< longest exchange or attempt to reconnect
   BusFault notice{};                     ///< BusDevice::notice
   CountEpochs count_epochs{};            ///< of its counters
+  DriveVoltage voltage{};                ///< as reported in its last run
 };
 
 enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };
@@ -135,7 +137,7 @@ enum class Refusal : std::uint8_t {
   kShuttingDown,  ///< the daemon ends: nothing may start
   kDrivesOff,     ///< a drive has not confirmed that it is on
   kNotKept,       ///< the latch file could not be written, so a trip would not survive a restart
-  kRelayClosed,   ///< the contact of the open relay is closed
+  kRelayClosed,   ///< relay and pump are off, and a witness does not say that the power is off
 };
 
 /// Safety -> operator: answer to a request.

@@ -108,10 +108,12 @@ constexpr std::array<Row, kTripCauses> kRows{{
      "permissions; then press the reset button and run `flexarm reset`, which removes the file."},
     {kSafetyLines, "safety-lines", kLineTrouble,
      "The lines of the switches, the relay and the charge pump cannot be relied upon: a read or a "
-     "write failed or took longer than 0.2 ms, or the relay does not do what it is told. A call: "
+     "write failed or took longer than 0.2 ms, or relay, pump and drive voltage do not agree. A "
+     "call: "
      "check that the GPIO chip of hal.gpiod is still there (`gpiodetect`), that it is part of the "
-     "processor or of a PCI card, and that the kernel is PREEMPT_RT. The relay: switch the power "
-     "off; check its contacts, its coil and the wire of its mirror contact; see docs/hardware.md."},
+     "processor or of a PCI card, and that the kernel is PREEMPT_RT. The rest: switch the power "
+     "off; check the relay's contacts, its coil, the wire of its mirror contact, the charge pump's "
+     "monostable and the mains; see docs/hardware.md."},
     {kSafetyOverrun, "safety-overrun", TripChannel::kNone,
      "The safety thread ran later than safety.overrun_to_trip_ms and did not watch the "
      "arm. Run `flexarm check-host`; check that the kernel is PREEMPT_RT and that the cores are "

@@ -81,6 +81,10 @@ enum class LineTrouble : std::uint8_t {
   kWriteSlow = 4,
   kRelayStuckClosed = 5,
   kRelayStuckOpen = 6,
+  kPumpStuckOn = 7,
+  kVoltageMissing = 8,
+  kVoltageStaysOn = 9,
+  kVoltageUnknown = 10,
 };
 TripChannel ChannelOf(TripCause cause) noexcept;
 

@@ -54,6 +54,7 @@ class CanopenDevice : public BusDevice {
   const char* name() const noexcept override { return config_.interface.c_str(); }
   std::uint32_t drives() const noexcept override { return drives_; }
   std::uint32_t drives_on() const noexcept override;
+  DriveVoltage voltage() const noexcept override;
   std::int64_t worst_case_ns() const noexcept override { return config_.worst_case_exchange_ns(); }
   CountEpochs count_epochs() const noexcept override { return count_epochs_; }
   bool needs_reconnect() const noexcept override { return configuring_ || lost_; }

@@ -144,6 +144,17 @@ std::uint32_t CanopenDevice::drives_on() const noexcept {
   return on;
 }
 
+DriveVoltage CanopenDevice::voltage() const noexcept {
+  DriveVoltage voltage;
+  for (int joint = 0; joint < 2; ++joint) {
+    const Node* drive = Drive(joint);
+    if (drive == nullptr || !drive->answered) continue;
+    std::uint8_t& set = VoltageEnabled(drive->statusword) ? voltage.on : voltage.off;
+    set = static_cast<std::uint8_t>(set | 1U << joint);
+  }
+  return voltage;
+}
+
 DriveState CanopenDevice::drive_state(int joint) const noexcept {
   const Node* drive = Drive(joint);
   return drive == nullptr ? DriveState::kUnknown : drive->state;

@@ -19,6 +19,7 @@ class CanopenWiring final : public BusWiring {
   std::vector<WiredItem> Items() const override;
   BusCost Cost() const override;
   std::vector<DriveFigures> Drives() const override;
+  bool reports_voltage() const noexcept override { return true; }
   std::unique_ptr<BusDevice> MakeDevice(const BusClocks& clocks) const override;
 
  private:

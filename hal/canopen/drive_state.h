@@ -31,6 +31,12 @@ inline constexpr std::uint16_t kControlSwitchOn = 0x07;
 inline constexpr std::uint16_t kControlEnableOperation = 0x0F;
 inline constexpr std::uint16_t kControlFaultReset = 0x80;  ///< acts on the rising edge of its bit
 
+/// Bit 4 of a statusword (6041), "voltage enabled": the power stage has voltage, in any state.
+inline constexpr std::uint16_t kStatusVoltageEnabled = 0x10;
+constexpr bool VoltageEnabled(std::uint16_t statusword) noexcept {
+  return (statusword & kStatusVoltageEnabled) != 0;
+}
+
 /// State of a statusword (6041): bits 0 to 3, 5 and 6.
 constexpr DriveState DecodeDriveState(std::uint16_t statusword) noexcept {
   using enum DriveState;
@@ -60,7 +66,7 @@ constexpr DriveState DecodeDriveState(std::uint16_t statusword) noexcept {
   }
 }
 
-/// Statusword of a state, as a drive sends it: power on (bit 4) once it may be switched on.
+/// Statusword of a state, as a drive with voltage sends it.
 constexpr std::uint16_t EncodeDriveState(DriveState state) noexcept {
   using enum DriveState;
   switch (state) {

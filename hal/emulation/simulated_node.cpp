@@ -267,7 +267,8 @@ void SimulatedNode::HandleSync() noexcept {
 }
 
 void SimulatedNode::SendPdo() noexcept {
-  Set(kObjectStatusword, wrong_.statusword.value_or(EncodeDriveState(state_)));
+  const std::uint16_t voltage_bit = Supplied() ? 0 : kStatusVoltageEnabled;
+  Set(kObjectStatusword, wrong_.statusword.value_or(EncodeDriveState(state_) & ~voltage_bit));
   Set(kObjectActualTorque, static_cast<std::uint16_t>(torque_per_mille()));
   CanFrame frame{.id = Value({kObjectTpdoCommunication, 1}) & 0x7FFU};
   for (std::uint32_t sub = 1; sub <= Value({kObjectTpdoMapping, 0}); ++sub) {

@@ -37,6 +37,12 @@ std::vector<Problem> GpiodConfig::Problems() const {
   check("relay", relay);
   check("pump", pump);
   if (relay_contact) check("relay_contact", *relay_contact);
+  if (drive_voltage) {
+    list.Within("drive_voltage.rise_ms", drive_voltage->rise_ms, 20.0, 1000.0,
+                "from relay and pump on until every drive reports voltage; measure it");
+    list.Within("drive_voltage.fall_ms", drive_voltage->fall_ms, 20.0, 30'000.0,
+                "from relay and pump off until no drive reports voltage; measure it");
+  }
   return list.Take();
 }
 

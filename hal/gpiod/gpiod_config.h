@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/drive_voltage.h"
 #include "hal/sensor_frame.h"
 #include "model/problem.h"
 
@@ -22,6 +23,8 @@ struct GpiodConfig {
   int pump;
   /// A mirror contact of the relay: closed, 1, exactly while all of its main contacts are open.
   std::optional<int> relay_contact = {};
+  /// The drives' power hangs on relay and pump, and the drives report it. [hal.gpiod.drive_voltage]
+  std::optional<DriveVoltageTimes> drive_voltage = {};
 
   /// Violated rules; every line needs its own offset.
   std::vector<Problem> Problems() const;

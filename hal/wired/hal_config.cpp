@@ -78,6 +78,19 @@ void CheckWiring(const HalConfig& hal, const SensorConfig& sensors, ProblemList*
                 "must be configured: limit switches, emergency stop, relay and charge pump");
 }
 
+// The drives' voltage is a witness only if each drive reports its own.
+void CheckVoltage(const HalConfig& hal, ProblemList* list) {
+  if (!hal.gpiod || !hal.gpiod->drive_voltage) return;
+  for (const HalConfig::Bus& bus : hal.bus) {
+    const std::vector<WiredItem> items = bus.wiring->Items();
+    const bool drives = std::any_of(items.begin(), items.end(), [](const WiredItem& item) {
+      return item.kind == Kind::kDrive;
+    });
+    list->Require(!drives || bus.wiring->reports_voltage(), "gpiod.drive_voltage", "configured",
+                  "needs drives that report their voltage: those of " + bus.row + " do not");
+  }
+}
+
 void CheckExclusive(const HalConfig& hal, ProblemList* list) {
   std::set<std::tuple<std::string, std::string, std::string>> used;  // kind, key, resource
   for (const HalConfig::Bus& bus : hal.bus) {
@@ -109,6 +122,7 @@ std::vector<Problem> HalConfig::Problems(const BusRequirements& required) const 
   ProblemList list("hal.");
   CheckExclusive(*this, &list);
   CheckWiring(*this, required.sensors, &list);
+  CheckVoltage(*this, &list);
   Append(list.Take(), &all);
   return all;
 }

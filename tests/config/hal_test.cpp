@@ -71,6 +71,21 @@ TEST(HalConfig, AMirrorContactOfTheRelayIsOptional) {
               testing::HasSubstr("relay_contact"));
 }
 
+TEST(HalConfig, TheDrivesVoltageAsAWitnessIsOptional) {
+  EXPECT_FALSE(LoadConfig(kFile).hal.gpiod->drive_voltage.has_value());
+  const std::string key = "[hal.gpiod]";
+  const RigConfig with =
+      Loaded(key, "[hal.gpiod.drive_voltage]\nrise_ms = 300\nfall_ms = 2000\n" + key);
+  ASSERT_TRUE(with.hal.gpiod->drive_voltage.has_value());
+  EXPECT_EQ(with.hal.gpiod->drive_voltage->rise_ms, 300.0);
+  EXPECT_EQ(with.hal.gpiod->drive_voltage->fall_ms, 2000.0);
+  EXPECT_THAT(Complaint(key, "[hal.gpiod.drive_voltage]\nrise_ms = 300\n" + key),
+              testing::HasSubstr("hal.gpiod.drive_voltage.fall_ms"));
+  EXPECT_THAT(Complaint(key, "[hal.gpiod.drive_voltage]\nrise_ms = 5\nfall_ms = 60000\n" + key),
+              testing::AllOf(testing::HasSubstr("hal.gpiod.drive_voltage.rise_ms"),
+                             testing::HasSubstr("hal.gpiod.drive_voltage.fall_ms")));
+}
+
 TEST(HalConfig, TheLoggedTextGivesTheSameWiringAgain) {
   const RigConfig config = LoadConfig(kFile);
   EXPECT_EQ(ParseConfig(config.text, "log").text, config.text);

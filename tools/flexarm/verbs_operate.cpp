@@ -18,6 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The check of the host takes 3 s at most, the tests of the power path as long again.
+constexpr double kLongestArm_s = 10.0;
+
 struct OperateOptions {
   DaemonClient daemon;
   std::filesystem::path experiment;
@@ -185,7 +188,7 @@ void RegisterArm(CLI::App& app, Exit& exit) {
   verb->callback([arm, &exit] {
     Json command = {{"command", "arm"}};
     arm->overrides.PutInto(&command);
-    exit.code = arm->daemon.Conclude(arm->daemon.Ask(command));
+    exit.code = arm->daemon.Conclude(arm->daemon.Ask(command, kLongestArm_s));
   });
 }
 

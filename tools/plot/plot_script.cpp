@@ -23,6 +23,9 @@ const char* StateColour(SafetyState state) {
     case SafetyState::kStopping:
       return "#BBD7EE";
     case SafetyState::kDisarming:
+    case SafetyState::kTestingPump:
+    case SafetyState::kTestingRelay:
+    case SafetyState::kTestingPower:
       return "#F5DFA3";
     case SafetyState::kFaultStopping:
     case SafetyState::kTripped:

@@ -89,7 +89,8 @@ TEST_F(ProveSwitchesTest, ASimulatedRigNeedsNone) {
 TEST_F(ProveSwitchesTest, NeedsAnOpenRelayFromBeginningToEnd) {
   for (const SafetyState state :
        {SafetyState::kArmed, SafetyState::kRunning, SafetyState::kStopping, SafetyState::kStarting,
-        SafetyState::kDisarming, SafetyState::kFaultStopping}) {
+        SafetyState::kDisarming, SafetyState::kFaultStopping, SafetyState::kTestingPump,
+        SafetyState::kTestingRelay, SafetyState::kTestingPower}) {
     EXPECT_THAT(MessageOf<RejectedError>([&] { switches_.Start(7, state); }),
                 HasSubstr("flexarm disarm"));
   }

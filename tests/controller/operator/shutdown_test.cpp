@@ -26,7 +26,8 @@ struct ShutdownTest : testing::Test {
 };
 
 TEST_F(ShutdownTest, IsNotOverWhileTheArmHasPower) {
-  for (const SafetyState powered : {kArmed, kRunning, kStopping, kFaultStopping, kDisarming}) {
+  for (const SafetyState powered :
+       {kArmed, kRunning, kStopping, kFaultStopping, kDisarming, kTestingRelay, kTestingPower}) {
     At(0, powered);
     At(3'900, powered);
     EXPECT_FALSE(shutdown.over()) << ToString(powered);

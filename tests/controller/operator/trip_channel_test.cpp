@@ -20,6 +20,10 @@ TEST(TripChannelName, IsWhatTheConfigCallsIt) {
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 4, sensors), "write too slow");
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 5, sensors), "relay stays closed");
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 6, sensors), "relay stays open");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 7, sensors), "charge pump stuck on");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 8, sensors), "no drive voltage");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 9, sensors), "drive voltage stays on");
+  EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 10, sensors), "drive voltage not known");
   EXPECT_EQ(TripChannelName(TripCause::kSafetyLines, 99, sensors), "") << "a corrupt number";
   EXPECT_EQ(TripChannelName(TripCause::kStaleFrame, 0, sensors), "");
   EXPECT_EQ(TripChannelName(TripCause::kStrainStuck, 99, sensors), "") << "a corrupt number";

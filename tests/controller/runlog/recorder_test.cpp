@@ -72,6 +72,29 @@ TEST_F(RecorderTest, ARunIsFromTheResetAfterArmUntilIdle) {
   EXPECT_TRUE(errors_.empty());
 }
 
+// An arming with tests of the power path is logged from its first test on, by one run.
+TEST_F(RecorderTest, TheTestsOfAnArmingAreInTheLogOfItsRun) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  SafetyStatus status = kIdleStatus;
+  for (int i = 0; i < 4; ++i) {
+    const RequestKind request = i == 0 ? RequestKind::kArm : RequestKind::kNone;
+    SafetyRecord record = MakeSafety((10 + i) * kTestPeriodNs + 1, status, request);
+    record.facts.tests_power = 1;
+    record.after = NextSafetyState(status, record.facts).status;
+    status = record.after;
+    safety_.Push(record);
+  }
+  ASSERT_EQ(status, kArmedStatus);
+  Ticks(0, 100, 15);
+  RunUntil(kSecond);
+  EXPECT_TRUE(recording_->is_open());
+  EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs + 1);
+  EXPECT_EQ(run.safety.size(), 4U);
+  ASSERT_FALSE(run.tick.empty());
+  EXPECT_EQ(run.tick.front().input.tick, 15);
+}
+
 TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
   RunContents run;
   Start(RunInMemory(&run));

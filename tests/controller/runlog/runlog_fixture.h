@@ -88,6 +88,7 @@ inline SafetyRecord MakeSafety(std::int64_t due_ns, SafetyStatus before, Request
   record.facts.all_reported = 1;
   record.facts.at_rest = 1;
   record.facts.drives_on = 1;
+  record.facts.power_follows = 1;
   record.facts.request = request;
   const SafetyDecision next = NextSafetyState(before, record.facts);
   record.after = next.status;

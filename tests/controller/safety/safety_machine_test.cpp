@@ -25,6 +25,7 @@ constexpr SafetyFacts Healthy(RequestKind request = RequestKind::kNone) {
   facts.at_rest = 1;
   facts.may_damp = 1;
   facts.drives_on = 1;
+  facts.power_follows = 1;
   facts.request = request;
   return facts;
 }
@@ -47,7 +48,24 @@ constexpr SafetyState StateAfter(SafetyState from, const SafetyFacts& facts) {
 // Energy that a state permits: 0 nothing, 1 the relay, 2 torque.
 constexpr int Energy(SafetyState state) {
   if (state == kRunning || state == kStopping || state == kFaultStopping) return 2;
-  return state == kArmed || state == kDisarming ? 1 : 0;
+  const bool powered = state == kArmed || state == kDisarming || state == kTestingPower;
+  return powered ? 1 : 0;
+}
+
+// Relay and charge pump, in this order, of each state: docs/safety.md, "States".
+constexpr int Closed(SafetyState state) {
+  if (state == kTestingPump) return 0b01;
+  if (state == kTestingRelay) return 0b10;
+  return Energy(state) > 0 ? 0b11 : 0;
+}
+
+TEST(SafetyMachine, RelayAndChargePumpAreBothClosedExactlyInTheStatesWithPower) {
+  for (int i = 0; i < kSafetyStates; ++i) {
+    const auto state = static_cast<SafetyState>(i);
+    EXPECT_EQ(RelayClosed(state), (Closed(state) & 0b10) != 0) << ToString(state);
+    EXPECT_EQ(PumpRuns(state), (Closed(state) & 0b01) != 0) << ToString(state);
+    EXPECT_FALSE(TestsPower(state) && DrivesEnabled(state)) << ToString(state);
+  }
 }
 
 std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const SafetyDecision& to) {
@@ -60,8 +78,12 @@ std::string Describe(const SafetyStatus& from, const SafetyFacts& facts, const S
          " pressed " + std::to_string(facts.reset_pressed) + " shutting down " +
          std::to_string(facts.shutting_down) + " may damp " + std::to_string(facts.may_damp) +
          " drives on " + std::to_string(facts.drives_on) + " off " +
-         std::to_string(facts.drives_off) + " relay stays closed " +
-         std::to_string(facts.relay_stays_closed);
+         std::to_string(facts.drives_off) + " tests power " + std::to_string(facts.tests_power) +
+         " power follows " + std::to_string(facts.power_follows);
+}
+
+bool Tests(SafetyState state) {
+  return state == kTestingPump || state == kTestingRelay || state == kTestingPower;
 }
 
 bool Corrupted(SafetyState state) { return static_cast<int>(state) >= kSafetyStates; }
@@ -84,7 +106,7 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
 
   const bool latches = to.state == kTripped || to.state == kFaultStopping;
   const bool latched = from.state == kTripped || from.state == kFaultStopping;
-  if (Corrupted(to.state)) return "no state outside the eight";
+  if (Corrupted(to.state)) return "no state outside the eleven";
   if (latches != (to.cause != TripCause::kNone)) {
     return "a cause is named exactly while one is latched";
   }
@@ -140,13 +162,41 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
       (facts.drives_off != 0 || facts.stop_expired != 0)) {
     return "Disarming ends when the drives are off, and in time";
   }
-  if (Energy(to.state) > Energy(from.state) && !corrupted) {
+  const bool tests = Tests(from.state) || Tests(to.state);
+  if (from.state == kIdle && Closed(to.state) != 0) {  // the arming begins
+    if (facts.request != RequestKind::kArm) return "nothing arms by itself";
+    if (facts.at_rest == 0) return "a moving arm is not armed";
+    if (facts.power_follows == 0) return "a power path that is not known to be open is not armed";
+    if (facts.all_reported == 0) return "arming needs a report of every task";
+    if ((to.state == kTestingPump) != (facts.tests_power != 0)) {
+      return "arming begins with a test, if there is a witness";
+    }
+  }
+  if (tests && moved && !latches && to.state != kIdle) {
+    const bool next = (from.state == kIdle && to.state == kTestingPump) ||
+                      (from.state == kTestingPump && to.state == kTestingRelay) ||
+                      (from.state == kTestingRelay && to.state == kTestingPower) ||
+                      (from.state == kTestingPower && to.state == kArmed);
+    if (!next) return "each channel is tested, in turn, and then both";
+    if (facts.power_follows == 0) return "a test that has not passed is not left forwards";
+    if (facts.at_rest == 0 || facts.shutting_down != 0) return "the tests are of an arm at rest";
+  }
+  if (Tests(from.state) && !latches && to.state != kIdle) {
+    if (facts.request == RequestKind::kStop || facts.request == RequestKind::kDisarm) {
+      return "a stop or a disarm ends the tests";
+    }
+    if (facts.at_rest == 0) return "a moving arm ends the tests";
+  }
+  if (Tests(from.state) && to.state == kIdle && facts.at_rest != 0 && facts.shutting_down == 0 &&
+      facts.request != RequestKind::kStop && facts.request != RequestKind::kDisarm) {
+    return "the tests are not given up";
+  }
+  if (Tests(from.state) && to.state == from.state && facts.power_follows != 0) {
+    return "a test that has passed ends";
+  }
+  if (Energy(to.state) > Energy(from.state) && !corrupted && !tests) {
     if (to.state == kArmed) {
       if (from.state != kIdle) return "arming starts from Idle";
-      if (facts.request != RequestKind::kArm) return "nothing arms by itself";
-      if (facts.at_rest == 0) return "a moving arm is not armed";
-      if (facts.relay_stays_closed != 0) return "a relay that has not opened is not armed";
-      if (facts.all_reported == 0) return "arming needs a report of every task";
     } else {
       if (from.state != kArmed) return "torque starts from Armed";
       if (to.state != kRunning) return "torque starts with Running";
@@ -172,19 +222,22 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
   if (moved && to.state == kStarting) return "nothing goes back to Starting";
   if (facts.shutting_down != 0) {
     if (Energy(to.state) > Energy(from.state)) return "nothing starts while shutting down";
-    if (to.state == kRunning || to.state == kArmed) {
+    if (to.state == kRunning || to.state == kArmed || Tests(to.state)) {
       if (from.state == to.state) return "a shutdown stops the arm and disarms it";
     }
   }
   if (!asked && decision.refusal != Refusal::kNone) return "no refusal without a request";
   if (asked && decision.refusal == Refusal::kNone) {
     const bool obeyed =
-        (facts.request == RequestKind::kArm && from.state == kIdle && to.state == kArmed) ||
+        (facts.request == RequestKind::kArm && from.state == kIdle &&
+         (to.state == kArmed || to.state == kTestingPump)) ||
         (facts.request == RequestKind::kRun && from.state == kArmed && to.state == kRunning) ||
         (facts.request == RequestKind::kStop && from.state == kRunning && to.state == kStopping) ||
         (facts.request == RequestKind::kStop && from.state == kStopping) ||
         (facts.request == RequestKind::kDisarm && from.state == kArmed && to.state == kDisarming) ||
         (facts.request == RequestKind::kDisarm && from.state == kDisarming) ||
+        ((facts.request == RequestKind::kStop || facts.request == RequestKind::kDisarm) &&
+         Tests(from.state) && to.state == kIdle) ||
         (facts.request == RequestKind::kReset && from.state == kTripped && to.state == kIdle);
     if (!obeyed) return "a request that is not refused is carried out";
   }
@@ -193,8 +246,8 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
 
 std::vector<SafetyStatus> EveryStatus() {
   std::vector<SafetyStatus> all;
-  for (const SafetyState state :
-       {kStarting, kIdle, kArmed, kRunning, kStopping, kDisarming, kCorruptedState}) {
+  for (const SafetyState state : {kStarting, kIdle, kArmed, kRunning, kStopping, kDisarming,
+                                  kTestingPump, kTestingRelay, kTestingPower, kCorruptedState}) {
     all.push_back(In(state));
   }
   all.push_back(In(static_cast<SafetyState>(255)));
@@ -223,12 +276,12 @@ constexpr RequestKind kEveryRequest[] = {
     RequestKind::kNone,   RequestKind::kArm,   RequestKind::kRun, RequestKind::kStop,
     RequestKind::kDisarm, RequestKind::kReset, kCorruptedRequest};
 
-// 50 statuses x 634 sets of causes x 1024 flags x 7 requests: every case.
+// 53 statuses x 634 sets of causes x 2048 flags x 7 requests: every case.
 TEST(SafetyMachine, EveryTransitionObeysTheRules) {
   long cases = 0;
   for (const SafetyStatus& from : EveryStatus()) {
     for (const TripCauses present : EverySetOfUpToTwoCauses()) {
-      for (unsigned flags = 0; flags < 1024; ++flags) {
+      for (unsigned flags = 0; flags < 2048; ++flags) {
         for (const RequestKind request : kEveryRequest) {
           SafetyFacts facts{};
           facts.present = present;
@@ -241,7 +294,8 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
           facts.may_damp = (flags >> 6) & 1u;
           facts.drives_on = (flags >> 7) & 1u;
           facts.drives_off = (flags >> 8) & 1u;
-          facts.relay_stays_closed = (flags >> 9) & 1u;
+          facts.tests_power = (flags >> 9) & 1u;
+          facts.power_follows = (flags >> 10) & 1u;
           facts.request = request;
           const SafetyDecision to = NextSafetyState(from, facts);
           const char* broken = BrokenRule(from, facts, to);
@@ -251,7 +305,7 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
       }
     }
   }
-  EXPECT_EQ(cases, 50L * 634 * 1024 * 7);
+  EXPECT_EQ(cases, 53L * 634 * 2048 * 7);
 }
 
 TEST(SafetyMachine, AShutdownEndsARunInIdleWithoutARequest) {
@@ -285,6 +339,29 @@ TEST(SafetyMachine, GoesThroughAnExperimentAndBack) {
   EXPECT_EQ(StateAfter(kDisarming, Healthy()), kDisarming);
   EXPECT_EQ(StateAfter(kDisarming, With(Healthy(), &SafetyFacts::drives_off, 1)), kIdle);
   EXPECT_EQ(StateAfter(kDisarming, With(Healthy(), &SafetyFacts::stop_expired, 1)), kIdle);
+}
+
+TEST(SafetyMachine, WithAWitnessArmingTestsEachChannelBeforeBoth) {
+  const SafetyFacts waits =
+      With(With(Healthy(), &SafetyFacts::tests_power, 1), &SafetyFacts::power_follows, 0);
+  SafetyFacts passes = With(waits, &SafetyFacts::power_follows, 1);
+  passes.request = RequestKind::kArm;
+  EXPECT_EQ(NextSafetyState(In(kIdle), passes), (SafetyDecision{In(kTestingPump), Refusal::kNone}));
+  passes.request = RequestKind::kNone;
+  EXPECT_EQ(StateAfter(kTestingPump, passes), kTestingRelay);
+  EXPECT_EQ(StateAfter(kTestingRelay, passes), kTestingPower);
+  EXPECT_EQ(StateAfter(kTestingPower, passes), kArmed);
+  for (const SafetyState test : {kTestingPump, kTestingRelay, kTestingPower}) {
+    EXPECT_EQ(StateAfter(test, waits), test);
+    EXPECT_EQ(StateAfter(test, With(passes, &SafetyFacts::at_rest, 0)), kIdle);
+    EXPECT_EQ(StateAfter(test, With(passes, &SafetyFacts::shutting_down, 1)), kIdle);
+    EXPECT_EQ(StateAfter(test, WithPresent(passes, CauseBit(TripCause::kSoftLimit1))), kTripped);
+    for (const RequestKind ends : {RequestKind::kStop, RequestKind::kDisarm}) {
+      SafetyFacts facts = passes;
+      facts.request = ends;
+      EXPECT_EQ(NextSafetyState(In(test), facts), (SafetyDecision{In(kIdle), Refusal::kNone}));
+    }
+  }
 }
 
 TEST(SafetyMachine, StoppingThatLastsTooLongTrips) {
@@ -347,7 +424,7 @@ TEST(SafetyMachine, RefusesWithTheReason) {
   };
   EXPECT_EQ(refusal(kIdle, With(Healthy(RequestKind::kArm), &SafetyFacts::at_rest, 0)),
             Refusal::kNotAtRest);
-  EXPECT_EQ(refusal(kIdle, With(Healthy(RequestKind::kArm), &SafetyFacts::relay_stays_closed, 1)),
+  EXPECT_EQ(refusal(kIdle, With(Healthy(RequestKind::kArm), &SafetyFacts::power_follows, 0)),
             Refusal::kRelayClosed);
   EXPECT_EQ(refusal(kIdle, Healthy(RequestKind::kRun)), Refusal::kWrongState);
   EXPECT_EQ(refusal(kRunning, Healthy(RequestKind::kDisarm)), Refusal::kWrongState);
@@ -361,7 +438,8 @@ TEST(SafetyMachine, RefusesWithTheReason) {
 TEST(SafetyMachine, EveryRefusalHasATextThatSaysWhatToDo) {
   for (const RequestKind request : kEveryRequest) {
     for (const SafetyState state :
-         {kStarting, kIdle, kArmed, kRunning, kStopping, kTripped, kFaultStopping, kDisarming}) {
+         {kStarting, kIdle, kArmed, kRunning, kStopping, kTripped, kFaultStopping, kDisarming,
+          kTestingPump, kTestingRelay, kTestingPower}) {
       EXPECT_STREQ(RefusalText(request, Refusal::kNone, state), "");
       for (int i = 1; i <= static_cast<int>(Refusal::kRelayClosed); ++i) {
         EXPECT_STRNE(RefusalText(request, static_cast<Refusal>(i), state), "");
@@ -396,6 +474,8 @@ SafetyFacts DecodeFacts(std::uint32_t bits) {
   facts.may_damp = (bits >> 24) & 1u;
   facts.drives_on = ((bits >> 25) & 3u) != 0;
   facts.drives_off = (bits >> 27) & 1u;
+  facts.power_follows = ((bits >> 28) & 3u) != 0;
+  facts.tests_power = (bits >> 30) & 1u;
   return facts;
 }
 
@@ -416,17 +496,19 @@ TEST(SafetyMachine, NoSequenceOfFactsReachesTorqueWithoutArmAndRun) {
       status = decision.status;
       RC_ASSERT(std::string(BrokenRule(before, facts, decision)) == "");
 
-      if (Energy(before.state) == 0 && facts.request == RequestKind::kArm) armed_by_operator = true;
+      if (Closed(before.state) == 0 && facts.request == RequestKind::kArm) armed_by_operator = true;
       if (before.state == kArmed && facts.request == RequestKind::kRun) run_by_operator = true;
-      if (Energy(status.state) >= 1) RC_ASSERT(armed_by_operator);
+      if (Closed(status.state) != 0) RC_ASSERT(armed_by_operator);
       if (Energy(status.state) == 2) RC_ASSERT(armed_by_operator && run_by_operator);
-      if (Energy(status.state) == 0) armed_by_operator = false;
+      if (Closed(status.state) == 0) armed_by_operator = false;
       if (status.state == kArmed && before.state != kArmed) run_by_operator = false;
       if (Energy(status.state) == 0) run_by_operator = false;
       torque_ticks += TorqueAllowed(status.state);
       trips += before.state != kTripped && status.state == kTripped;
 
-      // The same facts without the request never lead to a state with more energy.
+      // The same facts without the request never lead to a state with more energy; but for the
+      // tests of an arming that was requested.
+      if (Tests(status.state)) continue;
       SafetyFacts silent = facts;
       silent.request = RequestKind::kNone;
       RC_ASSERT(Energy(NextSafetyState(status, silent).status.state) <= Energy(status.state));

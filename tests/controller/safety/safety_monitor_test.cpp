@@ -370,6 +370,12 @@ TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   EXPECT_EQ(limits.slow_in_window, 8);
   EXPECT_TRUE(limits.late_threads_trip);
   EXPECT_FALSE(MakeMonitorLimits(safety, loop, false).late_threads_trip);
+  EXPECT_FALSE(limits.power.witness());
+  const DriveVoltageTimes times{.rise_ms = 300.0, .fall_ms = 2000.0};
+  const PowerPathLimits power = MakeMonitorLimits(safety, loop, true, times).power;
+  EXPECT_EQ(power.rise_ns, 300 * kMs);
+  EXPECT_EQ(power.fall_ns, 2000 * kMs);
+  EXPECT_EQ(power.report_ns, 60 * kMs) << "three periods";
 }
 
 // A homing run searches for one limit switch, which may open during the run, for a limited time.

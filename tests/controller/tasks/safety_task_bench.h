@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "controller/realtime/lockstep_executor.h"
@@ -29,6 +30,13 @@ inline constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 2 * kPeriodNs,
                                        .failed_in_window = 16,
                                        .slow_in_window = 16};
 
+/// With the drives' voltage as a witness of the power path.
+inline constexpr MonitorLimits kWitnessLimits = [] {
+  MonitorLimits limits = kLimits;
+  limits.power = {.rise_ns = 60 * kMs, .fall_ns = 80 * kMs, .report_ns = 60 * kMs};
+  return limits;
+}();
+
 struct FakeLines final : SafetyLines {
   struct Written {
     std::int64_t now_ns;
@@ -39,14 +47,25 @@ struct FakeLines final : SafetyLines {
     return {.levels = levels, .call = read, .relay = relay};
   }
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
+    if (!written.empty() && written.back().outputs.pump_level != outputs.pump_level) {
+      pump_toggled_ns = now_ns;
+    }
     written.push_back({now_ns, outputs});
     return write;
+  }
+  /// Power for the drives, through relay and pump in series.
+  bool power(std::int64_t now_ns) const {
+    const bool closed = !written.empty() && relay_closed();
+    return (closed || welded) && (now_ns - pump_toggled_ns <= kPumpTimeoutNs || pump_stuck);
   }
   bool relay_closed() const { return written.back().outputs.relay_closed; }
 
   LineLevels levels = kHealthyLevels;
   Call read, write;  // how the calls go
   RelayContact relay = RelayContact::kNone;
+  bool welded = false;      // the relay's main contact stays closed
+  bool pump_stuck = false;  // the monostable of the charge pump stays on
+  std::int64_t pump_toggled_ns = -1'000 * kMs;
   std::vector<Written> written;
 };
 
@@ -103,6 +122,7 @@ struct FakeDrive final : Task {
     report.due_ns = activation.due_ns;
     const bool on = !stuck_off && (stuck_on || DrivesEnabled(permit.state));
     report.power = on ? DrivePower::kOn : DrivePower::kOff;
+    if (supply != nullptr) report.voltage = Voltage(activation.due_ns);
     history_.Push(activation.due_ns + kMs, report);
     out_->Publish(history_);
   }
@@ -111,8 +131,24 @@ struct FakeDrive final : Task {
   bool stuck_on = false, stuck_off = false;  // what it reports
   std::array<double, 2> torque_nm{};
   DriveReport report{.due_ns = INT64_MIN, .bus_ok = true, .drive_ok = true};
+  const FakeLines* supply = nullptr;  // its voltage is reported; none: it is not
+  bool mains = true;
+  std::uint8_t silent = 0;     // drives whose voltage is not known, as bits
+  std::uint8_t always_up = 0;  // drives with voltage whatever the supply does
 
  private:
+  // A DC link, which takes its time.
+  DriveVoltage Voltage(std::int64_t now_ns) {
+    const bool fed = mains && supply->power(now_ns);
+    if (fed != std::exchange(fed_, fed)) fed_since_ns_ = now_ns;
+    if (now_ns - fed_since_ns_ >= (fed ? 30 : 40) * kMs) up_ = fed;
+    const auto known = static_cast<std::uint8_t>(0b11 & ~silent);
+    const auto on = static_cast<std::uint8_t>(known & (up_ ? 0b11 : always_up));
+    return {.on = on, .off = static_cast<std::uint8_t>(known & ~on)};
+  }
+
+  bool fed_ = false, up_ = false;
+  std::int64_t fed_since_ns_ = 0;
   DriveReportHistory history_{kNoDriveReport};
   PermitChannel* permits_;
   DriveReportChannel* out_;

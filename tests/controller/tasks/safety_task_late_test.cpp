@@ -17,6 +17,10 @@ using enum SafetyState;
 
 class LateSafetyThread : public SafetyTaskTest, public testing::WithParamInterface<SafetyState> {
  protected:
+  LateSafetyThread() : SafetyTaskTest(TestsPower(GetParam()) ? kWitnessLimits : kLimits) {
+    drive_.supply = TestsPower(GetParam()) ? &lines_ : nullptr;
+  }
+
   void EnterState(SafetyState state) {
     switch (state) {
       case kStarting:
@@ -43,6 +47,13 @@ class LateSafetyThread : public SafetyTaskTest, public testing::WithParamInterfa
         Ask(RequestKind::kDisarm);
         RunFor(2 * kMs);
         break;
+      case kTestingPump:
+      case kTestingRelay:
+      case kTestingPower:
+        GoTo(kIdle);
+        Ask(RequestKind::kArm);
+        for (int ms = 0; ms < 500 && safety_.status().state != state; ++ms) RunFor(kMs);
+        break;
       case kTripped:
         GoTo(kRunning);
         lines_.levels &= ~LineBit(Line::kEmergencyStop);
@@ -67,7 +78,8 @@ class LateSafetyThread : public SafetyTaskTest, public testing::WithParamInterfa
 
 INSTANTIATE_TEST_SUITE_P(In, LateSafetyThread,
                          testing::Values(kStarting, kIdle, kArmed, kRunning, kStopping,
-                                         kFaultStopping, kDisarming, kTripped),
+                                         kFaultStopping, kDisarming, kTestingPump, kTestingRelay,
+                                         kTestingPower, kTripped),
                          [](const testing::TestParamInfo<SafetyState>& tested) {
                            return std::string(ToString(tested.param));
                          });

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tests/controller/wired/hostile_rig.h"
+#include "tests/controller/wired/supply_models.h"
 #include "tests/support/campaign.h"
 
 // Drives that the relay feeds, and faults of drives, with the whole stack.
@@ -18,16 +19,7 @@ class DrivePowerCycles : public HostileBus, public testing::WithParamInterface<D
   }
 };
 
-std::string NameOfSupply(const testing::TestParamInfo<DriveSupplyModel>& model) {
-  if (model.param.clears_itself) return "ClearsItself";
-  return model.param.safe_torque_off ? "SafeTorqueOff" : "Plain";
-}
-
-INSTANTIATE_TEST_SUITE_P(Supply, DrivePowerCycles,
-                         testing::Values(DriveSupplyModel{},
-                                         DriveSupplyModel{.clears_itself = true},
-                                         DriveSupplyModel{.safe_torque_off = true}),
-                         NameOfSupply);
+INSTANTIATE_TEST_SUITE_P(Supply, DrivePowerCycles, kSupplyModels, NameOfSupply);
 
 // Every fifth one runs the experiment for a moment.
 TEST_P(DrivePowerCycles, CampaignOfArmsAndDisarmsNeverTrips) {

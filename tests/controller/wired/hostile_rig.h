@@ -32,8 +32,10 @@ inline constexpr double kResponseTimeout_ms = 100.0;
 inline const WiredWorld* the_world = nullptr;
 inline std::int64_t Clock() noexcept { return the_world->monotonic_ns(); }
 
-inline RigConfig WiredConfig(ModbusTransport transport) {
+inline RigConfig WiredConfig(ModbusTransport transport,
+                             const std::optional<DriveVoltageTimes>& voltage) {
   RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil-wire.toml", {});
+  config.hal.gpiod->drive_voltage = voltage;
   config.daemon.log_directory =
       testing::TempDir() + "/flexarm-wired-" + std::to_string(getpid()) + "-calibration";
   std::filesystem::remove_all(config.daemon.log_directory);
@@ -62,9 +64,12 @@ inline RigConfig WiredConfig(ModbusTransport transport) {
 /// The rig with its drivers and the daemon's tasks.
 class Rig {
  public:
+  /// @param supply  of the drives; none: they are always supplied
+  /// @param voltage  as a witness of the power path; none: it is no witness
   explicit Rig(ModbusTransport transport,
-               const std::optional<DriveSupplyModel>& supply = std::nullopt)
-      : config_(WiredConfig(transport)) {
+               const std::optional<DriveSupplyModel>& supply = std::nullopt,
+               const std::optional<DriveVoltageTimes>& voltage = std::nullopt)
+      : config_(WiredConfig(transport, voltage)) {
     const sched_param parameters{.sched_priority = 10};  // where permitted: before ordinary threads
     sched_setscheduler(0, SCHED_FIFO, &parameters);
     world = std::make_unique<WiredWorld>(config_, &executor, supply);
@@ -230,8 +235,9 @@ class HostileBus : public testing::Test {
  protected:
   // At rest.
   void StartIdle(ModbusTransport transport = ModbusTransport::kTcp,
-                 const std::optional<DriveSupplyModel>& supply = std::nullopt) {
-    rig_ = std::make_unique<Rig>(transport, supply);
+                 const std::optional<DriveSupplyModel>& supply = std::nullopt,
+                 const std::optional<DriveVoltageTimes>& voltage = std::nullopt) {
+    rig_ = std::make_unique<Rig>(transport, supply, voltage);
     ASSERT_TRUE(rig_->RunUntil(2000 * kMs, [this] {
       return rig_->permit().state == SafetyState::kIdle;
     })) << ToString(rig_->permit().cause);

@@ -204,6 +204,7 @@ class OnTestTime final : public BusDevice {
   std::uint32_t drives() const noexcept override { return driver_->drives(); }
   std::uint32_t drives_on() const noexcept override { return driver_->drives_on(); }
   std::int64_t worst_case_ns() const noexcept override { return worst_ns_; }
+  DriveVoltage voltage() const noexcept override { return driver_->voltage(); }
   CountEpochs count_epochs() const noexcept override { return driver_->count_epochs(); }
   bool needs_reconnect() const noexcept override { return driver_->needs_reconnect(); }
   BusFault notice() const noexcept override { return driver_->notice(); }

@@ -45,6 +45,10 @@ class DriveSupplies : public testing::TestWithParam<DriveSupplyModel> {
     ASSERT_EQ(bench_.device->drives_on(), 0b11U);
     ASSERT_EQ(bench_.node(0).torque_per_mille(), 300);
   }
+  void ExpectVoltage(std::uint8_t on, std::uint8_t off) {
+    EXPECT_EQ(bench_.device->voltage().on, on);
+    EXPECT_EQ(bench_.device->voltage().off, off);
+  }
   std::string Text(const BusFault& fault) { return bench_.device->FaultText(fault); }
   std::string Fault() { return Text(bench_.device->FaultOf(BusStatus::kDriveFault)); }
 
@@ -147,6 +151,34 @@ TEST_P(DriveSupplies, AConfigurationWithTheRelayOpenEndsWell) {
   ExpectWell(kOff, 50);
   EXPECT_EQ(bench_.node(0).state(), DriveState::kFault);
   SwitchOn();
+}
+
+// Bit 4 of the statusword, in every state of the drive: also in the fault for want of supply.
+TEST_P(DriveSupplies, TheVoltageIsReportedAsTheDcLinkHasIt) {
+  ExpectVoltage(0, 0);
+  ExpectWell(kOff, 3);
+  ExpectVoltage(0, 0b11);
+  Feed(true);
+  ExpectWell(kOff, 10);
+  ExpectVoltage(0, 0b11);  // it charges for 300 ms
+  ExpectWell(kOff, 10);
+  ExpectVoltage(0b11, 0);
+  SwitchOn();
+  ExpectVoltage(0b11, 0);
+  ExpectWell(kOff, 3);
+  Feed(false);
+  ExpectWell(kOff, 2);
+  ExpectVoltage(0, 0b11);
+  bench_.node(1).Feed(true);
+  ExpectWell(kOff, 20);
+  ExpectVoltage(0b10, 0b01);
+}
+
+TEST_P(DriveSupplies, TheVoltageOfADriveThatDoesNotAnswerIsNotKnown) {
+  ExpectWell(kOff, 3);
+  bench_.node(0).Misbehave({.answers_no_sync = true});
+  EXPECT_NE(bench_.Exchange(kOff), BusStatus::kOk);
+  ExpectVoltage(0, 0b10);
 }
 
 }  // namespace

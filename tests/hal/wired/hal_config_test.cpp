@@ -193,5 +193,25 @@ TEST(HalConfig, ABusOfANewKindObeysTheSameRules) {
   EXPECT_THAT(ConfigsOf<CanopenWiring>(hal), IsEmpty());
 }
 
+TEST(HalConfig, ADriveThatReportsNoVoltageIsNoWitness) {
+  const auto complaints = [](HalConfig hal) {
+    hal.gpiod.emplace(
+        GpiodConfig{.chip = "gpiochip0", .input = {0, 1, 2, 3, 4, 5}, .relay = 6, .pump = 7});
+    hal.gpiod->drive_voltage = {.rise_ms = 300.0, .fall_ms = 2000.0};
+    std::string text;
+    for (const Problem& p :
+         hal.Problems({.sensors = {}, .available_ns = 1'000'000'000, .torque_limit_nm = {}})) {
+      if (p.key == "hal.gpiod.drive_voltage") text += p.rule;
+    }
+    return text;
+  };
+  HalConfig hal;
+  Add<CanopenWiring>(BenchConfig(), &hal);
+  Add<ModbusWiring>(Amplifier(), &hal);
+  EXPECT_EQ(complaints(hal), "") << "each drive reports its own; an amplifier has none";
+  hal.Add(std::make_shared<OneDriveBus>(1));
+  EXPECT_THAT(complaints(hal), HasSubstr("those of one-drive[0] do not"));
+}
+
 }  // namespace
 }  // namespace flexarm
