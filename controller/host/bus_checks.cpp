@@ -28,6 +28,22 @@ HostCheck CanQueue(const BusFacts& bus) {
                       " txqueuelen 10; to keep it, the udev rule of docs/hardware.md");
 }
 
+// Without it the frames that the controller holds are not seen: ConfirmedBus.
+HostCheck CanEcho(const BusFacts& bus) {
+  const bool is_virtual = bus.link && !bus.link->controller;
+  std::string value = kUnknownValue;
+  if (bus.link)
+    value = bus.link->echo ? "when the frame was sent" : "when the frame is handed over";
+  if (is_virtual) value = "none needed: " + bus.device + " is virtual";
+  HostCheck check = BusCheck(
+      "can-echo", bus, is_virtual || (bus.link && bus.link->echo), value,
+      "advice: the driver echoes a frame when it was sent: without, frames of two or three "
+      "exchanges can wait in the controller of a bus on which no node acknowledges",
+      "another adapter, whose interface has the flag ECHO in `ip link show " + bus.device + "`");
+  check.advice = true;
+  return check;
+}
+
 HostCheck CanRestart(const BusFacts& bus) {
   return BusCheck("can-restart", bus, bus.link && bus.link->restart_ms == 0,
                   bus.link ? std::to_string(bus.link->restart_ms) + " ms" : kUnknownValue,
@@ -124,7 +140,7 @@ HostCheck ClockSteps(const HostFacts& facts) {
       .advice = true,
       .value = value,
       .required =
-          "advice: the clock is slewed, not stepped: a step costs each CAN bus an "
+          "advice: the clock is slewed, not stepped: a step of a few ms can cost each CAN bus an "
           "exchange",
       .remedy = ok ? "" : "apt install chrony, with makestep 1 3 in its configuration, or none"};
 }
@@ -138,6 +154,7 @@ std::vector<HostCheck> BusChecks(const HostFacts& facts) {
     if (bus.kind == BusFacts::Kind::kCan) {
       has_can = true;
       all.push_back(CanQueue(bus));
+      all.push_back(CanEcho(bus));
       all.push_back(CanRestart(bus));
     }
     if (bus.kind == BusFacts::Kind::kSerial) all.push_back(SerialDelay(bus));

@@ -52,7 +52,7 @@ class CanBus {
   /// State from the last error frame and the interface.
   virtual CanState state() noexcept = 0;
 
-  /// True while frames of this end wait for transmission.
+  /// True while frames of this end wait in the kernel. The controller may hold more: ConfirmedBus.
   virtual bool unsent() noexcept = 0;
 
   /// Drops all frames that wait for transmission, and leaves bus-off. Only while disarmed.

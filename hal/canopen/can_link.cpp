@@ -18,6 +18,8 @@ namespace flexarm {
 namespace {
 
 constexpr int kAnswer_ms = 100;
+// IFF_ECHO of linux/if.h, which cannot be included together with net/if.h.
+constexpr unsigned kEchoFlag = 1U << 18U;
 
 struct Request {
   nlmsghdr header;
@@ -130,7 +132,9 @@ bool ReadCanLink(const std::string& interface, CanLink* link) noexcept {
     return false;
   }
   const Bytes answer = Bytes(route.answer).first(header.nlmsg_len);
-  link->up = (Read<ifinfomsg>(answer.subspan(sizeof(header))).ifi_flags & IFF_UP) != 0;
+  const unsigned flags = Read<ifinfomsg>(answer.subspan(sizeof(header))).ifi_flags;
+  link->up = (flags & IFF_UP) != 0;
+  link->echo = (flags & kEchoFlag) != 0;
   ForEach(answer.subspan(sizeof(Request)), [link](int type, Bytes value) {
     if (type == IFLA_TXQLEN) link->transmit_queue = Read<std::uint32_t>(value);
     if (type == IFLA_LINKINFO) ReadLinkInfo(value, link);

@@ -10,6 +10,7 @@ namespace flexarm {
 /// Properties of a CAN interface as the kernel reports them over rtnetlink.
 struct CanLink {
   bool up;
+  bool echo;                     ///< the driver echoes a frame when it was sent, not before
   bool controller;               ///< has a CAN controller: not a virtual interface
   int index;                     ///< of the interface
   std::uint32_t transmit_queue;  ///< frames, txqueuelen

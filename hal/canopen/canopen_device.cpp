@@ -19,7 +19,7 @@ constexpr int kMostFrames = 1024;
 }  // namespace
 
 CanopenDevice::CanopenDevice(CanopenConfig config, std::unique_ptr<CanBus> bus)
-    : config_(std::move(config)), bus_(std::move(bus)), setup_(config_, bus_.get()) {
+    : config_(std::move(config)), bus_(std::move(bus)), setup_(config_, &bus_) {
   for (const CanopenNodeConfig& node : config_.node) {
     if (node_count_ < nodes_.size()) nodes_[node_count_++].config = &node;
     if (IsDrive(node.role)) drives_ |= 1U << static_cast<unsigned>(node.role);
@@ -27,26 +27,34 @@ CanopenDevice::CanopenDevice(CanopenConfig config, std::unique_ptr<CanBus> bus)
 }
 
 void CanopenDevice::Open() {
-  std::vector<std::uint32_t> ids = {kCobSync};
-  for (const CanopenNodeConfig& node : config_.node) {
-    for (const std::uint32_t function : {kCobEmergency, kCobTpdo, kCobSdoReply, kCobHeartbeat}) {
-      ids.push_back(CobId(function, node.node_id));
-    }
-  }
-  bus_->Open(ids, config_.bitrate_bps);
+  bus_.Open(Identifiers(), config_.bitrate_bps);
   setup_.Begin();
   NodeSetup::Progress progress = NodeSetup::Progress::kBusy;
   while (progress == NodeSetup::Progress::kBusy) {
-    progress = setup_.Advance(bus_->now_ns() + 100 * kMillisecondNs);
+    progress = setup_.Advance(bus_.now_ns() + 100 * kMillisecondNs);
   }
   if (progress == NodeSetup::Progress::kFailed) {
-    bus_->Close();
+    bus_.Close();
     throw HalError(setup_.FailureText());
   }
   counts_ = {};
   open_ = true;
   fault_ = kept_ = {};
   EndSetup();
+}
+
+// Of the frames that are received, and of those that are sent, for their echoes.
+std::vector<std::uint32_t> CanopenDevice::Identifiers() const {
+  std::vector<std::uint32_t> ids = {kCobNmt, kCobSync,
+                                    CobId(kCobHeartbeat, config_.master_node_id)};
+  for (const CanopenNodeConfig& node : config_.node) {
+    for (const std::uint32_t function :
+         {kCobEmergency, kCobTpdo, kCobSdoReply, kCobSdoRequest, kCobHeartbeat}) {
+      ids.push_back(CobId(function, node.node_id));
+    }
+    if (IsDrive(node.role)) ids.push_back(CobId(kCobRpdo, node.node_id));
+  }
+  return ids;
 }
 
 BusStatus CanopenDevice::Exchange(const BusCommand& command, SensorFrame* part) noexcept {
@@ -71,7 +79,7 @@ void CanopenDevice::Read(SensorFrame* part) const noexcept {
 }
 
 BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexcept {
-  const std::int64_t until_ns = bus_->now_ns() + answer_ns();
+  const std::int64_t until_ns = bus_.now_ns() + answer_ns();
   malformed_ = nullptr;
   if (wish != DriveWish::kOn) MarkOff();
   Drain(until_ns);
@@ -80,7 +88,7 @@ BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexce
   first_ = false;
   // Includes faults that latched just now, while draining.
   if (fault_.kind != CanopenFaultKind::kNone && wish == DriveWish::kOn) wish = DriveWish::kOff;
-  if (bus_->unsent() || !Send(wish, command)) return Stuck();
+  if (bus_.unsent() || !Send(wish, command)) return Stuck();
   Collect(until_ns);
   if (BusIsGone()) return FaultStatus();
   if (sampled_ns_ == 0) return Stuck();
@@ -95,9 +103,9 @@ BusStatus CanopenDevice::Cycle(DriveWish wish, const BusCommand& command) noexce
 void CanopenDevice::Drain(std::int64_t until_ns) noexcept {
   collecting_ = false;
   ReceivedFrame received{};
-  for (int i = 0; i < kMostFrames && bus_->Receive(&received); ++i) {
+  for (int i = 0; i < kMostFrames && bus_.Receive(&received); ++i) {
     Handle(received);
-    if (bus_->now_ns() >= until_ns) return;
+    if (bus_.now_ns() >= until_ns) return;
   }
 }
 
@@ -105,13 +113,13 @@ bool CanopenDevice::Send(DriveWish wish, const BusCommand& command) noexcept {
   for (Node& node : nodes()) {
     node.answered = false;
     if (!IsDrive(node.config->role)) continue;
-    if (bus_->Send(CommandFor(node, wish, command)) != SendResult::kSent) return false;
+    if (bus_.Send(CommandFor(node, wish, command)) != SendResult::kSent) return false;
   }
-  sync_sent_ns_ = bus_->now_ns();
+  sync_sent_ns_ = bus_.now_ns();
   sampled_ns_ = 0;
   collecting_ = true;
-  return bus_->Send(EncodeSync()) == SendResult::kSent &&
-         bus_->Send(EncodeHeartbeat(config_.master_node_id, NmtState::kOperational)) ==
+  return bus_.Send(EncodeSync()) == SendResult::kSent &&
+         bus_.Send(EncodeHeartbeat(config_.master_node_id, NmtState::kOperational)) ==
              SendResult::kSent;
 }
 
@@ -124,11 +132,11 @@ void CanopenDevice::Collect(std::int64_t until_ns) noexcept {
   };
   ReceivedFrame received{};
   for (int i = 0; i < kMostFrames && !complete(); ++i) {
-    if (bus_->now_ns() >= until_ns) break;
-    if (bus_->Receive(&received)) {
+    if (bus_.now_ns() >= until_ns) break;
+    if (bus_.Receive(&received)) {
       Handle(received);
     } else {
-      bus_->WaitUntil(until_ns);
+      bus_.WaitUntil(until_ns);
     }
   }
   collecting_ = false;
@@ -140,7 +148,7 @@ BusStatus CanopenDevice::Stuck() noexcept {
 }
 
 bool CanopenDevice::BusIsGone() noexcept {
-  const CanState state = bus_->state();
+  const CanState state = bus_.state();
   if (state == CanState::kBusOff) Latch(CanopenFaultKind::kBusOff, nullptr, 0);
   if (state == CanState::kDown) Latch(CanopenFaultKind::kInterfaceDown, nullptr, 0);
   return state == CanState::kBusOff || state == CanState::kDown;
@@ -163,9 +171,9 @@ BusStatus CanopenDevice::CountMissing() noexcept {
 void CanopenDevice::CheckHeartbeats() noexcept {
   // Between Open and the first exchange seconds may pass, more heartbeats than a socket holds.
   if (first_) {
-    for (Node& node : nodes()) node.heartbeat_ns = bus_->now_ns();
+    for (Node& node : nodes()) node.heartbeat_ns = bus_.now_ns();
   }
-  const std::int64_t oldest_ns = bus_->now_ns() - config_.node_timeout_ms * kMillisecondNs;
+  const std::int64_t oldest_ns = bus_.now_ns() - config_.node_timeout_ms * kMillisecondNs;
   for (const Node& node : nodes()) {
     if (node.heartbeat_ns < oldest_ns) Latch(CanopenFaultKind::kHeartbeatLost, &node, 0);
   }
@@ -198,9 +206,9 @@ void CanopenDevice::Close() noexcept {
   // socket holds about six frames.
   for (const Node& node : nodes()) {
     if (!IsDrive(node.config->role)) continue;
-    static_cast<void>(bus_->Send(EncodeNmt(NmtCommand::kPreOperational, node.config->node_id)));
+    static_cast<void>(bus_.Send(EncodeNmt(NmtCommand::kPreOperational, node.config->node_id)));
   }
-  bus_->Close();
+  bus_.Close();
 }
 
 CanopenDevice::Node* CanopenDevice::Find(int node_id) noexcept {

@@ -5,12 +5,14 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "hal/bus_device.h"
 #include "hal/canopen/can_bus.h"
 #include "hal/canopen/canopen_codec.h"
 #include "hal/canopen/canopen_config.h"
 #include "hal/canopen/canopen_fault.h"
+#include "hal/canopen/confirmed_bus.h"
 #include "hal/canopen/drive_state.h"
 #include "hal/canopen/node_setup.h"
 
@@ -37,8 +39,9 @@ struct CanopenCounts {
 /// latches: the drives stay switched off. One of a drive that answers lasts until an exchange with
 /// `acknowledge`, which sends the fault reset, and no other call does. After any other one
 /// Reconnect configures all nodes again, with a pause of 0.1 s before a second attempt, doubled
-/// with each up to 2 s; the fault of a drive outlasts that. While the last frames wait for
-/// transmission no frames are added: at most one exchange is queued, and Reconnect drops it. The
+/// with each up to 2 s; the fault of a drive outlasts that. Until each frame of the last exchange
+/// has its echo, an exchange adds none and fails: at most one exchange waits, in the queue and in
+/// the controller together, and Reconnect drops it. The
 /// relay feeds the drives, so while they are off an emergency for want of supply or by safe torque
 /// off (SupplyEmergency) is a notice and no fault, and so is the fault state behind it. When they
 /// are switched on, that fault alone is reset, until the drive operates: a second at most. In
@@ -70,7 +73,7 @@ class CanopenDevice : public BusDevice {
   /// The latched fault, for the log. Thread: the bus's.
   const CanopenFault& fault() const noexcept { return fault_; }
   const CanopenCounts& counts() const noexcept { return counts_; }
-  const CanCounts& bus_counts() const noexcept { return bus_->counts(); }
+  const CanCounts& bus_counts() const noexcept { return bus_.counts(); }
   const CanopenConfig& config() const noexcept { return config_; }
   /// State of the drive of joint `joint` (0, 1) at the last exchange; kUnknown if it is not on this
   /// bus.
@@ -98,6 +101,7 @@ class CanopenDevice : public BusDevice {
   std::span<Node> nodes() noexcept { return std::span(nodes_).first(node_count_); }
   Node* Find(int node_id) noexcept;
   const Node* Drive(int joint) const noexcept;
+  std::vector<std::uint32_t> Identifiers() const;
   std::int64_t answer_ns() const noexcept;
   void Latch(CanopenFaultKind kind, const Node* node, unsigned code) noexcept;
   BusStatus FaultStatus() const noexcept { return StatusOf(config_, fault_); }
@@ -136,7 +140,7 @@ class CanopenDevice : public BusDevice {
   void LoseCount(const Node& node) noexcept;
 
   CanopenConfig config_;
-  std::unique_ptr<CanBus> bus_;
+  ConfirmedBus bus_;
   NodeSetup setup_;
   std::array<Node, kMaxCanopenNodes> nodes_{};
   std::size_t node_count_ = 0;

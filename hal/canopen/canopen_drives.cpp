@@ -29,7 +29,7 @@ CanFrame CanopenDevice::CommandFor(const Node& node, DriveWish wish,
       .torque_per_mille = 0};
   const std::size_t joint = node.config->role == CanopenRole::kDrive1 ? 0 : 1;
   const double torque_nm = command.torque_nm[joint];
-  const bool expired = bus_->now_ns() > command.expires_ns;
+  const bool expired = bus_.now_ns() > command.expires_ns;
   if (wish == DriveWish::kOn && node.state == DriveState::kOperationEnabled && !expired &&
       std::isfinite(torque_nm)) {
     const double most = node.config->torque_range_per_mille();
@@ -94,9 +94,9 @@ bool CanopenDevice::SendOff() noexcept {
   bool sent = true;
   for (const Node& node : nodes()) {
     if (!IsDrive(node.config->role)) continue;
-    sent = bus_->Send(CommandFor(node, DriveWish::kOff, off)) == SendResult::kSent && sent;
+    sent = bus_.Send(CommandFor(node, DriveWish::kOff, off)) == SendResult::kSent && sent;
   }
-  return bus_->Send(EncodeSync()) == SendResult::kSent && sent;
+  return bus_.Send(EncodeSync()) == SendResult::kSent && sent;
 }
 
 BusStatus CanopenDevice::Acknowledge() noexcept {

@@ -20,12 +20,12 @@ BusStatus CanopenDevice::Reconnect() noexcept {
     return fault_.kind == CanopenFaultKind::kNone ? BusStatus::kOk : FaultStatus();
   }
   if (!configuring_) return BeginSetup();
-  switch (setup_.Advance(bus_->now_ns() + answer_ns())) {
+  switch (setup_.Advance(bus_.now_ns() + answer_ns())) {
     case NodeSetup::Progress::kBusy:
       return BusStatus::kTimeout;
     case NodeSetup::Progress::kFailed:
       configuring_ = false;
-      next_setup_ns_ = bus_->now_ns() + pause_ns_;
+      next_setup_ns_ = bus_.now_ns() + pause_ns_;
       if (NeedsAcknowledgement(config_, fault_)) kept_ = fault_;
       fault_ = {setup_.without_answer() ? CanopenFaultKind::kSetupSilent
                                         : CanopenFaultKind::kSetupRefused,
@@ -39,17 +39,18 @@ BusStatus CanopenDevice::Reconnect() noexcept {
 }
 
 BusStatus CanopenDevice::BeginSetup() noexcept {
-  const std::int64_t now_ns = bus_->now_ns();
+  const std::int64_t now_ns = bus_.now_ns();
   if (now_ns < next_setup_ns_) return FaultStatus();
   // A bus that went well for the longest pause since the last attempt has not failed again and
   // again.
   const bool at_first = next_setup_ns_ == INT64_MIN || now_ns - next_setup_ns_ > kLongestPauseNs;
   pause_ns_ = at_first ? kFirstPauseNs : std::min(2 * pause_ns_, kLongestPauseNs);
   next_setup_ns_ = now_ns + pause_ns_;
-  const CanState state = bus_->state();
+  Drain(now_ns + answer_ns());  // frames that were sent meanwhile have their echoes here
+  const CanState state = bus_.state();
   const bool well = state == CanState::kActive || state == CanState::kPassive;
   // The restart may take the time of a whole call: the next call configures the nodes.
-  if ((!well || bus_->unsent()) && !bus_->Restart()) return FaultStatus();
+  if ((!well || bus_.unsent()) && !bus_.Restart()) return FaultStatus();
   for (const Node& node : nodes()) LoseCount(node);
   setup_.Begin();
   configuring_ = true;

@@ -104,6 +104,7 @@ void SocketCanBus::Open(std::span<const std::uint32_t> ids, int bitrate_bps) {
     throw;
   }
   counts_ = {};
+  arrivals_.Begin(now_ns());
 }
 
 void SocketCanBus::CheckLink() {
@@ -160,6 +161,7 @@ SendResult SocketCanBus::Send(const CanFrame& frame) noexcept {
 }
 
 bool SocketCanBus::Receive(ReceivedFrame* received) noexcept {
+  const std::int64_t begin_ns = now_ns();
   // Error frames and frames that the filter should not have passed are skipped; a bounded number.
   for (int skipped = 0; skipped < 64; ++skipped) {
     ClassicFrame raw{};
@@ -171,6 +173,7 @@ bool SocketCanBus::Receive(ReceivedFrame* received) noexcept {
     message.msg_control = control.data();
     message.msg_controllen = control.size();
     if (recvmsg(fd_, &message, MSG_DONTWAIT) != CAN_MTU) {
+      if (errno == EAGAIN) arrivals_.Emptied(begin_ns);
       gone_ = gone_ || errno == ENODEV;
       return false;
     }
@@ -179,14 +182,10 @@ bool SocketCanBus::Receive(ReceivedFrame* received) noexcept {
       continue;
     }
     if ((raw.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG)) != 0 || raw.len > CAN_MAX_DLEN) continue;
-    const std::int64_t monotonic_ns = clocks_.monotonic_ns();
-    const std::int64_t stamp_ns = StampOf(&message);
-    // Its waiting time since then, never negative: a clock that was set back must not give a frame
-    // from the future.
-    const std::int64_t age_ns =
-        stamp_ns == 0 ? 0 : std::max<std::int64_t>(clocks_.realtime_ns() - stamp_ns, 0);
+    const std::int64_t before_ns = clocks_.monotonic_ns(), realtime_ns = clocks_.realtime_ns();
+    arrivals_.Take({before_ns, realtime_ns, clocks_.monotonic_ns()});
     *received = ReceivedFrame{.frame = {.id = raw.can_id, .length = raw.len, .data = {}},
-                              .at_ns = monotonic_ns - age_ns,
+                              .at_ns = arrivals_.ArrivalOf(StampOf(&message)),
                               .own = (message.msg_flags & MSG_CONFIRM) != 0};
     std::copy_n(raw.data, raw.len, received->frame.data.begin());
     ++counts_.received;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hal/bus_clocks.h"
+#include "hal/canopen/arrival_clock.h"
 #include "hal/canopen/can_bus.h"
 
 namespace flexarm {
@@ -14,7 +15,8 @@ namespace flexarm {
 /// A CAN interface of the kernel (SocketCAN), hardware or virtual.
 ///
 /// Receives only the requested identifiers, as data frames with 11 bits, and error frames of the
-/// controller's state. Frames carry the kernel's time stamp of their arrival. Send never waits: the
+/// controller's state. Frames carry the instant of their arrival, from the kernel's time stamp, and
+/// no step of the time of day changes it (ArrivalClock). Send never waits: the
 /// socket holds a few frames, the interface's queue at most kMostQueued. The system configures the
 /// interface (bit rate, up). Open rejects it if its queue is longer, its bit rate differs, or the
 /// kernel would leave bus-off automatically (restart-ms): a drive must not come back while armed.
@@ -53,6 +55,7 @@ class SocketCanBus : public CanBus {
   std::uint32_t bitrate_bps_ = 0;
   bool gone_ = false;  // the interface was removed, e.g. an adapter was unplugged
   CanState state_ = CanState::kDown;
+  ArrivalClock arrivals_;
   CanCounts counts_;
 };
 

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace flexarm {
+namespace {
+
+constexpr std::int64_t kRealtimeEpoch_ns = 1'700'000'000'000'000'000;
+
+}  // namespace
 
 void MemoryWire::AdvanceTo(std::int64_t instant_ns) noexcept {
   while (now_ns_ < instant_ns) StepTo(instant_ns);
@@ -52,7 +57,9 @@ void MemoryWire::EndFrame() noexcept {
   busy_ = false;
   ++frames_;
   for (MemoryBus* end : ends_) {
-    if (end == on_wire_.from) end->PopSent();
+    if (end != on_wire_.from) continue;
+    end->PopSent();
+    end->Accept({on_wire_.frame, now_ns_, true});
   }
   Delivery delivery = on_wire_;
   const Fate fate = tamper_ ? tamper_(&delivery.frame) : Fate{};
@@ -67,9 +74,16 @@ void MemoryWire::EndFrame() noexcept {
   }
 }
 
+std::int64_t MemoryWire::RealtimeAt(std::int64_t instant_ns) const noexcept {
+  std::int64_t realtime_ns = kRealtimeEpoch_ns + instant_ns;
+  for (const ClockStep& step : steps_) realtime_ns += step.at_ns <= instant_ns ? step.by_ns : 0;
+  return realtime_ns;
+}
+
 void MemoryWire::Deliver(const Delivery& delivery) noexcept {
   for (MemoryBus* end : ends_) {
-    end->Accept({delivery.frame, delivery.at_ns - delivery.waited_ns, end == delivery.from});
+    if (end == delivery.from) continue;
+    end->Accept({delivery.frame, delivery.at_ns - delivery.waited_ns, false});
   }
 }
 
@@ -85,6 +99,7 @@ void MemoryBus::Open(std::span<const std::uint32_t> ids, int /*bitrate_bps*/) {
   open_ = true;
   counts_ = {};
   sending_count_ = received_count_ = 0;
+  arrivals_.Begin(wire_->now_ns());
 }
 
 void MemoryBus::OpenForAll() {
@@ -104,8 +119,14 @@ SendResult MemoryBus::Send(const CanFrame& frame) noexcept {
 }
 
 bool MemoryBus::Receive(ReceivedFrame* received) noexcept {
-  if (received_count_ == 0) return false;
+  const std::int64_t now_ns = wire_->now_ns();
+  if (received_count_ == 0) {
+    arrivals_.Emptied(now_ns);
+    return false;
+  }
   *received = received_[first_];
+  arrivals_.Take({now_ns, wire_->RealtimeAt(now_ns), now_ns});
+  received->at_ns = arrivals_.ArrivalOf(received->at_ns);
   first_ = (first_ + 1) % kReceiveQueue;
   --received_count_;
   ++counts_.received;
@@ -124,9 +145,10 @@ bool MemoryBus::Restart() noexcept {
   return true;
 }
 
-void MemoryBus::Accept(const ReceivedFrame& received) noexcept {
+void MemoryBus::Accept(ReceivedFrame received) noexcept {
   if (!open_ || state_ == CanState::kBusOff || received_count_ == kReceiveQueue) return;
   if (!all_ && std::find(ids_.begin(), ids_.end(), received.frame.id) == ids_.end()) return;
+  received.at_ns = wire_->RealtimeAt(received.at_ns);
   received_[(first_ + received_count_) % kReceiveQueue] = received;
   ++received_count_;
 }

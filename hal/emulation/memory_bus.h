@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "hal/canopen/arrival_clock.h"
 #include "hal/canopen/can_bus.h"
 
 namespace flexarm {
@@ -12,8 +13,10 @@ namespace flexarm {
 class MemoryBus;
 
 /// A CAN bus in memory, with its own time: frames take the time that they take on a wire, the
-/// lowest identifier is sent first, and a test may lose, change, delay or repeat each. It advances
-/// only within AdvanceTo, or while an end waits. One thread. Allocates during set-up only.
+/// lowest identifier is sent first, and a test may lose, change, delay or repeat each for its
+/// receivers; its sender has the echo. It advances only within AdvanceTo, or while an end waits.
+/// Received frames have a stamp in the time of day, as those of the kernel. One thread. Allocates
+/// during set-up only.
 class MemoryWire {
  public:
   /// Manipulation of a frame by a test, which may also change the frame itself.
@@ -35,6 +38,8 @@ class MemoryWire {
   void SetTamper(std::function<Fate(CanFrame*)> tamper) { tamper_ = std::move(tamper); }
   /// While set no node acknowledges: sent frames wait in the transmit queues.
   void SetStalled(bool stalled) noexcept { stalled_ = stalled; }
+  /// The time of day is stepped by `by_ns` at `at_ns`: ascending. Set-up only.
+  void AddClockStep(std::int64_t at_ns, std::int64_t by_ns) { steps_.push_back({at_ns, by_ns}); }
 
  private:
   friend class MemoryBus;
@@ -47,6 +52,13 @@ class MemoryWire {
     const MemoryBus* from;
   };
 
+  struct ClockStep {
+    std::int64_t at_ns;
+    std::int64_t by_ns;
+  };
+
+  /// The time of day at `instant_ns`.
+  std::int64_t RealtimeAt(std::int64_t instant_ns) const noexcept;
   /// Advances to the next event, at most to `limit_ns`.
   void StepTo(std::int64_t limit_ns) noexcept;
   void BeginFrame() noexcept;
@@ -64,6 +76,7 @@ class MemoryWire {
   std::vector<MemoryBus*> ends_;
   std::vector<std::function<void()>> runners_;
   std::function<Fate(CanFrame*)> tamper_;
+  std::vector<ClockStep> steps_;
 };
 
 /// One end of a MemoryWire. It is connected from Open to Close; frames queued at Close are still
@@ -85,7 +98,8 @@ class MemoryBus : public CanBus {
   bool Receive(ReceivedFrame* received) noexcept override;
   void WaitUntil(std::int64_t instant_ns) noexcept override;
   CanState state() noexcept override { return state_; }
-  bool unsent() noexcept override { return sending_count_ > 0; }
+  /// As of the kernel: without what the controller holds.
+  bool unsent() noexcept override { return sending_count_ > controller_frames_; }
   bool Restart() noexcept override;
   void Close() noexcept override { open_ = false; }
   const CanCounts& counts() const noexcept override { return counts_; }
@@ -96,12 +110,15 @@ class MemoryBus : public CanBus {
   void SetBusOff() noexcept { state_ = CanState::kBusOff; }
   /// Sends beyond this number of waiting frames are rejected; at most kTransmitQueue.
   void SetTransmitQueue(std::size_t frames) noexcept { capacity_ = frames; }
+  /// The first `frames` of those that wait are in the controller: the kernel does not count them.
+  void SetControllerQueue(std::size_t frames) noexcept { controller_frames_ = frames; }
   /// Whether Restart works: false as long as the cause of a bus-off lasts.
   void SetRestartable(bool restartable) noexcept { restartable_ = restartable; }
 
  private:
   friend class MemoryWire;
-  void Accept(const ReceivedFrame& received) noexcept;
+  /// `received.at_ns` is true; it is kept as a stamp in the time of day.
+  void Accept(ReceivedFrame received) noexcept;
   void PopSent() noexcept;
 
   MemoryWire* wire_;
@@ -114,9 +131,11 @@ class MemoryBus : public CanBus {
   std::array<CanFrame, kTransmitQueue> sending_{};
   std::size_t sending_count_ = 0;
   std::size_t capacity_ = kTransmitQueue;
+  std::size_t controller_frames_ = 0;
   std::array<ReceivedFrame, kReceiveQueue> received_{};
   std::size_t first_ = 0;
   std::size_t received_count_ = 0;
+  ArrivalClock arrivals_;
   CanCounts counts_;
 };
 

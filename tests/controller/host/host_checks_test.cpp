@@ -34,6 +34,7 @@ BusFacts Bus(BusFacts::Kind kind, const std::string& name) {
 BusFacts GoodCan() {
   BusFacts bus = Bus(BusFacts::Kind::kCan, "can0");
   bus.link = CanLink{.up = true,
+                     .echo = true,
                      .controller = true,
                      .index = 3,
                      .transmit_queue = 10,
@@ -211,6 +212,18 @@ TEST(BusChecks, ACanInterfaceNeedsAShortQueueAndNoRestartByItself) {
   facts.bus[0].link.reset();
   ExpectFailed(facts, "can-queue:can0", "unknown");
   ExpectFailed(facts, "can-restart:can0", "unknown");
+}
+
+TEST(BusChecks, ADriverShouldEchoAFrameWhenItWasSent) {
+  HostFacts facts = GoodHost();
+  ExpectOk(facts, "can-echo:can0", "when the frame was sent");
+  facts.bus[0].link->echo = false;
+  ExpectFailed(facts, "can-echo:can0", "when the frame is handed over");
+  EXPECT_TRUE(CheckOf(facts, "can-echo:can0").advice);
+  facts.bus[0].link->controller = false;
+  ExpectOk(facts, "can-echo:can0", "virtual");
+  facts.bus[0].link.reset();
+  ExpectFailed(facts, "can-echo:can0", "unknown");
 }
 
 TEST(BusChecks, ASerialAdapterMustNotCollectBytes) {
