@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 
+#include "hal/bus_counters.h"
 #include "hal/bus_fault.h"
 #include "hal/count_epochs.h"
 #include "hal/drive_voltage.h"
@@ -90,6 +92,13 @@ class BusDevice {
   /// A message of a drive that is no fault, because the power is off: FaultText gives its text.
   /// Kind 0: none. It is shown while it lasts.
   virtual BusFault notice() const noexcept { return {}; }
+
+  /// Names of the counters, for status; at most kMostBusCounters. The same for the whole life of
+  /// the device. Any thread.
+  virtual std::span<const char* const> counter_names() const noexcept { return {}; }
+
+  /// Their values. Thread: the bus's.
+  virtual BusCounters counter_values() const noexcept { return {}; }
 
   /// The digital inputs that an exchange reads; the other levels of its frame are 0.
   virtual LineLevels lines() const noexcept { return 0; }

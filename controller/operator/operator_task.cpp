@@ -197,7 +197,10 @@ nlohmann::json OperatorTask::Status() {
                      .overrides = overrides_.Json(),
                      .switches = switches_.Json(),
                      .timing = context_.stack->timing(),
-                     .late_threads_trip = context_.stack->late_threads_trip()});
+                     .late_threads_trip = context_.stack->late_threads_trip(),
+                     .log_records_dropped = context_.stack->tick_records().dropped() +
+                                            context_.stack->safety_records().dropped() +
+                                            context_.events->dropped()});
 }
 
 void OperatorTask::Reply(int client, const nlohmann::json& answer) {

@@ -20,6 +20,12 @@ nlohmann::json AnglesJson(const AngleKnowledge& angles, const StepOutput& out) {
   return all;
 }
 
+nlohmann::json CountersJson(const std::vector<BusCounter>& counters) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const BusCounter& counter : counters) all[counter.name] = counter.value;
+  return all;
+}
+
 nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
   nlohmann::json all = nlohmann::json::array();
   for (const BusHealth& bus : buses) {
@@ -33,7 +39,8 @@ nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
                    {"slow", bus.slow},
                    {"slow_in_window", bus.slow_in_window},
                    {"longest_ms", bus.longest_ms},
-                   {"declared_ms", bus.declared_ms}});
+                   {"declared_ms", bus.declared_ms},
+                   {"counters", CountersJson(bus.counters)}});
   }
   return all;
 }
@@ -92,6 +99,7 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"latch_problem", TextOrNull(sources.latch->problem())},
           {"timing", TimingJson(sources.timing, sources.late_threads_trip)},
           {"buses", BusesJson(sources.buses)},
+          {"log_records_dropped", sources.log_records_dropped},
           {"threads", sources.threads},
           {"host", sources.host},
           {"design", sources.design},

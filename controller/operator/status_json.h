@@ -31,6 +31,7 @@ struct StatusSources {
   nlohmann::json switches;                    ///< ProveSwitches::Json
   TimingCounts timing{};                      ///< LoopStack::timing
   bool late_threads_trip = true;
+  std::uint64_t log_records_dropped = 0;  ///< that no log has: the recorder was too slow
 };
 
 /// Part "timing" of the status. @param trips  late threads trip

@@ -82,17 +82,20 @@ void RecorderTask::Merge(std::int64_t horizon_ns) {
   recording_->Until(horizon_ns);
 }
 
-// Queued like any other event: the run that it belongs to may not be open yet.
+// Queued like any other event: the run that it belongs to may not be open yet, or none is open at
+// all, so it is in the journal too.
 void RecorderTask::NoteDropped(std::int64_t now_ns) {
   const std::uint64_t dropped = channels_.ticks->dropped() + channels_.safety->dropped() +
                                 channels_.timing->dropped() + channels_.events->dropped();
   if (dropped == dropped_) return;
   const std::string count = std::to_string(dropped - dropped_);
+  const std::string text = count + " records were dropped: the recorder was too slow.";
   dropped_ = dropped;
+  recording_->ReportGap(text);
   events_.push_back({.time_ns = now_ns,
                      .kind = "gap",
                      .name = "dropped",
-                     .text = count + " records were dropped: the recorder was too slow.",
+                     .text = text,
                      .value_json = "{\"records\":" + count + "}"});
 }
 

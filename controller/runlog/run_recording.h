@@ -49,6 +49,11 @@ class RunRecording {
   /// An error outside the recording: counts and reports it, and ends the recording of the run.
   void CountError(const std::string& what) noexcept;
 
+  /// Records are missing, in a run or between two: an error line of the journal, no more.
+  void ReportGap(const std::string& what) const {
+    if (report_) report_(true, "log: " + what);
+  }
+
   bool is_open() const { return sink_ != nullptr; }
   std::int64_t errors() const { return errors_; }
 

@@ -10,6 +10,12 @@
 
 namespace flexarm {
 
+/// One of BusDevice::counter_values.
+struct BusCounter {
+  const char* name;
+  std::uint32_t value;
+};
+
 /// Health of one bus of a wired rig, for status and journal.
 struct BusHealth {
   std::string name;
@@ -24,6 +30,7 @@ struct BusHealth {
   int slow_in_window = 0;
   bool in_fault = false;  ///< it answers, and `fault` is a drive's, until the operator resets
   std::string notice{};   ///< what a drive reports that is no fault (BusDevice::notice)
+  std::vector<BusCounter> counters{};
 };
 
 /// Reports to the journal when a bus is lost or reconnected, a drive's fault with its end, a notice

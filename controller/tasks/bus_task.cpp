@@ -164,6 +164,7 @@ void BusTask::Publish(std::int64_t due_ns, const SensorFrame& part) noexcept {
                  .voltage = answered_ && exchanged_ ? device_->voltage() : DriveVoltage{}});
   channels_.reports->Publish(reports_);
   channels_.health->Publish(reports_);
+  channels_.counters->Publish(device_->counter_values());
 }
 
 }  // namespace flexarm

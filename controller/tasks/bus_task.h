@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "controller/exchange/latest_value.h"
 #include "controller/realtime/task.h"
 #include "controller/realtime/wakeup.h"
 #include "controller/safety/torque_gate.h"
@@ -18,6 +19,8 @@ namespace flexarm {
 
 struct RigConfig;
 
+using BusCounterChannel = LatestValue<BusCounters>;
+
 /// Channels of a bus task. All outlive the task.
 struct BusChannels {
   CommandChannel* commands;     ///< read
@@ -25,6 +28,7 @@ struct BusChannels {
   FrameChannel* frames;         ///< written: this bus's part of the readings
   DriveReportChannel* reports;  ///< written: for the safety task
   DriveReportChannel* health;   ///< written: the same, for the operator task
+  BusCounterChannel* counters;  ///< written: BusDevice::counter_values, for the operator task
   Wakeup* wakeup;               ///< the safety task wakes a bus with drives when the power goes
 };
 

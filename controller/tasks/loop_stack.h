@@ -98,7 +98,7 @@ class LoopStack {
   /// Any thread, at once: the safety task stops the arm, disarms it and starts nothing more.
   void RequestShutdown() noexcept { shutting_down_.store(true, std::memory_order_release); }
 
-  // For the recorder: one thread.
+  // For the recorder: one thread. Any thread may ask how many records were dropped.
   SpscQueue<TickRecord>& tick_records() { return tick_records_; }
   SpscQueue<SafetyRecord>& safety_records() { return safety_records_; }
 

@@ -33,6 +33,7 @@ WiredStack::WiredStack(const RigConfig& config, const Design& design, const RigW
                                     .frames = &wires[i].frames,
                                     .reports = &wires[i].reports,
                                     .health = &wires[i].health,
+                                    .counters = &wires[i].counters,
                                     .wakeup = &wires[i].wakeup});
   }
 }
@@ -66,7 +67,17 @@ std::vector<BusHealth> WiredStack::buses() {
                    .failed_in_window = report.failed_in_window,
                    .slow_in_window = report.slow_in_window,
                    .in_fault = report.bus_ok && !report.drive_ok,
-                   .notice = text(report.notice)});
+                   .notice = text(report.notice),
+                   .counters = Counters(i)});
+  }
+  return all;
+}
+
+std::vector<BusCounter> WiredStack::Counters(std::size_t bus) {
+  const BusCounters& values = wires[bus].counters.Read();
+  std::vector<BusCounter> all;
+  for (const char* name : devices_[bus]->counter_names()) {
+    all.push_back({.name = name, .value = values[all.size()]});
   }
   return all;
 }

@@ -24,6 +24,7 @@ struct BusWires {
     PermitChannel permits{PermitHistory(kNoPermit)};
     DriveReportChannel reports{DriveReportHistory(kNoDriveReport)};
     DriveReportChannel health{DriveReportHistory(kNoDriveReport)};
+    BusCounterChannel counters{BusCounters{}};
     Wakeup wakeup;
   };
 
@@ -47,6 +48,7 @@ class WiredStack final : private BusWires, public LoopStack {
   std::string BusText(TripCause cause, const Evidence& evidence) const override;
 
  private:
+  std::vector<BusCounter> Counters(std::size_t bus);
   /// "16 of the last 200 exchanges "
   std::string Share(const Evidence& evidence) const;
 

@@ -143,6 +143,7 @@ void CanopenDevice::Collect(std::int64_t until_ns) noexcept {
 }
 
 BusStatus CanopenDevice::Stuck() noexcept {
+  ++counts_.unsent;
   if (++stuck_ >= kStuckIsFault) Latch(CanopenFaultKind::kTransmitStuck, nullptr, 0);
   return BusStatus::kTimeout;
 }
@@ -196,6 +197,24 @@ BusFault CanopenDevice::FaultOf(BusStatus /*status*/) const noexcept {
 
 std::string CanopenDevice::FaultText(const BusFault& fault) const {
   return CanopenFaultText(config_, Unpacked(fault));
+}
+
+std::span<const char* const> CanopenDevice::counter_names() const noexcept {
+  static constexpr std::array kNames = {"stale_answers",  "duplicated_answers", "malformed_frames",
+                                        "missed_answers", "unsent_exchanges",   "refused_sends",
+                                        "error_frames"};
+  static_assert(kNames.size() <= kMostBusCounters);
+  return kNames;
+}
+
+BusCounters CanopenDevice::counter_values() const noexcept {
+  return {counts_.stale,
+          counts_.duplicated,
+          counts_.malformed,
+          counts_.missed,
+          counts_.unsent,
+          static_cast<std::uint32_t>(bus_counts().queue_full),
+          static_cast<std::uint32_t>(bus_counts().error_frames)};
 }
 
 void CanopenDevice::Close() noexcept {

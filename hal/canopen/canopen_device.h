@@ -24,6 +24,7 @@ struct CanopenCounts {
   std::uint32_t duplicated = 0;  ///< second answers to one SYNC
   std::uint32_t malformed = 0;   ///< wrong length or content
   std::uint32_t missed = 0;      ///< answers that did not arrive in time
+  std::uint32_t unsent = 0;      ///< exchanges and switch-offs that were not, or not wholly, sent
 };
 
 /// Driver of the CANopen nodes of one interface: drives in cyclic synchronous torque mode,
@@ -62,6 +63,8 @@ class CanopenDevice : public BusDevice {
   CountEpochs count_epochs() const noexcept override { return count_epochs_; }
   bool needs_reconnect() const noexcept override { return configuring_ || lost_; }
   BusFault notice() const noexcept override;
+  std::span<const char* const> counter_names() const noexcept override;
+  BusCounters counter_values() const noexcept override;
   void Open() override;
   [[nodiscard]] BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override;
   [[nodiscard]] BusStatus SwitchOff() noexcept override;

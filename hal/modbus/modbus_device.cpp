@@ -60,6 +60,21 @@ std::string ModbusDevice::Refusal(const ModbusRequest& request, BusStatus status
          ", expected " + std::to_string(request.count) + " values";
 }
 
+std::span<const char* const> ModbusDevice::counter_names() const noexcept {
+  static constexpr std::array kNames = {"timeouts",      "mismatches",    "exceptions",
+                                        "late_bytes",    "held_requests", "lost_links",
+                                        "refused_values"};
+  static_assert(kNames.size() <= kMostBusCounters);
+  return kNames;
+}
+
+BusCounters ModbusDevice::counter_values() const noexcept {
+  const ModbusCounters& link = counters();
+  const auto low = [](std::uint64_t count) { return static_cast<std::uint32_t>(count); };
+  return {low(link.timeouts),      low(link.mismatches), low(link.exceptions), low(link.late_bytes),
+          low(link.stale_dropped), low(link.lost_links), low(values_refused_)};
+}
+
 BusFault ModbusDevice::FaultOf(BusStatus status) const noexcept {
   const bool refused = status == BusStatus::kMalformed;
   return {.kind = static_cast<std::uint8_t>(status),

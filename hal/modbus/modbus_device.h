@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "hal/bus_device.h"
@@ -43,6 +44,8 @@ class ModbusDevice final : public BusDevice {
   /// 1.6 s; within the pause it returns at once.
   [[nodiscard]] BusStatus Reconnect() noexcept override;
 
+  std::span<const char* const> counter_names() const noexcept override;
+  BusCounters counter_values() const noexcept override;
   LineLevels lines() const noexcept override { return lines_; }
 
   BusFault FaultOf(BusStatus status) const noexcept override;

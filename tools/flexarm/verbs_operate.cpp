@@ -54,6 +54,16 @@ void PrintVerdict(const Json& s, const char* key) {
   }
 }
 
+// What the driver of a bus rejected or missed; nothing while all is 0.
+void PrintCounters(const Json& bus) {
+  std::string text;
+  for (const auto& [name, count] : bus.value("counters", Json::object()).items()) {
+    if (count == 0) continue;
+    text += (text.empty() ? "" : ", ") + name + " " + count.dump();
+  }
+  if (!text.empty()) std::printf("               %s\n", text.c_str());
+}
+
 void PrintStatus(const Json& s) {
   std::printf("state          %s\n", s.value("state", "-").c_str());
   for (const Json& given : s.value("overrides", Json::array())) {
@@ -124,6 +134,11 @@ void PrintStatus(const Json& s) {
         bus.value("failed", 0U), bus.value("recovered", 0U), bus.value("longest_ms", 0.0),
         bus.value("declared_ms", 0.0), bus.value("slow", 0U), bus["fault"].is_string() ? "; " : "",
         bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
+    PrintCounters(bus);
+  }
+  if (const auto dropped = s.value("log_records_dropped", std::uint64_t{0}); dropped != 0) {
+    std::printf("log            %llu records dropped: the recorder was too slow\n",
+                static_cast<unsigned long long>(dropped));
   }
   for (const Json& thread : s.value("threads", Json::array())) {
     std::printf(

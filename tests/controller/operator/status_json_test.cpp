@@ -172,21 +172,25 @@ TEST_F(StatusJsonTest, ATripOfABusNamesTheDevice) {
             .longest_ms = 7.5,
             .declared_ms = 6.0,
             .failed_in_window = 2,
-            .slow_in_window = 4},
+            .slow_in_window = 4,
+            .counters = {{"stale_answers", 6}, {"missed_answers", 0}}},
            {.name = "modbus", .ok = true, .fault = "", .failed = 0, .recovered = 0}};
   const Json status = Status();
   EXPECT_EQ(status["trip"]["bus"], "can0: node 5 is silent");
-  EXPECT_EQ(status["buses"][0], Json({{"name", "can0"},
-                                      {"ok", false},
-                                      {"fault", "node 5 is silent"},
-                                      {"notice", nullptr},
-                                      {"failed", 3},
-                                      {"recovered", 1},
-                                      {"failed_in_window", 2},
-                                      {"slow", 5},
-                                      {"slow_in_window", 4},
-                                      {"longest_ms", 7.5},
-                                      {"declared_ms", 6.0}}));
+  EXPECT_EQ(status["buses"][0],
+            Json({{"name", "can0"},
+                  {"ok", false},
+                  {"fault", "node 5 is silent"},
+                  {"notice", nullptr},
+                  {"failed", 3},
+                  {"recovered", 1},
+                  {"failed_in_window", 2},
+                  {"slow", 5},
+                  {"slow_in_window", 4},
+                  {"longest_ms", 7.5},
+                  {"declared_ms", 6.0},
+                  {"counters", {{"stale_answers", 6}, {"missed_answers", 0}}}}));
+  EXPECT_EQ(status["buses"][1]["counters"], Json::object()) << "a driver without counters";
   EXPECT_TRUE(status["buses"][1]["fault"].is_null());
 }
 

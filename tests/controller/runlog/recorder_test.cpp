@@ -260,6 +260,19 @@ TEST_F(SmallQueueTest, DroppedRecordsAreAnEvent) {
   EXPECT_EQ(run.tick.size() + ticks_.dropped(), 100U);
 }
 
+// Between two runs no log has the event: the journal has the line.
+TEST_F(SmallQueueTest, RecordsDroppedWithoutARunAreInTheJournal) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  Ticks(1, 100, 1);
+  RunUntil(kSecond);
+  ASSERT_GT(ticks_.dropped(), 0U);
+  ASSERT_EQ(errors_.size(), 1U);
+  EXPECT_EQ(errors_[0], "log: " + std::to_string(ticks_.dropped()) +
+                            " records were dropped: the recorder was too slow.");
+  EXPECT_EQ(recording_->errors(), 0) << "no recording has ended";
+}
+
 TEST_F(RecorderTest, EqualRunsWriteTheSameTickTable) {
   for (const char* name : {"a", "b"}) {
     Start(RunInFile(File(name)));

@@ -195,6 +195,12 @@ TEST_F(HostileNode, ABusWithoutAcknowledgementIsNamedAndComesBack) {
   StartRun();
   rig_->world->wire.SetStalled(true);
   ExpectNamed("vcan0: frames are not sent, no node acknowledges");
+  std::uint32_t unsent = 0;
+  const std::vector<BusHealth> health = rig_->stack->buses();
+  for (const BusCounter& counter : health[0].counters) {
+    if (counter.name == std::string("unsent_exchanges")) unsent = counter.value;
+  }
+  EXPECT_GE(unsent, 3U) << "the status counts them";
   ExpectArmable([this] { rig_->world->wire.SetStalled(false); });
 }
 

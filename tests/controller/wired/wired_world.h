@@ -208,6 +208,10 @@ class OnTestTime final : public BusDevice {
   CountEpochs count_epochs() const noexcept override { return driver_->count_epochs(); }
   bool needs_reconnect() const noexcept override { return driver_->needs_reconnect(); }
   BusFault notice() const noexcept override { return driver_->notice(); }
+  std::span<const char* const> counter_names() const noexcept override {
+    return driver_->counter_names();
+  }
+  BusCounters counter_values() const noexcept override { return driver_->counter_values(); }
   void Open() override { driver_->Open(); }
   BusStatus Exchange(const BusCommand& command, SensorFrame* part) noexcept override {
     world_->wire.AdvanceTo(world_->monotonic_ns());

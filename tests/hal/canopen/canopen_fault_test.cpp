@@ -276,6 +276,11 @@ TEST_F(CanopenFaults, AFullTransmitQueueIsCountedAndAFaultAfterThreeExchanges) {
   EXPECT_EQ(Exchange(kOff), BusStatus::kTimeout);
   EXPECT_EQ(Exchange(kOff), BusStatus::kDisconnected);
   EXPECT_EQ(fault().kind, CanopenFaultKind::kTransmitStuck);
+  ASSERT_EQ(device().counter_names().size(), 7U);
+  EXPECT_STREQ(device().counter_names()[4], "unsent_exchanges");
+  EXPECT_EQ(device().counter_values()[4], 3U);
+  EXPECT_STREQ(device().counter_names()[5], "refused_sends");
+  EXPECT_EQ(device().counter_values()[5], 3U);
   bench_.wire.AdvanceTo(bench_.now_ns() + 2 * kMs);
   EXPECT_EQ(torque(0), 0) << "three exchanges without heartbeat: the drives are off";
   bench_.master->SetTransmitQueue(16);

@@ -95,6 +95,9 @@ TEST_P(ModbusDeviceOver, ANanChannelAloneIsNotValid) {
   EXPECT_EQ(part.sampled_at_ns + part.strain_offset_ns[0], before.sampled_at_ns);
   EXPECT_EQ(part.strain[1], 20);
   EXPECT_EQ(device.values_refused(), 1U);
+  ASSERT_EQ(device.counter_names().size(), 7U);
+  EXPECT_STREQ(device.counter_names()[6], "refused_values");
+  EXPECT_EQ(device.counter_values(), (BusCounters{0, 0, 0, 0, 0, 0, 1}));
 }
 
 TEST_P(ModbusDeviceOver, StampsTheMiddleOfEachRequest) {
