@@ -37,6 +37,7 @@ OperatorTask::OperatorTask(OperatorContext context)
       warnings_(context_.grid.period_ns, context_.delay_margin_s,
                 StrainColumns(context_.config->sensors), context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
+      bus_counters_(context_.events),
       timing_warnings_(context_.events, context_.report),
       dispatch_({.stack = context_.stack,
                  .requests = &requests_,
@@ -75,7 +76,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     now_.now_ns = activation.due_ns;
     BeginShutdown();  // its line precedes those of its effects
     FollowState();
-    bus_journal_.Follow(now_.now_ns, context_.stack->buses(), context_.report);
+    FollowBuses();
     if (!context_.stack->late_threads_trip()) {
       timing_warnings_.Follow(now_.now_ns, context_.stack->timing());
     }
@@ -107,6 +108,12 @@ void OperatorTask::FollowState() {
   }
   state_journal_.Follow(now_.now_ns, now_.permit);
   overrides_.Follow(now_.permit);
+}
+
+void OperatorTask::FollowBuses() {
+  const std::vector<BusHealth> buses = context_.stack->buses();
+  bus_journal_.Follow(now_.now_ns, buses, context_.report);
+  bus_counters_.Follow(now_.now_ns, now_.permit.state, buses);
 }
 
 void OperatorTask::TakeTicks() {

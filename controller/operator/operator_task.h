@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "controller/operator/arm_command.h"
+#include "controller/operator/bus_counter_record.h"
 #include "controller/operator/command_dispatch.h"
 #include "controller/operator/commissioning_commands.h"
 #include "controller/operator/experiment_loader.h"
@@ -63,6 +64,7 @@ class OperatorTask final : public Task {
  private:
   void RequireArm() const;
   void FollowState();
+  void FollowBuses();
   void TakeTicks();
   void TakeAnswers();
   void Take(const RequestAnswer& answer);
@@ -88,6 +90,7 @@ class OperatorTask final : public Task {
   StateJournal state_journal_;
   LoopWatch loop_watch_;
   BusJournal bus_journal_;
+  BusCounterRecord bus_counters_;
   TimingWarnings timing_warnings_;
   CommandDispatch dispatch_;
   UnattendedRun unattended_;

@@ -20,12 +20,6 @@ nlohmann::json AnglesJson(const AngleKnowledge& angles, const StepOutput& out) {
   return all;
 }
 
-nlohmann::json CountersJson(const std::vector<BusCounter>& counters) {
-  nlohmann::json all = nlohmann::json::object();
-  for (const BusCounter& counter : counters) all[counter.name] = counter.value;
-  return all;
-}
-
 nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
   nlohmann::json all = nlohmann::json::array();
   for (const BusHealth& bus : buses) {
@@ -64,6 +58,12 @@ nlohmann::json TripJson(const StatusSources& sources) {
 }
 
 }  // namespace
+
+nlohmann::json CountersJson(const std::vector<BusCounter>& counters) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const BusCounter& counter : counters) all[counter.name] = counter.value;
+  return all;
+}
 
 nlohmann::json TimingJson(const TimingCounts& counts, bool trips) {
   return {{"trips", trips},

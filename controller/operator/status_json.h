@@ -34,6 +34,9 @@ struct StatusSources {
   std::uint64_t log_records_dropped = 0;  ///< that no log has: the recorder was too slow
 };
 
+/// Part "counters" of a bus: {name: count}.
+nlohmann::json CountersJson(const std::vector<BusCounter>& counters);
+
 /// Part "timing" of the status. @param trips  late threads trip
 nlohmann::json TimingJson(const TimingCounts& counts, bool trips);
 

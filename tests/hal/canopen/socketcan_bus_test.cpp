@@ -19,6 +19,7 @@
 
 #include "hal/bus_device.h"
 #include "hal/canopen/can_link.h"
+#include "hal/canopen/confirmed_bus.h"
 #include "tests/hal/canopen/canopen_bench.h"
 
 // The kernel's own CAN. These tests need an interface called vcan0, up; without it (as on most
@@ -133,6 +134,56 @@ TEST_F(VirtualCan, AFrameReadLateHasItsArrivalTime) {
   const ReceivedFrame heard = Next(&two);
   ASSERT_EQ(heard.frame.id, 0x181U);
   EXPECT_LT(heard.at_ns - sent_ns, 20 * kMs);
+}
+
+// The time of day is set while a frame waits in the socket.
+std::int64_t clock_set_ns = 0;
+std::int64_t SetRealtime() noexcept { return Realtime() + clock_set_ns; }
+
+TEST_F(VirtualCan, AFrameThatWaitsWhileTheClockIsSetHasItsArrivalTime) {
+  for (const std::int64_t by_ns : {3'600'000 * kMs, -3'600'000 * kMs}) {
+    clock_set_ns = 0;
+    SocketCanBus one(kInterface, kClocks);
+    SocketCanBus two(kInterface, {.monotonic_ns = Monotonic, .realtime_ns = SetRealtime});
+    const std::array<std::uint32_t, 1> ids = {0x181};
+    one.Open({}, 1'000'000);
+    two.Open(ids, 1'000'000);
+    two.WaitUntil(Monotonic() + 50 * kMs);  // until time stamps are on
+    ASSERT_EQ(one.Send({.id = 0x181, .length = 0}), SendResult::kSent);
+    ASSERT_EQ(Next(&two).frame.id, 0x181U);
+    ReceivedFrame none{};
+    ASSERT_FALSE(two.Receive(&none)) << "empty";
+    const std::int64_t before_ns = Monotonic();
+    ASSERT_EQ(one.Send({.id = 0x181, .length = 0}), SendResult::kSent);
+    const std::int64_t after_ns = Monotonic();
+    clock_set_ns = by_ns;
+    const ReceivedFrame heard = Next(&two);
+    ASSERT_EQ(heard.frame.id, 0x181U);
+    EXPECT_GT(heard.at_ns, before_ns - kMs);
+    EXPECT_LT(heard.at_ns, after_ns + kMs);
+  }
+}
+
+// The device's filter lets the echoes of all its frames pass.
+TEST_F(VirtualCan, EachOwnFrameIsConfirmedByItsEcho) {
+  ConfirmedBus bus(std::make_unique<SocketCanBus>(kInterface, kClocks));
+  const std::array<std::uint32_t, 3> ids = {0x080, 0x201, 0x77F};
+  bus.Open(ids, 1'000'000);
+  for (const std::uint32_t id : ids) {
+    ASSERT_EQ(bus.Send({.id = id, .length = 0}), SendResult::kSent);
+  }
+  EXPECT_TRUE(bus.unsent()) << "no echo has been read";
+  ReceivedFrame received{};
+  const std::int64_t until_ns = Monotonic() + 200 * kMs;
+  for (int echoes = 0; echoes < 3 && Monotonic() < until_ns;) {
+    EXPECT_TRUE(bus.unsent());
+    if (bus.Receive(&received)) {
+      ++echoes;
+    } else {
+      bus.WaitUntil(until_ns);
+    }
+  }
+  EXPECT_FALSE(bus.unsent());
 }
 
 // Pitfall 9: exactly the requested ids; extended and remote frames with the same number are not
