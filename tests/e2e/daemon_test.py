@@ -6,8 +6,10 @@ import json
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 import unittest
 import unittest.mock
@@ -418,6 +420,33 @@ class Daemon(ProgramTest):
             daemon = self.start_daemon("--run-for", "0.5")
         self.assertEqual(daemon.wait(timeout=30), 0, self.daemon_log())
         self.assertIn("Starting -> Idle", self.daemon_log())
+
+    def test_status_lists_the_counters_of_a_bus_that_are_not_0(self):
+        def bus(name, **counters):
+            return {"name": name, "ok": True, "fault": None, "counters": counters}
+
+        status = {"ok": True, "state": "Idle", "joint_angle_deg": [0.0, 0.0],
+                  "log_records_dropped": 7,
+                  "buses": [bus("can0", stale_answers=6, missed_answers=0, unsent_exchanges=2),
+                            bus("gauges", late_bytes=0)]}
+        path = str(self.folder / "daemon-of-a-wired-rig")
+        with socket.socket(socket.AF_UNIX) as server:
+            server.bind(path)
+            server.listen()
+
+            def answer():
+                with server.accept()[0] as client:
+                    client.recv(4096)
+                    client.sendall(json.dumps(status).encode() + b"\n")
+
+            daemon = threading.Thread(target=answer)
+            daemon.start()
+            text = self.flexarm("status", "--socket", path).stdout
+            daemon.join()
+        self.assertIn("stale_answers 6, unsent_exchanges 2\n", text)
+        self.assertNotIn("missed_answers", text)
+        self.assertNotIn("late_bytes", text)
+        self.assertIn("7 records dropped", text)
 
     def test_a_verb_without_a_daemon_says_so(self):
         result = self.run_program("flexarm", "arm", "--socket", self.folder / "socket")

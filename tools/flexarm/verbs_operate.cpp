@@ -57,7 +57,8 @@ void PrintVerdict(const Json& s, const char* key) {
 // What the driver of a bus rejected or missed; nothing while all is 0.
 void PrintCounters(const Json& bus) {
   std::string text;
-  for (const auto& [name, count] : bus.value("counters", Json::object()).items()) {
+  const Json counters = bus.value("counters", Json::object());  // outlives the loop
+  for (const auto& [name, count] : counters.items()) {
     if (count == 0) continue;
     text += (text.empty() ? "" : ", ") + name + " " + count.dump();
   }

@@ -23,7 +23,9 @@ std::vector<std::int64_t> Phases() {
 
 class ClockStep : public testing::TestWithParam<std::int64_t> {};
 
-INSTANTIATE_TEST_SUITE_P(Of, ClockStep, testing::Values(kHour, -kHour, 1000 * kMs, -1000 * kMs));
+INSTANTIATE_TEST_SUITE_P(Of, ClockStep,
+                         testing::Values(kHour, -kHour, 1000 * kMs, -1000 * kMs, 26 * kMs,
+                                         -26 * kMs));
 
 TEST_P(ClockStep, CostsNoExchangeAtAnyPhase) {
   for (const std::int64_t phase_ns : Phases()) {
