@@ -266,7 +266,7 @@ TEST_F(TripLatchTest, CampaignAKillAtAnyTimeLosesNoTrip) {
     switch (before) {
       case kIdle:
         if (asked) {
-          state = one_of(kIdle, kArmed, kTripped);
+          state = one_of(kIdle, kArmed, kTestingPump, kTripped);
           asked = false;
         } else if (random() % 2 == 0) {
           asked = latch_->PrepareArm(In(kIdle)).empty();
@@ -274,6 +274,15 @@ TEST_F(TripLatchTest, CampaignAKillAtAnyTimeLosesNoTrip) {
         } else {
           state = one_of(kIdle, kTripped);
         }
+        break;
+      case kTestingPump:
+        state = one_of(kTestingPump, kTestingRelay, kIdle, kTripped);
+        break;
+      case kTestingRelay:
+        state = one_of(kTestingRelay, kTestingPower, kIdle, kTripped);
+        break;
+      case kTestingPower:
+        state = one_of(kTestingPower, kArmed, kIdle, kTripped);
         break;
       case kArmed:
         state = one_of(kArmed, kRunning, kDisarming, kTripped);
