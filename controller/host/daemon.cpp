@@ -190,11 +190,9 @@ void Daemon::ReportDesign() {
 
 void Daemon::PrepareHost() {
   if (!options_.realtime) {
-    journal_.Error(
-        stack().simulated()
-            ? "--without-realtime: the simulated loop runs in lock step, behind the clock"
-            : "--without-realtime: ordinary scheduling, unlocked memory. Deadlines will be "
-              "missed.");
+    journal_.Error(std::string("--without-realtime: ordinary scheduling, unlocked memory. ") +
+                   (stack().simulated() ? "The simulated loop runs in lock step, behind the clock."
+                                        : "Deadlines will be missed."));
     return;
   }
   for (const std::string& finding : PrepareRealtime(kHighestPriority)) journal_.Info(finding);

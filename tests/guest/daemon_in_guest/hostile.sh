@@ -54,13 +54,14 @@ misbehaves $rtu away "$gone"
 echo "== one late reply during a run is tolerated and counted"
 start_run
 failed=$(bus $tcp failed)
-# The fault is shorter than a period and affects at most one exchange: repeated until it affects
-# one.
-for _ in $(seq 50); do
+# The fault is shorter than a period and affects at most one exchange: repeated, at each phase of the
+# period, until it affects one. `bus` waits for the daemon's answer, and so for its period.
+for phase in $(seq 0 3 119); do
+  sleep "0.0$(printf %02d $((phase % 20)))"
   echo "amplifier $tcp late 10" >&3
   sleep 0.004
   echo "amplifier $tcp well" >&3
-  sleep 0.1
+  sleep 0.06
   if [ "$(bus $tcp failed)" -gt "$failed" ]; then break; fi
 done
 sleep 1
