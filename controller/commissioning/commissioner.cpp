@@ -224,7 +224,9 @@ CommissioningMotion Commissioner::StartHome(const Json& command, SafetyState sta
         "homing is a controlled motion, but the wiring has not been tested: run `flexarm pluck`");
   }
   const auto joint = static_cast<std::size_t>(OneOrTwo(command, "joint") - 1);
-  const std::string side = command.value("side", "");
+  const auto given = command.find("side");
+  const std::string side =
+      given != command.end() && given->is_string() ? given->get<std::string>() : "";
   if (side != "low" && side != "high") throw RejectedError("side must be low or high");
   const std::size_t number = 2 * joint + (side == "high" ? 1 : 0);
   const auto line = static_cast<Line>(number);  // limit 1 low, 1 high, 2 low, 2 high

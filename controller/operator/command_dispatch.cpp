@@ -1,10 +1,12 @@
 #include "controller/operator/command_dispatch.h"
 
 #include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
+#include "controller/operator/command_text.h"
 #include "controller/operator/request_answers.h"
 #include "hal/line_names.h"
 
@@ -46,13 +48,21 @@ nlohmann::json CommandDispatch::Answer(int client, const std::string& line,
 
 nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
                                          const OperatorSnapshot& now) {
-  const nlohmann::json command = nlohmann::json::parse(line, nullptr, false);
-  if (!command.is_object() || !command.contains("command") || !command["command"].is_string()) {
+  const std::optional<nlohmann::json> parsed = ParseCommand(line);
+  if (!parsed) {
     return Failure("not a command: expected a line like {\"command\": \"status\"}",
                    "use the flexarm program");
   }
+  const nlohmann::json& command = *parsed;
   const std::string name = command["command"];
   if (name == "status") return targets_.status();
+  if (now.shutting_down && name != "stop" && name != "disarm") {
+    return {{"ok", false},
+            {"refusal", ToString(Refusal::kShuttingDown)},
+            {"error", RefusalText(RequestKind::kNone, Refusal::kShuttingDown, now.permit.state)},
+            {"command", name},
+            {"state", ToString(now.permit.state)}};
+  }
   if (name == "sim") return SetLine(command, now.permit.state);
   if (name == "arm") return targets_.arm->Start(command, client, now);
   if (name == "run") return StartRun(command, client, now);
@@ -76,14 +86,16 @@ nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
 }
 
 nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command, SafetyState state) {
-  const std::optional<Line> line = LineByName(command.value("line", ""));
-  const int level = command.value("level", -1);
+  const std::optional<Line> line = LineByName(TextOf(command, "line", ""));
+  const auto given = command.find("level");
+  const bool whole = given != command.end() && given->is_number_integer();
+  const std::int64_t level = whole ? given->get<std::int64_t>() : -1;
   if (!line || (level != 0 && level != 1)) {
     return Failure("no such line or level",
                    "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop or "
                    "reset-button, and level 0 or 1");
   }
-  if (!targets_.stack->Press({.line = *line, .level = level})) {
+  if (!targets_.stack->Press({.line = *line, .level = static_cast<int>(level)})) {
     return Failure("this backend has no simulated switches", "press the real one");
   }
   targets_.report(
@@ -115,11 +127,11 @@ nlohmann::json CommandDispatch::StartRun(const nlohmann::json& command, int clie
             {"command", "run"},
             {"state", ToString(state)}};
   }
-  const std::string name = command.value("name", "experiment");
+  const std::string name = TextOf(command, "name", "experiment");
   const std::array<double, kCounters>& angle_rad = now.tick.output.angle_rad;
   const std::uint32_t number = targets_.experiments->AskForRun(
       now.now_ns, client,
-      targets_.experiments->Plan(targets_.parse_experiment(command.value("experiment", ""), name),
+      targets_.experiments->Plan(targets_.parse_experiment(TextOf(command, "experiment", ""), name),
                                  {angle_rad[0], angle_rad[1]}));
   targets_.overrides->Asked(number, decision.used);
   return nullptr;

@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
+#include <tuple>
 #include <utility>
 
 #include "controller/operator/unix_address.h"
@@ -16,101 +16,124 @@
 namespace flexarm {
 namespace {
 
-bool DaemonListens(const UnixAddress& address) {
+// What answers to a connection at an address: 0, or the error. ECONNREFUSED: none listens.
+int ConnectError(const UnixAddress& address) {
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const bool listens = connect(fd, address.get(), address.size()) == 0 || errno == EAGAIN;
+  const int error = connect(fd, address.get(), address.size()) == 0 ? 0 : errno;
   close(fd);
-  return listens;
+  return error;
+}
+
+// A socket on which no process listens, and which a process of this user made.
+bool IsLeft(const std::string& path, int connect_error) {
+  struct stat there{};
+  return connect_error == ECONNREFUSED && lstat(path.c_str(), &there) == 0 &&
+         S_ISSOCK(there.st_mode) && there.st_uid == geteuid();
 }
 
 }  // namespace
 
 OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
   const UnixAddress address(path_);
-  if (DaemonListens(address)) {
+  const int error = ConnectError(address);
+  if (error == 0 || error == EAGAIN) {
     throw RejectedError(path_ +
                         ": a daemon is listening there already; stop it first, or set "
                         "daemon.socket to another path");
   }
-  struct stat there{};
-  if (lstat(path_.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) unlink(path_.c_str());
+  if (IsLeft(path_, error)) unlink(path_.c_str());
   listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const mode_t old_mask = umask(0117);  // rw-rw----
   const bool bound = listener_ >= 0 && bind(listener_, address.get(), address.size()) == 0 &&
-                     listen(listener_, static_cast<int>(kMaxClients)) == 0;
+                     listen(listener_, kAcceptsPerPoll) == 0;
   const std::string cause = std::strerror(errno);
   umask(old_mask);
-  if (bound) return;
+  struct stat made{};
+  if (bound && lstat(path_.c_str(), &made) == 0) {
+    device_ = made.st_dev;
+    inode_ = made.st_ino;
+    return;
+  }
   if (listener_ >= 0) close(listener_);
   throw RejectedError(path_ + ": cannot listen (" + cause +
                       "); set daemon.socket to a path in a folder that exists and is writable");
 }
 
 OperatorSocket::~OperatorSocket() {
-  for (const Client& client : clients_) close(client.fd);
   close(listener_);
-  unlink(path_.c_str());
+  struct stat there{};
+  const bool own =
+      lstat(path_.c_str(), &there) == 0 && there.st_dev == device_ && there.st_ino == inode_;
+  if (own) unlink(path_.c_str());
 }
 
-void OperatorSocket::Accept() {
-  for (;;) {
+std::size_t OperatorSocket::CountOf(uid_t user) const {
+  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(),
+                                                [user](const auto& c) { return c.uid() == user; }));
+}
+
+uid_t OperatorSocket::UserWithMost() const {
+  return std::max_element(
+             clients_.begin(), clients_.end(),
+             [this](const auto& a, const auto& b) { return CountOf(a.uid()) < CountOf(b.uid()); })
+      ->uid();
+}
+
+void OperatorSocket::MakeRoomFor(uid_t user) {
+  const bool too_many_of_user = CountOf(user) >= kMaxClientsOfUser;
+  if (!too_many_of_user && clients_.size() < kMaxClients) return;
+  const uid_t of = too_many_of_user ? user : UserWithMost();
+  const auto rank = [of](const OperatorConnection& c) {
+    return std::tuple(c.uid() == of, c.ended(), c.unanswered() == 0, c.quiet_polls());
+  };
+  const auto victim =
+      std::max_element(clients_.begin(), clients_.end(),
+                       [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  victim->Dismiss("too many clients are connected, and it has been quiet the longest");
+  clients_.erase(victim);
+}
+
+// A new client is heard at once: the next one may close it.
+void OperatorSocket::Accept(std::vector<Message>* messages) {
+  for (int k = 0; k < kAcceptsPerPoll; ++k) {
     const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) return;
-    if (clients_.size() < kMaxClients) {
-      clients_.push_back({.fd = fd, .received = {}});
-    } else {
-      close(fd);
-    }
+    OperatorConnection client(fd, next_number_++);
+    client.Read();
+    Take(&client, messages);
+    MakeRoomFor(client.uid());
+    clients_.push_back(std::move(client));
   }
+}
+
+bool OperatorSocket::Take(OperatorConnection* client, std::vector<Message>* messages) {
+  std::optional<std::string> line = client->NextLine();
+  if (line) messages->push_back({.client = client->number(), .line = std::move(*line)});
+  return line.has_value();
 }
 
 std::vector<OperatorSocket::Message> OperatorSocket::Poll() {
-  Accept();
+  std::erase_if(clients_, [](const OperatorConnection& client) { return client.over(); });
   std::vector<Message> messages;
-  std::vector<int> gone;
-  for (Client& client : clients_) {
-    if (!Read(&client, &messages)) gone.push_back(client.fd);
+  for (OperatorConnection& client : clients_) {
+    client.Read();
+    Take(&client, &messages);
   }
-  for (const int fd : gone) {
-    // No answer could reach a client that has closed its connection: its lines are dropped.
-    std::erase_if(messages, [fd](const Message& m) { return m.client == fd; });
-    Close(fd);
+  Accept(&messages);
+  for (bool more = true; more;) {
+    more = false;
+    for (OperatorConnection& client : clients_) {
+      if (messages.size() >= kLinesPerPoll) return messages;
+      more = Take(&client, &messages) || more;
+    }
   }
   return messages;
 }
 
-bool OperatorSocket::Read(Client* client, std::vector<Message>* messages) {
-  std::array<char, 4096> chunk;
-  bool open = true;
-  for (;;) {
-    const ssize_t count = recv(client->fd, chunk.data(), chunk.size(), 0);
-    if (count > 0) {
-      client->received.append(chunk.data(), static_cast<std::size_t>(count));
-      if (client->received.size() > kMaxLine) return false;
-      continue;
-    }
-    open = count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
-    break;
-  }
-  for (std::size_t end; (end = client->received.find('\n')) != std::string::npos;) {
-    messages->push_back({.client = client->fd, .line = client->received.substr(0, end)});
-    client->received.erase(0, end + 1);
-  }
-  return open;
-}
-
 void OperatorSocket::Reply(int client, const std::string& line) {
   const auto found = std::find_if(clients_.begin(), clients_.end(),
-                                  [client](const Client& c) { return c.fd == client; });
-  if (found == clients_.end()) return;
-  const std::string text = line + "\n";
-  const ssize_t sent = send(client, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-  if (sent != static_cast<ssize_t>(text.size())) Close(client);
-}
-
-void OperatorSocket::Close(int fd) {
-  close(fd);
-  std::erase_if(clients_, [fd](const Client& c) { return c.fd == fd; });
+                                  [client](const auto& c) { return c.number() == client; });
+  if (found != clients_.end()) found->Reply(line);
 }
 
 }  // namespace flexarm

@@ -1,55 +1,65 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <string>
 #include <vector>
 
 #include "controller/operator/operator_client.h"  // the socket's other end, for its users
+#include "controller/operator/operator_connection.h"
 
 namespace flexarm {
 
 /// Server side of the operator socket, a Unix stream socket: clients send lines and receive lines.
 ///
-/// Never blocks: a client that does not read its replies is closed, and so is one that sends a line
-/// longer than kMaxLine. Lines of a client that has closed its connection are dropped.
-/// Not real-time safe: allocates. Thread: operator.
+/// Never blocks, and always admits one more client: if there are kMaxClients, or kMaxClientsOfUser
+/// of its user, another is closed, of the user who has most: first one that has closed its end,
+/// then one to whom no answer is due, then the one that has been quiet the longest. It is told so.
+/// So a stop needs no free connection.
+///
+/// Each client has a number, which is never used twice: an answer reaches no other client. Not
+/// real-time safe: allocates. Thread: operator.
 class OperatorSocket {
  public:
-  static constexpr std::size_t kMaxLine = 1 << 20;  ///< bytes; an experiment file is a few kB
-  static constexpr std::size_t kMaxClients = 16;    ///< at once; one more is closed
+  static constexpr std::size_t kMaxClients = 16;
+  static constexpr std::size_t kMaxClientsOfUser = 8;
+  static constexpr int kAcceptsPerPoll = 32;
+  static constexpr std::size_t kLinesPerPoll = 32;  ///< of all clients; the others come later
 
   struct Message {
-    int client;        ///< for Reply
+    int client;        ///< number of the client, for Reply
     std::string line;  ///< without its newline
   };
 
-  /// Listens on `path`, for its owner and group only. A socket left by a daemon
-  /// that has ended is replaced.
+  /// Listens on `path`, for its owner and group only. A socket left by a daemon of the same user
+  /// that has ended is replaced; anything else that is there stays.
   /// @throws RejectedError if the path cannot be used, or a daemon is listening there already
   explicit OperatorSocket(std::string path);
-  ~OperatorSocket();  ///< closes every client and removes the socket
+  ~OperatorSocket();  ///< closes every client, and removes the socket that it made
   OperatorSocket(const OperatorSocket&) = delete;
   OperatorSocket& operator=(const OperatorSocket&) = delete;
 
-  /// Accepts clients and reads what has arrived, without waiting. Once a period.
+  /// Accepts clients and reads what has arrived, without waiting. One line of each client, new ones
+  /// included, then further ones in turn, kLinesPerPoll in all. Once a period.
   std::vector<Message> Poll();
 
   /// Sends one line; a client that is gone, or too slow, is closed.
   void Reply(int client, const std::string& line);
 
  private:
-  struct Client {
-    int fd;
-    std::string received;
-  };
-
-  void Accept();
-  /// False if the client has closed its connection, or must be closed.
-  bool Read(Client* client, std::vector<Message>* messages);
-  void Close(int fd);
+  void Accept(std::vector<Message>* messages);
+  /// The next line of a client; false: it has none.
+  static bool Take(OperatorConnection* client, std::vector<Message>* messages);
+  void MakeRoomFor(uid_t user);
+  std::size_t CountOf(uid_t user) const;
+  uid_t UserWithMost() const;
 
   std::string path_;
   int listener_ = -1;
-  std::vector<Client> clients_;
+  dev_t device_ = 0;  // of the socket's file, with
+  ino_t inode_ = 0;   // its number
+  int next_number_ = 1;
+  std::vector<OperatorConnection> clients_;
 };
 
 }  // namespace flexarm

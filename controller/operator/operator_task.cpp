@@ -137,13 +137,14 @@ void OperatorTask::Take(const RequestAnswer& answer) {
   experiments_.Answered(now_.now_ns, answer);
   overrides_.Answered(now_.now_ns, answer);
   Reply(commissioning_.Answered(answer, now_));
+  // The safety task publishes the permit of a tick before the answers of that tick.
+  const SafetyState state = context_.stack->operator_permits().Read().Newest().value.state;
   for (const int client : requests_.TakeClientsOf(answer)) {
-    Reply(client, AnswerJson(answer, now_.permit.state));
+    Reply(client, AnswerJson(answer, state));
   }
 }
 
-// After the answers, of the newest permit: the safety task publishes a permit before the answer of
-// its tick, so an arm that was answered is in it.
+// After the answers, of the newest permit: an arm that was answered is in it.
 void OperatorTask::FollowLatch() {
   const Permit& newest = context_.stack->operator_permits().Read().Newest().value;
   context_.latch->Follow(now_.now_ns, newest, requests_.busy());
@@ -177,6 +178,7 @@ void OperatorTask::FollowUnattended() {
 
 void OperatorTask::BeginShutdown() {
   if (!shutdown_requested_.load(std::memory_order_relaxed) || shutdown_.begun()) return;
+  now_.shutting_down = true;
   shutdown_.Begin(now_.now_ns, unattended_.over_ns());
   context_.report(false, "shutting down: bringing the arm to rest");
 }

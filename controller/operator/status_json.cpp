@@ -78,6 +78,7 @@ nlohmann::json StatusJson(const StatusSources& sources) {
   const StepInput& in = now.tick.input;
   const StepOutput& out = now.tick.output;
   return {{"ok", true},
+          {"protocol", kProtocolVersion},
           {"state", ToString(now.permit.state)},
           {"time_s", static_cast<double>(now.now_ns) * 1e-9},
           {"tick", in.tick},

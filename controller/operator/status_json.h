@@ -34,6 +34,9 @@ struct StatusSources {
   std::uint64_t log_records_dropped = 0;  ///< that no log has: the recorder was too slow
 };
 
+/// Of the operator socket: docs/protocol.md. A change that old clients do not understand raises it.
+inline constexpr int kProtocolVersion = 1;
+
 /// Part "counters" of a bus: {name: count}.
 nlohmann::json CountersJson(const std::vector<BusCounter>& counters);
 

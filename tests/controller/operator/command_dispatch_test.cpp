@@ -76,17 +76,66 @@ TEST_F(CommandDispatchTest, AnUnknownCommandIsAnsweredWithThoseThatThereAre) {
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
 }
 
-TEST_F(CommandDispatchTest, AValueOfTheWrongTypeIsAnswered) {
-  for (const Json& command : {Json{{"command", "sim"}, {"line", 3}, {"level", 0}},
-                              Json{{"command", "sim"}, {"line", "emergency-stop"}, {"level", "up"}},
-                              Json{{"command", "run"}, {"experiment", 3}},
-                              Json{{"command", "run"}, {"name", nullptr}, {"experiment", ""}}}) {
+TEST_F(CommandDispatchTest, AValueOfTheWrongTypeIsAnsweredWithItsKey) {
+  for (const auto& [command, key] :
+       {std::pair<Json, const char*>{{{"command", "sim"}, {"line", 3}, {"level", 0}}, "'line'"},
+        {{{"command", "run"}, {"experiment", 3}}, "'experiment'"},
+        {{{"command", "run"}, {"name", nullptr}, {"experiment", ""}}, "'name'"}}) {
     const Json answer = Answer(command);
     EXPECT_EQ(answer["ok"], false) << command;
-    EXPECT_THAT(answer.value("error", ""), HasSubstr("type")) << command;
+    EXPECT_THAT(answer.value("error", ""), HasSubstr(std::string("expected a text in ") + key));
   }
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
   EXPECT_THAT(journal_.lines, IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, ALevelIsZeroOrOneAndNothingElse) {
+  for (const Json& level : {Json("up"), Json(0.9), Json(2), Json(-1), Json(true), Json(1e300),
+                            Json(4294967296), Json(), Json::array({1})}) {
+    const Json answer = Answer({{"command", "sim"}, {"line", "emergency-stop"}, {"level", level}});
+    EXPECT_THAT(answer.value("error", ""), HasSubstr("no such line or level")) << level;
+  }
+}
+
+// Brackets within brackets take stack when JSON is copied or written: deeper than 32 is no command,
+// wherever they are; within a text they are text.
+TEST_F(CommandDispatchTest, DeepBracketsAreNoCommand) {
+  const auto with = [](const std::string& value) {
+    return "{\"command\": \"pluck\", \"x\": " + value + "}";
+  };
+  for (const int depth : {32, 20'000, 500'000}) {
+    const auto n = static_cast<std::size_t>(depth);
+    for (const std::string& value : {std::string(n, '[') + std::string(n, ']'), std::string(n, '['),
+                                     "\"\\\"" + std::string(n, '[') + "\"" + std::string(n, '[')}) {
+      EXPECT_THAT(AnswerLine(with(value)).value("error", ""), HasSubstr("not a command")) << depth;
+    }
+  }
+  const auto error = [this](const std::string& line) {
+    const Json answer = AnswerLine(line);
+    return answer.is_null() ? std::string() : answer.value("error", "");  // null: it is carried out
+  };
+  EXPECT_THAT(error(with(std::string(31, '[') + std::string(31, ']'))),
+              testing::Not(HasSubstr("not a command")));
+  EXPECT_THAT(error(with("\"\\\"" + std::string(100, '[') + "\"")),
+              testing::Not(HasSubstr("not a command")));
+}
+
+// After SIGTERM nothing may move the arm or change the rig, and a stop is still heard.
+TEST_F(CommandDispatchTest, WhileTheDaemonEndsOnlyStatusStopAndDisarmAreAccepted) {
+  now_.shutting_down = true;
+  now_.permit.state = SafetyState::kStopping;
+  for (const char* name : {"arm", "run", "reset", "tare", "zero", "calibrate", "pluck", "home",
+                           "prove-switches", "sim", "none"}) {
+    const Json answer = Answer({{"command", name}});
+    EXPECT_EQ(answer.value("refusal", ""), "shutting-down") << name;
+    EXPECT_EQ(answer.value("command", ""), name);
+    EXPECT_EQ(answer.value("state", ""), "Stopping");
+    EXPECT_THAT(answer.value("error", ""), HasSubstr("shutting down"));
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_EQ(Answer({{"command", "status"}})["tick"], 12);
+  EXPECT_TRUE(Answer({{"command", "stop"}}).is_null());
+  EXPECT_TRUE(Answer({{"command", "disarm"}}).is_null());
 }
 
 TEST_F(CommandDispatchTest, StatusIsAnsweredAtOnce) {

@@ -5,9 +5,11 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 #include "controller/types/rejected_error.h"
 #include "tests/controller/operator/socket_peer.h"
@@ -31,6 +33,7 @@ class OperatorSocketTest : public testing::Test {
   const std::string path_ = SocketPath();
 };
 
+// A line of each client, then the next one of each.
 TEST_F(OperatorSocketTest, EveryLineComesOnceAndItsReplyReachesItsClient) {
   OperatorSocket server(path_);
   SocketPeer first(path_);
@@ -40,10 +43,10 @@ TEST_F(OperatorSocketTest, EveryLineComesOnceAndItsReplyReachesItsClient) {
   const std::vector<OperatorSocket::Message> messages = server.Poll();
   ASSERT_EQ(messages.size(), 3u);
   EXPECT_EQ(messages[0].line, "one");
-  EXPECT_EQ(messages[1].line, "two");
-  EXPECT_EQ(messages[2].line, "three");
+  EXPECT_EQ(messages[1].line, "three");
+  EXPECT_EQ(messages[2].line, "two");
   EXPECT_TRUE(server.Poll().empty());
-  server.Reply(messages[2].client, "to the second");
+  server.Reply(messages[1].client, "to the second");
   server.Reply(messages[0].client, "to the first");
   EXPECT_EQ(first.Line(), "to the first");
   EXPECT_EQ(second.Line(), "to the second");
@@ -67,13 +70,13 @@ TEST_F(OperatorSocketTest, AClientWithTooLongALineIsClosedAndNoOther) {
   SocketPeer bad(path_);
   const std::string much(100'000, 'x');
   std::size_t sent = 0;
-  while (sent <= OperatorSocket::kMaxLine) {
+  while (sent <= OperatorConnection::kMaxLine) {
     const std::size_t taken = bad.Send(much);
     sent += taken;
     EXPECT_TRUE(server.Poll().empty());
     if (taken == 0) break;  // closed
   }
-  EXPECT_GT(sent, OperatorSocket::kMaxLine / 2);
+  EXPECT_GT(sent, OperatorConnection::kMaxLine / 2);
   EXPECT_TRUE(bad.closed());
   good.Send("here\n");
   EXPECT_EQ(server.Poll().size(), 1u);
@@ -89,32 +92,121 @@ TEST_F(OperatorSocketTest, AClientThatDoesNotReadIsClosed) {
   EXPECT_TRUE(client.closed());
 }
 
-TEST_F(OperatorSocketTest, OneClientTooManyIsClosed) {
+// A new client is always heard: the one that has been quiet the longest is closed, and is told so.
+TEST_F(OperatorSocketTest, ANewClientReplacesTheQuietestOne) {
   OperatorSocket server(path_);
   std::deque<SocketPeer> clients;
-  for (std::size_t k = 0; k < OperatorSocket::kMaxClients; ++k) clients.emplace_back(path_);
+  for (std::size_t k = 0; k < OperatorSocket::kMaxClientsOfUser; ++k) clients.emplace_back(path_);
   EXPECT_TRUE(server.Poll().empty());
+  clients[0].Send("here\n");
+  const int here = server.Poll().at(0).client;
+  server.Reply(here, "yes");
   SocketPeer extra(path_);
-  server.Poll();
-  EXPECT_TRUE(extra.closed());
-  for (SocketPeer& client : clients) EXPECT_FALSE(client.closed());
-  clients.pop_front();
-  server.Poll();
-  const SocketPeer another(path_);
-  another.Send("there is room again\n");
-  EXPECT_EQ(server.Poll().size(), 1u);
-}
-
-TEST_F(OperatorSocketTest, LinesOfAClientThatHasGoneAreDropped) {
-  OperatorSocket server(path_);
-  SocketPeer gone(path_);
-  const SocketPeer here(path_);
-  gone.Send("arm\n");
-  here.Send("status\n");
-  gone.Close();
+  extra.Send("stop\n");
   const std::vector<OperatorSocket::Message> messages = server.Poll();
   ASSERT_EQ(messages.size(), 1u);
-  EXPECT_EQ(messages[0].line, "status");
+  EXPECT_EQ(messages[0].line, "stop");
+  EXPECT_TRUE(clients[1].closed());
+  EXPECT_THAT(clients[1].Line().value_or(""), HasSubstr("too many clients"));
+  for (std::size_t k = 0; k < clients.size(); ++k) EXPECT_EQ(clients[k].closed(), k == 1) << k;
+  server.Reply(messages[0].client, "stopping");
+  EXPECT_EQ(extra.Line(), "stopping");
+}
+
+TEST_F(OperatorSocketTest, AClientThatWaitsForAnAnswerIsReplacedLast) {
+  OperatorSocket server(path_);
+  std::deque<SocketPeer> waiting;
+  for (std::size_t k = 0; k + 1 < OperatorSocket::kMaxClientsOfUser; ++k) {
+    waiting.emplace_back(path_).Send("calibrate\n");
+  }
+  server.Poll();
+  for (int k = 0; k < 50; ++k) server.Poll();  // longer than the next one
+  const SocketPeer idle(path_);
+  server.Poll();
+  for (int k = 0; k < 20; ++k) {
+    const SocketPeer passing(path_);
+    passing.Send("status\n");
+    EXPECT_EQ(server.Poll().size(), 1u);
+    for (SocketPeer& client : waiting) EXPECT_FALSE(client.closed()) << k;
+  }
+}
+
+// However many connect and say nothing, a stop is heard in the poll after it.
+TEST_F(OperatorSocketTest, SilentClientsBlockNoOther) {
+  OperatorSocket server(path_);
+  std::deque<SocketPeer> silent;
+  for (int k = 0; k < 300; ++k) {
+    silent.emplace_back(path_).Send(k % 2 == 0 ? "" : "half a line");
+    if (k % OperatorSocket::kAcceptsPerPoll == 0) server.Poll();
+    if (k % 50 != 49) continue;
+    server.Poll();
+    const SocketPeer operator_of_the_arm(path_);
+    operator_of_the_arm.Send("stop\n");
+    const std::vector<OperatorSocket::Message> messages = server.Poll();
+    ASSERT_EQ(messages.size(), 1u) << k;
+    EXPECT_EQ(messages[0].line, "stop");
+  }
+}
+
+// Symptom: 0.9 MB of newlines held the operator task for 22 s.
+TEST_F(OperatorSocketTest, AFloodOfLinesComesInPartsAndOthersAreHeardBetween) {
+  OperatorSocket server(path_);
+  const SocketPeer flood(path_);
+  const std::string newlines(500'000, '\n');
+  std::size_t lines = 0;
+  for (int k = 0; k < 200; ++k) {
+    flood.Send(newlines);
+    const SocketPeer other(path_);
+    other.Send("stop\n");
+    const std::vector<OperatorSocket::Message> messages = server.Poll();
+    EXPECT_LE(messages.size(), OperatorSocket::kLinesPerPoll);
+    EXPECT_EQ(std::count_if(messages.begin(), messages.end(),
+                            [](const auto& message) { return message.line == "stop"; }),
+              1)
+        << k;
+    lines += messages.size();
+  }
+  EXPECT_EQ(lines, 200 * OperatorSocket::kLinesPerPoll);
+}
+
+// Symptom: an operator's `stop` by a program that closes at once was thrown away.
+TEST_F(OperatorSocketTest, LinesOfAClientThatHasGoneAreHeard) {
+  OperatorSocket server(path_);
+  for (const bool gone : {true, false}) {
+    SocketPeer client(path_);
+    client.Send("arm\nstop\n");
+    gone ? client.Close() : client.EndOfSending();
+    const std::vector<OperatorSocket::Message> messages = server.Poll();
+    ASSERT_EQ(messages.size(), 2u);
+    EXPECT_EQ(messages[1].line, "stop");
+    EXPECT_TRUE(server.Poll().empty());
+    server.Reply(messages[0].client, "armed");
+    server.Reply(messages[1].client, "stopping");
+    if (gone) continue;
+    EXPECT_EQ(client.Line(), "armed");
+    EXPECT_EQ(client.Line(), "stopping");
+    EXPECT_FALSE(client.closed());
+    server.Poll();
+    EXPECT_TRUE(client.closed()) << "it has all its answers";
+  }
+}
+
+// Symptom: the answer to `pluck` of a client that had gone reached another one, which had its
+// descriptor.
+TEST_F(OperatorSocketTest, AnAnswerReachesNoOtherClient) {
+  OperatorSocket server(path_);
+  int asked = 0;
+  {
+    const SocketPeer gone(path_);
+    gone.Send("pluck\n");
+    asked = server.Poll().at(0).client;
+  }
+  for (int k = 0; k <= OperatorConnection::kLingerPolls; ++k) server.Poll();
+  SocketPeer other(path_);
+  other.Send("status\n");
+  EXPECT_NE(server.Poll().at(0).client, asked);
+  server.Reply(asked, "for the one that has gone");
+  EXPECT_EQ(other.Line(), std::nullopt);
 }
 
 TEST_F(OperatorSocketTest, AReplyToADisconnectedClientAffectsNoOther) {
@@ -164,6 +256,25 @@ TEST_F(OperatorSocketTest, TheSocketOfARunningDaemonIsNot) {
   const SocketPeer client(path_);
   client.Send("status\n");
   EXPECT_EQ(server.Poll().size(), 1u) << "the first one still listens";
+}
+
+TEST_F(OperatorSocketTest, TheSocketOfAnotherProgramStays) {
+  const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const UnixAddress address(path_);
+  ASSERT_EQ(bind(fd, address.get(), address.size()), 0);
+  EXPECT_THAT(RejectionOf(path_), HasSubstr("cannot listen"));
+  EXPECT_TRUE(std::filesystem::is_socket(path_));
+  close(fd);
+}
+
+TEST_F(OperatorSocketTest, AtItsEndTheSocketOfAnotherDaemonStays) {
+  auto first = std::make_unique<OperatorSocket>(path_);
+  std::filesystem::remove(path_);
+  OperatorSocket second(path_);
+  first.reset();
+  const SocketPeer client(path_);
+  client.Send("status\n");
+  EXPECT_EQ(second.Poll().size(), 1u);
 }
 
 TEST_F(OperatorSocketTest, AFileThatIsNoSocketIsNotReplaced) {

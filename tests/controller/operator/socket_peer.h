@@ -38,6 +38,9 @@ class SocketPeer {
     fd_ = -1;
   }
 
+  /// Sends nothing more, and still reads.
+  void EndOfSending() const { EXPECT_EQ(shutdown(fd_, SHUT_WR), 0); }
+
   /// @returns bytes that the socket took
   std::size_t Send(const std::string& text) const {
     const ssize_t sent = send(fd_, text.data(), text.size(), MSG_NOSIGNAL);

@@ -59,6 +59,10 @@ struct StatusJsonTest : testing::Test {
   TripLatch latch{folder.path(), "/runs", [](bool, const std::string&) {}};
 };
 
+TEST_F(StatusJsonTest, TheVersionOfTheProtocolIsThatOfItsPage) {
+  EXPECT_EQ(Status()["protocol"], 1);
+}
+
 TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
   now.tick.output.angle_rad = {M_PI / 6.0, -M_PI / 2.0, 9.0, 9.0};
   now.tick.input.tick = 75;

@@ -1,0 +1,115 @@
+#include "controller/operator/operator_connection.h"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace flexarm {
+namespace {
+
+uid_t UserOf(int fd) {
+  ucred peer{};
+  socklen_t size = sizeof(peer);
+  const bool known = getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+  return known ? peer.uid : static_cast<uid_t>(-1);
+}
+
+}  // namespace
+
+OperatorConnection::OperatorConnection(int fd, int number)
+    : fd_(fd), number_(number), uid_(UserOf(fd)) {}
+
+OperatorConnection::~OperatorConnection() { Close(); }
+
+OperatorConnection::OperatorConnection(OperatorConnection&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)),
+      number_(other.number_),
+      uid_(other.uid_),
+      received_(std::move(other.received_)),
+      read_(other.read_),
+      ended_(other.ended_),
+      unanswered_(other.unanswered_),
+      quiet_polls_(other.quiet_polls_) {}
+
+OperatorConnection& OperatorConnection::operator=(OperatorConnection&& other) noexcept {
+  if (this == &other) return *this;
+  Close();
+  fd_ = std::exchange(other.fd_, -1);
+  number_ = other.number_;
+  uid_ = other.uid_;
+  received_ = std::move(other.received_);
+  read_ = other.read_;
+  ended_ = other.ended_;
+  unanswered_ = other.unanswered_;
+  quiet_polls_ = other.quiet_polls_;
+  return *this;
+}
+
+bool OperatorConnection::over() const {
+  if (fd_ < 0) return true;
+  return ended_ && !HasLine() && (unanswered_ == 0 || quiet_polls_ > kLingerPolls);
+}
+
+std::optional<std::string> OperatorConnection::NextLine() {
+  const std::size_t end = received_.find('\n', read_);
+  if (end == std::string::npos) return std::nullopt;
+  std::string line = received_.substr(read_, end - read_);
+  read_ = end + 1;
+  ++unanswered_;
+  quiet_polls_ = 0;
+  return line;
+}
+
+// Not while whole lines wait: their client is ahead of what is done for it.
+void OperatorConnection::Read() {
+  ++quiet_polls_;
+  if (fd_ < 0 || ended_ || HasLine()) return;
+  received_.erase(0, std::exchange(read_, 0));
+  std::array<char, 16384> chunk;
+  for (std::size_t taken = 0; taken < kReadPerPoll;) {
+    const ssize_t count = recv(fd_, chunk.data(), chunk.size(), 0);
+    if (count > 0) {
+      received_.append(chunk.data(), static_cast<std::size_t>(count));
+      taken += static_cast<std::size_t>(count);
+      continue;
+    }
+    ended_ = count == 0 || (errno != EAGAIN && errno != EINTR);
+    break;
+  }
+  if (received_.empty()) received_.shrink_to_fit();
+  if (received_.size() > kMaxLine && !HasLine()) {
+    Dismiss("a line is longer than " + std::to_string(kMaxLine) + " bytes");
+  }
+}
+
+void OperatorConnection::Reply(const std::string& line) {
+  unanswered_ = std::max(unanswered_ - 1, 0);
+  Send(line);
+}
+
+void OperatorConnection::Dismiss(const std::string& reason) {
+  Send(nlohmann::json{{"ok", false},
+                      {"error", "the daemon closes this connection: " + reason},
+                      {"remedy", "connect again"}}
+           .dump());
+  Close();
+}
+
+void OperatorConnection::Send(const std::string& line) {
+  if (fd_ < 0) return;
+  const std::string text = line + "\n";
+  const ssize_t sent = send(fd_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent != static_cast<ssize_t>(text.size())) Close();
+}
+
+void OperatorConnection::Close() {
+  if (fd_ >= 0) close(fd_);
+  fd_ = -1;
+}
+
+}  // namespace flexarm

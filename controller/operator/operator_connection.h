@@ -1,0 +1,72 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace flexarm {
+
+/// One connection of the operator socket, accepted: what it has sent, in lines, and how many of
+/// them have not been answered yet.
+///
+/// Never blocks. What it holds of a client is bounded: kMaxLine and one read. Whatever else the
+/// client sends waits in the kernel, and so does the client. Not real-time safe: allocates.
+/// Thread: operator.
+class OperatorConnection {
+ public:
+  static constexpr std::size_t kMaxLine = 1 << 20;        ///< bytes; an experiment is a few kB
+  static constexpr std::size_t kReadPerPoll = 256 << 10;  ///< bytes
+  /// Polls after which a client that sends nothing more, and has answers to come, is forgotten.
+  static constexpr int kLingerPolls = 250;
+
+  /// @param fd      connected, non-blocking; closed by the destructor
+  /// @param number  of the client; never used twice
+  OperatorConnection(int fd, int number);
+  ~OperatorConnection();
+  OperatorConnection(OperatorConnection&& other) noexcept;
+  OperatorConnection& operator=(OperatorConnection&& other) noexcept;
+  OperatorConnection(const OperatorConnection&) = delete;
+  OperatorConnection& operator=(const OperatorConnection&) = delete;
+
+  int number() const { return number_; }
+  uid_t uid() const { return uid_; }
+  /// The client has closed its end, and sends nothing more.
+  bool ended() const { return ended_; }
+  /// Lines that were handed out and have no reply yet.
+  int unanswered() const { return unanswered_; }
+  /// Polls without a line from it, since the last one or since it connected.
+  std::int64_t quiet_polls() const { return quiet_polls_; }
+  /// Nothing more will come of it, and nothing can reach it or is due to it.
+  bool over() const;
+
+  /// Reads what has arrived. Once a poll, before NextLine.
+  void Read();
+
+  /// Hands out the next whole line, without its newline. Lines that a client sent before it closed
+  /// its end are handed out like others.
+  std::optional<std::string> NextLine();
+
+  /// Sends one line. A client that does not read its replies is closed.
+  void Reply(const std::string& line);
+
+  /// Says why, and closes.
+  void Dismiss(const std::string& reason);
+
+ private:
+  bool HasLine() const { return received_.find('\n', read_) != std::string::npos; }
+  void Send(const std::string& line);
+  void Close();
+
+  int fd_;
+  int number_;
+  uid_t uid_;
+  std::string received_;
+  std::size_t read_ = 0;  // bytes of received_ that were handed out
+  bool ended_ = false;    // the client sends nothing more
+  int unanswered_ = 0;
+  std::int64_t quiet_polls_ = 0;
+};
+
+}  // namespace flexarm
