@@ -6,10 +6,11 @@
 namespace flexarm {
 
 /// How many cases a campaign of random cases has: `sample` in every run of the tests, a tenth of
-/// that under a sanitizer, `whole` with FLEXARM_CAMPAIGN=whole (lane `campaigns`).
+/// that under a sanitizer, `whole` with FLEXARM_CAMPAIGN=whole (lane `campaigns`), and N with
+/// FLEXARM_CAMPAIGN=N.
 inline long CampaignCases(long sample, long whole) {
   const char* wanted = std::getenv("FLEXARM_CAMPAIGN");
-  if (wanted != nullptr && std::string(wanted) == "whole") return whole;
+  if (wanted != nullptr) return std::string(wanted) == "whole" ? whole : std::atol(wanted);
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return sample / 10;
 #else

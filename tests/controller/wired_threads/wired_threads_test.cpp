@@ -344,7 +344,10 @@ class Cycle {
 };
 
 // The sample also under a sanitizer, which is what the test is for.
-int Cycles() { return CampaignCases(0, 1) > 0 ? 1'000 : 30; }
+long Cycles() {
+  const long wanted = CampaignCases(0, 1'000);
+  return wanted > 0 ? wanted : 30;
+}
 
 TEST(WiredThreads, CampaignEveryRequestIsAnsweredAndEveryThreadEnds) {
   const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil-wire.toml");
