@@ -13,8 +13,8 @@ namespace flexarm {
 /// covariance is steady again, the gain of each sample follows from the covariance of exactly the
 /// readings that there were:
 ///   P <- P - P c'(c P c' + r)^-1 c P for each output that is there,  then  P <- A P A' + W.
-/// W is left out after an incomplete sample: it is tuned for a steady gain that bears a model with a
-/// wrong payload, and the larger gain that it would give the next sample excites the bent arm
+/// W is left out after an incomplete sample: it is tuned for a steady gain that bears a model with
+/// a wrong payload, and the larger gain that it would give the next sample excites the bent arm
 /// (docs/theory/control-law.md 7.3).
 /// Real-time: all but the constructor is safe.
 class FilterCovariance {
