@@ -57,7 +57,8 @@ class Flood(ProgramTest):
         self.wait_for_state("Armed")
         self.operate("disarm")
         self.wait_for_state("Idle")
-        self.assertLess(self.resident_mb() - self.start_mb, MOST_MB)
+        if "ASAN_OPTIONS" not in os.environ:  # which keeps freed memory
+            self.assertLess(self.resident_mb() - self.start_mb, MOST_MB)
 
     def test_silent_connections_block_no_other(self):
         with contextlib.ExitStack() as stack:
