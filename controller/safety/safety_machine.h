@@ -63,6 +63,36 @@ constexpr SafetyState AfterTest(SafetyState test) noexcept {
   return test == SafetyState::kTestingRelay ? SafetyState::kTestingPower : SafetyState::kArmed;
 }
 
+/// Why an arm in Idle is refused; kNone: it is not.
+constexpr Refusal WhyNotArm(const SafetyFacts& facts) noexcept {
+  if (facts.shutting_down != 0) return Refusal::kShuttingDown;
+  if (facts.all_reported == 0) return Refusal::kUnhealthy;
+  if (facts.power_follows == 0) return Refusal::kRelayClosed;
+  return facts.at_rest == 0 ? Refusal::kNotAtRest : Refusal::kNone;
+}
+
+/// Why a reset in Tripped is refused; kNone: it is not.
+constexpr Refusal WhyNotReset(const SafetyFacts& facts) noexcept {
+  if (facts.present != 0) return Refusal::kCauseRemains;
+  if (facts.all_reported == 0) return Refusal::kUnhealthy;
+  if (facts.reset_pressed == 0) return Refusal::kNoReset;
+  return facts.at_rest == 0 ? Refusal::kNotAtRest : Refusal::kNone;
+}
+
+/// The state after a tick of a test of the power path without a cause.
+constexpr SafetyState NextInTest(SafetyState test, const SafetyFacts& facts) noexcept {
+  const bool cancelled =
+      facts.request == RequestKind::kDisarm || facts.request == RequestKind::kStop;
+  if (cancelled || facts.shutting_down != 0 || facts.at_rest == 0) return SafetyState::kIdle;
+  return facts.power_follows != 0 ? AfterTest(test) : test;
+}
+
+/// FaultStopping is over: a further cause, at rest, too long, or no longer able to damp.
+constexpr bool FaultStopEnds(const SafetyFacts& facts) noexcept {
+  const bool further = (facts.present & ~kCategory1Causes) != 0;
+  return further || facts.may_damp == 0 || facts.at_rest != 0 || facts.stop_expired != 0;
+}
+
 /// Safety state machine: a pure function of status and facts. No clock, no I/O, no memory.
 ///
 /// A cause that is present latches from every state: it trips, or, if all present are of stop
@@ -95,17 +125,13 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
 
   if (status.state == kTripped) {
     if (request != RequestKind::kReset) return {latched, not_here};
-    if (facts.present != 0) return {latched, Refusal::kCauseRemains};
-    if (facts.all_reported == 0) return {latched, Refusal::kUnhealthy};
-    if (facts.reset_pressed == 0) return {latched, Refusal::kNoReset};
-    if (facts.at_rest == 0) return {latched, Refusal::kNotAtRest};
+    const Refusal refusal = WhyNotReset(facts);
+    if (refusal != Refusal::kNone) return {latched, refusal};
     return go(kIdle, Refusal::kNone);
   }
 
   if (status.state == kFaultStopping) {
-    const bool further = (facts.present & ~kCategory1Causes) != 0;
-    const bool ends =
-        !known || further || facts.may_damp == 0 || facts.at_rest != 0 || facts.stop_expired != 0;
+    const bool ends = !known || FaultStopEnds(facts);
     return {{ends ? kTripped : kFaultStopping, latched.cause}, not_here};
   }
 
@@ -118,21 +144,18 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
   switch (status.state) {
     case kStarting:
       return go(facts.all_reported != 0 ? kIdle : kStarting, not_here);
-    case kIdle:
+    case kIdle: {
       if (request != RequestKind::kArm) return go(kIdle, not_here);
-      if (shutting_down) return go(kIdle, Refusal::kShuttingDown);
-      if (facts.all_reported == 0) return go(kIdle, Refusal::kUnhealthy);
-      if (facts.power_follows == 0) return go(kIdle, Refusal::kRelayClosed);
-      if (facts.at_rest == 0) return go(kIdle, Refusal::kNotAtRest);
-      return go(facts.tests_power != 0 ? kTestingPump : kArmed, Refusal::kNone);
+      const Refusal refusal = WhyNotArm(facts);
+      if (refusal != Refusal::kNone) return go(kIdle, refusal);
+      return go(facts.tests_power != 0 ? kTestingPump : kArmed, refusal);
+    }
     case kTestingPump:
     case kTestingRelay:
-    case kTestingPower:
-      if (request == RequestKind::kDisarm || request == RequestKind::kStop) {
-        return go(kIdle, Refusal::kNone);
-      }
-      if (shutting_down || facts.at_rest == 0) return go(kIdle, not_here);
-      return go(facts.power_follows != 0 ? AfterTest(status.state) : status.state, not_here);
+    case kTestingPower: {
+      const bool ends = request == RequestKind::kDisarm || request == RequestKind::kStop;
+      return go(NextInTest(status.state, facts), ends ? Refusal::kNone : not_here);
+    }
     case kArmed:
       if (request == RequestKind::kDisarm) return go(kDisarming, Refusal::kNone);
       if (shutting_down) {
@@ -140,11 +163,9 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       }
       if (request != RequestKind::kRun) return go(kArmed, not_here);
       return facts.drives_on != 0 ? go(kRunning, Refusal::kNone) : go(kArmed, Refusal::kDrivesOff);
-    case kRunning: {
+    case kRunning:
       if (request == RequestKind::kStop) return go(kStopping, Refusal::kNone);
-      const bool ends = facts.experiment_done != 0 || shutting_down;
-      return go(ends ? kStopping : kRunning, not_here);
-    }
+      return go(facts.experiment_done != 0 || shutting_down ? kStopping : kRunning, not_here);
     case kStopping: {
       const Refusal refusal = request == RequestKind::kStop ? Refusal::kNone : not_here;
       if (facts.at_rest != 0) return go(kArmed, refusal);
