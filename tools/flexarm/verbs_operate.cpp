@@ -65,6 +65,44 @@ void PrintCounters(const Json& bus) {
   if (!text.empty()) std::printf("               %s\n", text.c_str());
 }
 
+// Of the computer: threads, buses, log.
+void PrintHealth(const Json& s) {
+  if (s.contains("timing") && s["timing"].is_object()) {
+    const Json& timing = s["timing"];
+    std::printf(
+        "late threads   safety %u times, worst %.1f ms; deadlines missed in a row %u times, "
+        "often %u times; %s\n",
+        timing.value("safety_overruns", 0U), timing.value("safety_worst_ms", 0.0),
+        timing.value("deadlines_missed_in_a_row", 0U), timing.value("deadlines_often_missed", 0U),
+        timing.value("trips", true) ? "each trips" : "simulated arm: no trip");
+  }
+  for (const Json& bus : s.value("buses", Json::array())) {
+    std::printf(
+        "%-14s %s, %u failed exchanges, recovered %u times, longest exchange %.1f of %.1f "
+        "ms, %u longer%s%s\n",
+        bus.value("name", "").c_str(), bus.value("ok", false) ? "ok" : "lost",
+        bus.value("failed", 0U), bus.value("recovered", 0U), bus.value("longest_ms", 0.0),
+        bus.value("declared_ms", 0.0), bus.value("slow", 0U), bus["fault"].is_string() ? "; " : "",
+        bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
+    PrintCounters(bus);
+  }
+  if (const auto dropped = s.value("log_records_dropped", std::uint64_t{0}); dropped != 0) {
+    std::printf("log            %llu records dropped: the recorder was too slow\n",
+                static_cast<unsigned long long>(dropped));
+  }
+  for (const Json& thread : s.value("threads", Json::array())) {
+    std::printf(
+        "%-14s %llu activations, %llu missed deadlines, %llu skipped periods, worst lateness %.0f "
+        "us\n",
+        thread.value("name", "").c_str(),
+        static_cast<unsigned long long>(thread.value("activations", std::uint64_t{0})),
+        static_cast<unsigned long long>(thread.value("missed_deadlines", std::uint64_t{0})),
+        static_cast<unsigned long long>(thread.value("skipped_periods", std::uint64_t{0})),
+        thread.value("worst_lateness_us", 0.0));
+  }
+}
+
+// Of the arm.
 void PrintStatus(const Json& s) {
   std::printf("state          %s\n", s.value("state", "-").c_str());
   for (const Json& given : s.value("overrides", Json::array())) {
@@ -118,39 +156,6 @@ void PrintStatus(const Json& s) {
     }
     std::printf("\n");
   }
-  if (s.contains("timing") && s["timing"].is_object()) {
-    const Json& timing = s["timing"];
-    std::printf(
-        "late threads   safety %u times, worst %.1f ms; deadlines missed in a row %u times, "
-        "often %u times; %s\n",
-        timing.value("safety_overruns", 0U), timing.value("safety_worst_ms", 0.0),
-        timing.value("deadlines_missed_in_a_row", 0U), timing.value("deadlines_often_missed", 0U),
-        timing.value("trips", true) ? "each trips" : "simulated arm: no trip");
-  }
-  for (const Json& bus : s.value("buses", Json::array())) {
-    std::printf(
-        "%-14s %s, %u failed exchanges, recovered %u times, longest exchange %.1f of %.1f "
-        "ms, %u longer%s%s\n",
-        bus.value("name", "").c_str(), bus.value("ok", false) ? "ok" : "lost",
-        bus.value("failed", 0U), bus.value("recovered", 0U), bus.value("longest_ms", 0.0),
-        bus.value("declared_ms", 0.0), bus.value("slow", 0U), bus["fault"].is_string() ? "; " : "",
-        bus["fault"].is_string() ? bus["fault"].get<std::string>().c_str() : "");
-    PrintCounters(bus);
-  }
-  if (const auto dropped = s.value("log_records_dropped", std::uint64_t{0}); dropped != 0) {
-    std::printf("log            %llu records dropped: the recorder was too slow\n",
-                static_cast<unsigned long long>(dropped));
-  }
-  for (const Json& thread : s.value("threads", Json::array())) {
-    std::printf(
-        "%-14s %llu activations, %llu missed deadlines, %llu skipped periods, worst lateness %.0f "
-        "us\n",
-        thread.value("name", "").c_str(),
-        static_cast<unsigned long long>(thread.value("activations", std::uint64_t{0})),
-        static_cast<unsigned long long>(thread.value("missed_deadlines", std::uint64_t{0})),
-        static_cast<unsigned long long>(thread.value("skipped_periods", std::uint64_t{0})),
-        thread.value("worst_lateness_us", 0.0));
-  }
 }
 
 int Status(const OperateOptions& options) {
@@ -161,6 +166,7 @@ int Status(const OperateOptions& options) {
     } else {
       if (options.watch) std::printf("\033[H\033[2J");
       PrintStatus(answer);
+      PrintHealth(answer);
     }
     std::cout.flush();
     std::fflush(stdout);
