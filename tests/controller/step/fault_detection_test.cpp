@@ -105,6 +105,21 @@ TEST_F(FaultDetectionTest, ASampleWithoutStrainIsNoEvidenceOfRest) {
   EXPECT_GE(samples, 2 * (needed - 1));
 }
 
+// Slower than the limits of rest, with every second sample lost: the rates are per time, not per
+// complete sample, of which there are half as many. At 0.7 of the limit the difference would show.
+TEST_F(FaultDetectionTest, ALostSampleDoesNotMakeTheArmFaster) {
+  Facts moving, lost = WithoutCounter(0);
+  bool at_rest = false;
+  for (int k = 0; k < 200; ++k) {
+    const double t = k * kPeriod_s;
+    moving.modes.root_strain[0] = 0.7 * config_.safety.rest_strain_rate_per_s * t;
+    moving.counters.angle_rad[1] = moving.counters.angle_rad[3] =
+        0.7 * config_.safety.rest_hub_rate_rad_s * t;
+    at_rest = monitor_.Judge(k % 2 == 0 ? moving.Now() : lost.Now()).at_rest;
+  }
+  EXPECT_TRUE(at_rest);
+}
+
 TEST_F(FaultDetectionTest, SoftLimitsTripInTheSameSample) {
   for (const double sign : {1.0, -1.0}) {
     Facts facts;
