@@ -48,6 +48,11 @@ class SafetyLines {
 
   /// Outputs that hold from `now_ns` on.
   virtual Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept = 0;
+
+  /// Both outputs off for good: no later Write switches one on, and one that is under way in
+  /// another thread is undone by a second call. For a process that is about to end. The only call
+  /// that any thread may make, also from a signal handler: no lock, no heap.
+  virtual void HoldOff() noexcept = 0;
 };
 
 }  // namespace flexarm

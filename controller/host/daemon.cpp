@@ -1,8 +1,6 @@
 #include "controller/host/daemon.h"
 
 #include <cmath>
-#include <csignal>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,12 +10,15 @@
 #include "controller/design/run_design.h"
 #include "controller/host/arm_verdicts.h"
 #include "controller/host/check_host.h"
+#include "controller/host/crash_handler.h"
 #include "controller/host/journal.h"
 #include "controller/host/run_info.h"
 #include "controller/host/service_manager.h"
+#include "controller/host/signal_effects.h"
 #include "controller/latch/trip_latch.h"
 #include "controller/law/design.h"
 #include "controller/operator/operator_task.h"
+#include "controller/realtime/alternate_stack.h"
 #include "controller/realtime/clock.h"
 #include "controller/realtime/lockstep_task.h"
 #include "controller/realtime/realtime_executor.h"
@@ -38,26 +39,6 @@ constexpr std::int64_t kEpochLeadNs = 500'000'000;
 constexpr std::size_t kEventDepth = 256;
 constexpr std::size_t kTimingDepth = 4'000;  // 60 s of the control task
 constexpr int kHighestPriority = SafetyTask::kPriority;
-
-/// The signals that end the daemon in order: also the end of its terminal, unless nohup(1) asked to
-/// survive that.
-sigset_t BlockEndSignals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  struct sigaction hang_up{};
-  const bool survives = sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler == SIG_IGN;
-  if (!survives) sigaddset(&signals, SIGHUP);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // inherited by every thread started later
-  return signals;
-}
-
-/// True if one of `signals` arrived within the time.
-bool EndSignal(const sigset_t& signals, std::int64_t wait_ns) {
-  const timespec wait{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
-  return sigtimedwait(&signals, nullptr, &wait) > 0;
-}
 
 std::vector<TaskStatistics> Statistics(const RealtimeExecutor& executor) {
   std::vector<TaskStatistics> all;
@@ -100,6 +81,8 @@ Backend MakeBackend(const DaemonOptions& options, const Design& design) {
   return backend;
 }
 
+void HoldLinesOff(void* stack) noexcept { static_cast<LoopStack*>(stack)->HoldLinesOff(); }
+
 /// The daemon's parts, in order of construction.
 class Daemon {
  public:
@@ -108,6 +91,7 @@ class Daemon {
         design_(DesignFor(options.config)),
         verdict_(JudgeDesign(options.config, design_)),
         backend_(MakeBackend(options, design_)),
+        crash_handler_({.call = HoldLinesOff, .context = backend_.stack.get()}),
         events_(kEventDepth),
         timing_(kTimingDepth),
         latch_(options.config.daemon.state_directory,
@@ -135,7 +119,7 @@ class Daemon {
   void PrepareHost();
   void RestoreTrip();
   void AddLoop();
-  void Wait(const sigset_t& signals);
+  void Wait(const EndSignals& signals);
   void ReportThreads();
 
   const DaemonOptions& options_;
@@ -144,6 +128,7 @@ class Daemon {
   Design design_;
   DesignVerdict verdict_;
   Backend backend_;
+  CrashHandler crash_handler_;
   EventQueue events_;
   SpscQueue<TimingRecord> timing_;
   TripLatch latch_;
@@ -209,7 +194,7 @@ DaemonResult Daemon::Run() {
   journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " +
                 options_.config.rig_name + ", backend " + options_.config.backend);
   ReportDesign();
-  const sigset_t signals = BlockEndSignals();
+  const EndSignals signals;
   PrepareHost();
   RestoreTrip();
   journal_.Start();
@@ -244,12 +229,12 @@ void Daemon::AddLoop() {
   }
 }
 
-void Daemon::Wait(const sigset_t& signals) {
+void Daemon::Wait(const EndSignals& signals) {
   constexpr std::int64_t kLookNs = 50'000'000;
   const std::int64_t end_ns =
       options_.run_for_s ? MonotonicNow() + std::llround(*options_.run_for_s * 1e9) : INT64_MAX;
   while (!operator_.done()) {
-    if (EndSignal(signals, kLookNs) || MonotonicNow() >= end_ns) operator_.RequestShutdown();
+    if (signals.Await(kLookNs) || MonotonicNow() >= end_ns) operator_.RequestShutdown();
   }
 }
 
@@ -267,7 +252,8 @@ void Daemon::ReportThreads() {
 }  // namespace
 
 DaemonResult RunDaemon(const DaemonOptions& options) {
-  std::signal(SIGPIPE, SIG_IGN);  // the reader of stderr may go away; the loop goes on
+  IgnoreOtherSignals();
+  const AlternateStack stack;
   return Daemon(options).Run();
 }
 

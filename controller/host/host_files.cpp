@@ -65,7 +65,7 @@ std::string HostFiles::Resolve(const std::string& path) const {
   const std::filesystem::path root = std::filesystem::canonical(root_, error);
   const std::filesystem::path found = std::filesystem::canonical(At(path), error);
   if (error) return {};
-  return "/" + found.lexically_relative(root).string();
+  return (std::filesystem::path("/") / found.lexically_relative(root)).string();
 }
 
 std::optional<std::vector<int>> NumbersOfList(const std::string& text) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "controller/realtime/alternate_stack.h"
 #include "controller/realtime/clock.h"
 #include "controller/realtime/float_environment.h"
 #include "controller/realtime/wakeup.h"
@@ -122,6 +123,7 @@ void RealtimeExecutor::StartThread(Thread& thread) {
 void* RealtimeExecutor::Main(void* argument) noexcept {
   auto& thread = *static_cast<Thread*>(argument);
   NameThisThread(thread.traits.name);
+  const AlternateStack alternate_stack;
   prctl(PR_SET_TIMERSLACK, 1UL);
   PrefaultStack();
   const FlushDenormals flush;

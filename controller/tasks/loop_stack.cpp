@@ -34,7 +34,8 @@ std::optional<DriveVoltageTimes> VoltageOf(const RigConfig& config) {
 }  // namespace
 
 LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWiring& wiring)
-    : late_threads_trip_(wiring.metal_moves),
+    : lines_(wiring.lines),
+      late_threads_trip_(wiring.metal_moves),
       requests_(kOperatorDepth),
       answers_(kOperatorDepth),
       tick_records_(kTickDepth),

@@ -98,6 +98,10 @@ class LoopStack {
   /// Any thread, at once: the safety task stops the arm, disarms it and starts nothing more.
   void RequestShutdown() noexcept { shutting_down_.store(true, std::memory_order_release); }
 
+  /// Relay and charge pump off for good, for a process that is about to end: SafetyLines::HoldOff.
+  /// Any thread, also in a signal handler.
+  void HoldLinesOff() noexcept { lines_->HoldOff(); }
+
   // For the recorder: one thread. Any thread may ask how many records were dropped.
   SpscQueue<TickRecord>& tick_records() { return tick_records_; }
   SpscQueue<SafetyRecord>& safety_records() { return safety_records_; }
@@ -108,6 +112,7 @@ class LoopStack {
   ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
   CalibrationChannel calibrations_{Calibration{}};
   TimingChannel timing_{TimingCounts{}};
+  SafetyLines* lines_;
   bool late_threads_trip_;
   SpscQueue<OperatorRequest> requests_;
   LatchedRequest stop_, disarm_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "controller/exchange/history.h"
@@ -26,14 +27,19 @@ class SimulatedLines final : public SafetyLines {
   }
 
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
-    history_.Push(now_ns, outputs);
+    constexpr Outputs kOff{.relay_closed = false, .pump_level = false};
+    history_.Push(now_ns, held_off_.load() ? kOff : outputs);
     channel_->Publish(history_);
     return {};
   }
 
+  /// The lines end with the process; until then every Write is off.
+  void HoldOff() noexcept override { held_off_.store(true); }
+
  private:
   LevelChannel* levels_;
   OutputChannel* channel_;
+  std::atomic<bool> held_off_{false};
   OutputHistory history_{Outputs{.relay_closed = false, .pump_level = false}};
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,13 +44,21 @@ class GpioRequest {
   /// The level of each input, 0 or 1, in the order of InputsOf. False if they cannot be read.
   bool Read(std::array<int, kMostGpioInputs>* levels) noexcept;
 
-  /// Sets both outputs, 0 or 1. False if they cannot be set.
+  /// Sets both outputs, 0 or 1; 0 after HoldOff. False if they cannot be set.
   bool Write(int relay, int pump) noexcept;
+
+  /// SafetyLines::HoldOff. Writing is one ioctl in both generations of the library, without lock or
+  /// heap, so a signal handler may do it beside the safety thread.
+  void HoldOff() noexcept {
+    held_off_.store(true);
+    static_cast<void>(Write(0, 0));
+  }
 
  private:
   struct Handles;
   std::unique_ptr<Handles> handles_;
   std::string chip_name_;
+  std::atomic<bool> held_off_{false};
 };
 
 /// Name of an output line in messages, by its index.

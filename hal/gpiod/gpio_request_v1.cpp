@@ -86,7 +86,8 @@ bool GpioRequest::Read(std::array<int, kMostGpioInputs>* levels) noexcept {
 }
 
 bool GpioRequest::Write(int relay, int pump) noexcept {
-  const std::array<int, 2> values = {relay, pump};
+  const bool off = held_off_.load();
+  const std::array<int, 2> values = {off ? 0 : relay, off ? 0 : pump};
   return gpiod_line_set_value_bulk(&handles_->outputs, values.data()) == 0;
 }
 

@@ -146,7 +146,9 @@ bool GpioRequest::Read(std::array<int, kMostGpioInputs>* levels) noexcept {
 }
 
 bool GpioRequest::Write(int relay, int pump) noexcept {
-  const std::array<gpiod_line_value, 2> values = {ValueOf(relay), ValueOf(pump)};
+  const bool off = held_off_.load();
+  const std::array<gpiod_line_value, 2> values = {ValueOf(off ? 0 : relay),
+                                                  ValueOf(off ? 0 : pump)};
   return gpiod_line_request_set_values(handles_->outputs, values.data()) == 0;
 }
 

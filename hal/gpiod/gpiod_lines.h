@@ -20,6 +20,7 @@ class GpiodLines final : public SafetyLines {
 
   Reading Read(std::int64_t now_ns) noexcept override;
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override;
+  void HoldOff() noexcept override { request_.HoldOff(); }
 
   /// Name of the chip in the kernel: "gpiochip0".
   const std::string& chip_name() const noexcept { return request_.chip_name(); }

@@ -18,6 +18,7 @@ class TimedLines final : public SafetyLines {
 
   Reading Read(std::int64_t now_ns) noexcept override;
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override;
+  void HoldOff() noexcept override { lines_->HoldOff(); }
 
  private:
   std::unique_ptr<SafetyLines> lines_;

@@ -1,11 +1,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "controller/host/crash_handler.h"
 #include "hal/bus_device.h"
 #include "hal/gpiod/gpio_request.h"
 #include "hal/gpiod/gpiod_lines.h"
@@ -147,6 +151,27 @@ TEST_F(GpioInGuest, RelayAndPumpStartLowAndDriveTheirOwnLines) {
   EXPECT_EQ(chip_.LevelOf(6) + chip_.LevelOf(7), "01");
   EXPECT_TRUE(lines.Write(0, {.relay_closed = true, .pump_level = true}).ok);
   EXPECT_EQ(chip_.LevelOf(6) + chip_.LevelOf(7), "11");
+}
+
+// A kernel may leave the lines of a dead process as they were. Here this process holds them, too,
+// so the death of the other one does not release them: only its crash handler can have set them
+// low.
+TEST_F(GpioInGuest, ACrashSetsRelayAndPumpLowBeforeTheProcessEnds) {
+  GpiodLines lines(chip_.Config());
+  ASSERT_TRUE(lines.Write(0, {.relay_closed = true, .pump_level = true}).ok);
+  ASSERT_EQ(chip_.LevelOf(6) + chip_.LevelOf(7), "11");
+  const pid_t crashing = fork();
+  if (crashing == 0) {
+    const CrashHandler handler(
+        {.call = [](void* held) noexcept { static_cast<GpiodLines*>(held)->HoldOff(); },
+         .context = &lines});
+    raise(SIGSEGV);
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(crashing, &status, 0), crashing);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV) << status;
+  EXPECT_EQ(chip_.LevelOf(6) + chip_.LevelOf(7), "00");
 }
 
 TEST_F(GpioInGuest, OutputsDoNotDisturbInputs) {

@@ -104,7 +104,8 @@ int Main(int argc, char** argv) {
       "As a service: systemctl start flexarmd.\n"
       "Hardware in the loop: flexarmd --config config/hil.toml\n"
       "                      --experiment config/experiments/square-30deg.toml\n"
-      "SIGTERM, SIGINT or SIGHUP brings the arm to rest, disarms it, closes the log and ends.\n"
+      "SIGTERM, SIGINT, SIGQUIT or SIGHUP brings the arm to rest, disarms it, closes the log and "
+      "ends.\n"
       "Exit codes: 0 done; 1 tripped, refused, or a log could not be written; 2 bad input.");
   try {
     app.parse(argc, argv);

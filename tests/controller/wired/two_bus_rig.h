@@ -112,6 +112,7 @@ class ClosedLines final : public SafetyLines {
     relay = outputs.relay_closed;
     return {};
   }
+  void HoldOff() noexcept override { relay = false; }
 
   LineLevels levels = kHealthyLevels;
   bool relay = false;

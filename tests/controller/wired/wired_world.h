@@ -42,6 +42,7 @@ class WorldLines final : public SafetyLines {
     pump_ = outputs.pump_level;
     return write;
   }
+  void HoldOff() noexcept override { write.ok = relay = false; }
   bool PowerOn(std::int64_t now_ns) const {
     const bool pumped = now_ns - pump_toggled_ns_ <= SafetyLines::kPumpTimeoutNs;
     return (relay || welded) && (pumped || pump_stuck);

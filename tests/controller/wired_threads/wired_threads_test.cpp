@@ -48,6 +48,7 @@ class AtomicLines final : public SafetyLines {
     relay.store(outputs.relay_closed);
     return {};
   }
+  void HoldOff() noexcept override { relay.store(false); }
 
   std::atomic<LineLevels> levels{kHealthyLevels};
   std::atomic<bool> relay{false};

@@ -169,6 +169,21 @@ kill -TERM $daemon
 wait $daemon
 stop_rig
 
+echo "== the daemon crashes during a run"
+start_rig
+start_daemon
+start_run
+sleep 1
+check "the relay is closed" equal "$(hardware | jq -c '.[1:]')" '[true,true]'
+kill -SEGV $daemon
+wait $daemon
+check "flexarmd ends by the signal" equal $? $((128 + 11))
+check "it has taken the power away" grep -q \
+  "flexarmd: SIGSEGV in thread '.*': relay and charge pump are off, the daemon ends" daemon.log
+sleep 0.2 # as below
+check "the hardware has no power" equal "$(hardware)" "$dead"
+stop_rig
+
 echo "== the daemon is killed during a run"
 start_rig
 start_daemon

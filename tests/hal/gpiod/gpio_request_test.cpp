@@ -126,6 +126,15 @@ TEST_F(GpioRequestTest, RelayAndPumpAreLowBeforeAndAfter) {
   EXPECT_EQ(TheChip().output[6] + TheChip().output[7], 0);
 }
 
+TEST_F(GpioRequestTest, LinesThatAreHeldOffStayLowWhateverIsWritten) {
+  GpiodLines lines(config_);
+  EXPECT_TRUE(lines.Write(0, {.relay_closed = true, .pump_level = true}).ok);
+  lines.HoldOff();
+  EXPECT_EQ(TheChip().output[6] + TheChip().output[7], 0);
+  EXPECT_TRUE(lines.Write(0, {.relay_closed = true, .pump_level = true}).ok);
+  EXPECT_EQ(TheChip().output[6] + TheChip().output[7], 0);
+}
+
 TEST_F(GpioRequestTest, AHeldLineIsRefusedWithItsHolder) {
   TheChip().held[6] = true;
   EXPECT_THAT(Refusal(), HasSubstr("relay = line 6 is held by another-program"));

@@ -33,12 +33,14 @@ class SlowLines final : public SafetyLines {
     closed_or_toggled = closed_or_toggled || outputs.relay_closed || outputs.pump_level;
     return {.ok = writes};
   }
+  void HoldOff() noexcept override { held_off = true; }
 
   std::int64_t read_takes_ns = 10'000, write_takes_ns = 20'000;
   int slow_reads = 0;
   bool reads = true, writes = true;
   std::int64_t read_at_ns = -1, written_at_ns = -1;
   bool closed_or_toggled = false;
+  bool held_off = false;
 };
 
 class TimedLinesTest : public testing::Test {
@@ -69,6 +71,11 @@ TEST_F(TimedLinesTest, EachCallSaysHowLongItTookAndWhetherItSucceeded) {
   EXPECT_EQ(timed_.Read(9).call.took_ns, 50'000'000);
   EXPECT_FALSE(timed_.Read(9).call.ok);
   EXPECT_FALSE(timed_.Write(9, {}).ok);
+}
+
+TEST_F(TimedLinesTest, HoldOffReachesTheLines) {
+  timed_.HoldOff();
+  EXPECT_TRUE(chip_->held_off);
 }
 
 TEST_F(TimedLinesTest, LinesThatAnswerInTimeAreAccepted) {
