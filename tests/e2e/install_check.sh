@@ -2,7 +2,8 @@
 # Installs into an empty folder and checks the installed files. usage: install_check.sh BUILD_FOLDER
 set -euo pipefail
 
-build=$1
+build=$(realpath "$1")
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 machine=$(mktemp -d)
 trap 'rm -rf "$machine"' EXIT
 
@@ -32,6 +33,23 @@ while read -r config; do
 done < <(find "$(dirname "$hil")" -maxdepth 1 -name '*.toml')
 "$flexarm" simulate -c "$hil" --json >/dev/null || fail "the installed config does not simulate"
 "$flexarm" modes -c "$hil" --json >/dev/null || fail "the installed flexarm does not find flexarm-study"
+
+# Experiments bring the files that they name.
+while read -r experiment; do
+  "$flexarm" simulate -c "$hil" --experiment "$experiment" --json >/dev/null ||
+    fail "$experiment is installed and does not run"
+done < <(find . -path '*/share/flexarm/*' -name trajectory.toml)
+[[ -n $(find . -path '*/share/flexarm/*' -name trajectory.csv) ]] || fail "trajectory.csv is not installed"
+
+python3 "$here/installed_links.py" "$machine" || fail "a link of an installed page leads nowhere"
+
+for group in flexarm flexarm-view; do
+  grep -qE "^[ug] $group " "$(find . -path '*/sysusers.d/flexarm.conf')" || fail "no group $group"
+done
+rules=$(find . -path '*/udev/rules.d/60-flexarm.rules')
+for device in gpiochip comedi ttyUSB latency_timer cpu_dma_latency; do
+  grep -q "^[^#]*$device" "$rules" || fail "no udev rule for $device"
+done
 
 unit=$(find . -name flexarmd.service)
 [[ -n $unit ]] || fail "no service is installed"
@@ -64,6 +82,7 @@ if command -v systemd-analyze >/dev/null; then
   said=$(systemd-analyze verify --man=no verify/*.service 2>&1) || fail "the unit: $said"
   # Ignored settings give exit code 0. Messages about other units of this machine are skipped.
   if grep -E "flexarm(d|-awake)[.]service" <<<"$said"; then fail "systemd ignores a part of the unit"; fi
+  python3 "$here/exposure.py" "$machine" || fail "the unit leaves too much exposed"
 else
   echo "systemd-analyze is not installed: the unit was not verified"
 fi
