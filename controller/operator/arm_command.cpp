@@ -106,7 +106,6 @@ nlohmann::json ArmCommand::Decide(const Waiting& command, const OperatorSnapshot
   const ConditionDecision decision = Judge(unmet, command.overrides);
   if (decision.refused != nullptr) {
     if (state != SafetyState::kIdle) return Refused(Refusal::kWrongState, state);
-    targets_.report(true, "arm: refused: " + decision.refused->found);
     return Refused(*decision.refused, state);
   }
   const RequestTracker::Asked asked =

@@ -47,6 +47,9 @@ class ArmCommand {
   /// A stop or a disarm came: the command that waits for its check is refused by the next Follow.
   void Cancel() { cancelled_ = waits_.has_value(); }
 
+  /// A command waits for its check.
+  bool waits() const { return waits_.has_value(); }
+
   /// Why the design alone forbids an arm request, with the remedy; "" if it does not. For a run
   /// without a person.
   std::string WhyNotUnattended() const;

@@ -1,12 +1,12 @@
 #include "controller/operator/command_dispatch.h"
 
-#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "controller/operator/command_text.h"
+#include "controller/operator/operator_roles.h"
 #include "controller/operator/request_answers.h"
 #include "hal/line_names.h"
 
@@ -17,14 +17,6 @@ nlohmann::json Failure(const std::string& error, const std::string& remedy) {
   return {{"ok", false}, {"error", error}, {"remedy", remedy}};
 }
 
-// A refusal that the operator task gives without the safety task.
-nlohmann::json Refused(RequestKind kind, Refusal refusal, SafetyState state) {
-  nlohmann::json json = RefusalJson(kind, refusal, state);
-  json["command"] = ToString(kind);
-  json["state"] = ToString(state);
-  return json;
-}
-
 // Those that the safety task alone judges.
 std::optional<RequestKind> RequestByName(const std::string& name) {
   for (const RequestKind kind : {RequestKind::kStop, RequestKind::kDisarm, RequestKind::kReset}) {
@@ -33,39 +25,65 @@ std::optional<RequestKind> RequestByName(const std::string& name) {
   return std::nullopt;
 }
 
+// Commands after which the arm may move, at once or later.
+bool AddsEnergy(const std::string& name) {
+  return name == "arm" || name == "run" || name == "pluck" || name == "home";
+}
+
 }  // namespace
 
 CommandDispatch::CommandDispatch(Targets targets) : targets_(std::move(targets)) {}
 
-nlohmann::json CommandDispatch::Answer(int client, const std::string& line,
+nlohmann::json CommandDispatch::Answer(int client, const Peer& by, const std::string& line,
                                        const OperatorSnapshot& now) {
+  const std::optional<nlohmann::json> command = ParseCommand(line);
+  const std::string name = command ? std::string((*command)["command"]) : std::string();
+  targets_.record->Asked(client, by, name);
+  nlohmann::json answer;
   try {
-    return Dispatch(client, line, now);
+    answer = command ? Dispatch(client, by, *command, now)
+                     : Failure("not a command: expected a line like {\"command\": \"status\"}",
+                               "use the flexarm program");
   } catch (const std::exception& error) {
-    return {{"ok", false}, {"error", error.what()}};
+    answer = {{"ok", false}, {"error", error.what()}};
   }
+  if (answer.is_null()) return answer;
+  if (command) answer["command"] = name;
+  answer["state"] = ToString(now.permit.state);
+  return answer;
 }
 
-nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
+nlohmann::json CommandDispatch::Dispatch(int client, const Peer& by, const nlohmann::json& command,
                                          const OperatorSnapshot& now) {
-  const std::optional<nlohmann::json> parsed = ParseCommand(line);
-  if (!parsed) {
-    return Failure("not a command: expected a line like {\"command\": \"status\"}",
-                   "use the flexarm program");
-  }
-  const nlohmann::json& command = *parsed;
   const std::string name = command["command"];
+  if (!Permits(by.role, name)) return NotPermittedJson(by, name);
   if (name == "status") return targets_.status();
   if (now.shutting_down && name != "stop" && name != "disarm") {
-    return {{"ok", false},
-            {"refusal", ToString(Refusal::kShuttingDown)},
-            {"error", RefusalText(RequestKind::kNone, Refusal::kShuttingDown, now.permit.state)},
-            {"command", name},
-            {"state", ToString(now.permit.state)}};
+    return RefusalJson(RequestKind::kNone, Refusal::kShuttingDown, now.permit.state);
   }
-  if (name == "sim") return SetLine(command, now.permit.state);
+  nlohmann::json held = targets_.lease->Judge(now.now_ns, by, command, now.permit.state);
+  if (!held.is_null()) return held;
+  if (const std::string job = JobUnderWay(); AddsEnergy(name) && !job.empty()) {
+    return {{"ok", false},
+            {"refusal", ToString(Refusal::kBusy)},
+            {"error", job + " is under way"},
+            {"remedy", "repeat the command after its end, or stop it"}};
+  }
+  return Start(name, client, command, now);
+}
+
+std::string CommandDispatch::JobUnderWay() const {
+  if (targets_.arm->waits()) return "an arm";
+  if (targets_.run->planning()) return "the planning of a run";
+  if (targets_.requests->busy()) return "an arm, run or reset";
+  return targets_.commissioning->busy() ? "a command of commissioning" : "";
+}
+
+nlohmann::json CommandDispatch::Start(const std::string& name, int client,
+                                      const nlohmann::json& command, const OperatorSnapshot& now) {
+  if (name == "sim") return SetLine(command);
   if (name == "arm") return targets_.arm->Start(command, client, now);
-  if (name == "run") return StartRun(command, client, now);
+  if (name == "run") return targets_.run->Start(command, client, now);
   if (name == "prove-switches") {
     targets_.switches->Start(client, now.permit.state);
     return nullptr;
@@ -75,17 +93,20 @@ nlohmann::json CommandDispatch::Dispatch(int client, const std::string& line,
     return nullptr;
   }
   if (const std::optional<RequestKind> kind = RequestByName(name)) {
-    if (*kind != RequestKind::kReset) targets_.arm->Cancel();
+    if (*kind != RequestKind::kReset) {
+      targets_.arm->Cancel();
+      targets_.run->Cancel();
+    }
     const RequestTracker::Asked asked = targets_.requests->Ask(*kind, now.now_ns, client);
     if (asked.number != 0) return nullptr;
-    return Refused(*kind, asked.refusal, now.permit.state);
+    return RefusalJson(*kind, asked.refusal, now.permit.state);
   }
   return Failure("no such command: '" + name + "'",
                  "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
                  "home, prove-switches, sim");
 }
 
-nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command, SafetyState state) {
+nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command) {
   const std::optional<Line> line = LineByName(TextOf(command, "line", ""));
   const auto given = command.find("level");
   const bool whole = given != command.end() && given->is_number_integer();
@@ -100,41 +121,7 @@ nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command, SafetySta
   }
   targets_.report(
       false, std::string("simulated line ") + ToString(*line) + " set to " + std::to_string(level));
-  return {{"ok", true},
-          {"command", "sim"},
-          {"state", ToString(state)},
-          {"line", ToString(*line)},
-          {"level", level}};
-}
-
-nlohmann::json CommandDispatch::StartRun(const nlohmann::json& command, int client,
-                                         const OperatorSnapshot& now) {
-  const SafetyState state = now.permit.state;
-  if (targets_.requests->busy()) return Refused(RequestKind::kRun, Refusal::kBusy, state);
-  if (state != SafetyState::kArmed) {
-    return Refused(RequestKind::kRun, Refusal::kWrongState, state);
-  }
-  if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
-    return Failure(why, "then run");
-  }
-  const std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
-  const ConditionDecision decision = Judge(unmet, OverridesOf(command, {kSwitchesCondition}));
-  if (decision.refused != nullptr) {
-    return {{"ok", false},
-            {"refusal", decision.refused->refusal},
-            {"error", decision.refused->found},
-            {"remedy", decision.refused->remedy},
-            {"command", "run"},
-            {"state", ToString(state)}};
-  }
-  const std::string name = TextOf(command, "name", "experiment");
-  const std::array<double, kCounters>& angle_rad = now.tick.output.angle_rad;
-  const std::uint32_t number = targets_.experiments->AskForRun(
-      now.now_ns, client,
-      targets_.experiments->Plan(targets_.parse_experiment(TextOf(command, "experiment", ""), name),
-                                 {angle_rad[0], angle_rad[1]}));
-  targets_.overrides->Asked(number, decision.used);
-  return nullptr;
+  return {{"ok", true}, {"line", ToString(*line)}, {"level", level}};
 }
 
 }  // namespace flexarm

@@ -5,13 +5,14 @@
 #include <string>
 
 #include "controller/operator/arm_command.h"
+#include "controller/operator/command_record.h"
 #include "controller/operator/commissioning_commands.h"
-#include "controller/operator/experiment_loader.h"
 #include "controller/operator/journal_report.h"
+#include "controller/operator/lease.h"
 #include "controller/operator/operator_snapshot.h"
-#include "controller/operator/override_record.h"
 #include "controller/operator/prove_switches.h"
 #include "controller/operator/request_tracker.h"
+#include "controller/operator/run_command.h"
 #include "controller/tasks/loop_stack.h"
 
 namespace flexarm {
@@ -26,27 +27,34 @@ class CommandDispatch {
   struct Targets {
     LoopStack* stack;
     RequestTracker* requests;
-    ExperimentLoader* experiments;
     CommissioningCommands* commissioning;
     ProveSwitches* switches;
-    OverrideRecord* overrides;
     ArmCommand* arm;
+    RunCommand* run;
+    Lease* lease;
+    CommandRecord* record;
     std::function<nlohmann::json()> status;
-    /// Throws std::exception with the reasons.
-    std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
     JournalReport report;
   };
 
   explicit CommandDispatch(Targets targets);
 
-  /// Never throws for a bad command: the answer says what is wrong.
+  /// Never throws for a bad command: the answer says what is wrong, and has the state. The command
+  /// is in the record.
+  /// @param by  who gave it
   /// @returns null: the answer comes when the safety task, or the commissioner, has given it
-  nlohmann::json Answer(int client, const std::string& line, const OperatorSnapshot& now);
+  nlohmann::json Answer(int client, const Peer& by, const std::string& line,
+                        const OperatorSnapshot& now);
 
  private:
-  nlohmann::json Dispatch(int client, const std::string& line, const OperatorSnapshot& now);
-  nlohmann::json SetLine(const nlohmann::json& command, SafetyState state);
-  nlohmann::json StartRun(const nlohmann::json& command, int client, const OperatorSnapshot& now);
+  nlohmann::json Dispatch(int client, const Peer& by, const nlohmann::json& command,
+                          const OperatorSnapshot& now);
+  nlohmann::json SetLine(const nlohmann::json& command);
+  /// The job under way besides which no command may add energy; empty: none is.
+  std::string JobUnderWay() const;
+  /// Passes a command on that the role and the lease permit.
+  nlohmann::json Start(const std::string& name, int client, const nlohmann::json& command,
+                       const OperatorSnapshot& now);
 
   Targets targets_;
 };

@@ -42,6 +42,9 @@ class CommissioningCommands {
   /// @throws RejectedError if it cannot be done now, or makes no sense, or a request is in flight
   void Start(const nlohmann::json& command, int client, const OperatorSnapshot& now);
 
+  /// A command is under way.
+  bool busy() const { return commissioner_.busy(); }
+
   /// Why no experiment may run yet, and what to do; empty: it may.
   std::string WhyNoRun() const { return commissioner_.WhyNoRun(); }
 

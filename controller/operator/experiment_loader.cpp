@@ -5,10 +5,11 @@
 namespace flexarm {
 
 ExperimentLoader::Order ExperimentLoader::Plan(const Experiment& experiment,
-                                               const std::array<double, 2>& start_rad) const {
+                                               const std::array<double, 2>& start_rad,
+                                               const std::stop_token& stop) const {
   if (!stack_->simulated()) RefuseSimEvents(experiment);
   Order order{.planned = std::make_unique<PlannedExperiment>(experiment, *design_, grid_.period_s(),
-                                                             start_rad, limits_),
+                                                             start_rad, limits_, stop),
               .name = {},
               .text = {}};
   order.name = order.planned->accepted.name;

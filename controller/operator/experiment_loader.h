@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "controller/operator/request_tracker.h"
@@ -15,7 +16,8 @@ namespace flexarm {
 
 /// Plans experiments, asks for their runs, and keeps each until the loop no longer uses it.
 ///
-/// Not real-time safe: planning takes milliseconds and allocates. Thread: operator.
+/// Not real-time safe: planning takes milliseconds to seconds, and allocates. Thread: operator,
+/// but for Plan.
 class ExperimentLoader {
  public:
   /// A planned experiment for which a run is asked.
@@ -37,9 +39,14 @@ class ExperimentLoader {
         grid_(grid),
         limits_(limits) {}
 
-  /// Plans `experiment` from these hub angles, rad.
-  /// @throws RejectedError if it is impossible, or has simulated events and the rig is real
-  Order Plan(const Experiment& experiment, const std::array<double, 2>& start_rad) const;
+  /// Plans `experiment` from these hub angles, rad. Any thread.
+  /// @throws RejectedError if it is impossible, has simulated events and the rig is real, or a stop
+  ///         is requested meanwhile
+  Order Plan(const Experiment& experiment, const std::array<double, 2>& start_rad,
+             const std::stop_token& stop = {}) const;
+
+  /// AskForRun would be refused: another request is not answered yet.
+  bool busy() const { return requests_->busy(); }
 
   /// Asks the safety task for a run of it; `client` waits for the answer.
   /// @returns the number of the request and of its run; 0: the tracker is busy

@@ -4,14 +4,46 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 
 #include "controller/operator/unix_address.h"
 #include "controller/types/rejected_error.h"
 
 namespace flexarm {
+namespace {
+
+// Empty, or the system's error. A signal interrupts nothing.
+std::string SendAll(int fd, const std::string& text) {
+  for (std::size_t sent = 0; sent < text.size();) {
+    const ssize_t count = send(fd, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return std::strerror(errno);
+    sent += static_cast<std::size_t>(count);
+  }
+  return {};
+}
+
+// Whether there is something to read within the time, whatever signals come.
+bool Readable(int fd, double within_s) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end =
+      Clock::now() + std::chrono::milliseconds(std::llround(within_s * 1e3));
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
+    pollfd ready{.fd = fd, .events = POLLIN, .revents = 0};
+    const int count = poll(&ready, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
+    if (count > 0) return true;
+    if (count == 0 || errno != EINTR) return false;
+  }
+}
+
+}  // namespace
 
 std::string AskDaemon(const std::string& path, const std::string& line, double timeout_s) {
   const UnixAddress address(path);
@@ -23,22 +55,21 @@ std::string AskDaemon(const std::string& path, const std::string& line, double t
   if (connect(fd, address.get(), address.size()) != 0) {
     if (errno == EACCES) {
       fail(
-          "this user may not operate the arm (Permission denied): be a member of the socket's "
-          "group, which is flexarm for the service (adduser USER flexarm, and log in again)");
+          "this user may not operate the arm (Permission denied): be a member of the group flexarm "
+          "(adduser USER flexarm, and log in again)");
     }
     fail("no daemon answers (" + std::string(std::strerror(errno)) +
          "); start flexarmd, or name its socket with --socket or -c FILE");
   }
-  const std::string text = line + "\n";
-  if (send(fd, text.data(), text.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(text.size())) {
-    fail("the daemon did not take the command (" + std::string(std::strerror(errno)) + ")");
-  }
+  // Even if the daemon has closed it: then it has said why.
+  const std::string problem = SendAll(fd, line + "\n");
   std::string reply;
-  pollfd ready{.fd = fd, .events = POLLIN, .revents = 0};
   while (reply.find('\n') == std::string::npos) {
-    if (poll(&ready, 1, static_cast<int>(timeout_s * 1e3)) <= 0) fail("the daemon does not answer");
+    if (!Readable(fd, timeout_s)) fail("the daemon does not answer");
     std::array<char, 4096> chunk;
     const ssize_t count = recv(fd, chunk.data(), chunk.size(), 0);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0 && !problem.empty()) fail("the daemon did not take the command: " + problem);
     if (count <= 0) fail("the daemon closed the connection");
     reply.append(chunk.data(), static_cast<std::size_t>(count));
   }

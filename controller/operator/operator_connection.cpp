@@ -1,5 +1,6 @@
 #include "controller/operator/operator_connection.h"
 
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -10,26 +11,16 @@
 #include <utility>
 
 namespace flexarm {
-namespace {
 
-uid_t UserOf(int fd) {
-  ucred peer{};
-  socklen_t size = sizeof(peer);
-  const bool known = getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
-  return known ? peer.uid : static_cast<uid_t>(-1);
-}
-
-}  // namespace
-
-OperatorConnection::OperatorConnection(int fd, int number)
-    : fd_(fd), number_(number), uid_(UserOf(fd)) {}
+OperatorConnection::OperatorConnection(int fd, int number, Peer peer)
+    : fd_(fd), number_(number), peer_(std::move(peer)) {}
 
 OperatorConnection::~OperatorConnection() { Close(); }
 
 OperatorConnection::OperatorConnection(OperatorConnection&& other) noexcept
     : fd_(std::exchange(other.fd_, -1)),
       number_(other.number_),
-      uid_(other.uid_),
+      peer_(std::move(other.peer_)),
       received_(std::move(other.received_)),
       read_(other.read_),
       ended_(other.ended_),
@@ -41,7 +32,7 @@ OperatorConnection& OperatorConnection::operator=(OperatorConnection&& other) no
   Close();
   fd_ = std::exchange(other.fd_, -1);
   number_ = other.number_;
-  uid_ = other.uid_;
+  peer_ = std::move(other.peer_);
   received_ = std::move(other.received_);
   read_ = other.read_;
   ended_ = other.ended_;
@@ -53,6 +44,12 @@ OperatorConnection& OperatorConnection::operator=(OperatorConnection&& other) no
 bool OperatorConnection::over() const {
   if (fd_ < 0) return true;
   return ended_ && !HasLine() && (unanswered_ == 0 || quiet_polls_ > kLingerPolls);
+}
+
+bool OperatorConnection::CanBeReached() const {
+  if (fd_ < 0) return false;
+  pollfd end{.fd = fd_, .events = 0, .revents = 0};
+  return poll(&end, 1, 0) == 0;  // both directions closed: POLLHUP
 }
 
 std::optional<std::string> OperatorConnection::NextLine() {
@@ -93,10 +90,14 @@ void OperatorConnection::Reply(const std::string& line) {
 }
 
 void OperatorConnection::Dismiss(const std::string& reason) {
-  Send(nlohmann::json{{"ok", false},
-                      {"error", "the daemon closes this connection: " + reason},
-                      {"remedy", "connect again"}}
-           .dump());
+  CloseWith(nlohmann::json{{"ok", false},
+                           {"error", "the daemon closes this connection: " + reason},
+                           {"remedy", "connect again"}}
+                .dump());
+}
+
+void OperatorConnection::CloseWith(const std::string& line) {
+  Send(line);
   Close();
 }
 

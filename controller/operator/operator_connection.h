@@ -1,10 +1,10 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <optional>
 #include <string>
+
+#include "controller/operator/peer.h"
 
 namespace flexarm {
 
@@ -23,7 +23,7 @@ class OperatorConnection {
 
   /// @param fd      connected, non-blocking; closed by the destructor
   /// @param number  of the client; never used twice
-  OperatorConnection(int fd, int number);
+  OperatorConnection(int fd, int number, Peer peer);
   ~OperatorConnection();
   OperatorConnection(OperatorConnection&& other) noexcept;
   OperatorConnection& operator=(OperatorConnection&& other) noexcept;
@@ -31,13 +31,16 @@ class OperatorConnection {
   OperatorConnection& operator=(const OperatorConnection&) = delete;
 
   int number() const { return number_; }
-  uid_t uid() const { return uid_; }
+  const Peer& peer() const { return peer_; }
+  uid_t uid() const { return peer_.uid; }
   /// The client has closed its end, and sends nothing more.
   bool ended() const { return ended_; }
   /// Lines that were handed out and have no reply yet.
   int unanswered() const { return unanswered_; }
   /// Polls without a line from it, since the last one or since it connected.
   std::int64_t quiet_polls() const { return quiet_polls_; }
+  /// The client still reads: it has not closed the connection, or its end of sending alone.
+  bool CanBeReached() const;
   /// Nothing more will come of it, and nothing can reach it or is due to it.
   bool over() const;
 
@@ -53,6 +56,8 @@ class OperatorConnection {
 
   /// Says why, and closes.
   void Dismiss(const std::string& reason);
+  /// Sends a line that is no reply, and closes.
+  void CloseWith(const std::string& line);
 
  private:
   bool HasLine() const { return received_.find('\n', read_) != std::string::npos; }
@@ -61,7 +66,7 @@ class OperatorConnection {
 
   int fd_;
   int number_;
-  uid_t uid_;
+  Peer peer_;
   std::string received_;
   std::size_t read_ = 0;  // bytes of received_ that were handed out
   bool ended_ = false;    // the client sends nothing more

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -27,13 +28,16 @@ struct OperatorContext {
   ArmChecks arm_checks;
   std::string socket;                    ///< path; empty: no socket
   std::optional<Experiment> unattended;  ///< run once without a person
-  /// Reads an experiment that a client sent. Throws std::exception with the reasons.
+  /// Reads an experiment that a client sent. Throws std::exception with the reasons. Called by a
+  /// thread of its own.
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
   JournalReport report;
   /// Makes "threads" of the status: lateness and run time of every task.
   std::function<nlohmann::json()> thread_status;
   /// Called once a period while safety and control are alive: the service manager's watchdog.
   std::function<void(std::int64_t now_ns, const std::string& status)> alive;
+  /// RunCommand::Targets::plan_wait.
+  std::chrono::milliseconds plan_wait{0};
 };
 
 }  // namespace flexarm

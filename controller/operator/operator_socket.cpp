@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <tuple>
 #include <utility>
 
@@ -33,7 +34,9 @@ bool IsLeft(const std::string& path, int connect_error) {
 
 }  // namespace
 
-OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
+OperatorSocket::OperatorSocket(std::string path, OperatorRoles roles,
+                               CredentialsReader credentials_of)
+    : path_(std::move(path)), roles_(std::move(roles)), credentials_of_(std::move(credentials_of)) {
   const UnixAddress address(path_);
   const int error = ConnectError(address);
   if (error == 0 || error == EAGAIN) {
@@ -43,7 +46,7 @@ OperatorSocket::OperatorSocket(std::string path) : path_(std::move(path)) {
   }
   if (IsLeft(path_, error)) unlink(path_.c_str());
   listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const mode_t old_mask = umask(0117);  // rw-rw----
+  const mode_t old_mask = umask(0111);  // rw-rw-rw-: the roles say who may do what
   const bool bound = listener_ >= 0 && bind(listener_, address.get(), address.size()) == 0 &&
                      listen(listener_, kAcceptsPerPoll) == 0;
   const std::string cause = std::strerror(errno);
@@ -98,7 +101,12 @@ void OperatorSocket::Accept(std::vector<Message>* messages) {
   for (int k = 0; k < kAcceptsPerPoll; ++k) {
     const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) return;
-    OperatorConnection client(fd, next_number_++);
+    OperatorConnection client(fd, next_number_++, roles_.Judge(credentials_of_(fd)));
+    if (client.peer().role == Role::kNone) {
+      client.CloseWith(NotPermittedJson(client.peer(), "").dump());
+      turned_away_.push_back(client.peer());
+      continue;
+    }
     client.Read();
     Take(&client, messages);
     MakeRoomFor(client.uid());
@@ -108,12 +116,16 @@ void OperatorSocket::Accept(std::vector<Message>* messages) {
 
 bool OperatorSocket::Take(OperatorConnection* client, std::vector<Message>* messages) {
   std::optional<std::string> line = client->NextLine();
-  if (line) messages->push_back({.client = client->number(), .line = std::move(*line)});
+  if (line) {
+    messages->push_back(
+        {.client = client->number(), .line = std::move(*line), .by = client->peer()});
+  }
   return line.has_value();
 }
 
 std::vector<OperatorSocket::Message> OperatorSocket::Poll() {
   std::erase_if(clients_, [](const OperatorConnection& client) { return client.over(); });
+  turned_away_.clear();
   std::vector<Message> messages;
   for (OperatorConnection& client : clients_) {
     client.Read();
@@ -130,10 +142,16 @@ std::vector<OperatorSocket::Message> OperatorSocket::Poll() {
   return messages;
 }
 
+bool OperatorSocket::IsThere(int client) const {
+  return std::any_of(clients_.begin(), clients_.end(), [client](const OperatorConnection& c) {
+    return c.number() == client && c.CanBeReached();
+  });
+}
+
 void OperatorSocket::Reply(int client, const std::string& line) {
-  const auto found = std::find_if(clients_.begin(), clients_.end(),
-                                  [client](const auto& c) { return c.number() == client; });
-  if (found != clients_.end()) found->Reply(line);
+  for (OperatorConnection& c : clients_) {
+    if (c.number() == client) c.Reply(line);
+  }
 }
 
 }  // namespace flexarm

@@ -7,6 +7,7 @@
 
 #include "controller/operator/operator_client.h"  // the socket's other end, for its users
 #include "controller/operator/operator_connection.h"
+#include "controller/operator/operator_roles.h"
 
 namespace flexarm {
 
@@ -16,6 +17,9 @@ namespace flexarm {
 /// of its user, another is closed, of the user who has most: first one that has closed its end,
 /// then one to whom no answer is due, then the one that has been quiet the longest. It is told so.
 /// So a stop needs no free connection.
+///
+/// Any user may connect. Who has no role gets one line that says so, and is closed before anything
+/// that it sends is read.
 ///
 /// Each client has a number, which is never used twice: an answer reaches no other client. Not
 /// real-time safe: allocates. Thread: operator.
@@ -29,12 +33,14 @@ class OperatorSocket {
   struct Message {
     int client;        ///< number of the client, for Reply
     std::string line;  ///< without its newline
+    Peer by;           ///< who sent it
   };
 
-  /// Listens on `path`, for its owner and group only. A socket left by a daemon of the same user
-  /// that has ended is replaced; anything else that is there stays.
+  /// Listens on `path`. A socket left by a daemon of the same user that has ended is replaced;
+  /// anything else that is there stays.
   /// @throws RejectedError if the path cannot be used, or a daemon is listening there already
-  explicit OperatorSocket(std::string path);
+  explicit OperatorSocket(std::string path, OperatorRoles roles = OperatorRoles(),
+                          CredentialsReader credentials_of = CredentialsOf);
   ~OperatorSocket();  ///< closes every client, and removes the socket that it made
   OperatorSocket(const OperatorSocket&) = delete;
   OperatorSocket& operator=(const OperatorSocket&) = delete;
@@ -42,6 +48,12 @@ class OperatorSocket {
   /// Accepts clients and reads what has arrived, without waiting. One line of each client, new ones
   /// included, then further ones in turn, kLinesPerPoll in all. Once a period.
   std::vector<Message> Poll();
+
+  /// Whether a client can still get an answer. One that has only closed its end of sending can.
+  bool IsThere(int client) const;
+
+  /// Users without a role that have connected in the last poll.
+  const std::vector<Peer>& turned_away() const { return turned_away_; }
 
   /// Sends one line; a client that is gone, or too slow, is closed.
   void Reply(int client, const std::string& line);
@@ -55,11 +67,14 @@ class OperatorSocket {
   uid_t UserWithMost() const;
 
   std::string path_;
+  OperatorRoles roles_;
+  CredentialsReader credentials_of_;
   int listener_ = -1;
   dev_t device_ = 0;  // of the socket's file, with
   ino_t inode_ = 0;   // its number
   int next_number_ = 1;
   std::vector<OperatorConnection> clients_;
+  std::vector<Peer> turned_away_;
 };
 
 }  // namespace flexarm

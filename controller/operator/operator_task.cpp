@@ -34,20 +34,28 @@ OperatorTask::OperatorTask(OperatorContext context)
       overrides_(context_.events, context_.report),
       arm_(context_.arm_checks,
            {.requests = &requests_, .overrides = &overrides_, .report = context_.report}),
+      run_({.experiments = &experiments_,
+            .commissioning = &commissioning_,
+            .switches = &switches_,
+            .overrides = &overrides_,
+            .parse_experiment = context_.parse_experiment,
+            .plan_wait = context_.plan_wait}),
       warnings_(context_.grid.period_ns, context_.delay_margin_s,
                 StrainColumns(context_.config->sensors), context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
       bus_counters_(context_.events),
       timing_warnings_(context_.events, context_.report),
+      record_(context_.events, context_.report),
+      lease_(context_.events, context_.report),
       dispatch_({.stack = context_.stack,
                  .requests = &requests_,
-                 .experiments = &experiments_,
                  .commissioning = &commissioning_,
                  .switches = &switches_,
-                 .overrides = &overrides_,
                  .arm = &arm_,
+                 .run = &run_,
+                 .lease = &lease_,
+                 .record = &record_,
                  .status = [this] { return Status(); },
-                 .parse_experiment = context_.parse_experiment,
                  .report = context_.report}),
       unattended_(unattended_order_ ? unattended_order_->planned.get() : nullptr,
                   Shutdown::kSettleNs),
@@ -85,6 +93,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     TakeAnswers();
     FollowLatch();
     Reply(arm_.Follow(now_));
+    record_.Follow(now_.now_ns);
     if (socket_) Serve();
     FollowUnattended();
     FollowShutdown();
@@ -107,6 +116,7 @@ void OperatorTask::FollowState() {
     trip_.store(TripCause::kNone, std::memory_order_relaxed);  // none of this daemon's
   }
   state_journal_.Follow(now_.now_ns, now_.permit);
+  lease_.Follow(now_.now_ns, now_.permit.state);
   overrides_.Follow(now_.permit);
 }
 
@@ -133,13 +143,19 @@ void OperatorTask::TakeAnswers() {
 
 void OperatorTask::Take(const RequestAnswer& answer) {
   unattended_.Answered(answer);
-  context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
+  const std::vector<int> clients = requests_.TakeClientsOf(answer);
+  if (clients.empty()) context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
   experiments_.Answered(now_.now_ns, answer);
   overrides_.Answered(now_.now_ns, answer);
   Reply(commissioning_.Answered(answer, now_));
   // The safety task publishes the permit of a tick before the answers of that tick.
   const SafetyState state = context_.stack->operator_permits().Read().Newest().value.state;
-  for (const int client : requests_.TakeClientsOf(answer)) {
+  for (const int client : clients) {
+    if (answer.kind == RequestKind::kArm && answer.refusal == Refusal::kNone) {
+      if (const std::optional<Peer> by = record_.Giver(client, "arm")) {
+        lease_.Armed(now_.now_ns, *by);
+      }
+    }
     Reply(client, AnswerJson(answer, state));
   }
 }
@@ -152,9 +168,11 @@ void OperatorTask::FollowLatch() {
 
 void OperatorTask::Serve() {
   for (const OperatorSocket::Message& message : socket_->Poll()) {
-    const nlohmann::json answer = dispatch_.Answer(message.client, message.line, now_);
-    if (!answer.is_null()) Reply(message.client, answer);
+    nlohmann::json answer = dispatch_.Answer(message.client, message.by, message.line, now_);
+    if (!answer.is_null()) Reply(message.client, std::move(answer));
   }
+  Reply(run_.Follow(now_, [this](int client) { return socket_->IsThere(client); }));
+  for (const Peer& peer : socket_->turned_away()) record_.TurnedAway(now_.now_ns, peer);
 }
 
 void OperatorTask::FollowUnattended() {
@@ -212,12 +230,13 @@ nlohmann::json OperatorTask::Status() {
                                             context_.events->dropped()});
 }
 
-void OperatorTask::Reply(int client, const nlohmann::json& answer) {
+void OperatorTask::Reply(int client, nlohmann::json answer) {
+  record_.Answered(now_.now_ns, client, &answer);
   socket_->Reply(client, answer.dump());
 }
 
-void OperatorTask::Reply(const std::optional<ClientAnswer>& answer) {
-  if (answer) Reply(answer->client, answer->json);
+void OperatorTask::Reply(std::optional<ClientAnswer> answer) {
+  if (answer) Reply(answer->client, std::move(answer->json));
 }
 
 }  // namespace flexarm

@@ -9,8 +9,10 @@
 #include "controller/operator/arm_command.h"
 #include "controller/operator/bus_counter_record.h"
 #include "controller/operator/command_dispatch.h"
+#include "controller/operator/command_record.h"
 #include "controller/operator/commissioning_commands.h"
 #include "controller/operator/experiment_loader.h"
+#include "controller/operator/lease.h"
 #include "controller/operator/loop_watch.h"
 #include "controller/operator/operator_context.h"
 #include "controller/operator/operator_snapshot.h"
@@ -18,6 +20,7 @@
 #include "controller/operator/override_record.h"
 #include "controller/operator/prove_switches.h"
 #include "controller/operator/request_tracker.h"
+#include "controller/operator/run_command.h"
 #include "controller/operator/run_warnings.h"
 #include "controller/operator/shutdown.h"
 #include "controller/operator/state_journal.h"
@@ -74,8 +77,8 @@ class OperatorTask final : public Task {
   void BeginShutdown();
   void FollowShutdown();
   nlohmann::json Status();
-  void Reply(int client, const nlohmann::json& answer);
-  void Reply(const std::optional<ClientAnswer>& answer);
+  void Reply(int client, nlohmann::json answer);
+  void Reply(std::optional<ClientAnswer> answer);
 
   OperatorContext context_;
   OperatorSnapshot now_;
@@ -86,12 +89,15 @@ class OperatorTask final : public Task {
   ProveSwitches switches_;
   OverrideRecord overrides_;
   ArmCommand arm_;
+  RunCommand run_;
   RunWarnings warnings_;
   StateJournal state_journal_;
   LoopWatch loop_watch_;
   BusJournal bus_journal_;
   BusCounterRecord bus_counters_;
   TimingWarnings timing_warnings_;
+  CommandRecord record_;
+  Lease lease_;
   CommandDispatch dispatch_;
   UnattendedRun unattended_;
   Shutdown shutdown_;

@@ -131,9 +131,10 @@ std::array<double, 2> PlaceBefore(const Experiment& experiment,
 
 std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& design,
                                    double period_s, const std::array<double, 2>& start_rad,
-                                   const MotionLimits& limits) {
+                                   const MotionLimits& limits, const std::stop_token& stop) {
   std::vector<PlannedMove> moves;
   for (std::size_t row = 0; row < experiment.move.size(); ++row) {
+    if (stop.stop_requested()) throw RejectedError("the planning of the experiment was cancelled");
     const Move& move = experiment.move[row];
     const std::string name = ProblemList::Element("move", row);
     PlannedMove planned{.row = row,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <stop_token>
 #include <vector>
 
 #include "controller/law/design.h"
@@ -25,10 +26,11 @@ std::vector<MotionSegment> MotionSegmentsOf(const std::vector<PlannedMove>& move
 /// one above it ends retargets, if the law follows a path. A move without duration gets the
 /// shortest one, in whole periods, whose reference keeps limits.plan_fraction of every limit.
 /// @throws RejectedError naming the move that is off the grid, too short, out of reach, begins
-///         while the one above it lasts, or has no duration that keeps the limits
+///         while the one above it lasts, or has no duration that keeps the limits; or that a stop
+///         was requested, which is looked at before each move
 std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& design,
                                    double period_s, const std::array<double, 2>& start_rad,
-                                   const MotionLimits& limits);
+                                   const MotionLimits& limits, const std::stop_token& stop = {});
 
 /// Joint angles of the reference at rest just before `start_s`, with the `moves` planned so far.
 std::array<double, 2> PlaceBefore(const Experiment& experiment,

@@ -153,8 +153,9 @@ std::string Remedy(std::span<const PlannedMove> moves, const Design& design, dou
 }  // namespace
 
 ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
-                               const std::array<double, 2>& start_rad, const MotionLimits& limits)
-    : moves_(PlanMoves(experiment, design, period_s, start_rad, limits)),
+                               const std::array<double, 2>& start_rad, const MotionLimits& limits,
+                               const std::stop_token& stop)
+    : moves_(PlanMoves(experiment, design, period_s, start_rad, limits, stop)),
       segments_(MotionSegmentsOf(moves_)) {
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");

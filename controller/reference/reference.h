@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "controller/law/design.h"
@@ -34,9 +35,10 @@ class ReferenceTable {
   /// each other.
   /// @throws RejectedError naming the row and key whose times do not lie on the grid of `period_s`,
   ///         the row, joint, instant and limit that the reference would break (FirstBrokenLimit),
-  ///         or that the shaped rows would end after the experiment
+  ///         or that the shaped rows would end after the experiment; or that a stop was requested
   ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
-                 const std::array<double, 2>& start_rad, const MotionLimits& limits);
+                 const std::array<double, 2>& start_rad, const MotionLimits& limits,
+                 const std::stop_token& stop = {});
 
   /// Open-loop torques without a reference model, for LoopMode::kOpenLoop.
   /// @param torque_nm  sample by sample, not empty; zero follows

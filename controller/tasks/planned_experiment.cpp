@@ -8,8 +8,8 @@ namespace flexarm {
 
 PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design& design,
                                      double period_s, const std::array<double, 2>& start_rad,
-                                     const MotionLimits& limits)
-    : reference(experiment, design, period_s, start_rad, limits),
+                                     const MotionLimits& limits, const std::stop_token& stop)
+    : reference(experiment, design, period_s, start_rad, limits, stop),
       accepted(WithChosenDurations(experiment, reference.moves(), period_s)),
       sim_events(experiment.sim_event) {
   std::stable_sort(sim_events.begin(), sim_events.end(),

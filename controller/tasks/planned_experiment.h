@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "controller/exchange/latest_value.h"
@@ -15,7 +16,8 @@ namespace flexarm {
 struct PlannedExperiment {
   /// Parameters as ReferenceTable's. @throws RejectedError as ReferenceTable
   PlannedExperiment(const Experiment& experiment, const Design& design, double period_s,
-                    const std::array<double, 2>& start_rad, const MotionLimits& limits);
+                    const std::array<double, 2>& start_rad, const MotionLimits& limits,
+                    const std::stop_token& stop = {});
 
   /// Torques in open loop: the pluck test.
   explicit PlannedExperiment(const std::vector<std::array<double, 2>>& torque_nm);

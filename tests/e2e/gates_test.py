@@ -88,7 +88,7 @@ class Gates(ProgramTest):
         self.assertEqual(self.status()["state"], "Idle")
         self.assertFalse(list(self.folder.glob("runs/*.flexarm")))
         self.assertIn("design: rejected: ", self.daemon_log())
-        self.assertIn("arm: refused: the design of the controller was rejected", self.daemon_log())
+        self.assertIn("refused: the design of the controller was rejected", self.daemon_log())
 
     @despite_stalls
     def test_an_unattended_run_with_a_rejected_design_is_refused(self):

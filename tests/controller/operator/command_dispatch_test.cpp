@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "tests/controller/operator/operator_parts.h"
+#include "tests/controller/operator/peers.h"
 
 namespace flexarm {
 namespace {
@@ -32,18 +33,27 @@ class CommandDispatchTest : public OperatorParts {
   explicit CommandDispatchTest(const std::vector<std::string>& overrides = {})
       : OperatorParts(UncalibratedRig(overrides)) {}
 
-  Json Answer(const Json& command) { return dispatch_.Answer(kClient, command.dump(), now_); }
-  Json AnswerLine(const std::string& line) { return dispatch_.Answer(kClient, line, now_); }
+  // As in a period: the answer to the command, or to a run that was planned.
+  Json Answer(const Json& command) {
+    Json answer = AnswerLine(command.dump());
+    if (!answer.is_null()) return answer;
+    const std::optional<ClientAnswer> planned = run_.Follow(now_, [](int) { return true; });
+    return planned ? planned->json : nullptr;
+  }
+  Json AnswerLine(const std::string& line) { return dispatch_.Answer(kClient, by_, line, now_); }
+
+  Peer by_ = kAlice;
+  CommandRecord record_{&events_, journal_.Report()};
 
   CommandDispatch dispatch_{{.stack = &stack_,
                              .requests = &requests_,
-                             .experiments = &experiments_,
                              .commissioning = &commissioning_,
                              .switches = &switches_,
-                             .overrides = &overrides_,
                              .arm = &arm_,
+                             .run = &run_,
+                             .lease = &lease_,
+                             .record = &record_,
                              .status = [] { return Json{{"ok", true}, {"tick", 12}}; },
-                             .parse_experiment = ParseExperiment,
                              .report = journal_.Report()}};
 };
 
@@ -64,6 +74,19 @@ TEST_F(CommandDispatchTest, WhatIsNoCommandIsAnsweredAndChangesNothing) {
     EXPECT_THAT(answer.value("remedy", ""), HasSubstr("flexarm")) << line.substr(0, 40);
   }
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, AViewerSeesTheStatusAndStops) {
+  by_.role = Role::kView;
+  EXPECT_EQ(Answer({{"command", "status"}})["ok"], true);
+  for (const char* name : {"arm", "run", "disarm", "reset", "pluck", "sim", "none"}) {
+    const Json answer = Answer({{"command", name}});
+    EXPECT_EQ(answer["refusal"], "not-permitted") << name;
+    EXPECT_EQ(answer["command"], name);
+    EXPECT_EQ(answer["state"], "Armed");
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_TRUE(Answer({{"command", "stop"}}).is_null()) << "it is asked for";
 }
 
 TEST_F(CommandDispatchTest, AnUnknownCommandIsAnsweredWithThoseThatThereAre) {
@@ -139,7 +162,8 @@ TEST_F(CommandDispatchTest, WhileTheDaemonEndsOnlyStatusStopAndDisarmAreAccepted
 }
 
 TEST_F(CommandDispatchTest, StatusIsAnsweredAtOnce) {
-  EXPECT_EQ(Answer({{"command", "status"}}), Json({{"ok", true}, {"tick", 12}}));
+  EXPECT_EQ(Answer({{"command", "status"}}),
+            Json({{"ok", true}, {"tick", 12}, {"command", "status"}, {"state", "Armed"}}));
 }
 
 TEST_F(CommandDispatchTest, ARequestGoesToTheSafetyTaskWhateverTheState) {
@@ -190,6 +214,43 @@ TEST_F(CommandDispatchTest, ASecondRequestInOnePollIsRefusedAsBusy) {
   }
   EXPECT_EQ(Answer({{"command", "home"}, {"joint", 1}, {"side", "low"}})["ok"], false);
   EXPECT_EQ(stack_.TakeRequests().size(), 1u);
+}
+
+// Before the plan is there nothing is asked of the safety task, and yet it is one job.
+TEST_F(CommandDispatchTest, WhileAJobIsUnderWayNoOtherMayAddEnergy) {
+  const Json run{{"command", "run"}, {"experiment", kOneMove}};
+  EXPECT_TRUE(AnswerLine(run.dump()).is_null());  // being planned
+  for (const Json& second : {run, Json{{"command", "arm"}}, Json{{"command", "pluck"}},
+                             Json{{"command", "home"}, {"joint", 1}, {"side", "low"}}}) {
+    const Json answer = AnswerLine(second.dump());
+    EXPECT_EQ(answer["refusal"], "busy") << second;
+    EXPECT_EQ(answer["error"], "the planning of a run is under way");
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_TRUE(AnswerLine(R"({"command": "reset"})").is_null()) << "it adds none";
+  EXPECT_EQ(stack_.TakeRequests().at(0).kind, RequestKind::kReset);
+}
+
+TEST_F(CommandDispatchTest, ACommandOfCommissioningIsAJob) {
+  EXPECT_TRUE(Answer({{"command", "pluck"}}).is_null());
+  Answered(RequestKind::kRun, stack_.TakeRequests().at(0).number, Refusal::kNone);
+  for (const char* name : {"arm", "run", "pluck", "home"}) {
+    EXPECT_EQ(Answer({{"command", name}})["refusal"], "busy") << name;
+  }
+  EXPECT_TRUE(Answer({{"command", "stop"}}).is_null());
+}
+
+TEST_F(CommandDispatchTest, OthersThanTheHolderOfTheLeaseAreRefused) {
+  lease_.Armed(now_.now_ns, by_);
+  by_ = kBob;
+  const Json answer = Answer({{"command", "run"}, {"experiment", kOneMove}});
+  EXPECT_EQ(answer["refusal"], "held-by");
+  EXPECT_EQ(answer["command"], "run");
+  EXPECT_EQ(Answer({{"command", "status"}})["ok"], true);
+  EXPECT_TRUE(Answer({{"command", "stop"}}).is_null());
+  EXPECT_TRUE(
+      Answer({{"command", "run"}, {"experiment", kOneMove}, {"take_over", true}}).is_null());
+  EXPECT_EQ(lease_.holder(), 1001u);
 }
 
 TEST_F(CommandDispatchTest, ASimulatedLineIsSetAndWrittenToTheJournal) {

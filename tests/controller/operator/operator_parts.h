@@ -2,18 +2,24 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <utility>
 #include <vector>
 
 #include "controller/operator/arm_command.h"
 #include "controller/operator/commissioning_commands.h"
+#include "controller/operator/lease.h"
 #include "controller/operator/prove_switches.h"
+#include "controller/operator/run_command.h"
 #include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/operator/operator_records.h"
 #include "tests/controller/operator/still_stack.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
+
+/// In a test a plan is waited for, however slow the machine is.
+inline constexpr std::chrono::milliseconds kPlanWait{60'000};
 
 /// The operator task's parts up to the commissioning commands, on a stack that does not run.
 class OperatorParts : public testing::Test {
@@ -55,6 +61,13 @@ class OperatorParts : public testing::Test {
   OverrideRecord overrides_{&events_, journal_.Report()};
   ArmCommand arm_{ArmChecks{.design = {.result = ArmVerdict::Result::kPassed}, .simulated = true},
                   {.requests = &requests_, .overrides = &overrides_, .report = journal_.Report()}};
+  RunCommand run_{{.experiments = &experiments_,
+                   .commissioning = &commissioning_,
+                   .switches = &switches_,
+                   .overrides = &overrides_,
+                   .parse_experiment = ParseExperiment,
+                   .plan_wait = kPlanWait}};
+  Lease lease_{&events_, journal_.Report()};
   OperatorSnapshot now_;
   std::vector<int> clients_;  // of the newest answer
 };

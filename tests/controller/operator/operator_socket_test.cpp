@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "controller/types/rejected_error.h"
+#include "tests/controller/operator/peers.h"
 #include "tests/controller/operator/socket_peer.h"
 #include "tests/support/message_of.h"
 
@@ -224,11 +225,41 @@ TEST_F(OperatorSocketTest, AReplyToADisconnectedClientAffectsNoOther) {
   EXPECT_EQ(here.Line(), "idle");
 }
 
-TEST_F(OperatorSocketTest, OnlyItsOwnerAndGroupMayConnect) {
-  const OperatorSocket server(path_);
+TEST_F(OperatorSocketTest, EveryUserMayConnectAndIsJudged) {
+  std::vector<gid_t> groups{kOperatorGroup};
+  OperatorSocket server(path_, RolesInTests(), [&groups](int) {
+    return Credentials{.uid = 1000, .pid = 5, .groups = groups};
+  });
   struct stat there{};
   ASSERT_EQ(stat(path_.c_str(), &there), 0);
-  EXPECT_EQ(there.st_mode & 0777u, 0660u);
+  EXPECT_EQ(there.st_mode & 0777u, 0666u);
+  const SocketPeer member(path_);
+  member.Send("arm\n");
+  EXPECT_EQ(server.Poll().at(0).by.role, Role::kOperate);
+  groups = {kViewerGroup};
+  const SocketPeer viewer(path_);
+  viewer.Send("status\n");
+  member.Send("arm\n");  // judged once, when it connected
+  const std::vector<OperatorSocket::Message> messages = server.Poll();
+  ASSERT_EQ(messages.size(), 2u);
+  EXPECT_EQ(messages[0].by.role, Role::kOperate);
+  EXPECT_EQ(messages[1].by.role, Role::kView);
+  EXPECT_EQ(messages[1].by.name, "u1000");
+  EXPECT_EQ(messages[1].by.pid, 5);
+  EXPECT_TRUE(server.turned_away().empty());
+}
+
+TEST_F(OperatorSocketTest, AUserWithoutARoleIsToldSoAndNotHeard) {
+  OperatorSocket server(path_, RolesInTests(),
+                        [](int) { return Credentials{.uid = 1000, .pid = 5, .groups = {}}; });
+  SocketPeer outsider(path_);
+  outsider.Send("{\"command\": \"stop\"}\n");
+  EXPECT_TRUE(server.Poll().empty());
+  EXPECT_EQ(server.turned_away().size(), 1u);
+  EXPECT_THAT(outsider.Line().value_or(""), HasSubstr("not-permitted"));
+  EXPECT_TRUE(outsider.closed());
+  server.Poll();
+  EXPECT_TRUE(server.turned_away().empty());
 }
 
 TEST_F(OperatorSocketTest, ItsFileIsRemovedAtItsEnd) {

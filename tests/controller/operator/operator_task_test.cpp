@@ -27,11 +27,23 @@ using Json = nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+constexpr std::chrono::seconds kPlanWait{60};
 constexpr double kAnswer_s = 0.1;  // five periods of the operator; requests take one
 
 std::string TomlOfMove(double duration_s, const std::string& more = "") {
   return "name = \"one-move\"\nduration_s = " + std::to_string(duration_s) +
          "\n[[move]]\nstart_s = 0.0\nduration_s = 1.8\nto_deg = [10.0, -10.0]\n" + more;
+}
+
+// This process, as the daemon sees it.
+Peer MyPeer() {
+  return {.name = AccountName(geteuid()), .uid = geteuid(), .pid = getpid(), .role = {}};
+}
+Json Me() { return PeerJson(MyPeer()); }
+
+// The journal line of a command that it gave.
+std::string By(const std::string& command) {
+  return command + " by " + PeerText(MyPeer()) + ": accepted";
 }
 
 class OperatorTaskTest : public testing::Test {
@@ -55,7 +67,8 @@ class OperatorTaskTest : public testing::Test {
             .parse_experiment = ParseExperiment,
             .report = journal_.Report(),
             .thread_status = [] { return Json::array(); },
-            .alive = [this](std::int64_t now_ns, const std::string&) { alive_ns_ = now_ns; }};
+            .alive = [this](std::int64_t now_ns, const std::string&) { alive_ns_ = now_ns; },
+            .plan_wait = kPlanWait};
   }
 
   // The daemon, before its first period.
@@ -171,21 +184,28 @@ class OperatorTaskTest : public testing::Test {
 TEST_F(OperatorTaskTest, ArmsRunsStopsAndDisarms) {
   StartAtRest();
   const Json armed = Ask("arm");
-  EXPECT_EQ(armed, Json({{"ok", true}, {"command", "arm"}, {"state", "Armed"}}));
+  EXPECT_EQ(armed, Json({{"ok", true}, {"command", "arm"}, {"state", "Armed"}, {"by", Me()}}));
   EXPECT_EQ(AskRun(TomlOfMove(20.0))["state"], "Running");
   EXPECT_EQ(Ask("status")["experiment"], "one-move");
   Run(1.0);
   EXPECT_EQ(Ask("stop")["ok"], true);
   EXPECT_TRUE(ComesTo("Armed"));
   EXPECT_EQ(Ask("disarm")["state"], "Idle");
-  EXPECT_THAT(JournalTexts(),
-              ElementsAre("Starting -> Idle", "Idle -> Armed", "arm: accepted", "Armed -> Running",
-                          "run: accepted", "Running -> Stopping", "stop: accepted",
-                          "Stopping -> Armed", "Armed -> Idle", "disarm: accepted"));
+  EXPECT_THAT(
+      JournalTexts(),
+      ElementsAre("Starting -> Idle", "Idle -> Armed", "lease: begun by " + PeerText(MyPeer()),
+                  By("arm"), "Armed -> Running", By("run"), "Running -> Stopping", By("stop"),
+                  "Stopping -> Armed", "Armed -> Idle", By("disarm")));
   for (const auto& [is_error, text] : journal_.lines) EXPECT_FALSE(is_error) << text;
   const std::vector<RunEvent> logged = TakeEvents(&events_);
-  ASSERT_EQ(logged.size(), 1u);
-  EXPECT_EQ(logged[0].kind, "experiment");
+  ASSERT_EQ(logged.size(), 6u);
+  EXPECT_EQ(logged[0].kind, "lease");
+  EXPECT_EQ(logged[2].kind, "experiment");
+  for (const auto& [i, name] : {std::pair{1u, "arm"}, {3u, "run"}, {4u, "stop"}, {5u, "disarm"}}) {
+    EXPECT_EQ(logged[i].kind, "command");
+    EXPECT_EQ(logged[i].name, name);
+    EXPECT_EQ(Json::parse(logged[i].value_json)["by"], Me());
+  }
 }
 
 TEST_F(OperatorTaskTest, ARejectedDesignIsNotArmed) {
@@ -235,9 +255,9 @@ TEST_F(OperatorTaskTest, AnOverrideArmsIsLoggedAfterTheArmAndEndsWhenTheArmIsIdl
   for (SafetyRecord record{}; stack_->safety_records().Pop(&record);) {
     if (record.after.state == SafetyState::kArmed) armed_ns = std::min(armed_ns, record.due_ns);
   }
-  const std::vector<RunEvent> logged = TakeEvents(&events_);
+  std::vector<RunEvent> logged = TakeEvents(&events_);
+  std::erase_if(logged, [](const RunEvent& event) { return event.kind != "override"; });
   ASSERT_EQ(logged.size(), 1u);
-  EXPECT_EQ(logged[0].kind, "override");
   EXPECT_GT(logged[0].time_ns, armed_ns) << "the recorder opens the run's log with the arm";
 
   EXPECT_EQ(Ask("disarm")["state"], "Idle");
@@ -262,7 +282,9 @@ TEST_F(OperatorTaskTest, WhatTheSafetyTaskRefusesIsAnsweredWithItsReason) {
     EXPECT_EQ(answer["ok"], false) << name;
     EXPECT_EQ(answer["refusal"], "wrong-state") << name;
     EXPECT_EQ(answer["command"], name);
-    EXPECT_GE(journal_.Find(std::string(name) + ": refused: "), 0);
+    EXPECT_EQ(answer["by"], Me()) << name;
+    EXPECT_GE(journal_.Find(std::string(name) + " by "), 0);
+    EXPECT_GE(journal_.Find(": refused: "), 0);
   }
   EXPECT_EQ(AskRun(TomlOfMove(2.0))["refusal"], "wrong-state");
   Ask("arm");
@@ -418,7 +440,7 @@ TEST_F(OperatorTaskTest, AShutdownWhileRunningStopsAndDisarms) {
   const double took_s = RunUntilDone(7.0);
   EXPECT_GT(took_s, 0.3) << "the recorder takes the last records";
   EXPECT_LT(took_s, 4.0);
-  journal_.lines.erase(journal_.lines.begin(), journal_.lines.begin() + 5);  // until Running
+  journal_.lines.erase(journal_.lines.begin(), journal_.lines.begin() + 6);  // until Running
   EXPECT_THAT(JournalTexts(), ElementsAre("shutting down: bringing the arm to rest",
                                           "Running -> Stopping", "Stopping -> Idle"))
       << "Armed for a tick";
@@ -525,7 +547,8 @@ TEST_F(OperatorTaskTest, AClientThatLeavesBeforeItsAnswerAffectsNoOther) {
     Run(kPeriod_s);  // the request is made
   }
   EXPECT_EQ(State(), "Armed") << "it was carried out";
-  EXPECT_EQ(Ask("disarm"), Json({{"ok", true}, {"command", "disarm"}, {"state", "Idle"}}));
+  EXPECT_EQ(Ask("disarm"),
+            Json({{"ok", true}, {"command", "disarm"}, {"state", "Idle"}, {"by", Me()}}));
   {
     const SocketPeer gone(path_);
     gone.Send("{\"command\": \"tare\"}\n");

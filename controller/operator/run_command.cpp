@@ -1,0 +1,108 @@
+#include "controller/operator/run_command.h"
+
+#include <cmath>
+#include <utility>
+
+#include "controller/operator/command_text.h"
+#include "controller/operator/request_answers.h"
+
+namespace flexarm {
+namespace {
+
+std::array<double, 2> HubsOf(const OperatorSnapshot& now) {
+  return {now.tick.output.angle_rad[0], now.tick.output.angle_rad[1]};
+}
+
+nlohmann::json Refused(Refusal refusal, const OperatorSnapshot& now) {
+  nlohmann::json json = RefusalJson(RequestKind::kRun, refusal, now.permit.state);
+  json["command"] = ToString(RequestKind::kRun);
+  json["state"] = ToString(now.permit.state);
+  return json;
+}
+
+nlohmann::json Failed(const std::string& error, const std::string& remedy) {
+  nlohmann::json json{{"ok", false}, {"command", ToString(RequestKind::kRun)}, {"error", error}};
+  if (!remedy.empty()) json["remedy"] = remedy;
+  return json;
+}
+
+}  // namespace
+
+nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
+                                  const OperatorSnapshot& now, std::vector<Override>* used) const {
+  if (now.shutting_down) return Refused(Refusal::kShuttingDown, now);
+  if (now.permit.state != SafetyState::kArmed) return Refused(Refusal::kWrongState, now);
+  if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
+    return Failed(why, "then run");
+  }
+  const std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
+  ConditionDecision decision = Judge(unmet, overrides);
+  if (decision.refused != nullptr) {
+    nlohmann::json json = Failed(decision.refused->found, decision.refused->remedy);
+    json["refusal"] = decision.refused->refusal;
+    return json;
+  }
+  *used = std::move(decision.used);
+  return nullptr;
+}
+
+nlohmann::json RunCommand::Start(const nlohmann::json& command, int client,
+                                 const OperatorSnapshot& now) {
+  std::vector<Override> used;
+  std::vector<Override> overrides = OverridesOf(command, {kSwitchesCondition});
+  if (nlohmann::json refused = WhyNot(overrides, now, &used); !refused.is_null()) return refused;
+  const std::array<double, 2> start_rad = HubsOf(now);
+  planner_.Begin([this, start_rad, text = TextOf(command, "experiment", ""),
+                  name = TextOf(command, "name", "experiment")](const std::stop_token& stop) {
+    return targets_.experiments->Plan(targets_.parse_experiment(text, name), start_rad, stop);
+  });
+  waits_ = Waiting{.client = client, .overrides = std::move(overrides), .start_rad = start_rad};
+  return nullptr;
+}
+
+std::optional<ClientAnswer> RunCommand::Follow(const OperatorSnapshot& now,
+                                               const std::function<bool(int client)>& is_there) {
+  if (!waits_) return std::nullopt;
+  const bool cancelled = cancelled_ || now.shutting_down || !is_there(waits_->client);
+  std::optional<ExperimentPlanner::Outcome> planned;
+  if (!cancelled) {
+    if (targets_.experiments->busy()) return std::nullopt;  // a reset is not answered yet
+    planned = planner_.Take(targets_.plan_wait);
+    if (!planned) return std::nullopt;
+  }
+  Waiting command = std::move(*waits_);
+  waits_.reset();
+  const int client = command.client;
+  nlohmann::json answer;
+  if (cancelled) {
+    planner_.Cancel();
+    answer = Refused(now.shutting_down ? Refusal::kShuttingDown : Refusal::kCancelled, now);
+  } else {
+    answer = Decide(std::move(command), std::move(*planned), now);
+  }
+  cancelled_ = false;
+  if (answer.is_null()) return std::nullopt;
+  answer["state"] = ToString(now.permit.state);
+  return ClientAnswer{.client = client, .json = std::move(answer)};
+}
+
+nlohmann::json RunCommand::Decide(Waiting command, ExperimentPlanner::Outcome planned,
+                                  const OperatorSnapshot& now) {
+  if (!planned.order) return Failed(planned.problem, "");
+  std::vector<Override> used;
+  if (nlohmann::json refused = WhyNot(command.overrides, now, &used); !refused.is_null()) {
+    return refused;
+  }
+  const std::array<double, 2> hub_rad = HubsOf(now);
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    if (std::fabs(hub_rad[joint] - command.start_rad[joint]) <= kMoved_rad) continue;
+    return Failed("the arm was moved while its run was planned", "repeat the command");
+  }
+  const std::uint32_t number =
+      targets_.experiments->AskForRun(now.now_ns, command.client, std::move(*planned.order));
+  if (number == 0) return Refused(Refusal::kBusy, now);
+  targets_.overrides->Asked(number, std::move(used));
+  return nullptr;
+}
+
+}  // namespace flexarm

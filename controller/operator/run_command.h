@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controller/operator/commissioning_commands.h"
+#include "controller/operator/experiment_loader.h"
+#include "controller/operator/experiment_planner.h"
+#include "controller/operator/operator_snapshot.h"
+#include "controller/operator/override.h"
+#include "controller/operator/override_record.h"
+#include "controller/operator/prove_switches.h"
+
+namespace flexarm {
+
+/// The command `run`: reads and plans the experiment on a thread of its own, and asks the safety
+/// task for the run.
+///
+/// The conditions of a run hold before it is planned and are judged again when the plan is there:
+/// the state, the angles, the proof of the switches, and that the arm stands where the plan begins.
+/// A stop, a disarm, the end of the daemon and a client that has gone cancel a plan.
+/// Not real-time safe. Thread: operator.
+class RunCommand {
+ public:
+  /// A hub that was turned by more than this while its run was planned: rad.
+  static constexpr double kMoved_rad = 0.01;
+
+  /// All of it outlives the command.
+  struct Targets {
+    ExperimentLoader* experiments;
+    CommissioningCommands* commissioning;
+    ProveSwitches* switches;
+    OverrideRecord* overrides;
+    /// Throws std::exception with the reasons. Called by another thread.
+    std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
+    /// How long a period waits for a plan: 0 but in lock step, where time stands still meanwhile.
+    std::chrono::milliseconds plan_wait{0};
+  };
+
+  explicit RunCommand(Targets targets) : targets_(std::move(targets)) {}
+
+  /// Begins a command of `client`; none is being planned.
+  /// @returns its refusal; null: the answer comes from Follow, or from the safety task
+  /// @throws RejectedError for keys that are malformed
+  nlohmann::json Start(const nlohmann::json& command, int client, const OperatorSnapshot& now);
+
+  /// Once a period, after the commands.
+  /// @param is_there  whether a client is still connected
+  /// @returns the answer of a command that was planned and then refused
+  std::optional<ClientAnswer> Follow(const OperatorSnapshot& now,
+                                     const std::function<bool(int client)>& is_there);
+
+  /// A stop or a disarm came: the command that is being planned is refused by the next Follow.
+  void Cancel() { cancelled_ = waits_.has_value(); }
+
+  bool planning() const { return waits_.has_value(); }
+
+ private:
+  struct Waiting {
+    int client;
+    std::vector<Override> overrides;
+    std::array<double, 2> start_rad;
+  };
+
+  /// The refusal by a condition that does not hold; null: all hold.
+  /// @param used  the overrides without which it would be refused
+  nlohmann::json WhyNot(const std::vector<Override>& overrides, const OperatorSnapshot& now,
+                        std::vector<Override>* used) const;
+  nlohmann::json Decide(Waiting command, ExperimentPlanner::Outcome planned,
+                        const OperatorSnapshot& now);
+
+  Targets targets_;
+  std::optional<Waiting> waits_;
+  bool cancelled_ = false;
+  ExperimentPlanner planner_;
+};
+
+}  // namespace flexarm

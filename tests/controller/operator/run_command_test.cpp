@@ -1,0 +1,154 @@
+#include "controller/operator/run_command.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "tests/controller/operator/operator_parts.h"
+
+namespace flexarm {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr int kRunClient = 7;
+constexpr const char* kPlannedMove =
+    "name = \"one-move\"\nduration_s = 2.0\n"
+    "[[move]]\nstart_s = 0.0\nduration_s = 1.8\nto_deg = [10.0, 0.0]\n";
+
+class RunCommandTest : public OperatorParts {
+ protected:
+  RunCommandTest() : OperatorParts(ShippedRig()) {}
+  ~RunCommandTest() override { held_ = false; }
+
+  // Held: the plan is not there until the test releases it.
+  RunCommand::Targets TargetsOf() {
+    return {.experiments = &experiments_,
+            .commissioning = &commissioning_,
+            .switches = &switches_,
+            .overrides = &overrides_,
+            .parse_experiment =
+                [this](const std::string& text, const std::string& name) {
+                  while (held_) std::this_thread::yield();
+                  return ParseExperiment(text, name);
+                },
+            .plan_wait = {}};
+  }
+  Json Start(const std::string& experiment = kPlannedMove) {
+    return run_.Start({{"command", "run"}, {"experiment", experiment}}, kRunClient, now_);
+  }
+  std::optional<ClientAnswer> Follow() {
+    return run_.Follow(now_, [this](int) { return client_is_there_; });
+  }
+  // The period in which the plan is there.
+  std::optional<ClientAnswer> FollowToTheEnd() {
+    held_ = false;
+    std::optional<ClientAnswer> answer;
+    while (run_.planning() && !answer) answer = Follow();
+    return answer;
+  }
+
+  std::atomic<bool> held_ = true;
+  bool client_is_there_ = true;
+  RunCommand run_{TargetsOf()};  // in place of the one that waits
+};
+
+TEST_F(RunCommandTest, TheOperatorGoesOnWhileARunIsPlannedAndThenAsksForIt) {
+  EXPECT_TRUE(Start().is_null());
+  EXPECT_TRUE(run_.planning());
+  for (int k = 0; k < 100; ++k) EXPECT_FALSE(Follow());
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+  EXPECT_FALSE(FollowToTheEnd()) << "the safety task answers";
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0].run.experiment->accepted.name, "one-move");
+  EXPECT_FALSE(run_.planning());
+  EXPECT_FALSE(Follow());
+}
+
+TEST_F(RunCommandTest, AnExperimentThatIsWrongIsAnsweredWithTheReason) {
+  EXPECT_TRUE(Start("name = 3\n").is_null());
+  const std::optional<ClientAnswer> answer = FollowToTheEnd();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->client, kRunClient);
+  EXPECT_EQ(answer->json["ok"], false);
+  EXPECT_EQ(answer->json["command"], "run");
+  EXPECT_EQ(answer->json["state"], "Armed");
+  EXPECT_THAT(answer->json.value("error", ""), HasSubstr("name"));
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(RunCommandTest, AStopADisarmTheEndOfTheDaemonAndAClientThatHasGoneCancelAPlan) {
+  for (const int reason : {0, 1, 2}) {
+    held_ = true;
+    client_is_there_ = true;
+    now_.shutting_down = false;
+    EXPECT_TRUE(Start().is_null());
+    if (reason == 0) run_.Cancel();
+    now_.shutting_down = reason == 1;
+    client_is_there_ = reason != 2;
+    const std::optional<ClientAnswer> answer = Follow();
+    ASSERT_TRUE(answer) << reason;
+    EXPECT_EQ(answer->json["refusal"], reason == 1 ? "shutting-down" : "cancelled") << reason;
+    EXPECT_FALSE(run_.planning());
+    held_ = false;
+    for (int k = 0; k < 1'000; ++k) EXPECT_FALSE(Follow());
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(RunCommandTest, ACancelledRunDoesNotCancelTheNext) {
+  run_.Cancel();
+  EXPECT_TRUE(Start().is_null());
+  EXPECT_FALSE(FollowToTheEnd());
+  EXPECT_EQ(stack_.TakeRequests().size(), 1u);
+}
+
+// What has changed while it was planned.
+TEST_F(RunCommandTest, TheConditionsAreJudgedAgainWhenThePlanIsThere) {
+  EXPECT_TRUE(Start().is_null());
+  now_.permit.state = SafetyState::kTripped;
+  EXPECT_EQ(FollowToTheEnd()->json["refusal"], "wrong-state");
+  held_ = true;
+  EXPECT_EQ(Start()["refusal"], "wrong-state");
+  now_.permit.state = SafetyState::kArmed;
+  EXPECT_TRUE(Start().is_null());
+  now_.tick.output.angle_rad[1] += 2.0 * RunCommand::kMoved_rad;
+  EXPECT_THAT(FollowToTheEnd()->json.value("error", ""), HasSubstr("was moved"));
+}
+
+TEST_F(RunCommandTest, APlanWaitsForTheAnswerToAReset) {
+  EXPECT_TRUE(Start().is_null());
+  const std::uint32_t reset = requests_.Ask(RequestKind::kReset, now_.now_ns).number;
+  held_ = false;
+  for (int k = 0; k < 1'000; ++k) EXPECT_FALSE(Follow());
+  EXPECT_TRUE(run_.planning());
+  EXPECT_EQ(stack_.TakeRequests().size(), 1u) << "the reset";
+  Answered(RequestKind::kReset, reset, Refusal::kNone);
+  EXPECT_FALSE(FollowToTheEnd());
+  EXPECT_EQ(stack_.TakeRequests().at(0).kind, RequestKind::kRun);
+}
+
+TEST_F(RunCommandTest, TheDaemonEndsWhileAPlanIsMade) {
+  std::string text = "name = \"long\"\nduration_s = 3600.0\n";
+  for (int k = 0; k < 5'000; ++k) {
+    text += "[[move]]\nstart_s = " + std::to_string(k) + ".0\nto_deg = [" + std::to_string(k % 3) +
+            ".0, 0.0]\n";
+  }
+  text.resize(text.find("start_s = 3590"));
+  text.resize(text.rfind("[[move]]"));
+  held_ = false;
+  {
+    RunCommand run(TargetsOf());
+    EXPECT_TRUE(run.Start({{"command", "run"}, {"experiment", text}}, kRunClient, now_).is_null());
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_TRUE(run.planning());
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace flexarm
