@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <vector>
 
 #include "controller/design/design_verdict.h"
@@ -25,6 +26,7 @@
 #include "controller/realtime/realtime_setup.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/recorder_task.h"
+#include "controller/runlog/run_recovery.h"
 #include "controller/tasks/simulated_stack.h"
 #include "controller/tasks/wired_stack.h"
 #include "controller/types/rejected_error.h"
@@ -118,6 +120,7 @@ class Daemon {
   void ReportDesign();
   void PrepareHost();
   void RestoreTrip();
+  void RecoverLogs();
   void AddLoop();
   void Wait(const EndSignals& signals);
   void ReportThreads();
@@ -137,6 +140,7 @@ class Daemon {
   std::unique_ptr<LockstepTask> behind_clock_;  // the loop, if it runs without real time
   RealtimeExecutor executor_;
   OperatorTask operator_;
+  std::jthread recovery_;  // of the logs that killed daemons left; ends within one log
 };
 
 OperatorContext Daemon::Context() {
@@ -190,6 +194,16 @@ void Daemon::RestoreTrip() {
   }
 }
 
+// Beside the loop: a folder with long logs does not delay the start. The recorder's own runs are
+// locked, so the two do not meet.
+void Daemon::RecoverLogs() {
+  recovery_ = std::jthread([this](const std::stop_token& stop) {
+    RecoverRuns(
+        options_.config.daemon.log_directory,
+        [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }, stop);
+  });
+}
+
 DaemonResult Daemon::Run() {
   journal_.Info("flexarmd " + ThisBuild().version + " (" + BuildId() + "), rig " +
                 options_.config.rig_name + ", backend " + options_.config.backend);
@@ -198,6 +212,7 @@ DaemonResult Daemon::Run() {
   PrepareHost();
   RestoreTrip();
   journal_.Start();
+  RecoverLogs();
   AddLoop();
   executor_.Add(operator_);
   executor_.Add(recorder_);

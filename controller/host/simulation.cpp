@@ -69,6 +69,7 @@ class MemoryAndLog final : public RunMemory {
     log_->SetExperiment(name, text);
   }
   void Commit() override { log_->Commit(); }
+  std::string Trouble() const override { return log_->Trouble(); }
   void Close(const std::string& result_json) override { log_->Close(result_json); }
 
  private:

@@ -1,13 +1,21 @@
 #include "controller/runlog/run_reader.h"
 
-#include <array>
-#include <charconv>
-#include <cstdlib>
-#include <fstream>
-#include <memory>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <string_view>
 
 #include "controller/runlog/blob.h"
+#include "controller/runlog/file_descriptor.h"
+#include "controller/runlog/row_order.h"
+#include "controller/runlog/run_conversion.h"
+#include "controller/runlog/run_digest.h"
+#include "controller/runlog/run_file_lock.h"
+#include "controller/runlog/run_info_keys.h"
 #include "controller/runlog/schema.h"
 
 namespace flexarm {
@@ -17,14 +25,7 @@ constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 
 constexpr const char* kSelectTick =
     "SELECT tick, truth_known, truth_hub_1_rad, truth_hub_2_rad, truth_tip_x_m, truth_tip_y_m,"
-    " truth_deflection_1_m, truth_deflection_2_m, input, output, ";
-
-std::filesystem::path WalOf(const std::filesystem::path& file) { return file.string() + "-wal"; }
-
-bool HasWal(const std::filesystem::path& file) {
-  std::error_code missing;
-  return std::filesystem::file_size(WalOf(file), missing) > 0 && !missing;
-}
+    " truth_deflection_1_m, truth_deflection_2_m, input, output, gate FROM tick ORDER BY tick";
 
 PlantTruth ReadTruth(const SqliteStatement& row) {
   return {.hub_angle_rad = {row.Real(2), row.Real(3)},
@@ -33,19 +34,15 @@ PlantTruth ReadTruth(const SqliteStatement& row) {
           .known = row.Integer(1) != 0};
 }
 
-template <typename T>
-T ParseInteger(const std::string& text) {
-  T value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
+// The first bytes of a file.
+std::string BeginningOf(int fd) {
+  std::string text(16, '\0');
+  const ssize_t count = ::pread(fd, text.data(), text.size(), 0);
+  text.resize(count < 0 ? 0 : static_cast<std::size_t>(count));
+  return text;
 }
 
-// The first bytes of a file, printable, for a message.
-std::string Beginning(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(16, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+std::string Printable(std::string text) {
   for (char& c : text) {
     if (c < ' ' || c > '~') c = '.';
   }
@@ -53,39 +50,6 @@ std::string Beginning(const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-bool LooksLikeSqlite(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::array<char, kSqliteMagic.size()> found{};
-  stream.read(found.data(), found.size());
-  return stream.good() && std::string_view(found.data(), found.size()) == kSqliteMagic;
-}
-
-/// The log and its -wal file in a temporary folder, where SQLite can create its -shm file.
-class RunReader::TemporaryCopy {
- public:
-  explicit TemporaryCopy(const std::filesystem::path& original) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "flexarm-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) {
-      throw std::filesystem::filesystem_error("cannot make a folder", pattern,
-                                              std::error_code(errno, std::generic_category()));
-    }
-    folder_ = pattern;
-    std::filesystem::copy_file(original, file());
-    if (HasWal(original)) std::filesystem::copy_file(WalOf(original), WalOf(file()));
-  }
-  ~TemporaryCopy() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  TemporaryCopy(const TemporaryCopy&) = delete;
-  TemporaryCopy& operator=(const TemporaryCopy&) = delete;
-
-  std::filesystem::path file() const { return folder_ / "run.flexarm"; }
-
- private:
-  std::filesystem::path folder_;
-};
 
 void RunReader::Fail(const std::string& what) const {
   throw InputError(file_.string() + ": " + what);
@@ -96,103 +60,75 @@ void RunReader::Guarded(Action action) {
   try {
     action();
   } catch (const SqliteError& error) {
-    Fail(std::string("damaged or cut short: found \"") + error.what() +
+    Fail(std::string("damaged or cut short: found \"") + Printable(error.what()) +
          "\", expected a complete run log");
   }
 }
 
 RunReader::RunReader(const std::filesystem::path& file) : file_(file) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) Fail(error.message() + "; expected a run log (.flexarm)");
-  if (size == 0) Fail("is empty; expected a run log (.flexarm)");
-  if (!LooksLikeSqlite(file)) {
-    Fail("not a run log: begins with \"" + Beginning(file) +
-         "\", expected a SQLite file (.flexarm)");
+  // A FIFO without a writer would wait.
+  const FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  struct stat there{};
+  if (!fd.is_open() || ::fstat(fd.get(), &there) != 0) {
+    Fail(std::string(std::strerror(errno)) + "; expected a run log (.flexarm)");
   }
-  OpenFile();
-  Guarded([&] { CheckIdentity(); });
+  if (!S_ISREG(there.st_mode)) Fail("not a regular file; expected a run log (.flexarm)");
+  if (there.st_size == 0) Fail("is empty; expected a run log (.flexarm)");
+  const std::string beginning = BeginningOf(fd.get());
+  if (beginning.starts_with(kRecordMagic)) {
+    OpenRecords(fd.get());
+  } else if (beginning == kSqliteMagic) {
+    OpenSqlite();
+  } else {
+    Fail("not a run log: begins with \"" + Printable(beginning) +
+         "\", expected a run log (.flexarm)");
+  }
   Guarded([&] { ReadInfo(); });
 }
 
-RunReader::~RunReader() = default;
-
-void RunReader::TryOpen(const std::filesystem::path& file, bool immutable) {
-  db_ = SqliteDb::OpenReadOnly(file, immutable);
-  db_.QueryInteger("SELECT count(*) FROM sqlite_master");  // SQLite opens the file at first use
+void RunReader::OpenRecords(int fd) {
+  state_ = RunFileIsLocked(fd) ? RunState::kWritten : RunState::kLeft;
+  RecordFileReader records(fd);
+  if (!records.problem().empty()) Fail(records.problem());
+  RecordFileEnd end;
+  Guarded([&] {
+    db_ = SqliteDb::InMemory();
+    end = FillTables(&records, &db_);
+  });
+  if (end.damaged_at) {
+    Fail("damaged at byte " + std::to_string(*end.damaged_at) +
+         "; `flexarm log recover` makes a run of what stands before it");
+  }
+  left_out_bytes_ = end.left_out_bytes;
 }
 
-// A log in WAL mode needs a -shm file beside it. Where that cannot be created, a log without a -wal
-// file is read in place, and one with a -wal file is read from a copy.
-void RunReader::OpenFile() {
-  try {
-    TryOpen(file_, false);
-    return;
-  } catch (const SqliteError&) {  // the next attempt reports the error
-  }
+// A SQLite log is never written again: it needs neither a lock nor a file beside it.
+void RunReader::OpenSqlite() {
   Guarded([&] {
-    if (!HasWal(file_)) {
-      TryOpen(file_, true);
-      return;
-    }
-    try {
-      copy_ = std::make_unique<TemporaryCopy>(file_);
-    } catch (const std::filesystem::filesystem_error& error) {
-      Fail(std::string("its folder is read-only and it could not be copied: ") + error.what());
-    }
-    TryOpen(copy_->file(), false);
+    db_ = SqliteDb::OpenReadOnly(file_, true);
+    db_.Distrust(static_cast<int>(kLargestPayload));
+    const std::string problem = SchemaProblem(&db_);
+    if (!problem.empty()) Fail(Printable(problem));
   });
 }
 
-void RunReader::CheckIdentity() {
-  const std::int64_t id = db_.QueryInteger("PRAGMA application_id");
-  if (id != kRunLogApplicationId) {
-    Fail("not a run log: a SQLite file with application id " + std::to_string(id) + ", expected " +
-         std::to_string(kRunLogApplicationId));
-  }
-  const std::int64_t version = db_.QueryInteger("PRAGMA user_version");
-  if (version < 1 || version > kRunLogSchemaVersion) {
-    Fail("has schema version " + std::to_string(version) + ", expected at most " +
-         std::to_string(kRunLogSchemaVersion) + "; it was written by a newer flexarm");
-  }
-  SqliteStatement mode = db_.Prepare("PRAGMA journal_mode");
-  closed_ = mode.Step() && mode.Text(0) != "wal";
-}
-
-void RunReader::SetInfo(const std::string& key, const std::string& value) {
-  if (key == run_key::kStartUtc) info_.start_utc = value;
-  if (key == run_key::kStartNs) info_.start_ns = ParseInteger<std::int64_t>(value);
-  if (key == run_key::kVersion) info_.version = value;
-  if (key == run_key::kBuildId) info_.build_id = value;
-  if (key == run_key::kRigName) info_.rig_name = value;
-  if (key == run_key::kClock) info_.clock = value;
-  if (key == run_key::kBackend) info_.backend = value;
-  if (key == run_key::kSeed) info_.seed = ParseInteger<std::uint64_t>(value);
-  if (key == run_key::kConfig) info_.config_text = value;
-  if (key == run_key::kExperimentName) info_.experiment_name = value;
-  if (key == run_key::kExperiment) info_.experiment_text = value;
-  if (key == run_key::kGains) info_.gains_json = value;
-  if (key == run_key::kResult) info_.result_json = value;
-}
-
 void RunReader::ReadInfo() {
-  SqliteStatement row = db_.Prepare("SELECT key, value FROM run");
-  while (row.Step()) SetInfo(row.Text(0), row.Text(1));
-}
-
-bool RunReader::HasGateColumn() {
-  SqliteStatement row =
-      db_.Prepare("SELECT count(*) FROM pragma_table_info('tick') WHERE name = 'gate'");
-  return row.Step() && row.Integer(0) != 0;
+  RowOrder<std::string> order("run");
+  SqliteStatement row = db_.Prepare("SELECT key, value FROM run ORDER BY key");
+  while (row.Step()) {
+    const std::string key = row.Text(0);
+    order.Next(key);
+    if (key == run_key::kDigest) digest_ = row.Text(1);
+    SetInfo(&info_, key, row.Text(1));
+  }
 }
 
 void RunReader::ForEachTick(const std::function<void(const TickRecord&)>& visit) {
   Guarded([&] {
-    std::string select = kSelectTick;
-    select.append(HasGateColumn() ? "gate" : "0");  // an older log has no such column
-    select.append(" FROM tick ORDER BY tick");
-    SqliteStatement row = db_.Prepare(select);
+    RowOrder<std::int64_t> order("tick");
+    SqliteStatement row = db_.Prepare(kSelectTick);
     while (row.Step()) {
+      order.Next(row.Integer(0));
       TickRecord record;
       const std::string where = "tick " + std::to_string(row.Integer(0)) + ": ";
       std::string wrong = DecodeBlob(row.Blob(8), kStepInputVersion, &record.input);
@@ -211,9 +147,11 @@ void RunReader::ForEachTick(const std::function<void(const TickRecord&)>& visit)
 
 void RunReader::ForEachTiming(const std::function<void(const TimingRecord&)>& visit) {
   Guarded([&] {
+    RowOrder<std::int64_t> order("timing");
     SqliteStatement row =
-        db_.Prepare("SELECT tick, due_ns, woke_ns, finished_ns FROM timing ORDER BY rowid");
+        db_.Prepare("SELECT tick, due_ns, woke_ns, finished_ns, rowid FROM timing ORDER BY rowid");
     while (row.Step()) {
+      order.Next(row.Integer(4));
       visit({.tick = row.Integer(0),
              .due_ns = row.Integer(1),
              .woke_ns = row.Integer(2),
@@ -224,8 +162,10 @@ void RunReader::ForEachTiming(const std::function<void(const TimingRecord&)>& vi
 
 void RunReader::ForEachSafety(const std::function<void(const SafetyRecord&)>& visit) {
   Guarded([&] {
+    RowOrder<std::int64_t> order("safety");
     SqliteStatement row = db_.Prepare(kSelectSafety);
     while (row.Step()) {
+      order.Next(row.Integer(0));
       SafetyRecord record;
       const std::string wrong = ReadSafety(row, &record);
       if (!wrong.empty()) Fail("safety row " + std::to_string(row.Integer(0)) + " " + wrong);
@@ -234,18 +174,40 @@ void RunReader::ForEachSafety(const std::function<void(const SafetyRecord&)>& vi
   });
 }
 
+// Sorted here: SQLite would collect all rows, however many, before it gives the first.
 void RunReader::ForEachEvent(const std::function<void(const RunEvent&)>& visit) {
+  std::vector<RunEvent> events;
   Guarded([&] {
+    RowOrder<std::int64_t> order("event");
     SqliteStatement row = db_.Prepare(
-        "SELECT time_ns, kind, name, text, value_json FROM event ORDER BY time_ns, number");
+        "SELECT time_ns, kind, name, text, value_json, number FROM event ORDER BY number");
     while (row.Step()) {
-      visit({.time_ns = row.Integer(0),
-             .kind = row.Text(1),
-             .name = row.Text(2),
-             .text = row.Text(3),
-             .value_json = row.Text(4)});
+      order.Next(row.Integer(5));
+      events.push_back({.time_ns = row.Integer(0),
+                        .kind = row.Text(1),
+                        .name = row.Text(2),
+                        .text = row.Text(3),
+                        .value_json = row.Text(4)});
     }
   });
+  std::stable_sort(events.begin(), events.end(),
+                   [](const RunEvent& a, const RunEvent& b) { return a.time_ns < b.time_ns; });
+  for (const RunEvent& event : events) visit(event);
+}
+
+bool RunReader::DigestHolds() {
+  if (!closed()) return true;
+  bool holds = false;
+  Guarded([&] { holds = DigestOfTables(&db_) == digest_; });
+  return holds;
+}
+
+void RunReader::VerifyDigest() {
+  if (!DigestHolds())
+    Fail(
+        "digest: damaged since it was written: found other values than those of"
+        " its digest \"" +
+        Printable(digest_) + "\"");
 }
 
 RunContents RunReader::ReadAll() {

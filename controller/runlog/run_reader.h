@@ -1,8 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "controller/realtime/timing_record.h"
@@ -12,22 +12,36 @@
 
 namespace flexarm {
 
-/// Reads one run log, also while it is being written, after its process was killed (the committed
-/// rows are in the -wal file), or from a read-only folder.
+/// Where a run log stands.
+enum class RunState {
+  kClosed,   ///< SQLite, closed in order or recovered
+  kWritten,  ///< a record file that is being written
+  kLeft,     ///< a record file whose program was killed, or a copy of one
+};
+
+/// Reads one run log, from wherever its file is: a closed run, one that is being written, or what a
+/// killed program left. A record file is converted in memory.
 ///
-/// Never writes to the log. Every method throws InputError if the file is not valid.
+/// Believes nothing: the schema is compared before anything is read, rows must come in order, and
+/// all sizes are limited. Never writes. Every method throws InputError if the file is not valid.
 class RunReader {
  public:
-  /// @throws InputError: missing, not SQLite, another application's, a newer schema, damaged
+  /// @throws InputError: missing, no run log, of another version, damaged
   explicit RunReader(const std::filesystem::path& file);
-  ~RunReader();
-  RunReader(const RunReader&) = delete;
-  RunReader& operator=(const RunReader&) = delete;
 
   const std::filesystem::path& file() const { return file_; }
   const RunInfo& info() const { return info_; }
-  /// False: the run is still open, or its process was killed.
-  bool closed() const { return closed_; }
+  RunState state() const { return state_; }
+  bool closed() const { return state_ == RunState::kClosed; }
+  /// Of a record file: bytes behind its last whole record, which are left out.
+  std::uint64_t left_out_bytes() const { return left_out_bytes_; }
+
+  /// The digest that the closed run was given; "" in a record file, whose records have checksums.
+  const std::string& digest() const { return digest_; }
+  /// True if all that the log holds is as it was written. Reads everything.
+  bool DigestHolds();
+  /// @throws InputError if it is not
+  void VerifyDigest();
 
   // In the order of time. BLOBs are checked for size and version.
   void ForEachTick(const std::function<void(const TickRecord&)>& visit);
@@ -38,26 +52,19 @@ class RunReader {
   RunContents ReadAll();
 
  private:
-  class TemporaryCopy;
-
   template <typename Action>
   void Guarded(Action action);
-  void OpenFile();
-  void TryOpen(const std::filesystem::path& file, bool immutable);
-  void CheckIdentity();
+  void OpenRecords(int fd);
+  void OpenSqlite();
   void ReadInfo();
-  bool HasGateColumn();
-  void SetInfo(const std::string& key, const std::string& value);
   [[noreturn]] void Fail(const std::string& what) const;
 
   std::filesystem::path file_;
-  std::unique_ptr<TemporaryCopy> copy_;
   SqliteDb db_;
   RunInfo info_;
-  bool closed_ = false;
+  RunState state_ = RunState::kClosed;
+  std::uint64_t left_out_bytes_ = 0;
+  std::string digest_;
 };
-
-/// True if `file` begins as a SQLite file does; false also if it cannot be read.
-bool LooksLikeSqlite(const std::filesystem::path& file);
 
 }  // namespace flexarm

@@ -24,6 +24,9 @@ class RunSink {
   virtual void SetExperiment(const std::string& name, const std::string& text) = 0;
   /// Makes all data so far safe against a crash of the process.
   virtual void Commit() = 0;
+  /// What keeps the data so far from being safe, for the operator; "" if nothing does. The sink
+  /// goes on: nothing is lost yet, and the next Commit tries again.
+  virtual std::string Trouble() const { return {}; }
   /// Ends the run. Nothing may follow.
   virtual void Close(const std::string& result_json) = 0;
 };

@@ -1,55 +1,82 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "controller/realtime/timing_record.h"
+#include "controller/runlog/append_file.h"
 #include "controller/runlog/errors.h"
+#include "controller/runlog/record_format.h"
+#include "controller/runlog/reserved_run_file.h"
 #include "controller/runlog/run_sink.h"
-#include "controller/runlog/sqlite_db.h"
 
 namespace flexarm {
 
-/// Writes one run into one SQLite file.
+/// A run whose records are complete, before it is a SQLite file. Its file stays locked.
+class EndedRun {
+ public:
+  explicit EndedRun(AppendFile file) : file_(std::move(file)) {}
+
+  /// Writes what the disk has not taken yet, syncs, and turns the record file into SQLite. May be
+  /// repeated until it succeeds, on any thread; takes seconds for a long run.
+  /// @returns what is wrong, with the file's name; "" once the run is a SQLite file
+  std::string Finish() noexcept;
+
+  const std::filesystem::path& path() const { return file_.path(); }
+
+ private:
+  AppendFile file_;
+};
+
+/// Writes one run: a record file (record_format.h) while it is open, SQLite once it is closed.
 ///
-/// While open the file is in WAL mode: readers never wait, and a crash of the process loses only
-/// uncommitted rows. Close() leaves one file and no auxiliary files.
+/// A commit is one write; what it wrote survives the process. A power failure can lose the last
+/// seconds before it, for nothing is synced before the end. A disk that fails stops nothing:
+/// Trouble() says so, up to kLargestBacklog bytes wait in memory for the next commit, and what
+/// comes beyond them is counted and told by an event "gap".
 /// Thread: one at a time. Not real-time safe: it allocates and waits for the disk.
 class RunWriter : public RunSink {
  public:
-  /// Creates `file`, its folder if necessary, and its tables.
+  static constexpr std::size_t kLargestBacklog = 64 << 20;  ///< bytes; ten minutes at 50 Hz
+
+  /// Creates `file`, and its folder if necessary.
   /// @throws RunLogError if it exists already, or cannot be written
-  RunWriter(std::filesystem::path file, const RunInfo& info);
-  /// Closes without a result if Close was not called; an error is then not reported.
+  RunWriter(const std::filesystem::path& file, const RunInfo& info);
+  /// Takes a reserved file, which has its final name.
+  /// @throws RunLogError if it cannot be written
+  RunWriter(ReservedRunFile file, const RunInfo& info);
+  /// Closes without a result if neither Close nor End was called; an error is then not reported.
   ~RunWriter() override;
 
-  // Each throws RunLogError naming file and cause; rows since the last Commit may then be lost.
   void Tick(const TickRecord& record) override;
-  void Timing(const TimingRecord& record) override;
-  void Safety(const SafetyRecord& record) override;
-  void Event(const RunEvent& event) override;
+  void Timing(const TimingRecord& record) override { Add(record); }
+  void Safety(const SafetyRecord& record) override { Add(record); }
+  void Event(const RunEvent& event) override { Add(event); }
   void SetExperiment(const std::string& name, const std::string& text) override;
   void Commit() override;
+  std::string Trouble() const override;
+
+  /// Ends the run without waiting for the disk: EndedRun::Finish does, on another thread if need
+  /// be. Nothing may follow.
+  EndedRun End(const std::string& result_json);
+  /// End and Finish. @throws RunLogError if that fails: the file then holds what the disk took, and
+  /// `flexarm log recover` makes a run of it
   void Close(const std::string& result_json) override;
 
-  std::string Name() const override { return file_.string(); }
+  std::string Name() const override { return name_; }
 
  private:
-  template <typename Action>
-  void Guarded(Action action);
-  void CreateTables();
-  void WriteInfo(const RunInfo& info);
-  void PrepareStatements();
-  void SetKey(const char* key, const std::string& value);
-  void BeginIfNeeded();
-  double SinceStart(std::int64_t time_ns) const;
+  void Add(const RunRecord& record);
+  void AddGap();
 
-  std::filesystem::path file_;
-  std::int64_t start_ns_;
-  SqliteDb db_;
-  SqliteStatement set_key_, insert_tick_, insert_timing_, insert_safety_, insert_event_;
-  bool in_transaction_ = false;
+  std::unique_ptr<AppendFile> file_;  // null: ended
+  std::string name_;
   bool has_experiment_;
+  std::int64_t last_tick_ns_ = 0;
+  std::uint64_t lost_records_ = 0;
 };
 
 /// "2026-11-20T13:45:06Z" of now.

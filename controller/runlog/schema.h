@@ -1,17 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace flexarm {
 
-// The tables of a run log. One SQLite file is one run.
+class SqliteDb;
+
+// The tables of a closed run. One SQLite file is one run.
 //
 // Columns are for users and their tools, in the units of their names; the BLOBs contain the same
 // records bit by bit (SQLite's REAL loses NaN), for replay. A column is NULL where a value is NaN
 // or unknown.
 
 inline constexpr std::int64_t kRunLogApplicationId = 0x466c4172;  ///< "FlAr"
-inline constexpr std::int64_t kRunLogSchemaVersion = 1;           ///< PRAGMA user_version
+inline constexpr std::int64_t kRunLogSchemaVersion = 2;           ///< PRAGMA user_version
 
 /// All tables but `tick`, which tick_columns.h makes.
 inline constexpr const char* kRunLogSchema = R"sql(
@@ -35,7 +38,7 @@ CREATE TABLE event (
 );
 )sql";
 
-// Keys of table `run`. `result` exists once the run was closed.
+// Keys of table `run`. `result` and `digest` exist once the run was closed.
 namespace run_key {
 inline constexpr const char* kStartUtc = "start_utc";
 inline constexpr const char* kStartNs = "start_ns";  ///< time_s = 0, in the clock of the loop
@@ -50,6 +53,15 @@ inline constexpr const char* kExperimentName = "experiment_name";
 inline constexpr const char* kExperiment = "experiment";
 inline constexpr const char* kGains = "gains";
 inline constexpr const char* kResult = "result";
+inline constexpr const char* kDigest = "digest";  ///< run_digest.h
 }  // namespace run_key
+
+/// Makes all tables, and marks the file as a run log of this version. @throws SqliteError
+void CreateRunTables(SqliteDb* db);
+
+/// Why a database is no run log of this version: its marks, or tables, views, triggers or indices
+/// that differ; "" if it is one. To be asked before anything else is read.
+/// @throws SqliteError if the file is damaged
+std::string SchemaProblem(SqliteDb* db);
 
 }  // namespace flexarm

@@ -44,7 +44,9 @@ std::string Uri(const std::filesystem::path& file) {
 
 }  // namespace
 
-bool SqliteError::is_busy() const { return (code_ & 0xff) == SQLITE_BUSY; }
+SqliteError SqliteError::Damaged(const std::string& cause) {
+  return SqliteError(SQLITE_CORRUPT, cause);
+}
 
 SqliteStatement::SqliteStatement(sqlite3* connection, std::string_view sql)
     : connection_(connection) {
@@ -125,9 +127,11 @@ std::string SqliteStatement::Text(int column) const {
           static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
 }
 
-bool SqliteStatement::IsNull(int column) const {
-  return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+SqliteType SqliteStatement::Type(int column) const {
+  return static_cast<SqliteType>(sqlite3_column_type(statement_, column));
 }
+
+int SqliteStatement::Columns() const { return sqlite3_column_count(statement_); }
 
 std::span<const std::byte> SqliteStatement::Blob(int column) const {
   const void* bytes = sqlite3_column_blob(statement_, column);
@@ -158,9 +162,32 @@ SqliteDb SqliteDb::OpenOrCreate(const std::filesystem::path& file) {
   return Open(file.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
 }
 
+SqliteDb SqliteDb::InMemory() {
+  return Open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+}
+
 SqliteDb SqliteDb::OpenReadOnly(const std::filesystem::path& file, bool immutable) {
   return Open(Uri(file) + (immutable ? "?immutable=1" : ""),
               SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+}
+
+void SqliteDb::Distrust(int largest_value) {
+  constexpr std::pair<int, int> kLimits[] = {
+      {SQLITE_LIMIT_SQL_LENGTH, 20'000}, {SQLITE_LIMIT_COLUMN, 200},
+      {SQLITE_LIMIT_VDBE_OP, 5'000},     {SQLITE_LIMIT_EXPR_DEPTH, 20},
+      {SQLITE_LIMIT_COMPOUND_SELECT, 2}, {SQLITE_LIMIT_FUNCTION_ARG, 8},
+      {SQLITE_LIMIT_ATTACHED, 0},        {SQLITE_LIMIT_TRIGGER_DEPTH, 1},
+      {SQLITE_LIMIT_WORKER_THREADS, 0},
+  };
+  sqlite3_limit(connection_, SQLITE_LIMIT_LENGTH, largest_value);
+  for (const auto& [limit, value] : kLimits) sqlite3_limit(connection_, limit, value);
+  for (const int off :
+       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW,
+        SQLITE_DBCONFIG_DQS_DDL, SQLITE_DBCONFIG_DQS_DML}) {
+    sqlite3_db_config(connection_, off, 0, nullptr);
+  }
+  sqlite3_db_config(connection_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  Execute("PRAGMA cell_size_check=ON");
 }
 
 SqliteDb::~SqliteDb() { Close(); }

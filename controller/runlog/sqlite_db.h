@@ -17,11 +17,15 @@ class SqliteError : public std::runtime_error {
  public:
   SqliteError(int error_code, const std::string& cause)
       : std::runtime_error(cause), code_(error_code) {}
-  bool is_busy() const;  ///< another connection holds the file
+  /// What SQLite reads, but does not check itself.
+  static SqliteError Damaged(const std::string& cause);
 
  private:
   int code_;  // extended result code
 };
+
+/// The type of one value, in SQLite's numbers.
+enum class SqliteType { kInteger = 1, kReal = 2, kText = 3, kBlob = 4, kNull = 5 };
 
 /// One prepared statement. Columns and parameters count as in SQLite: parameters from 1, columns
 /// from 0. A NaN is stored as NULL and read back as NaN.
@@ -51,8 +55,10 @@ class SqliteStatement {
   std::int64_t Integer(int column) const;
   double Real(int column) const;  ///< NaN for NULL
   std::string Text(int column) const;
-  bool IsNull(int column) const;
-  /// Valid until the next Step or Reset.
+  SqliteType Type(int column) const;
+  bool IsNull(int column) const { return Type(column) == SqliteType::kNull; }
+  int Columns() const;
+  /// Also the bytes of a text. Valid until the next Step or Reset.
   std::span<const std::byte> Blob(int column) const;
 
  private:
@@ -70,6 +76,7 @@ class SqliteDb {
   static SqliteDb CreateNew(const std::filesystem::path& file);
   /// Opens a file for reading and writing; creates an empty one if there is none.
   static SqliteDb OpenOrCreate(const std::filesystem::path& file);
+  static SqliteDb InMemory();
   /// @param immutable  the file does not change: no lock and no -shm file needed
   static SqliteDb OpenReadOnly(const std::filesystem::path& file, bool immutable);
   ~SqliteDb();
@@ -77,6 +84,11 @@ class SqliteDb {
   SqliteDb& operator=(SqliteDb&& other) noexcept;
   SqliteDb(const SqliteDb&) = delete;
   SqliteDb& operator=(const SqliteDb&) = delete;
+
+  /// Prepares a file of unknown origin: limits on sizes and statements, no code of its schema runs,
+  /// and pages are checked when they are read.
+  /// @param largest_value  bytes of a text, a blob and a row
+  void Distrust(int largest_value);
 
   bool is_open() const { return connection_ != nullptr; }
   void Execute(const char* sql);

@@ -36,6 +36,7 @@ void RegisterExport(CLI::App& app, Exit& exit);
 void RegisterIdentify(CLI::App& app, Exit& exit);
 void RegisterInfo(CLI::App& app, Exit& exit);
 void RegisterLinesOff(CLI::App& app, Exit& exit);
+void RegisterLog(CLI::App& app, Exit& exit);  ///< recover
 void RegisterModes(CLI::App& app, Exit& exit);
 void RegisterOperate(CLI::App& app, Exit& exit);  ///< status, arm, run, stop, disarm, reset, sim
 void RegisterPlot(CLI::App& app, Exit& exit);

@@ -23,6 +23,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterCheck(app, exit);
   RegisterCheckHost(app, exit);
   RegisterDiff(app, exit);
+  RegisterLog(app, exit);
   RegisterOperate(app, exit);
   RegisterCommission(app, exit);
   RegisterProveSwitches(app, exit);

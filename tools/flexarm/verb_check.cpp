@@ -52,8 +52,9 @@ void RegisterCheck(CLI::App& app, Exit& exit) {
   AddJson(verb, &options->json);
   verb->footer(
       "Rules: no missing tick, increasing time, torque and slew limits, torque only in states\n"
-      "that allow it, safety transitions as the state machine prescribes. Prints ok or FAILED for\n"
-      "each rule. Exit code 1 if a rule is broken.\n"
+      "that allow it, safety transitions as the state machine prescribes, values as they were\n"
+      "written (digest), run ended in order. Prints ok or FAILED for each rule. Exit code 1 if a\n"
+      "rule is broken.\n"
       "Example: flexarm check runs/today.flexarm");
   verb->callback([options, &exit] { exit.code = Check(*options); });
 }

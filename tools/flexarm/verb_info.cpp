@@ -75,6 +75,20 @@ OrderedJson GateJson(const std::vector<TickRecord>& ticks) {
   return json;
 }
 
+std::string StateText(const LoadedRun& run) {
+  if (run.closed()) {
+    return run.digest_holds ? "closed, as it was written" : "DAMAGED since it was written";
+  }
+  std::string text = run.state == RunState::kWritten
+                         ? "is being written"
+                         : "was left by a killed program: see flexarm log recover";
+  if (run.state == RunState::kLeft && run.left_out_bytes > 0) {
+    text += "; " + std::to_string(run.left_out_bytes) +
+            " bytes after the last whole record are left out";
+  }
+  return text;
+}
+
 OrderedJson Info(const LoadedRun& run) {
   const RunInfo& info = run.contents.info;
   const auto& ticks = run.contents.tick;
@@ -89,7 +103,10 @@ OrderedJson Info(const LoadedRun& run) {
       info.experiment_name.empty() ? OrderedJson(nullptr) : OrderedJson(info.experiment_name);
   json["version"] = info.version;
   json["build_id"] = info.build_id;
-  json["closed"] = run.closed;
+  json["closed"] = run.closed();
+  json["log"] = StateText(run);
+  json["digest"] = run.digest.empty() ? OrderedJson(nullptr) : OrderedJson(run.digest);
+  json["digest_holds"] = run.digest_holds;
   json["ticks"] = ticks.size();
   json["missing_ticks"] = MissingTicks(ticks);
   json["duration_s"] =
@@ -162,7 +179,7 @@ void PrintSafety(const RunContents& run) {
 void PrintText(const OrderedJson& json, const RunContents& run) {
   std::cout << json["run"].get<std::string>() << '\n';
   for (const char* key : {"start_utc", "rig", "backend", "clock", "seed", "experiment", "version",
-                          "build_id", "closed", "ticks", "missing_ticks"}) {
+                          "build_id", "log", "digest", "ticks", "missing_ticks"}) {
     PrintLine(key, json[key]);
   }
   PrintLine("duration", json["duration_s"], "s");

@@ -66,6 +66,7 @@ Outcome ReplayRun(const ReplayOptions& options) {
     throw InputError("--calibration is for CSV files only: a run log contains its own calibration");
   }
   RunReader reader(options.source);
+  reader.VerifyDigest();
   const RigConfig own = ConfigOf(reader);
   const bool asks_for_other = options.config.given() || !options.config.overrides.empty();
   const RigConfig config = asks_for_other ? options.config.Load() : own;
@@ -194,6 +195,7 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       ->type_name("FILE");
   AddJson(verb, &options->json);
   verb->footer(
+      "A log that was damaged since it was written is refused: its digest tells.\n"
       "A run log contains its config and gains; its replay must give the same bytes, else the\n"
       "exit code is 1. A log of another processor (arm64, amd64) must give the same estimate to\n"
       "1e-6 and the same safety decisions. With -c the loop uses that config instead, and the\n"

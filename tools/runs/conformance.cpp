@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "controller/runlog/replay.h"
 
@@ -119,10 +120,18 @@ ConformanceCheck SafetyReplays(const RunContents& run) {
               " ns has another transition than its facts require"};
 }
 
+ConformanceCheck DigestHolds(const LoadedRun& run) {
+  return {"digest", run.digest_holds, run.digest_holds ? "" : "damaged since it was written"};
+}
+
 ConformanceCheck IsClosed(const LoadedRun& run) {
-  const bool closed = run.closed && !run.contents.info.result_json.empty();
-  return {"closed", closed,
-          closed ? "" : "the run was not closed: still open, or its process died"};
+  const std::string& result = run.contents.info.result_json;
+  if (!run.closed() || result.empty()) {
+    return {"closed", false, "the run was not closed: still open, or its process died"};
+  }
+  const nlohmann::json parsed = nlohmann::json::parse(result, nullptr, false);
+  const bool recovered = parsed.is_object() && parsed.contains("recovered");
+  return {"closed", !recovered, recovered ? "its process died; the log was recovered later" : ""};
 }
 
 }  // namespace
@@ -140,6 +149,7 @@ std::vector<ConformanceCheck> CheckConformance(const LoadedRun& run) {
           ForEveryTick("slew-limit", ticks, SlewLimit(limits, run.period_s())),
           ForEveryTick("torque-only-where-allowed", ticks, NoTorqueWhereNoneIsAllowed),
           SafetyReplays(run.contents),
+          DigestHolds(run),
           IsClosed(run)};
 }
 

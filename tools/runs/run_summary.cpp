@@ -29,7 +29,10 @@ RigConfig ConfigOf(const RunReader& reader) {
 LoadedRun LoadRun(const std::filesystem::path& file) {
   RunReader reader(file);
   LoadedRun run{.file = file,
-                .closed = reader.closed(),
+                .state = reader.state(),
+                .left_out_bytes = reader.left_out_bytes(),
+                .digest = reader.digest(),
+                .digest_holds = reader.DigestHolds(),
                 .contents = reader.ReadAll(),
                 .config = ConfigOf(reader),
                 .experiment = std::nullopt};

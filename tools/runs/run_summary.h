@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "config/config.h"
 #include "controller/runlog/metrics.h"
@@ -13,11 +15,15 @@ namespace flexarm {
 /// A run log with the config and the experiment that it holds.
 struct LoadedRun {
   std::filesystem::path file;
-  bool closed = false;
+  RunState state = RunState::kClosed;
+  std::uint64_t left_out_bytes = 0;  ///< of a record file, behind its last whole record
+  std::string digest;                ///< of a closed run
+  bool digest_holds = false;         ///< false: the log was damaged since it was written
   RunContents contents;
   RigConfig config;
   std::optional<Experiment> experiment;  ///< empty: the log has none
 
+  bool closed() const { return state == RunState::kClosed; }
   double period_s() const { return config.loop.period_s(); }
 };
 

@@ -10,7 +10,14 @@ namespace flexarm {
 namespace {
 
 LoadedRun GoodRun() {
-  LoadedRun run{.file = "run", .closed = true, .contents = {}, .config = {}, .experiment = {}};
+  LoadedRun run{.file = "run",
+                .state = RunState::kClosed,
+                .left_out_bytes = 0,
+                .digest = "",
+                .digest_holds = true,
+                .contents = {},
+                .config = {},
+                .experiment = {}};
   run.config.loop.period_ms = 20;
   run.config.safety.torque_limit_nm = {30, 6};
   run.config.safety.slew_limit_nm_per_s = {500, 150};
@@ -73,7 +80,10 @@ TEST(Conformance, EachRuleDetectsItsOwnViolation) {
   EXPECT_EQ(
       Broken([](LoadedRun* run) { run->contents.safety[0].after.state = SafetyState::kRunning; }),
       Names{"safety-replay"});
-  EXPECT_EQ(Broken([](LoadedRun* run) { run->closed = false; }), Names{"closed"});
+  EXPECT_EQ(Broken([](LoadedRun* run) { run->state = RunState::kLeft; }), Names{"closed"});
+  EXPECT_EQ(
+      Broken([](LoadedRun* run) { run->contents.info.result_json = R"({"recovered":true})"; }),
+      Names{"closed"});
   EXPECT_EQ(Broken([](LoadedRun* run) { run->contents.tick.clear(); }), Names{"has-ticks"});
 }
 

@@ -1,0 +1,33 @@
+#include "controller/runlog/recovered_result.h"
+
+#include <nlohmann/json.hpp>
+
+namespace flexarm {
+
+void RecoveredResult::Add(const RunRecord& record) {
+  if (const auto* tick = std::get_if<TickRecord>(&record)) {
+    if (!first_tick_) first_tick_ = tick->input.tick;
+    last_tick_ = tick->input.tick;
+    ++ticks_;
+  }
+  if (const auto* safety = std::get_if<SafetyRecord>(&record)) {
+    state_ = safety->after.state;
+    const bool trips = CauseLatched(safety->after.state) && !CauseLatched(safety->before.state);
+    if (trips) trip_ = safety->after.cause;
+  }
+}
+
+std::string RecoveredResult::Json(std::uint64_t left_out_bytes) const {
+  const bool tripped = trip_ != TripCause::kNone;
+  nlohmann::json result;
+  result["completed"] = false;
+  result["recovered"] = true;
+  result["left_out_bytes"] = left_out_bytes;
+  result["trip"] = tripped ? nlohmann::json(ToString(trip_)) : nlohmann::json(nullptr);
+  result["ticks"] = ticks_;
+  result["missing_ticks"] = first_tick_ ? last_tick_ - *first_tick_ + 1 - ticks_ : 0;
+  result["final_state"] = ToString(state_);
+  return result.dump();
+}
+
+}  // namespace flexarm

@@ -1,0 +1,58 @@
+#include "controller/runlog/run_info_keys.h"
+
+#include <charconv>
+#include <cstdint>
+
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/schema.h"
+
+namespace flexarm {
+namespace {
+
+struct TextKey {
+  const char* key;
+  std::string RunInfo::* text;
+};
+
+constexpr TextKey kTextKeys[] = {
+    {run_key::kStartUtc, &RunInfo::start_utc},
+    {run_key::kVersion, &RunInfo::version},
+    {run_key::kBuildId, &RunInfo::build_id},
+    {run_key::kRigName, &RunInfo::rig_name},
+    {run_key::kClock, &RunInfo::clock},
+    {run_key::kBackend, &RunInfo::backend},
+    {run_key::kConfig, &RunInfo::config_text},
+    {run_key::kExperimentName, &RunInfo::experiment_name},
+    {run_key::kExperiment, &RunInfo::experiment_text},
+    {run_key::kGains, &RunInfo::gains_json},
+};
+
+template <typename T>
+T IntegerOf(const std::string& text) {
+  T value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+}  // namespace
+
+std::vector<InfoRecord> InfoKeys(const RunInfo& info) {
+  RunInfo filled = info;
+  if (filled.version.empty()) filled.version = ThisBuild().version;
+  if (filled.build_id.empty()) filled.build_id = BuildId();
+  std::vector<InfoRecord> keys = {{run_key::kStartNs, std::to_string(info.start_ns)},
+                                  {run_key::kSeed, std::to_string(info.seed)}};
+  for (const TextKey& key : kTextKeys) keys.push_back({key.key, filled.*key.text});
+  return keys;
+}
+
+void SetInfo(RunInfo* info, const std::string& key, const std::string& value) {
+  if (key == run_key::kStartNs) info->start_ns = IntegerOf<std::int64_t>(value);
+  if (key == run_key::kSeed) info->seed = IntegerOf<std::uint64_t>(value);
+  if (key == run_key::kResult) info->result_json = value;
+  for (const TextKey& text : kTextKeys) {
+    if (key == text.key) info->*text.text = value;
+  }
+}
+
+}  // namespace flexarm
