@@ -241,6 +241,7 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   safety.Read("homing_contact_s", &out->homing_contact_s);
   safety.Read("homing_torque_fraction", &out->homing_torque_fraction);
   safety.Read("prove_days", &out->prove_days);
+  if (safety.Has("disarm_after_s")) safety.Read("disarm_after_s", &out->disarm_after_s);
 }
 
 void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {
@@ -286,6 +287,15 @@ CsvImport ReadCsvImport(TableReader csv) {
   return import;
 }
 
+void ReadLog(TableReader log, DaemonConfig* out) {
+  log.Read("directory", &out->log_directory);
+  if (log.Has("required")) log.Read("required", &out->log.required);
+  if (log.Has("reserve_mb")) log.Read("reserve_mb", &out->log.reserve_mb);
+  if (log.Has("keep_free_mb")) log.Read("keep_free_mb", &out->log.keep_free_mb);
+  if (log.Has("keep_days")) log.Read("keep_days", &out->log.keep_days);
+  if (log.Has("keep_total_mb")) log.Read("keep_total_mb", &out->log.keep_total_mb);
+}
+
 void ReadTiming(TableReader root, RigConfig* config) {
   TableReader loop = root.Table("loop");
   loop.Read("period_ms", &config->loop.period_ms);
@@ -298,7 +308,7 @@ void ReadTiming(TableReader root, RigConfig* config) {
   TableReader daemon = root.Table("daemon");
   daemon.Read("socket", &config->daemon.socket);
   daemon.Read("state_directory", &config->daemon.state_directory);
-  root.Table("log").Read("directory", &config->daemon.log_directory);
+  ReadLog(root.Table("log"), &config->daemon);
 }
 
 }  // namespace

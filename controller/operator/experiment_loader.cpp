@@ -23,25 +23,26 @@ std::uint32_t ExperimentLoader::AskForRun(std::int64_t now_ns, int client, Order
   // Kept before it is asked for: the safety task may grant it at once.
   asked_.push_back({.number = 0, .order = std::move(order)});
   asked_.back().number = requests_->Ask(RequestKind::kRun, now_ns, client, run).number;
+  Announce(now_ns, asked_.back().order, asked_.back().number);
   return asked_.back().number;
 }
 
-void ExperimentLoader::Answered(std::int64_t now_ns, const RequestAnswer& answer) {
+void ExperimentLoader::Answered(const RequestAnswer& answer) {
   if (asked_.empty() || asked_.back().number != answer.number) return;
   if (answer.refusal == Refusal::kNone) {
-    Announce(now_ns, asked_.back().order);
+    name_ = asked_.back().order.name;
   } else {
     asked_.pop_back();
   }
 }
 
-void ExperimentLoader::Announce(std::int64_t now_ns, const Order& order) {
-  name_ = order.name;
+void ExperimentLoader::Announce(std::int64_t now_ns, const Order& order, std::uint32_t number) {
+  if (number == 0) name_ = order.name;
   events_->Push({.time_ns = now_ns,
                  .kind = "experiment",
                  .name = order.name,
                  .text = order.text,
-                 .value_json = {}});
+                 .value_json = "{\"number\": " + std::to_string(number) + "}"});
 }
 
 void ExperimentLoader::FreeReleased() {

@@ -29,7 +29,7 @@ class ExperimentLoader {
   };
 
   /// All pointers outlive the loader.
-  /// @param events  to the recorder: one "experiment" for every run that is granted
+  /// @param events  to the recorder: one "experiment" for every run that is asked for
   ExperimentLoader(LoopStack* stack, RequestTracker* requests, EventQueue* events,
                    const Design* design, const LoopGrid& grid, const MotionLimits& limits)
       : stack_(stack),
@@ -48,20 +48,21 @@ class ExperimentLoader {
   /// AskForRun would be refused: another request is not answered yet.
   bool busy() const { return requests_->busy(); }
 
-  /// Asks the safety task for a run of it; `client` waits for the answer.
+  /// Asks the safety task for a run of it, and announces it; `client` waits for the answer.
   /// @returns the number of the request and of its run; 0: the tracker is busy
   std::uint32_t AskForRun(std::int64_t now_ns, int client, Order order);
 
-  /// Every answer of the safety task: announces the granted experiment, forgets a refused one.
-  void Answered(std::int64_t now_ns, const RequestAnswer& answer);
+  /// Every answer of the safety task: names the granted experiment, forgets a refused one.
+  void Answered(const RequestAnswer& answer);
 
-  /// Announces an experiment to the log, whose run is asked for by others.
-  void Announce(std::int64_t now_ns, const Order& order);
+  /// Announces an experiment to the log.
+  /// @param number  of the request for its run; 0: of the next request, made by others
+  void Announce(std::int64_t now_ns, const Order& order, std::uint32_t number = 0);
 
   /// Frees the experiments that the loop no longer uses. Once a period.
   void FreeReleased();
 
-  /// Name of the experiment that was announced last; empty: none.
+  /// Name of the experiment that was granted last; empty: none.
   const std::string& name() const { return name_; }
   /// How many experiments are in memory.
   std::size_t size() const { return asked_.size(); }

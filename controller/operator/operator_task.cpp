@@ -145,7 +145,7 @@ void OperatorTask::Take(const RequestAnswer& answer) {
   unattended_.Answered(answer);
   const std::vector<int> clients = requests_.TakeClientsOf(answer);
   if (clients.empty()) context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
-  experiments_.Answered(now_.now_ns, answer);
+  experiments_.Answered(answer);
   overrides_.Answered(now_.now_ns, answer);
   Reply(commissioning_.Answered(answer, now_));
   // The safety task publishes the permit of a tick before the answers of that tick.

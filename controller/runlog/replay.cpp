@@ -33,6 +33,11 @@ void Replay::Tick(const TickRecord& record) {
   }
   previous_tick_ = tick;
   ++result_.ticks;
+  reset_seen_ = reset_seen_ || record.input.reset != 0;
+  if (!reset_seen_) {
+    ++result_.ticks_before_reset;
+    return;
+  }
 
   const FlushDenormals flush;  // as in the control thread: equal bytes need equal arithmetic
   const StepOutput output = step_(record.input);
@@ -67,14 +72,19 @@ void Replay::Safety(const SafetyRecord& record) {
 ReplayResult Replay::Result() const {
   ReplayResult result = result_;
   if (result.safety_records == 0) result.safety_exact.reset();
+  if (!reset_seen_) {
+    result.bit_exact.reset();
+    result.estimate_difference.reset();
+  }
   for (std::size_t i = 0; i < kMaxNominalStates && result.estimate_difference; ++i) {
     if (largest_state_difference_[i] == 0) continue;
     result.estimate_difference =
         std::max(*result.estimate_difference, largest_state_difference_[i] / largest_state_[i]);
   }
-  for (std::size_t joint = 0; joint < 2 && result.ticks > 0; ++joint) {
+  const std::int64_t compared = result.ticks - result.ticks_before_reset;
+  for (std::size_t joint = 0; joint < 2 && compared > 0; ++joint) {
     result.hub_innovation_rms_rad[joint] =
-        std::sqrt(innovation_square_[joint] / static_cast<double>(result.ticks));
+        std::sqrt(innovation_square_[joint] / static_cast<double>(compared));
   }
   return result;
 }

@@ -14,6 +14,9 @@ namespace flexarm {
 /// Result of the replay of a run.
 struct ReplayResult {
   std::int64_t ticks = 0;
+  /// Ticks before the first reset of the loop, in the log of a trip outside a run: what the loop
+  /// had stored by then is not known, so they are not compared.
+  std::int64_t ticks_before_reset = 0;
   /// Every output had the recorded bytes. Nothing if equal bytes cannot be expected (a CSV file,
   /// another config).
   std::optional<bool> bit_exact = true;
@@ -42,7 +45,7 @@ class Replay {
   /// @param other_config  the loop has another config: bytes are not compared
   Replay(StepFunction step, bool other_config);
 
-  /// In the order of the log.
+  /// In the order of the log. The comparison begins with the first reset.
   void Tick(const TickRecord& record);
   /// NextSafetyState of the recorded facts must give the recorded state, and each record must begin
   /// in the state in which the one before it ended.
@@ -56,6 +59,7 @@ class Replay {
   std::array<double, kMaxNominalStates> largest_state_{};
   std::array<double, kMaxNominalStates> largest_state_difference_{};
   std::array<double, 2> innovation_square_{};  // sums
+  bool reset_seen_ = false;
   std::optional<std::int64_t> previous_tick_;
   std::optional<SafetyStatus> previous_status_;
 };

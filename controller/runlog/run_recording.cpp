@@ -9,6 +9,10 @@
 namespace flexarm {
 namespace {
 
+bool Trips(const SafetyRecord& record) {
+  return CauseLatched(record.after.state) && !CauseLatched(record.before.state);
+}
+
 RunEvent TripEvent(const SafetyRecord& record) {
   const nlohmann::json value = {{"value", record.evidence.value},
                                 {"limit", record.evidence.limit},
@@ -100,11 +104,38 @@ void RunRecording::Open(std::int64_t start_ns) {
   if (report_) report_(false, "recording to " + sink_name_);
 }
 
+void RunRecording::BeginRun(const SafetyRecord& granted) {
+  if (sink_ != nullptr) Close();
+  const RunEvent experiment = context_.Experiment(granted.request_number);
+  info_.experiment_name = experiment.name;
+  info_.experiment_text = experiment.text;
+  Open(granted.due_ns);
+  has_run_ = true;
+  for (const RunEvent& event : context_.events()) sink_->Event(event);
+  if (Announces(experiment)) sink_->Event(experiment);
+}
+
+// No tick of it need be that of a reset: replay compares from the first reset on.
+void RunRecording::BeginTrip(const SafetyRecord& trip) {
+  info_.experiment_name = std::string("trip-") + ToString(trip.after.cause);
+  info_.experiment_text.clear();
+  Open(recent_.empty() ? trip.due_ns : recent_.oldest_ns());
+  struct Write {
+    RunRecording* recording;
+    void operator()(const TickRecord& record) const { recording->WriteTick(record); }
+    void operator()(const TimingRecord& record) const { recording->sink_->Timing(record); }
+    void operator()(const SafetyRecord& record) const {
+      recording->sink_->Safety(record);
+      recording->WriteEventsOf(record);
+    }
+    void operator()(const RunEvent& event) const { recording->sink_->Event(event); }
+  };
+  recent_.ForEach(Write{this});
+}
+
 void RunRecording::Close() {
   sink_->Close(ResultJson());
   sink_.reset();
-  info_.experiment_name.clear();
-  info_.experiment_text.clear();
   if (report_) report_(false, "run closed: " + sink_name_);
 }
 
@@ -121,58 +152,79 @@ std::string RunRecording::ResultJson() const {
 
 void RunRecording::WriteEventsOf(const SafetyRecord& record) {
   if (record.facts.request != RequestKind::kNone) sink_->Event(RequestEvent(record));
-  const bool trips = CauseLatched(record.after.state) && !CauseLatched(record.before.state);
-  if (!trips) return;
+  if (!Trips(record)) return;
   sink_->Event(TripEvent(record));
   trip_ = record.after.cause;
-  end_ns_ = record.due_ns + kAfterTripNs;
+}
+
+void RunRecording::WriteTick(const TickRecord& record) {
+  const std::int64_t tick = record.input.tick;
+  if (last_tick_ && tick != *last_tick_ + 1) {
+    const std::int64_t missing = tick - *last_tick_ - 1;
+    missing_ticks_ += missing;
+    sink_->Event(GapEvent(record.input.now_ns, *last_tick_ + 1, missing));
+  }
+  last_tick_ = tick;
+  ++ticks_;
+  sink_->Tick(record);
+}
+
+void RunRecording::SetEnd(const SafetyRecord& record) {
+  if (Trips(record)) {
+    end_ns_ = record.due_ns + kAfterTripNs;
+  } else if (record.after.state == SafetyState::kIdle) {
+    end_ns_ = record.due_ns;
+  } else if (!end_ns_ && !TorqueAllowed(record.after.state)) {
+    end_ns_ = record.due_ns + kAfterRunNs;
+  }
 }
 
 void RunRecording::Safety(const SafetyRecord& record) noexcept {
   Guarded([&] {
-    const bool arms = record.before.state == SafetyState::kIdle &&
-                      (record.after.state == SafetyState::kArmed || TestsPower(record.after.state));
-    if (arms && sink_ != nullptr) Close();
-    if (arms) Open(record.due_ns);
+    const SafetyState before = record.before.state;
     state_ = record.after.state;
-    if (sink_ == nullptr) return;
+    if (state_ == SafetyState::kRunning && before != SafetyState::kRunning) {
+      BeginRun(record);
+    } else if (Trips(record) && sink_ == nullptr) {
+      BeginTrip(record);
+    }
+    recent_.Add(record);
+    if (state_ == SafetyState::kIdle && before != state_ && before != SafetyState::kStarting) {
+      context_.Clear();
+    }
+    if (sink_ == nullptr) {
+      if (record.facts.request != RequestKind::kNone) context_.Add(RequestEvent(record));
+      return;
+    }
     sink_->Safety(record);
     WriteEventsOf(record);
-    if (state_ == SafetyState::kRunning) has_run_ = true;
-    if (state_ == SafetyState::kIdle) end_ns_ = record.due_ns;
+    SetEnd(record);
   });
 }
 
 void RunRecording::Tick(const TickRecord& record) noexcept {
-  const std::int64_t tick = record.input.tick;
-  if (sink_ == nullptr || (!last_tick_ && record.input.reset == 0)) return;
   Guarded([&] {
-    if (last_tick_ && tick != *last_tick_ + 1) {
-      const std::int64_t missing = tick - *last_tick_ - 1;
-      missing_ticks_ += missing;
-      sink_->Event(GapEvent(record.input.now_ns, *last_tick_ + 1, missing));
-    }
-    last_tick_ = tick;
-    ++ticks_;
-    sink_->Tick(record);
+    recent_.Add(record);
+    const bool precedes = has_run_ && !last_tick_ && record.input.reset == 0;
+    if (sink_ != nullptr && !precedes) WriteTick(record);
   });
 }
 
 void RunRecording::Timing(const TimingRecord& record) noexcept {
-  if (sink_ == nullptr || !last_tick_) return;
-  Guarded([&] { sink_->Timing(record); });
+  Guarded([&] {
+    recent_.Add(record);
+    if (sink_ != nullptr && last_tick_) sink_->Timing(record);
+  });
 }
 
 void RunRecording::Event(const RunEvent& event) noexcept {
   Guarded([&] {
-    const bool announces = event.kind == "experiment";
-    if (announces && sink_ == nullptr) {
-      info_.experiment_name = event.name;
-      info_.experiment_text = event.text;
+    recent_.Add(event);
+    if (sink_ == nullptr || Announces(event)) {
+      context_.Add(event);
+    } else {
+      sink_->Event(event);
     }
-    if (sink_ == nullptr) return;
-    if (announces) sink_->SetExperiment(event.name, event.text);
-    sink_->Event(event);
   });
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "controller/realtime/timing_record.h"
+#include "controller/runlog/recent_records.h"
+#include "controller/runlog/run_context.h"
 #include "controller/runlog/run_sink.h"
 
 namespace flexarm {
@@ -19,13 +21,19 @@ OpenSink RunsInDirectory(const std::filesystem::path& directory);  ///< NewRunFi
 OpenSink RunInFile(const std::filesystem::path& file);             ///< for one run; must not exist
 OpenSink RunInMemory(RunContents* contents);
 
+inline constexpr std::int64_t kAfterRunNs = 1'000'000'000;   ///< recorded after the end of a run
 inline constexpr std::int64_t kAfterTripNs = 5'000'000'000;  ///< recorded after a trip
 
 /// Assigns the records to runs, and derives events from them.
 ///
-/// A run lasts from Idle -> Armed until Idle, or until kAfterTripNs after a trip. Its first tick is
-/// that in which the loop was reset, so that it replays on its own. Records must come in order of
-/// time. Disk errors end the recording of the run; they are reported and counted, never thrown.
+/// A run begins when `run`, `pluck` or `home` is granted. The loop is reset then, so each run
+/// replays on its own: its first tick is that of the reset. It lasts until the next one is granted,
+/// until the arm is disarmed, until kAfterRunNs after it came to its end, or until kAfterTripNs
+/// after a trip. A trip outside a run is recorded as a run of its own, which begins with the last
+/// kBeforeTripNs. Events since the arm was last disarmed precede those of a run: who armed it, and
+/// with which overrides.
+/// Records must come in order of time. Errors of the sink end the recording of the run; they are
+/// reported and counted, never thrown.
 class RunRecording {
  public:
   /// For the journal. Called on the recorder's thread.
@@ -37,7 +45,8 @@ class RunRecording {
   void Safety(const SafetyRecord& record) noexcept;
   void Tick(const TickRecord& record) noexcept;
   void Timing(const TimingRecord& record) noexcept;
-  /// Kind "experiment" announces the next experiment: its `name`, and its file as `text`.
+  /// Kind "experiment" announces an experiment for which a run is asked: its `name`, and its file
+  /// as `text`.
   void Event(const RunEvent& event) noexcept;
 
   /// No older record will follow: closes a run that has ended by then.
@@ -61,8 +70,12 @@ class RunRecording {
   template <typename Action>
   void Guarded(Action action) noexcept;
   void Open(std::int64_t start_ns);
+  void BeginRun(const SafetyRecord& granted);
+  void BeginTrip(const SafetyRecord& trip);
   void Close();
   void WriteEventsOf(const SafetyRecord& record);
+  void WriteTick(const TickRecord& record);
+  void SetEnd(const SafetyRecord& record);
   std::string ResultJson() const;
 
   RunInfo info_;
@@ -71,6 +84,9 @@ class RunRecording {
   std::unique_ptr<RunSink> sink_;
   std::string sink_name_;
   std::int64_t errors_ = 0;
+  RecentRecords recent_;
+  RunContext context_;
+  SafetyState state_ = SafetyState::kIdle;
 
   // State of the open run.
   std::optional<std::int64_t> end_ns_;  // it ends after this instant
@@ -78,8 +94,7 @@ class RunRecording {
   std::int64_t ticks_ = 0;
   std::int64_t missing_ticks_ = 0;
   TripCause trip_ = TripCause::kNone;
-  SafetyState state_ = SafetyState::kIdle;
-  bool has_run_ = false;  // the experiment was Running
+  bool has_run_ = false;  // false: a trip outside a run
 };
 
 }  // namespace flexarm

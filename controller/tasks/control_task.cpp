@@ -89,6 +89,7 @@ void ControlTask::StartRun(const Permit& permit) noexcept {
   run_number_ = permit.run_number;
   released_.store(run_number_, std::memory_order_release);
   sample_ = -1;
+  reset_ = true;
   if (channels_.planner != nullptr) channels_.planner->Start(run_number_);
   if (experiment_ != nullptr && experiment_->mode == LoopMode::kRegulate) {
     homing_.Start(experiment_->homing, hub_angle_rad_);

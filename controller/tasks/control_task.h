@@ -35,7 +35,8 @@ struct ControlChannels {
 /// - Step k is due `acquire_before` after the sampling instant k Ts. It reads the frame and the
 /// permit
 ///   published before its due instant.
-/// - The step is reset after arming, and after a new calibration, which is applied only while no
+/// - The step is reset after arming, when a run begins, so that each run can be replayed on its own
+///   and depends on no run before, and after a new calibration, which is applied only while no
 ///   torque is allowed.
 /// - The torque is put out at the output instant of the grid. The actuation delay of torque k is
 ///   predicted as the one measured for k-1, plus the delay that the estimator found; the reference

@@ -50,6 +50,14 @@ std::vector<Problem> DaemonConfig::Problems() const {
                "must name the directory that keeps a trip over a restart");
   list.Require(!log_directory.empty(), "log.directory", log_directory,
                "must name the directory that holds the run logs");
+  list.Within("log.reserve_mb", log.reserve_mb, 1.0, 1e5,
+              "the space reserved for the next run; 10 MB are one minute");
+  list.Within("log.keep_free_mb", log.keep_free_mb, 0.0, 1e6,
+              "the space that must remain free when a run begins");
+  list.Within("log.keep_days", log.keep_days, 0.0, 36525.0,
+              "how long runs are kept; 0 keeps them all");
+  list.Within("log.keep_total_mb", log.keep_total_mb, 0.0, 1e9,
+              "how much all runs may take; 0 keeps them all");
   return list.Take();
 }
 

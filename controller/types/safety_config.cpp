@@ -49,6 +49,8 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
                  "the share of limits.torque_limit_nm that homing may use");
   list->Within("safety.prove_days", c.prove_days, 1.0, 366.0,
                "how long a proof of the switches permits runs");
+  list->Within("safety.disarm_after_s", c.disarm_after_s, 0.0, 86400.0,
+               "how long the arm may be armed without a run; 0: for ever");
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct SafetyConfig {
   double homing_contact_s;         ///< homing that is longer on its switch, in all, trips
   double homing_torque_fraction;   ///< share of limits.torque_limit_nm while homing, 0 to 1
   double prove_days;               ///< how long a proof of the switches permits runs; a wired rig
+  double disarm_after_s = 600.0;   ///< Armed without a run for this long disarms; 0: never
 
   std::vector<Problem> Problems() const;
 };

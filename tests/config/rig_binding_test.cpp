@@ -252,7 +252,8 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
                "safety.missed_deadlines_to_trip=4", "safety.homing_torque_fraction=0.25",
                "safety.overrun_to_trip_ms=7", "safety.window_periods=30",
                "safety.missed_deadlines_in_window=11", "safety.failed_exchanges_in_window=12",
-               "safety.slow_exchanges_in_window=13", "safety.prove_days=14"})
+               "safety.slow_exchanges_in_window=13", "safety.prove_days=14",
+               "safety.disarm_after_s=15"})
           .safety;
   EXPECT_EQ(s.torque_limit_nm, (std::array{1.0, 2.0}));
   EXPECT_EQ(s.slew_limit_nm_per_s, (std::array{3.0, 4.0}));
@@ -273,13 +274,16 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
   EXPECT_EQ(s.slow_exchanges_in_window, 13);
   EXPECT_EQ(s.homing_torque_fraction, 0.25);
   EXPECT_EQ(s.prove_days, 14.0);
+  EXPECT_EQ(s.disarm_after_s, 15.0);
 }
 
 TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
   const RigConfig c =
       HilWith({"loop.period_ms=18", "loop.acquire_before_ms=9", "loop.step_deadline_ms=4",
                "loop.output=at_once", "loop.output_after_ms=14", "loop.actuation_delay_ms=3",
-               "daemon.socket=/tmp/s", "daemon.state_directory=/tmp/k", "log.directory=/tmp/d"});
+               "daemon.socket=/tmp/s", "daemon.state_directory=/tmp/k", "log.directory=/tmp/d",
+               "log.required=false", "log.reserve_mb=2", "log.keep_free_mb=3", "log.keep_days=4",
+               "log.keep_total_mb=5"});
   EXPECT_EQ(c.loop.period_ms, 18.0);
   EXPECT_EQ(c.loop.acquire_before_ms, 9.0);
   EXPECT_EQ(c.loop.step_deadline_ms, 4.0);
@@ -290,6 +294,11 @@ TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
   EXPECT_EQ(c.daemon.socket, "/tmp/s");
   EXPECT_EQ(c.daemon.state_directory, "/tmp/k");
   EXPECT_EQ(c.daemon.log_directory, "/tmp/d");
+  EXPECT_FALSE(c.daemon.log.required);
+  EXPECT_EQ(c.daemon.log.reserve_mb, 2.0);
+  EXPECT_EQ(c.daemon.log.keep_free_mb, 3.0);
+  EXPECT_EQ(c.daemon.log.keep_days, 4.0);
+  EXPECT_EQ(c.daemon.log.keep_total_mb, 5.0);
 }
 
 TEST(RigBinding, KnowsEveryNamedChoice) {

@@ -114,6 +114,7 @@ nlohmann::ordered_json ToJson(const Outcome& outcome) {
   const ReplayResult& result = outcome.result;
   nlohmann::ordered_json json;
   json["ticks"] = result.ticks;
+  json["ticks_before_reset"] = result.ticks_before_reset;
   json["bit_exact"] = OrNull(result.bit_exact);
   json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
                                       NumberOrNull(result.max_torque_difference_nm[1])};
@@ -147,8 +148,12 @@ std::string EstimateText(const Outcome& outcome) {
 
 void PrintText(const Outcome& outcome) {
   const ReplayResult& result = outcome.result;
-  std::cout << "ticks                     " << result.ticks << '\n'
-            << "bit exact                 " << Word(result.bit_exact) << '\n'
+  std::cout << "ticks                     " << result.ticks << '\n';
+  if (result.ticks_before_reset > 0) {
+    std::cout << "before the first reset    " << result.ticks_before_reset
+              << ", not compared: the log of a trip outside a run begins in the middle\n";
+  }
+  std::cout << "bit exact                 " << Word(result.bit_exact) << '\n'
             << "max torque difference     " << result.max_torque_difference_nm[0] << ", "
             << result.max_torque_difference_nm[1] << " N m\n"
             << "estimate difference       " << EstimateText(outcome) << '\n'

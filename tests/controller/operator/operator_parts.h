@@ -37,7 +37,7 @@ class OperatorParts : public testing::Test {
                                .refusal = refusal,
                                .state = SafetyState::kArmed,
                                .present = 0};
-    experiments_.Answered(now_.now_ns, answer);
+    experiments_.Answered(answer);
     clients_ = requests_.TakeClientsOf(answer);
     return answer;
   }

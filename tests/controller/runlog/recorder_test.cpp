@@ -2,6 +2,8 @@
 
 #include <sys/stat.h>
 
+#include <functional>
+
 #include "controller/runlog/blob.h"
 #include "controller/runlog/recorder_task.h"
 #include "tests/controller/runlog/runlog_fixture.h"
@@ -25,8 +27,23 @@ class RecorderTest : public RunLogTest {
     recorder_.emplace(RecorderChannels{&ticks_, &safety_, &timing_, &events_, &truth_},
                       &*recording_);
   }
-  // Arms at `at_ns`; the first tick after it carries the reset.
   void Arm(std::int64_t at_ns) { safety_.Push(MakeSafety(at_ns, kIdleStatus, RequestKind::kArm)); }
+  // Grants a run at `at_ns`; the first tick after it carries the reset.
+  void Grant(std::int64_t at_ns, std::uint32_t number = 1) {
+    SafetyRecord record = MakeSafety(at_ns, kArmedStatus, RequestKind::kRun);
+    record.request_number = number;
+    safety_.Push(record);
+  }
+  // From `before`: a change without a request, by these facts.
+  SafetyRecord Change(std::int64_t at_ns, SafetyStatus before,
+                      const std::function<void(SafetyFacts*)>& set) {
+    SafetyRecord record = MakeSafety(at_ns, before, RequestKind::kNone);
+    set(&record.facts);
+    const SafetyDecision next = NextSafetyState(before, record.facts);
+    record.after = next.status;
+    safety_.Push(record);
+    return record;
+  }
   void Ticks(std::int64_t first, std::int64_t last, std::int64_t reset) {
     for (std::int64_t tick = first; tick <= last; ++tick) {
       TickRecord record = MakeTick(tick);
@@ -51,54 +68,123 @@ class RecorderTest : public RunLogTest {
   std::int64_t due_ns_ = 0;
 };
 
-TEST_F(RecorderTest, ARunIsFromTheResetAfterArmUntilIdle) {
+TEST_F(RecorderTest, ARunIsFromTheResetAfterItsGrantUntilASecondAfterItsEnd) {
   RunContents run;
   Start(RunInMemory(&run));
-  Ticks(0, 100, 12);
-  Arm(10 * kTestPeriodNs + 1);
-  const SafetyRecord disarm = MakeSafety(49 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm);
-  safety_.Push(disarm);
-  SafetyRecord off = MakeSafety(50 * kTestPeriodNs, disarm.after, RequestKind::kNone);
-  off.facts.drives_off = 1;
-  off.after = NextSafetyState(off.before, off.facts).status;
-  safety_.Push(off);
-  RunUntil(3 * kSecond);
+  Arm(2 * kTestPeriodNs);
+  Ticks(0, 200, 12);
+  Grant(10 * kTestPeriodNs + 1);
+  const SafetyRecord stopping = Change(30 * kTestPeriodNs, kRunningStatus,
+                                       [](SafetyFacts* facts) { facts->experiment_done = 1; });
+  Change(50 * kTestPeriodNs, stopping.after, [](SafetyFacts*) {});
+  RunUntil(4 * kSecond);
   EXPECT_FALSE(recording_->is_open());
-  ASSERT_EQ(run.tick.size(), 39U);
+  ASSERT_FALSE(run.tick.empty());
   EXPECT_EQ(run.tick.front().input.tick, 12);  // 11 was computed before the reset
-  EXPECT_EQ(run.tick.back().input.tick, 50);
-  EXPECT_EQ(run.safety.size(), 3U);
+  EXPECT_EQ(run.tick.back().input.tick, 100);  // kAfterRunNs after the return to Armed
+  EXPECT_EQ(run.tick.size(), 89U);
+  EXPECT_EQ(run.safety.front().before.state, SafetyState::kArmed);
   EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs + 1);
+  EXPECT_NE(run.info.result_json.find("\"completed\":true"), std::string::npos);
   EXPECT_TRUE(errors_.empty());
 }
 
-// An arming with tests of the power path is logged from its first test on, by one run.
-TEST_F(RecorderTest, TheTestsOfAnArmingAreInTheLogOfItsRun) {
+TEST_F(RecorderTest, DisarmingEndsARun) {
   RunContents run;
   Start(RunInMemory(&run));
-  SafetyStatus status = kIdleStatus;
-  for (int i = 0; i < 4; ++i) {
-    const RequestKind request = i == 0 ? RequestKind::kArm : RequestKind::kNone;
-    SafetyRecord record = MakeSafety((10 + i) * kTestPeriodNs + 1, status, request);
-    record.facts.tests_power = 1;
-    record.after = NextSafetyState(status, record.facts).status;
-    status = record.after;
-    safety_.Push(record);
+  Ticks(0, 100, 12);
+  Grant(10 * kTestPeriodNs + 1);
+  const SafetyRecord stopping = Change(30 * kTestPeriodNs, kRunningStatus,
+                                       [](SafetyFacts* facts) { facts->experiment_done = 1; });
+  const SafetyRecord armed = Change(40 * kTestPeriodNs, stopping.after, [](SafetyFacts*) {});
+  const SafetyRecord disarm = MakeSafety(49 * kTestPeriodNs, armed.after, RequestKind::kDisarm);
+  safety_.Push(disarm);
+  Change(50 * kTestPeriodNs, disarm.after, [](SafetyFacts* facts) { facts->drives_off = 1; });
+  RunUntil(3 * kSecond);
+  EXPECT_FALSE(recording_->is_open());
+  EXPECT_EQ(run.tick.back().input.tick, 50);
+  EXPECT_EQ(run.safety.size(), 5U);
+}
+
+TEST_F(RecorderTest, EachGrantIsAFile) {
+  Start(RunsInDirectory(folder_));
+  Ticks(1, 3, 1);
+  Grant(2);
+  Ticks(4, 6, 4);
+  Grant(3 * kTestPeriodNs + 1);
+  recorder_->Finish();
+  std::vector<std::size_t> ticks;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    ticks.push_back(RunReader(entry.path()).ReadAll().tick.size());
   }
-  ASSERT_EQ(status, kArmedStatus);
-  Ticks(0, 100, 15);
-  RunUntil(kSecond);
-  EXPECT_TRUE(recording_->is_open());
-  EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs + 1);
-  EXPECT_EQ(run.safety.size(), 4U);
-  ASSERT_FALSE(run.tick.empty());
-  EXPECT_EQ(run.tick.front().input.tick, 15);
+  EXPECT_EQ(ticks, (std::vector<std::size_t>{3, 3}));
+}
+
+// Who armed, and what was overridden then, belongs to each run of the arming and to no other.
+TEST_F(RecorderTest, ARunBeginsWithTheEventsOfItsArming) {
+  std::vector<RunContents> runs(3);
+  std::size_t opened = 0;
+  Start([&](const RunInfo& info) { return RunInMemory(&runs.at(opened++))(info); });
+  Arm(2);
+  events_.Push(
+      {.time_ns = 3, .kind = "override", .name = "host", .text = "known", .value_json = {}});
+  Ticks(1, 10, 1);
+  Grant(5);
+  SafetyStatus status = kRunningStatus;
+  for (int run = 0; run < 2; ++run) {
+    const std::int64_t base_ns = (10 + 100 * run) * kTestPeriodNs;
+    const SafetyRecord stopping = Change(
+        base_ns, status, [](SafetyFacts* facts) { facts->experiment_done = 1; });
+    Change(base_ns + 1, stopping.after, [](SafetyFacts*) {});
+    if (run == 0) Grant(base_ns + 50 * kTestPeriodNs);
+  }
+  const SafetyRecord disarm =
+      MakeSafety(120 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm);
+  safety_.Push(disarm);
+  Change(121 * kTestPeriodNs, disarm.after, [](SafetyFacts* facts) { facts->drives_off = 1; });
+  Arm(130 * kTestPeriodNs);
+  Grant(140 * kTestPeriodNs);
+  recorder_->Finish();
+  const auto names = [](const RunContents& run) {
+    std::vector<std::string> all;
+    for (const RunEvent& event : run.event) all.push_back(event.name);
+    return all;
+  };
+  EXPECT_EQ(names(runs[0]), (std::vector<std::string>{"arm", "host", "run"}));
+  EXPECT_EQ(names(runs[1]), (std::vector<std::string>{"arm", "host", "run", "disarm"}));
+  EXPECT_EQ(names(runs[2]), (std::vector<std::string>{"arm", "run"}));
+}
+
+TEST_F(RecorderTest, ATripOutsideARunIsALogOfTheLastTenSeconds) {
+  Start(RunsInDirectory(folder_));
+  Arm(2);
+  Ticks(1, 1500, 1);
+  events_.Push({.time_ns = 15 * kSecond,
+                .kind = "warning",
+                .name = "delay",
+                .text = "long",
+                .value_json = {}});
+  safety_.Push(MakeSafety(20 * kSecond, kArmedStatus, RequestKind::kNone,
+                          CauseBit(TripCause::kLimitSwitch2High)));
+  RunUntil(28 * kSecond);
+  EXPECT_FALSE(recording_->is_open());
+  const auto file = std::filesystem::directory_iterator(folder_)->path();
+  EXPECT_NE(file.string().find("-trip-limit-switch-2-high.flexarm"), std::string::npos) << file;
+  const RunContents run = RunReader(file).ReadAll();
+  EXPECT_EQ(run.tick.front().input.now_ns, 10 * kSecond);
+  EXPECT_EQ(run.tick.back().input.now_ns, 25 * kSecond);
+  EXPECT_EQ(run.tick.size(), 751U);
+  EXPECT_EQ(run.safety.size(), 1U);
+  ASSERT_EQ(run.event.size(), 2U);
+  EXPECT_EQ(run.event[0].name, "delay");
+  EXPECT_EQ(run.event[1].kind, "trip");
+  EXPECT_NE(run.info.result_json.find("\"completed\":false"), std::string::npos);
 }
 
 TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
   RunContents run;
   Start(RunInMemory(&run));
-  Arm(0);
+  Grant(0);
   Ticks(1, 400, 1);
   SafetyRecord trip = MakeSafety(kSecond, kRunningStatus, RequestKind::kNone,
                                  CauseBit(TripCause::kLimitSwitch2High));
@@ -108,7 +194,7 @@ TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
   EXPECT_FALSE(recording_->is_open());
   EXPECT_EQ(run.tick.back().input.now_ns, 6 * kSecond);
   ASSERT_EQ(run.event.size(), 2U);
-  EXPECT_EQ(run.event[0].name, "arm");
+  EXPECT_EQ(run.event[0].name, "run");
   EXPECT_EQ(run.event[1].kind, "trip");
   EXPECT_EQ(run.event[1].name, "limit-switch-2-high");
   EXPECT_NE(run.event[1].value_json.find("1.25"), std::string::npos);
@@ -119,14 +205,14 @@ TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
 TEST_F(RecorderTest, TheLogDoesNotDependOnWhenRecordsArrive) {
   RunContents at_once, late;
   Start(RunInMemory(&at_once));
-  Arm(100);
+  Grant(100);
   Ticks(1, 60, 1);
   recorder_->Finish();
 
   Start(RunInMemory(&late));
   Ticks(1, 1, 1);  // the tick is there before the record that opens the run
   RunUntil(RecorderTask::kPeriodNs);
-  Arm(100);
+  Grant(100);
   Ticks(2, 60, 1);
   RunUntil(2 * kSecond);
   recorder_->Finish();
@@ -138,7 +224,7 @@ TEST_F(RecorderTest, TheLogDoesNotDependOnWhenRecordsArrive) {
 TEST_F(RecorderTest, WhatTheSimulatedArmDidIsAddedToItsTick) {
   RunContents run;
   Start(RunInMemory(&run));
-  Arm(0);
+  Grant(0);
   for (std::int64_t tick = 1; tick <= 4; ++tick) {
     TickRecord record = MakeTick(tick);
     record.input.reset = tick == 1 ? 1 : 0;
@@ -162,7 +248,7 @@ TEST_F(RecorderTest, WhatTheSimulatedArmDidIsAddedToItsTick) {
 TEST_F(RecorderTest, AMissingTickIsAnEvent) {
   RunContents run;
   Start(RunInMemory(&run));
-  Arm(0);
+  Grant(0);
   Ticks(1, 5, 1);
   Ticks(9, 10, 1);
   recorder_->Finish();
@@ -175,20 +261,23 @@ TEST_F(RecorderTest, AMissingTickIsAnEvent) {
 TEST_F(RecorderTest, ARefusalIsAnEventWithItsReason) {
   RunContents run;
   Start(RunInMemory(&run));
-  Arm(0);
-  safety_.Push(MakeSafety(5, kArmedStatus, RequestKind::kStop));
+  Grant(0);
+  safety_.Push(MakeSafety(5, kRunningStatus, RequestKind::kReset));
   recorder_->Finish();
   ASSERT_EQ(run.event.size(), 2U);
   EXPECT_EQ(run.event[1].kind, "refusal");
-  EXPECT_EQ(run.event[1].name, "stop");
+  EXPECT_EQ(run.event[1].name, "reset");
   EXPECT_FALSE(run.event[1].text.empty());
 }
 
-TEST_F(RecorderTest, AnExperimentAnnouncedBeforeArmNamesTheFile) {
+TEST_F(RecorderTest, TheExperimentOfTheGrantedRequestNamesTheFile) {
   Start(RunsInDirectory(folder_));
-  events_.Push(
-      {.time_ns = 1, .kind = "experiment", .name = "sine", .text = "x = 1", .value_json = ""});
-  Arm(2);
+  events_.Push({.time_ns = 1,
+                .kind = "experiment",
+                .name = "sine",
+                .text = "x = 1",
+                .value_json = "{\"number\": 7}"});
+  Grant(2, 7);
   Ticks(1, 3, 1);
   recorder_->Finish();
   ASSERT_EQ(notes_.size(), 2U);
@@ -197,18 +286,31 @@ TEST_F(RecorderTest, AnExperimentAnnouncedBeforeArmNamesTheFile) {
   EXPECT_EQ(RunReader(file).info().experiment_text, "x = 1");
 }
 
-TEST_F(RecorderTest, AnExperimentAfterArmIsStoredToo) {
-  Start(RunInFile(File()));
-  Arm(2);
-  events_.Push(
-      {.time_ns = 5, .kind = "experiment", .name = "sine", .text = "x = 1", .value_json = ""});
+// That of a request that was refused, or came too late, names nothing.
+TEST_F(RecorderTest, TheExperimentOfAnotherRequestIsNotThatOfTheRun) {
+  RunContents run;
+  Start(RunInMemory(&run));
+  events_.Push({.time_ns = 1,
+                .kind = "experiment",
+                .name = "big",
+                .text = "x = 1",
+                .value_json = "{\"number\": 6}"});
+  Grant(2, 7);
+  events_.Push({.time_ns = 5,
+                .kind = "experiment",
+                .name = "late",
+                .text = "x = 2",
+                .value_json = "{\"number\": 8}"});
   recorder_->Finish();
-  EXPECT_EQ(RunReader(File()).info().experiment_name, "sine");
+  EXPECT_EQ(run.info.experiment_name, "");
+  EXPECT_EQ(run.info.experiment_text, "");
+  ASSERT_EQ(run.event.size(), 1U);
+  EXPECT_EQ(run.event[0].name, "run");
 }
 
 TEST_F(RecorderTest, RecordsAreCommittedWithinHalfASecond) {
   Start(RunInFile(File()));
-  Arm(0);
+  Grant(0);
   for (std::int64_t tick = 1; tick <= 500; ++tick) {
     const std::int64_t now_ns = tick * kTestPeriodNs;
     Ticks(tick, tick, 1);
@@ -230,10 +332,9 @@ TEST_F(RecorderTest, ADiskErrorIsReportedAndCountedAndTheNextRunIsRecorded) {
     if (++opened == 1) return RunsInDirectory(File("blocked"))(info);
     return RunInMemory(&second)(info);
   });
-  Arm(0);
+  Grant(0);
   Ticks(1, 10, 1);
-  safety_.Push(MakeSafety(11 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm));
-  Arm(20 * kTestPeriodNs);
+  Grant(20 * kTestPeriodNs);
   Ticks(21, 30, 21);
   recorder_->Finish();
   EXPECT_EQ(recording_->errors(), 1);
@@ -250,7 +351,7 @@ class SmallQueueTest : public RecorderTest {
 TEST_F(SmallQueueTest, DroppedRecordsAreAnEvent) {
   RunContents run;
   Start(RunInMemory(&run));
-  Arm(0);
+  Grant(0);
   Ticks(1, 100, 1);
   due_ns_ = RecorderTask::kPeriodNs;
   RunUntil(kSecond);
@@ -277,7 +378,7 @@ TEST_F(RecorderTest, EqualRunsWriteTheSameTickTable) {
   for (const char* name : {"a", "b"}) {
     Start(RunInFile(File(name)));
     due_ns_ = 0;
-    Arm(0);
+    Grant(0);
     Ticks(1, 50, 1);
     RunUntil(2 * kSecond);
     recorder_->Finish();

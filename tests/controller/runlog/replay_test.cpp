@@ -53,6 +53,26 @@ TEST(Replay, TheSameLoopIsBitExact) {
   EXPECT_FALSE(result.safety_exact.has_value());
 }
 
+// The log of a trip outside a run begins in the middle of the loop's memory.
+TEST(Replay, TheComparisonBeginsWithTheFirstReset) {
+  auto records = Recorded(8);
+  for (std::size_t i = 0; i < 5; ++i) records[i].input.reset = 0;
+  records[5].input.reset = 1;
+  for (std::size_t i = 5; i < 8; ++i) records[i].output.torque_nm[0] -= 5.0;
+  const ReplayResult result = Replayed(records);
+  EXPECT_EQ(result.ticks, 8);
+  EXPECT_EQ(result.ticks_before_reset, 5);
+  EXPECT_EQ(result.bit_exact, true);
+  records[6].output.torque_nm[0] += 1.0;
+  EXPECT_EQ(Replayed(records).bit_exact, false);
+
+  records.resize(5);
+  const ReplayResult none = Replayed(records);
+  EXPECT_EQ(none.ticks_before_reset, 5);
+  EXPECT_FALSE(none.bit_exact.has_value()) << "nothing was compared";
+  EXPECT_FALSE(none.estimate_difference.has_value());
+}
+
 TEST(Replay, TheEstimateIsComparedWithTheLargestValueOfItsState) {
   auto records = Recorded(5);
   for (TickRecord& record : records) record.output.x_hat = {};
