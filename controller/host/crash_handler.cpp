@@ -18,15 +18,15 @@ std::atomic<const CrashHandler::PowerOff*> power_off_at_crash{nullptr};
 std::array<struct sigaction, kCrashSignals.size()> actions_before{};
 
 /// One line of text in a buffer of its own: snprintf is not async-signal-safe.
-class Line {
+class CrashLine {
  public:
-  Line& operator<<(const char* text) noexcept {
+  CrashLine& operator<<(const char* text) noexcept {
     const std::size_t count = std::min(std::strlen(text), buffer_.size() - length_);
     std::memcpy(buffer_.data() + length_, text, count);
     length_ += count;
     return *this;
   }
-  Line& Hex(std::uintptr_t value) noexcept {
+  CrashLine& Hex(std::uintptr_t value) noexcept {
     std::array<char, 2 * sizeof value + 1> digits{};
     std::size_t at = digits.size() - 1;
     do {
@@ -85,7 +85,7 @@ void Handle(int signal, siginfo_t* info, void* /*context*/) noexcept {
   std::array<char, 16> thread{};
   prctl(PR_GET_NAME, thread.data());
   thread.back() = '\0';
-  Line line;
+  CrashLine line;
   line << "flexarmd: " << NameOf(signal) << " in thread '" << thread.data() << "'";
   if (info->si_code > 0 && signal != SIGSYS && signal != SIGABRT) {
     line << " at address ";

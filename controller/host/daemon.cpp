@@ -99,16 +99,19 @@ class Daemon {
         latch_(options.config.daemon.state_directory,
                std::filesystem::absolute(options.config.daemon.log_directory).string(),
                [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
+        finisher_([this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
+        files_(options.config.daemon.log_directory, options.config.daemon.log, &finisher_,
+               [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         recording_(
             MakeRunInfo(options.config, design_, "monotonic", options.config.backend),
-            RunsInDirectory(options.config.daemon.log_directory),
+            [this](const RunInfo& info) { return files_.Open(info); },
             [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         recorder_({.ticks = &stack().tick_records(),
                    .safety = &stack().safety_records(),
                    .timing = &timing_,
                    .events = &events_,
                    .truth = stack().truth_records()},
-                  &recording_),
+                  &recording_, &files_),
         executor_(options.realtime),
         operator_(Context()) {}
 
@@ -135,6 +138,8 @@ class Daemon {
   EventQueue events_;
   SpscQueue<TimingRecord> timing_;
   TripLatch latch_;
+  RunFinisher finisher_;
+  RunFiles files_;
   RunRecording recording_;
   RecorderTask recorder_;
   std::unique_ptr<LockstepTask> behind_clock_;  // the loop, if it runs without real time
@@ -148,6 +153,7 @@ OperatorContext Daemon::Context() {
       .stack = &stack(),
       .latch = &latch_,
       .events = &events_,
+      .files = &files_,
       .design = &design_,
       .config = &options_.config,
       .grid = LoopGrid(options_.config.loop),
@@ -212,6 +218,7 @@ DaemonResult Daemon::Run() {
   PrepareHost();
   RestoreTrip();
   journal_.Start();
+  finisher_.Start();
   RecoverLogs();
   AddLoop();
   executor_.Add(operator_);
@@ -225,10 +232,11 @@ DaemonResult Daemon::Run() {
   executor_.RequestStop();
   executor_.Join();
   recorder_.Finish();
+  finisher_.Stop();
   ReportThreads();
   return {.tripped = operator_.trip() != TripCause::kNone,
           .refused = operator_.refused(),
-          .log_errors = recording_.errors()};
+          .log_errors = recording_.errors() + finisher_.unfinished()};
 }
 
 // Without real time, threads wake later than the loop bears: on a busy computer by 200 ms. Where no

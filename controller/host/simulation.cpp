@@ -64,10 +64,6 @@ class MemoryAndLog final : public RunMemory {
   void Timing(const TimingRecord& record) override { log_->Timing(record); }
   void Safety(const SafetyRecord& record) override { log_->Safety(record); }
   void Event(const RunEvent& event) override { log_->Event(event); }
-  void SetExperiment(const std::string& name, const std::string& text) override {
-    RunMemory::SetExperiment(name, text);
-    log_->SetExperiment(name, text);
-  }
   void Commit() override { log_->Commit(); }
   std::string Trouble() const override { return log_->Trouble(); }
   void Close(const std::string& result_json) override { log_->Close(result_json); }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "controller/operator/log_condition.h"
 #include "controller/operator/request_answers.h"
 
 namespace flexarm {
@@ -78,11 +79,19 @@ nlohmann::json ArmCommand::Start(const nlohmann::json& command, int client,
                 .overrides = OverridesOf(command, {kHostCondition, kDesignCondition}),
                 .since_ns = now.now_ns};
   if (targets_.requests->busy() || waits_) return Refused(Refusal::kBusy, now.permit.state);
-  if (checks_.simulated) return Decide(asked, now);
-  host_.result = ArmVerdict::Result::kChecking;
+  const bool may_arm = now.permit.state == SafetyState::kIdle;
+  if (may_arm && targets_.files != nullptr) targets_.files->Want();
+  if (checks_.simulated && !(may_arm && AwaitsFile())) return Decide(asked, now);
+  if (!checks_.simulated) host_.result = ArmVerdict::Result::kChecking;
   BeginCheck();
   waits_ = std::move(asked);
   return nullptr;
+}
+
+bool ArmCommand::AwaitsFile() const {
+  if (targets_.files == nullptr) return false;
+  const LogStatus log = targets_.files->status();
+  return log.required && !log.answered;
 }
 
 std::optional<ClientAnswer> ArmCommand::Follow(const OperatorSnapshot& now) {
@@ -90,7 +99,8 @@ std::optional<ClientAnswer> ArmCommand::Follow(const OperatorSnapshot& now) {
   TakeCheck();
   if (!waits_) return std::nullopt;
   const bool late = now.now_ns - waits_->since_ns > kLongestCheckNs;
-  if (check_.valid() && !late && !cancelled_) return std::nullopt;
+  const bool file_comes = now.permit.state == SafetyState::kIdle && AwaitsFile();
+  if ((check_.valid() || file_comes) && !late && !cancelled_) return std::nullopt;
   const Waiting command = std::move(*waits_);
   waits_.reset();
   nlohmann::json answer = std::exchange(cancelled_, false)
@@ -102,7 +112,10 @@ std::optional<ClientAnswer> ArmCommand::Follow(const OperatorSnapshot& now) {
 
 nlohmann::json ArmCommand::Decide(const Waiting& command, const OperatorSnapshot& now) {
   const SafetyState state = now.permit.state;
-  const std::vector<UnmetCondition> unmet = UnmetToArm(host_, checks_.design, checks_.simulated);
+  std::vector<UnmetCondition> unmet = UnmetToArm(host_, checks_.design, checks_.simulated);
+  if (state == SafetyState::kIdle) {
+    if (const auto no_log = UnmetLog(targets_.files)) unmet.push_back(*no_log);
+  }
   const ConditionDecision decision = Judge(unmet, command.overrides);
   if (decision.refused != nullptr) {
     if (state != SafetyState::kIdle) return Refused(Refusal::kWrongState, state);

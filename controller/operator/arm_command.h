@@ -12,24 +12,29 @@
 #include "controller/operator/operator_snapshot.h"
 #include "controller/operator/override_record.h"
 #include "controller/operator/request_tracker.h"
+#include "controller/runlog/run_files.h"
 
 namespace flexarm {
 
-/// The command `arm`: judges machine and design, and asks the safety task only if they allow it.
+/// The command `arm`: judges machine, design and log, and asks the safety task only if they allow
+/// it.
 ///
 /// On a wired rig the machine is checked at the start and again for each command, on a thread of
-/// its own, so the answer comes some periods later; on the simulated arm it is not checked, and the
-/// safety task is asked at once. A stop or a disarm cancels a command that waits for its check.
+/// its own; on the simulated arm it is not. The file of the next run's log is reserved by the
+/// recorder's thread. So the answer comes some periods later. A stop or a disarm cancels a command
+/// that waits.
 /// Not real-time safe. Thread: operator.
 class ArmCommand {
  public:
-  /// A check that takes longer leaves the machine unknown. Less than a client waits.
+  /// A check that takes longer leaves the machine unknown, and a file that takes longer is none.
+  /// Less than a client waits.
   static constexpr std::int64_t kLongestCheckNs = 3'000'000'000;
 
   /// All of it outlives the command.
   struct Targets {
     RequestTracker* requests;
     OverrideRecord* overrides;
+    RunFiles* files = nullptr;  ///< of the logs; null: runs need none
     JournalReport report;
   };
 
@@ -44,10 +49,10 @@ class ArmCommand {
   /// @returns the answer of a command that waited for its check and was refused
   std::optional<ClientAnswer> Follow(const OperatorSnapshot& now);
 
-  /// A stop or a disarm came: the command that waits for its check is refused by the next Follow.
+  /// A stop or a disarm came: the command that waits is refused by the next Follow.
   void Cancel() { cancelled_ = waits_.has_value(); }
 
-  /// A command waits for its check.
+  /// A command waits for its check or its file.
   bool waits() const { return waits_.has_value(); }
 
   /// Why the design alone forbids an arm request, with the remedy; "" if it does not. For a run
@@ -67,6 +72,7 @@ class ArmCommand {
 
   void BeginCheck();
   void TakeCheck();
+  bool AwaitsFile() const;
   void ReportHost();
   /// Null: the safety task was asked.
   nlohmann::json Decide(const Waiting& command, const OperatorSnapshot& now);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controller/operator/command_text.h"
+#include "controller/operator/log_condition.h"
 #include "controller/operator/operator_roles.h"
 #include "controller/operator/request_answers.h"
 #include "hal/line_names.h"
@@ -89,6 +90,13 @@ nlohmann::json CommandDispatch::Start(const std::string& name, int client,
     return nullptr;
   }
   if (Commissioner::Knows(name)) {
+    const bool moves = name == "pluck" || name == "home";
+    if (const auto no_log = UnmetLog(targets_.files); moves && no_log) {
+      return {{"ok", false},
+              {"refusal", no_log->refusal},
+              {"error", no_log->found},
+              {"remedy", no_log->remedy}};
+    }
     targets_.commissioning->Start(command, client, now);
     return nullptr;
   }

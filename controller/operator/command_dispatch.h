@@ -33,6 +33,7 @@ class CommandDispatch {
     RunCommand* run;
     Lease* lease;
     CommandRecord* record;
+    const RunFiles* files = nullptr;  ///< of the logs; null: runs need none
     std::function<nlohmann::json()> status;
     JournalReport report;
   };

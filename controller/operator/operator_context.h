@@ -11,6 +11,7 @@
 #include "controller/operator/arm_verdict.h"
 #include "controller/operator/journal_report.h"
 #include "controller/runlog/event_queue.h"
+#include "controller/runlog/run_files.h"
 #include "controller/tasks/loop_stack.h"
 
 namespace flexarm {
@@ -20,6 +21,7 @@ struct OperatorContext {
   LoopStack* stack;
   TripLatch* latch;    ///< open before the first period
   EventQueue* events;  ///< to the recorder
+  RunFiles* files = nullptr;  ///< of the logs; null: runs need none
   const Design* design;
   const RigConfig* config;
   LoopGrid grid;

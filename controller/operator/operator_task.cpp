@@ -1,9 +1,11 @@
 #include "controller/operator/operator_task.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
+#include "controller/operator/log_condition.h"
 #include "controller/operator/request_answers.h"
 #include "controller/operator/status_json.h"
 #include "controller/runlog/csv.h"
@@ -33,11 +35,15 @@ OperatorTask::OperatorTask(OperatorContext context)
       switches_(*context_.config, context_.latch, context_.report),
       overrides_(context_.events, context_.report),
       arm_(context_.arm_checks,
-           {.requests = &requests_, .overrides = &overrides_, .report = context_.report}),
+           {.requests = &requests_,
+            .overrides = &overrides_,
+            .files = context_.files,
+            .report = context_.report}),
       run_({.experiments = &experiments_,
             .commissioning = &commissioning_,
             .switches = &switches_,
             .overrides = &overrides_,
+            .files = context_.files,
             .parse_experiment = context_.parse_experiment,
             .plan_wait = context_.plan_wait}),
       warnings_(context_.grid.period_ns, context_.delay_margin_s,
@@ -55,12 +61,15 @@ OperatorTask::OperatorTask(OperatorContext context)
                  .run = &run_,
                  .lease = &lease_,
                  .record = &record_,
+                 .files = context_.files,
                  .status = [this] { return Status(); },
                  .report = context_.report}),
       unattended_(unattended_order_ ? unattended_order_->planned.get() : nullptr,
                   Shutdown::kSettleNs),
+      auto_disarm_(context_.config->safety.disarm_after_s),
       shutdown_(Shutdown::LimitNs(context_.config->safety)) {
   if (unattended_order_) RequireArm();
+  if (unattended_order_ && context_.files != nullptr) context_.files->Want();
   if (!context_.socket.empty()) socket_ = std::make_unique<OperatorSocket>(context_.socket);
   if (unattended_order_) experiments_.Announce(now_.now_ns, *unattended_order_);
 }
@@ -92,6 +101,8 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     TakeTicks();
     TakeAnswers();
     FollowLatch();
+    FollowLog();
+    FollowAutoDisarm();
     Reply(arm_.Follow(now_));
     record_.Follow(now_.now_ns);
     if (socket_) Serve();
@@ -166,6 +177,23 @@ void OperatorTask::FollowLatch() {
   context_.latch->Follow(now_.now_ns, newest, requests_.busy());
 }
 
+// The reserved file is for an arm that is armed, or about to be. Of the newest permit, as above.
+void OperatorTask::FollowLog() {
+  if (context_.files == nullptr || requests_.busy() || arm_.waits()) return;
+  const SafetyState state = context_.stack->operator_permits().Read().Newest().value.state;
+  const bool disarmed = state == SafetyState::kIdle || CauseLatched(state);
+  const bool is_planned = context_.unattended && !unattended_.over();
+  if (disarmed && !is_planned) context_.files->Release();
+}
+
+void OperatorTask::FollowAutoDisarm() {
+  if (context_.unattended || !auto_disarm_.Follow(now_.now_ns, now_.permit.state)) return;
+  context_.report(false, "armed without a run for " +
+                             std::to_string(std::llround(context_.config->safety.disarm_after_s)) +
+                             " s (safety.disarm_after_s): disarming");
+  requests_.Ask(RequestKind::kDisarm, now_.now_ns, RequestTracker::kNoClient);
+}
+
 void OperatorTask::Serve() {
   for (const OperatorSocket::Message& message : socket_->Poll()) {
     nlohmann::json answer = dispatch_.Answer(message.client, message.by, message.line, now_);
@@ -177,6 +205,7 @@ void OperatorTask::Serve() {
 
 void OperatorTask::FollowUnattended() {
   if (!context_.unattended || shutdown_requested_.load(std::memory_order_relaxed)) return;
+  if (!LogReady()) return;
   const OperatorRequest request = unattended_.Update(now_.now_ns, now_.permit);
   if (request.kind != RequestKind::kNone) {
     const RequestTracker::Asked asked = requests_.AskPlanned(request);
@@ -192,6 +221,21 @@ void OperatorTask::FollowUnattended() {
     refused_.store(true, std::memory_order_relaxed);
   }
   if (now_.now_ns >= unattended_.over_ns()) done_.store(true, std::memory_order_release);
+}
+
+// Before the run is asked for. A file that cannot be had refuses the run.
+bool OperatorTask::LogReady() {
+  if (log_ready_) return true;
+  const std::optional<UnmetCondition> no_log = UnmetLog(context_.files);
+  log_ready_ = !no_log;
+  if (log_ready_) return true;
+  const bool late = now_.now_ns > ArmCommand::kLongestCheckNs;
+  if (!context_.files->status().answered && !late) return false;
+  if (!refused_.exchange(true, std::memory_order_relaxed)) {
+    context_.report(true, "arm: refused: " + no_log->found + "; " + no_log->remedy);
+  }
+  done_.store(true, std::memory_order_release);
+  return false;
 }
 
 void OperatorTask::BeginShutdown() {
@@ -223,6 +267,7 @@ nlohmann::json OperatorTask::Status() {
                      .design = arm_.DesignStatus(),
                      .overrides = overrides_.Json(),
                      .switches = switches_.Json(),
+                     .log = LogJson(context_.files),
                      .timing = context_.stack->timing(),
                      .late_threads_trip = context_.stack->late_threads_trip(),
                      .log_records_dropped = context_.stack->tick_records().dropped() +

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "controller/operator/arm_command.h"
+#include "controller/operator/auto_disarm.h"
 #include "controller/operator/bus_counter_record.h"
 #include "controller/operator/command_dispatch.h"
 #include "controller/operator/command_record.h"
@@ -72,6 +73,9 @@ class OperatorTask final : public Task {
   void TakeAnswers();
   void Take(const RequestAnswer& answer);
   void FollowLatch();
+  void FollowLog();
+  void FollowAutoDisarm();
+  bool LogReady();
   void Serve();
   void FollowUnattended();
   void BeginShutdown();
@@ -100,12 +104,14 @@ class OperatorTask final : public Task {
   Lease lease_;
   CommandDispatch dispatch_;
   UnattendedRun unattended_;
+  AutoDisarm auto_disarm_;
   Shutdown shutdown_;
   std::unique_ptr<OperatorSocket> socket_;
   std::atomic<bool> shutdown_requested_{false};
   std::atomic<bool> done_{false};
   std::atomic<bool> refused_{false};
   std::atomic<TripCause> trip_{TripCause::kNone};
+  bool log_ready_ = false;    // of the unattended run
   bool from_before_ = false;  // that trip: it is none of this daemon's once it is reset
 };
 

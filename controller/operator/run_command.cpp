@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "controller/operator/command_text.h"
+#include "controller/operator/log_condition.h"
 #include "controller/operator/request_answers.h"
 
 namespace flexarm {
@@ -35,7 +36,8 @@ nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
     return Failed(why, "then run");
   }
-  const std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
+  std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
+  if (const auto no_log = UnmetLog(targets_.files)) unmet.push_back(*no_log);
   ConditionDecision decision = Judge(unmet, overrides);
   if (decision.refused != nullptr) {
     nlohmann::json json = Failed(decision.refused->found, decision.refused->remedy);

@@ -16,6 +16,7 @@
 #include "controller/operator/override.h"
 #include "controller/operator/override_record.h"
 #include "controller/operator/prove_switches.h"
+#include "controller/runlog/run_files.h"
 
 namespace flexarm {
 
@@ -23,7 +24,7 @@ namespace flexarm {
 /// task for the run.
 ///
 /// The conditions of a run hold before it is planned and are judged again when the plan is there:
-/// the state, the angles, the proof of the switches, and that the arm stands where the plan begins.
+/// the state, the angles, the proof of the switches, the file of its log, and that the arm stands where the plan begins.
 /// A stop, a disarm, the end of the daemon and a client that has gone cancel a plan.
 /// Not real-time safe. Thread: operator.
 class RunCommand {
@@ -37,6 +38,7 @@ class RunCommand {
     CommissioningCommands* commissioning;
     ProveSwitches* switches;
     OverrideRecord* overrides;
+    const RunFiles* files = nullptr;  ///< of the logs; null: runs need none
     /// Throws std::exception with the reasons. Called by another thread.
     std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
     /// How long a period waits for a plan: 0 but in lock step, where time stands still meanwhile.

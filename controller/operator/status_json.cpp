@@ -1,15 +1,12 @@
 #include "controller/operator/status_json.h"
 
+#include "controller/operator/json_values.h"
 #include "controller/operator/payload_json.h"
 #include "controller/operator/trip_channel.h"
 #include "model/units.h"
 
 namespace flexarm {
 namespace {
-
-nlohmann::json TextOrNull(const std::string& text) {
-  return text.empty() ? nlohmann::json(nullptr) : nlohmann::json(text);
-}
 
 nlohmann::json AnglesJson(const AngleKnowledge& angles, const StepOutput& out) {
   nlohmann::json all = nlohmann::json::array();
@@ -105,7 +102,8 @@ nlohmann::json StatusJson(const StatusSources& sources) {
           {"host", sources.host},
           {"design", sources.design},
           {"overrides", sources.overrides},
-          {"switches", sources.switches}};
+          {"switches", sources.switches},
+          {"log", sources.log}};
 }
 
 }  // namespace flexarm

@@ -29,6 +29,7 @@ struct StatusSources {
   nlohmann::json design;                      ///< ArmCommand::DesignStatus
   nlohmann::json overrides;                   ///< OverrideRecord::Json
   nlohmann::json switches;                    ///< ProveSwitches::Json
+  nlohmann::json log;                         ///< LogJson
   TimingCounts timing{};                      ///< LoopStack::timing
   bool late_threads_trip = true;
   std::uint64_t log_records_dropped = 0;  ///< that no log has: the recorder was too slow

@@ -27,8 +27,8 @@ std::int64_t Head(const std::deque<T>& pending) {
 
 }  // namespace
 
-RecorderTask::RecorderTask(RecorderChannels channels, RunRecording* recording)
-    : channels_(channels), recording_(recording) {}
+RecorderTask::RecorderTask(RecorderChannels channels, RunRecording* recording, RunFiles* files)
+    : channels_(channels), recording_(recording), files_(files) {}
 
 Task::Traits RecorderTask::traits() const noexcept {
   return {.name = "recorder",
@@ -104,6 +104,7 @@ void RecorderTask::Run(const Activation& activation) noexcept {
     Drain();
     NoteDropped(activation.due_ns);
     Merge(activation.due_ns - kHoldBackNs);
+    if (files_ != nullptr) files_->Follow(activation.due_ns);
     if (committed_ns_ != INT64_MIN && activation.due_ns - committed_ns_ < kCommitEveryNs) return;
     committed_ns_ = activation.due_ns;
     recording_->Commit();

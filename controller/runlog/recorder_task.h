@@ -7,6 +7,7 @@
 #include "controller/realtime/task.h"
 #include "controller/realtime/timing_record.h"
 #include "controller/runlog/event_queue.h"
+#include "controller/runlog/run_files.h"
 #include "controller/runlog/run_recording.h"
 
 namespace flexarm {
@@ -32,7 +33,8 @@ class RecorderTask final : public Task {
   static constexpr std::int64_t kPeriodNs = 50'000'000;
 
   /// @param recording  outlives the task
-  RecorderTask(RecorderChannels channels, RunRecording* recording);
+  /// @param files  of the daemon's runs, followed once a period; null: the runs have other files
+  RecorderTask(RecorderChannels channels, RunRecording* recording, RunFiles* files = nullptr);
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
@@ -50,6 +52,7 @@ class RecorderTask final : public Task {
 
   RecorderChannels channels_;
   RunRecording* recording_;
+  RunFiles* files_;
   std::deque<TickRecord> ticks_;
   std::deque<SafetyRecord> safety_;
   std::deque<TimingRecord> timing_;

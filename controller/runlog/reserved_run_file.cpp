@@ -61,8 +61,10 @@ void ReservedRunFile::Remove() {
 
 ReservedRunFile ReservedRunFile::In(const std::filesystem::path& directory, std::uint64_t bytes) {
   MakeFolder(directory);
-  std::string name = (directory / ".next-XXXXXX.flexarm").string();
-  FileDescriptor fd(::mkostemps(name.data(), static_cast<int>(std::strlen(".flexarm")), O_CLOEXEC));
+  std::string name = (directory / ".next-XXXXXX").string();
+  name += kReservedSuffix;
+  FileDescriptor fd(
+      ::mkostemps(name.data(), static_cast<int>(kReservedSuffix.size()), O_CLOEXEC));
   if (!fd.is_open()) CannotReserve(directory, errno);
   ReservedRunFile file(name, std::move(fd));
   ::fchmod(file.fd_.get(), kRunFileMode);  // mkostemps allows the owner only

@@ -3,11 +3,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "controller/runlog/errors.h"
 #include "controller/runlog/file_descriptor.h"
 
 namespace flexarm {
+
+/// The name of a reserved file ends so, until its run begins: it is no run yet.
+inline constexpr std::string_view kReservedSuffix = ".reserved";
 
 /// An empty file for a run: created, locked (run_file_lock.h), and with space reserved where the
 /// file system can. RunWriter writes the run into it. Removed at the end if no run took it.

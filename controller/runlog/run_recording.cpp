@@ -50,12 +50,6 @@ RunEvent GapEvent(std::int64_t time_ns, std::int64_t first, std::int64_t count) 
 
 }  // namespace
 
-OpenSink RunsInDirectory(const std::filesystem::path& directory) {
-  return [directory](const RunInfo& info) -> std::unique_ptr<RunSink> {
-    return std::make_unique<RunWriter>(NewRunFile(directory, info.experiment_name), info);
-  };
-}
-
 OpenSink RunInFile(const std::filesystem::path& file) {
   return [file](const RunInfo& info) -> std::unique_ptr<RunSink> {
     return std::make_unique<RunWriter>(file, info);
@@ -100,8 +94,7 @@ void RunRecording::Open(std::int64_t start_ns) {
   trip_ = TripCause::kNone;
   has_run_ = false;
   sink_ = open_(info_);
-  sink_name_ = sink_->Name();
-  if (report_) report_(false, "recording to " + sink_name_);
+  if (report_) report_(false, "recording to " + sink_->Name());
 }
 
 void RunRecording::BeginRun(const SafetyRecord& granted) {
@@ -136,7 +129,6 @@ void RunRecording::BeginTrip(const SafetyRecord& trip) {
 void RunRecording::Close() {
   sink_->Close(ResultJson());
   sink_.reset();
-  if (report_) report_(false, "run closed: " + sink_name_);
 }
 
 std::string RunRecording::ResultJson() const {

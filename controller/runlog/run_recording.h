@@ -17,8 +17,7 @@ namespace flexarm {
 /// Creates the sink of a run that begins. @throws RunLogError
 using OpenSink = std::function<std::unique_ptr<RunSink>(const RunInfo&)>;
 
-OpenSink RunsInDirectory(const std::filesystem::path& directory);  ///< NewRunFile for each run
-OpenSink RunInFile(const std::filesystem::path& file);             ///< for one run; must not exist
+OpenSink RunInFile(const std::filesystem::path& file);  ///< for one run; must not exist
 OpenSink RunInMemory(RunContents* contents);
 
 inline constexpr std::int64_t kAfterRunNs = 1'000'000'000;   ///< recorded after the end of a run
@@ -82,7 +81,6 @@ class RunRecording {
   OpenSink open_;
   Report report_;
   std::unique_ptr<RunSink> sink_;
-  std::string sink_name_;
   std::int64_t errors_ = 0;
   RecentRecords recent_;
   RunContext context_;

@@ -12,6 +12,7 @@
 
 #include "controller/runlog/append_file.h"
 #include "controller/runlog/file_descriptor.h"
+#include "controller/runlog/reserved_run_file.h"
 #include "controller/runlog/run_conversion.h"
 #include "controller/runlog/run_file_lock.h"
 
@@ -72,6 +73,13 @@ void RemovePart(const std::filesystem::path& part) {
   if (!RunFileIsLocked(part) && !RunFileIsLocked(file)) ::unlink(part.c_str());
 }
 
+// Of a killed program: no run began in it.
+void RemoveReserved(const std::filesystem::path& file) {
+  if (file.filename().string().starts_with(".next-") && !RunFileIsLocked(file)) {
+    ::unlink(file.c_str());
+  }
+}
+
 }  // namespace
 
 Recovery RecoverRun(const std::filesystem::path& file) noexcept {
@@ -97,6 +105,9 @@ void RecoverRuns(const std::filesystem::path& directory,
       if (recovery.result == Recovery::Result::kEmpty) ::unlink(file.c_str());
     }
     for (const std::filesystem::path& part : FilesIn(directory, kPartSuffix)) RemovePart(part);
+    for (const std::filesystem::path& file : FilesIn(directory, kReservedSuffix)) {
+      RemoveReserved(file);
+    }
   } catch (const std::exception&) {  // no memory for a list or a line: the next start tries again
   }
 }

@@ -20,8 +20,6 @@ class RunSink {
   virtual void Timing(const TimingRecord& record) = 0;
   virtual void Safety(const SafetyRecord& record) = 0;
   virtual void Event(const RunEvent& event) = 0;
-  /// The next experiment to run. Metrics use the first experiment of a run.
-  virtual void SetExperiment(const std::string& name, const std::string& text) = 0;
   /// Makes all data so far safe against a crash of the process.
   virtual void Commit() = 0;
   /// What keeps the data so far from being safe, for the operator; "" if nothing does. The sink
@@ -50,11 +48,6 @@ class RunMemory : public RunSink {
   void Timing(const TimingRecord& record) override { contents_->timing.push_back(record); }
   void Safety(const SafetyRecord& record) override { contents_->safety.push_back(record); }
   void Event(const RunEvent& event) override { contents_->event.push_back(event); }
-  void SetExperiment(const std::string& name, const std::string& text) override {
-    if (!contents_->info.experiment_text.empty()) return;
-    contents_->info.experiment_name = name;
-    contents_->info.experiment_text = text;
-  }
   void Commit() override {}
   void Close(const std::string& result_json) override { contents_->info.result_json = result_json; }
 

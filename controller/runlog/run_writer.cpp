@@ -59,8 +59,7 @@ RunWriter::RunWriter(const std::filesystem::path& file, const RunInfo& info)
 
 RunWriter::RunWriter(ReservedRunFile file, const RunInfo& info)
     : file_(std::make_unique<AppendFile>(Taken(std::move(file)))),
-      name_(file_->path().string()),
-      has_experiment_(!info.experiment_text.empty()) {
+      name_(file_->path().string()) {
   RunInfo filled = info;
   if (filled.start_utc.empty()) filled.start_utc = UtcNow();
   file_->Append(RecordHeader());
@@ -93,13 +92,6 @@ void RunWriter::Add(const RunRecord& record) {
 void RunWriter::Tick(const TickRecord& record) {
   last_tick_ns_ = record.input.now_ns;
   Add(record);
-}
-
-void RunWriter::SetExperiment(const std::string& name, const std::string& text) {
-  if (has_experiment_) return;
-  has_experiment_ = true;
-  Add(InfoRecord{.key = run_key::kExperimentName, .value = name});
-  Add(InfoRecord{.key = run_key::kExperiment, .value = text});
 }
 
 // Beside the limit of the backlog: a loss is told in any case.

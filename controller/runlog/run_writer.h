@@ -55,7 +55,6 @@ class RunWriter : public RunSink {
   void Timing(const TimingRecord& record) override { Add(record); }
   void Safety(const SafetyRecord& record) override { Add(record); }
   void Event(const RunEvent& event) override { Add(event); }
-  void SetExperiment(const std::string& name, const std::string& text) override;
   void Commit() override;
   std::string Trouble() const override;
 
@@ -74,7 +73,6 @@ class RunWriter : public RunSink {
 
   std::unique_ptr<AppendFile> file_;  // null: ended
   std::string name_;
-  bool has_experiment_;
   std::int64_t last_tick_ns_ = 0;
   std::uint64_t lost_records_ = 0;
 };

@@ -62,7 +62,9 @@ TEST(T12WithSearchedWeights, NeedsAFilterWithLittleProcessNoise) {
   const std::vector<std::string> searched = {
       "controller.torque_weight=4.5",
       "controller.state_weight=[28.5, 22, 0, 0, 0, 0.12, 0.28, 0.16, 0, 0, 14.8, 0]"};
-  EXPECT_EQ(RunsWith("T12", 0.01, searched).tripped, kFewSeeds);
+  // All three trip if the filter has followed the arm at rest for a second before the run; reset
+  // when the run begins, one of them just bears it.
+  EXPECT_GE(RunsWith("T12", 0.01, searched).tripped, kFewSeeds - 1);
   std::vector<std::string> trusting = searched;
   trusting.push_back("estimator.process_force=[0.1, 0.015, 0.05, 0.05, 0.015, 0.015]");
   const Runs runs = RunsWith("T12", 0.01, trusting);

@@ -8,8 +8,8 @@
 #include "controller/runlog/run_writer.h"
 #include "tests/controller/loop/stack_run.h"
 
-// A disk that stands still, or is full, while the arm is armed: with the queues of the daemon, in
-// lock step.
+// A disk that stands still, or is full, while the arm runs: with the queues of the daemon, in lock
+// step.
 
 namespace flexarm {
 namespace {
@@ -44,11 +44,18 @@ class FullDisk final : public RunMemory {
   std::size_t left_;
 };
 
-// The shipped rig, armed after a second, with its recorder.
+// Longer than any of the tests.
+constexpr const char* kLongMove =
+    "name = \"long\"\nduration_s = 310.0\n"
+    "[[move]]\nstart_s = 0.0\nduration_s = 1.8\nto_deg = [10.0, -10.0]\n";
+
+// The shipped rig, armed after a second and running from 1.2 s on, with its recorder.
 class RecordedArm {
  public:
   explicit RecordedArm(std::int64_t stall_ns, OpenSink open)
-      : stack_(config_, config_, ShippedDesign(), 0.1),
+      : planned_(ParseExperiment(kLongMove, "long"), ShippedDesign(),
+                 LoopGrid(config_.loop).period_s(), {0.0, 0.0}, MotionLimitsOf(config_)),
+        stack_(config_, config_, ShippedDesign(), 0.1),
         recording_(MakeRunInfo(config_, ShippedDesign(), "simulated", "sim"), std::move(open),
                    [this](bool is_error, const std::string& text) {
                      if (is_error) errors.push_back(text);
@@ -66,6 +73,11 @@ class RecordedArm {
   void Run(std::int64_t end_ns) {
     stack_.requests().Push(
         {.kind = RequestKind::kArm, .number = 1, .not_before_ns = kStallSecond, .run = {}});
+    executor_.RunUntil(kStallSecond + kStallSecond / 5);
+    stack_.requests().Push({.kind = RequestKind::kRun,
+                            .number = 2,
+                            .not_before_ns = 0,
+                            .run = {.experiment = &planned_}});
     executor_.RunUntil(end_ns);
     recorder_.Finish();
   }
@@ -80,6 +92,7 @@ class RecordedArm {
 
  private:
   RigConfig config_ = ShippedRig();
+  PlannedExperiment planned_;
   SimulatedStack stack_;
   SpscQueue<TimingRecord> timing_{16};
   EventQueue events_{16};
@@ -95,7 +108,7 @@ TEST(RecorderStall, SixtySecondsLoseNoRecordAndChangeNoTick) {
   for (RecordedArm* arm : {&without, &with}) arm->Run(64 * kStallSecond);
   EXPECT_EQ(with.dropped(), 0U);
   EXPECT_TRUE(with.errors.empty());
-  EXPECT_EQ(with.permit().state, SafetyState::kArmed);
+  EXPECT_EQ(with.permit().state, SafetyState::kRunning);
   ASSERT_EQ(stalled.tick.size(), well.tick.size());
   EXPECT_GT(well.tick.size(), 3000U) << "60 s of ticks";
   for (std::size_t i = 0; i < well.tick.size(); ++i) {
@@ -109,7 +122,7 @@ TEST(RecorderStall, WhatALongerOneLosesIsCountedInLogAndJournal) {
   RunContents run;
   RecordedArm arm(300 * kStallSecond, RunInMemory(&run));
   arm.Run(305 * kStallSecond);
-  EXPECT_EQ(arm.permit().state, SafetyState::kArmed) << "the loop does not notice";
+  EXPECT_EQ(arm.permit().state, SafetyState::kRunning) << "the loop does not notice";
   ASSERT_GT(arm.dropped(), 0U);
   const std::string count = std::to_string(arm.dropped());
   ASSERT_EQ(arm.errors.size(), 1U);
@@ -125,7 +138,7 @@ TEST(RecorderStall, AFullDiskEndsTheLogAndNotTheLoop) {
   RunContents run;
   RecordedArm arm(0, [&run](const RunInfo&) { return std::make_unique<FullDisk>(&run, 100); });
   arm.Run(10 * kStallSecond);
-  EXPECT_EQ(arm.permit().state, SafetyState::kArmed);
+  EXPECT_EQ(arm.permit().state, SafetyState::kRunning);
   EXPECT_EQ(run.tick.size(), 100U);
   EXPECT_EQ(arm.log_errors(), 1);
   ASSERT_EQ(arm.errors.size(), 1U);

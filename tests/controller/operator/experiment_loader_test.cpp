@@ -79,10 +79,14 @@ TEST_F(ExperimentLoaderTest, AGrantedOneIsAnEventWithItsWholeFile) {
 TEST_F(ExperimentLoaderTest, ARefusedOneIsForgotten) {
   AskAndGrant(OneMove("there", 20.0));
   TakeEvents(&events_);
-  Answered(RequestKind::kRun, Ask(OneMove("back", 0.0)), Refusal::kWrongState);
+  const std::uint32_t refused = Ask(OneMove("back", 0.0));
+  Answered(RequestKind::kRun, refused, Refusal::kWrongState);
   EXPECT_EQ(experiments_.name(), "there");
   EXPECT_EQ(experiments_.size(), 1u);
-  EXPECT_THAT(TakeEvents(&events_), IsEmpty());
+  // Announced, with its number: it names no run, for none was granted with that (RunContext).
+  const std::vector<RunEvent> logged = TakeEvents(&events_);
+  ASSERT_EQ(logged.size(), 1u);
+  EXPECT_EQ(logged[0].value_json, "{\"number\": " + std::to_string(refused) + "}");
 }
 
 TEST_F(ExperimentLoaderTest, OneIsKeptUntilTheLoopHasReleasedIt) {

@@ -45,7 +45,10 @@ TEST_F(RecordFileTest, EveryKindOfRecordReadsBackBeforeTheRunEnds) {
   odd.output.torque_nm = {-0.0, std::numeric_limits<double>::quiet_NaN()};
   odd.gate_reasons = 0b10010;
   odd.truth.known = false;
-  RunWriter writer(File(), MakeInfo());
+  RunInfo info = MakeInfo();
+  info.experiment_name = "square";
+  info.experiment_text = "text one";
+  RunWriter writer(File(), info);
   writer.Safety(safety);
   writer.Tick(MakeTick(2));
   writer.Tick(odd);
@@ -55,8 +58,6 @@ TEST_F(RecordFileTest, EveryKindOfRecordReadsBackBeforeTheRunEnds) {
                 .name = "ticks",
                 .text = "it's \"so\"",
                 .value_json = "{\"a\":1}"});
-  writer.SetExperiment("square", "text one");
-  writer.SetExperiment("second", "text two");
   writer.Commit();
   RunReader reader(File());
   EXPECT_EQ(reader.state(), RunState::kWritten);

@@ -57,14 +57,14 @@ TEST_F(RunFileTest, AllOtherRecordsReadBack) {
                        .value_json = "{\"a\":1}"};
   RunInfo info = MakeInfo();
   info.start_ns = 4;
+  info.experiment_name = "square";
+  info.experiment_text = "text one";
   {
     RunWriter writer(File(), info);
     writer.Safety(safety);
     writer.Timing({.tick = 1, .due_ns = 2, .woke_ns = 3, .finished_ns = 4});
     writer.Event(event);
-    writer.SetExperiment("square", "text one");
-    writer.SetExperiment("second", "text two");
-    writer.Close("{\"trip\":null}");
+      writer.Close("{\"trip\":null}");
   }
   RunReader reader(File());
   EXPECT_TRUE(reader.closed());

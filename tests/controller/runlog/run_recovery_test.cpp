@@ -99,7 +99,7 @@ TEST_F(RunRecoveryTest, ClosedRunsAndOtherFilesStayAsTheyAre) {
 TEST_F(RunRecoveryTest, LeftOversOfAReservationAndOfAConversionAreRemoved) {
   WriteAndDie(File(), 50);
   WriteText(PartOf(File()), "half of a database");
-  WriteText(File(".next-abcdef.flexarm"), "");
+  WriteText(File(".next-abcdef.reserved"), "");
   Recover();
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
   EXPECT_EQ(RunReader(File()).ReadAll().tick.size(), 50U);

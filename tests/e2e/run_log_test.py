@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""The logs of the daemon's runs: one a run, reserved before the arm is armed, and of a trip."""
+
+import json
+import time
+import unittest
+
+from program import ProgramTest, in_real_time, rows
+
+SHORT = """
+name = "{name}"
+duration_s = 1.0
+
+[[doublet]]
+start_s = 0.0
+duration_s = 0.6
+shape = "square"
+move_deg = [5.0, 5.0]
+"""
+
+SMALL = ("--set", "log.reserve_mb=1", "--set", "log.keep_free_mb=0")
+
+
+class RunLog(ProgramTest):
+    def arm(self):
+        self.wait_for_state("Idle")
+        time.sleep(0.8)  # at rest means half a second of rest
+        self.operate("arm")
+        self.wait_for_state("Armed")
+
+    def run_to_the_end(self, name):
+        self.operate("run", self.experiment(SHORT.format(name=name)))
+        self.wait_for_state("Running")
+        self.wait_for_state("Armed")
+
+    def status(self):
+        return json.loads(self.operate("status", "--json").stdout)
+
+    def runs(self):
+        return sorted((self.folder / "runs").glob("*.flexarm"))
+
+    def wait_for_closed_runs(self, count, within_s=20):
+        end = time.monotonic() + within_s
+        while time.monotonic() < end:
+            closed = [run for run in self.runs()
+                      if self.flexarm_json("info", run)["closed"]]
+            if len(closed) == count:
+                return closed
+            time.sleep(0.1)
+        self.fail(f"not {count} closed runs: {self.runs()}\n{self.daemon_log()}")
+
+    @in_real_time
+    def test_each_run_is_a_file_that_replays_on_its_own(self):
+        self.start_daemon(*SMALL)
+        self.arm()
+        self.assertTrue(self.status()["log"]["ready"])
+        self.assertEqual(self.runs(), [], "reserved, under another name")
+        self.run_to_the_end("first")
+        self.run_to_the_end("second")
+        self.operate("disarm")
+        self.wait_for_state("Idle")
+        runs = self.wait_for_closed_runs(2)
+        self.assertEqual({self.flexarm_json("info", run)["experiment"] for run in runs},
+                         {"first", "second"})
+        for run in runs:
+            replay = self.flexarm_json("replay", run)
+            self.assertIs(replay["bit_exact"], True, run)
+            self.assertIs(replay["safety_exact"], True, run)
+            self.assertEqual(replay["ticks_before_reset"], 0)
+            names = [name for name, in rows(run, "SELECT name FROM event ORDER BY number")]
+            self.assertIn("arm", names, "who armed belongs to each run")
+            self.assertEqual(rows(run, "SELECT count(*) FROM tick WHERE state = 'Running'"), [(50,)])
+        self.assertEqual(len(list((self.folder / "runs").iterdir())), 2,
+                         "the file that was not used is removed")
+
+    @in_real_time
+    def test_a_trip_outside_a_run_is_a_file_of_the_last_ten_seconds(self):
+        self.start_daemon(*SMALL)
+        self.arm()
+        self.operate("sim", "emergency-stop", "0")
+        self.wait_for_state("Tripped")
+        run, = self.wait_for_closed_runs(1)
+        self.assertIn("trip-emergency-stop", run.name)
+        info = self.flexarm_json("info", run)
+        self.assertEqual(info["trip"]["name"], "emergency-stop")
+        self.assertIs(info["completed"], False)
+        replay = self.flexarm_json("replay", run)
+        self.assertGreater(replay["ticks_before_reset"], 30, "the time before it was armed")
+        self.assertLess(replay["ticks_before_reset"], replay["ticks"])
+        self.assertIs(replay["bit_exact"], True)
+        self.assertIs(replay["safety_exact"], True)
+        self.flexarm("plot", run, "-o", self.folder / "trip.png")
+        self.flexarm("export", run, "-o", self.folder / "trip.csv")
+
+    @in_real_time
+    def test_without_a_file_nothing_is_armed_unless_the_config_says_so(self):
+        blocked = self.folder / "runs"
+        blocked.write_text("a file where the folder should be", encoding="utf-8")
+        self.start_daemon(*SMALL, "--state-dir", self.folder / "state")
+        self.wait_for_state("Idle")
+        time.sleep(0.8)
+        refused = self.operate("arm", expect=1)
+        self.assertIn("no file for the log of the next run", refused.stderr)
+        self.assertIn("Not a directory", refused.stderr)
+        answer = json.loads(self.operate("arm", "--json", expect=1).stdout)
+        self.assertEqual(answer["refusal"], "no-log")
+        blocked.unlink()
+        self.operate("arm")
+        self.operate("disarm")
+        self.end_daemons()
+        self.new_folder()
+        (self.folder / "runs").write_text("blocked", encoding="utf-8")
+        self.start_daemon(*SMALL, "--set", "log.required=false", "--state-dir",
+                          self.folder / "state")
+        self.arm()
+        log = self.status()["log"]
+        self.assertIs(log["ok"], False)
+        self.assertIs(log["required"], False)
+        self.assertIn("Not a directory", log["error"])
+        self.run_to_the_end("unrecorded")
+
+    @in_real_time
+    def test_an_unattended_run_without_a_file_is_refused(self):
+        (self.folder / "runs").write_text("blocked", encoding="utf-8")
+        daemon = self.start_daemon(*SMALL, "--state-dir", self.folder / "state", "--experiment",
+                                   self.experiment(SHORT.format(name="none")))
+        self.assertEqual(daemon.wait(timeout=30), 1)
+        self.assertIn("no file for the log of the next run", self.daemon_log())
+
+    @in_real_time
+    def test_an_arm_that_nobody_uses_is_disarmed(self):
+        self.start_daemon(*SMALL, "--set", "safety.disarm_after_s=1.0")
+        self.arm()
+        self.wait_for_state("Idle")
+        self.assertIn("safety.disarm_after_s", self.daemon_log())
+        time.sleep(0.3)
+        self.assertEqual(list((self.folder / "runs").glob("*.flexarm")), [])
+
+    @in_real_time
+    def test_old_runs_are_removed_when_the_config_asks_for_it(self):
+        self.start_daemon(*SMALL, "--set", "log.keep_total_mb=0.001")
+        self.arm()
+        for name in ("first", "second", "third"):
+            self.run_to_the_end(name)
+        self.operate("disarm")
+        self.wait_for_state("Idle")
+        self.arm()
+        self.operate("disarm")
+        self.wait_for_state("Idle")
+        self.assertEqual([run.name.split("-")[-1] for run in self.wait_for_closed_runs(1)],
+                         ["third.flexarm"])
+        self.assertIn("removed (log.keep_total_mb)", self.daemon_log())
+
+
+if __name__ == "__main__":
+    unittest.main()
