@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Each wrong input of a user gives one clear message and exit code 2."""
 
+import contextlib
 import random
 import re
 import shutil
+import sqlite3
 import unittest
 
-from program import HIL, ROOT, SQUARE, ProgramTest
+from program import HIL, ROOT, SQUARE, ProgramTest, rows
 
 RIG = ROOT / "config/thesis-rig.toml"
 
@@ -106,6 +108,12 @@ class BadConfig(ProgramTest):
         self.assert_refused(self.run_program("flexarmd", "--config", RIG), "hal")
 
 
+def dump(run):
+    """Everything that a log holds."""
+    return [rows(run, f"SELECT * FROM {table} ORDER BY 1")
+            for table in ("run", "tick", "timing", "safety", "event")]
+
+
 class BadLog(ProgramTest):
     def test_a_log_cut_anywhere_is_refused(self):
         run, _ = self.simulate("run.flexarm")
@@ -130,6 +138,40 @@ class BadLog(ProgramTest):
             with self.subTest(case=case):
                 result = self.run_program("flexarm", "replay", damaged)
                 self.assertIn(result.returncode, (0, 1, 2), result.stderr)
+
+    def test_no_flipped_bit_that_changes_a_log_passes_replay_or_check(self):
+        run, _ = self.simulate("run.flexarm")
+        whole = run.read_bytes()
+        contents = dump(run)
+        chosen = random.Random(33)
+        flipped = self.folder / "flipped.flexarm"
+        told = 0
+        for _ in range(60):
+            content = bytearray(whole)
+            at = chosen.randrange(len(content))
+            content[at] ^= 1 << chosen.randrange(8)
+            flipped.write_bytes(content)
+            codes = [self.run_program("flexarm", verb, flipped).returncode
+                     for verb in ("replay", "check")]
+            with self.subTest(byte=at):
+                if codes == [0, 0]:
+                    self.assertEqual(dump(flipped), contents)
+                else:
+                    self.assertNotIn(0, codes, "both verbs tell it")
+                    told += 1
+        self.assertGreater(told, 30)
+
+    def test_a_log_with_a_view_in_place_of_a_table_is_refused_at_once(self):
+        run, _ = self.simulate("run.flexarm")
+        with contextlib.closing(sqlite3.connect(run)) as log:
+            log.executescript(
+                "DROP TABLE timing; CREATE VIEW timing AS WITH RECURSIVE n(i) AS (SELECT 1 UNION"
+                " ALL SELECT i + 1 FROM n) SELECT i AS tick, i AS due_ns, i AS woke_ns, i AS"
+                " finished_ns, 0.0 AS late_us, 0.0 AS took_us FROM n")
+        for verb in ("info", "replay", "check", "export"):
+            with self.subTest(verb):
+                self.assert_refused(self.run_program("flexarm", verb, run, timeout_s=30),
+                                    "not those of a run log")
 
     def test_a_file_that_is_not_a_log_is_refused(self):
         text = self.folder / "notes.flexarm"
