@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit campaigns build-cost headers-all separate clang-tidy-all asan-all
+  only_all_lanes=(guards unit campaigns mutation build-cost headers-all separate clang-tidy-all asan-all
                   debian13 arm64)
 }
 
@@ -161,6 +161,11 @@ lane_step-cost() {  # instructions of one control step are within their limits
 lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, wrong input
   build release flexarm flexarm-study flexarmd
   ctest --preset e2e
+}
+
+lane_mutation() {  # 20,000 changed inputs of every kind to the programs (part of e2e: 1,000)
+  build release flexarm flexarm-study flexarmd
+  tests/mutation/mutation_test.py --inputs 20000 --seed "${FLEXARM_SEED:-1}" --note "$logs/$lane.note"
 }
 
 lane_hil() {  # tools/run-hil, in real time where that is permitted

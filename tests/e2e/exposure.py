@@ -33,7 +33,7 @@ def exposure(unit, drop_ins):
 
 def main():
     root = Path(sys.argv[1])
-    unit, = root.rglob("flexarmd.service")
+    unit, = root.rglob("systemd/system/flexarmd.service")
     shared, = root.rglob("share/flexarm/systemd")
     failed = False
     for rig, names in RIGS.items():

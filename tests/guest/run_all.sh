@@ -79,7 +79,7 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 
 # A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
 # first. `threads` has two processors and real time; it asserts no time.
-names=(service wire commission load hostile experiment refusal threads interfaces daq gpio)
+names=(service wire hardened commission load hostile experiment refusal threads interfaces daq gpio)
 running=0
 for name in "${names[@]}"; do
   if ((running == 2)); then
@@ -87,7 +87,7 @@ for name in "${names[@]}"; do
     running=1
   fi
   case $name in
-    service | refusal) in_guest "daemon_in_guest/$name.sh" --det --systemd & ;;
+    service | hardened | refusal) in_guest "daemon_in_guest/$name.sh" --det --systemd & ;;
     interfaces | daq | gpio) in_guest "$name.sh" --det & ;;
     threads) in_guest "$name.sh" & ;;
     *) in_guest "daemon_in_guest/$name.sh" --det & ;;
