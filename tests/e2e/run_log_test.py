@@ -76,6 +76,7 @@ class RunLog(ProgramTest):
     @in_real_time
     def test_a_trip_outside_a_run_is_a_file_of_the_last_ten_seconds(self):
         self.start_daemon(*SMALL)
+        time.sleep(11.0)  # the first sample, which is that of a reset, is older then
         self.arm()
         self.operate("sim", "emergency-stop", "0")
         self.wait_for_state("Tripped")
