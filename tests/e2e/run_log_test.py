@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """The logs of the daemon's runs: one a run, reserved before the arm is armed, and of a trip."""
 
+import contextlib
 import json
+import subprocess
 import time
 import unittest
 
@@ -118,6 +120,53 @@ class RunLog(ProgramTest):
         self.assertIs(log["required"], False)
         self.assertIn("Not a directory", log["error"])
         self.run_to_the_end("unrecorded")
+
+    def small_disk(self, size_mb):
+        """Makes the log folder a disk of its own, until the end of the test."""
+        runs = self.folder / "runs"
+        runs.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size_mb}m", "none", runs],
+                                 capture_output=True, text=True, check=False)
+        if mounted.returncode != 0:
+            self.skipTest(f"no disk of its own: {mounted.stderr}")
+        self.addCleanup(subprocess.run, ["umount", "-l", runs], check=True)
+        return runs
+
+    def wait_for_log(self, ok, within_s=20):
+        end = time.monotonic() + within_s
+        while time.monotonic() < end:
+            log = self.status()["log"]
+            if log["ok"] is ok:
+                return log
+            time.sleep(0.05)
+        self.fail(f"log.ok is not {ok}: {log}\n{self.daemon_log()}")
+
+    @in_real_time
+    def test_a_disk_that_fills_in_mid_run_is_told_and_loses_nothing(self):
+        runs = self.small_disk(24)
+        self.start_daemon(*SMALL, "--state-dir", self.folder / "state")
+        self.arm()
+        self.operate("run", self.experiment(SHORT.format(name="full").replace(
+            "duration_s = 1.0", "duration_s = 25.0")))
+        self.wait_for_state("Running")
+        filler = runs / "filler"
+        with contextlib.suppress(OSError), open(filler, "wb", buffering=0) as file:
+            while True:
+                file.write(bytes(4096))
+        log = self.wait_for_log(ok=False)
+        self.assertIn("No space left", log["error"])
+        self.assertEqual(self.status()["state"], "Running", "the run goes on")
+        time.sleep(1.0)
+        filler.unlink()
+        self.wait_for_log(ok=True)
+        self.wait_for_state("Armed", within_s=40)
+        self.operate("disarm")
+        self.wait_for_state("Idle")
+        run, = self.wait_for_closed_runs(1)
+        self.assertEqual(self.flexarm_json("info", run)["missing_ticks"], 0)
+        self.assertEqual(rows(run, "SELECT count(*) FROM event WHERE kind = 'gap'"), [(0,)])
+        self.assertIs(self.flexarm_json("replay", run)["bit_exact"], True)
+        self.assertIn("everything is written again", self.daemon_log())
 
     @in_real_time
     def test_an_unattended_run_without_a_file_is_refused(self):
