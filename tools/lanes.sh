@@ -147,6 +147,8 @@ lane_campaigns() {  # random campaigns at their whole size; `release` runs a sam
       wired/wired_loop_test; do
     FLEXARM_CAMPAIGN=whole "build/release/tests/controller/$program" --gtest_filter='*.Campaign*'
   done
+  build release flexarm flexarmd
+  FLEXARM_CAMPAIGN=whole FLEXARM_BIN="$PWD/build/release/bin" python3 tests/e2e/killed_run_test.py
   build tsan wired_threads_test
   use_environment_of tsan
   FLEXARM_CAMPAIGN=whole build/tsan/tests/controller/wired_threads/wired_threads_test

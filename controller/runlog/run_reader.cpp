@@ -202,14 +202,6 @@ bool RunReader::DigestHolds() {
   return holds;
 }
 
-void RunReader::VerifyDigest() {
-  if (!DigestHolds())
-    Fail(
-        "digest: damaged since it was written: found other values than those of"
-        " its digest \"" +
-        Printable(digest_) + "\"");
-}
-
 RunContents RunReader::ReadAll() {
   RunContents run;
   run.info = info_;

@@ -40,8 +40,6 @@ class RunReader {
   const std::string& digest() const { return digest_; }
   /// True if all that the log holds is as it was written. Reads everything.
   bool DigestHolds();
-  /// @throws InputError if it is not
-  void VerifyDigest();
 
   // In the order of time. BLOBs are checked for size and version.
   void ForEachTick(const std::function<void(const TickRecord&)>& visit);

@@ -9,18 +9,15 @@
 logs=/var/lib/flexarm
 mkdir /mnt/out/runs kept
 
-# Copies the newest log and its SQLite journal, if there is one, for this script and for the host,
-# so that the log is checked as the daemon left it.
+# Copies the newest log, for this script and for the host, so that it is checked as the daemon left
+# it.
 keep_log() {  # keep_log NAME
-  local newest file
-  newest=$(find $logs -name '*.flexarm' -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d' ' -f2)
-  for file in "$newest" "$newest-wal"; do
-    if [[ -e $file ]]; then
-      cp "$file" "kept/$1.flexarm${file#"$newest"}"
-      cp "$file" "/mnt/out/runs/$1.flexarm${file#"$newest"}"
-    fi
-  done
+  local newest
+  newest=$(find $logs -name '[!.]*.flexarm' -printf '%T@ %p\n' | sort -n | tail -n 1 |
+    cut -d' ' -f2)
   log=kept/$1.flexarm
+  cp "$newest" "$log"
+  cp "$newest" "/mnt/out/runs/$1.flexarm"
   closed=$(flexarm info "$log" --json | jq .closed)
 }
 states() {  # the states of the log, in order
@@ -85,6 +82,8 @@ check "the log replays" replays
 left_behind() {  # left_behind NAME LAST_TICK
   keep_log "$1"
   check "the log was not closed" equal "$closed" false
+  check "the log replays as it is" replays
+  check "it is recovered" flexarm log recover "$log"
   check "it lost half a second at most" at_least \
     "$(sqlite3 "$log" 'SELECT max(tick) FROM tick')" $(($2 - 26))
   check "the arm was running in it" equal "$(states)" "Armed Running"
