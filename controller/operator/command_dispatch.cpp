@@ -90,7 +90,9 @@ nlohmann::json CommandDispatch::Start(const std::string& name, int client,
     return nullptr;
   }
   if (Commissioner::Knows(name)) {
-    const bool moves = name == "pluck" || name == "home";
+    // In another state than Armed the commissioner says what is wrong.
+    const bool moves = (name == "pluck" || name == "home") &&
+                       now.permit.state == SafetyState::kArmed;
     if (const auto no_log = UnmetLog(targets_.files); moves && no_log) {
       return {{"ok", false},
               {"refusal", no_log->refusal},
