@@ -99,7 +99,8 @@ class Daemon {
         latch_(options.config.daemon.state_directory,
                std::filesystem::absolute(options.config.daemon.log_directory).string(),
                [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
-        finisher_([this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
+        finisher_(
+            [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         files_(options.config.daemon.log_directory, options.config.daemon.log, &finisher_,
                [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         recording_(

@@ -8,7 +8,7 @@
 
 namespace flexarm {
 
-/// Tells when an arm that nobody uses has been armed for too long: safety.disarm_after_s.
+/// Tells when an unused arm has been armed for too long: safety.disarm_after_s.
 /// Not real-time safe. Thread: operator.
 class AutoDisarm {
  public:

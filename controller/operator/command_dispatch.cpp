@@ -91,8 +91,8 @@ nlohmann::json CommandDispatch::Start(const std::string& name, int client,
   }
   if (Commissioner::Knows(name)) {
     // In another state than Armed the commissioner says what is wrong.
-    const bool moves = (name == "pluck" || name == "home") &&
-                       now.permit.state == SafetyState::kArmed;
+    const bool moves =
+        (name == "pluck" || name == "home") && now.permit.state == SafetyState::kArmed;
     if (const auto no_log = UnmetLog(targets_.files); moves && no_log) {
       return {{"ok", false},
               {"refusal", no_log->refusal},

@@ -11,8 +11,9 @@ std::optional<UnmetCondition> UnmetLog(const RunFiles* files) {
   return UnmetCondition{.name = "log",
                         .refusal = "no-log",
                         .found = "there is no file for the log of the next run: " + why,
-                        .remedy = "make room or mend the disk (`flexarm status` shows `log`), and "
-                                  "repeat; log.required = false in the config does without",
+                        .remedy =
+                            "make room or mend the disk (`flexarm status` shows `log`), and "
+                            "repeat; log.required = false in the config does without",
                         .may_override = false};
 }
 

@@ -19,8 +19,8 @@ namespace flexarm {
 /// What the operator task needs of its daemon. What is pointed to outlives the task.
 struct OperatorContext {
   LoopStack* stack;
-  TripLatch* latch;    ///< open before the first period
-  EventQueue* events;  ///< to the recorder
+  TripLatch* latch;           ///< open before the first period
+  EventQueue* events;         ///< to the recorder
   RunFiles* files = nullptr;  ///< of the logs; null: runs need none
   const Design* design;
   const RigConfig* config;

@@ -24,9 +24,9 @@ namespace flexarm {
 /// task for the run.
 ///
 /// The conditions of a run hold before it is planned and are judged again when the plan is there:
-/// the state, the angles, the proof of the switches, the file of its log, and that the arm stands where the plan begins.
-/// A stop, a disarm, the end of the daemon and a client that has gone cancel a plan.
-/// Not real-time safe. Thread: operator.
+/// the state, the angles, the proof of the switches, the file of its log, and that the arm stands
+/// where the plan begins. A stop, a disarm, the end of the daemon and a client that has gone cancel
+/// a plan. Not real-time safe. Thread: operator.
 class RunCommand {
  public:
   /// A hub that was turned by more than this while its run was planned: rad.

@@ -63,8 +63,7 @@ ReservedRunFile ReservedRunFile::In(const std::filesystem::path& directory, std:
   MakeFolder(directory);
   std::string name = (directory / ".next-XXXXXX").string();
   name += kReservedSuffix;
-  FileDescriptor fd(
-      ::mkostemps(name.data(), static_cast<int>(kReservedSuffix.size()), O_CLOEXEC));
+  FileDescriptor fd(::mkostemps(name.data(), static_cast<int>(kReservedSuffix.size()), O_CLOEXEC));
   if (!fd.is_open()) CannotReserve(directory, errno);
   ReservedRunFile file(name, std::move(fd));
   ::fchmod(file.fd_.get(), kRunFileMode);  // mkostemps allows the owner only
@@ -93,7 +92,7 @@ void ReservedRunFile::Rename(const std::filesystem::path& file) {
 FileDescriptor ReservedRunFile::Take() { return std::move(fd_); }
 
 std::optional<std::uint64_t> FreeBytes(const std::filesystem::path& directory) {
-  struct statvfs there{};
+  struct statvfs there {};
   if (::statvfs(directory.c_str(), &there) != 0) return std::nullopt;
   return std::uint64_t{there.f_bavail} * there.f_frsize;
 }

@@ -28,7 +28,7 @@ class RunContext {
 
  private:
   std::vector<RunEvent> events_;
-  RunEvent experiment_;           // announced last
+  RunEvent experiment_;                  // announced last
   std::uint32_t experiment_number_ = 0;  // of its request; 0: the next one
 };
 

@@ -79,9 +79,9 @@ class RunFiles {
   std::int64_t next_try_ns_ = INT64_MIN;
   std::int64_t next_look_ns_ = INT64_MIN;
 
-  mutable std::mutex mutex_;      // held for a copy, never during I/O
+  mutable std::mutex mutex_;  // held for a copy, never during I/O
   LogStatus status_;
-  std::uint32_t answered_ = 0;   // the Want that was tried last
+  std::uint32_t answered_ = 0;  // the Want that was tried last
   bool is_reserved_ = false;
 };
 

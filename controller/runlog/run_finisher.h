@@ -13,10 +13,10 @@
 
 namespace flexarm {
 
-/// Makes SQLite files of runs that have ended, on a thread of its own: that takes seconds for a long
-/// run, and the recorder must go on. A run that cannot be finished, as on a full disk, is tried
-/// again every second; what is still open at the end stays a record file, which the next start of
-/// the daemon or `flexarm log recover` finishes.
+/// Makes SQLite files of runs that have ended, on a thread of its own: that takes seconds for a
+/// long run, and the recorder must go on. A run that cannot be finished, as on a full disk, is
+/// tried again every second; what is still open at the end stays a record file, which the next
+/// start of the daemon or `flexarm log recover` finishes.
 class RunFinisher {
  public:
   /// For the journal. Called on the finisher's thread.

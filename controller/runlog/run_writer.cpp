@@ -58,8 +58,7 @@ RunWriter::RunWriter(const std::filesystem::path& file, const RunInfo& info)
     : RunWriter(ReservedRunFile::At(file), info) {}
 
 RunWriter::RunWriter(ReservedRunFile file, const RunInfo& info)
-    : file_(std::make_unique<AppendFile>(Taken(std::move(file)))),
-      name_(file_->path().string()) {
+    : file_(std::make_unique<AppendFile>(Taken(std::move(file)))), name_(file_->path().string()) {
   RunInfo filled = info;
   if (filled.start_utc.empty()) filled.start_utc = UtcNow();
   file_->Append(RecordHeader());

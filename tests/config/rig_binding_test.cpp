@@ -243,18 +243,27 @@ TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
 }
 
 TEST(RigBinding, PutsEveryLimitInItsField) {
-  const SafetyConfig s =
-      HilWith({"limits.torque_limit_nm=[1, 2]", "limits.slew_limit_nm_per_s=[3, 4]",
-               "limits.soft_angle_deg=[5, 6]", "limits.hub_rate_rad_s=[7, 8]",
-               "limits.strain_limit=[1e-4, 2e-4]", "limits.plan_fraction=0.7",
-               "safety.rest_hub_rate_rad_s=0.1", "safety.rest_strain_rate_per_s=0.2",
-               "safety.rest_time_s=0.3", "safety.stop_timeout_s=0.4", "safety.permit_timeout_ms=6",
-               "safety.missed_deadlines_to_trip=4", "safety.homing_torque_fraction=0.25",
-               "safety.overrun_to_trip_ms=7", "safety.window_periods=30",
-               "safety.missed_deadlines_in_window=11", "safety.failed_exchanges_in_window=12",
-               "safety.slow_exchanges_in_window=13", "safety.prove_days=14",
-               "safety.disarm_after_s=15"})
-          .safety;
+  const SafetyConfig s = HilWith({"limits.torque_limit_nm=[1, 2]",
+                                  "limits.slew_limit_nm_per_s=[3, 4]",
+                                  "limits.soft_angle_deg=[5, 6]",
+                                  "limits.hub_rate_rad_s=[7, 8]",
+                                  "limits.strain_limit=[1e-4, 2e-4]",
+                                  "limits.plan_fraction=0.7",
+                                  "safety.rest_hub_rate_rad_s=0.1",
+                                  "safety.rest_strain_rate_per_s=0.2",
+                                  "safety.rest_time_s=0.3",
+                                  "safety.stop_timeout_s=0.4",
+                                  "safety.permit_timeout_ms=6",
+                                  "safety.missed_deadlines_to_trip=4",
+                                  "safety.homing_torque_fraction=0.25",
+                                  "safety.overrun_to_trip_ms=7",
+                                  "safety.window_periods=30",
+                                  "safety.missed_deadlines_in_window=11",
+                                  "safety.failed_exchanges_in_window=12",
+                                  "safety.slow_exchanges_in_window=13",
+                                  "safety.prove_days=14",
+                                  "safety.disarm_after_s=15"})
+                             .safety;
   EXPECT_EQ(s.torque_limit_nm, (std::array{1.0, 2.0}));
   EXPECT_EQ(s.slew_limit_nm_per_s, (std::array{3.0, 4.0}));
   EXPECT_EQ(s.soft_angle_deg, (std::array{5.0, 6.0}));

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-TEST(AutoDisarm, AnArmThatNobodyUsesIsDisarmed) {
+TEST(AutoDisarm, AnUnusedArmIsDisarmed) {
   AutoDisarm disarm(10.0);
   EXPECT_FALSE(disarm.Follow(0, SafetyState::kArmed));
   EXPECT_FALSE(disarm.Follow(10 * kSecond - 1, SafetyState::kArmed));

@@ -139,13 +139,12 @@ TEST_F(RecorderTest, ARunBeginsWithTheEventsOfItsArming) {
   SafetyStatus status = kRunningStatus;
   for (int run = 0; run < 2; ++run) {
     const std::int64_t base_ns = (10 + 100 * run) * kTestPeriodNs;
-    const SafetyRecord stopping = Change(
-        base_ns, status, [](SafetyFacts* facts) { facts->experiment_done = 1; });
+    const SafetyRecord stopping =
+        Change(base_ns, status, [](SafetyFacts* facts) { facts->experiment_done = 1; });
     Change(base_ns + 1, stopping.after, [](SafetyFacts*) {});
     if (run == 0) Grant(base_ns + 50 * kTestPeriodNs);
   }
-  const SafetyRecord disarm =
-      MakeSafety(120 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm);
+  const SafetyRecord disarm = MakeSafety(120 * kTestPeriodNs, kArmedStatus, RequestKind::kDisarm);
   safety_.Push(disarm);
   Change(121 * kTestPeriodNs, disarm.after, [](SafetyFacts* facts) { facts->drives_off = 1; });
   Arm(130 * kTestPeriodNs);

@@ -64,7 +64,7 @@ TEST_F(RunFileTest, AllOtherRecordsReadBack) {
     writer.Safety(safety);
     writer.Timing({.tick = 1, .due_ns = 2, .woke_ns = 3, .finished_ns = 4});
     writer.Event(event);
-      writer.Close("{\"trip\":null}");
+    writer.Close("{\"trip\":null}");
   }
   RunReader reader(File());
   EXPECT_TRUE(reader.closed());

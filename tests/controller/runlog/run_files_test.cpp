@@ -18,11 +18,10 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 class RunFilesTest : public RunLogTest {
  protected:
   RunFiles& Make(const LogConfig& config = {.reserve_mb = 1.0, .keep_free_mb = 0.0}) {
-    files_ = std::make_unique<RunFiles>(
-        folder_ / "runs", config, &finisher_,
-        [this](bool is_error, const std::string& text) {
-          (is_error ? errors_ : notes_).push_back(text);
-        });
+    files_ = std::make_unique<RunFiles>(folder_ / "runs", config, &finisher_,
+                                        [this](bool is_error, const std::string& text) {
+                                          (is_error ? errors_ : notes_).push_back(text);
+                                        });
     return *files_;
   }
   std::vector<std::filesystem::path> Found() const {
@@ -52,7 +51,7 @@ TEST_F(RunFilesTest, AFileIsReservedWhenItIsWantedAndRemovedWhenItIsNot) {
   EXPECT_TRUE(Found().empty());
   EXPECT_FALSE(files.status().ready);
   files.Want();
-  EXPECT_FALSE(files.status().answered) << "nobody has tried it yet";
+  EXPECT_FALSE(files.status().answered) << "it has not been tried yet";
   files.Follow(1);
   EXPECT_TRUE(files.status().ready);
   ASSERT_EQ(Found().size(), 1U);

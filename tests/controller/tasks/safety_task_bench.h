@@ -53,6 +53,7 @@ struct FakeLines final : SafetyLines {
     written.push_back({now_ns, outputs});
     return write;
   }
+  void HoldOff() noexcept override { ADD_FAILURE() << "only a crash does so"; }
   /// Power for the drives, through relay and pump in series.
   bool power(std::int64_t now_ns) const {
     const bool closed = !written.empty() && relay_closed();
