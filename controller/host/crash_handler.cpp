@@ -106,7 +106,7 @@ void Handle(int signal, siginfo_t* info, void* /*context*/) noexcept {
 
 CrashHandler::CrashHandler(const PowerOff& power_off) : power_off_(power_off) {
   power_off_at_crash.store(&power_off_);
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_sigaction = Handle;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;
   sigfillset(&action.sa_mask);

@@ -113,7 +113,7 @@ bool AppendFile::Sync() noexcept {
 }
 
 bool AppendFile::KeepName() {
-  struct stat named {};
+  struct stat named{};
   if (::lstat(path_.c_str(), &named) != 0 && errno != ENOENT && errno != ENOTDIR) return true;
   return NamesFile(path_, fd_.get()) || MakeAgain();
 }

@@ -31,7 +31,7 @@ std::string ReadBytes(int fd, std::uint64_t offset, std::size_t length) {
 }  // namespace
 
 RecordFileReader::RecordFileReader(int fd) : fd_(fd) {
-  struct stat there {};
+  struct stat there{};
   if (::fstat(fd, &there) == 0) size_ = static_cast<std::uint64_t>(there.st_size);
   problem_ = RecordHeaderProblem(Window(0, kRecordHeaderBytes));
 }

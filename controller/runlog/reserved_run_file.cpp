@@ -92,7 +92,7 @@ void ReservedRunFile::Rename(const std::filesystem::path& file) {
 FileDescriptor ReservedRunFile::Take() { return std::move(fd_); }
 
 std::optional<std::uint64_t> FreeBytes(const std::filesystem::path& directory) {
-  struct statvfs there {};
+  struct statvfs there{};
   if (::statvfs(directory.c_str(), &there) != 0) return std::nullopt;
   return std::uint64_t{there.f_bavail} * there.f_frsize;
 }

@@ -9,7 +9,7 @@ namespace flexarm {
 namespace {
 
 struct flock WholeFile(short type) {
-  struct flock lock {};
+  struct flock lock{};
   lock.l_type = type;
   lock.l_whence = SEEK_SET;
   return lock;  // start and length 0: all of it, however it grows
@@ -33,8 +33,7 @@ bool RunFileIsLocked(const std::filesystem::path& file) {
 }
 
 bool NamesFile(const std::filesystem::path& file, int fd) {
-  struct stat named {
-  }, open{};
+  struct stat named{}, open{};
   return ::lstat(file.c_str(), &named) == 0 && ::fstat(fd, &open) == 0 &&
          named.st_dev == open.st_dev && named.st_ino == open.st_ino;
 }

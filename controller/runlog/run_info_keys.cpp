@@ -11,7 +11,7 @@ namespace {
 
 struct TextKey {
   const char* key;
-  std::string RunInfo::*text;
+  std::string RunInfo::* text;
 };
 
 constexpr TextKey kTextKeys[] = {

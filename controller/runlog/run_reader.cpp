@@ -68,7 +68,7 @@ void RunReader::Guarded(Action action) {
 RunReader::RunReader(const std::filesystem::path& file) : file_(file) {
   // A FIFO without a writer would wait.
   const FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  struct stat there {};
+  struct stat there{};
   if (!fd.is_open() || ::fstat(fd.get(), &there) != 0) {
     Fail(std::string(std::strerror(errno)) + "; expected a run log (.flexarm)");
   }

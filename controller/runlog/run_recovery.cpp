@@ -43,7 +43,7 @@ std::string RecoveredText(const std::filesystem::path& file, const RecordFileEnd
 Recovery RecoverOpened(const std::filesystem::path& file, int fd) {
   using Result = Recovery::Result;
   const std::string name = file.string();
-  struct stat there {};
+  struct stat there{};
   if (::fstat(fd, &there) != 0 || !S_ISREG(there.st_mode)) {
     return {Result::kFailed, name + ": not a regular file; expected a run log (.flexarm)"};
   }
