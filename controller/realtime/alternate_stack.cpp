@@ -15,13 +15,13 @@ AlternateStack::AlternateStack() {
   stack_t present{};
   if (sigaltstack(nullptr, &present) != 0 || (present.ss_flags & SS_DISABLE) == 0) return;
   // Written to, so that no page is missing when it is needed.
-  bytes_ = std::make_unique<unsigned char[]>(kBytes);
-  const stack_t stack{.ss_sp = bytes_.get(), .ss_flags = 0, .ss_size = kBytes};
-  if (sigaltstack(&stack, nullptr) != 0) bytes_.reset();
+  bytes_.resize(kBytes);
+  const stack_t stack{.ss_sp = bytes_.data(), .ss_flags = 0, .ss_size = kBytes};
+  if (sigaltstack(&stack, nullptr) != 0) bytes_.clear();
 }
 
 AlternateStack::~AlternateStack() {
-  if (bytes_ == nullptr) return;
+  if (bytes_.empty()) return;
   const stack_t none{.ss_sp = nullptr, .ss_flags = SS_DISABLE, .ss_size = 0};
   sigaltstack(&none, nullptr);
 }

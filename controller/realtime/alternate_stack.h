@@ -1,7 +1,8 @@
 #pragma once
 
 #include <csignal>
-#include <memory>
+#include <cstddef>
+#include <vector>
 
 namespace flexarm {
 
@@ -17,7 +18,7 @@ class AlternateStack {
   AlternateStack& operator=(const AlternateStack&) = delete;
 
  private:
-  std::unique_ptr<unsigned char[]> bytes_;
+  std::vector<std::byte> bytes_;
 };
 
 }  // namespace flexarm

@@ -72,13 +72,13 @@ ReservedRunFile ReservedRunFile::In(const std::filesystem::path& directory, std:
   return file;
 }
 
-ReservedRunFile ReservedRunFile::At(const std::filesystem::path& path) {
-  MakeFolder(path.parent_path());
-  FileDescriptor fd(::open(path.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, kRunFileMode));
-  if (!fd.is_open() && errno == EEXIST) NameTaken(path);
-  if (!fd.is_open()) CannotReserve(path, errno);
-  ReservedRunFile file(path, std::move(fd));
-  if (!LockRunFile(file.fd_.get())) CannotReserve(path, errno);
+ReservedRunFile ReservedRunFile::At(const std::filesystem::path& name) {
+  MakeFolder(name.parent_path());
+  FileDescriptor fd(::open(name.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, kRunFileMode));
+  if (!fd.is_open() && errno == EEXIST) NameTaken(name);
+  if (!fd.is_open()) CannotReserve(name, errno);
+  ReservedRunFile file(name, std::move(fd));
+  if (!LockRunFile(file.fd_.get())) CannotReserve(name, errno);
   return file;
 }
 

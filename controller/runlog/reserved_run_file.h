@@ -32,7 +32,7 @@ class ReservedRunFile {
 
   /// A file with its final name. Its folder is created if missing.
   /// @throws RunLogError, also if the name is taken
-  static ReservedRunFile At(const std::filesystem::path& file);
+  static ReservedRunFile At(const std::filesystem::path& name);
 
   /// Gives it its final name, in the same directory.
   /// @throws RunLogError if that is taken, or cannot be given; the old name then holds

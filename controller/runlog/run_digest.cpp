@@ -1,5 +1,6 @@
 #include "controller/runlog/run_digest.h"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -17,17 +18,17 @@ struct TableRows {
   const char* select;  // the key first
 };
 
-constexpr TableRows kTables[] = {
-    {"tick", "SELECT * FROM tick ORDER BY tick"},
-    {"timing", "SELECT rowid, * FROM timing ORDER BY rowid"},
-    {"safety", "SELECT * FROM safety ORDER BY number"},
-    {"event", "SELECT * FROM event ORDER BY number"},
+constexpr std::array kTables = {
+    TableRows{"tick", "SELECT * FROM tick ORDER BY tick"},
+    TableRows{"timing", "SELECT rowid, * FROM timing ORDER BY rowid"},
+    TableRows{"safety", "SELECT * FROM safety ORDER BY number"},
+    TableRows{"event", "SELECT * FROM event ORDER BY number"},
 };
 
 void AppendNumber(std::uint64_t number, std::string* bytes) {
-  char raw[sizeof number];
-  std::memcpy(raw, &number, sizeof number);
-  bytes->append(raw, sizeof raw);
+  std::array<char, sizeof number> raw;
+  std::memcpy(raw.data(), &number, sizeof number);
+  bytes->append(raw.data(), raw.size());
 }
 
 // Type, then eight bytes: the number, or the length of the bytes that follow.

@@ -90,7 +90,7 @@ class KilledRun(ProgramTest):
                 daemon.kill()
                 daemon.wait()
                 self.check_what_is_left()
-                shutil.rmtree(state)  # else the next one starts tripped
+                shutil.rmtree(state, ignore_errors=True)  # else the next one starts tripped
         daemon = self.start_daemon("--state-dir", state, "--run-for", "1.0")
         daemon.wait(timeout=60)
         log = self.daemon_log()

@@ -141,6 +141,13 @@ class RunLog(ProgramTest):
             time.sleep(0.05)
         self.fail(f"log.ok is not {ok}: {log}\n{self.daemon_log()}")
 
+    def wait_for_line(self, text, within_s=20):
+        end = time.monotonic() + within_s
+        while text not in self.daemon_log():
+            if time.monotonic() > end:
+                self.fail(f"no line with '{text}'\n{self.daemon_log()}")
+            time.sleep(0.05)
+
     @in_real_time
     def test_a_disk_that_fills_in_mid_run_is_told_and_loses_nothing(self):
         runs = self.small_disk(24)
@@ -155,6 +162,7 @@ class RunLog(ProgramTest):
                 file.write(bytes(4096))
         log = self.wait_for_log(ok=False)
         self.assertIn("No space left", log["error"])
+        self.wait_for_line("its records wait")  # what was reserved for this run is used up
         self.assertEqual(self.status()["state"], "Running", "the run goes on")
         time.sleep(1.0)
         filler.unlink()
