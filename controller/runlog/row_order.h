@@ -17,7 +17,7 @@ class RowOrder {
   /// @throws SqliteError if `key` does not follow the one before
   void Next(const Key& key) {
     if (last_ && !(*last_ < key)) {
-      throw SqliteError::Damaged(std::string("rows of table ") + table_ + " out of order");
+      throw SqliteError(std::string("rows of table ") + table_ + " out of order");
     }
     last_ = key;
   }

@@ -1,5 +1,6 @@
 #include "controller/runlog/run_info_keys.h"
 
+#include <array>
 #include <charconv>
 #include <cstdint>
 
@@ -14,17 +15,17 @@ struct TextKey {
   std::string RunInfo::* text;
 };
 
-constexpr TextKey kTextKeys[] = {
-    {run_key::kStartUtc, &RunInfo::start_utc},
-    {run_key::kVersion, &RunInfo::version},
-    {run_key::kBuildId, &RunInfo::build_id},
-    {run_key::kRigName, &RunInfo::rig_name},
-    {run_key::kClock, &RunInfo::clock},
-    {run_key::kBackend, &RunInfo::backend},
-    {run_key::kConfig, &RunInfo::config_text},
-    {run_key::kExperimentName, &RunInfo::experiment_name},
-    {run_key::kExperiment, &RunInfo::experiment_text},
-    {run_key::kGains, &RunInfo::gains_json},
+constexpr std::array kTextKeys = {
+    TextKey{run_key::kStartUtc, &RunInfo::start_utc},
+    TextKey{run_key::kVersion, &RunInfo::version},
+    TextKey{run_key::kBuildId, &RunInfo::build_id},
+    TextKey{run_key::kRigName, &RunInfo::rig_name},
+    TextKey{run_key::kClock, &RunInfo::clock},
+    TextKey{run_key::kBackend, &RunInfo::backend},
+    TextKey{run_key::kConfig, &RunInfo::config_text},
+    TextKey{run_key::kExperimentName, &RunInfo::experiment_name},
+    TextKey{run_key::kExperiment, &RunInfo::experiment_text},
+    TextKey{run_key::kGains, &RunInfo::gains_json},
 };
 
 template <typename T>

@@ -28,7 +28,7 @@ class RunTables {
   void AddOne(const TickRecord& record);
   void AddOne(const TimingRecord& record);
   void AddOne(const SafetyRecord& record);
-  void AddOne(const RunEvent& record);
+  void AddOne(const RunEvent& event);
   void AddOne(const EndRecord& record);
   double SinceStart(std::int64_t time_ns) const;
 

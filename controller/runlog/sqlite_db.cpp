@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -44,10 +45,6 @@ std::string Uri(const std::filesystem::path& file) {
 
 }  // namespace
 
-SqliteError SqliteError::Damaged(const std::string& cause) {
-  return SqliteError(SQLITE_CORRUPT, cause);
-}
-
 SqliteStatement::SqliteStatement(sqlite3* connection, std::string_view sql)
     : connection_(connection) {
   Check(sqlite3_prepare_v3(connection, sql.data(), static_cast<int>(sql.size()),
@@ -66,7 +63,7 @@ SqliteStatement& SqliteStatement::operator=(SqliteStatement&& other) noexcept {
 }
 
 void SqliteStatement::Check(int result) const {
-  if (result != SQLITE_OK) throw SqliteError(result, Cause(connection_, result));
+  if (result != SQLITE_OK) throw SqliteError(Cause(connection_, result));
 }
 
 void SqliteStatement::Bind(int parameter, std::int64_t value) {
@@ -93,7 +90,7 @@ bool SqliteStatement::Step() {
   const int result = sqlite3_step(statement_);
   if (result == SQLITE_ROW) return true;
   if (result == SQLITE_DONE) return false;
-  throw SqliteError(result, Cause(connection_, result));
+  throw SqliteError(Cause(connection_, result));
 }
 
 void SqliteStatement::Execute() {
@@ -144,7 +141,7 @@ SqliteDb SqliteDb::Open(const std::string& name, int flags) {
   sqlite3* connection = nullptr;
   const int result = sqlite3_open_v2(name.c_str(), &connection, flags, nullptr);
   SqliteDb db(connection);  // closes also after an error
-  if (result != SQLITE_OK) throw SqliteError(result, Cause(connection, result));
+  if (result != SQLITE_OK) throw SqliteError(Cause(connection, result));
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_busy_timeout(connection, 2000);
   return db;
@@ -153,7 +150,7 @@ SqliteDb SqliteDb::Open(const std::string& name, int flags) {
 SqliteDb SqliteDb::CreateNew(const std::filesystem::path& file) {
   // SQLite cannot create exclusively, so the file is created first: a run is never overwritten.
   const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
-  if (descriptor < 0) throw SqliteError(SQLITE_CANTOPEN, std::strerror(errno));
+  if (descriptor < 0) throw SqliteError(std::strerror(errno));
   ::close(descriptor);
   return Open(file.string(), SQLITE_OPEN_READWRITE);
 }
@@ -172,12 +169,12 @@ SqliteDb SqliteDb::OpenReadOnly(const std::filesystem::path& file, bool immutabl
 }
 
 void SqliteDb::Distrust(int largest_value) {
-  constexpr std::pair<int, int> kLimits[] = {
-      {SQLITE_LIMIT_SQL_LENGTH, 20'000}, {SQLITE_LIMIT_COLUMN, 200},
-      {SQLITE_LIMIT_VDBE_OP, 5'000},     {SQLITE_LIMIT_EXPR_DEPTH, 20},
-      {SQLITE_LIMIT_COMPOUND_SELECT, 2}, {SQLITE_LIMIT_FUNCTION_ARG, 8},
-      {SQLITE_LIMIT_ATTACHED, 0},        {SQLITE_LIMIT_TRIGGER_DEPTH, 1},
-      {SQLITE_LIMIT_WORKER_THREADS, 0},
+  constexpr std::array kLimits = {
+      std::pair{SQLITE_LIMIT_SQL_LENGTH, 20'000}, std::pair{SQLITE_LIMIT_COLUMN, 200},
+      std::pair{SQLITE_LIMIT_VDBE_OP, 5'000},     std::pair{SQLITE_LIMIT_EXPR_DEPTH, 20},
+      std::pair{SQLITE_LIMIT_COMPOUND_SELECT, 2}, std::pair{SQLITE_LIMIT_FUNCTION_ARG, 8},
+      std::pair{SQLITE_LIMIT_ATTACHED, 0},        std::pair{SQLITE_LIMIT_TRIGGER_DEPTH, 1},
+      std::pair{SQLITE_LIMIT_WORKER_THREADS, 0},
   };
   sqlite3_limit(connection_, SQLITE_LIMIT_LENGTH, largest_value);
   for (const auto& [limit, value] : kLimits) sqlite3_limit(connection_, limit, value);
@@ -202,7 +199,7 @@ SqliteDb& SqliteDb::operator=(SqliteDb&& other) noexcept {
 
 void SqliteDb::Execute(const char* sql) {
   const int result = sqlite3_exec(connection_, sql, nullptr, nullptr, nullptr);
-  if (result != SQLITE_OK) throw SqliteError(result, Cause(connection_, result));
+  if (result != SQLITE_OK) throw SqliteError(Cause(connection_, result));
 }
 
 SqliteStatement SqliteDb::Prepare(std::string_view sql) {

@@ -15,13 +15,7 @@ namespace flexarm {
 /// An error of SQLite. what() has the cause only; callers add the file.
 class SqliteError : public std::runtime_error {
  public:
-  SqliteError(int error_code, const std::string& cause)
-      : std::runtime_error(cause), code_(error_code) {}
-  /// What SQLite reads, but does not check itself.
-  static SqliteError Damaged(const std::string& cause);
-
- private:
-  int code_;  // extended result code
+  using std::runtime_error::runtime_error;
 };
 
 /// The type of one value, in SQLite's numbers.
