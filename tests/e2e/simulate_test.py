@@ -108,7 +108,7 @@ class Replay(ProgramTest):
         shutil.copy(self.run_file, changed)
         log = sqlite3.connect(changed)
         number, state = log.execute(
-            "SELECT number, record FROM safety WHERE state_after = 'Running' LIMIT 1").fetchone()
+            "SELECT number, record FROM safety WHERE state_after = 'Stopping' LIMIT 1").fetchone()
         earlier = log.execute("SELECT record FROM safety WHERE number < ? ORDER BY number DESC"
                               " LIMIT 1", (number,)).fetchone()[0]
         log.execute("UPDATE safety SET record = ? WHERE number = ?", (earlier, number))
