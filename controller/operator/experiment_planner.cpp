@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "controller/realtime/alternate_stack.h"
+
 namespace flexarm {
 
 ExperimentPlanner::ExperimentPlanner() : thread_([this] { RunJobs(); }) {
@@ -49,6 +51,7 @@ std::optional<ExperimentPlanner::Outcome> ExperimentPlanner::Take(
 }
 
 void ExperimentPlanner::RunJobs() {
+  const AlternateStack stack;  // a crash in here cuts the power also if its stack has overflowed
   for (;;) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return over_ || next_ != nullptr; });

@@ -1,5 +1,5 @@
 # Sourced inside the guest: installs the files of `cmake --install` as the README describes, and
-# adds two user accounts, of which one may operate the arm.
+# adds three user accounts: one may operate the arm, one may see its state and stop it.
 # shellcheck shell=bash
 
 cp -a /mnt/share/machine/. /
@@ -7,6 +7,7 @@ systemd-sysusers
 systemctl -q add-wants guest.target flexarmd  # without it systemd forgets how the unit ended
 systemctl daemon-reload
 useradd --groups flexarm member
+useradd --groups flexarm-view observer
 useradd stranger
 
 experiment=/usr/local/share/flexarm/config/experiments/square-30deg.toml

@@ -50,14 +50,17 @@ for verb in status arm stop; do
   check "a stranger may not $verb" refused as stranger flexarm $verb
 done
 as stranger flexarm arm >said.txt 2>&1
-check "a stranger is told why" grep -q "Permission denied.*member of the socket's group" said.txt
+check "a stranger is told why" grep -q "stranger may not operate the arm" said.txt
 check "the stranger armed nothing" in_state Idle
 check "a stranger may not read the logs" refused as stranger ls $logs
+check "an observer sees the state" as observer flexarm status
+check "an observer may not arm" refused as observer flexarm arm
+check "the observer armed nothing" in_state Idle
 
-echo "== a run, stopped by the operator"
+echo "== a run, stopped by an observer"
 start_moving
 check "the arm runs" in_state Running
-check "stop is accepted" operate stop
+check "stop is accepted" as observer flexarm stop
 check "the arm comes to rest" within 4 in_state Armed
 check "disarm is accepted" operate disarm
 check "the relay is open" within 2 in_state Idle
