@@ -118,13 +118,8 @@ void OperatorTask::Run(const Activation& activation) noexcept {
 
 void OperatorTask::FollowState() {
   now_.permit = context_.stack->operator_permits().Read().At(now_.now_ns - 1).value;
-  const std::optional<HeldTrip>& held = context_.latch->trip();
-  if (CauseLatched(now_.permit.state)) {
-    trip_.store(now_.permit.cause, std::memory_order_relaxed);
-    if (held) from_before_ = held->before_start;
-  } else if (std::exchange(from_before_, false)) {
-    trip_.store(TripCause::kNone, std::memory_order_relaxed);  // none of this daemon's
-  }
+  const bool latched = CauseLatched(now_.permit.state);
+  trip_.store(latched ? now_.permit.cause : TripCause::kNone, std::memory_order_relaxed);
   state_journal_.Follow(now_.now_ns, now_.permit);
   lease_.Follow(now_.now_ns, now_.permit.state);
   overrides_.Follow(now_.permit);

@@ -61,7 +61,7 @@ class OperatorTask final : public Task {
   bool done() const noexcept { return done_.load(std::memory_order_acquire); }
 
   // Any thread, after done().
-  /// The newest trip; kNone also after the reset of one from before the start.
+  /// The trip that has not been reset; kNone: none.
   TripCause trip() const noexcept { return trip_.load(std::memory_order_relaxed); }
   bool refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
 
@@ -111,8 +111,7 @@ class OperatorTask final : public Task {
   std::atomic<bool> done_{false};
   std::atomic<bool> refused_{false};
   std::atomic<TripCause> trip_{TripCause::kNone};
-  bool log_ready_ = false;    // of the unattended run
-  bool from_before_ = false;  // that trip: it is none of this daemon's once it is reset
+  bool log_ready_ = false;  // of the unattended run
 };
 
 }  // namespace flexarm

@@ -106,7 +106,8 @@ int Main(int argc, char** argv) {
       "                      --experiment config/experiments/square-30deg.toml\n"
       "SIGTERM, SIGINT, SIGQUIT or SIGHUP brings the arm to rest, disarms it, closes the log and "
       "ends.\n"
-      "Exit codes: 0 done; 1 tripped, refused, or a log could not be written; 2 bad input.");
+      "Exit codes: 0 done; 1 tripped and not reset, refused, or a log could not be written; 2 bad "
+      "input.");
   try {
     app.parse(argc, argv);
     return Serve(options);
