@@ -12,6 +12,7 @@
 #include "controller/host/arm_verdicts.h"
 #include "controller/host/check_host.h"
 #include "controller/host/crash_handler.h"
+#include "controller/host/daemon_identity.h"
 #include "controller/host/journal.h"
 #include "controller/host/run_info.h"
 #include "controller/host/service_manager.h"
@@ -170,6 +171,7 @@ OperatorContext Daemon::Context() {
       .unattended = options_.experiment,
       .parse_experiment = options_.parse_experiment,
       .report = [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
+      .identity = DaemonIdentity(options_.config, options_.config_file),
       .thread_status = [this] { return ThreadStatus(executor_); },
       .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); }};
 }

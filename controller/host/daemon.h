@@ -13,6 +13,7 @@ namespace flexarm {
 /// Options of the daemon.
 struct DaemonOptions {
   RigConfig config;
+  std::string config_file;               ///< as it was given, for the status
   std::optional<Experiment> experiment;  ///< run once, unattended; then the daemon ends
   std::optional<double> run_for_s;       ///< end after this long
   bool realtime = true;                  ///< false: --without-realtime; a simulated loop

@@ -14,7 +14,11 @@ constexpr std::int64_t kSecondNs = 1'000'000'000;
 }  // namespace
 
 void CommandRecord::Asked(int client, const Peer& by, const std::string& command) {
-  open_.push_back({.client = client, .by = by, .command = command});
+  open_.push_back({.client = client,
+                   .by = by,
+                   .command = command,
+                   .waited_looks = waited_looks_,
+                   .busy_us = busy_us_});
 }
 
 std::vector<CommandRecord::Open>::const_iterator CommandRecord::Find(
@@ -35,6 +39,9 @@ void CommandRecord::Answered(std::int64_t now_ns, int client, nlohmann::json* an
   const Open open = *found;
   open_.erase(found);
   (*answer)["by"] = PeerJson(open.by);
+  if (open.command == "stop") {
+    (*answer)["heard"] = {{"waited_looks", open.waited_looks}, {"busy_us", open.busy_us}};
+  }
   if (!open.command.empty() && open.command != "status") {
     Keep(now_ns, open.by, open.command, *answer);
   }
@@ -52,7 +59,7 @@ void CommandRecord::Keep(std::int64_t now_ns, const Peer& by, const std::string&
                            (ok ? "accepted" : "refused: " + answer.value("error", ""));
   report_(!ok, text);
   events_->Push({.time_ns = now_ns,
-                 .kind = "command",
+                 .kind = "operator",
                  .name = command,
                  .text = text,
                  .value_json =

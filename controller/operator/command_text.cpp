@@ -8,9 +8,14 @@
 namespace flexarm {
 namespace {
 
-// The deepest nesting of brackets outside of strings.
-int DepthOf(const std::string& line) {
-  int depth = 0, deepest = 0;
+// Outside of strings: the deepest nesting of brackets, and how many values there can be.
+struct Shape {
+  int depth;
+  int values;
+};
+
+Shape ShapeOf(const std::string& line) {
+  int depth = 0, deepest = 0, values = 1;
   bool in_string = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
@@ -21,17 +26,21 @@ int DepthOf(const std::string& line) {
       in_string = true;
     } else if (c == '[' || c == '{') {
       deepest = std::max(deepest, ++depth);
+      ++values;
     } else if (c == ']' || c == '}') {
       --depth;
+    } else if (c == ',') {
+      ++values;
     }
   }
-  return deepest;
+  return {.depth = deepest, .values = values};
 }
 
 }  // namespace
 
 std::optional<nlohmann::json> ParseCommand(const std::string& line) {
-  if (DepthOf(line) > kMostDepth) return std::nullopt;
+  const Shape shape = ShapeOf(line);
+  if (shape.depth > kMostDepth || shape.values > kMostValues) return std::nullopt;
   nlohmann::json command = nlohmann::json::parse(line, nullptr, false);
   if (!command.is_object()) return std::nullopt;
   const auto name = command.find("command");

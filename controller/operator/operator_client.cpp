@@ -18,6 +18,8 @@
 namespace flexarm {
 namespace {
 
+constexpr std::size_t kMaxAnswer = 4 << 20;  // bytes
+
 // Empty, or the system's error. A signal interrupts nothing.
 std::string SendAll(int fd, const std::string& text) {
   for (std::size_t sent = 0; sent < text.size();) {
@@ -72,6 +74,7 @@ std::string AskDaemon(const std::string& path, const std::string& line, double t
     if (count <= 0 && !problem.empty()) fail("the daemon did not take the command: " + problem);
     if (count <= 0) fail("the daemon closed the connection");
     reply.append(chunk.data(), static_cast<std::size_t>(count));
+    if (reply.size() > kMaxAnswer) fail("the answer is too long to be one of a daemon");
   }
   close(fd);
   return reply.substr(0, reply.find('\n'));

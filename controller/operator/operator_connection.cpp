@@ -23,9 +23,11 @@ OperatorConnection::OperatorConnection(OperatorConnection&& other) noexcept
       peer_(std::move(other.peer_)),
       received_(std::move(other.received_)),
       read_(other.read_),
+      line_end_(other.line_end_),
       ended_(other.ended_),
       unanswered_(other.unanswered_),
-      quiet_polls_(other.quiet_polls_) {}
+      quiet_polls_(other.quiet_polls_),
+      waited_polls_(other.waited_polls_) {}
 
 OperatorConnection& OperatorConnection::operator=(OperatorConnection&& other) noexcept {
   if (this == &other) return *this;
@@ -35,9 +37,11 @@ OperatorConnection& OperatorConnection::operator=(OperatorConnection&& other) no
   peer_ = std::move(other.peer_);
   received_ = std::move(other.received_);
   read_ = other.read_;
+  line_end_ = other.line_end_;
   ended_ = other.ended_;
   unanswered_ = other.unanswered_;
   quiet_polls_ = other.quiet_polls_;
+  waited_polls_ = other.waited_polls_;
   return *this;
 }
 
@@ -53,10 +57,10 @@ bool OperatorConnection::CanBeReached() const {
 }
 
 std::optional<std::string> OperatorConnection::NextLine() {
-  const std::size_t end = received_.find('\n', read_);
-  if (end == std::string::npos) return std::nullopt;
-  std::string line = received_.substr(read_, end - read_);
-  read_ = end + 1;
+  if (!HasLine()) return std::nullopt;
+  std::string line = received_.substr(read_, line_end_ - read_);
+  read_ = line_end_ + 1;
+  line_end_ = received_.find('\n', read_);
   ++unanswered_;
   quiet_polls_ = 0;
   return line;
@@ -65,8 +69,10 @@ std::optional<std::string> OperatorConnection::NextLine() {
 // Not while whole lines wait: their client is ahead of what is done for it.
 void OperatorConnection::Read() {
   ++quiet_polls_;
+  waited_polls_ = HasLine() ? waited_polls_ + 1 : 0;
   if (fd_ < 0 || ended_ || HasLine()) return;
   received_.erase(0, std::exchange(read_, 0));
+  const std::size_t searched = received_.size();
   std::array<char, 16384> chunk;
   for (std::size_t taken = 0; taken < kReadPerPoll;) {
     const ssize_t count = recv(fd_, chunk.data(), chunk.size(), 0);
@@ -78,9 +84,11 @@ void OperatorConnection::Read() {
     ended_ = count == 0 || (errno != EAGAIN && errno != EINTR);
     break;
   }
-  if (received_.empty()) received_.shrink_to_fit();
+  line_end_ = received_.find('\n', searched);
+  if (received_.size() < kLongLine && received_.capacity() > kReadPerPoll)
+    received_.shrink_to_fit();
   if (received_.size() > kMaxLine && !HasLine()) {
-    Dismiss("a line is longer than " + std::to_string(kMaxLine) + " bytes");
+    Dismiss("line-too-long", "a line is longer than " + std::to_string(kMaxLine) + " bytes");
   }
 }
 
@@ -89,8 +97,9 @@ void OperatorConnection::Reply(const std::string& line) {
   Send(line);
 }
 
-void OperatorConnection::Dismiss(const std::string& reason) {
+void OperatorConnection::Dismiss(const std::string& refusal, const std::string& reason) {
   CloseWith(nlohmann::json{{"ok", false},
+                           {"refusal", refusal},
                            {"error", "the daemon closes this connection: " + reason},
                            {"remedy", "connect again"}}
                 .dump());

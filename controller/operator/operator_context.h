@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -34,6 +34,8 @@ struct OperatorContext {
   /// thread of its own.
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
   JournalReport report;
+  nlohmann::json identity =
+      nlohmann::json::object();  ///< keys of the status: which rig and program
   /// Makes "threads" of the status: lateness and run time of every task.
   std::function<nlohmann::json()> thread_status;
   /// Called once a period while safety and control are alive: the service manager's watchdog.

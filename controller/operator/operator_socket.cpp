@@ -48,7 +48,7 @@ OperatorSocket::OperatorSocket(std::string path, OperatorRoles roles,
   listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const mode_t old_mask = umask(0111);  // rw-rw-rw-: the roles say who may do what
   const bool bound = listener_ >= 0 && bind(listener_, address.get(), address.size()) == 0 &&
-                     listen(listener_, kAcceptsPerPoll) == 0;
+                     listen(listener_, kBacklog) == 0;
   const std::string cause = std::strerror(errno);
   umask(old_mask);
   struct stat made{};
@@ -76,24 +76,36 @@ std::size_t OperatorSocket::CountOf(uid_t user) const {
 }
 
 uid_t OperatorSocket::UserWithMost() const {
-  return std::max_element(
-             clients_.begin(), clients_.end(),
-             [this](const auto& a, const auto& b) { return CountOf(a.uid()) < CountOf(b.uid()); })
+  const auto rank = [this](const OperatorConnection& c) {
+    return std::pair(!IsKept(c.uid()), CountOf(c.uid()));
+  };
+  return std::max_element(clients_.begin(), clients_.end(),
+                          [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); })
       ->uid();
 }
 
-void OperatorSocket::MakeRoomFor(uid_t user) {
+// One whose line has come meanwhile is heard first: it had only just connected.
+void OperatorSocket::MakeRoomFor(uid_t user, std::vector<Message>* messages) {
   const bool too_many_of_user = CountOf(user) >= kMaxClientsOfUser;
   if (!too_many_of_user && clients_.size() < kMaxClients) return;
   const uid_t of = too_many_of_user ? user : UserWithMost();
   const auto rank = [of](const OperatorConnection& c) {
-    return std::tuple(c.uid() == of, c.ended(), c.unanswered() == 0, c.quiet_polls());
+    return std::tuple(c.uid() == of, c.ended() || !c.CanBeReached(), c.unanswered() == 0,
+                      c.quiet_polls());
   };
-  const auto victim =
-      std::max_element(clients_.begin(), clients_.end(),
-                       [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); });
-  victim->Dismiss("too many clients are connected, and it has been quiet the longest");
-  clients_.erase(victim);
+  const auto victim = [&] {
+    return std::max_element(clients_.begin(), clients_.end(),
+                            [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  };
+  for (std::size_t k = 0; k < clients_.size() && victim()->unanswered() == 0; ++k) {
+    const auto quiet = victim();
+    quiet->Read();
+    if (quiet->HasLongLine() || !Take(&*quiet, messages)) break;
+  }
+  const auto closed = victim();
+  closed->Dismiss("too-many-clients",
+                  "too many clients are connected, and it has been quiet the longest");
+  clients_.erase(closed);
 }
 
 // A new client is heard at once: the next one may close it.
@@ -108,17 +120,33 @@ void OperatorSocket::Accept(std::vector<Message>* messages) {
       continue;
     }
     client.Read();
-    Take(&client, messages);
-    MakeRoomFor(client.uid());
+    if (!client.HasLongLine()) Take(&client, messages);
+    MakeRoomFor(client.uid(), messages);
     clients_.push_back(std::move(client));
   }
 }
 
+// The clients are in order of their numbers.
+void OperatorSocket::TakeLongLine(std::vector<Message>* messages) {
+  const auto has = [](const OperatorConnection& c) { return c.HasLongLine(); };
+  const auto next = std::find_if(clients_.begin(), clients_.end(), [&](const auto& c) {
+    return has(c) && c.number() > long_line_of_;
+  });
+  const auto found =
+      next != clients_.end() ? next : std::find_if(clients_.begin(), clients_.end(), has);
+  if (found == clients_.end()) return;
+  long_line_of_ = found->number();
+  Take(&*found, messages);
+}
+
 bool OperatorSocket::Take(OperatorConnection* client, std::vector<Message>* messages) {
+  const int waited = client->waited_polls();
   std::optional<std::string> line = client->NextLine();
   if (line) {
-    messages->push_back(
-        {.client = client->number(), .line = std::move(*line), .by = client->peer()});
+    messages->push_back({.client = client->number(),
+                         .line = std::move(*line),
+                         .by = client->peer(),
+                         .waited_polls = waited});
   }
   return line.has_value();
 }
@@ -129,14 +157,15 @@ std::vector<OperatorSocket::Message> OperatorSocket::Poll() {
   std::vector<Message> messages;
   for (OperatorConnection& client : clients_) {
     client.Read();
-    Take(&client, &messages);
+    if (!client.HasLongLine()) Take(&client, &messages);
   }
   Accept(&messages);
+  TakeLongLine(&messages);
   for (bool more = true; more;) {
     more = false;
     for (OperatorConnection& client : clients_) {
       if (messages.size() >= kLinesPerPoll) return messages;
-      more = Take(&client, &messages) || more;
+      if (!client.HasLongLine()) more = Take(&client, &messages) || more;
     }
   }
   return messages;

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,10 @@ namespace flexarm {
 /// Server side of the operator socket, a Unix stream socket: clients send lines and receive lines.
 ///
 /// Never blocks, and always admits one more client: if there are kMaxClients, or kMaxClientsOfUser
-/// of its user, another is closed, of the user who has most: first one that has closed its end,
-/// then one to whom no answer is due, then the one that has been quiet the longest. It is told so.
-/// So a stop needs no free connection.
+/// of its user, another is closed, of the user who has most, but not one of root or of the holder
+/// of the lease if there is another: first one that has closed its end, then one to whom no answer
+/// is due, then the one that has been quiet the longest. It is told so. So a stop needs no free
+/// connection.
 ///
 /// Any user may connect. Who has no role gets one line that says so, and is closed before anything
 /// that it sends is read.
@@ -27,13 +29,17 @@ class OperatorSocket {
  public:
   static constexpr std::size_t kMaxClients = 16;
   static constexpr std::size_t kMaxClientsOfUser = 8;
-  static constexpr int kAcceptsPerPoll = 32;
-  static constexpr std::size_t kLinesPerPoll = 32;  ///< of all clients; the others come later
+  /// More wait outside until a poll has accepted those: so a client that has connected is heard in
+  /// the next poll.
+  static constexpr int kBacklog = 32;
+  static constexpr int kAcceptsPerPoll = kBacklog + 8;
+  static constexpr std::size_t kLinesPerPoll = 16;  ///< of all clients; the others come later
 
   struct Message {
     int client;        ///< number of the client, for Reply
     std::string line;  ///< without its newline
     Peer by;           ///< who sent it
+    int waited_polls;  ///< in which a line of its client waited already
   };
 
   /// Listens on `path`. A socket left by a daemon of the same user that has ended is replaced;
@@ -45,8 +51,12 @@ class OperatorSocket {
   OperatorSocket(const OperatorSocket&) = delete;
   OperatorSocket& operator=(const OperatorSocket&) = delete;
 
+  /// Who holds the lease: closed last when there are too many.
+  void SetHolder(std::optional<uid_t> user) { holder_ = user; }
+
   /// Accepts clients and reads what has arrived, without waiting. One line of each client, new ones
-  /// included, then further ones in turn, kLinesPerPoll in all. Once a period.
+  /// included, then further ones in turn, kLinesPerPoll in all; of long ones (kLongLine) one in
+  /// all, of each client in turn, so that they do not hold up the others. Once a period.
   std::vector<Message> Poll();
 
   /// Whether a client can still get an answer. One that has only closed its end of sending can.
@@ -62,7 +72,9 @@ class OperatorSocket {
   void Accept(std::vector<Message>* messages);
   /// The next line of a client; false: it has none.
   static bool Take(OperatorConnection* client, std::vector<Message>* messages);
-  void MakeRoomFor(uid_t user);
+  void TakeLongLine(std::vector<Message>* messages);
+  bool IsKept(uid_t user) const { return user == 0 || user == holder_; }
+  void MakeRoomFor(uid_t user, std::vector<Message>* messages);
   std::size_t CountOf(uid_t user) const;
   uid_t UserWithMost() const;
 
@@ -75,6 +87,8 @@ class OperatorSocket {
   int next_number_ = 1;
   std::vector<OperatorConnection> clients_;
   std::vector<Peer> turned_away_;
+  std::optional<uid_t> holder_;
+  int long_line_of_ = 0;  // number of the client whose long line was the last
 };
 
 }  // namespace flexarm

@@ -1,6 +1,7 @@
 #include "controller/operator/operator_task.h"
 
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -18,6 +19,13 @@ std::optional<ExperimentLoader::Order> OrderOf(const std::optional<Experiment>& 
                                                const ExperimentLoader& loader) {
   if (!experiment) return std::nullopt;
   return loader.Plan(*experiment, {0.0, 0.0});
+}
+
+// Of this thread.
+double ProcessorTime_us() {
+  timespec spent{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+  return 1e6 * static_cast<double>(spent.tv_sec) + 1e-3 * static_cast<double>(spent.tv_nsec);
 }
 
 }  // namespace
@@ -45,6 +53,7 @@ OperatorTask::OperatorTask(OperatorContext context)
             .files = context_.files,
             .parse_experiment = context_.parse_experiment,
             .plan_wait = context_.plan_wait}),
+      run_watch_(context_.grid.period_s()),
       warnings_(context_.grid.period_ns, context_.delay_margin_s,
                 StrainColumns(context_.config->sensors), context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
@@ -81,38 +90,48 @@ void OperatorTask::RequireArm() const {
 
 Task::Traits OperatorTask::traits() const noexcept {
   return {.name = "operator",
-          .period_ns = kPeriodNs,
+          .period_ns = kLookNs,
           .phase_ns = 0,
-          .deadline_ns = kPeriodNs,
+          .deadline_ns = kLookNs,
           .priority = 0};
 }
 
 void OperatorTask::Run(const Activation& activation) noexcept {
   try {
     now_.now_ns = activation.due_ns;
-    BeginShutdown();  // its line precedes those of its effects
-    FollowState();
-    FollowBuses();
-    if (!context_.stack->late_threads_trip()) {
-      timing_warnings_.Follow(now_.now_ns, context_.stack->timing());
-    }
-    commissioning_.Follow(context_.stack->count_epochs());
-    TakeTicks();
-    TakeAnswers();
-    FollowLatch();
-    FollowLog();
-    FollowAutoDisarm();
-    Reply(arm_.Follow(now_));
-    record_.Follow(now_.now_ns);
+    look_began_us_ = ProcessorTime_us();
+    // On the grid of the periods, or soon after one that was skipped.
+    const bool late = followed_ns_ != INT64_MIN && now_.now_ns - followed_ns_ > kPeriodNs;
+    if (now_.now_ns % kPeriodNs == 0 || late) return Follow();
+    now_.permit = context_.stack->operator_permits().Read().At(now_.now_ns - 1).value;
     if (socket_) Serve();
-    FollowUnattended();
-    FollowShutdown();
-    experiments_.FreeReleased();
-    if (loop_watch_.Follow(now_, context_.report)) {
-      context_.alive(now_.now_ns, ToString(now_.permit.state));
-    }
   } catch (const std::exception& error) {
     context_.report(true, std::string("operator: ") + error.what());
+  }
+}
+
+void OperatorTask::Follow() {
+  followed_ns_ = now_.now_ns;
+  BeginShutdown();  // its line precedes those of its effects
+  FollowState();
+  FollowBuses();
+  if (!context_.stack->late_threads_trip()) {
+    timing_warnings_.Follow(now_.now_ns, context_.stack->timing());
+  }
+  commissioning_.Follow(context_.stack->count_epochs());
+  TakeTicks();
+  TakeAnswers();
+  FollowLatch();
+  FollowLog();
+  FollowAutoDisarm();
+  Reply(arm_.Follow(now_));
+  record_.Follow(now_.now_ns);
+  if (socket_) Serve();
+  FollowUnattended();
+  FollowShutdown();
+  experiments_.FreeReleased();
+  if (loop_watch_.Follow(now_, context_.report)) {
+    context_.alive(now_.now_ns, ToString(now_.permit.state));
   }
 }
 
@@ -141,9 +160,12 @@ void OperatorTask::TakeTicks() {
   Reply(switches_.TakeAnswer(now_.permit));
 }
 
+// The permit is read first: a stop that ended the run it shows has been answered before.
 void OperatorTask::TakeAnswers() {
+  const Permit newest = context_.stack->operator_permits().Read().Newest().value;
   RequestAnswer answer{};
   while (context_.stack->answers().Pop(&answer)) Take(answer);
+  run_watch_.Follow(now_.now_ns, newest, now_.shutting_down);
 }
 
 void OperatorTask::Take(const RequestAnswer& answer) {
@@ -151,6 +173,7 @@ void OperatorTask::Take(const RequestAnswer& answer) {
   const std::vector<int> clients = requests_.TakeClientsOf(answer);
   if (clients.empty()) context_.report(answer.refusal != Refusal::kNone, AnswerLine(answer));
   experiments_.Answered(answer);
+  run_watch_.Answered(answer, experiments_.name());
   overrides_.Answered(now_.now_ns, answer);
   Reply(commissioning_.Answered(answer, now_));
   // The safety task publishes the permit of a tick before the answers of that tick.
@@ -189,7 +212,9 @@ void OperatorTask::FollowAutoDisarm() {
 }
 
 void OperatorTask::Serve() {
+  socket_->SetHolder(lease_.holder());
   for (const OperatorSocket::Message& message : socket_->Poll()) {
+    record_.Heard(message.waited_polls, ProcessorTime_us() - look_began_us_);
     nlohmann::json answer = dispatch_.Answer(message.client, message.by, message.line, now_);
     if (!answer.is_null()) Reply(message.client, std::move(answer));
   }
@@ -245,28 +270,39 @@ void OperatorTask::FollowShutdown() {
   if (shutdown_.over()) done_.store(true, std::memory_order_release);
 }
 
-nlohmann::json OperatorTask::Status() {
-  const Permit& permit = now_.permit;
-  return StatusJson({.now = &now_,
-                     .delay = &warnings_.delay(),
-                     .sensors = &context_.config->sensors,
-                     .angles = &commissioning_.angles(),
-                     .missing_gauges = warnings_.missing_gauges(),
-                     .experiment = experiments_.name(),
-                     .buses = context_.stack->buses(),
-                     .bus_text = context_.stack->BusText(permit.cause, permit.evidence),
-                     .latch = context_.latch,
-                     .threads = context_.thread_status(),
-                     .host = arm_.HostStatus(),
-                     .design = arm_.DesignStatus(),
-                     .overrides = overrides_.Json(),
-                     .switches = switches_.Json(),
-                     .log = LogJson(context_.files),
-                     .timing = context_.stack->timing(),
-                     .late_threads_trip = context_.stack->late_threads_trip(),
-                     .log_records_dropped = context_.stack->tick_records().dropped() +
-                                            context_.stack->safety_records().dropped() +
-                                            context_.events->dropped()});
+// Once a look, however many ask.
+const nlohmann::json& OperatorTask::Status() {
+  if (status_ns_ == now_.now_ns) return status_;
+  status_ns_ = now_.now_ns;
+  status_ = StatusJson({.now = &now_,
+                        .delay = &warnings_.delay(),
+                        .sensors = &context_.config->sensors,
+                        .angles = &commissioning_.angles(),
+                        .missing_gauges = warnings_.missing_gauges(),
+                        .experiment = experiments_.name(),
+                        .buses = context_.stack->buses(),
+                        .bus_text =
+                            [this](TripCause cause, const Evidence& evidence) {
+                              return context_.stack->BusText(cause, evidence);
+                            },
+                        .present = &context_.stack->present_causes(),
+                        .latch = context_.latch,
+                        .threads = context_.thread_status(),
+                        .host = arm_.HostStatus(),
+                        .design = arm_.DesignStatus(),
+                        .overrides = overrides_.Json(),
+                        .switches = switches_.Json(),
+                        .log = LogJson(context_.files),
+                        .identity = context_.identity,
+                        .lease = lease_.Json(now_.now_ns),
+                        .run = run_watch_.Json(),
+                        .why_no_run = commissioning_.WhyNoRun(),
+                        .timing = context_.stack->timing(),
+                        .late_threads_trip = context_.stack->late_threads_trip(),
+                        .log_records_dropped = context_.stack->tick_records().dropped() +
+                                               context_.stack->safety_records().dropped() +
+                                               context_.events->dropped()});
+  return status_;
 }
 
 void OperatorTask::Reply(int client, nlohmann::json answer) {

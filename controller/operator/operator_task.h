@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "controller/operator/arm_command.h"
@@ -23,6 +23,7 @@
 #include "controller/operator/request_tracker.h"
 #include "controller/operator/run_command.h"
 #include "controller/operator/run_warnings.h"
+#include "controller/operator/run_watch.h"
 #include "controller/operator/shutdown.h"
 #include "controller/operator/state_journal.h"
 #include "controller/operator/timing_warnings.h"
@@ -32,7 +33,8 @@
 
 namespace flexarm {
 
-/// The operator thread's body, 50 Hz: commands in, answers and status out, journal, watchdog.
+/// The operator thread's body, 50 Hz (commands 100 Hz): commands in, answers and status out,
+/// journal, watchdog.
 ///
 /// Fixes the order of effects within a period; each of them has a class of its own. The commands:
 /// command_dispatch.h. What changes the arm's state is decided by the safety task, whose answer is
@@ -40,6 +42,8 @@ namespace flexarm {
 class OperatorTask final : public Task {
  public:
   static constexpr std::int64_t kPeriodNs = 20'000'000;
+  /// Commands are also read between two periods, so that a stop waits for 10 ms at most.
+  static constexpr std::int64_t kLookNs = kPeriodNs / 2;
 
   /// @throws RejectedError if the socket cannot be used, or the unattended experiment is impossible
   ///         or its arm request would be refused
@@ -67,6 +71,7 @@ class OperatorTask final : public Task {
 
  private:
   void RequireArm() const;
+  void Follow();
   void FollowState();
   void FollowBuses();
   void TakeTicks();
@@ -80,7 +85,7 @@ class OperatorTask final : public Task {
   void FollowUnattended();
   void BeginShutdown();
   void FollowShutdown();
-  nlohmann::json Status();
+  const nlohmann::json& Status();
   void Reply(int client, nlohmann::json answer);
   void Reply(std::optional<ClientAnswer> answer);
 
@@ -94,6 +99,7 @@ class OperatorTask final : public Task {
   OverrideRecord overrides_;
   ArmCommand arm_;
   RunCommand run_;
+  RunWatch run_watch_;
   RunWarnings warnings_;
   StateJournal state_journal_;
   LoopWatch loop_watch_;
@@ -111,7 +117,11 @@ class OperatorTask final : public Task {
   std::atomic<bool> done_{false};
   std::atomic<bool> refused_{false};
   std::atomic<TripCause> trip_{TripCause::kNone};
-  bool log_ready_ = false;  // of the unattended run
+  bool log_ready_ = false;      // of the unattended run
+  double look_began_us_ = 0.0;  // processor time of the thread
+  nlohmann::json status_;       // of the look at
+  std::int64_t status_ns_ = INT64_MIN;
+  std::int64_t followed_ns_ = INT64_MIN;  // the last period
 };
 
 }  // namespace flexarm

@@ -2,9 +2,25 @@
 
 #include <nlohmann/json.hpp>
 
+#include "controller/operator/cause_json.h"
 #include "controller/tasks/loop_stack.h"  // of the safety machine: names and texts of refusals
 
 namespace flexarm {
+namespace {
+
+std::string PresentText(const RequestAnswer& answer) {
+  std::string text = RefusalText(answer.kind, answer.refusal, answer.state);
+  if (answer.present == 0) return text;
+  text += " Present:";
+  for (const auto& name : NamesJson(answer.present)) {
+    text += ' ';
+    text += name.get_ref<const std::string&>();
+  }
+  text += '.';
+  return text;
+}
+
+}  // namespace
 
 nlohmann::json RefusalJson(RequestKind request, Refusal refusal, SafetyState state) {
   return {{"ok", false},
@@ -18,6 +34,15 @@ nlohmann::json AnswerJson(const RequestAnswer& answer, SafetyState state_now) {
                             : RefusalJson(answer.kind, answer.refusal, answer.state);
   json["command"] = ToString(answer.kind);
   json["state"] = ToString(state_now);
+  if (answer.kind == RequestKind::kRun && answer.refusal == Refusal::kNone) {
+    json["run"] = answer.number;
+  }
+  const bool by_causes =
+      answer.refusal == Refusal::kCauseRemains || answer.refusal == Refusal::kUnhealthy;
+  if (by_causes && answer.present != 0) {
+    json["present"] = NamesJson(answer.present);
+    json["error"] = PresentText(answer);
+  }
   return json;
 }
 

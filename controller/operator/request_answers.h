@@ -13,7 +13,8 @@ namespace flexarm {
 /// @param state  when the request was judged
 nlohmann::json RefusalJson(RequestKind request, Refusal refusal, SafetyState state);
 
-/// The answer to the client that made the request; "state" is `state_now`.
+/// The answer to the client that made the request; "state" is `state_now`. Of a granted run it has
+/// "run", its number; of a refusal by causes that are present their names, "present".
 nlohmann::json AnswerJson(const RequestAnswer& answer, SafetyState state_now);
 
 /// The journal line of an answer: "arm: accepted", "arm: refused: ...".

@@ -2,7 +2,7 @@
 
 #include "controller/operator/json_values.h"
 #include "controller/operator/payload_json.h"
-#include "controller/operator/trip_channel.h"
+#include "hal/line_names.h"
 #include "model/units.h"
 
 namespace flexarm {
@@ -39,19 +39,23 @@ nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
 nlohmann::json TripJson(const StatusSources& sources) {
   const Permit& permit = sources.now->permit;
   if (!CauseLatched(permit.state)) return nullptr;
-  const Evidence& evidence = permit.evidence;
   const std::optional<HeldTrip>& held = sources.latch->trip();
-  return {{"name", ToString(permit.cause)},
-          {"number", static_cast<int>(permit.cause)},
-          {"value", evidence.value},
-          {"limit", evidence.limit},
-          {"channel", evidence.channel},
-          {"channel_name", TripChannelName(permit.cause, evidence.channel, *sources.sensors)},
-          {"text", OperatorText(permit.cause)},
-          {"bus", TextOrNull(sources.bus_text)},
-          {"time_utc", TextOrNull(held ? held->time_utc : std::string())},
-          {"before_start", held && held->before_start},
-          {"record_problem", TextOrNull(held ? held->record_problem : std::string())}};
+  nlohmann::json json =
+      CauseJson(permit.cause, permit.evidence, *sources.sensors, sources.bus_text);
+  json["text"] = OperatorText(permit.cause);
+  json["time_utc"] = TextOrNull(held ? held->time_utc : std::string());
+  json["before_start"] = held && held->before_start;
+  json["record_problem"] = TextOrNull(held ? held->record_problem : std::string());
+  return json;
+}
+
+nlohmann::json InputsJson(LineLevels levels) {
+  nlohmann::json all = nlohmann::json::object();
+  for (int i = 0; i < kLines; ++i) {
+    const auto line = static_cast<Line>(i);
+    all[ToString(line)] = (levels & LineBit(line)) != 0 ? 1 : 0;
+  }
+  return all;
 }
 
 }  // namespace
@@ -74,36 +78,45 @@ nlohmann::json StatusJson(const StatusSources& sources) {
   const OperatorSnapshot& now = *sources.now;
   const StepInput& in = now.tick.input;
   const StepOutput& out = now.tick.output;
-  return {{"ok", true},
-          {"protocol", kProtocolVersion},
-          {"state", ToString(now.permit.state)},
-          {"time_s", static_cast<double>(now.now_ns) * 1e-9},
-          {"tick", in.tick},
-          {"experiment", TextOrNull(sources.experiment)},
-          {"joint_angle_deg", AnglesJson(*sources.angles, out)},
-          {"joint_angle_unknown",
-           {TextOrNull(sources.angles->Text(0)), TextOrNull(sources.angles->Text(1))}},
-          {"torque_nm", out.torque_nm},
-          {"modal_m", out.modal_m},
-          {"root_strain", out.root_strain},
-          {"gauges_missing", sources.missing_gauges},
-          {"at_rest", out.at_rest != 0},
-          {"payload", PayloadJson(in, out)},
-          {"delay_ms", sources.delay->delay_ms()},
-          {"delay_max_ms", sources.delay->longest_ms()},
-          {"delay_margin_ms", sources.delay->margin_ms()},
-          {"levels", in.frame.levels},
-          {"trip", TripJson(sources)},
-          {"latch_problem", TextOrNull(sources.latch->problem())},
-          {"timing", TimingJson(sources.timing, sources.late_threads_trip)},
-          {"buses", BusesJson(sources.buses)},
-          {"log_records_dropped", sources.log_records_dropped},
-          {"threads", sources.threads},
-          {"host", sources.host},
-          {"design", sources.design},
-          {"overrides", sources.overrides},
-          {"switches", sources.switches},
-          {"log", sources.log}};
+  nlohmann::json json{
+      {"ok", true},
+      {"protocol", kProtocolVersion},
+      {"state", ToString(now.permit.state)},
+      {"time_s", static_cast<double>(now.now_ns) * 1e-9},
+      {"tick", in.tick},
+      {"experiment", TextOrNull(sources.experiment)},
+      {"joint_angle_deg", AnglesJson(*sources.angles, out)},
+      {"joint_angle_unknown",
+       {TextOrNull(sources.angles->Text(0)), TextOrNull(sources.angles->Text(1))}},
+      {"torque_nm", out.torque_nm},
+      {"modal_m", out.modal_m},
+      {"root_strain", out.root_strain},
+      {"gauges_missing", sources.missing_gauges},
+      {"at_rest", out.at_rest != 0},
+      {"payload", PayloadJson(in, out)},
+      {"delay_ms", sources.delay->delay_ms()},
+      {"delay_max_ms", sources.delay->longest_ms()},
+      {"delay_margin_ms", sources.delay->margin_ms()},
+      {"levels", in.frame.levels},
+      {"inputs", InputsJson(now.permit.levels)},
+      {"trip", TripJson(sources)},
+      {"present", PresentJson(*sources.present, *sources.sensors, sources.bus_text)},
+      {"lease", sources.lease},
+      {"run", sources.run},
+      {"wiring",
+       {{"proved", sources.why_no_run.empty()}, {"why_not", TextOrNull(sources.why_no_run)}}},
+      {"latch_problem", TextOrNull(sources.latch->problem())},
+      {"timing", TimingJson(sources.timing, sources.late_threads_trip)},
+      {"buses", BusesJson(sources.buses)},
+      {"log_records_dropped", sources.log_records_dropped},
+      {"threads", sources.threads},
+      {"host", sources.host},
+      {"design", sources.design},
+      {"overrides", sources.overrides},
+      {"switches", sources.switches},
+      {"log", sources.log}};
+  json.update(sources.identity);
+  return json;
 }
 
 }  // namespace flexarm

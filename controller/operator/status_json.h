@@ -6,6 +6,7 @@
 
 #include "controller/commissioning/angle_knowledge.h"
 #include "controller/latch/trip_latch.h"
+#include "controller/operator/cause_json.h"
 #include "controller/operator/delay_monitor.h"
 #include "controller/operator/operator_snapshot.h"
 #include "controller/tasks/bus_health.h"
@@ -22,7 +23,8 @@ struct StatusSources {
   std::vector<std::string> missing_gauges{};  ///< RunWarnings
   std::string experiment;                     ///< name of the one that is loaded; empty: none
   std::vector<BusHealth> buses;               ///< empty: the backend has none
-  std::string bus_text;                       ///< LoopStack::BusText of the trip; empty: of no bus
+  BusTextOf bus_text;                         ///< LoopStack::BusText
+  const PresentCauses* present;               ///< LoopStack::present_causes
   const TripLatch* latch;                     ///< when the trip was, and whether it is kept
   nlohmann::json threads;                     ///< OperatorContext::thread_status
   nlohmann::json host;                        ///< ArmCommand::HostStatus
@@ -30,6 +32,10 @@ struct StatusSources {
   nlohmann::json overrides;                   ///< OverrideRecord::Json
   nlohmann::json switches;                    ///< ProveSwitches::Json
   nlohmann::json log;                         ///< LogJson
+  nlohmann::json identity;                    ///< OperatorContext::identity
+  nlohmann::json lease;                       ///< Lease::Json
+  nlohmann::json run;                         ///< RunWatch::Json
+  std::string why_no_run;                     ///< CommissioningCommands::WhyNoRun
   TimingCounts timing{};                      ///< LoopStack::timing
   bool late_threads_trip = true;
   std::uint64_t log_records_dropped = 0;  ///< that no log has: the recorder was too slow

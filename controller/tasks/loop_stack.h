@@ -78,6 +78,8 @@ class LoopStack {
   virtual std::uint32_t released_experiments() const noexcept { return control_.released(); }
   /// How late the threads of the loop were.
   const TimingCounts& timing() noexcept { return timing_.Read(); }
+  /// The causes that would trip now, with their values.
+  const PresentCauses& present_causes() noexcept { return present_.Read(); }
   /// Whether late threads trip.
   bool late_threads_trip() const noexcept { return late_threads_trip_; }
   /// Health of the buses. Empty: this backend has none.
@@ -112,6 +114,7 @@ class LoopStack {
   ControlReportChannel control_reports_{ControlReportHistory(kNoControlReport)};
   CalibrationChannel calibrations_{Calibration{}};
   TimingChannel timing_{TimingCounts{}};
+  PresentCausesChannel present_{PresentCauses{}};
   SafetyLines* lines_;
   bool late_threads_trip_;
   SpscQueue<OperatorRequest> requests_;

@@ -67,6 +67,7 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   Enter(decision.status, in, request);
   Drive(due_ns);
   Publish(due_ns, levels);
+  PublishPresent(facts.present, in);
   if (DrivesEnabled(before.state) && !DrivesEnabled(status_.state)) {
     for (Wakeup* wakeup : channels_.wakeups) wakeup->Wake();
   }
@@ -252,6 +253,16 @@ void SafetyTask::Drive(std::int64_t due_ns) noexcept {
   const bool closed = RelayClosed(status_.state) && !pump_dies;
   pump_level_ = PumpRuns(status_.state) && !pump_level_;
   written_ = channels_.lines->Write(due_ns, {.relay_closed = closed, .pump_level = pump_level_});
+}
+
+void SafetyTask::PublishPresent(TripCauses causes, const SafetyInputs& in) noexcept {
+  if (causes == 0 && present_.causes == 0) return;
+  present_.causes = causes;
+  for (TripCauses left = causes; left != 0; left &= left - 1) {
+    const auto number = static_cast<std::size_t>(std::countr_zero(left));
+    present_.evidence[number] = monitor_.EvidenceOf(static_cast<TripCause>(number), in);
+  }
+  channels_.present->Publish(present_);
 }
 
 void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {

@@ -15,6 +15,7 @@
 #include "controller/safety/safety_monitor.h"
 #include "controller/safety/safety_record.h"
 #include "controller/types/messages.h"
+#include "controller/types/present_causes.h"
 #include "hal/safety_lines.h"
 
 namespace flexarm {
@@ -33,6 +34,7 @@ struct SafetyChannels {
   SpscQueue<RequestAnswer>* answers;        ///< written
   SpscQueue<SafetyRecord>* records;         ///< written
   TimingChannel* timing;                    ///< written when it changes: for the operator task
+  PresentCausesChannel* present;            ///< written while a cause is present: the same
 };
 
 /// The safety task: 1 kHz, highest priority. Levels and reports in, relay and permit out.
@@ -104,6 +106,7 @@ class SafetyTask final : public Task {
   /// Age of the permit that this tick renews; 0: it is the first.
   std::int64_t PermitAgeNs(const Activation& activation) const noexcept;
   void Publish(std::int64_t due_ns, LineLevels levels) noexcept;
+  void PublishPresent(TripCauses causes, const SafetyInputs& in) noexcept;
 
   SafetyChannels channels_;
   SafetyMonitor monitor_;
@@ -126,7 +129,8 @@ class SafetyTask final : public Task {
   std::array<OperatorRequest, kMaxWaiting> waiting_{};
   std::size_t waiting_count_ = 0;
   PermitHistory permits_{kNoPermit};
-  TimingCounts timing_{};  // as last published
+  TimingCounts timing_{};    // as last published
+  PresentCauses present_{};  // the same
 };
 
 }  // namespace flexarm

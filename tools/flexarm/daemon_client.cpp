@@ -7,9 +7,12 @@
 #include "controller/operator/operator_socket.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/verbs.h"
+#include "tools/flexarm/reply.h"
 
 namespace flexarm {
 namespace {
+
+constexpr int kTries = 50;
 
 std::string SocketOf(const DaemonClient& client) {
   if (!client.socket.empty()) return client.socket;
@@ -31,26 +34,36 @@ CLI::App* DaemonClient::AddVerb(CLI::App& app, const char* name, const char* wha
   return verb;
 }
 
-nlohmann::ordered_json DaemonClient::Ask(const nlohmann::ordered_json& command,
-                                         double within_s) const {
-  const std::string reply = AskDaemon(SocketOf(*this), command.dump(), within_s);
-  nlohmann::ordered_json answer = nlohmann::ordered_json::parse(reply, nullptr, false);
-  if (!answer.is_object()) throw InputError("the answer of the daemon is not JSON");
-  return answer;
+void DaemonClient::AddTakeOver(CLI::App* verb) {
+  verb->add_flag("--take-over", take_over,
+                 "Take the arm over from the user who commands it; not while it moves");
+}
+
+nlohmann::ordered_json DaemonClient::Ask(nlohmann::ordered_json command, double within_s) const {
+  if (take_over) command["take_over"] = true;
+  const std::string name = TextIn(command, "command");
+  // A crowd of clients can close this one before it is heard. Asking twice for these does no harm.
+  int tries = name == "stop" || name == "status" ? kTries : 1;
+  for (;;) {
+    const std::string reply = AskDaemon(SocketOf(*this), command.dump(), within_s);
+    nlohmann::ordered_json answer = nlohmann::ordered_json::parse(reply, nullptr, false);
+    if (!answer.is_object()) throw InputError("the answer of the daemon is not JSON");
+    if (--tries == 0 || TextIn(answer, "refusal") != "too-many-clients") return answer;
+  }
 }
 
 int DaemonClient::Conclude(const nlohmann::ordered_json& answer) const {
-  const bool ok = answer.value("ok", false);
+  const bool ok = FlagIn(answer, "ok");
   if (json) {
     std::cout << answer.dump(2) << '\n';
   } else if (ok) {
-    std::cout << answer.value("command", "done") << ": ok, state " << answer.value("state", "-")
+    std::cout << TextIn(answer, "command", "done") << ": ok, state " << TextIn(answer, "state", "-")
               << '\n';
   }
   if (!ok) {
-    std::cerr << "flexarm: " << answer.value("error", "refused");
-    if (answer.contains("remedy")) std::cerr << "; " << answer.value("remedy", "");
-    std::cerr << '\n';
+    const std::string remedy = TextIn(answer, "remedy");
+    std::cerr << "flexarm: " << TextIn(answer, "error", "refused")
+              << (remedy.empty() ? "" : "; " + remedy) << '\n';
   }
   return ok ? Exit::kDone : Exit::kFailed;
 }

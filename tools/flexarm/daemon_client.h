@@ -1,7 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/command_line/options.h"
@@ -13,13 +13,18 @@ struct DaemonClient {
   ConfigOptions config;
   std::string socket;
   bool json = false;
+  bool take_over = false;
 
   /// Adds a verb whose --socket, -c and --json are bound to this object, which must outlive the
   /// verb.
   CLI::App* AddVerb(CLI::App& app, const char* name, const char* what);
 
-  /// Sends `command` and waits for the answer. @throws RejectedError, InputError
-  nlohmann::ordered_json Ask(const nlohmann::ordered_json& command, double within_s = 5.0) const;
+  /// Adds --take-over to a verb that needs the lease.
+  void AddTakeOver(CLI::App* verb);
+
+  /// Sends `command` and waits for the answer, which is a JSON object. @throws RejectedError,
+  /// InputError
+  nlohmann::ordered_json Ask(nlohmann::ordered_json command, double within_s = 5.0) const;
 
   /// Prints the answer as JSON if --json was given, and the reason of a refusal to stderr. @returns
   /// exit code

@@ -9,6 +9,7 @@
 
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
+#include "tools/flexarm/reply.h"
 
 namespace flexarm {
 namespace {
@@ -21,10 +22,9 @@ constexpr auto kLook = std::chrono::milliseconds(200);
 
 // "step 3 of 11: unplug the connector of ..", each text once.
 void PrintStep(const Json& switches, std::string* shown) {
-  if (!switches.is_object() || !switches.value("step", Json()).is_number()) return;
-  const std::string text = "step " + std::to_string(switches["step"].get<int>()) + " of " +
-                           std::to_string(switches.value("steps", 0)) + ": " +
-                           switches.value("text", "");
+  if (!In(switches, "step").is_number()) return;
+  const std::string text = "step " + FigureIn(switches, "step", 0) + " of " +
+                           FigureIn(switches, "steps", 0) + ": " + TextIn(switches, "text");
   if (text == *shown) return;
   *shown = text;
   std::cout << text << '\n' << std::flush;
@@ -37,10 +37,10 @@ int Prove(const DaemonClient& daemon) {
   std::string shown;
   while (answer.wait_for(kLook) != std::future_status::ready) {
     if (daemon.json) continue;
-    PrintStep(daemon.Ask({{"command", "status"}}).value("switches", Json()), &shown);
+    PrintStep(In(daemon.Ask({{"command", "status"}}), "switches"), &shown);
   }
   const Json end = answer.get();
-  if (end.value("ok", false) && !daemon.json) {
+  if (FlagIn(end, "ok") && !daemon.json) {
     std::cout << "every switch is proved; run `flexarm reset`\n";
   }
   return daemon.Conclude(end);
@@ -52,6 +52,7 @@ void RegisterProveSwitches(CLI::App& app, Exit& exit) {
   const auto daemon = std::make_shared<DaemonClient>();
   CLI::App* verb = daemon->AddVerb(
       app, "prove-switches", "Prove each switch of the rig: operate it, unplug it, press reset");
+  daemon->AddTakeOver(verb);
   verb->footer(
       "With the relay open: Idle or Tripped. The program says what to do: operate each limit "
       "switch\n"

@@ -5,6 +5,7 @@
 
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
+#include "tools/flexarm/reply.h"
 
 namespace flexarm {
 namespace {
@@ -25,26 +26,26 @@ struct CommissionOptions {
 
 void PrintStrain(const Json& answer) {
   std::printf("%-14s %12s %12s %10s\n", "channel", "zero", "gain error", "noise");
-  for (const Json& row : answer.value("strain", Json::array())) {
-    std::printf("%-14s %8.2f cts %10.2f %% %6.2f cts\n", row.value("channel", "").c_str(),
-                row.value("zero_counts", 0.0), 100.0 * row.value("gain_error", 0.0),
-                row.value("sigma_counts", 0.0));
+  for (const Json& row : ListIn(answer, "strain")) {
+    std::printf("%-14s %8.2f cts %10.2f %% %6.2f cts\n", TextIn(row, "channel").c_str(),
+                NumberIn(row, "zero_counts"), 100.0 * NumberIn(row, "gain_error"),
+                NumberIn(row, "sigma_counts"));
   }
 }
 
 void PrintEncoders(const Json& answer) {
-  for (const Json& row : answer.value("encoder", Json::array())) {
-    std::printf("%-8s zero at %lld counts\n", row.value("joint", "").c_str(),
-                static_cast<long long>(row.value("zero_counts", std::int64_t{0})));
+  for (const Json& row : ListIn(answer, "encoder")) {
+    std::printf("%-8s zero at %s counts\n", TextIn(row, "joint").c_str(),
+                FigureIn(row, "zero_counts", 0).c_str());
   }
 }
 
 void PrintPluck(const Json& answer) {
   std::printf("%-14s %10s %10s\n", "channel", "gain", "explained");
-  for (const Json& row : answer.value("answer", Json::array())) {
-    std::printf("%-14s %10.3f %8.1f %%%s\n", row.value("channel", "").c_str(),
-                row.value("gain", 0.0), 100.0 * row.value("match", 0.0),
-                row.value("provable", true) ? "" : "   response too small to judge");
+  for (const Json& row : ListIn(answer, "answer")) {
+    std::printf("%-14s %10.3f %8.1f %%%s\n", TextIn(row, "channel").c_str(), NumberIn(row, "gain"),
+                100.0 * NumberIn(row, "match"),
+                FlagIn(row, "provable", true) ? "" : "   response too small to judge");
   }
 }
 
@@ -62,6 +63,7 @@ void AddTare(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb =
       options->daemon.AddVerb(app, "tare", "Tare: measure the zeros of the strain channels");
+  options->daemon.AddTakeOver(verb);
   verb->footer(
       "Only in Idle or Tripped, at rest, with nothing touching the links, so that they are not\n"
       "bent. If a channel is unsteady, missing or far from its zero, it is named and no zero is\n"
@@ -74,6 +76,7 @@ void AddZero(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb = options->daemon.AddVerb(
       app, "zero", "Set the present angles of the joints, from which the encoders then count");
+  options->daemon.AddTakeOver(verb);
   verb->add_option("--angle-deg", options->angle_deg,
                    "Hub angles of joint 1 and 2, counter-clockwise positive (default 0 0)")
       ->expected(2)
@@ -93,6 +96,7 @@ void AddCalibrate(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb = options->daemon.AddVerb(app, "calibrate",
                                            "Measure the strain gains of a link under a known load");
+  options->daemon.AddTakeOver(verb);
   verb->add_option("--link", options->link, "1 or 2")->required()->check(CLI::Range(1, 2));
   verb->add_option(
           "--force-n", options->force_n,
@@ -120,6 +124,7 @@ void AddPluck(CLI::App& app, Exit& exit) {
   CLI::App* verb = options->daemon.AddVerb(
       app, "pluck",
       "Check the wiring: compare the motion after a small torque on each joint with the model");
+  options->daemon.AddTakeOver(verb);
   verb->footer(
       "Only from Armed; moves each joint by a few degrees, in open loop. Every drive, encoder and\n"
       "gauge with a wrong sign, scale or place is named. Exit code 0 if all are right.\n"
@@ -131,6 +136,7 @@ void AddHome(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<CommissionOptions>();
   CLI::App* verb = options->daemon.AddVerb(
       app, "home", "Home a joint: move slowly to a limit switch, whose angle is known");
+  options->daemon.AddTakeOver(verb);
   verb->add_option("joint", options->joint, "1 or 2")->required()->check(CLI::Range(1, 2));
   verb->add_option("side", options->side, "Which limit switch of the joint: low or high")
       ->required()

@@ -80,6 +80,7 @@ int Serve(const Options& options) {
   const RigConfig config = Load(options);
   RequireBackend(config, options);
   DaemonOptions daemon{.config = config,
+                       .config_file = options.config.string(),
                        .experiment = std::nullopt,
                        .run_for_s = options.run_for_s,
                        .realtime = !options.without_realtime,

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "controller/operator/command_text.h"
 #include "tests/controller/operator/operator_parts.h"
 #include "tests/controller/operator/peers.h"
 
@@ -141,6 +142,20 @@ TEST_F(CommandDispatchTest, DeepBracketsAreNoCommand) {
               testing::Not(HasSubstr("not a command")));
   EXPECT_THAT(error(with("\"\\\"" + std::string(100, '[') + "\"")),
               testing::Not(HasSubstr("not a command")));
+}
+
+// A line of 1 MB with 300,000 lists took 50 MB and the time of a period.
+TEST_F(CommandDispatchTest, ALineWithManyValuesIsNoCommand) {
+  const auto with = [](int values) {
+    std::string line = "{\"command\": \"status\", \"x\": [0";
+    for (int k = 0; k < values; ++k) line += ",0";
+    return line + "]}";
+  };
+  EXPECT_THAT(AnswerLine(with(300'000)).value("error", ""), HasSubstr("not a command"));
+  EXPECT_THAT(AnswerLine(with(kMostValues)).value("error", ""), HasSubstr("not a command"));
+  EXPECT_EQ(AnswerLine(with(kMostValues - 10))["ok"], true);
+  const std::string text(200'000, ',');
+  EXPECT_EQ(AnswerLine(R"({"command": "status", "x": ")" + text + "\"}")["ok"], true);
 }
 
 // After SIGTERM nothing may move the arm or change the rig, and a stop is still heard.

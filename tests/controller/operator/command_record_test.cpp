@@ -45,7 +45,7 @@ TEST_F(CommandRecordTest, AnAcceptedCommandHasItsUserInAnswerJournalAndLog) {
             RecordedJournal::Line(false, "arm by alice (uid 1000, pid 11): accepted"));
   const std::vector<RunEvent> logged = TakeEvents(&events_);
   ASSERT_EQ(logged.size(), 1u);
-  EXPECT_EQ(logged[0].kind, "command");
+  EXPECT_EQ(logged[0].kind, "operator");
   EXPECT_EQ(logged[0].name, "arm");
   EXPECT_EQ(logged[0].time_ns, kRecordSecond);
   EXPECT_EQ(Json::parse(logged[0].value_json), Json({{"ok", true}, {"refusal", ""}, {"by", by}}));
@@ -78,6 +78,16 @@ TEST_F(CommandRecordTest, AStatusAndWhatIsNoCommandAreNotKept) {
   EXPECT_EQ(Answered(1, {{"ok", false}, {"error", "not a command"}})["by"]["uid"], 1000);
   EXPECT_THAT(journal_.lines, IsEmpty());
   EXPECT_THAT(TakeEvents(&events_), IsEmpty());
+}
+
+TEST_F(CommandRecordTest, AStopSaysHowItWasHeard) {
+  record_.Heard(3, 120.0);
+  record_.Asked(1, kAlice, "stop");
+  record_.Heard(0, 5.0);
+  record_.Asked(1, kAlice, "disarm");
+  EXPECT_EQ(Answered(1, {{"ok", true}, {"command", "stop"}})["heard"],
+            Json({{"waited_looks", 3}, {"busy_us", 120.0}}));
+  EXPECT_FALSE(Answered(1, {{"ok", true}, {"command", "disarm"}}).contains("heard"));
 }
 
 TEST_F(CommandRecordTest, AFloodIsSummedUpOnceASecond) {

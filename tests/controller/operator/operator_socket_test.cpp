@@ -132,13 +132,76 @@ TEST_F(OperatorSocketTest, AClientThatWaitsForAnAnswerIsReplacedLast) {
   }
 }
 
+// Symptom: a stop waited behind the experiments of others, 10 ms each.
+TEST_F(OperatorSocketTest, OfLongLinesOneIsTakenInAPollOfEachClientInTurn) {
+  OperatorSocket server(path_);
+  std::deque<SocketPeer> longs;
+  const std::string line = std::string(OperatorConnection::kLongLine + 1, 'x') + "\n";
+  for (int k = 0; k < 3; ++k) longs.emplace_back(path_).Send(line + line);
+  const SocketPeer other(path_);
+  std::vector<int> order;
+  for (int k = 0; k < 6; ++k) {
+    other.Send("stop\n");
+    const std::vector<OperatorSocket::Message> messages = server.Poll();
+    ASSERT_EQ(messages.size(), 2u) << k;
+    EXPECT_EQ(messages[0].line, "stop") << "before the long one";
+    EXPECT_EQ(messages[1].line.size() + 1, line.size());
+    order.push_back(messages[1].client);
+  }
+  EXPECT_THAT(order, testing::ElementsAre(1, 2, 3, 1, 2, 3));
+}
+
+TEST_F(OperatorSocketTest, RootAndTheHolderOfTheLeaseAreClosedLast) {
+  uid_t uid = 0;
+  OperatorSocket server(path_, RolesInTests(), [&uid](int) {
+    return Credentials{.uid = uid, .pid = 5, .groups = {kOperatorGroup}};
+  });
+  server.SetHolder(1000);
+  std::deque<SocketPeer> kept, others;
+  for (const uid_t of : {0u, 1000u}) {
+    uid = of;
+    for (int k = 0; k < 6; ++k) kept.emplace_back(path_);
+    server.Poll();
+  }
+  uid = 1001;
+  for (int k = 0; k < 4; ++k) others.emplace_back(path_);
+  server.Poll();  // there are 16
+  for (const uid_t of : {1002u, 1001u, 0u, 1000u}) {
+    uid = of;
+    const SocketPeer next(path_);
+    next.Send("stop\n");
+    EXPECT_EQ(server.Poll().size(), 1u) << of;
+    for (SocketPeer& client : kept) EXPECT_FALSE(client.closed()) << of;
+  }
+}
+
+TEST_F(OperatorSocketTest, ALineSaysHowLongItHasWaited) {
+  OperatorSocket server(path_);
+  const SocketPeer quick(path_);
+  const SocketPeer slow(path_);
+  std::string lines;
+  for (std::size_t k = 0; k < 2 * OperatorSocket::kLinesPerPoll; ++k) lines += "x\n";
+  slow.Send(lines);
+  int longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    quick.Send("stop\n");
+    for (const OperatorSocket::Message& message : server.Poll()) {
+      if (message.line == "stop") {
+        EXPECT_EQ(message.waited_polls, 0);
+      }
+      longest = std::max(longest, message.waited_polls);
+    }
+  }
+  EXPECT_EQ(longest, 2);
+}
+
 // However many connect and say nothing, a stop is heard in the poll after it.
 TEST_F(OperatorSocketTest, SilentClientsBlockNoOther) {
   OperatorSocket server(path_);
   std::deque<SocketPeer> silent;
   for (int k = 0; k < 300; ++k) {
     silent.emplace_back(path_).Send(k % 2 == 0 ? "" : "half a line");
-    if (k % OperatorSocket::kAcceptsPerPoll == 0) server.Poll();
+    if (k % OperatorSocket::kBacklog == 0) server.Poll();
     if (k % 50 != 49) continue;
     server.Poll();
     const SocketPeer operator_of_the_arm(path_);

@@ -15,10 +15,11 @@ inline constexpr gid_t kOperatorGroup = 301;
 inline constexpr gid_t kViewerGroup = 302;
 
 inline OperatorRoles RolesInTests() {
-  return OperatorRoles({.own = 250,
-                        .operators = kOperatorGroup,
-                        .viewers = kViewerGroup,
-                        .account_name = [](uid_t uid) { return "u" + std::to_string(uid); }});
+  return OperatorRoles(
+      {.own = 250,
+       .operators = kOperatorGroup,
+       .viewers = kViewerGroup,
+       .account_name = [](uid_t uid) { return std::string("u").append(std::to_string(uid)); }});
 }
 
 }  // namespace flexarm

@@ -26,6 +26,25 @@ TEST(RequestAnswers, AnAcceptedRequestIsAnsweredWithTheStateOfNow) {
   EXPECT_EQ(AnswerLine(kAccepted), "arm: accepted");
 }
 
+TEST(RequestAnswers, ARunHasItsNumber) {
+  RequestAnswer granted = kAccepted;
+  granted.kind = RequestKind::kRun;
+  EXPECT_EQ(AnswerJson(granted, SafetyState::kRunning)["run"], 1'001);
+  EXPECT_FALSE(AnswerJson(kRefused, SafetyState::kIdle).contains("run"));
+}
+
+TEST(RequestAnswers, ACauseThatRemainsIsNamed) {
+  RequestAnswer refused = kRefused;
+  refused.kind = RequestKind::kReset;
+  refused.refusal = Refusal::kCauseRemains;
+  refused.state = SafetyState::kTripped;
+  refused.present = CauseBit(TripCause::kLimitSwitch1High) | CauseBit(TripCause::kSoftLimit1);
+  const Json answer = AnswerJson(refused, SafetyState::kTripped);
+  EXPECT_EQ(answer["present"], Json({"limit-switch-1-high", "soft-limit-1"}));
+  const std::string error = answer["error"];
+  EXPECT_NE(error.find("Present: limit-switch-1-high soft-limit-1."), std::string::npos) << error;
+}
+
 TEST(RequestAnswers, ARefusalIsExplainedByTheStateInWhichItWasJudged) {
   const std::string why = "The arm is not armed. Run `flexarm arm` first.";  // of Idle
   EXPECT_EQ(AnswerJson(kRefused, SafetyState::kArmed), Json({{"ok", false},

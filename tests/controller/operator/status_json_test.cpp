@@ -38,13 +38,18 @@ struct StatusJsonTest : testing::Test {
                        .missing_gauges = missing_gauges,
                        .experiment = experiment,
                        .buses = buses,
-                       .bus_text = bus_text,
+                       .bus_text = [this](TripCause, const Evidence&) { return bus_text; },
+                       .present = &present,
                        .latch = &of,
                        .threads = Json::array({"control"}),
                        .host = nullptr,
                        .design = {{"verdict", "forced"}},
                        .overrides = Json::array({"host"}),
-                       .switches = {{"proved", true}}});
+                       .switches = {{"proved", true}},
+                       .identity = {{"rig", "thesis"}, {"version", "1.2"}},
+                       .lease = nullptr,
+                       .run = nullptr,
+                       .why_no_run = why_no_run});
   }
 
   OperatorSnapshot now;
@@ -55,6 +60,8 @@ struct StatusJsonTest : testing::Test {
   std::string experiment;
   std::vector<BusHealth> buses;
   std::string bus_text;
+  PresentCauses present;
+  std::string why_no_run;
   LatchFolder folder;
   TripLatch latch{folder.path(), "/runs", [](bool, const std::string&) {}};
 };
@@ -94,6 +101,39 @@ TEST_F(StatusJsonTest, GaugesThatAreMissingAreNamedAndUnknownStrainIsNull) {
   EXPECT_EQ(status["gauges_missing"], Json({"strain_1_03"}));
   EXPECT_DOUBLE_EQ(status["root_strain"][0], 1e-4);
   EXPECT_TRUE(status["root_strain"][1].is_null());
+}
+
+TEST_F(StatusJsonTest, EveryCauseThatIsPresentHasItsValues) {
+  EXPECT_EQ(Status()["present"], Json::array());
+  const auto add = [this](TripCause cause, const Evidence& evidence) {
+    present.causes |= CauseBit(cause);
+    present.evidence[static_cast<std::size_t>(cause)] = evidence;
+  };
+  add(TripCause::kStrainStuck, {.value = 3.0, .limit = 2.0, .channel = 2, .detail = 0});
+  add(TripCause::kLimitSwitch1High, {.value = 0.0, .limit = 1.0, .channel = 1, .detail = 0});
+  add(TripCause::kHubRate2, {});  // the loop has told the values of another
+  const Json all = Status()["present"];
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0]["name"], "limit-switch-1-high");
+  EXPECT_EQ(all[0]["limit"], 1.0);
+  EXPECT_EQ(all[1]["name"], "hub-rate-2");
+  EXPECT_TRUE(all[1]["value"].is_null());
+  EXPECT_EQ(all[2]["name"], "strain-stuck");
+  EXPECT_EQ(all[2]["channel_name"], "strain_2_01");
+  EXPECT_EQ(all[2]["value"], 3.0);
+}
+
+TEST_F(StatusJsonTest, RigProgramInputsAndProofOfTheWiringAreShown) {
+  now.permit.levels = LineBit(Line::kLimit1Low) | LineBit(Line::kResetButton);
+  Json status = Status();
+  EXPECT_EQ(status["rig"], "thesis");
+  EXPECT_EQ(status["version"], "1.2");
+  EXPECT_EQ(status["inputs"]["limit-1-low"], 1);
+  EXPECT_EQ(status["inputs"]["emergency-stop"], 0);
+  EXPECT_EQ(status["inputs"].size(), 6u);
+  EXPECT_EQ(status["wiring"], Json({{"proved", true}, {"why_not", nullptr}}));
+  why_no_run = "run pluck";
+  EXPECT_EQ(Status()["wiring"], Json({{"proved", false}, {"why_not", "run pluck"}}));
 }
 
 TEST_F(StatusJsonTest, WhatThereIsNotIsNull) {

@@ -261,6 +261,7 @@ class SafetyTaskTest : public testing::Test {
   SpscQueue<RequestAnswer> answers_{100};
   SpscQueue<SafetyRecord> records_{10'000};
   TimingChannel timing_{TimingCounts{}};
+  PresentCausesChannel present_{PresentCauses{}};
   SafetyTask safety_{limits_,
                      {.lines = &lines_,
                       .control = &reports_,
@@ -273,7 +274,8 @@ class SafetyTaskTest : public testing::Test {
                       .permits = {&drive_permits_, &operator_permits_},
                       .answers = &answers_,
                       .records = &records_,
-                      .timing = &timing_}};
+                      .timing = &timing_,
+                      .present = &present_}};
   LateTask late_{&safety_};
   FakeControl control_{&reports_};
   FakeDrive drive_{&drive_permits_, &drive_reports_};

@@ -1,0 +1,34 @@
+#include "controller/host/daemon_identity.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "controller/runlog/build_info.h"
+
+namespace flexarm {
+namespace {
+
+std::string HashOf(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace
+
+nlohmann::json DaemonIdentity(const RigConfig& config, const std::string& config_file) {
+  return {
+      {"rig", config.rig_name},
+      {"config",
+       {{"file", std::filesystem::absolute(config_file).string()}, {"hash", HashOf(config.text)}}},
+      {"version", ThisBuild().version},
+      {"build", BuildId()}};
+}
+
+}  // namespace flexarm

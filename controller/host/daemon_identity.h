@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "controller/types/rig_config.h"
+
+namespace flexarm {
+
+/// Which rig, config and program a daemon is, for its status: {"rig", "config": {"file", "hash"},
+/// "version", "build"}.
+/// @param config_file  as it was given; "hash" is of the whole config, with what it extends and
+///                     with --set: equal configs have equal ones (FNV-1a, 16 digits)
+nlohmann::json DaemonIdentity(const RigConfig& config, const std::string& config_file);
+
+}  // namespace flexarm
