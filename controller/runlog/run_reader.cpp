@@ -78,7 +78,7 @@ RunReader::RunReader(const std::filesystem::path& file) : file_(file) {
   if (beginning.starts_with(kRecordMagic)) {
     OpenRecords(fd.get());
   } else if (beginning == kSqliteMagic) {
-    OpenSqlite();
+    OpenSqlite(there.st_size);
   } else {
     Fail("not a run log: begins with \"" + Printable(beginning) +
          "\", expected a run log (.flexarm)");
@@ -103,12 +103,19 @@ void RunReader::OpenRecords(int fd) {
 }
 
 // A SQLite log is never written again: it needs neither a lock nor a file beside it.
-void RunReader::OpenSqlite() {
+void RunReader::OpenSqlite(std::int64_t file_bytes) {
   Guarded([&] {
     db_ = SqliteDb::OpenReadOnly(file_, true);
     db_.Distrust(static_cast<int>(kLargestPayload));
     const std::string problem = SchemaProblem(&db_);
     if (!problem.empty()) Fail(Printable(problem));
+    // SQLite takes what is missing of the last page for zeros.
+    const std::int64_t bytes =
+        db_.QueryInteger("PRAGMA page_count") * db_.QueryInteger("PRAGMA page_size");
+    if (file_bytes != bytes) {
+      Fail("cut short or damaged: found " + std::to_string(file_bytes) + " bytes, expected " +
+           std::to_string(bytes));
+    }
   });
 }
 

@@ -53,7 +53,7 @@ class RunReader {
   template <typename Action>
   void Guarded(Action action);
   void OpenRecords(int fd);
-  void OpenSqlite();
+  void OpenSqlite(std::int64_t file_bytes);
   void ReadInfo();
   [[noreturn]] void Fail(const std::string& what) const;
 

@@ -89,6 +89,16 @@ TEST_F(DamagedFileTest, ALogCutAnywhereIsAnErrorOrAPrefix) {
   EXPECT_GT(errors, 90);
 }
 
+// SQLite itself takes the bytes that are missing of a last page for zeros.
+TEST_F(DamagedFileTest, ALogWithoutItsLastBytesIsCutShort) {
+  WriteRun(20);
+  const std::string whole = Bytes(File());
+  for (const std::size_t missing : {1U, 100U, 8'000U, 16'000U}) {
+    WriteText(File(), whole.substr(0, whole.size() - missing));
+    ExpectError("cut short");
+  }
+}
+
 TEST_F(DamagedFileTest, FlippedBytesNeverCrash) {
   WriteRun(20);
   const std::string whole = Bytes(File());
