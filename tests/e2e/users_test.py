@@ -133,16 +133,16 @@ class Users(ProgramTest):
         self.assert_in_the_log()
 
     def assert_in_the_log(self):
-        """The log of the arming says who gave which command, and who took over."""
+        """The log of the run says who gave which command."""
         time.sleep(1)  # the recorder closes it
         run = sorted((self.folder / "runs").glob("*.flexarm"))[-1]
         events = rows(run, "SELECT kind, name, value_json FROM event")
         given = [(name, json.loads(value)["by"]["uid"], json.loads(value)["ok"])
                  for kind, name, value in events if kind == "operator"]
-        for command in (("run", BOB, False), ("run", ALICE, True), ("disarm", BOB, False),
-                        ("stop", BOB, True)):
+        for command in (("arm", ALICE, True), ("run", BOB, False), ("run", ALICE, True),
+                        ("disarm", BOB, False), ("stop", BOB, True)):
             self.assertIn(command, given)
-        self.assertIn(("lease", "taken-over"), [(kind, name) for kind, name, _ in events])
+        self.assertIn(("lease", "begun"), [(kind, name) for kind, name, _ in events])
 
     def test_connections_of_one_user_lock_no_other_out(self):
         def hold(pipe):

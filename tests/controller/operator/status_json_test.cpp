@@ -46,6 +46,7 @@ struct StatusJsonTest : testing::Test {
                        .design = {{"verdict", "forced"}},
                        .overrides = Json::array({"host"}),
                        .switches = {{"proved", true}},
+                       .log = nullptr,
                        .identity = {{"rig", "thesis"}, {"version", "1.2"}},
                        .lease = nullptr,
                        .run = nullptr,
