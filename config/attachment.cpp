@@ -1,21 +1,18 @@
 #include "config/attachment.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <numbers>
 
 #include "config/config.h"
 #include "config/document.h"
 #include "config/toml_text.h"
+#include "controller/files/external_file.h"
 #include "controller/runlog/csv_table.h"
 #include "controller/runlog/errors.h"
 #include "model/units.h"
 
 namespace flexarm {
 namespace {
-
-constexpr std::size_t kLargestAttachment =
-    std::size_t{512} * 1024;  // the daemon accepts a line of at most 1 MiB
 
 bool Attached(const toml::table& document, const std::string& file) {
   const toml::array* rows = document["attached"].as_array();
@@ -39,9 +36,8 @@ std::string WithAttachments(const std::string& text, const std::filesystem::path
                         ValueText(*key), rule}});
   };
   std::error_code error;
-  if (!std::filesystem::is_regular_file(csv, error)) refuse("there is no file " + csv.string());
-  const std::string content = ReadConfigFile(csv);
-  if (content.size() > kLargestAttachment) refuse("must be a file of at most 512 KiB");
+  if (!std::filesystem::exists(csv, error)) refuse("there is no file " + csv.string());
+  const std::string content = ReadConfigFile(csv, kTrajectoryFile);
   if (content.find("'''") != std::string::npos) refuse("must be a CSV file of numbers");
   return text + "\n[[attached]]\nfile = " + ValueText(*key) + "\ntext = '''\n" + content + "'''\n";
 }

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "config/config.h"
+#include "controller/files/external_text.h"
 
 namespace flexarm {
 namespace {
@@ -17,7 +18,7 @@ std::string AllText(const std::vector<ConfigProblem>& problems) {
 }  // namespace
 
 std::string ConfigProblem::Text() const {
-  std::string out = file;
+  std::string out = Shown(file, kMessageBytes);
   if (line > 0) out.append(":").append(std::to_string(line));
   if (!key.empty()) out.append(": ").append(key);
   if (!value.empty()) out.append(" = ").append(value);

@@ -1,42 +1,20 @@
 #include "config/document.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstddef>
-#include <cstring>
-#include <fstream>
 #include <utility>
 #include <vector>
 
 #include "config/config.h"
 #include "config/toml_text.h"
+#include "controller/files/external_file.h"
 
 namespace flexarm {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestFile = 1 << 20;
-// toml++ destroys nested tables recursively: a.a.a.a... over a whole line would exhaust the stack.
-constexpr int kMostDotsInALine = 32;
-
 [[noreturn]] void Fail(const std::string& file, int line, std::string rule) {
   throw ConfigError({{file, line, "", "", std::move(rule)}});
-}
-
-void CheckNesting(std::string_view text, const std::string& name) {
-  int line = 1;
-  int dots = 0;
-  for (const char c : text) {
-    if (c == '.') ++dots;
-    if (dots > kMostDotsInALine) {
-      Fail(name, line,
-           "must not have more than 32 dots in one line: no config is nested that deep");
-    }
-    if (c != '\n') continue;
-    ++line;
-    dots = 0;
-  }
 }
 
 // The chain of files that led to this one, to refuse a cycle.
@@ -75,29 +53,19 @@ toml::table LoadOnTopOfBase(const fs::path& file, Chain chain) {
 
 }  // namespace
 
-std::string ReadConfigFile(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) {
-    Fail(file.string(), 0, "is a directory: must be a TOML file");
-  }
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) Fail(file.string(), 0, "cannot be read: " + std::string(std::strerror(errno)));
-  std::string text(kLargestFile + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) Fail(file.string(), 0, "cannot be read: " + std::string(std::strerror(errno)));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > kLargestFile) {
-    Fail(file.string(), 0, " is larger than 1 MiB: a config file is smaller");
-  }
-  return text;
+std::string ReadConfigFile(const fs::path& file, const FileKind& kind) {
+  FileContent content = ReadExternalFile(file, kind);
+  if (content.problem) Fail(file.string(), content.problem->line, content.problem->what);
+  return std::move(content.text);
 }
 
 toml::table ParseToml(std::string_view text, const std::string& name) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     Fail(name, 0, "is empty: must be a TOML file");
   }
-  CheckNesting(text, name);
+  if (const auto problem = ProblemOfText(text, kConfigFile)) {
+    Fail(name, problem->line, problem->what);
+  }
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {

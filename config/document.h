@@ -6,14 +6,16 @@
 #include <string>
 #include <string_view>
 
+#include "controller/files/external_file.h"
+
 namespace flexarm {
 
 /// Source name of the values that an override set.
 inline constexpr std::string_view kOverrideSource = "--set";
 
-/// Reads a whole text file.
-/// @throws ConfigError  one problem: missing, a directory, unreadable, empty, too large
-std::string ReadConfigFile(const std::filesystem::path& file);
+/// Reads a whole text file (ReadExternalFile).
+/// @throws ConfigError  one problem: missing, unreadable, not a regular file, too large, not text
+std::string ReadConfigFile(const std::filesystem::path& file, const FileKind& kind = kConfigFile);
 
 /// Parses TOML; every node of the result has `name` as its source, and its line.
 /// @throws ConfigError  one problem: not UTF-8, not TOML, a key twice, nested too deep

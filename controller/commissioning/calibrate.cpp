@@ -15,11 +15,9 @@ namespace {
 
 constexpr double kSteadySigmas = 6.0;
 constexpr double kQuantisation = 0.29;  // 1/sqrt(12) counts, quantisation noise of a converter
-constexpr double kLargestZero = 0.25;   // of the converter's range to either side
 constexpr double kStill_deg =
     0.1;  // largest motion of a joint while it is zeroed; at least one count
 constexpr double kSmallestStrain_counts = 20.0;
-constexpr double kLargestGainError = 0.3;
 
 // Collects problems, one per line.
 class Findings {
@@ -110,6 +108,36 @@ Calibration Zero(const SensorConfig& sensors, const RestReadings& readings,
   }
   findings.RefuseIfAny();
   return before;
+}
+
+std::string OutOfRange(const SensorConfig& sensors, const Calibration& calibration) {
+  const auto told = [](const std::string& channel, const char* name, double value, double most) {
+    return fmt::format("{}: {} = {:g}, expected {:g} to {:g}", channel, name, value, -most, most);
+  };
+  // Single precision may round the largest values that `tare` and `calibrate` accept upwards.
+  constexpr double kRounding = 1.0 + 1e-6;
+  constexpr double kMostTurns = 2.0;  // to the angle that was stated, and since the start
+  const std::vector<std::string> names = StrainColumns(sensors);
+  const double most_counts = kLargestZero * sensors.strain_input.highest_count();
+  for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
+    const double zero = static_cast<double>(calibration.strain_zero_counts[i]);
+    const double gain = static_cast<double>(calibration.strain_gain_error[i]);
+    if (!(std::fabs(zero) <= most_counts * kRounding)) {
+      return told(names[i], "zero_counts", zero, most_counts);
+    }
+    if (!(std::fabs(gain) <= kLargestGainError * kRounding)) {
+      return told(names[i], "gain_error", gain, kLargestGainError);
+    }
+  }
+  for (const EncoderConfig& encoder : sensors.encoder) {
+    const auto zero =
+        static_cast<double>(calibration.counter_zero[static_cast<std::size_t>(encoder.counter)]);
+    const double most =
+        std::ldexp(1.0, encoder.counter_bits) + kMostTurns * encoder.counts_per_turn;
+    if (std::fabs(zero) > most)
+      return told(CounterName(encoder.counter), "zero_counts", zero, most);
+  }
+  return {};
 }
 
 double StaticStrain(const LinkParameters& link, const StaticLoad& load, double x_m) {

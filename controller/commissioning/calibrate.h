@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <utility>
 
 #include "controller/commissioning/rest_readings.h"
@@ -9,6 +10,9 @@
 #include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
+
+inline constexpr double kLargestZero = 0.25;      ///< of the converter's range to either side
+inline constexpr double kLargestGainError = 0.3;  ///< to either side
 
 // Calibration of the sensors from readings of an arm at rest. Each function rejects implausible
 // readings and names every channel that has them. Not real-time.
@@ -23,6 +27,11 @@ Calibration Tare(const SensorConfig& sensors, const RestReadings& readings, Cali
 /// @throws RejectedError naming the encoders that were not read, or moved
 Calibration Zero(const SensorConfig& sensors, const RestReadings& readings,
                  const std::array<double, 2>& hub_rad, Calibration before);
+
+/// The first value of a calibration that no command above could have given: a gain error beyond
+/// 30 %, a strain zero beyond a quarter of the range, a counter zero more than two turns beyond the
+/// counter's range. "strain_1_01: gain_error = -2, expected -0.3 to 0.3"; empty if there is none.
+std::string OutOfRange(const SensorConfig& sensors, const Calibration& calibration);
 
 /// A known force on a link whose root is clamped: a weight over a pulley, normal to the link.
 struct StaticLoad {

@@ -1,22 +1,21 @@
 #include "controller/commissioning/calibration_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "controller/commissioning/calibrate.h"
+#include "controller/files/external_file.h"
+#include "controller/files/external_json.h"
+#include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
+#include "controller/files/write_file.h"
 #include "controller/runlog/csv.h"
-#include "controller/runlog/errors.h"
 
 namespace flexarm {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
+
+constexpr int kKept = 9;  // older calibrations
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const std::string& what) {
   throw InputError(file.string() + ": " + what);
@@ -47,64 +46,63 @@ OrderedJson ToJson(const SensorConfig& sensors, const Calibration& calibration) 
 }
 
 // The file of another rig must be rejected: everything except the measured values is compared.
-template <typename Number>
-void Take(const std::filesystem::path& file, const OrderedJson& row, const char* name,
-          Number* value) {
-  const auto found = row.find(name);
-  if (found == row.end() || !found->is_number() || !std::isfinite(found->get<double>())) {
-    Fail(file, "row " + row.dump() + ": expected a number in '" + name + "'");
-  }
-  *value = found->get<Number>();
-}
-
 void CheckSensors(const std::filesystem::path& file, OrderedJson found, OrderedJson expected) {
   for (OrderedJson* json : {&found, &expected}) {
-    for (OrderedJson& row : (*json)["encoder"]) row.erase("zero_counts");
-    for (OrderedJson& row : (*json)["strain"]) {
-      row.erase("zero_counts");
-      row.erase("gain_error");
+    for (const char* list : {"encoder", "strain"}) {
+      for (OrderedJson& row : (*json)[list]) {
+        if (!row.is_object()) {
+          Fail(file, std::string("'") + list + "': found a row that is no JSON object");
+        }
+        row.erase("zero_counts");
+        row.erase("gain_error");
+      }
     }
   }
   if (found == expected) return;
   Fail(file,
        "was made for other sensors than the config's [sensors]: remove it, then run `flexarm tare` "
-       "and "
-       "`flexarm zero`");
+       "and `flexarm zero`");
 }
 
-void WriteWhole(const std::filesystem::path& file, const std::string& text) {
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  bool ok = fd >= 0;
-  ok = ok && ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  ok = ok && ::fsync(fd) == 0;
-  const int error = errno;
-  if (fd >= 0) ::close(fd);
-  if (!ok) Fail(file, std::string("cannot be written: ") + std::strerror(error));
+std::filesystem::path Older(const std::filesystem::path& file, int number) {
+  return file.string() + "." + std::to_string(number);
+}
+
+// Keeps the file's contents as FILE.1, those of FILE.1 as FILE.2 and so on. A copy and no rename:
+// the file itself is there at every instant. What cannot be kept does not stop a calibration.
+void KeepOlder(const std::filesystem::path& file, const std::string& next) {
+  const FileContent present = ReadExternalFile(file, kCalibrationFile);
+  if (present.problem || present.text == next) return;
+  std::error_code ignored;
+  for (int number = kKept; number > 1; --number) {
+    std::filesystem::rename(Older(file, number - 1), Older(file, number), ignored);
+  }
+  std::filesystem::copy_file(file, Older(file, 1), ignored);
 }
 
 }  // namespace
 
+std::string CalibrationText(const SensorConfig& sensors, const Calibration& calibration) {
+  return ToJson(sensors, calibration).dump(1) + "\n";
+}
+
 void WriteCalibration(const std::filesystem::path& file, const SensorConfig& sensors,
                       const Calibration& calibration) {
-  std::error_code ignored;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
-  std::filesystem::path part = file;
-  part += ".part";
-  WriteWhole(part, ToJson(sensors, calibration).dump(1) + "\n");
-  std::error_code error;
-  std::filesystem::rename(part, file, error);
-  if (error) Fail(file, "cannot be replaced: " + error.message());
+  const std::string beyond = OutOfRange(sensors, calibration);
+  if (!beyond.empty()) Fail(file, "is not written: " + beyond);
+  if (file.has_parent_path()) MakeFolder(file.parent_path());
+  const std::string text = CalibrationText(sensors, calibration);
+  KeepOlder(file, text);
+  WriteFile(file, text,
+            {.kind = "a calibration", .mark = kCalibrationMark, .inputs = {}, .overwrite = false});
 }
 
 std::optional<Calibration> ReadCalibration(const std::filesystem::path& file,
                                            const SensorConfig& sensors) {
-  std::ifstream stream(file);
-  if (!stream) {
-    if (!std::filesystem::exists(file)) return std::nullopt;
-    Fail(file, "cannot be read");
-  }
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const OrderedJson json = OrderedJson::parse(text, nullptr, false);
+  const FileContent content = ReadExternalFile(file, kCalibrationFile);
+  if (content.problem && content.problem->missing) return std::nullopt;
+  if (content.problem) throw InputError(content.problem->Text(file));
+  const OrderedJson json = ParseJson(content.text, file.string(), kCalibrationFile.name);
   const auto is_rows = [&json](const char* name) {
     return json.contains(name) && json[name].is_array();
   };
@@ -113,14 +111,23 @@ std::optional<Calibration> ReadCalibration(const std::filesystem::path& file,
   }
   CheckSensors(file, json, ToJson(sensors, {}));
   Calibration calibration{};
+  const auto where = [&file](const char* list, std::size_t row) {
+    return Shown(file.string(), kMessageBytes) + ": " + list + "[" + std::to_string(row) + "]";
+  };
   for (std::size_t i = 0; i < sensors.encoder.size(); ++i) {
     const auto counter = static_cast<std::size_t>(sensors.encoder[i].counter);
-    Take(file, json["encoder"][i], "zero_counts", &calibration.counter_zero[counter]);
+    calibration.counter_zero[counter] =
+        JsonWhole(json["encoder"][i], "zero_counts", where("encoder", i));
   }
   for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
-    Take(file, json["strain"][i], "zero_counts", &calibration.strain_zero_counts[i]);
-    Take(file, json["strain"][i], "gain_error", &calibration.strain_gain_error[i]);
+    const OrderedJson& row = json["strain"][i];
+    calibration.strain_zero_counts[i] =
+        static_cast<float>(JsonNumber(row, "zero_counts", where("strain", i)));
+    calibration.strain_gain_error[i] =
+        static_cast<float>(JsonNumber(row, "gain_error", where("strain", i)));
   }
+  const std::string beyond = OutOfRange(sensors, calibration);
+  if (!beyond.empty()) Fail(file, beyond);
   return calibration;
 }
 

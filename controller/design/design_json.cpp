@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "controller/design/design_matrices.h"
 #include "controller/types/control_config.h"
 #include "controller/types/rejected_error.h"
 #include "model/rigid_joint/rigid_joint_step.h"
@@ -59,39 +60,6 @@ void AddArm(const ArmParameters& arm, Digest* digest) {
   *digest << arm.hub2_mass_kg << arm.motor2_mass_kg << arm.motor2_inertia_kgm2
           << arm.payload_mass_kg << arm.payload_inertia_kgm2 << arm.shape_payload_mass_kg
           << static_cast<double>(arm.damping) << static_cast<double>(arm.link1_tip_inertia);
-}
-
-// The members of a design by name: one list for writer and reader.
-template <typename D, typename F>
-void ForEachMatrix(D& design, F&& visit) {
-  visit("A", design.A);
-  visit("B", design.B);
-  visit("A_rate", design.A_rate);
-  visit("B_rate", design.B_rate);
-  visit("Am", design.Am);
-  visit("Bm", design.Bm);
-  visit("K", design.K);
-  visit("K_stop", design.K_stop);
-  visit("P", design.P);
-  visit("J", design.J);
-  visit("G", design.G);
-  visit("S11", design.S11);
-  visit("S12", design.S12);
-  visit("S21", design.S21);
-  visit("S22", design.S22);
-  visit("Ufx", design.Ufx);
-  visit("Ufu", design.Ufu);
-  visit("filter_A", design.filter_A);
-  visit("filter_B", design.filter_B);
-  visit("filter_C", design.filter_C);
-  visit("filter_L", design.filter_L);
-  visit("filter_A_rate", design.filter_A_rate);
-  visit("filter_B_rate", design.filter_B_rate);
-  visit("filter_W", design.filter_W);
-  visit("filter_P", design.filter_P);
-  visit("filter_R", design.filter_R);
-  visit("shaper", design.shaper);
-  visit("rigid_inertia_kgm2", design.rigid_inertia_kgm2);
 }
 
 template <typename M>

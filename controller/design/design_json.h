@@ -7,6 +7,9 @@
 
 namespace flexarm {
 
+/// What every gains file has near its start.
+inline constexpr const char* kGainsMark = R"("format": "flexarm-gains-)";
+
 /// Digest of all settings of a design: arm, sensors, estimator, controller, period. 16 hex digits.
 std::string DesignHash(const ControlConfig& config);
 

@@ -20,6 +20,9 @@
 namespace flexarm {
 namespace {
 
+constexpr std::array<const char*, 4> kCheckNames = {"robustness-spectral-radius", "gain-margin-up",
+                                                    "gain-margin-down", "delay-margin-ms"};
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -348,10 +351,14 @@ RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& 
 }
 
 std::vector<DesignCheck> ChecksOf(const RobustnessAnalysis& robustness) {
-  return {{"robustness-spectral-radius", robustness.worst_required().spectral_radius, 1.0, true},
-          {"gain-margin-up", robustness.margins.gain_up, kGainUp, false},
-          {"gain-margin-down", robustness.margins.gain_down, kGainDown, true},
-          {"delay-margin-ms", 1e3 * robustness.margins.delay_s, kDelay_ms, false}};
+  return {{kCheckNames[0], robustness.worst_required().spectral_radius, 1.0, true},
+          {kCheckNames[1], robustness.margins.gain_up, kGainUp, false},
+          {kCheckNames[2], robustness.margins.gain_down, kGainDown, true},
+          {kCheckNames[3], 1e3 * robustness.margins.delay_s, kDelay_ms, false}};
+}
+
+bool IsRobustnessCheck(const std::string& name) {
+  return std::find(kCheckNames.begin(), kCheckNames.end(), name) != kCheckNames.end();
 }
 
 }  // namespace flexarm

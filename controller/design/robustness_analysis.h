@@ -56,4 +56,7 @@ RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& 
 /// "gain-margin-down", "delay-margin-ms".
 std::vector<DesignCheck> ChecksOf(const RobustnessAnalysis& robustness);
 
+/// Whether ChecksOf gives a check of this name.
+bool IsRobustnessCheck(const std::string& name);
+
 }  // namespace flexarm

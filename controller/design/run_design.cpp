@@ -1,13 +1,14 @@
 #include "controller/design/run_design.h"
 
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "controller/design/design_controller.h"
 #include "controller/design/design_json.h"
 #include "controller/design/design_verdict.h"
+#include "controller/design/gains_check.h"
+#include "controller/files/external_file.h"
+#include "controller/files/external_text.h"
 #include "controller/types/rejected_error.h"
 
 namespace flexarm {
@@ -15,17 +16,17 @@ namespace {
 
 Design ReadDesign(const ControlConfig& config) {
   const std::string& name = config.controller.gains_file;
-  std::ifstream file(name);
-  if (!file) {
-    throw RejectedError(name +
-                        ": cannot be read (controller.gains); create it with `flexarm design`");
+  const FileContent content = ReadExternalFile(name, kGainsFile);
+  if (content.problem) {
+    throw RejectedError(content.problem->Text(name) +
+                        " (controller.gains); create it with `flexarm design`");
   }
-  std::stringstream text;
-  text << file.rdbuf();
   try {
-    return DesignFromJson(text.str(), config);
+    Design design = DesignFromJson(content.text, config);
+    CheckGains(config, &design);
+    return design;
   } catch (const RejectedError& error) {
-    throw RejectedError(name + ": " + error.what());
+    throw RejectedError(Shown(name, kMessageBytes) + ": " + error.what());
   }
 }
 

@@ -81,6 +81,19 @@ OpenSink SinkFor(const SimulationRequest& request, RunContents* contents) {
 }
 
 /// The parts of a simulated run, in order of construction.
+PlannedExperiment PlanOf(const SimulationRequest& request, const Design& design) {
+  try {
+    return {request.experiment,
+            design,
+            request.config.loop.period_s(),
+            {0.0, 0.0},
+            MotionLimitsOf(request.config)};
+  } catch (const RejectedError& error) {
+    if (request.experiment_file.empty()) throw;
+    throw RejectedError(request.experiment_file.string() + ": " + error.what());
+  }
+}
+
 class Simulation {
  public:
   explicit Simulation(const SimulationRequest& request);
@@ -116,8 +129,7 @@ Simulation::Simulation(const SimulationRequest& request)
       grid_(request.config.loop),
       design_(DesignFor(request.config)),
       payload_kg_(request.payload_kg.value_or(Plant().arm.payload_mass_kg)),
-      planned_(request.experiment, design_, grid_.period_s(), {0.0, 0.0},
-               MotionLimitsOf(request.config)),
+      planned_(PlanOf(request, design_)),
       stack_(request.config, Plant(), design_, payload_kg_),
       recording_(MakeRunInfo(request.config, design_, "simulated", "sim"),
                  SinkFor(request, &contents_),

@@ -18,6 +18,7 @@ namespace flexarm {
 struct SimulationRequest {
   RigConfig config;
   Experiment experiment;
+  std::filesystem::path experiment_file = {};  ///< for messages; may be empty
   /// Config of the simulated rig if it differs from that of the design; may differ from `config` in
   /// the settings of the plant only. It is not logged.
   std::optional<RigConfig> plant = std::nullopt;
@@ -36,7 +37,8 @@ struct SimulationResult {
 };
 
 /// @param progress  called repeatedly with the simulated time, s; may be empty
-/// @throws std::runtime_error when the design, the experiment or the log is refused
+/// @throws RejectedError when the design, the experiment (with its file) or the log is refused;
+///   std::runtime_error when the safety machine refused the run
 SimulationResult Simulate(const SimulationRequest& request,
                           const std::function<void(double)>& progress = {});
 

@@ -5,16 +5,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
+#include "controller/files/external_file.h"
 #include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
 
-constexpr std::size_t kLargestFile = 65'536;  // bytes; no file of ours comes near
 constexpr const char* kAdvice =
     "; set daemon.state_directory, or --state-dir, to a folder that this user may write";
 
@@ -25,32 +25,6 @@ constexpr const char* kAdvice =
 std::string ErrorText() { return std::strerror(errno); }
 
 std::string TemporaryOf(const std::string& name) { return name + ".part"; }
-
-// Empty if all was written and synced.
-std::string WriteWhole(int fd, const std::string& text) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t count = ::write(fd, text.data() + done, text.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return "cannot be written: " + ErrorText();
-    done += static_cast<std::size_t>(count);
-  }
-  return ::fsync(fd) == 0 ? std::string() : "cannot be synced: " + ErrorText();
-}
-
-// Empty if `text` has all of the file.
-std::string ReadWhole(int fd, std::string* text) {
-  struct stat there{};
-  if (::fstat(fd, &there) != 0 || !S_ISREG(there.st_mode)) return "is not a regular file";
-  std::array<char, 4096> chunk;
-  for (;;) {
-    const ssize_t count = ::read(fd, chunk.data(), chunk.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return "cannot be read: " + ErrorText();
-    if (count == 0) return {};
-    text->append(chunk.data(), static_cast<std::size_t>(count));
-    if (text->size() > kLargestFile) return "is larger than any that the daemon writes";
-  }
-}
 
 }  // namespace
 
@@ -89,30 +63,16 @@ FileText StateFolder::Read(const std::string& name) const {
     }
     return {.text = {}, .problem = PathOf(part) + ": the writing of this file was interrupted"};
   }
-  std::string text;
-  const std::string problem = ReadWhole(fd, &text);
+  FileContent content = ReadOpenFile(fd, kStateFile);
   ::close(fd);
-  if (!problem.empty()) return {.text = {}, .problem = PathOf(name) + ": " + problem};
-  return {.text = std::move(text), .problem = {}};
+  if (content.problem) return {.text = {}, .problem = content.problem->Text(PathOf(name))};
+  return {.text = std::move(content.text), .problem = {}};
 }
 
 FileChange StateFolder::Replace(const std::string& name, const std::string& text) const {
-  const std::string part = TemporaryOf(name);
-  const auto failed = [&](const std::string& problem) {
-    ::unlinkat(fd_, part.c_str(), 0);
-    return FileChange{.problem = PathOf(name) + ": " + problem, .untouched = true};
-  };
-  const int fd =
-      ::openat(fd_, part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
-  if (fd < 0) return failed("cannot be written: " + ErrorText());
-  const std::string problem = WriteWhole(fd, text);
-  ::close(fd);
-  if (!problem.empty()) return failed(problem);
-  if (::renameat(fd_, part.c_str(), fd_, name.c_str()) != 0) {
-    return failed("cannot be replaced: " + ErrorText());
-  }
-  if (::fsync(fd_) == 0) return {};
-  return {.problem = PathOf(name) + ": the folder cannot be synced: " + ErrorText()};
+  FileChange change = ReplaceFile({.folder = fd_, .name = name, .part = TemporaryOf(name)}, text);
+  if (!change.problem.empty()) change.problem = PathOf(name) + ": " + change.problem;
+  return change;
 }
 
 FileChange StateFolder::Remove(const std::string& name) const {

@@ -4,18 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "controller/files/replace_file.h"
+
 namespace flexarm {
 
 /// Text of a file, or why there is none. Both empty: there is no such file.
 struct FileText {
   std::optional<std::string> text;
   std::string problem;  ///< the file may exist, but what it says is not known
-};
-
-/// Result of a change of a file.
-struct FileChange {
-  std::string problem;     ///< file and system error; empty: done, and it survives a power failure
-  bool untouched = false;  ///< the file is surely as before
 };
 
 /// The daemon's state folder: small files that survive crash and power failure whole. One process

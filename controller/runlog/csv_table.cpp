@@ -1,11 +1,12 @@
 #include "controller/runlog/csv_table.h"
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
-#include "controller/runlog/errors.h"
+#include "controller/files/external_file.h"
+#include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
 
 namespace flexarm {
 namespace {
@@ -29,32 +30,33 @@ std::vector<std::string_view> Cells(std::string_view line) {
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file)
-    : CsvTable(file.string(), std::make_unique<std::ifstream>(file, std::ios::binary)) {}
+    : CsvTable(file.string(), ReadExternalText(file, kCsvFile)) {}
 
-CsvTable::CsvTable(std::string file, const std::string& text)
-    : CsvTable(std::move(file), std::make_unique<std::istringstream>(text)) {}
-
-CsvTable::CsvTable(std::string file, std::unique_ptr<std::istream> stream)
-    : file_(std::move(file)), stream_(std::move(stream)) {
-  if (!*stream_) throw InputError(file_ + ": cannot be opened; expected a CSV file");
+CsvTable::CsvTable(std::string file, std::string text)
+    : file_(std::move(file)), text_(PlainText(std::move(text))) {
   if (!Next()) Fail("found an empty file, expected a header with the names of the columns");
+  if (cells_.size() == 1 && cells_[0].find(';') != std::string_view::npos) {
+    Fail("found semicolons between the columns, expected commas and a point in decimals");
+  }
   columns_ = cells_.size();
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (!column_.emplace(cells_[i], i).second) {
-      Fail("found column " + std::string(cells_[i]) + " twice, expected it once");
+      Fail("found column " + Shown(cells_[i]) + " twice, expected it once");
     }
   }
 }
 
 void CsvTable::Need(std::string_view column) const {
   if (Has(column)) return;
-  Fail("found no column " + std::string(column) + " in the header, expected it for this config");
+  Fail("found no column " + Shown(column) + " in the header, expected it for this config");
 }
 
 bool CsvTable::Next() {
-  while (std::getline(*stream_, line_)) {
+  while (next_ < text_.size()) {
+    const std::size_t end = std::min(text_.find('\n', next_), text_.size());
+    const std::string_view text = Trimmed(std::string_view(text_).substr(next_, end - next_));
+    next_ = end + 1;
     ++line_number_;
-    const std::string_view text = Trimmed(line_);
     if (text.empty() || text.front() == '#') continue;
     cells_ = Cells(text);
     if (!column_.empty() && cells_.size() != columns_) {
@@ -81,11 +83,11 @@ double CsvTable::Number(std::string_view column) const {
 }
 
 void CsvTable::Fail(const std::string& what) const {
-  throw InputError(file_ + ":" + std::to_string(line_number_) + ": " + what);
+  throw InputError(Shown(file_, kMessageBytes) + ":" + std::to_string(line_number_) + ": " + what);
 }
 
 void CsvTable::FailCell(std::string_view column, const std::string& expected) const {
-  Fail(std::string(column) + ": found \"" + std::string(Cell(column)) + "\", expected " + expected);
+  Fail(Shown(column) + ": found \"" + Shown(Cell(column)) + "\", expected " + expected);
 }
 
 }  // namespace flexarm

@@ -3,9 +3,7 @@
 #include <charconv>
 #include <cstddef>
 #include <filesystem>
-#include <istream>
 #include <map>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -13,15 +11,18 @@
 
 namespace flexarm {
 
-/// A CSV file with a header, read row by row. Lines that are empty or begin with # are skipped.
+/// A CSV file with a header, read row by row (ReadExternalFile, so at most 256 MiB). Lines that are
+/// empty or begin with # are skipped. Not movable: cells are views into the text.
 ///
 /// Every error is an InputError: "file:line: column: found .., expected ..".
 class CsvTable {
  public:
   /// Opens the file and reads its header.
   explicit CsvTable(const std::filesystem::path& file);
+  CsvTable(const CsvTable&) = delete;
+  CsvTable& operator=(const CsvTable&) = delete;
   /// The same for a text in memory; `file` is its name in messages.
-  CsvTable(std::string file, const std::string& text);
+  CsvTable(std::string file, std::string text);
 
   bool Has(std::string_view column) const { return column_.find(column) != column_.end(); }
   /// The header must have `column`.
@@ -42,12 +43,10 @@ class CsvTable {
   [[noreturn]] void FailCell(std::string_view column, const std::string& expected) const;
 
  private:
-  CsvTable(std::string file, std::unique_ptr<std::istream> stream);
-
   std::string file_;
-  std::unique_ptr<std::istream> stream_;
+  std::string text_;
+  std::size_t next_ = 0;  // start of the next line
   int line_number_ = 0;
-  std::string line_;
   std::vector<std::string_view> cells_;
   std::size_t columns_ = 0;
   std::map<std::string, std::size_t, std::less<>> column_;

@@ -2,14 +2,9 @@
 
 #include <stdexcept>
 
-namespace flexarm {
+#include "controller/files/input_error.h"  // IWYU pragma: export
 
-/// An input file is not valid. what() gives the file, what was found and what was expected. Tools
-/// end with exit code 2.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+namespace flexarm {
 
 /// A run log could not be written. what() says the file and the cause.
 class RunLogError : public std::runtime_error {

@@ -7,8 +7,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <string_view>
 
+#include "controller/files/external_file.h"
+#include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
 #include "controller/runlog/blob.h"
 #include "controller/runlog/file_descriptor.h"
 #include "controller/runlog/row_order.h"
@@ -21,6 +25,7 @@
 namespace flexarm {
 namespace {
 
+constexpr std::size_t kShownCause = 200;  // bytes of a message of SQLite, which may quote the file
 constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 
 constexpr const char* kSelectTick =
@@ -42,17 +47,10 @@ std::string BeginningOf(int fd) {
   return text;
 }
 
-std::string Printable(std::string text) {
-  for (char& c : text) {
-    if (c < ' ' || c > '~') c = '.';
-  }
-  return text;
-}
-
 }  // namespace
 
 void RunReader::Fail(const std::string& what) const {
-  throw InputError(file_.string() + ": " + what);
+  throw InputError(Shown(file_.string(), kMessageBytes) + ": " + what);
 }
 
 template <typename Action>
@@ -60,19 +58,22 @@ void RunReader::Guarded(Action action) {
   try {
     action();
   } catch (const SqliteError& error) {
-    Fail(std::string("damaged or cut short: found \"") + Printable(error.what()) +
+    Fail("damaged or cut short: found \"" + Shown(error.what(), kShownCause) +
          "\", expected a complete run log");
+  } catch (const std::bad_alloc&) {
+    Fail("damaged: it asks for more memory than there is, expected a complete run log");
   }
 }
 
 RunReader::RunReader(const std::filesystem::path& file) : file_(file) {
-  // A FIFO without a writer would wait.
+  if (const auto problem = ProblemOfPlace(file, "a run log (.flexarm)")) {
+    throw InputError(problem->Text(file));
+  }
   const FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   struct stat there{};
   if (!fd.is_open() || ::fstat(fd.get(), &there) != 0) {
     Fail(std::string(std::strerror(errno)) + "; expected a run log (.flexarm)");
   }
-  if (!S_ISREG(there.st_mode)) Fail("not a regular file; expected a run log (.flexarm)");
   if (there.st_size == 0) Fail("is empty; expected a run log (.flexarm)");
   const std::string beginning = BeginningOf(fd.get());
   if (beginning.starts_with(kRecordMagic)) {
@@ -80,8 +81,7 @@ RunReader::RunReader(const std::filesystem::path& file) : file_(file) {
   } else if (beginning == kSqliteMagic) {
     OpenSqlite(there.st_size);
   } else {
-    Fail("not a run log: begins with \"" + Printable(beginning) +
-         "\", expected a run log (.flexarm)");
+    Fail("not a run log: begins with \"" + Shown(beginning) + "\", expected a run log (.flexarm)");
   }
   Guarded([&] { ReadInfo(); });
 }
@@ -108,7 +108,7 @@ void RunReader::OpenSqlite(std::int64_t file_bytes) {
     db_ = SqliteDb::OpenReadOnly(file_, true);
     db_.Distrust(static_cast<int>(kLargestPayload));
     const std::string problem = SchemaProblem(&db_);
-    if (!problem.empty()) Fail(Printable(problem));
+    if (!problem.empty()) Fail(Shown(problem, kMessageBytes));
     // SQLite takes what is missing of the last page for zeros.
     const std::int64_t bytes =
         db_.QueryInteger("PRAGMA page_count") * db_.QueryInteger("PRAGMA page_size");

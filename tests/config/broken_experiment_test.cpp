@@ -298,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(All, BrokenExperiment, ::testing::ValuesIn(kBroken), Na
 
 TEST(ExperimentFile, AMissingFileIsNamed) {
   EXPECT_EQ(MessageOf<ConfigError>([] { LoadExperiment("no-such-file.toml"); }),
-            "no-such-file.toml: cannot be read: No such file or directory");
+            "no-such-file.toml: cannot be read: No such file or directory; expected a TOML file");
 }
 
 }  // namespace

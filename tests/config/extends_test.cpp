@@ -102,9 +102,9 @@ TEST(ConfigFile, GetsOneMessageIfItIsNotAConfig) {
   expect(folder.Write("empty.toml", ""), "is empty");
   expect(folder.Write("blank.toml", "\n \n"), "is empty");
   expect(folder.Write("huge.toml", std::string((1 << 20) + 1, '#')), "larger than 1 MiB");
-  expect(folder.Write("latin1.toml", "[rig]\nname = \"b\xe4r\"\n"), ":2: is not valid TOML");
-  expect(folder.Write("zero.toml", std::string("[rig]\0", 6)), ":1: is not valid TOML");
-  expect("/dev/zero", "larger than 1 MiB");
+  expect(folder.Write("latin1.toml", "[rig]\nname = \"b\xe4r\"\n"), ":2: found the byte");
+  expect(folder.Write("zero.toml", std::string("[rig]\0", 6)), ":1: found the control character");
+  expect("/dev/zero", "is a device; expected a TOML file");
 }
 
 TEST(ConfigFile, MayStartWithAByteOrderMarkAndHoldUmlauts) {

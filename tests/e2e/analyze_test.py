@@ -77,7 +77,7 @@ class Reduce(ProgramTest):
     def test_the_bound_on_rigid_body_roots_applies_to_the_grid_too(self):
         def shares(*options):
             self.reduce(*REFERENCE, "--grid", "--grid-cells", 2, "-o", self.folder / "out",
-                        *options)
+                        "--overwrite", *options)
             with open(self.folder / "out/grid.csv", encoding="utf-8") as file:
                 return [float(cell["rigid_share_percent"]) for cell in csv.DictReader(file)]
 

@@ -109,7 +109,7 @@ nlohmann::ordered_json ConvergenceJson(const LinkBeam& beam, const std::vector<B
 }
 
 void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector<BeamMode>>& modes,
-               const std::filesystem::path& output) {
+               const std::filesystem::path& output, const OutputRules& rules) {
   std::ostringstream script;
   script << TerminalFor(output, 1200, 850) << std::setprecision(8);
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -133,7 +133,7 @@ void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector
            << Curves("$error" + std::to_string(i), modes[i], false, "linespoints lw 2 pt 7");
   }
   script << "unset multiplot\n";
-  RunGnuplot(script.str());
+  DrawPicture(script.str(), output, rules);
 }
 
 }  // namespace flexarm

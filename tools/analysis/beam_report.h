@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/beam/beam_modes.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 
@@ -29,6 +30,6 @@ nlohmann::ordered_json ConvergenceJson(const LinkBeam& beam, const std::vector<B
 
 /// Draws mode shapes and convergence of the links. @throws std::runtime_error if gnuplot fails
 void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector<BeamMode>>& modes,
-               const std::filesystem::path& output);
+               const std::filesystem::path& output, const OutputRules& rules = ReplacedPicture());
 
 }  // namespace flexarm

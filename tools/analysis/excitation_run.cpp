@@ -45,7 +45,8 @@ ExcitationRun RunExcitation(const ArmModel& model, double theta2_deg, const Exci
   return run;
 }
 
-void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output) {
+void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output,
+                    const OutputRules& rules) {
   std::ostringstream script;
   script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
   const std::size_t stride = std::max<std::size_t>(1, run.sample.size() / 2000);
@@ -64,7 +65,7 @@ void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& outpu
     ++column;
   }
   script << "unset multiplot\n";
-  RunGnuplot(script.str());
+  DrawPicture(script.str(), output, rules);
 }
 
 }  // namespace flexarm

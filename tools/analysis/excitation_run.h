@@ -7,6 +7,7 @@
 
 #include "model/arm/arm_model.h"
 #include "tools/analysis/parametric_study.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 
@@ -28,6 +29,7 @@ ExcitationRun RunExcitation(const ArmModel& model, double theta2_deg, const Exci
 /// Draws the bending of both links and the angles of both joints over time, like figures 4.4 and
 /// 4.5.
 /// @throws std::runtime_error if gnuplot fails
-void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output);
+void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output,
+                    const OutputRules& rules = ReplacedPicture());
 
 }  // namespace flexarm

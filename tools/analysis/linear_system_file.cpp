@@ -1,11 +1,13 @@
 #include "tools/analysis/linear_system_file.h"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "controller/runlog/errors.h"
+#include "controller/files/external_file.h"
+#include "controller/files/external_json.h"
+#include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
 #include "model/math/dense_decompositions.h"
 
 namespace flexarm {
@@ -22,14 +24,9 @@ std::string Size(const MatrixXd& m) {
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : file_(file.string()) {
-    std::ifstream in(file);
-    if (!in) throw InputError(file_ + ": cannot be opened; expected a JSON file");
-    try {
-      json_ = nlohmann::json::parse(in);
-    } catch (const nlohmann::json::exception& error) {
-      throw InputError(file_ + ": is not JSON: " + error.what());
-    }
+  explicit Reader(const std::filesystem::path& file)
+      : file_(Shown(file.string(), kMessageBytes)),
+        json_(ParseJson(ReadExternalText(file, kLinearSystemFile), file_, kLinearSystemFile.name)) {
     if (!json_.is_object()) {
       throw InputError(file_ + ": expected one JSON object with M, K, B, C or A, B, C");
     }
@@ -46,19 +43,19 @@ class Reader {
       if (keys.contains(key)) continue;
       std::string list;
       for (const std::string& known : keys) list += (list.empty() ? "" : ", ") + known;
-      Refuse(key, "is not a key here; expected " + list);
+      Refuse(Shown(key), "is not a key here; expected " + list);
     }
   }
 
   std::string Name() const {
     if (!Has("name")) return std::filesystem::path(file_).filename().string();
     if (!json_["name"].is_string()) Refuse("name", "expected a text");
-    return json_["name"];
+    return json_["name"].get<std::string>();
   }
 
   MatrixXd Matrix(const char* key) const {
     if (!Has(key)) Refuse(key, "is missing; expected a matrix as an array of rows");
-    const nlohmann::json& rows = json_[key];
+    const nlohmann::ordered_json& rows = json_[key];
     if (!rows.is_array() || rows.empty() || !rows[0].is_array() || rows[0].empty()) {
       Refuse(key, "expected a matrix as an array of rows, at least one number");
     }
@@ -86,22 +83,23 @@ class Reader {
   }
 
  private:
-  void FillRow(const std::string& where, const nlohmann::json& row, Index i, MatrixXd* out) const {
+  void FillRow(const std::string& where, const nlohmann::ordered_json& row, Index i,
+               MatrixXd* out) const {
     if (!row.is_array() || static_cast<Index>(row.size()) != out->cols()) {
       Refuse(where, "has " + (row.is_array() ? std::to_string(row.size()) : "no") +
                         " numbers; expected " + std::to_string(out->cols()));
     }
     for (Index j = 0; j < out->cols(); ++j) {
-      const nlohmann::json& value = row[static_cast<std::size_t>(j)];
+      const nlohmann::ordered_json& value = row[static_cast<std::size_t>(j)];
       if (!value.is_number() || !std::isfinite(value.get<double>())) {
-        Refuse(where, "expected finite numbers, found " + value.dump());
+        Refuse(where, "expected finite numbers, found " + Shown(value.dump()));
       }
       (*out)(i, j) = value.get<double>();
     }
   }
 
   std::string file_;
-  nlohmann::json json_;
+  nlohmann::ordered_json json_;
 };
 
 bool IsSymmetric(const MatrixXd& A) {

@@ -7,9 +7,9 @@
 #include <iomanip>
 #include <sstream>
 
+#include "controller/files/write_file.h"
 #include "tools/plot/gnuplot.h"
 #include "tools/runs/run_summary.h"
-#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -127,7 +127,7 @@ void DrawSweep(const ParametricStudy& study, const ParametricSweep& sweep,
   for (const std::size_t signal : {kTwist1, kTwist2}) DrawSpectrum(sweep, signal, &script);
   script << CurveAxes(sweep);
   DrawPeaks(kTwist1, "joints, mrad", &script);
-  RunGnuplot(script.str() + "unset multiplot\n");
+  DrawPicture(script.str() + "unset multiplot\n", output);
 }
 
 std::string Csv(const ParametricStudy& study) {
@@ -175,7 +175,6 @@ void PrintStatements(const std::vector<Statement>& statements) {
 std::vector<std::filesystem::path> WriteParametricFolder(const ParametricStudy& study,
                                                          const std::vector<Statement>& statements,
                                                          const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
   std::vector<std::filesystem::path> files;
   for (std::size_t i = 0; i < study.sweep.size(); ++i) {
     files.push_back(folder /
@@ -183,9 +182,9 @@ std::vector<std::filesystem::path> WriteParametricFolder(const ParametricStudy& 
     DrawSweep(study, study.sweep[i], files.back());
   }
   files.push_back(folder / "parametric.csv");
-  WriteText(files.back(), Csv(study));
+  WriteFile(files.back(), Csv(study), ReplaceAny("a table"));
   files.push_back(folder / "statements.md");
-  WriteText(files.back(), StatementTable(statements));
+  WriteFile(files.back(), StatementTable(statements), ReplaceAny("a page"));
   return files;
 }
 

@@ -20,7 +20,7 @@ void AddRow(const ArmModel& model, const Eigen::VectorXd& q, std::ostream* out) 
 }  // namespace
 
 void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
-                      const std::filesystem::path& output) {
+                      const std::filesystem::path& output, const OutputRules& rules) {
   std::ostringstream script;
   script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
   const std::size_t stride = std::max<std::size_t>(1, run.time_s.size() / 2000);
@@ -42,7 +42,7 @@ void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
     ++column;
   }
   script << "unset multiplot\n";
-  RunGnuplot(script.str());
+  DrawPicture(script.str(), output, rules);
 }
 
 }  // namespace flexarm

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "model/perturbation/perturbation_run.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 
@@ -10,6 +11,7 @@ namespace flexarm {
 /// angles, linear and nonlinear model in the same axes.
 /// @throws std::runtime_error if gnuplot fails
 void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
-                      const std::filesystem::path& output);
+                      const std::filesystem::path& output,
+                      const OutputRules& rules = ReplacedPicture());
 
 }  // namespace flexarm

@@ -4,10 +4,10 @@
 #include <iomanip>
 #include <sstream>
 
+#include "controller/files/write_file.h"
 #include "model/units.h"
 #include "tools/analysis/reduction_report.h"
 #include "tools/plot/gnuplot.h"
-#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -76,7 +76,7 @@ void DrawCurve(const ArmModel& model, const ReductionOptions& options, const Cur
          << "set key top right\nset logscale y\nset format y '10^{%T}'\nset yrange [1e-8:200]\n"
             "set ylabel 'contribution of the other modes, %'\nplot "
          << BothLinks("(100-column(c))") << "unset multiplot\n";
-  RunGnuplot(script.str());
+  DrawPicture(script.str(), output);
 }
 
 // Two views per link, as in the thesis: from the side, which shows the least value, and at an
@@ -114,7 +114,7 @@ void DrawSurface(const ArmModel& model, const ReductionOptions& options, const S
              << "' notitle\n";
     }
   }
-  RunGnuplot(script.str() + "unset multiplot\n");
+  DrawPicture(script.str() + "unset multiplot\n", output);
 }
 
 }  // namespace
@@ -122,7 +122,6 @@ void DrawSurface(const ArmModel& model, const ReductionOptions& options, const S
 std::vector<std::filesystem::path> DrawReductionFigures(const ArmModel& model,
                                                         const ReductionOptions& options,
                                                         const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
   std::vector<std::filesystem::path> files;
   for (const Curve& curve : kCurves) {
     files.push_back(folder / curve.file);
@@ -149,7 +148,7 @@ void WriteCells(const std::vector<ReductionCell>& cells, const std::filesystem::
     }
     out << ',' << cell.rigid_share_percent << ',' << cell.negative_roots << '\n';
   }
-  WriteText(file, out.str());
+  WriteFile(file, out.str(), ReplaceAny("a table"));
 }
 
 }  // namespace flexarm

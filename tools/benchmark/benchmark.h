@@ -61,6 +61,9 @@ struct TablePart {
   TextTable table;
 };
 
+/// First line of a page file, by which flexarm knows its own.
+inline constexpr const char* kBenchmarkPageMark = "<!-- flexarm benchmark -->";
+
 /// The tables that present the results, by the kind of the benchmark table.
 std::vector<TablePart> TableParts(const BenchmarkTable& table);
 /// The same in Markdown.

@@ -61,7 +61,7 @@ void DrawLimits(const BenchmarkTable& table, const std::filesystem::path& output
   script << ")\n";
   for (const Panel& panel : kPanels) WritePanel(panel, table.laws, &script);
   script << "unset multiplot\n";
-  RunGnuplot(script.str());
+  DrawPicture(script.str(), output);
 }
 
 }  // namespace flexarm

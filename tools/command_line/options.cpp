@@ -1,9 +1,13 @@
 #include "tools/command_line/options.h"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
-#include "controller/runlog/errors.h"
+#include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
 
 namespace flexarm {
 
@@ -54,11 +58,29 @@ void AddJson(CLI::App* verb, bool* json) {
   verb->add_flag("--json", *json, "Print one JSON object instead of text");
 }
 
-void CheckPicture(const std::filesystem::path& output) {
+void ReportWritten(const std::filesystem::path& file) {
+  std::cerr << "wrote " << Shown(file.string(), kMessageBytes) << '\n';
+}
+
+void CheckPicture(const std::filesystem::path& output, const OutputRules& rules) {
   const auto extension = output.extension();
-  if (extension == ".png" || extension == ".svg") return;
-  throw InputError(output.string() + ": found extension \"" + extension.string() +
+  if (extension == ".png" || extension == ".svg") return CheckOutput(output, rules);
+  throw InputError(Shown(output.string()) + ": found extension \"" + Shown(extension.string()) +
                    "\", expected .png or .svg");
+}
+
+void OutputOptions::AddTo(CLI::App* verb, const std::string& what, bool required,
+                          const char* type) {
+  verb->add_option("-o,--output", file, what)->required(required)->type_name(type);
+  const bool folder = std::string_view(type) == "DIR";
+  verb->add_flag("--overwrite", overwrite,
+                 folder ? "Write into a folder that has files, and replace those of the same name"
+                        : "Replace an existing file, whatever it is");
+}
+
+OutputRules OutputOptions::Rules(const char* kind, const char* mark,
+                                 std::vector<std::filesystem::path> inputs) const {
+  return {.kind = kind, .mark = mark, .inputs = std::move(inputs), .overwrite = overwrite};
 }
 
 void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what) {

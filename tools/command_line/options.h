@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/config.h"
+#include "controller/files/write_file.h"
 
 namespace CLI {
 class App;
@@ -43,8 +44,24 @@ std::function<std::string(const std::string&)> NumberWithin(double low, double h
 /// Adds --json: one JSON object on stdout and nothing else.
 void AddJson(CLI::App* verb, bool* json);
 
-/// @throws InputError unless the file is a .png or a .svg
-void CheckPicture(const std::filesystem::path& output);
+/// Tells on stderr that a file was written.
+void ReportWritten(const std::filesystem::path& file);
+
+/// @throws InputError unless the file is a .png or a .svg that the rules permit to write
+void CheckPicture(const std::filesystem::path& output, const OutputRules& rules);
+
+/// The options -o/--output and --overwrite of a verb that writes a file or a folder.
+struct OutputOptions {
+  std::filesystem::path file;
+  bool overwrite = false;
+
+  /// @param type  "FILE" or "DIR"
+  void AddTo(CLI::App* verb, const std::string& what, bool required, const char* type = "FILE");
+  bool given() const { return !file.empty(); }
+  /// Rules for a file that the verb writes and that it knows by `mark`.
+  OutputRules Rules(const char* kind, const char* mark,
+                    std::vector<std::filesystem::path> inputs) const;
+};
 
 /// Adds -o/--output FILE.
 void AddOutput(CLI::App* verb, std::filesystem::path* file, const std::string& what);

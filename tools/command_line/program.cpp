@@ -6,15 +6,18 @@
 #include <iostream>
 
 #include "config/config.h"
+#include "controller/files/external_text.h"
+#include "controller/files/failure_text.h"
+#include "controller/files/input_error.h"
+#include "controller/files/standard_output.h"
 #include "controller/runlog/build_info.h"
-#include "controller/runlog/errors.h"
 #include "controller/types/rejected_error.h"
 #include "tools/command_line/verbs.h"
 
 namespace flexarm {
 namespace {
 
-void PrintError(const std::string& text) { std::cerr << "flexarm: " << text << '\n'; }
+void PrintError(const std::string& text) { std::cerr << "flexarm: " << ShownMessage(text) << '\n'; }
 
 // Adds the program's name and a pointer to --help to CLI11's message.
 int BadUsage(const CLI::App& app, const CLI::ParseError& error) {
@@ -66,7 +69,7 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
     PrintError(error.what());
     return Exit::kBadInput;
   } catch (const std::exception& error) {
-    PrintError(error.what());
+    PrintError(FailureText(error));
     return Exit::kFailed;
   }
   return exit.code;
@@ -76,7 +79,11 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
 
 int RunProgram(int argc, char** argv, RegisterVerbs* register_verbs) noexcept {
   try {
-    return Run(argc, argv, register_verbs);
+    const int code = Run(argc, argv, register_verbs);
+    const std::string lost = FlushStandardOutput();
+    if (lost.empty()) return code;
+    PrintError(lost);
+    return code == Exit::kDone ? Exit::kFailed : code;
   } catch (...) {  // not even the message could be built
     return Exit::kFailed;
   }

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "controller/files/external_json.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/conformance.h"
@@ -24,7 +25,7 @@ void PrintJson(const std::vector<ConformanceCheck>& checks, bool passed) {
     json["checks"].push_back(
         {{"name", check.name}, {"passed", check.passed}, {"detail", check.detail}});
   }
-  std::cout << json.dump(2) << '\n';
+  std::cout << PrintedJson(json) << '\n';
 }
 
 int Check(const CheckOptions& options) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/files/external_json.h"
 #include "controller/host/check_host.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
@@ -30,7 +31,7 @@ void PrintJson(const std::vector<HostCheck>& checks, bool ready) {
                               {"required", check.required},
                               {"remedy", check.remedy}});
   }
-  std::cout << json.dump(2) << '\n';
+  std::cout << PrintedJson(json) << '\n';
 }
 
 void PrintText(const std::vector<HostCheck>& checks, bool ready) {

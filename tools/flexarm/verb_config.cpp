@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/files/external_json.h"
+#include "controller/files/external_text.h"
 #include "model/arm/arm_model.h"
 #include "model/arm/linearization.h"
 #include "model/units.h"
@@ -67,14 +69,27 @@ OrderedJson StrainJson(const SensorConfig& sensors) {
   return json;
 }
 
-OrderedJson Derived(const RigConfig& config) {
+// An arm whose every value is allowed may still have no natural frequencies, as with a mass of
+// 1e-30.
+OrderedJson CheckedArmJson(const RigConfig& config, const std::filesystem::path& file) {
+  try {
+    return ArmJson(config);
+  } catch (const std::runtime_error& error) {
+    const std::string cause = error.what();
+    const bool of_link = cause.starts_with("link 1") || cause.starts_with("link 2");
+    const std::string key = of_link ? "link" + cause.substr(5, 1) : std::string("arm");
+    throw ConfigError({{file.string(), 0, key, "", "must give an arm that vibrates: " + cause}});
+  }
+}
+
+OrderedJson Derived(const RigConfig& config, const std::filesystem::path& file) {
   const double period_s = config.loop.period_s();
   OrderedJson json;
   json["valid"] = true;
   json["rig"] = config.rig_name;
   json["backend"] = config.backend.empty() ? OrderedJson(nullptr) : OrderedJson(config.backend);
   json["rate_hz"] = 1 / period_s;
-  json["arm"] = ArmJson(config);
+  json["arm"] = CheckedArmJson(config, file);
   for (const EncoderConfig& encoder : config.sensors.encoder) {
     json["encoders"].push_back(EncoderJson(encoder, period_s));
   }
@@ -112,8 +127,8 @@ void PrintText(const ConfigCheckOptions& options, const OrderedJson& json) {
   const auto line = [](const std::string& name, const std::string& value) {
     std::cout << "  " << std::left << std::setw(26) << name << value << '\n';
   };
-  std::cout << options.file.string() << ": valid\n";
-  line("rig", json["rig"]);
+  std::cout << Shown(options.file.string(), kMessageBytes) << ": valid\n";
+  line("rig", Shown(json["rig"].get<std::string>()));
   line("backend", json["backend"].is_null() ? "none: [hal] is missing" : json["backend"]);
   line("rate", Number(json["rate_hz"]) + " Hz");
   const OrderedJson& arm = json["arm"];
@@ -137,14 +152,14 @@ void PrintText(const ConfigCheckOptions& options, const OrderedJson& json) {
 
 void Check(const ConfigCheckOptions& options) {
   try {
-    const OrderedJson json = Derived(LoadConfig(options.file, options.overrides));
+    const OrderedJson json = Derived(LoadConfig(options.file, options.overrides), options.file);
     if (options.json) {
-      std::cout << json.dump(2) << '\n';
+      std::cout << PrintedJson(json) << '\n';
     } else {
       PrintText(options, json);
     }
   } catch (const ConfigError& error) {
-    if (options.json) std::cout << ProblemsJson(error).dump(2) << '\n';
+    if (options.json) std::cout << PrintedJson(ProblemsJson(error)) << '\n';
     throw;
   }
 }

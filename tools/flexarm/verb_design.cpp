@@ -10,18 +10,19 @@
 #include "controller/design/design_controller.h"
 #include "controller/design/design_json.h"
 #include "controller/design/design_verdict.h"
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
 #include "controller/law/design.h"
 #include "controller/types/rejected_error.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {
 
 struct DesignOptions {
   ConfigOptions config;
-  std::filesystem::path output;
+  OutputOptions output;
   std::vector<double> payload_kg;  ///< empty: those of the config
   bool force = false;
   bool json = false;
@@ -78,7 +79,7 @@ nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& ro
     json["k"].push_back(std::vector<double>());
     for (Eigen::Index j = 0; j < design.K.cols(); ++j) json["k"].back().push_back(design.K(i, j));
   }
-  json["gains"] = design.sound() ? nlohmann::ordered_json(options.output.string())
+  json["gains"] = design.sound() ? nlohmann::ordered_json(options.output.file.string())
                                  : nlohmann::ordered_json(nullptr);
   return json;
 }
@@ -127,6 +128,8 @@ void PrintText(const Design& design, const RobustnessAnalysis& robustness,
 }
 
 int Run(const DesignOptions& options) {
+  const OutputRules rules = options.output.Rules("a gains file", kGainsMark, {options.config.file});
+  CheckOutput(options.output.file, rules);
   RigConfig config = options.config.Load();
   config.controller.gains_file.clear();  // designs also if the config names gains
   Design design = DesignController(config);
@@ -139,11 +142,11 @@ int Run(const DesignOptions& options) {
   for (DesignCheck& check : design.checks) check.waived = options.force && !check.passed();
   const std::string hash = DesignHash(config);
   const Conditioning conditioning = ConditioningOf(config, design);
-  if (design.sound()) WriteText(options.output, DesignToJson(design, hash) + '\n');
+  if (design.sound()) WriteFile(options.output.file, DesignToJson(design, hash) + '\n', rules);
   if (options.json) {
-    std::cout << ToJson(design, robustness, conditioning, options, hash).dump(2) << '\n';
+    std::cout << PrintedJson(ToJson(design, robustness, conditioning, options, hash)) << '\n';
   } else {
-    PrintText(design, robustness, conditioning, options.output);
+    PrintText(design, robustness, conditioning, options.output.file);
   }
   if (!design.sound()) {
     std::cerr << "flexarm: no gains were written: failed: " << verdict.found
@@ -161,11 +164,11 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
       "design",
       "Design the reference model, gains and filter of a rig, check them and write them to a file");
   options->config.AddTo(verb, true);
-  AddOutput(verb, &options->output, "Gains file to write (JSON)");
+  options->output.AddTo(verb, "Gains file to write (JSON)", true);
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payloads with which the closed loop must be stable, kg (default: six of "
                    "controller.payload_range_kg)")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(NumberWithin(0.0, 100.0))
       ->expected(1, -1);
   verb->add_flag("--force", options->force,
                  "Write the gains even if a check failed; the file and every run's log record it");

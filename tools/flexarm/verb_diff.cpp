@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "controller/files/external_json.h"
 #include "controller/runlog/blob.h"
 #include "model/units.h"
 #include "tools/command_line/options.h"
@@ -95,7 +96,7 @@ void PrintJson(const Difference& difference) {
   json["max_applied_torque_difference_nm"] = PairJson(difference.torque_applied_nm);
   json["max_joint_angle_difference_deg"] = PairJson(difference.joint_angle_deg);
   json["max_estimate_difference_si"] = NumberOrNull(difference.estimate);
-  std::cout << json.dump(2) << '\n';
+  std::cout << PrintedJson(json) << '\n';
 }
 
 void PrintText(const Difference& difference) {

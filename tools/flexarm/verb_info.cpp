@@ -5,6 +5,9 @@
 #include <iostream>
 #include <memory>
 
+#include "controller/files/external_json.h"
+#include "controller/files/external_text.h"
+#include "controller/files/nesting.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/safety/torque_gate.h"
 #include "tools/command_line/options.h"
@@ -15,6 +18,8 @@ namespace flexarm {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
+
+constexpr std::size_t kMostShown = 400;  // bytes of a text of the log
 
 struct InfoOptions {
   std::filesystem::path run;
@@ -89,6 +94,13 @@ std::string StateText(const LoadedRun& run) {
   return text;
 }
 
+// Null unless it is JSON that can be printed: parser and destructor are recursive.
+OrderedJson ResultOf(const std::string& text) {
+  if (LineNestedTooDeepJson(text) != 0) return nullptr;
+  OrderedJson result = OrderedJson::parse(text, nullptr, false);
+  return result.is_discarded() ? OrderedJson(nullptr) : result;
+}
+
 OrderedJson Info(const LoadedRun& run) {
   const RunInfo& info = run.contents.info;
   const auto& ticks = run.contents.tick;
@@ -119,8 +131,7 @@ OrderedJson Info(const LoadedRun& run) {
                             : OrderedJson(ToString(run.contents.safety.back().after.state));
   json["trip"] = TripJson(run);
   json["gate"] = GateJson(ticks);
-  json["result"] = OrderedJson::parse(info.result_json, nullptr, false);
-  if (json["result"].is_discarded()) json["result"] = nullptr;
+  json["result"] = ResultOf(info.result_json);
   const std::optional<RunMetrics> metrics = MetricsOf(run);
   json["metrics"] = metrics ? ToJson(*metrics) : OrderedJson(nullptr);
   json["timing"] = TimingJson(run.contents.timing);
@@ -129,7 +140,7 @@ OrderedJson Info(const LoadedRun& run) {
 
 std::string Text(const OrderedJson& value) {
   if (value.is_null()) return "-";
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return Shown(value.get<std::string>(), kMostShown);
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   std::ostringstream text;
   text << std::setprecision(4);
@@ -138,7 +149,7 @@ std::string Text(const OrderedJson& value) {
   } else if (value.is_number_float()) {
     text << value.get<double>();
   } else {
-    text << value;
+    text << Shown(value.dump(-1, ' ', true, OrderedJson::error_handler_t::replace), kMostShown);
   }
   return text.str();
 }
@@ -177,7 +188,7 @@ void PrintSafety(const RunContents& run) {
 }
 
 void PrintText(const OrderedJson& json, const RunContents& run) {
-  std::cout << json["run"].get<std::string>() << '\n';
+  std::cout << Text(json["run"]) << '\n';
   for (const char* key : {"start_utc", "rig", "backend", "clock", "seed", "experiment", "version",
                           "build_id", "log", "digest", "ticks", "missing_ticks"}) {
     PrintLine(key, json[key]);
@@ -213,7 +224,7 @@ void RegisterInfo(CLI::App& app, Exit&) {
     const LoadedRun run = LoadRun(options->run);
     const OrderedJson json = Info(run);
     if (options->json) {
-      std::cout << json.dump(2) << '\n';
+      std::cout << PrintedJson(json) << '\n';
     } else {
       PrintText(json, run.contents);
     }

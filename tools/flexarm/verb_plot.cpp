@@ -2,7 +2,7 @@
 #include <iostream>
 #include <memory>
 
-#include "controller/runlog/errors.h"
+#include "controller/files/input_error.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/plot/gnuplot.h"
@@ -13,11 +13,12 @@ namespace {
 
 struct PlotOptions {
   std::vector<std::filesystem::path> runs;
-  std::filesystem::path output;
+  OutputOptions output;
 };
 
 void Plot(const PlotOptions& options) {
-  CheckPicture(options.output);
+  const OutputRules rules = PictureRules(options.runs, options.output.overwrite);
+  CheckPicture(options.output.file, rules);
   std::vector<PlotRun> runs;
   for (const auto& file : options.runs) {
     runs.push_back(PlotDataOf(LoadRun(file)));
@@ -25,8 +26,8 @@ void Plot(const PlotOptions& options) {
       throw InputError(file.string() + ": has no ticks; expected a run with at least one");
     }
   }
-  RunGnuplot(PlotScript(runs, options.output));
-  std::cerr << "wrote " << options.output.string() << '\n';
+  DrawPicture(PlotScript(runs, options.output.file), options.output.file, rules);
+  ReportWritten(options.output.file);
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ void RegisterPlot(CLI::App& app, Exit&) {
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* verb = app.add_subcommand("plot", "Draw one run, or several runs in the same axes");
   verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");
-  AddOutput(verb, &options->output, "Picture to write, .png or .svg");
+  options->output.AddTo(verb, "Picture to write, .png or .svg", true);
   verb->footer(
       "The picture shows the joint angles with their references, the asked and the applied\n"
       "torques, the tip deflections, the tip's distance from its resting place, the safety state,\n"

@@ -7,6 +7,7 @@
 #include "controller/commissioning/calibration_file.h"
 #include "controller/design/design_json.h"
 #include "controller/design/run_design.h"
+#include "controller/files/external_json.h"
 #include "controller/law/design.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/csv_import.h"
@@ -185,7 +186,7 @@ int Run(const ReplayOptions& options) {
               << ": digest: damaged since it was written\n";
   }
   if (options.json) {
-    std::cout << ToJson(outcome).dump(2) << '\n';
+    std::cout << PrintedJson(ToJson(outcome)) << '\n';
   } else {
     PrintText(outcome);
   }

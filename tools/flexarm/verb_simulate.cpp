@@ -8,6 +8,8 @@
 
 #include "controller/design/design_verdict.h"
 #include "controller/design/run_design.h"
+#include "controller/files/external_json.h"
+#include "controller/files/external_text.h"
 #include "controller/host/simulation.h"
 #include "controller/runlog/errors.h"
 #include "controller/types/law_table.h"
@@ -102,7 +104,8 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
     std::printf("delay found               %+d samples more than declared\n", result.delay_found);
   }
   std::printf("real-time factor          %.0f\n", result.realtime_factor);
-  if (!run.empty()) std::printf("run                       %s\n", run.c_str());
+  if (run.empty()) return;
+  std::printf("run                       %s\n", Shown(run.string(), kMessageBytes).c_str());
 }
 
 void WarnOfDesign(const DesignVerdict& design) {
@@ -111,13 +114,14 @@ void WarnOfDesign(const DesignVerdict& design) {
   std::cerr << "flexarm: warning: "
             << (forced ? "the gains failed checks, which --force waived: "
                        : "the daemon does not arm this design, it was rejected: ")
-            << design.found << '\n';
+            << ShownMessage(design.found) << '\n';
 }
 
 int Run(const SimulateOptions& options) {
   SimulationRequest request;
   request.config = LoadWithOptions(options);
-  request.experiment = LoadExperiment(ExperimentFile(options.experiment, options.config.file));
+  request.experiment_file = ExperimentFile(options.experiment, options.config.file);
+  request.experiment = LoadExperiment(request.experiment_file);
   request.payload_kg = options.payload_kg;
   if (!options.output.empty()) request.log = options.output;
   const DesignVerdict design = JudgeDesign(request.config, DesignFor(request.config));
@@ -127,7 +131,7 @@ int Run(const SimulateOptions& options) {
       Simulate(request, show ? std::function<void(double)>(ShowProgress) : nullptr);
   if (show) std::fprintf(stderr, "\r\033[K");
   if (options.json) {
-    std::cout << ToJson(result, design, options.output).dump(2) << '\n';
+    std::cout << PrintedJson(ToJson(result, design, options.output)) << '\n';
   } else {
     PrintText(result, options.output);
   }
@@ -159,7 +163,7 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
                    "estimator.name: kalman, difference, polynomial, ekf-payload");
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payload of the plant, kg; the controller is designed for the config's")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(NumberWithin(0.0, 100.0));
   verb->add_option("--plant-modes", options->plant_modes, "sim.plant_modes: bending modes a link");
   verb->add_option("--seed", options->seed, "sim.seed: seed of the measurement noise");
   verb->add_flag("--without-prediction", options->without_prediction,

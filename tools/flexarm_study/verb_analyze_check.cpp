@@ -3,10 +3,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/support/parallel_for.h"
-#include "tools/support/text_file.h"
 #include "tools/thesis/thesis_check.h"
 
 namespace flexarm {
@@ -15,20 +16,23 @@ namespace {
 struct ThesisCheckOptions {
   ConfigOptions config;
   bool json = false;
-  std::filesystem::path output;
+  OutputOptions output;
 };
 
 void Analyze(const ThesisCheckOptions& options) {
   const RigConfig config = options.config.Load();
+  const OutputRules rules =
+      options.output.Rules("such a page", kThesisCheckTitle, {options.config.file});
+  if (options.output.given()) CheckOutput(options.output.file, rules);
   const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 5));
   const std::string page = ThesisCheckPage(config, statements);
-  if (!options.output.empty()) {
-    WriteText(options.output, page);
-    std::cerr << "wrote " << options.output.string() << '\n';
+  if (options.output.given()) {
+    WriteFile(options.output.file, page, rules);
+    ReportWritten(options.output.file);
   }
   if (options.json) {
-    std::cout << StatementsJson(statements).dump(2) << '\n';
-  } else if (options.output.empty()) {
+    std::cout << PrintedJson(StatementsJson(statements)) << '\n';
+  } else if (!options.output.given()) {
     std::cout << page;
   }
 }
@@ -41,7 +45,7 @@ void RegisterAnalyzeCheck(CLI::App& analyze, Exit&) {
       "check", "Check the statements of the thesis against the model, with computed numbers");
   options->config.AddTo(verb, true);
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output, "Markdown page to write")->type_name("FILE");
+  options->output.AddTo(verb, "Markdown page to write", false);
   verb->footer(
       "Prints a table: section, statement, result of the model, verdict.\n"
       "Example: flexarm analyze check -c config/thesis-rig.toml -o docs/thesis-check.md");

@@ -5,10 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/files/external_json.h"
 #include "model/simulation/arm_simulator.h"
 #include "tools/analysis/excitation_run.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {
@@ -21,7 +23,7 @@ struct ExciteOptions {
   double duration_s = 3.0;
   bool without_dissipation = false;
   bool json = false;
-  std::filesystem::path output;
+  OutputOptions output;
 };
 
 ExcitationRun RunOf(const ExciteOptions& options) {
@@ -44,15 +46,18 @@ nlohmann::ordered_json ToJson(const ExciteOptions& options, const ExcitationRun&
 }
 
 void Excite(const ExciteOptions& options) {
-  if (!options.output.empty()) CheckPicture(options.output);
+  if (options.output.given())
+    CheckPicture(options.output.file,
+                 PictureRules({options.config.file}, options.output.overwrite));
   const ExcitationRun run = RunOf(options);
-  if (!options.output.empty()) {
-    DrawExcitation(run, options.output);
-    std::cerr << "wrote " << options.output.string() << '\n';
+  if (options.output.given()) {
+    DrawExcitation(run, options.output.file,
+                   PictureRules({options.config.file}, options.output.overwrite));
+    ReportWritten(options.output.file);
   }
   const nlohmann::ordered_json json = ToJson(options, run);
   if (options.json) {
-    std::cout << json.dump(2) << '\n';
+    std::cout << PrintedJson(json) << '\n';
     return;
   }
   std::cout << std::setprecision(6) << "largest bending, mm: " << run.peak_bending_mm[0] << ' '
@@ -83,9 +88,8 @@ void RegisterAnalyzeExcite(CLI::App& analyze, Exit&) {
   verb->add_flag("--without-dissipation", options->without_dissipation,
                  "Leave out dry friction and the links' damping");
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output,
-                   "Picture of bending and joint angles, .png or .svg (figures 4.4 and 4.5)")
-      ->type_name("FILE");
+  options->output.AddTo(
+      verb, "Picture of bending and joint angles, .png or .svg (figures 4.4 and 4.5)", false);
   verb->footer(
       "Prints the largest bending of the links and the final position of the tip. The wave has a\n"
       "period of 1 s; the thesis does not state its amplitude.\n"

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "controller/files/external_json.h"
 #include "controller/runlog/errors.h"
 #include "model/arm/linearization.h"
 #include "model/math/dense_decompositions.h"
@@ -18,6 +19,7 @@
 #include "tools/analysis/perturbation_figures.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {
@@ -34,7 +36,7 @@ struct LinearizeOptions {
   std::array<double, 2> delta_nm = {0.05, 0.0125};
   double duration_s = 2.0;
   bool json = false;
-  std::filesystem::path output;
+  OutputOptions output;
 };
 
 struct State {
@@ -141,18 +143,21 @@ void PrintLinearization(const nlohmann::ordered_json& json) {
 }
 
 void Run(const LinearizeOptions& options) {
-  if (!options.output.empty()) CheckPicture(options.output);
+  if (options.output.given())
+    CheckPicture(options.output.file,
+                 PictureRules({options.config.file}, options.output.overwrite));
   const ArmModel model(options.config.Load().arm, {options.modes, options.modes});
   const State x = StateOf(options, model);
   nlohmann::ordered_json json = LinearJson(options, model, x);
   const PerturbationRun run = PerturbationOf(options, model, x);
   json["perturbation"] = PerturbationJson(options, model, run);
-  if (!options.output.empty()) {
-    DrawPerturbation(model, run, options.output);
-    std::cerr << "wrote " << options.output.string() << '\n';
+  if (options.output.given()) {
+    DrawPerturbation(model, run, options.output.file,
+                     PictureRules({options.config.file}, options.output.overwrite));
+    ReportWritten(options.output.file);
   }
   if (options.json) {
-    std::cout << json.dump(2) << '\n';
+    std::cout << PrintedJson(json) << '\n';
   } else {
     PrintLinearization(json);
   }
@@ -197,9 +202,8 @@ void RegisterAnalyzeLinearize(CLI::App& analyze, Exit&) {
       ->check(NumberWithin(0.01, 60.0))
       ->capture_default_str();
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output,
-                   "Picture of the perturbation test, .png or .svg (thesis's figures 6.1 and 6.2)")
-      ->type_name("FILE");
+  options->output.AddTo(
+      verb, "Picture of the perturbation test, .png or .svg (thesis's figures 6.1 and 6.2)", false);
   verb->footer(
       "At the state the links are not bent and the rotors stand at the angles of their hubs. The\n"
       "perturbation test simulates the arm from there without friction, with the given torques\n"

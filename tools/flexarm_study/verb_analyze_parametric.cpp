@@ -2,6 +2,8 @@
 #include <iostream>
 #include <memory>
 
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
 #include "tools/analysis/parametric_report.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
@@ -15,24 +17,25 @@ struct ParametricOptions {
   ConfigOptions config;
   Excitation excitation;
   bool json = false;
-  std::filesystem::path output;
+  OutputOptions output;
 };
 
 void Analyze(const ParametricOptions& options) {
   const RigConfig config = options.config.Load();
+  if (options.output.given()) MakeOutputFolder(options.output.file, options.output.overwrite);
   const std::size_t runs = ParametricRuns(config);
   const ParametricStudy study =
       RunParametricStudy(config, options.excitation, ProgressBar("runs", runs));
   const std::vector<Statement> statements =
       ParametricStatements(study, RunParametricStudy(config, Strong(options.excitation),
                                                      ProgressBar("runs, more torque", runs)));
-  if (!options.output.empty()) {
-    for (const auto& file : WriteParametricFolder(study, statements, options.output)) {
-      std::cerr << "wrote " << file.string() << '\n';
+  if (options.output.given()) {
+    for (const auto& file : WriteParametricFolder(study, statements, options.output.file)) {
+      ReportWritten(file);
     }
   }
   if (options.json) {
-    std::cout << ParametricJson(study, statements).dump(2) << '\n';
+    std::cout << PrintedJson(ParametricJson(study, statements)) << '\n';
   } else {
     PrintStatements(statements);
   }
@@ -53,9 +56,9 @@ void RegisterAnalyzeParametric(CLI::App& analyze, Exit&) {
       ->check(NumberWithin(1e-6, 1e3))
       ->default_str("0.4 0.1");
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output,
-                   "Folder for pictures like figures 5.1 to 5.5, all results as CSV, and the table")
-      ->type_name("DIR");
+  options->output.AddTo(
+      verb, "Folder for pictures like figures 5.1 to 5.5, all results as CSV, and the table", false,
+      "DIR");
   verb->footer(
       "Varies one parameter at a time and prints which statements of the thesis hold.\n"
       "Example: flexarm analyze parametric -c config/thesis-rig.toml -o parametric");

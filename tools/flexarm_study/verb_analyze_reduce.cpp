@@ -3,6 +3,8 @@
 #include <memory>
 #include <optional>
 
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
 #include "controller/runlog/errors.h"
 #include "model/units.h"
 #include "tools/analysis/reduction_figures.h"
@@ -23,14 +25,14 @@ struct ReduceOptions {
   bool with_grid = false;
   ReductionGrid grid;
   bool json = false;
-  std::filesystem::path output;
+  OutputOptions output;
 };
 
 void Check(const ReduceOptions& options) {
   if (options.system.empty() == !options.config.given()) {
     throw InputError("analyze reduce: expected either --config FILE or --system FILE");
   }
-  if (!options.system.empty() && (options.with_grid || !options.output.empty())) {
+  if (!options.system.empty() && (options.with_grid || options.output.given())) {
     throw InputError("analyze reduce: --grid and --output are for an arm: they need --config");
   }
   if (!(options.grid.theta2_deg[0] < options.grid.theta2_deg[1])) {
@@ -42,6 +44,7 @@ nlohmann::ordered_json Reduce(const ReduceOptions& options) {
   if (!options.system.empty()) {
     return SystemReductionJson(LoadLinearSystem(options.system), options.reduction);
   }
+  if (options.output.given()) MakeOutputFolder(options.output.file, options.output.overwrite);
   const ArmModel model(options.config.Load().arm, {options.modes, options.modes});
   const NominalMotion motion{options.theta2_deg * kRadPerDeg, options.theta1_rate_rad_s,
                              options.theta2_rate_rad_s};
@@ -51,14 +54,13 @@ nlohmann::ordered_json Reduce(const ReduceOptions& options) {
     const std::vector<ReductionCell> cells =
         ReduceCells(model, centres, options.reduction, ProgressBar("cells", centres.size()));
     json["grid"] = GridJson(options.grid, cells);
-    if (!options.output.empty()) {
-      std::filesystem::create_directories(options.output);
-      WriteCells(cells, options.output / "grid.csv");
+    if (options.output.given()) {
+      WriteCells(cells, options.output.file / "grid.csv");
     }
   }
-  if (!options.output.empty()) {
-    for (const auto& file : DrawReductionFigures(model, options.reduction, options.output)) {
-      std::cerr << "wrote " << file.string() << '\n';
+  if (options.output.given()) {
+    for (const auto& file : DrawReductionFigures(model, options.reduction, options.output.file)) {
+      ReportWritten(file);
     }
   }
   return json;
@@ -126,9 +128,8 @@ void RegisterAnalyzeReduce(CLI::App& analyze, Exit&) {
       ->check(NumberWithin(0.0, 1e6))
       ->capture_default_str();
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output,
-                   "Folder for pictures like figures 6.3 to 6.9, and for the grid as CSV")
-      ->type_name("DIR");
+  options->output.AddTo(
+      verb, "Folder for pictures like figures 6.3 to 6.9, and for the grid as CSV", false, "DIR");
   verb->footer(
       "Prints the share of the first k modes of each link, and the Hankel singular values.\n"
       "Example: flexarm analyze reduce -c config/thesis-rig.toml --theta2-deg 45 --theta1-rate -1\n"
@@ -137,7 +138,7 @@ void RegisterAnalyzeReduce(CLI::App& analyze, Exit&) {
     Check(*options);
     const nlohmann::ordered_json json = Reduce(*options);
     if (options->json) {
-      std::cout << json.dump(2) << '\n';
+      std::cout << PrintedJson(json) << '\n';
     } else {
       PrintReduction(json);
     }

@@ -3,12 +3,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
 #include "tools/benchmark/benchmark.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
 #include "tools/support/parallel_for.h"
-#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -18,6 +19,7 @@ struct BenchmarkOptions {
   GridOptions grid;
   std::string table = ToString(BenchmarkKind::kCommands), laws, seeds;
   std::filesystem::path output, page;
+  bool overwrite = false;
   bool json = false;
 };
 
@@ -26,20 +28,25 @@ void Run(const BenchmarkOptions& options) {
   const BenchmarkSet set = BenchmarkSetOf(BenchmarkKindNamed(options.table), config,
                                           ExperimentFile({}, options.config.file).parent_path());
   const SweepPlan plan = BenchmarkPlan(config, set, options.laws, options.seeds);
+  const OutputRules page{.kind = "a benchmark's page",
+                         .mark = kBenchmarkPageMark,
+                         .inputs = {options.config.file, options.output},
+                         .overwrite = options.overwrite};
+  if (!options.page.empty()) CheckOutput(options.page, page);
   SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
   const std::vector<std::size_t> points = PointsToRun(&file, ParseShard(options.grid.shard));
   RunSweep(plan, points, &file, options.grid.jobs, ProgressBar("runs", points.size()));
   const std::size_t missing = PointsToRun(&file, {}).size();
   const BenchmarkTable table = TableOf(set.kind, plan, file.Rows());
   if (!options.page.empty()) {
-    WriteText(options.page, BenchmarkMarkdown(table));
-    std::cerr << "wrote " << options.page.string() << '\n';
+    WriteFile(options.page, kBenchmarkPageMark + ("\n\n" + BenchmarkMarkdown(table)), page);
+    ReportWritten(options.page);
   }
   if (options.json) {
     nlohmann::ordered_json json = BenchmarkJson(table);
     json["missing"] = missing;
     json["results"] = options.output.string();
-    std::cout << json.dump(2) << '\n';
+    std::cout << PrintedJson(json) << '\n';
   } else {
     std::cout << BenchmarkMarkdown(table);
     if (missing > 0) std::cout << "\n" << missing << " runs belong to other shards\n";
@@ -67,6 +74,8 @@ void RegisterBenchmark(CLI::App& app, Exit&) {
   options->grid.AddTo(verb);
   verb->add_option("--page", options->page, "Also write the tables to this file, in Markdown")
       ->type_name("FILE");
+  verb->add_flag("--overwrite", options->overwrite,
+                 "Replace an existing file of --page, whatever it is");
   AddOutput(verb, &options->output, "Results, a SQLite file; runs that it holds are not repeated");
   AddJson(verb, &options->json);
   verb->footer(

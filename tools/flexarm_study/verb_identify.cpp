@@ -4,6 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
@@ -12,14 +14,18 @@
 #include "tools/identification/identification.h"
 #include "tools/runs/run_summary.h"
 #include "tools/support/parallel_for.h"
-#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {
 
+constexpr const char* kConfigName = "identified.toml";
+constexpr const char* kResultName = "identification.json";
+constexpr const char* kPictureName = "identification.png";
+
 struct IdentifyOptions {
   ConfigOptions config;
-  std::filesystem::path run, validate, output;
+  std::filesystem::path run, validate;
+  OutputOptions output;
   std::vector<std::string> free;
   std::vector<double> span, validate_span;
   bool json = false;
@@ -111,27 +117,43 @@ void PrintIdentification(const nlohmann::ordered_json& json) {
               json["converged"].get<bool>() ? "" : ", the limit: not converged");
 }
 
+// The folder was judged as a whole: only its inputs are kept.
+OutputRules RulesOf(const IdentifyOptions& options) {
+  return {.kind = "a result",
+          .mark = {},
+          .inputs = {options.config.file, options.run, options.validate},
+          .overwrite = true};
+}
+
+void PrepareFolder(const IdentifyOptions& options) {
+  MakeOutputFolder(options.output.file, options.output.overwrite);
+  for (const char* name : {kConfigName, kResultName, kPictureName}) {
+    CheckOutput(options.output.file / name, RulesOf(options));
+  }
+}
+
 void Write(const IdentifyOptions& options, const Identification& result,
            const std::vector<Judged>& judged, const nlohmann::ordered_json& json) {
-  std::filesystem::create_directories(options.output);
   const auto write = [&](const char* name, const std::string& text) {
-    const std::filesystem::path file = options.output / name;
-    WriteText(file, text);
-    std::cerr << "wrote " << file.string() << '\n';
+    const std::filesystem::path file = options.output.file / name;
+    WriteFile(file, text, RulesOf(options));
+    ReportWritten(file);
   };
-  write("identified.toml", result.config.text);
-  write("identification.json", json.dump(2) + "\n");
+  write(kConfigName, result.config.text);
+  write(kResultName, json.dump(2) + "\n");
   std::vector<ComparisonColumn> columns;
   for (const Judged& j : judged) {
     const std::string part = columns.empty() ? "identification" : "validation";
     columns.push_back({part + " on " + j.run.file().filename().string(), &j.run, j.predicted});
   }
-  DrawComparison(columns, options.output / "identification.png");
-  std::cerr << "wrote " << (options.output / "identification.png").string() << '\n';
+  const std::filesystem::path picture = options.output.file / kPictureName;
+  DrawComparison(columns, picture, RulesOf(options));
+  ReportWritten(picture);
 }
 
 int Run(const IdentifyOptions& options) {
   const RigConfig config = ConfigFor(options);
+  if (options.output.given()) PrepareFolder(options);
   std::vector<FreeParameter> free;
   for (const std::string& text : options.free) free.push_back(ParseFreeParameter(config, text));
   RunComparison run(options.run, config, SpanOf(options.span));
@@ -144,9 +166,9 @@ int Run(const IdentifyOptions& options) {
   judged.push_back(Judge(std::move(run), config, result.config));
   if (other) judged.push_back(Judge(std::move(*other), config, result.config));
   const nlohmann::ordered_json json = ToJson(result, judged);
-  if (!options.output.empty()) Write(options, result, judged, json);
+  if (options.output.given()) Write(options, result, judged, json);
   if (options.json) {
-    std::cout << json.dump(2) << '\n';
+    std::cout << PrintedJson(json) << '\n';
   } else {
     PrintIdentification(json);
   }
@@ -178,9 +200,8 @@ void RegisterIdentify(CLI::App& app, Exit& exit) {
       ->expected(2)
       ->type_name("FROM TO");
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output,
-                   "Folder for identified.toml, identification.json and .png")
-      ->type_name("DIR");
+  options->output.AddTo(verb, "Folder for identified.toml, identification.json and .png", false,
+                        "DIR");
   verb->footer(
       "The nonlinear model gets the torques of the run and the joint angles at its start.\n"
       "fit = 100 (1 - |y - yhat| / |y - mean y|) over the whole run, for the joint angles and for\n"

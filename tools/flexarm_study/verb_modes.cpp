@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "controller/files/external_json.h"
 #include "controller/runlog/errors.h"
 #include "model/arm/arm_model.h"
 #include "model/arm/linearization.h"
@@ -14,6 +15,7 @@
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
+#include "tools/plot/gnuplot.h"
 
 namespace flexarm {
 namespace {
@@ -27,7 +29,7 @@ struct ModesOptions {
   std::optional<double> base_spring_nm_per_rad;
   bool convergence = false;
   bool json = false;
-  std::filesystem::path output;
+  OutputOptions output;
 };
 
 BeamRoot RootOf(const ModesOptions& options) {
@@ -53,7 +55,9 @@ nlohmann::ordered_json ArmJson(const ModesOptions& options, const ArmModel& mode
 }
 
 nlohmann::ordered_json Modes(const ModesOptions& options) {
-  if (!options.output.empty()) CheckPicture(options.output);
+  if (options.output.given())
+    CheckPicture(options.output.file,
+                 PictureRules({options.config.file}, options.output.overwrite));
   ArmParameters arm = options.config.Load().arm;
   // The shapes get this payload too: the frequencies converge faster with the number of modes.
   if (options.payload_kg) arm.payload_mass_kg = arm.shape_payload_mass_kg = *options.payload_kg;
@@ -75,9 +79,10 @@ nlohmann::ordered_json Modes(const ModesOptions& options) {
       json["convergence"].push_back(ConvergenceJson(beams[i], modes[i]));
     }
   }
-  if (!options.output.empty()) {
-    DrawBeams(beams, modes, options.output);
-    std::cerr << "wrote " << options.output.string() << '\n';
+  if (options.output.given()) {
+    DrawBeams(beams, modes, options.output.file,
+              PictureRules({options.config.file}, options.output.overwrite));
+    ReportWritten(options.output.file);
   }
   return json;
 }
@@ -138,14 +143,13 @@ void RegisterModes(CLI::App& app, Exit&) {
       ->check(NumberWithin(0.0, 1000.0));
   AddBase(verb, options.get());
   AddJson(verb, &options->json);
-  verb->add_option("-o,--output", options->output,
-                   "Picture of shapes, frequencies and convergence, .png or .svg")
-      ->type_name("FILE");
+  options->output.AddTo(verb, "Picture of shapes, frequencies and convergence, .png or .svg",
+                        false);
   verb->footer("Example: flexarm modes -c config/thesis-rig.toml --theta2-deg 45 --payload-kg 0.2");
   verb->callback([options] {
     const nlohmann::ordered_json json = Modes(*options);
     if (options->json) {
-      std::cout << json.dump(2) << '\n';
+      std::cout << PrintedJson(json) << '\n';
     } else {
       PrintModes(json);
     }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "controller/files/external_json.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
@@ -23,7 +24,7 @@ void Run(const ReportOptions& options) {
                    .experiments = ExperimentFile({}, options.config.file).parent_path(),
                    .folder = options.output});
   if (options.json) {
-    std::cout << nlohmann::ordered_json{{"page", page.string()}}.dump(2) << '\n';
+    std::cout << PrintedJson(nlohmann::ordered_json{{"page", page.string()}}) << '\n';
   } else {
     std::cout << "Open " << page.string() << " in a browser; it needs no network\n";
   }

@@ -4,10 +4,13 @@
 #include <iostream>
 #include <memory>
 
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
+#include "tools/plot/gnuplot.h"
 #include "tools/support/parallel_for.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/sweep.h"
@@ -37,7 +40,7 @@ struct MergeOptions {
 struct ShowOptions {
   std::filesystem::path results;
   std::string by;
-  std::filesystem::path output;
+  OutputOptions output;
   bool json = false;
 };
 
@@ -96,7 +99,7 @@ void Run(const RunOptions& options) {
     json["run_now"] = points.size();
     json["not_completed"] = failed;
     json["results"] = options.output.string();
-    std::cout << json.dump(2) << '\n';
+    std::cout << PrintedJson(json) << '\n';
   } else {
     std::printf("%zu runs made, %zu were in the file; %zu did not complete (tripped or refused)\n",
                 points.size(), of_shard - points.size(), failed);
@@ -126,7 +129,7 @@ int Merge(const MergeOptions& options) {
     json["done"] = grid.size() - missing.size();
     json["missing"] = missing;
     json["results"] = options.output.string();
-    std::cout << json.dump(2) << '\n';
+    std::cout << PrintedJson(json) << '\n';
   } else {
     PrintMissing(missing, grid);
   }
@@ -134,18 +137,22 @@ int Merge(const MergeOptions& options) {
 }
 
 void Show(const ShowOptions& options) {
-  const bool csv = options.output.extension() == ".csv";
-  if (!options.output.empty() && !csv) CheckPicture(options.output);
+  const std::filesystem::path& output = options.output.file;
+  const bool csv = output.extension() == ".csv";
+  const OutputRules rules = csv ? SummaryCsvRules({options.results}, options.output.overwrite)
+                                : PictureRules({options.results}, options.output.overwrite);
+  if (csv) CheckOutput(output, rules);
+  if (options.output.given() && !csv) CheckPicture(output, rules);
   SweepFile file = SweepFile::Open(options.results);
   const SweepSummary summary = Summarise(&file, options.by);
   if (csv) {
-    WriteSummaryCsv(summary, options.output);
-  } else if (!options.output.empty()) {
-    DrawSummary(summary, options.output);
+    WriteSummaryCsv(summary, output, rules);
+  } else if (options.output.given()) {
+    DrawSummary(summary, output, rules);
   }
   if (options.json) {
-    std::cout << SummaryJson(summary).dump(2) << '\n';
-  } else if (options.output.empty()) {
+    std::cout << PrintedJson(SummaryJson(summary)) << '\n';
+  } else if (!options.output.given()) {
     PrintSummary(summary);
   }
 }
@@ -177,8 +184,7 @@ void RegisterShow(CLI::App* sweep) {
                    "Axis to compare along: it varies fastest in the table and is the x axis of the "
                    "picture (default: the first with more than one value)")
       ->type_name("KEY");
-  verb->add_option("-o,--output", options->output, "Write a .png, .svg or .csv instead of text")
-      ->type_name("FILE");
+  options->output.AddTo(verb, "Write a .png, .svg or .csv instead of text", false);
   AddJson(verb, &options->json);
   verb->footer(
       "Medians are over the runs that completed; the column beside them says how many did.\n"

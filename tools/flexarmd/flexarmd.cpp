@@ -3,10 +3,13 @@
 #include <iostream>
 
 #include "config/config.h"
+#include "controller/files/external_text.h"
+#include "controller/files/failure_text.h"
+#include "controller/files/input_error.h"
+#include "controller/files/standard_output.h"
 #include "controller/host/daemon.h"
 #include "controller/realtime/realtime_setup.h"
 #include "controller/runlog/build_info.h"
-#include "controller/runlog/errors.h"
 #include "controller/types/rejected_error.h"
 #include "hal/bus_device.h"
 
@@ -91,7 +94,7 @@ int Serve(const Options& options) {
 }
 
 int PrintError(const std::string& text, int code) {
-  std::cerr << "flexarmd: " << text << '\n';
+  std::cerr << "flexarmd: " << ShownMessage(text) << '\n';
   return code;
 }
 
@@ -128,7 +131,7 @@ int Main(int argc, char** argv) {
   } catch (const InputError& error) {
     return PrintError(error.what(), kBadInput);
   } catch (const std::exception& error) {
-    return PrintError(error.what(), kFailed);
+    return PrintError(FailureText(error), kFailed);
   }
 }
 
@@ -137,7 +140,9 @@ int Main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return flexarm::Main(argc, argv);
+    const int code = flexarm::Main(argc, argv);
+    const std::string lost = flexarm::FlushStandardOutput();
+    return lost.empty() || code != 0 ? code : flexarm::PrintError(lost, 1);
   } catch (...) {  // not even the message could be built
     return 1;
   }

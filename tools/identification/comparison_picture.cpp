@@ -51,7 +51,7 @@ void DrawSignal(std::size_t number, const ComparisonColumn& column, std::size_t 
 }  // namespace
 
 void DrawComparison(const std::vector<ComparisonColumn>& column,
-                    const std::filesystem::path& output) {
+                    const std::filesystem::path& output, const OutputRules& rules) {
   const std::size_t rows = column.front().run->signal().size();
   std::ostringstream script;
   script << std::setprecision(8)
@@ -68,7 +68,7 @@ void DrawComparison(const std::vector<ComparisonColumn>& column,
     }
   }
   script << "unset multiplot\n";
-  RunGnuplot(script.str());
+  DrawPicture(script.str(), output, rules);
 }
 
 }  // namespace flexarm

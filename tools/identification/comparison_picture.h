@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/files/write_file.h"
 #include "tools/identification/run_comparison.h"
 
 namespace flexarm {
@@ -19,6 +20,6 @@ struct ComparisonColumn {
 /// Draws measured and predicted signals below each other, one column per run. .png or .svg.
 /// @throws std::runtime_error if gnuplot is missing or fails
 void DrawComparison(const std::vector<ComparisonColumn>& column,
-                    const std::filesystem::path& output);
+                    const std::filesystem::path& output, const OutputRules& rules);
 
 }  // namespace flexarm

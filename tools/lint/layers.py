@@ -24,6 +24,7 @@ LAYERS = {
     "hal/wired": "model hal hal/gpiod",
     "hal/emulation": "hal hal/sim hal/canopen hal/modbus hal/wired",
     "estimator": "model model/math model/parameters model/beam model/arm model/rigid_joint hal",
+    "controller/files": "",
     "controller/exchange": "",
     "controller/realtime": "hal controller/exchange",
     "controller/types": "model model/parameters model/arm model/rigid_joint hal hal/sim hal/wired "
@@ -34,54 +35,55 @@ LAYERS = {
                             "controller/law",
     "controller/planner": "model/math model/rigid_joint controller/types controller/law",
     "controller/design": "model model/math model/arm model/rigid_joint estimator controller/types "
-                         "controller/law",
+                         "controller/law controller/files",
     "controller/step": "model model/rigid_joint hal estimator controller/types controller/law",
     "controller/runlog": "model model/parameters model/beam hal estimator controller/exchange "
-                         "controller/realtime controller/types controller/safety",
+                         "controller/realtime controller/types controller/safety controller/files",
     "controller/tasks": "hal hal/sim controller/exchange controller/realtime controller/types "
                         "controller/safety controller/law controller/reference "
                         "controller/planner controller/step",
-    "controller/latch": "controller/types controller/runlog",
+    "controller/latch": "controller/files controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
-                                "controller/types controller/runlog controller/tasks",
+                                "controller/types controller/runlog controller/tasks controller/files",
     "controller/operator": "model hal hal/gpiod estimator controller/realtime controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
     "controller/host": "hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/operator",
-    "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/types controller/runlog",
-    "tools/support": "controller/runlog",
+    "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
+              "controller/types controller/runlog",
+    "tools/support": "",
     "tools/runs": "controller/runlog config",
-    "tools/plot": "model model/beam controller/safety tools/runs",
-    "tools/command_line": "controller/types controller/runlog config",
+    "tools/plot": "model model/beam controller/files controller/safety tools/runs",
+    "tools/command_line": "controller/files controller/types controller/runlog config",
     "tools/analysis": "model model/math model/beam model/beam_methods model/arm model/simulation "
-                      "model/perturbation model/reduction controller/runlog config tools/support "
+                      "model/perturbation model/reduction controller/files config tools/support "
                       "tools/runs tools/plot",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
-                   "config tools/support tools/runs tools/plot",
+                   "config tools/support tools/runs tools/plot controller/files",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "
                             "controller/types controller/runlog config tools/support tools/runs "
-                            "tools/plot",
+                            "tools/plot controller/files",
     "tools/thesis": "model model/math model/beam_methods model/arm model/simulation "
                     "model/perturbation model/reduction controller/types controller/law "
                     "controller/design controller/host config tools/support tools/analysis "
                     "tools/sweep",
     "tools/report": "model/simulation model/perturbation controller/runlog controller/host config "
                     "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
-                    "tools/thesis",
+                    "tools/thesis controller/files",
     "tools/flexarm": "model model/arm hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
-                     "controller/operator controller/host config tools/support tools/runs "
-                     "tools/plot tools/command_line",
+                     "controller/operator controller/host config tools/runs "
+                     "tools/plot tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/arm model/simulation "
                            "model/perturbation controller/runlog tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
-                           "tools/identification tools/thesis tools/report",
+                           "tools/identification tools/thesis tools/report controller/files tools/plot",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
-                      "config",
+                      "config controller/files",
 }
 LAYERS = {folder: uses.split() for folder, uses in LAYERS.items()}
 

@@ -3,6 +3,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
+
+#include "controller/files/write_file.h"
 
 namespace flexarm {
 
@@ -16,10 +19,18 @@ std::string QuotedPath(const std::string& path);
 /// A text quoted for gnuplot, with its special characters taken literally.
 std::string Quoted(const std::string& text);
 
-/// "set terminal" and "set output" for a .png or .svg of the given size in pixels.
+/// "set terminal" for a .png or .svg of the given size in pixels.
 std::string TerminalFor(const std::filesystem::path& output, int width, int height);
 
-/// Pipes a script through gnuplot. @throws std::runtime_error if gnuplot is missing or fails
-void RunGnuplot(const std::string& script);
+/// Rules for a picture that a user named: one that flexarm drew is replaced.
+OutputRules PictureRules(std::vector<std::filesystem::path> inputs, bool overwrite);
+
+/// Rules for a picture in a folder whose files may be replaced.
+OutputRules ReplacedPicture();
+
+/// Draws a script that begins with TerminalFor into a file.
+/// @throws std::runtime_error if gnuplot is missing or fails; InputError as WriteFile does
+void DrawPicture(const std::string& script, const std::filesystem::path& output,
+                 const OutputRules& rules = ReplacedPicture());
 
 }  // namespace flexarm

@@ -65,7 +65,7 @@ void DrawLoopRuns(const std::vector<PlotRun>& runs, const std::string& title,
          << "\nset grid lc rgb '#D9D9D9'\nset xlabel 's'\n";
   for (std::size_t i = 0; i < kPanels.size(); ++i) WritePanel(kPanels[i], runs, i == 0, &script);
   script << "unset multiplot\n";
-  RunGnuplot(script.str());
+  DrawPicture(script.str(), output);
 }
 
 }  // namespace flexarm

@@ -2,11 +2,11 @@
 
 #include <iterator>
 
+#include "controller/files/write_file.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
 #include "tools/report/chapters.h"
 #include "tools/support/parallel_for.h"
-#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {
@@ -26,7 +26,7 @@ void CheckFolder(const std::filesystem::path& folder) {
 std::filesystem::path WriteReport(const ReportRequest& request) {
   CheckFolder(request.folder);
   for (const char* part : {"figures", "tables", "runs"}) {
-    std::filesystem::create_directories(request.folder / part);
+    MakeFolder(request.folder / part);
   }
   ReportContext context{.config = request.config,
                         .experiments = request.experiments,
@@ -48,7 +48,7 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
             ThisBuild().version + ", " + BuildId() +
             "); every verdict follows from numbers by a rule. The arm is simulated.");
   std::filesystem::path file = request.folder / "report.html";
-  WriteText(file, page.Text());
+  WriteFile(file, page.Text(), ReplaceAny("a report"));
   return file;
 }
 

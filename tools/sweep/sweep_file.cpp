@@ -1,14 +1,18 @@
 #include "tools/sweep/sweep_file.h"
 
+#include <new>
 #include <sstream>
 #include <utility>
 
-#include "controller/runlog/errors.h"
+#include "controller/files/external_file.h"
+#include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
 
 namespace flexarm {
 namespace {
 
 constexpr int kFormat = 3;
+constexpr std::size_t kShownCause = 200, kShownDifference = 400;  // bytes
 
 // Runs `body`; an error of SQLite becomes an InputError that names the file.
 template <typename Body>
@@ -16,8 +20,31 @@ auto Told(const std::filesystem::path& file, const Body& body) {
   try {
     return body();
   } catch (const SqliteError& error) {
-    throw InputError(file.string() + ": " + error.what());
+    throw InputError(Shown(file.string(), kMessageBytes) + ": " + Shown(error.what(), kShownCause));
+  } catch (const std::bad_alloc&) {
+    throw InputError(Shown(file.string(), kMessageBytes) +
+                     ": is damaged: it asks for more memory than there is");
   }
+}
+
+constexpr const char* kExpected = "a result file of flexarm sweep";
+
+[[noreturn]] void RefuseSweepFile(const std::filesystem::path& file) {
+  throw InputError(Shown(file.string(), kMessageBytes) + ": is not " + kExpected);
+}
+
+// SQLite would create the missing tables of an empty file, and tidy up a run's log when it closes
+// it: so what is no result file is found before it is opened.
+void CheckSweepFile(const std::filesystem::path& file, bool may_be_new) {
+  if (const auto problem = ProblemOfPlace(file, kExpected)) {
+    if (may_be_new && problem->missing) return;
+    throw InputError(problem->Text(file));
+  }
+  constexpr std::size_t kHeader = 100, kApplicationId = 68;  // SQLite's file format, section 1.3
+  const std::string header = Beginning(file, kHeader);
+  if (may_be_new && header.empty()) return;
+  const bool is_sqlite = header.size() == kHeader && header.starts_with("SQLite format 3");
+  if (!is_sqlite || header.substr(kApplicationId, 4) != std::string(4, '\0')) RefuseSweepFile(file);
 }
 
 std::string QuotedColumn(const std::string& name) {
@@ -90,6 +117,7 @@ SweepFile::SweepFile(std::filesystem::path path, SqliteDb db)
     : path_(std::move(path)), db_(std::move(db)) {}
 
 SweepFile SweepFile::Resume(const std::filesystem::path& file, const SweepIdentity& identity) {
+  CheckSweepFile(file, true);
   return Told(file, [&] {
     SweepFile sweep(file, SqliteDb::OpenOrCreate(file));
     // A file without tables is new, or its process was killed before it created them.
@@ -97,15 +125,13 @@ SweepFile SweepFile::Resume(const std::filesystem::path& file, const SweepIdenti
     sweep.Load();
     const std::string difference = DifferenceOf(sweep.identity_, identity);
     if (difference.empty()) return sweep;
-    throw InputError(file.string() + ": holds another sweep, which " + difference +
-                     "; name another file with -o");
+    throw InputError(file.string() + ": holds another sweep, which " +
+                     Shown(difference, kShownDifference) + "; name another file with -o");
   });
 }
 
 SweepFile SweepFile::Open(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) {
-    throw InputError(file.string() + ": No such file or directory");
-  }
+  CheckSweepFile(file, false);
   return Told(file, [&] {
     SweepFile sweep(file, SqliteDb::OpenOrCreate(file));
     sweep.Load();
@@ -148,7 +174,7 @@ void SweepFile::Load() {
   if (db_.QueryInteger("SELECT count(*) FROM sqlite_master WHERE name IN ('sweep', 'axis', 'run')"
                        " AND type = 'table'") != 3 ||
       db_.QueryInteger("SELECT format FROM sweep") != kFormat) {
-    throw InputError(path_.string() + ": is not a result file of flexarm sweep");
+    RefuseSweepFile(path_);
   }
   SqliteStatement sweep =
       db_.Prepare("SELECT build, config, experiment_name, experiment FROM sweep");
@@ -161,7 +187,12 @@ void SweepFile::Load() {
   SqliteStatement value =
       db_.Prepare("SELECT axis, target, key, value FROM axis ORDER BY axis, number");
   while (value.Step()) {
-    if (static_cast<std::size_t>(value.Integer(0)) == identity_.axes.size()) {
+    const auto axis = static_cast<std::size_t>(value.Integer(0));
+    const bool next = axis == identity_.axes.size();
+    if (!next && axis + 1 != identity_.axes.size()) {
+      throw InputError(path_.string() + ": has axes that are not numbered from 0 on");
+    }
+    if (next) {
       AxisTarget target = AxisTarget::kConfig;
       while (value.Text(1) != ToString(target) && target != AxisTarget::kSeed) {
         target = static_cast<AxisTarget>(static_cast<int>(target) + 1);
@@ -170,7 +201,11 @@ void SweepFile::Load() {
     }
     identity_.axes.back().values.push_back(value.Text(3));
   }
-  grid_ = SweepGrid(identity_.axes);
+  try {
+    grid_ = SweepGrid(identity_.axes);
+  } catch (const InputError& error) {
+    throw InputError(path_.string() + ": " + error.what());
+  }
 }
 
 std::vector<SweepRow> SweepFile::Rows() {

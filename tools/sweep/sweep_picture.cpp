@@ -76,7 +76,8 @@ std::string PanelScript(const Panel& panel, const std::vector<Curve>& curves, co
 
 }  // namespace
 
-void DrawSummary(const SweepSummary& summary, const std::filesystem::path& output) {
+void DrawSummary(const SweepSummary& summary, const std::filesystem::path& output,
+                 const OutputRules& rules) {
   if (summary.axes.empty() || summary.groups.empty()) {
     throw InputError(
         output.string() +
@@ -97,7 +98,7 @@ void DrawSummary(const SweepSummary& summary, const std::filesystem::path& outpu
   }
   const std::vector<Curve> curves = CurvesOf(summary);
   for (const Panel& panel : kPanels) script += PanelScript(panel, curves, axis, numbers);
-  RunGnuplot(script + "unset multiplot\n");
+  DrawPicture(script + "unset multiplot\n", output, rules);
 }
 
 }  // namespace flexarm

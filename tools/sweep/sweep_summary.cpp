@@ -8,12 +8,16 @@
 #include <map>
 #include <sstream>
 
+#include "controller/files/external_text.h"
+#include "controller/files/write_file.h"
 #include "controller/runlog/errors.h"
 #include "tools/runs/run_summary.h"
-#include "tools/support/text_file.h"
 
 namespace flexarm {
 namespace {
+
+constexpr std::size_t kShownReasons = 400;  // bytes
+constexpr const char* kSummaryCsvMark = "runs,completed,trips,refused";
 
 void AddOnce(const std::string& text, std::vector<std::string>* list) {
   if (!text.empty() && std::find(list->begin(), list->end(), text) == list->end()) {
@@ -153,6 +157,9 @@ void PrintSummary(const SweepSummary& summary) {
   table[0].emplace_back("completed");
   for (const SweepMeasure& measure : kSweepMeasures) table[0].emplace_back(measure.title);
   for (const SweepGroup& group : summary.groups) table.push_back(CellsOf(summary, group));
+  for (auto& line : table) {
+    for (std::string& cell : line) cell = Shown(cell);
+  }
   std::vector<std::size_t> width(table[0].size());
   for (const auto& line : table) {
     for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], line[i].size());
@@ -163,8 +170,10 @@ void PrintSummary(const SweepSummary& summary) {
     }
     if (row > 0) {
       const SweepGroup& group = summary.groups[row - 1];
-      if (!group.trips.empty()) std::printf("  trips: %s", Joined(group.trips).c_str());
-      if (!group.refused.empty()) std::printf("  refused: %s", Joined(group.refused).c_str());
+      if (!group.trips.empty()) std::printf("  trips: %s", Shown(Joined(group.trips)).c_str());
+      if (!group.refused.empty()) {
+        std::printf("  refused: %s", Shown(Joined(group.refused), kShownReasons).c_str());
+      }
     }
     std::printf("\n");
   }
@@ -172,10 +181,18 @@ void PrintSummary(const SweepSummary& summary) {
               summary.points);
 }
 
-void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& output) {
+OutputRules SummaryCsvRules(std::vector<std::filesystem::path> inputs, bool overwrite) {
+  return {.kind = "a table of a sweep",
+          .mark = kSummaryCsvMark,
+          .inputs = std::move(inputs),
+          .overwrite = overwrite};
+}
+
+void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& output,
+                     const OutputRules& rules) {
   std::ostringstream csv;
   for (const SweepAxis& axis : summary.axes) csv << CsvCell(axis.Column()) << ',';
-  csv << "runs,completed,trips,refused";
+  csv << kSummaryCsvMark;
   for (const SweepMeasure& measure : kSweepMeasures) csv << ',' << measure.column;
   csv << '\n';
   for (const SweepGroup& group : summary.groups) {
@@ -191,7 +208,7 @@ void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& o
     }
     csv << '\n';
   }
-  WriteText(output, csv.str());
+  WriteFile(output, csv.str(), rules);
 }
 
 }  // namespace flexarm

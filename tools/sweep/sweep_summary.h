@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/plot/gnuplot.h"
 #include "tools/sweep/sweep_file.h"
 #include "tools/sweep/sweep_grid.h"
 #include "tools/sweep/sweep_row.h"
@@ -46,10 +47,14 @@ double MedianOf(std::vector<double> values);
 nlohmann::ordered_json GroupJson(const SweepGroup& group);
 nlohmann::ordered_json SummaryJson(const SweepSummary& summary);
 void PrintSummary(const SweepSummary& summary);
-/// @throws InputError if the file cannot be written
-void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& output);
+/// Rules for such a table: one that flexarm wrote is replaced.
+OutputRules SummaryCsvRules(std::vector<std::filesystem::path> inputs, bool overwrite);
+/// @throws InputError as WriteFile does
+void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& output,
+                     const OutputRules& rules);
 /// Draws rms, final errors, settling and residual along the last axis, with one curve for every
 /// combination of the other axes. @throws InputError  there is nothing to draw
-void DrawSummary(const SweepSummary& summary, const std::filesystem::path& output);
+void DrawSummary(const SweepSummary& summary, const std::filesystem::path& output,
+                 const OutputRules& rules = ReplacedPicture());
 
 }  // namespace flexarm

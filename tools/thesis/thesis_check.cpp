@@ -36,8 +36,9 @@ std::vector<Statement> ThesisStatements(const RigConfig& config,
 
 std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement>& statements) {
   const Excitation weak;
-  return "# What the thesis says, and what the model says\n\n"
-         "After reading this page you know which statements of the thesis agree with the model of "
+  return std::string(kThesisCheckTitle) +
+         "\n\nAfter reading this page you know which statements of the thesis agree with the model "
+         "of "
          "this project, and by which numbers.\n\n"
          "The table checks statements of chapters 3 to 7, in our words, against the model with the "
          "config `" +

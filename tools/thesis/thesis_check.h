@@ -9,6 +9,9 @@
 
 namespace flexarm {
 
+/// First line of the page, by which flexarm knows its own.
+inline constexpr const char* kThesisCheckTitle = "# What the thesis says, and what the model says";
+
 /// Chapter 3's beams: the lumped transfer matrix and the fitted shapes against the exact ones.
 std::vector<Statement> BeamStatements(const ArmParameters& arm);
 

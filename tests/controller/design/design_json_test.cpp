@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -240,9 +241,76 @@ class GainsFile : public testing::Test {
 
 TEST_F(GainsFile, IsUsedWhenTheConfigNamesIt) {
   Design marked = ShippedDesign();
-  marked.G(0, 0) += 0.25;  // no design would give this: it must come from the file
+  marked.G(0, 0) *= 1.0 + 1e-9;  // as of another processor: it must come from the file
   Write(JsonOf(marked, ShippedRig()));
   ExpectSameBits(DesignFor(RigWithGains()), marked);
+}
+
+// Three of these passed all checks of the file, ran, and tripped; K_stop shows in no ordinary run.
+TEST_F(GainsFile, WhoseGainsWereChangedIsRefusedByTheirName) {
+  const auto refusal = [this](const char* name, double factor) {
+    nlohmann::json json = ShippedJson();
+    for (auto& row : json[name]) {
+      for (auto& number : row) number = factor * number.get<double>();
+    }
+    Write(json.dump());
+    return MessageOf<RejectedError>([&] { DesignFor(RigWithGains()); });
+  };
+  for (const char* name : {"K", "K_stop"}) {
+    EXPECT_THAT(refusal(name, -1.0),
+                AllOf(HasSubstr(path_), HasSubstr("'" + std::string(name) + "'[")));
+    EXPECT_THAT(refusal(name, 10.0), HasSubstr("but the design of this config gives"));
+  }
+  EXPECT_THAT(refusal("filter_L", 0.0), HasSubstr("'filter_L'["));
+  EXPECT_EQ(refusal("K", 1.0), "");
+}
+
+TEST_F(GainsFile, OneChangedNumberOfAnyMatrixIsFound) {
+  for (const auto& [name, rows] : ShippedJson().items()) {
+    if (!rows.is_array() || name == "checks") continue;
+    nlohmann::json json = ShippedJson();
+    double& number = json[name].back().back().get_ref<double&>();
+    number += 0.01 + 0.01 * std::fabs(number);
+    Write(json.dump());
+    EXPECT_THAT(MessageOf<RejectedError>([&] { DesignFor(RigWithGains()); }),
+                HasSubstr("'" + name + "'["))
+        << name;
+  }
+}
+
+TEST_F(GainsFile, AChangedGainTableIsRefused) {
+  const std::vector<std::string> plans = {"controller.name=receding-horizon"};
+  const RigConfig rig = ShippedRig(plans);
+  const nlohmann::json json = nlohmann::json::parse(JsonOf(DesignController(rig), rig));
+  const auto refusal = [&](const char* pointer) {
+    nlohmann::json changed = json;
+    nlohmann::json& number = changed[nlohmann::json::json_pointer(pointer)];
+    number = 1.001 * number.get<double>() + 1e-3;
+    Write(changed.dump());
+    return MessageOf<RejectedError>([&] { DesignFor(RigWithGains(plans)); });
+  };
+  EXPECT_THAT(refusal("/payload/model/0"), HasSubstr("'payload.model'[0]"));
+  EXPECT_THAT(refusal("/payload/gain/1/0/0"), HasSubstr("'payload.gain[1]'[0][0]"));
+  EXPECT_THAT(refusal("/payload/start_gain/2/1/11"), HasSubstr("'payload.start_gain[2]'[1][11]"));
+  EXPECT_THAT(refusal("/payload/max_kg"), HasSubstr("'payload.max_kg'"));
+  EXPECT_THAT(refusal("/payload/gain_payload_kg/1"), HasSubstr("'payload.gain_payload_kg'[1]"));
+}
+
+TEST_F(GainsFile, ItsChecksAreThoseOfTheDesignAndNoOthers) {
+  const auto refusal = [this](const auto& change) {
+    nlohmann::json json = ShippedJson();
+    change(&json["checks"]);
+    Write(json.dump());
+    return MessageOf<RejectedError>([&] { DesignFor(RigWithGains()); });
+  };
+  EXPECT_THAT(refusal([](auto* checks) { checks->erase(0); }), HasSubstr("is missing"));
+  EXPECT_THAT(refusal([](auto* checks) { (*checks)[0]["limit"] = 1e300; }), HasSubstr("the limit"));
+  EXPECT_THAT(refusal([](auto* checks) { (*checks)[0]["below"] = false; }),
+              HasSubstr("another result"));
+  EXPECT_THAT(refusal([](auto* checks) {
+                checks->push_back({{"name", "\x1B"}, {"value", 0}, {"limit", 1}, {"below", true}});
+              }),
+              HasSubstr("the check '\\x1b' is none of this design"));
 }
 
 TEST_F(GainsFile, OfAnotherAlphaIsRefused) {
@@ -275,13 +343,12 @@ TEST_F(GainsFile, WithAFailedCheckIsRefusedByItsName) {
 
 TEST_F(GainsFile, WithAFailedCheckThatWasWaivedIsUsed) {
   Design bad = ShippedDesign();
-  bad.checks[0].value = 2.0 * bad.checks[0].limit;
-  bad.checks[0].waived = true;
+  bad.checks.push_back({"delay-margin-ms", 1.0, 5.0, false, true});  // a --force of `design`
   Write(JsonOf(bad, ShippedRig()));
   const Design read = DesignFor(RigWithGains());
-  EXPECT_TRUE(read.checks[0].waived);
-  EXPECT_FALSE(read.checks[0].passed());
-  EXPECT_FALSE(read.checks[1].waived);
+  EXPECT_TRUE(read.checks.back().waived);
+  EXPECT_FALSE(read.checks.back().passed());
+  EXPECT_FALSE(read.checks.front().waived);
 }
 
 // The hash covers the settings of a design, and no others.

@@ -136,7 +136,7 @@ TEST_F(ProgramTest, BadInputIsExitCodeTwoInEveryVerbThatReadsARun) {
                            "diff text text", "plot text -o x.png"}) {
     ExpectBadInput(verb, "text: not a run log: begins with \"this is no log\"");
   }
-  ExpectBadInput("info missing", "missing: No such file or directory");
+  ExpectBadInput("info missing", "missing: cannot be read: No such file or directory");
 }
 
 TEST_F(ProgramTest, ABadConfigNamesFileAndLine) {
