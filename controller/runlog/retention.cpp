@@ -1,14 +1,13 @@
 #include "controller/runlog/retention.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdint>
-#include <fstream>
-#include <string_view>
+#include <string>
 #include <system_error>
 #include <vector>
 
+#include "controller/files/external_file.h"
 #include "controller/runlog/record_format.h"
 #include "controller/runlog/run_file_lock.h"
 #include "controller/runlog/schema.h"
@@ -28,12 +27,9 @@ struct Run {
 // endian; or a record file.
 bool IsRunLog(const std::filesystem::path& file) {
   constexpr std::size_t kApplicationId = 68;
-  std::array<char, kApplicationId + 4> head{};
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(head.data(), head.size());
-  const std::string_view bytes(head.data(), static_cast<std::size_t>(stream.gcount()));
+  const std::string bytes = Beginning(file, kApplicationId + 4);
   if (bytes.starts_with(kRecordMagic)) return true;
-  if (bytes.size() < head.size() || !bytes.starts_with("SQLite format 3")) return false;
+  if (bytes.size() < kApplicationId + 4 || !bytes.starts_with("SQLite format 3")) return false;
   std::uint32_t id = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     id = id << 8 | static_cast<unsigned char>(bytes[kApplicationId + i]);
