@@ -41,18 +41,18 @@ class ScratchFile {
   int fd() const { return ::fileno(file_); }
   void Write(const std::string& text) {
     const bool done = std::fwrite(text.data(), 1, text.size(), file_) == text.size();
-    if (!done || std::fflush(file_) != 0) {
+    if (!done || std::fseek(file_, 0, SEEK_SET) != 0) {  // which flushes
       throw std::runtime_error(std::string("a temporary file cannot be written: ") +
                                std::strerror(errno));
     }
-    std::rewind(file_);
   }
   std::string Text() {
-    std::rewind(file_);
     std::string text;
     std::array<char, 65'536> chunk;
-    for (std::size_t n = 0; (n = std::fread(chunk.data(), 1, chunk.size(), file_)) > 0;) {
-      text.append(chunk.data(), n);
+    std::size_t count = std::fseek(file_, 0, SEEK_SET) == 0 ? chunk.size() : 0;
+    while (count == chunk.size()) {
+      count = std::fread(chunk.data(), 1, chunk.size(), file_);
+      text.append(chunk.data(), count);
     }
     return text;
   }
