@@ -13,6 +13,8 @@
 #include <memory>
 #include <string>
 
+#include "controller/files/external_text.h"
+
 namespace flexarm {
 namespace {
 
@@ -70,8 +72,11 @@ JournalQueue::Write MakeWrite() {
 
 Journal::Journal() : queue_(MakeWrite()) {}
 
+// A line may quote what a client, a file or a device said.
 void Journal::Report(bool is_error, const std::string& text) {
-  queue_.Push({.is_error = is_error, .text = text, .at = std::chrono::system_clock::now()});
+  queue_.Push({.is_error = is_error,
+               .text = Shown(text, kMessageBytes),
+               .at = std::chrono::system_clock::now()});
 }
 
 }  // namespace flexarm

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "controller/files/external_text.h"
 #include "controller/operator/command_text.h"
 #include "controller/operator/log_condition.h"
 #include "controller/operator/operator_roles.h"
@@ -111,7 +112,7 @@ nlohmann::json CommandDispatch::Start(const std::string& name, int client,
     if (asked.number != 0) return nullptr;
     return RefusalJson(*kind, asked.refusal, now.permit.state);
   }
-  return Failure("no such command: '" + name + "'",
+  return Failure("no such command: '" + Shown(name) + "'",
                  "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
                  "home, prove-switches, sim");
 }

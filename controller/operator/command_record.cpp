@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "controller/files/external_text.h"
 #include "controller/operator/operator_roles.h"
 
 namespace flexarm {
@@ -55,12 +56,13 @@ void CommandRecord::Keep(std::int64_t now_ns, const Peer& by, const std::string&
   }
   ++kept_;
   const bool ok = answer.value("ok", false);
-  const std::string text = command + " by " + PeerText(by) + ": " +
+  const std::string name = Shown(command);  // a client may call it anything
+  const std::string text = name + " by " + PeerText(by) + ": " +
                            (ok ? "accepted" : "refused: " + answer.value("error", ""));
   report_(!ok, text);
   events_->Push({.time_ns = now_ns,
                  .kind = "operator",
-                 .name = command,
+                 .name = name,
                  .text = text,
                  .value_json =
                      nlohmann::json{

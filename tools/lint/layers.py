@@ -45,10 +45,11 @@ LAYERS = {
     "controller/latch": "controller/files controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks controller/files",
-    "controller/operator": "model hal hal/gpiod estimator controller/realtime controller/types "
+    "controller/operator": "model hal hal/gpiod estimator controller/files controller/realtime "
+                           "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
-    "controller/host": "hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
+    "controller/host": "controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/operator",
     "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "

@@ -59,6 +59,15 @@ TEST_F(CommandRecordTest, ARefusedOneAlsoHasItsReason) {
   EXPECT_EQ(Json::parse(TakeEvents(&events_)[0].value_json)["refusal"], "busy");
 }
 
+TEST_F(CommandRecordTest, ANameThatCannotBePrintedIsNoneInJournalAndLog) {
+  const std::string name("a\0\x1b[2J\n", 7);
+  record_.Asked(1, kAlice, name);
+  Answered(1, {{"ok", false}, {"command", name}, {"error", "no such command"}});
+  EXPECT_EQ(journal_.lines[0].second,
+            R"(a\x00\x1b[2J\n by alice (uid 1000, pid 11): refused: no such command)");
+  EXPECT_EQ(TakeEvents(&events_)[0].name, R"(a\x00\x1b[2J\n)");
+}
+
 // An `arm` that is tested for a second is answered after a `stop` that came later.
 TEST_F(CommandRecordTest, EachAnswerHasTheUserOfItsOwnCommand) {
   record_.Asked(1, kAlice, "arm");

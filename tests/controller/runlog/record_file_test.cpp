@@ -194,7 +194,7 @@ TEST_F(RecordFileTest, AFileMadeToHurtIsReadQuickly) {
 
 TEST_F(RecordFileTest, AFifoIsRefusedByName) {
   ASSERT_EQ(::mkfifo(File().c_str(), 0600), 0);
-  EXPECT_NE(ReadingError(File()).find("not a regular file"), std::string::npos);
+  EXPECT_NE(ReadingError(File()).find("is a FIFO"), std::string::npos);
   EXPECT_EQ(RecoverRun(File()).result, Recovery::Result::kFailed);
 }
 
