@@ -61,8 +61,8 @@ class Flood(ProgramTest):
 
     def client(self, timeout_s=20.0):
         client = socket.socket(socket.AF_UNIX)
+        client.connect(str(self.folder / "socket"))  # waits for its turn, as the program does
         client.settimeout(timeout_s)
-        client.connect(str(self.folder / "socket"))
         return client
 
     def ask(self, line):

@@ -97,9 +97,9 @@ class RunLog(ProgramTest):
     @in_real_time
     def test_without_a_file_nothing_is_armed_unless_the_config_says_so(self):
         blocked = self.folder / "runs"
-        blocked.write_text("a file where the folder should be", encoding="utf-8")
         self.start_daemon(*SMALL, "--state-dir", self.folder / "state")
         self.wait_for_state("Idle")
+        blocked.write_text("a file where the folder should be", encoding="utf-8")
         time.sleep(0.8)
         refused = self.operate("arm", expect=1)
         self.assertIn("no file for the log of the next run", refused.stderr)
@@ -111,9 +111,10 @@ class RunLog(ProgramTest):
         self.operate("disarm")
         self.end_daemons()
         self.new_folder()
-        (self.folder / "runs").write_text("blocked", encoding="utf-8")
         self.start_daemon(*SMALL, "--set", "log.required=false", "--state-dir",
                           self.folder / "state")
+        self.wait_for_state("Idle")
+        (self.folder / "runs").write_text("blocked", encoding="utf-8")
         self.arm()
         log = self.status()["log"]
         self.assertIs(log["ok"], False)
@@ -178,8 +179,7 @@ class RunLog(ProgramTest):
 
     @in_real_time
     def test_an_unattended_run_without_a_file_is_refused(self):
-        (self.folder / "runs").write_text("blocked", encoding="utf-8")
-        daemon = self.start_daemon(*SMALL, "--state-dir", self.folder / "state", "--experiment",
+        daemon = self.start_daemon("--set", "log.keep_free_mb=1000000", "--experiment",
                                    self.experiment(SHORT.format(name="none")))
         self.assertEqual(daemon.wait(timeout=30), 1)
         self.assertIn("no file for the log of the next run", self.daemon_log())

@@ -175,6 +175,7 @@ void PrintStatements(const std::vector<Statement>& statements) {
 std::vector<std::filesystem::path> WriteParametricFolder(const ParametricStudy& study,
                                                          const std::vector<Statement>& statements,
                                                          const std::filesystem::path& folder) {
+  MakeFolder(folder);
   std::vector<std::filesystem::path> files;
   for (std::size_t i = 0; i < study.sweep.size(); ++i) {
     files.push_back(folder /
