@@ -103,9 +103,9 @@ class Flood(ProgramTest):
         self.heard.append(answer["heard"])
         time.sleep(0.05)
 
-    def assert_withstands(self, flood, clients=6):
+    def assert_withstands(self, flood, clients=6, in_memory=True):
         """The loop of a daemon whose arm runs is as punctual during the flood of so many clients as before, every stop of
-        FLOOD_S has its turn at once, and the memory returns."""
+        FLOOD_S has its turn at once, and the memory returns (in_memory)."""
         self.heard = []
         start_mb = self.resident_mb()
         quiet, quiet_allowed = self.late_in(QUIET_S, lambda: time.sleep(0.05))
@@ -142,6 +142,7 @@ class Flood(ProgramTest):
         self.assertEqual({heard["waited_looks"] for heard in self.heard}, {0})
         if "ASAN_OPTIONS" not in os.environ:  # which is slow, and keeps freed memory
             self.assertLess(max(turns_us), LONGEST_TURN_US)
+        if in_memory and "ASAN_OPTIONS" not in os.environ:
             self.assertLess(most_mb - start_mb, MOST_MB)
             self.assert_memory_returns(start_mb)
         self.operate("disarm")
@@ -258,7 +259,8 @@ class Flood(ProgramTest):
 
     @despite_stalls
     def test_planning_1700_moves_holds_up_no_stop(self):
-        """The stops cancel the planning of a run, or stop it."""
+        """The stops cancel the planning of a run, or stop it. An hour's reference takes 40 MB, the
+        run before and the next have one each, and locked memory that was used stays: docs/protocol.md."""
         self.begin()
         self.operate("stop")
         self.wait_for_state("Armed")
@@ -272,7 +274,7 @@ class Flood(ProgramTest):
                 client.makefile().readline()
                 time.sleep(0.02)
 
-        self.assert_withstands(flood, clients=2)
+        self.assert_withstands(flood, clients=2, in_memory=False)
 
     @despite_stalls
     def test_more_commands_than_a_period_can_take_are_each_answered(self):
