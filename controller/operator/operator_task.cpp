@@ -104,6 +104,7 @@ void OperatorTask::Run(const Activation& activation) noexcept {
     const bool late = followed_ns_ != INT64_MIN && now_.now_ns - followed_ns_ > kPeriodNs;
     if (now_.now_ns % kPeriodNs == 0 || late) return Follow();
     now_.permit = context_.stack->operator_permits().Read().At(now_.now_ns - 1).value;
+    FollowLatch();  // a trip that a client is told of survives a kill
     if (socket_) Serve();
   } catch (const std::exception& error) {
     context_.report(true, std::string("operator: ") + error.what());
