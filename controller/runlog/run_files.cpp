@@ -96,6 +96,7 @@ void RunFiles::Follow(std::int64_t now_ns) noexcept {
       Reserve();
     }
     if (reserved_.is_valid()) next_try_ns_ = INT64_MIN;  // the next one at once
+    if (looks) free_bytes_ = FreeBytes(directory_);
     Publish(asked);
   } catch (const std::exception& error) {  // out of memory: the next period tries again
     if (report_) report_(true, std::string("log: ") + error.what());
@@ -131,7 +132,7 @@ void RunFiles::SetError(const std::string& error) {
 
 void RunFiles::Publish(std::uint32_t asked) {
   std::optional<double> free_mb;
-  if (const auto free = FreeBytes(directory_)) free_mb = static_cast<double>(*free) / kBytesPerMb;
+  if (free_bytes_) free_mb = static_cast<double>(*free_bytes_) / kBytesPerMb;
   const std::lock_guard lock(mutex_);
   answered_ = asked;
   is_reserved_ = reserved_.is_valid();

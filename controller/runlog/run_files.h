@@ -74,8 +74,9 @@ class RunFiles {
   // Recorder's.
   ReservedRunFile reserved_;
   std::string reserve_error_;
-  std::string run_file_;     // of the open run
-  std::string run_trouble_;  // RunSink::Trouble of the open run
+  std::string run_file_;                     // of the open run
+  std::string run_trouble_;                  // RunSink::Trouble of the open run
+  std::optional<std::uint64_t> free_bytes_;  // as last looked at
   std::int64_t next_try_ns_ = INT64_MIN;
   std::int64_t next_look_ns_ = INT64_MIN;
 

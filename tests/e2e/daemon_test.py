@@ -14,23 +14,14 @@ import time
 import unittest
 import unittest.mock
 
-from program import (BIN, HIL, SQUARE, ProgramTest, despite_stalls, in_real_time,
-                     missed_deadlines, realtime_permitted, rows)
+from program import (BIN, HIL, SQUARE, ProgramTest, despite_stalls, doublet,
+                     in_real_time, missed_deadlines, realtime_permitted, rows)
 
-SHORT = """
-name = "short"
-duration_s = 2.0
-
-[[doublet]]
-start_s = 0.0
-duration_s = 1.0
-shape = "square"
-move_deg = [10.0, 10.0]
-"""
+SHORT = doublet("short", 2.0)
 
 PERIOD_MS = 20.0
 
-LONG = SHORT.replace("2.0", "30.0")
+LONG = doublet("long", 30.0)
 
 ONE_MOVE = """
 name = "one-move"

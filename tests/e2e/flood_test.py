@@ -14,18 +14,9 @@ import time
 import unittest
 from pathlib import Path
 
-from program import ProgramTest, StallWitness, despite_stalls, realtime_permitted
+from program import ProgramTest, StallWitness, despite_stalls, doublet, realtime_permitted
 
-LONG = """
-name = "long"
-duration_s = 60.0
-
-[[doublet]]
-start_s = 0.0
-duration_s = 1.0
-shape = "square"
-move_deg = [10.0, 10.0]
-"""
+LONG = doublet("long", 60.0)
 
 STATUS = b"{\"command\":\"status\"}\n"
 STOP = b"{\"command\":\"stop\"}\n"

@@ -11,18 +11,9 @@ import signal
 import time
 import unittest
 
-from program import ProgramTest, despite_stalls, rows
+from program import ProgramTest, despite_stalls, doublet, rows
 
-MOVE = """
-name = "killed"
-duration_s = 30.0
-
-[[doublet]]
-start_s = 0.0
-duration_s = 1.0
-shape = "square"
-move_deg = [10.0, 10.0]
-
+MOVE = doublet("killed", 30.0) + """
 [[sim_event]]
 at_s = {at_s:.3f}
 kill = true
@@ -80,7 +71,7 @@ class KilledRun(ProgramTest):
 
     def test_whenever_it_is_killed_the_next_daemon_closes_what_it_left(self):
         chosen = random.Random(SEED + 1)
-        experiment = self.experiment(MOVE.format(at_s=29.0).replace("30.0", "2.0").split("[[sim")[0])
+        experiment = self.experiment(doublet("killed", 2.0))
         state = self.folder / "state"
         for case in range(max(3, cases() // 4)):
             after_s = chosen.uniform(0.3, 5.0)

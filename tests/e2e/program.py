@@ -19,6 +19,20 @@ BIN = Path(os.environ.get("FLEXARM_BIN", ROOT / "build/release/bin"))
 HIL = ROOT / "config/hil.toml"
 SQUARE = ROOT / "config/experiments/square-30deg.toml"
 
+def doublet(name, duration_s, move_deg=10.0):
+    """An experiment that turns both joints to and fro for a second, and rests."""
+    return f"""
+name = "{name}"
+duration_s = {duration_s}
+
+[[doublet]]
+start_s = 0.0
+duration_s = 1.0
+shape = "square"
+move_deg = [{move_deg}, {move_deg}]
+"""
+
+
 # Signs of a program that crashed instead of reporting the problem.
 CRASH_SIGNS = ("terminate called", "Sanitizer", "runtime error:", "Assertion", "core dumped")
 

@@ -7,18 +7,9 @@ import subprocess
 import time
 import unittest
 
-from program import ProgramTest, in_real_time, rows
+from program import ProgramTest, doublet, in_real_time, rows
 
-SHORT = """
-name = "{name}"
-duration_s = 1.0
-
-[[doublet]]
-start_s = 0.0
-duration_s = 0.6
-shape = "square"
-move_deg = [5.0, 5.0]
-"""
+RUN_S = 1.2
 
 SMALL = ("--set", "log.reserve_mb=1", "--set", "log.keep_free_mb=0")
 
@@ -31,7 +22,7 @@ class RunLog(ProgramTest):
         self.wait_for_state("Armed")
 
     def run_to_the_end(self, name):
-        self.operate("run", self.experiment(SHORT.format(name=name)))
+        self.operate("run", self.experiment(doublet(name, RUN_S, 5.0)))
         self.wait_for_state("Running")
         self.wait_for_state("Armed")
 
@@ -71,7 +62,7 @@ class RunLog(ProgramTest):
             self.assertEqual(replay["ticks_before_reset"], 0)
             names = [name for name, in rows(run, "SELECT name FROM event ORDER BY number")]
             self.assertIn("arm", names, "who armed belongs to each run")
-            self.assertEqual(rows(run, "SELECT count(*) FROM tick WHERE state = 'Running'"), [(50,)])
+            self.assertEqual(rows(run, "SELECT count(*) FROM tick WHERE state = 'Running'"), [(60,)])
         self.assertEqual(len(list((self.folder / "runs").iterdir())), 2,
                          "the file that was not used is removed")
 
@@ -154,8 +145,7 @@ class RunLog(ProgramTest):
         runs = self.small_disk(24)
         self.start_daemon(*SMALL, "--state-dir", self.folder / "state")
         self.arm()
-        self.operate("run", self.experiment(SHORT.format(name="full").replace(
-            "duration_s = 1.0", "duration_s = 25.0")))
+        self.operate("run", self.experiment(doublet("full", 25.0)))
         self.wait_for_state("Running")
         filler = runs / "filler"
         with contextlib.suppress(OSError), open(filler, "wb", buffering=0) as file:
@@ -180,7 +170,7 @@ class RunLog(ProgramTest):
     @in_real_time
     def test_an_unattended_run_without_a_file_is_refused(self):
         daemon = self.start_daemon("--set", "log.keep_free_mb=1000000", "--experiment",
-                                   self.experiment(SHORT.format(name="none")))
+                                   self.experiment(doublet("none", RUN_S, 5.0)))
         self.assertEqual(daemon.wait(timeout=30), 1)
         self.assertIn("no file for the log of the next run", self.daemon_log())
 

@@ -9,18 +9,9 @@ import time
 import unittest
 from pathlib import Path
 
-from program import ROOT, ProgramTest, despite_stalls
+from program import ROOT, ProgramTest, despite_stalls, doublet
 
-LONG = """
-name = "long"
-duration_s = 60.0
-
-[[doublet]]
-start_s = 0.0
-duration_s = 1.0
-shape = "square"
-move_deg = [10.0, 10.0]
-"""
+LONG = doublet("long", 60.0)
 
 PAGE = ROOT / "docs/safety.md"
 SIGNALS = re.compile(r"`(\w+)` (\d+)|(\d+) to (\d+)")

@@ -10,18 +10,9 @@ import subprocess
 import time
 import unittest
 
-from program import ProgramTest, rows
+from program import ProgramTest, doublet, rows
 
-LONG = """
-name = "long"
-duration_s = 60.0
-
-[[doublet]]
-start_s = 0.0
-duration_s = 1.0
-shape = "square"
-move_deg = [10.0, 10.0]
-"""
+LONG = doublet("long", 60.0)
 
 # Numbers of users and groups that need no account.
 ALICE, BOB, VIEWER, OUTSIDER = 41001, 41002, 41003, 41004
