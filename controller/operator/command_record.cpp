@@ -37,7 +37,7 @@ std::optional<Peer> CommandRecord::Giver(int client, const std::string& command)
 void CommandRecord::Answered(std::int64_t now_ns, int client, nlohmann::json* answer) {
   const auto found = Find(client, answer->value("command", ""));
   if (found == open_.end()) return;
-  const Open open = *found;
+  Open open = *found;
   open_.erase(found);
   (*answer)["by"] = PeerJson(open.by);
   if (open.command == "stop") {

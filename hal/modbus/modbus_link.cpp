@@ -108,7 +108,7 @@ std::uint16_t ModbusReply::Word(int i) const noexcept {
 
 bool ModbusReply::Bit(int i) const noexcept {
   const auto bit = static_cast<unsigned>(i);
-  return ((payload[bit / 8] >> (bit % 8)) & 1U) != 0;
+  return ((unsigned{payload[bit / 8]} >> (bit % 8)) & 1U) != 0;
 }
 
 ModbusLink::ModbusLink(const ModbusDeviceConfig& config, ModbusClock clock)

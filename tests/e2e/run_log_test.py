@@ -69,7 +69,8 @@ class RunLog(ProgramTest):
     @in_real_time
     def test_a_trip_outside_a_run_is_a_file_of_the_last_ten_seconds(self):
         self.start_daemon(*SMALL)
-        time.sleep(11.0)  # the first sample, which is that of a reset, is older then
+        # The first sample, which is that of a reset, is older than the ten seconds then.
+        self.wait_for_samples(11 * 50)
         self.arm()
         self.operate("sim", "emergency-stop", "0")
         self.wait_for_state("Tripped")
@@ -123,6 +124,14 @@ class RunLog(ProgramTest):
             self.skipTest(f"no disk of its own: {mounted.stderr}")
         self.addCleanup(subprocess.run, ["umount", "-l", runs], check=True)
         return runs
+
+    def wait_for_samples(self, count, within_s=60):
+        """Waits until the loop has had so many. The start of a daemon takes its time first."""
+        end = time.monotonic() + within_s
+        self.wait_for_state("Idle", within_s=within_s)
+        while self.status()["tick"] < count:
+            self.assertLess(time.monotonic(), end, self.daemon_log())
+            time.sleep(0.1)
 
     def wait_for_log(self, ok, within_s=20):
         end = time.monotonic() + within_s

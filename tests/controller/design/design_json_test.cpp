@@ -266,9 +266,10 @@ TEST_F(GainsFile, WhoseGainsWereChangedIsRefusedByTheirName) {
 }
 
 TEST_F(GainsFile, OneChangedNumberOfAnyMatrixIsFound) {
-  for (const auto& [name, rows] : ShippedJson().items()) {
+  const nlohmann::json shipped = ShippedJson();
+  for (const auto& [name, rows] : shipped.items()) {
     if (!rows.is_array() || name == "checks") continue;
-    nlohmann::json json = ShippedJson();
+    nlohmann::json json = shipped;
     double& number = json[name].back().back().get_ref<double&>();
     number += 0.01 + 0.01 * std::fabs(number);
     Write(json.dump());
