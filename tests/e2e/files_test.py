@@ -11,7 +11,7 @@ import unittest
 
 from program import BIN, HIL, ROOT, SQUARE, ProgramTest
 
-CHEAP = 10  # seconds; a refusal takes milliseconds
+CHEAP = 60  # seconds, for a program that hangs: a refusal takes milliseconds
 
 
 class FilesTest(ProgramTest):
