@@ -90,13 +90,14 @@ PayloadFilterConfig PayloadFilterFor(const ArmParameters& arm, const SensorConfi
 }
 
 PayloadEstimator::PayloadEstimator(std::span<const double> model, const PayloadFilterConfig& config)
-    : filter_(RigidJointStepper(model), config) {}
+    : filter_(RigidJointStepper(model), config),
+      covariance_after_rest_(filter_.CovarianceAfterRest()) {}
 
 const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& counters,
                                                         const FittedModes& modes,
                                                         const PiecewiseTorque& applied,
                                                         std::optional<double> tip_m_s2) noexcept {
-  if (!started_) StartAt(counters);
+  if (!started_) StartAt(counters, modes);
   return filter_.Update(applied, ReadingOf(counters, modes, tip_m_s2));
 }
 
@@ -104,7 +105,7 @@ const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& c
                                                         const FittedModes& modes,
                                                         const TorqueByDelay& applied,
                                                         std::optional<double> tip_m_s2) noexcept {
-  if (!started_) StartAt(counters);
+  if (!started_) StartAt(counters, modes);
   const PayloadFilter::Reading reading = ReadingOf(counters, modes, tip_m_s2);
   for (std::size_t d = 0; d < kDelays; ++d)
     hypotheses_[d].torque = applied[d].value_or(PiecewiseTorque());
@@ -122,10 +123,13 @@ const PayloadFilter::Estimate& PayloadEstimator::Update(const DecodedCounters& c
   return estimate;
 }
 
-void PayloadEstimator::StartAt(const DecodedCounters& counters) noexcept {
+void PayloadEstimator::StartAt(const DecodedCounters& counters, const FittedModes& modes) noexcept {
   RigidJointArm::Vector q = RigidJointArm::Vector::Zero();
   q.head<2>() << counters.angle_rad[0], counters.angle_rad[1];
-  filter_.Reset(q);
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (modes.valid[i / 2]) q[static_cast<int>(2 + i)] = modes.modal_m[i];
+  }
+  filter_.Reset(q, covariance_after_rest_);
   for (PayloadFilter::Hypothesis& hypothesis : hypotheses_) hypothesis.apart.setZero();
   started_ = true;
 }

@@ -91,7 +91,7 @@ class PayloadEstimator {
   const RigidJointStepper& stepper() const noexcept { return filter_.stepper(); }
 
  private:
-  void StartAt(const DecodedCounters& counters) noexcept;
+  void StartAt(const DecodedCounters& counters, const FittedModes& modes) noexcept;
 
   static State StateOf(const GaugedState& x) noexcept {
     State out;
@@ -100,6 +100,7 @@ class PayloadEstimator {
   }
 
   PayloadFilter filter_;
+  PayloadFilter::Covariance covariance_after_rest_;
   DelayDetector delay_;
   std::array<PayloadFilter::Hypothesis, kDelays> hypotheses_;  // by delay; filter_ itself is the
                                                                // current one

@@ -23,6 +23,9 @@ constexpr double kMostFading = 30.0;
 
 constexpr int kMostGlitches = 2;
 
+// After so many samples at rest the covariance of the motion no longer changes.
+constexpr int kRestSamples = 100;
+
 // Standard deviations after the payload was assumed lost: of the rest of it, small, so that the
 // first samples do not upset the estimate; of the errors that the wrong payload caused at the hubs.
 constexpr double kDroppedPayload_kg = 0.1;
@@ -67,6 +70,20 @@ void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
   mean_nis_ = kOutputs;
   learns_ = true;
   play_rad_ = 0.0;
+}
+
+void PayloadFilter::Reset(const RigidJointArm::Vector& q, const Covariance& P) noexcept {
+  Reset(q);
+  P_ = P;
+  estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
+}
+
+PayloadFilter::Covariance PayloadFilter::CovarianceAfterRest() const noexcept {
+  PayloadFilter resting = *this;
+  resting.Reset(RigidJointArm::Vector::Zero());
+  const Reading zero{.z = Outputs::Zero(), .good = kAllGood};
+  for (int sample = 0; sample < kRestSamples; ++sample) resting.Update(PiecewiseTorque(), zero);
+  return resting.P_;
 }
 
 void PayloadFilter::ForgetAllButMotion() noexcept {

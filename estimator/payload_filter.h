@@ -66,6 +66,7 @@ class PayloadFilter {
   static constexpr int kStates = 19;
   static constexpr int kOutputs = 8;
   using Outputs = Eigen::Matrix<double, kOutputs, 1>;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   /// Measurements at the end of a sample.
   struct Reading {
@@ -98,6 +99,13 @@ class PayloadFilter {
 
   /// Restarts at rest at q, with payload and friction at their start values.
   void Reset(const RigidJointArm::Vector& q) noexcept;
+
+  /// The same, with P as the covariance of the state.
+  void Reset(const RigidJointArm::Vector& q, const Covariance& P) noexcept;
+
+  /// The covariance that rest with a straight elbow leads to after a Reset. Not for the loop: it
+  /// takes as long as a hundred samples.
+  Covariance CovarianceAfterRest() const noexcept;
 
   /// A move starts: the payload may have changed, and is updated again.
   void BeginMove() noexcept;
@@ -133,7 +141,7 @@ class PayloadFilter {
 
  private:
   using Vector = Eigen::Matrix<double, kStates, 1>;
-  using Matrix = Eigen::Matrix<double, kStates, kStates>;
+  using Matrix = Covariance;
   using Gain = Eigen::Matrix<double, kStates, kOutputs>;
 
   void ForgetAllButMotion() noexcept;

@@ -48,6 +48,32 @@ TEST(PayloadEstimator, StartsAtRestAtTheMeasuredHubAngles) {
   EXPECT_NEAR(estimator.Now()[0], -0.1, 1e-12);
 }
 
+// A loop is reset when a run begins, whereas the arm has been at rest for long: one count of a
+// hub's encoder must not look like more motion than to a filter that had followed the rest.
+TEST(PayloadEstimator, IsAsCertainAfterAResetAsAfterARest) {
+  const double count_rad = 2.0 * kPi / 2540.0;
+  PayloadEstimator fresh = Estimator(), rested = Estimator();
+  fresh.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
+  for (int k = 0; k < 300; ++k) rested.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
+  for (auto* estimator : {&fresh, &rested}) {
+    estimator->Update(Angles(count_rad, 0.0), BendWith({}), Held(0.0, 0.0));
+  }
+  const double fresh_rad_s = fresh.Now()[6], rested_rad_s = rested.Now()[6];
+  EXPECT_GT(rested_rad_s, 0.01) << "the count had no effect";
+  EXPECT_NEAR(fresh_rad_s, rested_rad_s, 0.02 * rested_rad_s);
+}
+
+// The joints' friction may hold a bend.
+TEST(PayloadEstimator, StartsWithTheBendThatTheGaugesRead) {
+  PayloadEstimator estimator = Estimator();
+  estimator.Update(Angles(0.0, 0.0), BendWith({0.004, 0.0, -0.002, 0.0}), Held(0.0, 0.0));
+  EXPECT_NEAR(estimator.Now()[2], 0.004, 2e-4);  // it starts to swing back in this sample
+  EXPECT_NEAR(estimator.Now()[4], -0.002, 2e-4);
+  PayloadEstimator unread = Estimator();
+  unread.Update(Angles(0.0, 0.0), BendWith({0.004, 0.0, -0.002, 0.0}, false), Held(0.0, 0.0));
+  EXPECT_EQ(unread.Now()[2], 0.0);
+}
+
 // An input that is not good may have any value.
 TEST(PayloadEstimator, AnInputThatIsNotGoodIsIgnored) {
   PayloadEstimator clean = Estimator(), garbage = Estimator();
