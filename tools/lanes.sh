@@ -178,7 +178,8 @@ lane_hil() {  # tools/run-hil, in real time where that is permitted
 }
 
 lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
-  build release flexarm flexarmd guest_daq_test guest_gpio_test hal_canopen_socketcan_test
+  build release flexarm flexarmd guest_daq_test guest_gpio_test hal_canopen_socketcan_test \
+    wired_threads_test
   tests/guest/run_all.sh build/release --note "$logs/$lane.note"
 }
 

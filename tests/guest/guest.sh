@@ -189,7 +189,7 @@ make_root() {
     "$tree/usr/lib/modules/$release/"
   /sbin/depmod -b "$tree" "$release"
   mke2fs -q -t ext4 -O ^has_journal,^metadata_csum -E lazy_itable_init=1 -m0 -d "$tree" root.ext4 \
-    "$(($(du -sm "$tree" | cut -f1) * 5 / 4 + 128))M"
+    "$(($(du -sm "$tree" | cut -f1) * 5 / 4 + 512))M"  # free: what the log of a run needs
 }
 
 make_initrd() {

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLongestProof_s =
     3'600.0;  // each step has a time of its own, which the daemon watches
-constexpr auto kLook = std::chrono::milliseconds(200);
+constexpr auto kLook = std::chrono::milliseconds(100);
 
 // "step 3 of 11: unplug the connector of ..", each text once.
 void PrintStep(const Json& switches, std::string* shown) {

@@ -68,11 +68,11 @@ prove_switches() {
   operate_switch reset-button 1 0
   wait $proof
 }
-operate_switch() {  # operate_switch LINE AWAY BACK: for 0.1 s
+operate_switch() {  # operate_switch LINE AWAY BACK: slower than flexarm asks for the step
   echo "press $1 $2" >&3
-  sleep 0.1
+  sleep 0.3
   echo "press $1 $3" >&3
-  sleep 0.1
+  sleep 0.3
 }
 
 # With the switches as the proof has left them: a run without one needs an override.

@@ -44,7 +44,7 @@ wait $daemon
 check "flexarmd ends with 0" equal $? 0
 grep 'activations' daemon.log
 missed_nothing safety control vcan0 strain-amplifier-1 strain-amplifier-2
-run=$(ls runs/*.flexarm)
+run=$(ls runs/*-square-30deg.flexarm)
 flexarm info "$run" --json >info.json
 check "300 of 300 samples" equal "$(jq -c '[.metrics.ticks, .missing_ticks, .trip]' info.json)" \
   "[300,0,null]"
