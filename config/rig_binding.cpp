@@ -1,5 +1,7 @@
 #include "config/rig_binding.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 
 #include "config/hal_binding.h"
@@ -10,13 +12,40 @@
 namespace flexarm {
 namespace {
 
+// A section is given by its cross-section and its material, or by rho A and EI.
 void ReadSection(TableReader row, BeamSection* out) {
   row.Read("length_m", &out->length_m);
+  row.Read("half_thickness_m", &out->half_thickness_m);
+  constexpr std::array kCrossSection = {"area_m2", "second_moment_m4", "density_kg_m3",
+                                        "youngs_modulus_pa"};
+  constexpr std::array kIntegrated = {"mass_per_length_kg_m", "bending_stiffness_nm2"};
+  const auto given = [&row](const char* key) { return row.Has(key); };
+  const auto cross = std::count_if(kCrossSection.begin(), kCrossSection.end(), given);
+  const auto integrated = std::find_if(kIntegrated.begin(), kIntegrated.end(), given);
+  std::for_each(kIntegrated.begin(), kIntegrated.end(), given);  // so that the log knows both
+  if (cross > 0 && integrated != kIntegrated.end()) {
+    row.Refuse(*integrated,
+               "must not be given beside area_m2, second_moment_m4, density_kg_m3 or "
+               "youngs_modulus_pa: a section has its cross-section and material, or its mass per "
+               "length and bending stiffness");
+  } else if (cross == 0 && integrated == kIntegrated.end()) {
+    row.Missing("mass_per_length_kg_m",
+                "a number, beside bending_stiffness_nm2; or the section has area_m2, "
+                "second_moment_m4, density_kg_m3 and youngs_modulus_pa");
+    out->has_cross_section = false;
+    out->given_bending_stiffness_nm2 = 1.0;  // one message is enough
+    return;
+  }
+  out->has_cross_section = cross > 0;
+  if (cross == 0) {
+    row.Read("mass_per_length_kg_m", &out->given_mass_per_length_kg_m);
+    row.Read("bending_stiffness_nm2", &out->given_bending_stiffness_nm2);
+    return;
+  }
   row.Read("area_m2", &out->area_m2);
   row.Read("second_moment_m4", &out->second_moment_m4);
   row.Read("density_kg_m3", &out->density_kg_m3);
   row.Read("youngs_modulus_pa", &out->youngs_modulus_pa);
-  row.Read("half_thickness_m", &out->half_thickness_m);
 }
 
 void ReadLink(TableReader link, LinkParameters* out) {
