@@ -1,4 +1,6 @@
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "tools/report/chapters.h"
 #include "tools/report/published_results.h"
@@ -11,6 +13,13 @@ const char* VerdictOn(const PublishedResult& result) {
   return result.figure.differs ? "differs, see the note" : "DIFFERS";
 }
 
+// Without the zeros that a number of significant digits adds.
+std::string AsPrinted(double value) {
+  std::ostringstream text;
+  text << std::setprecision(10) << value;
+  return text.str();
+}
+
 std::string SourceOf(const PublishedCase& of) {
   return of.author + ": " + of.title + ". " + of.place + ", " + Count(of.year) + "; " + of.table +
          ". Read in: " + of.read_in + ".";
@@ -20,14 +29,16 @@ void CaseTable(const PublishedComparison& comparison, HtmlPage* page) {
   std::vector<std::vector<std::string>> rows;
   for (const PublishedResult& result : comparison.result) {
     const PublishedFigure& figure = result.figure;
-    const double percent = 100.0 * (result.computed / figure.published - 1.0);
-    rows.push_back({figure.symbol, LabelOf(figure), Figure(figure.published, 10),
-                    Figure(result.computed, 5), Figure(percent, 2), Figure(figure.tolerance, 2),
-                    VerdictOn(result), figure.note});
+    // One digit more than the tolerance can tell apart.
+    const int digits =
+        2 + static_cast<int>(std::ceil(std::log10(std::fabs(figure.published) / figure.tolerance)));
+    rows.push_back({figure.symbol, LabelOf(figure), AsPrinted(figure.published),
+                    Figure(result.computed, digits), Figure(result.computed - figure.published, 2),
+                    AsPrinted(figure.tolerance), VerdictOn(result), figure.note});
   }
-  page->Table({"symbol", "figure", "published", "computed", "difference, %", "tolerance", "verdict",
-               "note"},
-              rows);
+  page->Table(
+      {"symbol", "figure", "published", "computed", "difference", "tolerance", "verdict", "note"},
+      rows);
 }
 
 }  // namespace

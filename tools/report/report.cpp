@@ -45,7 +45,9 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
   }
   page.Lead(Count(std::ssize(context.statements)) + " statements of the thesis (" +
             Counted(context.statements) +
-            "). Every number on this page is computed by the program that wrote it (flexarm " +
+            "). Every number on this page, but those that a source prints, is computed by the "
+            "program that "
+            "wrote it (flexarm " +
             ThisBuild().version + ", " + BuildId() +
             "); every verdict follows from numbers by a rule. The arm is simulated.");
   std::filesystem::path file = request.folder / "report.html";
