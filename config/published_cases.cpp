@@ -11,8 +11,8 @@ namespace {
 void ReadQuantity(TableReader row, PublishedFigure* out) {
   using Quantity = PublishedQuantity;
   row.Read("quantity", &out->quantity,
-           {{"frequency_hz", Quantity::kFrequency_hz},
-            {"frequency_rad_s", Quantity::kFrequency_rad_s},
+           {{"frequency_hz", Quantity::kFrequencyHz},
+            {"frequency_rad_s", Quantity::kFrequencyRadS},
             {"beta_l", Quantity::kBetaL},
             {"tip", Quantity::kTip},
             {"tip_slope", Quantity::kTipSlope},
@@ -20,9 +20,9 @@ void ReadQuantity(TableReader row, PublishedFigure* out) {
             {"mass_integral", Quantity::kMassIntegral},
             {"moment_integral", Quantity::kMomentIntegral},
             {"strip_stiffness_nm_per_rad", Quantity::kStripStiffness},
-            {"inertia_11_kgm2", Quantity::kInertia11_kgm2},
-            {"inertia_12_kgm2", Quantity::kInertia12_kgm2},
-            {"inertia_22_kgm2", Quantity::kInertia22_kgm2}});
+            {"inertia_11_kgm2", Quantity::kInertia11},
+            {"inertia_12_kgm2", Quantity::kInertia12},
+            {"inertia_22_kgm2", Quantity::kInertia22}});
 }
 
 bool IsShape(PublishedQuantity quantity) {
@@ -35,7 +35,7 @@ bool IsOfALink(PublishedPart part) {
 }
 
 bool IsOfTheRigidArm(PublishedQuantity quantity) {
-  return quantity >= PublishedQuantity::kInertia11_kgm2;
+  return quantity >= PublishedQuantity::kInertia11;
 }
 
 // Quantities that only a link has, or only the arm.

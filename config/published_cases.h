@@ -17,18 +17,18 @@ enum class PublishedPart : std::uint8_t {
 };
 
 enum class PublishedQuantity : std::uint8_t {
-  kFrequency_hz,     ///< "frequency_hz"
-  kFrequency_rad_s,  ///< "frequency_rad_s"
-  kBetaL,            ///< "beta_l": beta times the length, of a link
-  kTip,              ///< "tip": psi(L), by the modal mass
-  kTipSlope,         ///< "tip_slope": psi'(L) of a link
-  kRootSlope,        ///< "root_slope": psi'(0)
-  kMassIntegral,     ///< "mass_integral": int rho A psi of a link
-  kMomentIntegral,   ///< "moment_integral": int rho A x psi of a link
-  kStripStiffness,   ///< "strip_stiffness_nm_per_rad": 3 EI/L of a link's outermost section
-  kInertia11_kgm2,   ///< "inertia_11_kgm2": the rigid arm about joint 1
-  kInertia12_kgm2,   ///< "inertia_12_kgm2": the coupling of both joints
-  kInertia22_kgm2,   ///< "inertia_22_kgm2": about joint 2
+  kFrequencyHz,     ///< "frequency_hz"
+  kFrequencyRadS,   ///< "frequency_rad_s"
+  kBetaL,           ///< "beta_l": beta times the length, of a link
+  kTip,             ///< "tip": psi(L), by the modal mass
+  kTipSlope,        ///< "tip_slope": psi'(L) of a link
+  kRootSlope,       ///< "root_slope": psi'(0)
+  kMassIntegral,    ///< "mass_integral": int rho A psi of a link
+  kMomentIntegral,  ///< "moment_integral": int rho A x psi of a link
+  kStripStiffness,  ///< "strip_stiffness_nm_per_rad": 3 EI/L of a link's outermost section
+  kInertia11,       ///< "inertia_11_kgm2": the rigid arm about joint 1
+  kInertia12,       ///< "inertia_12_kgm2": the coupling of both joints
+  kInertia22,       ///< "inertia_22_kgm2": about joint 2
 };
 
 /// One figure that a source prints, and what the program compares with it.

@@ -18,28 +18,27 @@ void ReadSection(TableReader row, BeamSection* out) {
   row.Read("half_thickness_m", &out->half_thickness_m);
   constexpr std::array kCrossSection = {"area_m2", "second_moment_m4", "density_kg_m3",
                                         "youngs_modulus_pa"};
-  constexpr std::array kIntegrated = {"mass_per_length_kg_m", "bending_stiffness_nm2"};
-  const auto given = [&row](const char* key) { return row.Has(key); };
-  const auto cross = std::count_if(kCrossSection.begin(), kCrossSection.end(), given);
-  const auto integrated = std::find_if(kIntegrated.begin(), kIntegrated.end(), given);
-  std::for_each(kIntegrated.begin(), kIntegrated.end(), given);  // so that the log knows both
-  if (cross > 0 && integrated != kIntegrated.end()) {
-    row.Refuse(*integrated,
+  constexpr const char* kMass = "mass_per_length_kg_m";
+  constexpr const char* kStiffness = "bending_stiffness_nm2";
+  const auto cross = std::count_if(kCrossSection.begin(), kCrossSection.end(),
+                                   [&row](const char* key) { return row.Has(key); });
+  const bool mass = row.Has(kMass), stiffness = row.Has(kStiffness);
+  out->has_cross_section = cross > 0;
+  if (cross > 0 && (mass || stiffness)) {
+    row.Refuse(mass ? kMass : kStiffness,
                "must not be given beside area_m2, second_moment_m4, density_kg_m3 or "
                "youngs_modulus_pa: a section has its cross-section and material, or its mass per "
                "length and bending stiffness");
-  } else if (cross == 0 && integrated == kIntegrated.end()) {
-    row.Missing("mass_per_length_kg_m",
+  } else if (cross == 0 && !mass && !stiffness) {
+    row.Missing(kMass,
                 "a number, beside bending_stiffness_nm2; or the section has area_m2, "
                 "second_moment_m4, density_kg_m3 and youngs_modulus_pa");
-    out->has_cross_section = false;
     out->given_bending_stiffness_nm2 = 1.0;  // one message is enough
     return;
   }
-  out->has_cross_section = cross > 0;
   if (cross == 0) {
-    row.Read("mass_per_length_kg_m", &out->given_mass_per_length_kg_m);
-    row.Read("bending_stiffness_nm2", &out->given_bending_stiffness_nm2);
+    row.Read(kMass, &out->given_mass_per_length_kg_m);
+    row.Read(kStiffness, &out->given_bending_stiffness_nm2);
     return;
   }
   row.Read("area_m2", &out->area_m2);

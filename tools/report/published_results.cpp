@@ -101,8 +101,8 @@ double RigidInertia_kgm2(const ArmParameters& arm, const PublishedFigure& figure
   Eigen::MatrixXd T = Eigen::MatrixXd::Zero(model.dof(), 2);
   T(kTheta1, 0) = T(kTheta3, 0) = T(kTheta2, 1) = T(kTheta4, 1) = 1.0;
   const Eigen::Matrix2d M = T.transpose() * model.MassMatrix(q) * T;
-  if (figure.quantity == Quantity::kInertia11_kgm2) return M(0, 0);
-  return figure.quantity == Quantity::kInertia12_kgm2 ? M(0, 1) : M(1, 1);
+  if (figure.quantity == Quantity::kInertia11) return M(0, 0);
+  return figure.quantity == Quantity::kInertia12 ? M(0, 1) : M(1, 1);
 }
 
 double StripStiffness_nm_per_rad(const ArmParameters& arm, const PublishedFigure& figure) {
@@ -118,9 +118,9 @@ double Computed(const ArmParameters& arm, const PublishedFigure& figure) {
   };
   const double scale = std::sqrt(figure.modal_mass_kg);
   switch (figure.quantity) {
-    case Quantity::kFrequency_hz:
+    case Quantity::kFrequencyHz:
       return mode().frequency_rad_s / kTwoPi;
-    case Quantity::kFrequency_rad_s:
+    case Quantity::kFrequencyRadS:
       return mode().frequency_rad_s;
     case Quantity::kBetaL:
       return mode().beta_l;
@@ -136,9 +136,9 @@ double Computed(const ArmParameters& arm, const PublishedFigure& figure) {
       return scale * mode().moment_integral;
     case Quantity::kStripStiffness:
       return StripStiffness_nm_per_rad(arm, figure);
-    case Quantity::kInertia11_kgm2:
-    case Quantity::kInertia12_kgm2:
-    case Quantity::kInertia22_kgm2:
+    case Quantity::kInertia11:
+    case Quantity::kInertia12:
+    case Quantity::kInertia22:
       return RigidInertia_kgm2(arm, figure);
   }
   return std::numeric_limits<double>::quiet_NaN();
