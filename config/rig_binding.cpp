@@ -1,5 +1,7 @@
 #include "config/rig_binding.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 
 #include "config/hal_binding.h"
@@ -10,13 +12,39 @@
 namespace flexarm {
 namespace {
 
+// A section is given by its cross-section and its material, or by rho A and EI.
 void ReadSection(TableReader row, BeamSection* out) {
   row.Read("length_m", &out->length_m);
+  row.Read("half_thickness_m", &out->half_thickness_m);
+  constexpr std::array kCrossSection = {"area_m2", "second_moment_m4", "density_kg_m3",
+                                        "youngs_modulus_pa"};
+  constexpr const char* kMass = "mass_per_length_kg_m";
+  constexpr const char* kStiffness = "bending_stiffness_nm2";
+  const auto cross = std::count_if(kCrossSection.begin(), kCrossSection.end(),
+                                   [&row](const char* key) { return row.Has(key); });
+  const bool mass = row.Has(kMass), stiffness = row.Has(kStiffness);
+  out->has_cross_section = cross > 0;
+  if (cross > 0 && (mass || stiffness)) {
+    row.Refuse(mass ? kMass : kStiffness,
+               "must not be given beside area_m2, second_moment_m4, density_kg_m3 or "
+               "youngs_modulus_pa: a section has its cross-section and material, or its mass per "
+               "length and bending stiffness");
+  } else if (cross == 0 && !mass && !stiffness) {
+    row.Missing(kMass,
+                "a number, beside bending_stiffness_nm2; or the section has area_m2, "
+                "second_moment_m4, density_kg_m3 and youngs_modulus_pa");
+    out->given_bending_stiffness_nm2 = 1.0;  // one message is enough
+    return;
+  }
+  if (cross == 0) {
+    row.Read(kMass, &out->given_mass_per_length_kg_m);
+    row.Read(kStiffness, &out->given_bending_stiffness_nm2);
+    return;
+  }
   row.Read("area_m2", &out->area_m2);
   row.Read("second_moment_m4", &out->second_moment_m4);
   row.Read("density_kg_m3", &out->density_kg_m3);
   row.Read("youngs_modulus_pa", &out->youngs_modulus_pa);
-  row.Read("half_thickness_m", &out->half_thickness_m);
 }
 
 void ReadLink(TableReader link, LinkParameters* out) {

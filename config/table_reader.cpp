@@ -91,6 +91,10 @@ bool TableReader::Has(std::string_view key) {
   return table_ != nullptr && table_->contains(key);
 }
 
+void TableReader::Missing(std::string_view key, std::string_view wanted) {
+  if (table_ != nullptr) log_->AddMissing(path_, key, wanted);
+}
+
 void TableReader::Refuse(std::string_view key, std::string rule) {
   log_->Add(Key(key), *table_->get(key), std::move(rule));
 }

@@ -50,6 +50,8 @@ class TableReader {
 
   /// True if the table has the key; if not, the key is not reported as missing.
   bool Has(std::string_view key);
+  /// Reports that the key is missing, with what it should have; nothing if the table is missing.
+  void Missing(std::string_view key, std::string_view wanted);
   /// Reports that the value of an existing key violates `rule`.
   void Refuse(std::string_view key, std::string rule);
 

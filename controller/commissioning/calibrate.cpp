@@ -143,7 +143,7 @@ std::string OutOfRange(const SensorConfig& sensors, const Calibration& calibrati
 double StaticStrain(const LinkParameters& link, const StaticLoad& load, double x_m) {
   if (x_m >= load.at_m) return 0.0;
   const BeamSection& section = SectionAt(link, x_m);
-  const double EI = section.youngs_modulus_pa * section.second_moment_m4;
+  const double EI = section.bending_stiffness_nm2();
   return section.half_thickness_m * load.force_n * (load.at_m - x_m) / EI;
 }
 

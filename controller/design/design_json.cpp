@@ -52,6 +52,9 @@ void AddArm(const ArmParameters& arm, Digest* digest) {
     for (const BeamSection& s : arm.link[i].section) {
       *digest << s.length_m << s.area_m2 << s.second_moment_m4 << s.density_kg_m3
               << s.youngs_modulus_pa << s.half_thickness_m;
+      if (!s.has_cross_section) {  // the digests of other arms stay as they are
+        *digest << s.given_mass_per_length_kg_m << s.given_bending_stiffness_nm2;
+      }
     }
     const JointParameters& joint = arm.joint[i];
     *digest << joint.stiffness_nm_per_rad << joint.rotor_inertia_kgm2 << joint.hub_inertia_kgm2

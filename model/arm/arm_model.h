@@ -15,7 +15,7 @@ namespace flexarm {
 /// tip deflection. Off-line form in dynamic-size matrices; ArmSimulator integrates the same
 /// equations fast. Options: foreshortening (foreshortening.h; not in the thesis) and backlash of
 /// joint 2 (backlash.h). Not modelled: gravity; friction is a generalised force, see ArmSimulator.
-/// Source: thesis chapter 3, (3.15)-(3.22), corrected by docs/theory/thesis.md 2.
+/// Source: thesis chapter 3, (3.15)-(3.22), corrected by docs/theory/errata.md.
 /// Real-time: all but CarryPayload start-up only (allocates).
 class ArmModel {
  public:

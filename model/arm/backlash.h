@@ -27,7 +27,7 @@ struct Joint2Torque {
 /// Kept for comparison; its errors: (a) it acts always, not only when teeth meet, and never frees
 /// the joint; (b) above |v| = 0.8 / zeta it adds energy, above 1 / zeta the restitution itself is
 /// negative; (c) d_b -> 0 means infinite, not zero, damping; (d) it is the Rayleigh form of a
-/// function of degree 4 to 5, so it dissipates 2 to 2.5 times Delta E / Delta t; (e) zeta is in
+/// function of degree 4 and 5: it dissipates up to twice Delta E / Delta t; (e) zeta is in
 /// s/m, th4' in rad/s; (f) the appendix has the wrong sign in B_4 and lacks the 1/2. I_1 and I_2
 /// are not defined: taken here as J_2 and the inertia of all that turns with hub 2, undeformed.
 /// Source: thesis 3.4, Appendix A's B_X; docs/theory/plant.md 4.3. Real-time: safe.

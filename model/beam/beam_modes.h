@@ -34,7 +34,7 @@ struct BeamRoot {
 /// metres. Not modelled: shear, rotary inertia of the section, axial force, damping.
 /// Symbol: psi_ij for mode j of link i (model/symbols.md).
 /// Frame: x along the undeformed link, 0 at the clamp; deflection along +y of the link frame.
-/// Source: thesis (3.1)-(3.7) corrected by docs/theory/thesis.md 2.1: one beta per section instead
+/// Source: thesis (3.1)-(3.7) corrected by docs/theory/errata.md 2: one beta per section instead
 /// of (3.7)'s single one.
 /// Real-time: start-up only (searches the section, uses libm).
 class BeamMode {

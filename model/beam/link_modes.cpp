@@ -7,14 +7,18 @@
 namespace flexarm {
 namespace {
 
-// C_a of (3.8), per section, by the chosen reading. Units Pa s for kCurvatureRho.
-double DampingCoefficient(const BeamSection& s, double xi, double L, DampingReading reading) {
+// C_a I of (3.8), per section, by the chosen reading. Units N m^2 s for kCurvatureRho, which needs
+// rho A and EI only: C_a I = xi L^2 sqrt(rho A EI).
+double DampingStiffness(const BeamSection& s, double xi, double L, DampingReading reading) {
   const double A = s.area_m2, I = s.second_moment_m4, E = s.youngs_modulus_pa;
   switch (reading) {
     case DampingReading::kCurvatureRho:
-      return xi * L * L * std::sqrt(s.density_kg_m3 * A * E / I);
+      if (!s.has_cross_section) {
+        return xi * L * L * std::sqrt(s.mass_per_length_kg_m() * s.bending_stiffness_nm2());
+      }
+      return xi * L * L * std::sqrt(s.density_kg_m3 * A * E / I) * I;
     case DampingReading::kCurvatureAsPrinted:
-      return xi * L * L * std::sqrt(A * E / I);
+      return xi * L * L * std::sqrt(A * E / I) * I;
     case DampingReading::kNone:
     case DampingReading::kModal:
       return 0.0;
@@ -50,7 +54,7 @@ void FillPairIntegrals(LinkModes* link, const LinkParameters& p, double panel,
         return s.bending_stiffness_nm2() * bend(x);
       };
       const auto CaI = [&](double x, const BeamSection& s) {
-        return DampingCoefficient(s, p.damping_ratio, L, reading) * s.second_moment_m4 * bend(x);
+        return DampingStiffness(s, p.damping_ratio, L, reading) * bend(x);
       };
       link->N(i, j) = link->N(j, i) = IntegrateAlong(p.section, panel, lam);
       link->G(i, j) = link->G(j, i) = IntegrateAlong(p.section, panel, EI);

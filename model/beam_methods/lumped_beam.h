@@ -30,7 +30,7 @@ enum class LumpInertia : std::uint8_t {
 /// (3.4), with the sign of I_m corrected, across a mass. Independent of the solver of ClampedModes,
 /// and so a check of it: its frequencies converge to the exact ones as N^-2. Solutions are made
 /// orthonormal at every station, so that long beams lose no digits.
-/// Source: thesis 3.2, docs/theory/thesis.md 2.1. Real-time: start-up only.
+/// Source: thesis 3.2, docs/theory/errata.md 2. Real-time: start-up only.
 class LumpedBeam {
  public:
   /// @param parts  N >= 1 per section

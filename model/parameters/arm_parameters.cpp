@@ -1,5 +1,6 @@
 #include "model/parameters/arm_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -45,6 +46,16 @@ class Rules {
             backlash.restitution_slope_s_per_rad, "must not be negative");
   }
 
+  // (3.8) as printed holds A, I and E apart from rho; rho A and EI do not give them.
+  void CheckDamping(DampingReading reading, const std::array<LinkParameters, 2>& link) {
+    if (reading != DampingReading::kCurvatureAsPrinted) return;
+    if (link[0].has_cross_sections() && link[1].has_cross_sections()) return;
+    problems_.push_back({"arm.damping", "\"ca_lit\"",
+                         "needs area_m2, second_moment_m4, density_kg_m3 and youngs_modulus_pa of "
+                         "every section; with mass_per_length_kg_m and bending_stiffness_nm2 there "
+                         "are \"ca_rho\", \"modal\" and \"none\""});
+  }
+
   void CheckNotNegative(const std::string& key, double value) {
     Require(value >= 0.0, key, value, "must not be negative");
   }
@@ -57,10 +68,15 @@ class Rules {
       Require(value > 0.0, name + "." + key, value, "must be positive");
     };
     positive("length_m", s.length_m);
-    positive("area_m2", s.area_m2);
-    positive("second_moment_m4", s.second_moment_m4);
-    positive("density_kg_m3", s.density_kg_m3);
-    positive("youngs_modulus_pa", s.youngs_modulus_pa);
+    if (s.has_cross_section) {
+      positive("area_m2", s.area_m2);
+      positive("second_moment_m4", s.second_moment_m4);
+      positive("density_kg_m3", s.density_kg_m3);
+      positive("youngs_modulus_pa", s.youngs_modulus_pa);
+    } else {
+      positive("mass_per_length_kg_m", s.given_mass_per_length_kg_m);
+      positive("bending_stiffness_nm2", s.given_bending_stiffness_nm2);
+    }
     positive("half_thickness_m", s.half_thickness_m);
   }
 
@@ -81,6 +97,11 @@ double LinkParameters::mass_kg() const {
   return sum;
 }
 
+bool LinkParameters::has_cross_sections() const {
+  return std::all_of(section.begin(), section.end(),
+                     [](const BeamSection& s) { return s.has_cross_section; });
+}
+
 std::vector<Problem> ArmParameters::Problems() const {
   Rules rules;
   rules.CheckLink(link[0], "link1");
@@ -88,6 +109,7 @@ std::vector<Problem> ArmParameters::Problems() const {
   rules.CheckJoint(joint[0], "joint1");
   rules.CheckJoint(joint[1], "joint2");
   rules.CheckBacklash(joint2_backlash);
+  rules.CheckDamping(damping, link);
   rules.CheckNotNegative("arm.hub2_mass_kg", hub2_mass_kg);
   rules.CheckNotNegative("arm.motor2_mass_kg", motor2_mass_kg);
   rules.CheckNotNegative("arm.motor2_inertia_kgm2", motor2_inertia_kgm2);

@@ -10,6 +10,9 @@
 namespace flexarm {
 
 /// One uniform section of a link. A link has any number of them, from root to tip.
+///
+/// Either its cross-section and its material are given, or, as publications often do, rho A and EI
+/// alone; then A, I, rho and E are zero and nothing may use them.
 struct BeamSection {
   double length_m;           ///< l > 0
   double area_m2;            ///< A > 0
@@ -17,9 +20,16 @@ struct BeamSection {
   double density_kg_m3;      ///< rho > 0 (Table 2: D)
   double youngs_modulus_pa;  ///< E > 0
   double half_thickness_m;   ///< h/2 > 0: distance of the gauges from the neutral line
+  double given_mass_per_length_kg_m = 0.0;   ///< rho A > 0 without a cross-section; otherwise 0
+  double given_bending_stiffness_nm2 = 0.0;  ///< EI > 0 without a cross-section; otherwise 0
+  bool has_cross_section = true;             ///< A, I, rho and E are given, not rho A and EI
 
-  double mass_per_length_kg_m() const { return density_kg_m3 * area_m2; }
-  double bending_stiffness_nm2() const { return youngs_modulus_pa * second_moment_m4; }
+  double mass_per_length_kg_m() const {
+    return has_cross_section ? density_kg_m3 * area_m2 : given_mass_per_length_kg_m;
+  }
+  double bending_stiffness_nm2() const {
+    return has_cross_section ? youngs_modulus_pa * second_moment_m4 : given_bending_stiffness_nm2;
+  }
 };
 
 /// Interpretation of the structural damping of a link (docs/theory/plant.md 5: the thesis's (3.8)
@@ -43,6 +53,7 @@ struct LinkParameters {
 
   double length_m() const;
   double mass_kg() const;
+  bool has_cross_sections() const;  ///< of every section
 };
 
 struct JointParameters {

@@ -78,6 +78,52 @@ TEST(BrokenConfigs, TooFewGaugesForTheModesAreReported) {
   EXPECT_TRUE(ProblemsOf(Replaced(one, "nominal = \"R12\"", "nominal = \"R8\"")).empty());
 }
 
+// The shipped arm with rho A and EI in place of the cross-section of link 2.
+std::string WithIntegratedSection() {
+  std::string text = FileText(Shipped("thesis-rig.toml"));
+  const std::size_t begin = text.find("area_m2 = 9.525e-5");
+  text.replace(begin, text.find("half_thickness_m = 1.5875e-3") - begin,
+               "mass_per_length_kg_m = 0.25784175\nbending_stiffness_nm2 = 5.5126890\n");
+  return text;
+}
+
+TEST(BrokenConfigs, ASectionMayHaveMassPerLengthAndBendingStiffness) {
+  EXPECT_TRUE(ProblemsOf(WithIntegratedSection()).empty());
+  const ArmParameters arm = ParseConfig(WithIntegratedSection(), "text").arm;
+  EXPECT_FALSE(arm.link[1].section[0].has_cross_section);
+  EXPECT_EQ(arm.link[1].section[0].mass_per_length_kg_m(), 0.25784175);
+  EXPECT_EQ(arm.link[1].section[0].bending_stiffness_nm2(), 5.512689);
+  EXPECT_TRUE(arm.link[0].section[0].has_cross_section);
+}
+
+TEST(BrokenConfigs, ASectionHasOneFormNotBothAndNotNone) {
+  const auto both = ProblemsOf(Replaced(FileText(Shipped("thesis-rig.toml")), "area_m2 = 9.525e-5",
+                                        "bending_stiffness_nm2 = 5.5\narea_m2 = 9.525e-5"));
+  ASSERT_EQ(both.size(), 1U);
+  EXPECT_EQ(both[0].key, "link2.section[0].bending_stiffness_nm2");
+  EXPECT_THAT(both[0].rule, HasSubstr("must not be given beside area_m2"));
+  const std::string text = WithIntegratedSection();
+  const auto half = ProblemsOf(Replaced(text, "bending_stiffness_nm2 = 5.5126890\n", ""));
+  ASSERT_EQ(half.size(), 1U);
+  EXPECT_EQ(half[0].key, "link2.section[0].bending_stiffness_nm2");
+  const auto none = ProblemsOf(Replaced(Replaced(text, "bending_stiffness_nm2 = 5.5126890\n", ""),
+                                        "mass_per_length_kg_m = 0.25784175\n", ""));
+  ASSERT_EQ(none.size(), 1U);
+  EXPECT_EQ(none[0].key, "link2.section[0].mass_per_length_kg_m");
+  EXPECT_THAT(none[0].rule, HasSubstr("or the section has area_m2"));
+  const auto negative = ProblemsOf(Replaced(text, "0.25784175", "-0.25784175"));
+  ASSERT_EQ(negative.size(), 1U);
+  EXPECT_EQ(negative[0].key, "link2.section[0].mass_per_length_kg_m");
+}
+
+TEST(BrokenConfigs, DampingAsPrintedNeedsTheCrossSection) {
+  const auto problems =
+      ProblemsOf(Replaced(WithIntegratedSection(), "damping = \"ca_rho\"", "damping = \"ca_lit\""));
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].key, "arm.damping");
+  EXPECT_THAT(problems[0].rule, HasSubstr("needs area_m2"));
+}
+
 TEST(BrokenConfigs, RotorEncodersMayBeAbsent) {
   std::string text = FileText(Shipped("thesis-rig.toml"));
   const std::size_t begin = text.find("[[sensors.encoder]]\njoint = \"rotor1\"");

@@ -55,6 +55,9 @@ class Report(ProgramTest):
             self.assertIn(f"<td>{cell}</td>", text)
         for verdict in ("holds", "does not hold", "holds in part"):
             self.assertIn(f">{verdict}</td>", text)
+        self.assertIn("Published arms", text)
+        self.assertIn("<td>differs, see the note</td>", text)
+        self.assertNotIn("<td>DIFFERS</td>", text)
         self.assertNotIn("no finite number", text)
         for run in (folder / "runs").iterdir():
             self.flexarm_json("replay", run)

@@ -4,7 +4,7 @@
 
 namespace flexarm {
 
-/// The thesis's Table 2 with its misprints corrected (E and rho, docs/theory/thesis.md 2.2),
+/// The thesis's Table 2 with its misprints corrected (E and rho, docs/theory/errata.md 3),
 /// payload 0.1 kg.
 ///
 /// With the digits used for golden.json, so that golden tests compare equal parameters.

@@ -19,7 +19,7 @@ struct Curve {
   double theta2_deg, theta1_rate_rad_s, theta2_rate_rad_s;
 };
 
-// The motions in the captions of figures 6.3 to 6.5, corrected by docs/theory/thesis.md 2.4.
+// The motions in the captions of figures 6.3 to 6.5, corrected by docs/theory/errata.md 5.
 constexpr std::array<Curve, 3> kCurves = {{{"figure-6.3.png", 0.0, 0.0, 0.0},
                                            {"figure-6.4.png", 45.0, -1.0, 3.0},
                                            {"figure-6.5.png", 90.0, -4.0, -6.0}}};

@@ -26,6 +26,17 @@ RigConfig ConfigOptions::Load() const {
   return LoadConfig(file, overrides);
 }
 
+RigConfig ConfigOptions::LoadWithCrossSections() const {
+  RigConfig config = Load();
+  for (std::size_t i = 0; i < config.arm.link.size(); ++i) {
+    if (config.arm.link[i].has_cross_sections()) continue;
+    throw InputError(file.string() + ": link" + std::to_string(i + 1) +
+                     ".section: needs area_m2, second_moment_m4, density_kg_m3 and "
+                     "youngs_modulus_pa, which statements of the thesis are about");
+  }
+  return config;
+}
+
 void GridOptions::AddTo(CLI::App* verb) {
   verb->add_option("--shard", shard,
                    "Only the I-th of N parts, 1 <= I <= N; `flexarm sweep merge` joins them")

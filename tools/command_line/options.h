@@ -23,6 +23,9 @@ struct ConfigOptions {
   bool given() const { return !file.empty(); }
   /// @throws ConfigError; InputError if --set was given without --config
   RigConfig Load() const;
+  /// Load() for the statements of the thesis, of which some are about cross-sections.
+  /// @throws InputError if a section has its mass per length and bending stiffness instead
+  RigConfig LoadWithCrossSections() const;
 };
 
 /// The options --shard I/N and --jobs J of every verb that runs the points of a grid.

@@ -20,7 +20,7 @@ struct ThesisCheckOptions {
 };
 
 void Analyze(const ThesisCheckOptions& options) {
-  const RigConfig config = options.config.Load();
+  const RigConfig config = options.config.LoadWithCrossSections();
   const OutputRules rules =
       options.output.Rules("such a page", kThesisCheckTitle, {options.config.file});
   if (options.output.given()) CheckOutput(options.output.file, rules);

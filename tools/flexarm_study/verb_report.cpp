@@ -19,9 +19,11 @@ struct ReportOptions {
 };
 
 void Run(const ReportOptions& options) {
+  const std::filesystem::path experiments = ExperimentFile({}, options.config.file).parent_path();
   const std::filesystem::path page =
-      WriteReport({.config = options.config.Load(),
-                   .experiments = ExperimentFile({}, options.config.file).parent_path(),
+      WriteReport({.config = options.config.LoadWithCrossSections(),
+                   .experiments = experiments,
+                   .published = experiments.parent_path() / "published" / "cases.toml",
                    .folder = options.output});
   if (options.json) {
     std::cout << PrintedJson(nlohmann::ordered_json{{"page", page.string()}}) << '\n';

@@ -71,7 +71,7 @@ LAYERS = {
                     "model/perturbation model/reduction controller/types controller/law "
                     "controller/design controller/host config tools/support tools/analysis "
                     "tools/sweep",
-    "tools/report": "model/simulation model/perturbation controller/runlog controller/host config "
+    "tools/report": "model model/beam model/arm model/simulation model/perturbation controller/runlog controller/host config "
                     "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
                     "tools/thesis controller/files",
     "tools/flexarm": "model model/arm hal/gpiod hal/wired hal/emulation controller/realtime "

@@ -12,6 +12,7 @@ namespace flexarm {
 struct ReportContext {
   RigConfig config;
   std::filesystem::path experiments;
+  std::filesystem::path published;  ///< file of the published cases
   std::filesystem::path folder;
   std::vector<Statement> statements;  ///< of the chapters written so far
 
@@ -30,5 +31,6 @@ void Baselines(ReportContext* context, HtmlPage* page);  ///< the benchmark of t
 /// The laws that estimate the payload, compared with the others and with the design study, and
 /// their limits.
 void PayloadChapter(ReportContext* context, HtmlPage* page);
+void PublishedChapter(ReportContext* context, HtmlPage* page);  ///< arms of other authors
 
 }  // namespace flexarm

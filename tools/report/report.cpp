@@ -30,11 +30,12 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
   }
   ReportContext context{.config = request.config,
                         .experiments = request.experiments,
+                        .published = request.published,
                         .folder = request.folder,
                         .statements = {}};
   HtmlPage page("The flexible arm of the thesis, recomputed: " + request.config.rig_name);
-  const auto chapters = {Chapter3, Chapter4,  Chapter5,      Chapter6,
-                         Chapter7, Baselines, PayloadChapter};
+  const auto chapters = {Chapter3, Chapter4,  Chapter5,       Chapter6,
+                         Chapter7, Baselines, PayloadChapter, PublishedChapter};
   std::size_t done = 0;
   const auto progress = ProgressBar("chapters", chapters.size());
   for (auto* chapter : chapters) {
@@ -44,7 +45,9 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
   }
   page.Lead(Count(std::ssize(context.statements)) + " statements of the thesis (" +
             Counted(context.statements) +
-            "). Every number on this page is computed by the program that wrote it (flexarm " +
+            "). Every number on this page, but those that a source prints, is computed by the "
+            "program that "
+            "wrote it (flexarm " +
             ThisBuild().version + ", " + BuildId() +
             "); every verdict follows from numbers by a rule. The arm is simulated.");
   std::filesystem::path file = request.folder / "report.html";

@@ -22,12 +22,15 @@ std::vector<std::string> BothJoints(const RigConfig& config, const std::string& 
   return {Times(config, "joint1." + key, factor), Times(config, "joint2." + key, factor)};
 }
 
-std::vector<std::string> EverySection(const RigConfig& config, const std::string& key,
-                                      double factor) {
+// The bending stiffness of every section, by the key that the section has for it.
+std::vector<std::string> SofterLinks(const RigConfig& config, double factor) {
   std::vector<std::string> overrides;
   for (std::size_t link = 0; link < 2; ++link) {
     const std::string name = "link" + std::to_string(link + 1) + ".section[";
-    for (std::size_t i = 0; i < config.arm.link[link].section.size(); ++i) {
+    const std::vector<BeamSection>& section = config.arm.link[link].section;
+    for (std::size_t i = 0; i < section.size(); ++i) {
+      const char* key =
+          section[i].has_cross_section ? "youngs_modulus_pa" : "bending_stiffness_nm2";
       overrides.push_back(Times(config, name + std::to_string(i) + "]." + key, factor));
     }
   }
@@ -41,9 +44,9 @@ std::vector<std::string> Together(const RigConfig& config) {
                                         "link1.damping_ratio=0.02",
                                         "link2.damping_ratio=0.02",
                                         "sim.lost_frame_fraction=0.05"};
-  for (const auto& more : {BothJoints(config, "coulomb_friction_nm", 2.0),
-                           BothJoints(config, "stiffness_nm_per_rad", 0.85),
-                           EverySection(config, "youngs_modulus_pa", 0.95)}) {
+  for (const auto& more :
+       {BothJoints(config, "coulomb_friction_nm", 2.0),
+        BothJoints(config, "stiffness_nm_per_rad", 0.85), SofterLinks(config, 0.95)}) {
     overrides.insert(overrides.end(), more.begin(), more.end());
   }
   return overrides;
@@ -73,7 +76,7 @@ std::vector<std::string> VariantOverrides(const RigConfig& config, const std::st
   }
   if (name == "friction-x3") return BothJoints(config, "coulomb_friction_nm", 3.0);
   if (name == "soft-joints") return BothJoints(config, "stiffness_nm_per_rad", 0.7);
-  if (name == "soft-links") return EverySection(config, "youngs_modulus_pa", 0.9);
+  if (name == "soft-links") return SofterLinks(config, 0.9);
   if (name == "modal-damping") {
     return {"arm.damping=modal", "link1.damping_ratio=0.03", "link2.damping_ratio=0.03"};
   }

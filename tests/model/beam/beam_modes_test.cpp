@@ -256,6 +256,31 @@ TEST(LinkModes, DampingReadingsGiveTheirStatedRatios) {
   EXPECT_EQ(ratio(DampingReading::kNone, 0), 0.0);
 }
 
+// The products are those of the cross-section up to rounding, and C_a I = xi L^2 sqrt(rho A EI).
+TEST(LinkModes, MassPerLengthAndBendingStiffnessGiveTheLinkOfTheirCrossSection) {
+  ArmParameters p = ThesisRig();
+  const LinkModes with = Link2Modes(p, 3);
+  BeamSection& s = p.link[1].section[0];
+  s = {.length_m = s.length_m,
+       .area_m2 = 0.0,
+       .second_moment_m4 = 0.0,
+       .density_kg_m3 = 0.0,
+       .youngs_modulus_pa = 0.0,
+       .half_thickness_m = s.half_thickness_m,
+       .given_mass_per_length_kg_m = s.mass_per_length_kg_m(),
+       .given_bending_stiffness_nm2 = s.bending_stiffness_nm2(),
+       .has_cross_section = false};
+  EXPECT_TRUE(p.Problems().empty());
+  const LinkModes without = Link2Modes(p, 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(without.mode[i].frequency_rad_s(), with.mode[i].frequency_rad_s());
+  }
+  EXPECT_LT((without.D - with.D).cwiseAbs().maxCoeff(), 1e-13 * with.D.cwiseAbs().maxCoeff());
+  p.damping = DampingReading::kCurvatureAsPrinted;
+  ASSERT_EQ(p.Problems().size(), 1U);
+  EXPECT_EQ(p.Problems()[0].key, "arm.damping");
+}
+
 // docs/theory/plant.md 5: zeta_k = xi (beta_k L)^2 / 2; link 1 (I_r2 at its tip) 0.008, 0.119, link
 // 2 0.032, 0.256.
 TEST(LinkModes, DampingOfTheRigAgreesWithTheReference) {
