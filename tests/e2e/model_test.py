@@ -46,6 +46,41 @@ class Modes(ProgramTest):
             self.assertLess(max(link["fit_rms_residual"]), 1e-6)  # falls as N^-4: 4e-8 at 200
         self.assertNotIn("convergence", self.modes())
 
+    def test_frequencies_that_have_not_converged_are_marked(self):
+        # 100 Hermite elements a link, by a program of its own: 160.776 and 189.689 Hz.
+        json = self.modes()
+        arm = json["arm"]
+        self.assertEqual(arm["converged"], 8 * [True] + 2 * [False])
+        for found, expected in zip(arm["frequency_hz"][8:], (503.878, 571.514)):
+            self.assertAlmostEqual(found, expected, delta=1e-3)
+        for found, expected in zip(arm["exact_hz"][8:], (160.776250, 189.688954)):
+            self.assertAlmostEqual(found / expected, 1.0, delta=1e-6)
+        self.assertEqual(json["arm_motors_held"]["converged"], 8 * [True] + 2 * [False])
+        text = self.flexarm("modes", "-c", RIG).stdout
+        self.assertEqual(text.count("not converged; exact: Hz"), 2)
+        self.assertIn("160.776", text)
+
+    def test_the_friction_switch_for_every_link_mode_and_amplitude(self):
+        # Closed-form beam with a moment at its root, by a program of its own.
+        expected = {(1, 1): ((0.0855602, True, 0.850564), (7.140428, False, 8.291590)),
+                    (1, 5): ((0.4278010, False, 0.520017), (35.702139, False, 8.284165)),
+                    (2, 1): ((0.0216424, False, 1.280778), (0.3906347, False, 10.625582)),
+                    (2, 5): ((0.1082121, False, 0.565192), (1.9531735, False, 10.483619))}
+        roots = self.modes("--modes", 2, "--friction-amplitude-mm", 1, 5)["friction_roots"]
+        self.assertEqual([link["friction_nm"] for link in roots], [0.16, 0.01])
+        for link in roots:
+            for row in link["amplitudes"]:
+                for mode, (moment, sticks, hz) in enumerate(
+                        expected[link["link"], row["amplitude_mm"]]):
+                    self.assertAlmostEqual(row["clamped_moment_nm"][mode] / moment, 1, delta=1e-6)
+                    self.assertEqual(row["sticks"][mode], sticks)
+                    self.assertAlmostEqual(row["frequency_hz"][mode] / hz, 1, delta=1e-5)
+        loose = self.modes("--modes", 2, "--friction-amplitude-mm", 1, "--friction-nm", 0, 10)
+        sticks = [link["amplitudes"][0]["sticks"] for link in loose["friction_roots"]]
+        self.assertEqual(sticks, [[False, False], [True, True]])
+        self.assertNotIn("friction_roots", self.modes())
+        self.assertIn("slips", self.flexarm("modes", "-c", RIG, "--friction-amplitude-mm", 5).stdout)
+
     def test_it_draws(self):
         picture = self.folder / "modes.png"
         self.flexarm("modes", "-c", RIG, "--modes", 2, "-o", picture)
@@ -56,6 +91,8 @@ class Modes(ProgramTest):
                               (("--base", "spring"), "--base-spring-nm-per-rad"),
                               (("--base-spring-nm-per-rad", 3), "--base spring"),
                               (("--base", "glued"), "--base"),
+                              (("--friction-amplitude-mm", 0), "--friction-amplitude-mm"),
+                              (("--friction-nm", 1, 1), "--friction-amplitude-mm"),
                               (("-o", "modes.gif"), "expected .png or .svg"),
                               (("--set", "link1.section[0].length_m=-1"), "length_m"),
                               (("--set", "joint2.stiffness_nm_per_rad=0"), "stiffness_nm_per_rad"),

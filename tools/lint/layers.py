@@ -9,7 +9,7 @@ LAYERS = {
     "model/math": "",
     "model/parameters": "model",
     "model/beam": "model model/math model/parameters",
-    "model/beam_methods": "model/math model/beam",
+    "model/beam_methods": "model model/math model/parameters model/beam",
     "model/arm": "model model/math model/parameters model/beam",
     "model/simulation": "model/math model/arm",
     "model/perturbation": "model/math model/arm model/simulation",
@@ -79,8 +79,8 @@ LAYERS = {
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config tools/runs "
                      "tools/plot tools/command_line controller/files",
-    "tools/flexarm_study": "model model/math model/beam model/arm model/simulation "
-                           "model/perturbation controller/runlog tools/support tools/runs "
+    "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
+                           "model/simulation model/perturbation controller/runlog tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
