@@ -167,6 +167,27 @@ class Linearize(ProgramTest):
         self.assertLess(smoothed[6][6], without[6][6])
         self.assertTrue(math.isfinite(smoothed[6][6]))
 
+    def test_zeros_and_poles_at_the_origin(self):
+        # Zeros by the QZ algorithm on the system's pencil, in a program of its own.
+        still = ("--modes", 2, "--theta2-deg", 45, "--duration-s", 0.01)
+        result = self.linearize(RIG, *still)
+        self.assertEqual(result["poles_at_origin"], {"count": 4, "chains": 2})
+        smoothed = self.linearize(RIG, *still, "--friction-gain", 50)
+        self.assertEqual(smoothed["poles_at_origin"], {"count": 2, "chains": 2})
+        zeros = result["zeros"]
+        right = {name: outputs["right_half_plane"] for name, outputs in zeros.items()}
+        self.assertEqual(right, {"rotors": 0, "hubs": 0, "link_ends": 1, "tip": 3})
+        self.assertIs(zeros["hubs"]["minimum_phase"], True)
+        self.assertIs(zeros["tip"]["minimum_phase"], False)
+        unstable = [zero["real_1_s"] for zero in zeros["tip"]["zeros"] if zero["real_1_s"] > 0]
+        for found, expected in zip(unstable, (76.767, 164.497, 268.728)):
+            self.assertAlmostEqual(found, expected, delta=1e-3)
+        self.assertAlmostEqual(smoothed["zeros"]["rotors"]["zeros"][0]["imaginary_rad_s"], 4.4538,
+                               delta=1e-4)
+        self.assertIsNone(self.linearize(RIG, "--modes", 2, "--duration-s", 0.01)["zeros"]["tip"])
+        text = self.flexarm("analyze", "linearize", "-c", RIG, *still).stdout
+        self.assertIn("poles at the origin: 4, in 2 chains", text)
+
     def test_bad_options_are_refused(self):
         for options, said in ((("--modes", 0), "--modes"), (("--theta2-deg", "nan"), "--theta2-deg"),
                               (("--duration-s", 0), "--duration-s"),

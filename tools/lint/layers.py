@@ -74,7 +74,7 @@ LAYERS = {
     "tools/report": "model/simulation model/perturbation controller/runlog controller/host config "
                     "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
                     "tools/thesis controller/files",
-    "tools/flexarm": "model model/arm hal/gpiod hal/wired hal/emulation controller/realtime "
+    "tools/flexarm": "model model/math model/arm hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config tools/runs "

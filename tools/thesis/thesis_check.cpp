@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tools/thesis/chapter7_statements.h"
+#include "tools/thesis/control_features.h"
 #include "tools/thesis/parametric_statements.h"
 
 namespace flexarm {
@@ -25,7 +26,7 @@ std::vector<Statement> ThesisStatements(const RigConfig& config,
   std::vector<Statement> all;
   std::size_t done = 0;
   for (auto* chapter : {Chapter3Statements, Chapter4Statements, Chapter5Statements,
-                        Chapter6Statements, ControlStatements}) {
+                        Chapter6Statements, ControlFeatureStatements, ControlStatements}) {
     for (Statement& statement : chapter(config)) all.push_back(std::move(statement));
     if (progress) progress(++done);
   }
