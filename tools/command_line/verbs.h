@@ -25,6 +25,7 @@ void RegisterAnalyzeExcite(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeLinearize(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeParametric(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
+void RegisterAnalyzeTorsion(CLI::App& analyze, Exit& exit);
 void RegisterBenchmark(CLI::App& app, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);
 void RegisterCheckHost(CLI::App& app, Exit& exit);

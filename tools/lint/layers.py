@@ -58,8 +58,8 @@ LAYERS = {
     "tools/runs": "controller/runlog config",
     "tools/plot": "model model/beam controller/files controller/safety tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
-    "tools/analysis": "model model/math model/beam model/beam_methods model/arm model/simulation "
-                      "model/perturbation model/reduction controller/files config tools/support "
+    "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
+                      "model/simulation model/perturbation model/reduction controller/files config tools/support "
                       "tools/runs tools/plot",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config tools/support tools/runs tools/plot controller/files",

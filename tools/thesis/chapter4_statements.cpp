@@ -4,6 +4,7 @@
 
 #include "model/arm/linearization.h"
 #include "model/simulation/arm_simulator.h"
+#include "tools/analysis/torsion_report.h"
 #include "tools/thesis/thesis_check.h"
 
 namespace flexarm {
@@ -129,6 +130,44 @@ Statement Table2(const ArmParameters& arm) {
           worst < 0.01 ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
+// How the arm carries what lies beside the axis of link 1, as long as nothing supports it.
+std::string TorsionText(const TorsionEffect& effect) {
+  return "elbow at " + Figure(effect.of.theta2_deg, 2) + " deg: link 2 and payload weigh " +
+         Figure(effect.weight_nm) + " N m about the axis of link 1, whose stiffness is " +
+         Figure(effect.link[0].stiffness_nm_per_rad) + " N m/rad with a Poisson's ratio of " +
+         Figure(effect.of.poisson, 2) + ": it twists by " + Figure(effect.twist_deg, 2) +
+         " deg, and the tip drops by " + Figure(effect.drop_by_twist_mm, 2) +
+         " mm; by bending on edge the elbow drops by " + Figure(effect.drop_by_bending_mm, 2) +
+         " mm";
+}
+
+// Sections of the links, 4.2.1.
+Statement StiffInTorsion(const ArmParameters& arm) {
+  constexpr double kSmall_mm = 5.0;
+  const TorsionEffect effect = TorsionOf(arm);
+  return {"4.2.1",
+          "the links' sections are stiff enough for weight and twist to be small and negligible",
+          TorsionText(effect),
+          effect.drop_by_twist_mm < kSmall_mm && effect.drop_by_bending_mm < kSmall_mm
+              ? Verdict::kHolds
+          : effect.drop_by_bending_mm < kSmall_mm ? Verdict::kInPart
+                                                  : Verdict::kDoesNot};
+}
+
+// 7.5, where it led to the support of figure 7.13.
+Statement MajorUnmodelled(const ArmParameters& arm) {
+  const TorsionEffect effect = TorsionOf(arm);
+  const double lowest_hz = FreeMotorFrequenciesHz(ArmModel(arm, {4, 4}), 0.0)[0];
+  return {"7.5", "torsion of the links is the major unmodelled motion (figure 7.13)",
+          "link 1 twists at " + Figure(effect.carried_hz) + " Hz with the elbow at " +
+              Figure(effect.of.theta2_deg, 2) + " deg, below the lowest bending of the arm, " +
+              Figure(lowest_hz) + " Hz. A payload " + Figure(effect.of.payload_offset_mm, 2) +
+              " mm beside its axis changes link 2 little: " + Figure(effect.coupled_hz[0], 5) +
+              " instead of " + Figure(effect.bending_hz[0], 5) + " Hz, and " +
+              Figure(effect.twist_deg_per_mm, 2) + " deg of twist for a mm of deflection",
+          effect.carried_hz < lowest_hz ? Verdict::kHolds : Verdict::kDoesNot};
+}
+
 struct Chapter4Run {
   Eigen::Vector2d tip_m;
   double bending1_mm = 0.0, bending2_mm = 0.0;  // largest
@@ -176,8 +215,9 @@ Statement Agreement(ArmParameters arm) {
 }  // namespace
 
 std::vector<Statement> Chapter4Statements(const RigConfig& config) {
-  return {SameEffect(config.arm), LongerOrThinner(config.arm), Thickness(config.arm),
-          Table2(config.arm),     HubInertias(config.arm),     Agreement(config.arm)};
+  return {SameEffect(config.arm),     LongerOrThinner(config.arm), Thickness(config.arm),
+          StiffInTorsion(config.arm), Table2(config.arm),          HubInertias(config.arm),
+          Agreement(config.arm),      MajorUnmodelled(config.arm)};
 }
 
 }  // namespace flexarm

@@ -16,7 +16,11 @@ std::vector<Statement> Chapter5Statements(const RigConfig& config) {
 }
 
 std::vector<Statement> ControlStatements(const RigConfig& config) {
-  return Chapter7Statements(ControlStudy(config));
+  std::vector<Statement> all = ControlFeatureStatements(config);
+  for (Statement& statement : Chapter7Statements(ControlStudy(config))) {
+    all.push_back(std::move(statement));
+  }
+  return all;
 }
 
 }  // namespace
@@ -26,7 +30,7 @@ std::vector<Statement> ThesisStatements(const RigConfig& config,
   std::vector<Statement> all;
   std::size_t done = 0;
   for (auto* chapter : {Chapter3Statements, Chapter4Statements, Chapter5Statements,
-                        Chapter6Statements, ControlFeatureStatements, ControlStatements}) {
+                        Chapter6Statements, ControlStatements}) {
     for (Statement& statement : chapter(config)) all.push_back(std::move(statement));
     if (progress) progress(++done);
   }

@@ -46,9 +46,9 @@ std::vector<double> SortedReals(const Eigen::VectorXcd& zeros) {
 
 // (s - 3)(s + 7) over a polynomial of degree 2 + k: relative degrees 1 to 3.
 TEST(InvariantZeros, AreTheRootsOfTheNumerator) {
-  for (const std::vector<double>& denominator :
-       {std::vector<double>{6.0, 11.0, 6.0}, {10.0, 35.0, 50.0, 24.0},
-        {15.0, 85.0, 225.0, 274.0, 120.0}}) {
+  for (const std::vector<double>& denominator : {std::vector<double>{6.0, 11.0, 6.0},
+                                                 {10.0, 35.0, 50.0, 24.0},
+                                                 {15.0, 85.0, 225.0, 274.0, 120.0}}) {
     const TransferFunction system(denominator, {-21.0, 4.0, 1.0});
     const auto zeros = SortedReals(InvariantZeros(system.A, system.B, system.C));
     ASSERT_EQ(zeros.size(), 2U);
