@@ -101,6 +101,43 @@ class Modes(ProgramTest):
                 self.assert_refused(self.run_program("flexarm", "modes", "-c", RIG, *options), said)
 
 
+class Gauges(ProgramTest):
+    def gauges(self, *arguments, rig=RIG):
+        return self.flexarm_json("gauges", "-c", rig, *arguments)
+
+    def test_shipped_proposed_and_the_thesis_gauges(self):
+        # Mode shapes and least squares by a program of its own.
+        for link, sigma in zip(self.gauges()["links"], ((5.28491956e-5, 4.27385192e-7),
+                                                        (9.46667472e-5, 5.64682578e-6))):
+            self.assertEqual(len(link["shipped"]["position_m"]), 10)
+            for found, expected in zip(link["shipped"]["sigma_m"], sigma):
+                self.assertAlmostEqual(found / expected, 1.0, delta=1e-6)
+            self.assertAlmostEqual(link["shipped"]["covariance_m2"][0][0] / sigma[0] ** 2, 1.0,
+                                   delta=1e-6)
+            self.assertLess(link["proposed"]["sigma_m"][0], link["shipped"]["sigma_m"][0])
+            self.assertEqual(len(link["five_half_bridges"]["position_m"]), 5)
+        link = self.gauges("--modes", 3, "--per-link", 6, "--noise-microstrain", 2)["links"][0]
+        self.assertEqual(len(link["proposed"]["position_m"]), 6)
+        self.assertEqual(len(link["proposed"]["sigma_m"]), 3)
+        self.assertEqual(link["noise_strain"], 2e-6)
+        for rig in ("half-bridges.toml", "quanser-2dsfl.toml"):
+            self.flexarm("gauges", "-c", ROOT / "config" / rig)
+
+    def test_it_draws_the_deflection_by_gauges_and_truly(self):
+        picture = self.folder / "gauges.png"
+        errors = self.gauges("-o", picture)["verification"]
+        self.assertTrue(picture.read_bytes().startswith(PNG))
+        self.assertLess(max(errors["modal_rms_mm"]), 0.12)
+        self.assertGreater(min(errors["largest_mm"]), 7)
+
+    def test_bad_options_are_refused(self):
+        for options, said in ((("--modes", 0), "--modes"), (("--modes", 3, "--per-link", 2), "modes"),
+                              (("--per-link", 90), "no room"), (("-o", "x.gif"), ".png or .svg"),
+                              (("--noise-microstrain", 0), "--noise-microstrain")):
+            with self.subTest(options=options):
+                self.assert_refused(self.run_program("flexarm", "gauges", "-c", RIG, *options), said)
+
+
 class Excite(ProgramTest):
     def excite(self, *arguments):
         return self.flexarm_json("analyze", "excite", "-c", RIG, *arguments)

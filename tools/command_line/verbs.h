@@ -34,6 +34,7 @@ void RegisterConfig(CLI::App& app, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);
 void RegisterDiff(CLI::App& app, Exit& exit);
 void RegisterExport(CLI::App& app, Exit& exit);
+void RegisterGauges(CLI::App& app, Exit& exit);
 void RegisterIdentify(CLI::App& app, Exit& exit);
 void RegisterInfo(CLI::App& app, Exit& exit);
 void RegisterLinesOff(CLI::App& app, Exit& exit);

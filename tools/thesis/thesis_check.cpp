@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tools/thesis/appendix_statements.h"
 #include "tools/thesis/chapter7_statements.h"
 #include "tools/thesis/control_features.h"
 #include "tools/thesis/parametric_statements.h"
@@ -30,7 +31,7 @@ std::vector<Statement> ThesisStatements(const RigConfig& config,
   std::vector<Statement> all;
   std::size_t done = 0;
   for (auto* chapter : {Chapter3Statements, Chapter4Statements, Chapter5Statements,
-                        Chapter6Statements, ControlStatements}) {
+                        Chapter6Statements, ControlStatements, AppendixStatements}) {
     for (Statement& statement : chapter(config)) all.push_back(std::move(statement));
     if (progress) progress(++done);
   }
@@ -45,7 +46,8 @@ std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement
          "\n\nAfter reading this page you know which statements of the thesis agree with the model "
          "of "
          "this project, and by which numbers.\n\n"
-         "The table checks statements of chapters 3 to 7, in our words, against the model with the "
+         "The table checks statements of chapters 3 to 7 and Appendix B, in our words, against the "
+         "model with the "
          "config `" +
          config.rig_name +
          "`. `flexarm analyze check -c FILE -o docs/thesis-check.md` writes this page: every "
