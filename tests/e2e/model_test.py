@@ -146,7 +146,7 @@ class Excite(ProgramTest):
         # The tip at 3 s by an eighth-order integrator; the default one, of second order, differs by
         # 6 um.
         picture = self.folder / "square-wave.png"
-        result = self.excite("--without-dissipation", "--modes", 2, "--set",
+        result = self.excite("--without-dissipation", "--motor-lag-ms", 0, 0, "--modes", 2, "--set",
                              "arm.link1_tip_inertia=motor", "-o", picture)
         for found, expected in zip(result["final_tip_m"], (1.690807100, 0.145161223)):
             self.assertAlmostEqual(found, expected, delta=2e-5)
@@ -154,6 +154,16 @@ class Excite(ProgramTest):
         self.assertAlmostEqual(result["peak_bending_mm"][0], 18.56, delta=0.03)
         self.assertAlmostEqual(result["peak_bending_mm"][1], 15.06, delta=0.03)
         self.assertTrue(picture.read_bytes().startswith(PNG))
+
+    def test_the_motors_lag_is_that_of_the_config_or_another(self):
+        shipped, none, slow = (self.excite(*options) for options in (
+            (), ("--motor-lag-ms", 0, 0), ("--motor-lag-ms", 10, 10)))
+        self.assertEqual(shipped["motor_lag_ms"], [2, 2])
+        self.assertEqual(none["motor_lag_ms"], [0, 0])
+        self.assertAlmostEqual(none["peak_bending_mm"][0], 7.88, delta=0.02)
+        for one, other in zip(none["peak_bending_mm"], slow["peak_bending_mm"]):
+            self.assertLess(other, 0.96 * one)
+        self.assertEqual(shipped, self.excite("--motor-lag-ms", 2, 2))
 
     def test_friction_and_damping_reduce_the_bending(self):
         free = self.excite("--without-dissipation")["peak_bending_mm"]

@@ -137,11 +137,39 @@ Statement CauseOfNotFollowing(const RigConfig& config) {
           Follows(neither) && !Follows(both) ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
+// Multiplications of one sample: filter, prediction, and the law with its log of (7.12).
+Eigen::Index ProductsOfASample(const Design& design) {
+  const Eigen::Index regressor = design.A.rows() + 4;
+  return design.filter_A.size() + design.filter_B.size() + design.filter_C.size() +
+         design.filter_L.size() + design.A.size() + design.B.size() + 2 * design.K.size() +
+         design.S11.size() + design.S12.size() + design.P.size() + 5 * regressor;
+}
+
+// 7.4: "more computation".
+Statement CostOfOrder16(const RigConfig& config) {
+  const auto of = [&](const char* model) {
+    return DesignController(WithOverrides(config, {std::string("controller.nominal=") + model}));
+  };
+  const Design twelve = of("T12"), sixteen = of("T16");
+  const Eigen::Index few = ProductsOfASample(twelve), many = ProductsOfASample(sixteen);
+  const Eigen::Index unknowns12 = twelve.A.size(), unknowns16 = sixteen.A.size();
+  const double design =
+      std::pow(static_cast<double>(unknowns16) / static_cast<double>(unknowns12), 3);
+  return {"7.4", "a nominal model of order 16 takes more computation than one of order 12",
+          "by the sizes of their matrices, a sample of filter, prediction and law takes " +
+              Count(many) + " multiplications with T16, " + Count(few) +
+              " with T12: " + Figure(static_cast<double>(many) / static_cast<double>(few)) +
+              " times as many; the equation for S11 has " + Count(unknowns16) +
+              " unknowns instead of " + Count(unknowns12) + ", written as one linear system " +
+              Figure(design, 2) + " times the work, off line",
+          many > few ? Verdict::kHolds : Verdict::kDoesNot};
+}
+
 }  // namespace
 
 std::vector<Statement> ControlFeatureStatements(const RigConfig& config) {
   return {NonMinimumPhase(config, DesignController(config)), PolesAtOrigin(config),
-          NotFollowing(config), CauseOfNotFollowing(config)};
+          NotFollowing(config), CauseOfNotFollowing(config), CostOfOrder16(config)};
 }
 
 }  // namespace flexarm

@@ -11,9 +11,13 @@ namespace flexarm {
 namespace {
 
 std::vector<Statement> Chapter5Statements(const RigConfig& config) {
-  const Excitation weak;
-  return ParametricStatements(RunParametricStudy(config, weak),
-                              RunParametricStudy(config, Strong(weak)));
+  Excitation weak;
+  weak.motor_lag_ms = config.sim.motor_lag_ms;
+  const ParametricStudy study = RunParametricStudy(config, weak);
+  std::vector<Statement> all =
+      ParametricStatements(study, RunParametricStudy(config, Strong(weak)));
+  all.push_back(MotorLag(config, study));
+  return all;
 }
 
 std::vector<Statement> ControlStatements(const RigConfig& config) {
@@ -59,8 +63,10 @@ std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement
          "period of a square wave of " +
          Figure(Excitation::kPeriod_s, 1) + " s, " + Figure(weak.torque_nm[0], 1) + " and " +
          Figure(weak.torque_nm[1], 1) + " N m, with the elbow straight, and again with " +
-         Figure(kStrongExcitation, 1) +
-         " times as much. Bending is the deflection of a link's tip, twist the deflection of a "
+         Figure(kStrongExcitation, 1) + " times as much, and the motors lag by " +
+         Figure(config.sim.motor_lag_ms[0], 2) + " and " + Figure(config.sim.motor_lag_ms[1], 2) +
+         " ms, `sim.motor_lag_ms`. Bending is the deflection of a link's tip, twist the deflection "
+         "of a "
          "joint's spring; \"largest\" is over the whole run, \"after the excitation\" refers to "
          "the "
          "free vibration.\n\nThe statements of chapter 7 are checked with the loop of "
