@@ -123,6 +123,14 @@ class Gauges(ProgramTest):
         for rig in ("half-bridges.toml", "quanser-2dsfl.toml"):
             self.flexarm("gauges", "-c", ROOT / "config" / rig)
 
+    def test_five_half_bridges_a_link_control_the_arm(self):
+        for payload in (0.01, 0.1, 0.2):
+            result = self.flexarm_json("simulate", "-c", ROOT / "config/half-bridges.toml",
+                                       "--payload-kg", payload, "-o",
+                                       self.folder / f"{payload}.flexarm")
+            self.assertIs(result["completed"], True)
+            self.assertLess(result["tip_settling_time_s"], 2)
+
     def test_it_draws_the_deflection_by_gauges_and_truly(self):
         picture = self.folder / "gauges.png"
         errors = self.gauges("-o", picture)["verification"]

@@ -129,8 +129,9 @@ void Chapter5(ReportContext* context, HtmlPage* page) {
   Excitation weak;
   weak.motor_lag_ms = context->config.sim.motor_lag_ms;
   const ParametricStudy study = RunParametricStudy(context->config, weak);
-  const std::vector<Statement> statements =
+  std::vector<Statement> statements =
       ParametricStatements(study, RunParametricStudy(context->config, Strong(weak)));
+  statements.push_back(MotorLag(context->config, study));
   const std::filesystem::path folder = context->folder / "tables" / "chapter-5";
   for (const auto& file : WriteParametricFolder(study, statements, folder)) {
     if (file.extension() != ".png") continue;

@@ -180,20 +180,6 @@ Statement StiffInTorsion(const ArmParameters& arm) {
                                                   : Verdict::kDoesNot};
 }
 
-// 7.5, where it led to the support of figure 7.13.
-Statement MajorUnmodelled(const ArmParameters& arm) {
-  const TorsionEffect effect = TorsionOf(arm);
-  const double lowest_hz = FreeMotorFrequenciesHz(ArmModel(arm, {4, 4}), 0.0)[0];
-  return {"7.5", "torsion of the links is the major unmodelled motion (figure 7.13)",
-          "link 1 twists at " + Figure(effect.carried_hz) + " Hz with the elbow at " +
-              Figure(effect.of.theta2_deg, 2) + " deg, below the lowest bending of the arm, " +
-              Figure(lowest_hz) + " Hz. A payload " + Figure(effect.of.payload_offset_mm, 2) +
-              " mm beside its axis changes link 2 little: " + Figure(effect.coupled_hz[0], 5) +
-              " instead of " + Figure(effect.bending_hz[0], 5) + " Hz, and " +
-              Figure(effect.twist_deg_per_mm, 2) + " deg of twist for a mm of deflection",
-          effect.carried_hz < lowest_hz ? Verdict::kHolds : Verdict::kDoesNot};
-}
-
 struct Chapter4Run {
   Eigen::Vector2d tip_m;
   double bending1_mm = 0.0, bending2_mm = 0.0;  // largest
@@ -243,7 +229,7 @@ Statement Agreement(ArmParameters arm) {
 std::vector<Statement> Chapter4Statements(const RigConfig& config) {
   return {SameEffect(config.arm),  LongerOrThinner(config.arm), Lengths(config.arm),
           Thickness(config.arm),   StiffInTorsion(config.arm),  Table2(config.arm),
-          HubInertias(config.arm), Agreement(config.arm),       MajorUnmodelled(config.arm)};
+          HubInertias(config.arm), Agreement(config.arm)};
 }
 
 }  // namespace flexarm

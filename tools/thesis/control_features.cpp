@@ -13,6 +13,7 @@
 #include "model/math/invariant_zeros.h"
 #include "model/units.h"
 #include "tools/analysis/arm_zeros.h"
+#include "tools/analysis/torsion_report.h"
 
 namespace flexarm {
 namespace {
@@ -165,11 +166,29 @@ Statement CostOfOrder16(const RigConfig& config) {
           many > few ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
+// 7.5, where it led to the support of figure 7.13.
+Statement MajorUnmodelled(const ArmParameters& arm) {
+  const TorsionEffect effect = TorsionOf(arm);
+  const double lowest_hz = FreeMotorFrequenciesHz(ArmModel(arm, {4, 4}), 0.0)[0];
+  return {"7.5", "torsion of the links is the major unmodelled motion (figure 7.13)",
+          "link 1 twists at " + Figure(effect.carried_hz) + " Hz with the elbow at " +
+              Figure(effect.of.theta2_deg, 2) + " deg, below the lowest bending of the arm, " +
+              Figure(lowest_hz) + " Hz. A payload " + Figure(effect.of.payload_offset_mm, 2) +
+              " mm beside its axis changes link 2 little: " + Figure(effect.coupled_hz[0], 5) +
+              " instead of " + Figure(effect.bending_hz[0], 5) + " Hz, and " +
+              Figure(effect.twist_deg_per_mm, 2) + " deg of twist for a mm of deflection",
+          effect.carried_hz < lowest_hz ? Verdict::kHolds : Verdict::kDoesNot};
+}
+
 }  // namespace
 
 std::vector<Statement> ControlFeatureStatements(const RigConfig& config) {
-  return {NonMinimumPhase(config, DesignController(config)), PolesAtOrigin(config),
-          NotFollowing(config), CauseOfNotFollowing(config), CostOfOrder16(config)};
+  return {NonMinimumPhase(config, DesignController(config)),
+          PolesAtOrigin(config),
+          NotFollowing(config),
+          CauseOfNotFollowing(config),
+          CostOfOrder16(config),
+          MajorUnmodelled(config.arm)};
 }
 
 }  // namespace flexarm
