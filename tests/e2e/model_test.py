@@ -116,7 +116,7 @@ class Gauges(ProgramTest):
                                    delta=1e-6)
             self.assertLess(link["proposed"]["sigma_m"][0], link["shipped"]["sigma_m"][0])
             self.assertEqual(len(link["five_half_bridges"]["position_m"]), 5)
-        link = self.gauges("--modes", 3, "--per-link", 6, "--noise-microstrain", 2)["links"][0]
+        link = self.gauges("--modes", 3, "--per-link", 6, "--noise", 2)["links"][0]
         self.assertEqual(len(link["proposed"]["position_m"]), 6)
         self.assertEqual(len(link["proposed"]["sigma_m"]), 3)
         self.assertEqual(link["noise_strain"], 2e-6)

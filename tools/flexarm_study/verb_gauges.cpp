@@ -109,7 +109,7 @@ void RegisterGauges(CLI::App& app, Exit&) {
   verb->add_option("--modes", options->choice.modes,
                    "Bending modes of a link that are to be known (default: those of the estimator)")
       ->check(CLI::Range(1, 6));
-  verb->add_option("--noise-microstrain", options->noise_microstrain,
+  verb->add_option("--noise-microstrain,--noise", options->noise_microstrain,
                    "Standard deviation of a gauge's reading (default: that of the config)")
       ->check(NumberWithin(1e-6, 1e6));
   verb->add_option("--per-link", options->choice.per_link,

@@ -160,9 +160,10 @@ Statement CostOfOrder16(const RigConfig& config) {
           "by the sizes of their matrices, a sample of filter, prediction and law takes " +
               Count(many) + " multiplications with T16, " + Count(few) +
               " with T12: " + Figure(static_cast<double>(many) / static_cast<double>(few)) +
-              " times as many; the equation for S11 has " + Count(unknowns16) +
-              " unknowns instead of " + Count(unknowns12) + ", written as one linear system " +
-              Figure(design, 2) + " times the work, off line",
+              " times as many, and the rest of a sample does not depend on it; the equation for "
+              "S11 has " +
+              Count(unknowns16) + " unknowns instead of " + Count(unknowns12) +
+              ", written as one linear system " + Figure(design, 2) + " times the work, off line",
           many > few ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
