@@ -205,6 +205,29 @@ def last_digit(number):
     return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
 
+class Torsion(ProgramTest):
+    def test_link_1_twists_under_link_2(self):
+        # Finite elements and a finite-difference stress function, by a program of its own.
+        result = self.flexarm_json("analyze", "torsion", "-c", RIG)
+        self.assertAlmostEqual(result["links"][0]["stiffness_nm_per_rad"], 31.6236, delta=2e-3)
+        carrying = result["link1_carrying"]
+        for key, expected in (("frequency_hz", 2.361276), ("weight_nm", 1.907318),
+                              ("twist_deg", 3.455688), ("tip_drop_by_twist_mm", 54.281821)):
+            self.assertAlmostEqual(carrying[key] / expected, 1.0, delta=1e-4)
+        coupled = result["link2_with_payload"]["coupled_hz"]
+        self.assertAlmostEqual(coupled[3] / 95.575194, 1.0, delta=1e-5)
+        straight = self.flexarm_json("analyze", "torsion", "-c", RIG, "--theta2-deg", 0,
+                                     "--motor-offset-mm", 50)["link1_carrying"]
+        self.assertEqual(straight["weight_nm"], 0)
+        self.assertAlmostEqual(straight["twist_deg_per_m_s2"],
+                               math.degrees(3.03 * 0.05 / 31.6236), delta=1e-4)
+        self.assertIn("twists it by 3.456 deg", self.flexarm("analyze", "torsion", "-c", RIG).stdout)
+
+    def test_bad_options_are_refused(self):
+        self.assert_refused(self.run_program("flexarm", "analyze", "torsion", "-c", RIG,
+                                             "--poisson", 0.5), "--poisson")
+
+
 class Check(ProgramTest):
     """The committed page equals the page that the program writes: the same words and verdicts, and
     numbers that differ by at most two in their last printed digit, as another compiler or processor

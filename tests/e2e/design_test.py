@@ -20,6 +20,14 @@ class Design(ProgramTest):
         self.assertEqual(len(result["robustness"]["cases"]), 54)
         self.assertGreater(result["robustness"]["gain_margin_up"], 1.4)
         self.assertGreater(result["robustness"]["delay_margin_ms"], 4)
+        # Ranks and zeros by a program of its own, from the matrices of golden.json.
+        features = result["features"]
+        self.assertEqual(features["model_following"], {
+            "satisfied": False, "continuous": {"rank_b": 2, "rank_b_a_am": 6, "rank_b_bm": 2},
+            "discrete": {"rank_b": 2, "rank_b_a_am": 10, "rank_b_bm": 4}})
+        self.assertEqual(features["poles_at_origin"], {"count": 4, "chains": 2})
+        self.assertEqual(features["output_zeros_outside_unit_circle"], 5)
+        self.assertAlmostEqual(features["output_zero_largest"], 2.33664707, delta=1e-5)
         designed, _ = self.simulate("designed.flexarm")
         read, _ = self.simulate("read.flexarm", "--set", f'controller.gains="{gains}"')
         self.assertIs(self.flexarm_json("diff", designed, read)["identical"], True)

@@ -186,6 +186,7 @@ class Writing(FilesTest):
         self.kept("export", run, "-o", self.precious)
         self.kept("plot", run, "-o", png, file=png)
         self.kept("modes", "-c", HIL, "-o", png, file=png)
+        self.kept("gauges", "-c", HIL, "-o", png, file=png)
         self.kept("analyze", "check", "-c", HIL, "-o", self.precious)
         self.kept("analyze", "excite", "-c", HIL, "-o", png, file=png)
         self.kept("analyze", "linearize", "-c", HIL, "-o", png, file=png)

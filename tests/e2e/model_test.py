@@ -46,6 +46,41 @@ class Modes(ProgramTest):
             self.assertLess(max(link["fit_rms_residual"]), 1e-6)  # falls as N^-4: 4e-8 at 200
         self.assertNotIn("convergence", self.modes())
 
+    def test_frequencies_that_have_not_converged_are_marked(self):
+        # 100 Hermite elements a link, by a program of its own: 160.776 and 189.689 Hz.
+        json = self.modes()
+        arm = json["arm"]
+        self.assertEqual(arm["converged"], 8 * [True] + 2 * [False])
+        for found, expected in zip(arm["frequency_hz"][8:], (503.878, 571.514)):
+            self.assertAlmostEqual(found, expected, delta=1e-3)
+        for found, expected in zip(arm["exact_hz"][8:], (160.776250, 189.688954)):
+            self.assertAlmostEqual(found / expected, 1.0, delta=1e-6)
+        self.assertEqual(json["arm_motors_held"]["converged"], 8 * [True] + 2 * [False])
+        text = self.flexarm("modes", "-c", RIG).stdout
+        self.assertEqual(text.count("not converged; exact: Hz"), 2)
+        self.assertIn("160.776", text)
+
+    def test_the_friction_switch_for_every_link_mode_and_amplitude(self):
+        # Closed-form beam with a moment at its root, by a program of its own.
+        expected = {(1, 1): ((0.0855602, True, 0.850564), (7.140428, False, 8.291590)),
+                    (1, 5): ((0.4278010, False, 0.520017), (35.702139, False, 8.284165)),
+                    (2, 1): ((0.0216424, False, 1.280778), (0.3906347, False, 10.625582)),
+                    (2, 5): ((0.1082121, False, 0.565192), (1.9531735, False, 10.483619))}
+        roots = self.modes("--modes", 2, "--friction-amplitude-mm", 1, 5)["friction_roots"]
+        self.assertEqual([link["friction_nm"] for link in roots], [0.16, 0.01])
+        for link in roots:
+            for row in link["amplitudes"]:
+                for mode, (moment, sticks, hz) in enumerate(
+                        expected[link["link"], row["amplitude_mm"]]):
+                    self.assertAlmostEqual(row["clamped_moment_nm"][mode] / moment, 1, delta=1e-6)
+                    self.assertEqual(row["sticks"][mode], sticks)
+                    self.assertAlmostEqual(row["frequency_hz"][mode] / hz, 1, delta=1e-5)
+        loose = self.modes("--modes", 2, "--friction-amplitude-mm", 1, "--friction-nm", 0, 10)
+        sticks = [link["amplitudes"][0]["sticks"] for link in loose["friction_roots"]]
+        self.assertEqual(sticks, [[False, False], [True, True]])
+        self.assertNotIn("friction_roots", self.modes())
+        self.assertIn("slips", self.flexarm("modes", "-c", RIG, "--friction-amplitude-mm", 5).stdout)
+
     def test_it_draws(self):
         picture = self.folder / "modes.png"
         self.flexarm("modes", "-c", RIG, "--modes", 2, "-o", picture)
@@ -56,12 +91,59 @@ class Modes(ProgramTest):
                               (("--base", "spring"), "--base-spring-nm-per-rad"),
                               (("--base-spring-nm-per-rad", 3), "--base spring"),
                               (("--base", "glued"), "--base"),
+                              (("--friction-amplitude-mm", 0), "--friction-amplitude-mm"),
+                              (("--friction-nm", 1, 1), "--friction-amplitude-mm"),
                               (("-o", "modes.gif"), "expected .png or .svg"),
                               (("--set", "link1.section[0].length_m=-1"), "length_m"),
                               (("--set", "joint2.stiffness_nm_per_rad=0"), "stiffness_nm_per_rad"),
                               (("--set", "joint2.backlash_rad=-1"), "backlash_rad")):
             with self.subTest(options=options):
                 self.assert_refused(self.run_program("flexarm", "modes", "-c", RIG, *options), said)
+
+
+class Gauges(ProgramTest):
+    def gauges(self, *arguments, rig=RIG):
+        return self.flexarm_json("gauges", "-c", rig, *arguments)
+
+    def test_shipped_proposed_and_the_thesis_gauges(self):
+        # Mode shapes and least squares by a program of its own.
+        for link, sigma in zip(self.gauges()["links"], ((5.28491956e-5, 4.27385192e-7),
+                                                        (9.46667472e-5, 5.64682578e-6))):
+            self.assertEqual(len(link["shipped"]["position_m"]), 10)
+            for found, expected in zip(link["shipped"]["sigma_m"], sigma):
+                self.assertAlmostEqual(found / expected, 1.0, delta=1e-6)
+            self.assertAlmostEqual(link["shipped"]["covariance_m2"][0][0] / sigma[0] ** 2, 1.0,
+                                   delta=1e-6)
+            self.assertLess(link["proposed"]["sigma_m"][0], link["shipped"]["sigma_m"][0])
+            self.assertEqual(len(link["five_half_bridges"]["position_m"]), 5)
+        link = self.gauges("--modes", 3, "--per-link", 6, "--noise", 2)["links"][0]
+        self.assertEqual(len(link["proposed"]["position_m"]), 6)
+        self.assertEqual(len(link["proposed"]["sigma_m"]), 3)
+        self.assertEqual(link["noise_strain"], 2e-6)
+        for rig in ("half-bridges.toml", "quanser-2dsfl.toml"):
+            self.flexarm("gauges", "-c", ROOT / "config" / rig)
+
+    def test_five_half_bridges_a_link_control_the_arm(self):
+        for payload in (0.01, 0.1, 0.2):
+            result = self.flexarm_json("simulate", "-c", ROOT / "config/half-bridges.toml",
+                                       "--payload-kg", payload, "-o",
+                                       self.folder / f"{payload}.flexarm")
+            self.assertIs(result["completed"], True)
+            self.assertLess(result["tip_settling_time_s"], 2)
+
+    def test_it_draws_the_deflection_by_gauges_and_truly(self):
+        picture = self.folder / "gauges.png"
+        errors = self.gauges("-o", picture)["verification"]
+        self.assertTrue(picture.read_bytes().startswith(PNG))
+        self.assertLess(max(errors["modal_rms_mm"]), 0.12)
+        self.assertGreater(min(errors["largest_mm"]), 7)
+
+    def test_bad_options_are_refused(self):
+        for options, said in ((("--modes", 0), "--modes"), (("--modes", 3, "--per-link", 2), "modes"),
+                              (("--per-link", 90), "no room"), (("-o", "x.gif"), ".png or .svg"),
+                              (("--noise-microstrain", 0), "--noise-microstrain")):
+            with self.subTest(options=options):
+                self.assert_refused(self.run_program("flexarm", "gauges", "-c", RIG, *options), said)
 
 
 class Excite(ProgramTest):
@@ -72,7 +154,7 @@ class Excite(ProgramTest):
         # The tip at 3 s by an eighth-order integrator; the default one, of second order, differs by
         # 6 um.
         picture = self.folder / "square-wave.png"
-        result = self.excite("--without-dissipation", "--modes", 2, "--set",
+        result = self.excite("--without-dissipation", "--motor-lag-ms", 0, 0, "--modes", 2, "--set",
                              "arm.link1_tip_inertia=motor", "-o", picture)
         for found, expected in zip(result["final_tip_m"], (1.690807100, 0.145161223)):
             self.assertAlmostEqual(found, expected, delta=2e-5)
@@ -80,6 +162,16 @@ class Excite(ProgramTest):
         self.assertAlmostEqual(result["peak_bending_mm"][0], 18.56, delta=0.03)
         self.assertAlmostEqual(result["peak_bending_mm"][1], 15.06, delta=0.03)
         self.assertTrue(picture.read_bytes().startswith(PNG))
+
+    def test_the_motors_lag_is_that_of_the_config_or_another(self):
+        shipped, none, slow = (self.excite(*options) for options in (
+            (), ("--motor-lag-ms", 0, 0), ("--motor-lag-ms", 10, 10)))
+        self.assertEqual(shipped["motor_lag_ms"], [2, 2])
+        self.assertEqual(none["motor_lag_ms"], [0, 0])
+        self.assertAlmostEqual(none["peak_bending_mm"][0], 7.88, delta=0.02)
+        for one, other in zip(none["peak_bending_mm"], slow["peak_bending_mm"]):
+            self.assertLess(other, 0.96 * one)
+        self.assertEqual(shipped, self.excite("--motor-lag-ms", 2, 2))
 
     def test_friction_and_damping_reduce_the_bending(self):
         free = self.excite("--without-dissipation")["peak_bending_mm"]
@@ -129,6 +221,27 @@ class Linearize(ProgramTest):
         smoothed = self.linearize(RIG, *still, "--friction-gain", 2)["A"]
         self.assertLess(smoothed[6][6], without[6][6])
         self.assertTrue(math.isfinite(smoothed[6][6]))
+
+    def test_zeros_and_poles_at_the_origin(self):
+        # Zeros by the QZ algorithm on the system's pencil, in a program of its own.
+        still = ("--modes", 2, "--theta2-deg", 45, "--duration-s", 0.01)
+        result = self.linearize(RIG, *still)
+        self.assertEqual(result["poles_at_origin"], {"count": 4, "chains": 2})
+        smoothed = self.linearize(RIG, *still, "--friction-gain", 50)
+        self.assertEqual(smoothed["poles_at_origin"], {"count": 2, "chains": 2})
+        zeros = result["zeros"]
+        right = {name: outputs["right_half_plane"] for name, outputs in zeros.items()}
+        self.assertEqual(right, {"rotors": 0, "hubs": 0, "link_ends": 1, "tip": 3})
+        self.assertIs(zeros["hubs"]["minimum_phase"], True)
+        self.assertIs(zeros["tip"]["minimum_phase"], False)
+        unstable = [zero["real_1_s"] for zero in zeros["tip"]["zeros"] if zero["real_1_s"] > 0]
+        for found, expected in zip(unstable, (76.767, 164.497, 268.728)):
+            self.assertAlmostEqual(found, expected, delta=1e-3)
+        self.assertAlmostEqual(smoothed["zeros"]["rotors"]["zeros"][0]["imaginary_rad_s"], 4.4538,
+                               delta=1e-4)
+        self.assertIsNone(self.linearize(RIG, "--modes", 2, "--duration-s", 0.01)["zeros"]["tip"])
+        text = self.flexarm("analyze", "linearize", "-c", RIG, *still).stdout
+        self.assertIn("poles at the origin: 4, in 2 chains", text)
 
     def test_bad_options_are_refused(self):
         for options, said in ((("--modes", 0), "--modes"), (("--theta2-deg", "nan"), "--theta2-deg"),

@@ -7,7 +7,7 @@ import unittest
 from program import HIL, ProgramTest
 
 FIGURES = ("4.4", "4.5", "5.1", "5.2", "5.3", "5.4", "5.5", "6.1", "6.2", "6.3", "6.4", "6.5", "6.6",
-           "6.7", "6.8", "6.9", "7.1", "7.3", "7.4", "7.12", "7.14", "7.25", "7.26", "7.34")
+           "6.7", "6.8", "6.9", "7.1", "7.3", "7.4", "7.12", "7.14", "7.25", "7.26", "7.34", "B.2")
 VOID = {"meta", "img"}
 
 
@@ -50,6 +50,9 @@ class Report(ProgramTest):
             self.assertIn(figure, captions)
         for chapter in (3, 4, 5, 6, 7):
             self.assertIn(f"Chapter {chapter}", text)
+        for said in ("harmonic drive of 48.96:1", "optical encoder 4", "Ratio 2", "1.43e-7",
+                     "Section 7.2", "Appendix B"):  # Tables 1 and 2, chapters of their own
+            self.assertIn(said, text)
         self.assertIn("What limits the laws that estimate the payload", captions)
         for cell in ("gain-scheduled", "encoders-x10", "reached"):
             self.assertIn(f"<td>{cell}</td>", text)

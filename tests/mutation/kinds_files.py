@@ -3,7 +3,8 @@
 import mutate
 from inputs import CONFIGS, EXPERIMENTS, copy_of_configs, special_file
 
-RIGS = ("thesis-rig.toml", "hil.toml", "hil-wire.toml", "daq-rig.toml", "quanser-2dsfl.toml",
+RIGS = ("thesis-rig.toml", "hil.toml", "hil-wire.toml", "daq-rig.toml", "half-bridges.toml",
+        "quanser-2dsfl.toml",
         "thesis-rig-printed.toml", "thesis-rig-stiffened.toml")
 LAWS = ("sobel", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv", "pd-zvd", "gain-scheduled",
         "receding-horizon")

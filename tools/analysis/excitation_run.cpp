@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "model/arm/dc_motor.h"
 #include "model/simulation/arm_simulator.h"
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
@@ -26,15 +27,18 @@ ExcitationRun RunExcitation(const ArmModel& model, double theta2_deg, const Exci
   ArmSimulator simulator(model);
   ArmState x(model.dof());
   x.q[kTheta2] = x.q[kTheta4] = theta2_deg / kDegPerRad;
-  const Eigen::Vector2d torque(excitation.torque_nm[0], excitation.torque_nm[1]);
   const double h = ArmSimulator::kDefaultStep_s;
+  DcMotor motor1(h, 1e-3 * excitation.motor_lag_ms[0]);
+  DcMotor motor2(h, 1e-3 * excitation.motor_lag_ms[1]);
   const auto steps = std::lround(duration_s / h);
   ExcitationRun run;
   run.sample.push_back(SampleOf(model, x, 0.0));
   for (long k = 0; k < steps; ++k) {
     const double t = (static_cast<double>(k) + 0.5) * h / Excitation::kPeriod_s;
     const double sign = t < 0.5 ? 1.0 : t < 1.0 ? -1.0 : 0.0;
-    simulator.Step(x, sign * torque, h);
+    const double torque1 = motor1.Step(sign * excitation.torque_nm[0]);
+    const double torque2 = motor2.Step(sign * excitation.torque_nm[1]);
+    simulator.Step(x, {torque1, torque2}, h);
     run.sample.push_back(SampleOf(model, x, static_cast<double>(k + 1) * h));
     for (std::size_t i = 0; i < 2; ++i) {
       run.peak_bending_mm[i] =

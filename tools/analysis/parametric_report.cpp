@@ -153,6 +153,7 @@ std::string Csv(const ParametricStudy& study) {
 
 OrderedJson ParametricJson(const ParametricStudy& study, const std::vector<Statement>& statements) {
   OrderedJson json{{"torque_nm", study.excitation.torque_nm},
+                   {"motor_lag_ms", study.excitation.motor_lag_ms},
                    {"excitation_s", Excitation::kPeriod_s},
                    {"sweeps", OrderedJson::array()}};
   json.update(StatementsJson(statements));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "model/arm/dc_motor.h"
 #include "model/arm/linearization.h"
 #include "model/simulation/arm_simulator.h"
 #include "model/units.h"
@@ -106,9 +107,13 @@ Samples Respond(const RigConfig& config, const ArmModel& model, const Excitation
   ArmState x(model.dof());
   const ArmConstants& c = model.constants();
   Samples samples;
+  DcMotor motor1(kSample_s, 1e-3 * excitation.motor_lag_ms[0]);
+  DcMotor motor2(kSample_s, 1e-3 * excitation.motor_lag_ms[1]);
   for (std::size_t k = 0; k < kSamples; ++k) {
     const double sign = k < kExcitedSamples / 2 ? 1.0 : k < kExcitedSamples ? -1.0 : 0.0;
-    simulator.Step(x, {sign * excitation.torque_nm[0], sign * excitation.torque_nm[1]}, kSample_s);
+    const double torque1 = motor1.Step(sign * excitation.torque_nm[0]);
+    const double torque2 = motor2.Step(sign * excitation.torque_nm[1]);
+    simulator.Step(x, {torque1, torque2}, kSample_s);
     samples[kBending1].push_back(1e3 * c.link1.psi_tip.dot(x.q.segment(kPhi1, c.m1)));
     samples[kBending2].push_back(1e3 * c.link2.psi_tip.dot(x.q.tail(c.m2)));
     samples[kTwist1].push_back(1e3 * (x.q[kTheta3] - x.q[kTheta1]));

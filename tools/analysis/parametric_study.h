@@ -15,9 +15,10 @@ enum Signal : std::size_t { kBending1, kBending2, kTwist1, kTwist2 };
 constexpr std::size_t kSignals = 4;
 
 /// Excitation of chapter 4: one period of a square wave of 1 s, from rest with a straight elbow,
-/// then zero torque. The thesis does not state its amplitude.
+/// then zero torque. The thesis does not state its amplitude, nor its motors' time constants.
 struct Excitation {
   std::array<double, 2> torque_nm = {0.4, 0.1};
+  std::array<double, 2> motor_lag_ms = {0.0, 0.0};  ///< of (3.24), DcMotor; 0: none
   static constexpr double kPeriod_s = 1.0;
 };
 

@@ -19,6 +19,8 @@ struct Study {
 
 inline constexpr std::array kStudies = {
     Study{"modes", "Undamped natural frequencies of the links and of the whole arm"},
+    Study{"gauges",
+          "Strain gauges: how well they know the modes, and where they would know them best"},
     Study{"analyze",
           "Analyse the model: linearization, order reduction, parameters, claims of the thesis"},
     Study{"sweep",

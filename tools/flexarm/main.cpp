@@ -16,6 +16,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   AddStudy(app, "benchmark");
   AddStudy(app, "report");
   RegisterReplay(app, exit);
+  AddStudy(app, "gauges");
   AddStudy(app, "identify");
   RegisterInfo(app, exit);
   RegisterPlot(app, exit);

@@ -10,10 +10,12 @@
 #include "controller/design/design_controller.h"
 #include "controller/design/design_json.h"
 #include "controller/design/design_verdict.h"
+#include "controller/design/model_following.h"
 #include "controller/files/external_json.h"
 #include "controller/files/write_file.h"
 #include "controller/law/design.h"
 #include "controller/types/rejected_error.h"
+#include "model/math/invariant_zeros.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 
@@ -56,9 +58,54 @@ nlohmann::ordered_json ToJson(const RobustnessAnalysis& robustness) {
   return json;
 }
 
+/// What limits every law for this nominal model: thesis 7.2.
+struct ControlFeatures {
+  ModelFollowing following;       ///< (7.3)
+  Integrators integrators;        ///< of the continuous nominal model
+  Eigen::VectorXcd output_zeros;  ///< discrete, from the torques to the law's output K x
+
+  int zeros_outside() const {
+    return static_cast<int>((output_zeros.cwiseAbs().array() > 1.0).count());
+  }
+  double largest_zero() const { return output_zeros.cwiseAbs().maxCoeff(); }
+};
+
+ControlFeatures FeaturesOf(const RigConfig& config, const Design& design) {
+  return {.following = TestModelFollowing(config, design.layout),
+          .integrators = CountIntegrators(design.A_rate),
+          .output_zeros = InvariantZeros(design.A, design.B, design.K)};
+}
+
+nlohmann::ordered_json ToJson(const ControlFeatures& features) {
+  const auto ranks = [](const FollowingRanks& r) {
+    return nlohmann::ordered_json{
+        {"rank_b", r.input}, {"rank_b_a_am", r.difference}, {"rank_b_bm", r.reference}};
+  };
+  nlohmann::ordered_json json;
+  json["model_following"] = {{"satisfied", features.following.continuous.follows()},
+                             {"continuous", ranks(features.following.continuous)},
+                             {"discrete", ranks(features.following.discrete)}};
+  json["poles_at_origin"] = {{"count", features.integrators.poles},
+                             {"chains", features.integrators.chains}};
+  json["output_zeros_outside_unit_circle"] = features.zeros_outside();
+  json["output_zero_largest"] = features.largest_zero();
+  return json;
+}
+
+void PrintFeatures(const ControlFeatures& features) {
+  const FollowingRanks &c = features.following.continuous, &d = features.following.discrete;
+  std::printf(
+      "\npoles at the origin: %d, in %d chains; zeros from the torques to K x outside the unit\n"
+      "circle: %d of %d, up to |z| = %.3g; perfect model following (7.3): rank B = %d, rank [B, A "
+      "-\nA_m] = %d (sampled %d, %d): %s\n",
+      features.integrators.poles, features.integrators.chains, features.zeros_outside(),
+      static_cast<int>(features.output_zeros.size()), features.largest_zero(), c.input,
+      c.difference, d.input, d.difference, c.follows() ? "satisfied" : "not satisfied");
+}
+
 nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& robustness,
-                              const Conditioning& conditioning, const DesignOptions& options,
-                              const std::string& hash) {
+                              const Conditioning& conditioning, const ControlFeatures& features,
+                              const DesignOptions& options, const std::string& hash) {
   nlohmann::ordered_json json;
   json["nominal"] = NameOf(design.layout);
   json["states"] = design.A.rows();
@@ -75,6 +122,7 @@ nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& ro
                               {"waived", check.waived}});
   }
   json["robustness"] = ToJson(robustness);
+  json["features"] = ToJson(features);
   for (Eigen::Index i = 0; i < design.K.rows(); ++i) {
     json["k"].push_back(std::vector<double>());
     for (Eigen::Index j = 0; j < design.K.cols(); ++j) json["k"].back().push_back(design.K(i, j));
@@ -105,7 +153,8 @@ void PrintRobustness(const RobustnessAnalysis& robustness) {
 }
 
 void PrintText(const Design& design, const RobustnessAnalysis& robustness,
-               const Conditioning& conditioning, const std::filesystem::path& file) {
+               const Conditioning& conditioning, const ControlFeatures& features,
+               const std::filesystem::path& file) {
   const std::string nominal(NameOf(design.layout));
   const auto states = static_cast<int>(design.A.rows());
   std::printf(
@@ -119,6 +168,7 @@ void PrintText(const Design& design, const RobustnessAnalysis& robustness,
                 check.below ? "below" : "above", check.limit, verdict);
   }
   PrintRobustness(robustness);
+  PrintFeatures(features);
   std::printf("\nK (N m per rad, per m, per rad/s, per m/s):\n");
   for (Eigen::Index i = 0; i < design.K.rows(); ++i) {
     for (Eigen::Index j = 0; j < design.K.cols(); ++j) std::printf(" %9.4g", design.K(i, j));
@@ -143,10 +193,12 @@ int Run(const DesignOptions& options) {
   const std::string hash = DesignHash(config);
   const Conditioning conditioning = ConditioningOf(config, design);
   if (design.sound()) WriteFile(options.output.file, DesignToJson(design, hash) + '\n', rules);
+  const ControlFeatures features = FeaturesOf(config, design);
   if (options.json) {
-    std::cout << PrintedJson(ToJson(design, robustness, conditioning, options, hash)) << '\n';
+    std::cout << PrintedJson(ToJson(design, robustness, conditioning, features, options, hash))
+              << '\n';
   } else {
-    PrintText(design, robustness, conditioning, options.output.file);
+    PrintText(design, robustness, conditioning, features, options.output.file);
   }
   if (!design.sound()) {
     std::cerr << "flexarm: no gains were written: failed: " << verdict.found

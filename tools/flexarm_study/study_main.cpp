@@ -10,6 +10,7 @@ void RegisterStudies(CLI::App& app, Exit& exit) {
   RegisterSweep(app, exit);
   RegisterBenchmark(app, exit);
   RegisterReport(app, exit);
+  RegisterGauges(app, exit);
   RegisterIdentify(app, exit);
 }
 

@@ -13,6 +13,7 @@ void RegisterAnalyze(CLI::App& app, Exit& exit) {
   RegisterAnalyzeLinearize(*verb, exit);
   RegisterAnalyzeParametric(*verb, exit);
   RegisterAnalyzeReduce(*verb, exit);
+  RegisterAnalyzeTorsion(*verb, exit);
 }
 
 }  // namespace flexarm

@@ -24,7 +24,7 @@ void Analyze(const ThesisCheckOptions& options) {
   const OutputRules rules =
       options.output.Rules("such a page", kThesisCheckTitle, {options.config.file});
   if (options.output.given()) CheckOutput(options.output.file, rules);
-  const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 5));
+  const std::vector<Statement> statements = ThesisStatements(config, ProgressBar("chapters", 6));
   const std::string page = ThesisCheckPage(config, statements);
   if (options.output.given()) {
     WriteFile(options.output.file, page, rules);

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "controller/files/external_json.h"
 #include "model/simulation/arm_simulator.h"
@@ -20,14 +21,17 @@ struct ExciteOptions {
   int modes = 4;
   double theta2_deg = 0.0;
   Excitation excitation;
+  std::optional<std::array<double, 2>> motor_lag_ms;  // empty: the config's
   double duration_s = 3.0;
   bool without_dissipation = false;
   bool json = false;
   OutputOptions output;
 };
 
-ExcitationRun RunOf(const ExciteOptions& options) {
-  ArmParameters arm = options.config.Load().arm;
+ExcitationRun RunOf(ExciteOptions& options) {
+  const RigConfig config = options.config.Load();
+  ArmParameters arm = config.arm;
+  options.excitation.motor_lag_ms = options.motor_lag_ms.value_or(config.sim.motor_lag_ms);
   if (options.without_dissipation) {
     arm.damping = DampingReading::kNone;
     for (JointParameters& joint : arm.joint) joint.coulomb_friction_nm = 0.0;
@@ -38,6 +42,7 @@ ExcitationRun RunOf(const ExciteOptions& options) {
 
 nlohmann::ordered_json ToJson(const ExciteOptions& options, const ExcitationRun& run) {
   return {{"torque_nm", options.excitation.torque_nm},
+          {"motor_lag_ms", options.excitation.motor_lag_ms},
           {"duration_s", options.duration_s},
           {"modes", options.modes},
           {"peak_bending_mm", run.peak_bending_mm},
@@ -45,7 +50,7 @@ nlohmann::ordered_json ToJson(const ExciteOptions& options, const ExcitationRun&
           {"final_tip_m", std::array{run.tip_m.x(), run.tip_m.y()}}};
 }
 
-void Excite(const ExciteOptions& options) {
+void Excite(ExciteOptions& options) {
   if (options.output.given())
     CheckPicture(options.output.file,
                  PictureRules({options.config.file}, options.output.overwrite));
@@ -82,6 +87,10 @@ void RegisterAnalyzeExcite(CLI::App& analyze, Exit&) {
       ->check(NumberWithin(-1e4, 1e4))
       ->type_name("TAU1 TAU2")
       ->capture_default_str();
+  verb->add_option("--motor-lag-ms", options->motor_lag_ms,
+                   "Time constants of the motors' torques (3.24) (default: sim.motor_lag_ms)")
+      ->check(NumberWithin(0.0, 1000.0))
+      ->type_name("T1 T2");
   verb->add_option("--duration-s", options->duration_s, "Length of the run")
       ->check(NumberWithin(0.01, 600.0))
       ->capture_default_str();

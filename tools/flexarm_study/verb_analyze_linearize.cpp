@@ -13,9 +13,11 @@
 #include "controller/runlog/errors.h"
 #include "model/arm/linearization.h"
 #include "model/math/dense_decompositions.h"
+#include "model/math/invariant_zeros.h"
 #include "model/perturbation/perturbation_run.h"
 #include "model/simulation/arm_simulator.h"
 #include "model/units.h"
+#include "tools/analysis/arm_zeros.h"
 #include "tools/analysis/perturbation_figures.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
@@ -62,8 +64,7 @@ nlohmann::ordered_json MatrixJson(const Eigen::MatrixXd& matrix) {
 }
 
 // One entry per real root or conjugate pair, in the order of their distance from zero.
-nlohmann::ordered_json RootsJson(const Eigen::MatrixXd& A) {
-  const Eigen::VectorXcd values = A.eigenvalues();
+nlohmann::ordered_json RootsJson(const Eigen::VectorXcd& values) {
   std::vector<std::complex<double>> roots(values.begin(), values.end());
   std::erase_if(roots, [](const auto& root) { return root.imag() < 0.0; });
   std::sort(roots.begin(), roots.end(),
@@ -74,6 +75,20 @@ nlohmann::ordered_json RootsJson(const Eigen::MatrixXd& A) {
                     {"imaginary_rad_s", root.imag()},
                     {"frequency_hz", std::abs(root) / kTwoPi},
                     {"damping_ratio", std::abs(root) > 0.0 ? -root.real() / std::abs(root) : 0.0}});
+  }
+  return json;
+}
+
+nlohmann::ordered_json ZerosJson(const ArmModel& model, const LinearModel& linear, const State& x) {
+  nlohmann::ordered_json json;
+  for (const OutputZeros& outputs : ArmZeros(model, linear, x.q)) {
+    if (!outputs.defined) {
+      json[outputs.name] = nullptr;
+      continue;
+    }
+    json[outputs.name] = {{"right_half_plane", outputs.unstable()},
+                          {"minimum_phase", outputs.unstable() == 0},
+                          {"zeros", RootsJson(outputs.zeros)}};
   }
   return json;
 }
@@ -117,11 +132,41 @@ nlohmann::ordered_json LinearJson(const LinearizeOptions& options, const ArmMode
   json["modes"] = options.modes;
   json["foreshortening"] = model.constants().foreshortening;
   json["friction_gain_s_per_rad"] = options.friction_gain_s_per_rad;
-  json["roots"] = RootsJson(linear.A);
+  json["roots"] = RootsJson(linear.A.eigenvalues());
+  const Integrators origin = CountIntegrators(linear.A);
+  json["poles_at_origin"] = {{"count", origin.poles}, {"chains", origin.chains}};
+  json["zeros"] = ZerosJson(model, linear, x);
   json["largest_real_part_1_s"] = linear.A.eigenvalues().real().maxCoeff();
   json["A"] = MatrixJson(linear.A);
   json["B"] = MatrixJson(linear.B);
   return json;
+}
+
+void PrintZeros(const nlohmann::ordered_json& json) {
+  const auto& origin = json["poles_at_origin"];
+  std::cout
+      << "poles at the origin: " << origin["count"].get<int>() << ", in "
+      << origin["chains"].get<int>() << " chains of integrators\n"
+      << "zeros from the torques to: in the right half plane, of all; its nearest to 0, 1/s\n";
+  for (const auto& [name, outputs] : json["zeros"].items()) {
+    std::cout << "  " << std::left << std::setw(12) << name << std::right;
+    if (outputs.is_null()) {
+      std::cout << "undefined with a straight elbow\n";
+      continue;
+    }
+    int all = 0;
+    nlohmann::ordered_json nearest;
+    for (const auto& zero : outputs["zeros"]) {
+      all += zero["imaginary_rad_s"].get<double>() > 0.0 ? 2 : 1;
+      if (nearest.is_null() && zero["real_1_s"].get<double>() > 0.0) nearest = zero;
+    }
+    std::cout << std::setw(4) << outputs["right_half_plane"].get<int>() << " of " << all;
+    if (outputs["right_half_plane"].get<int>() > 0) {
+      std::cout << "; " << nearest["real_1_s"].get<double>() << " + "
+                << nearest["imaginary_rad_s"].get<double>() << " i";
+    }
+    std::cout << '\n';
+  }
 }
 
 void PrintLinearization(const nlohmann::ordered_json& json) {
@@ -134,6 +179,7 @@ void PrintLinearization(const nlohmann::ordered_json& json) {
               << root["frequency_hz"].get<double>() << std::setw(12)
               << root["damping_ratio"].get<double>() << '\n';
   }
+  PrintZeros(json);
   std::cout << "perturbation by a square wave, linear against nonlinear: largest error / largest "
                "deviation\n";
   for (const auto& [name, error] : json["perturbation"]["relative_error"].items()) {
@@ -205,6 +251,9 @@ void RegisterAnalyzeLinearize(CLI::App& analyze, Exit&) {
   options->output.AddTo(
       verb, "Picture of the perturbation test, .png or .svg (thesis's figures 6.1 and 6.2)", false);
   verb->footer(
+      "Zeros: of the motors' torques on two outputs: the rotors' angles, the hubs' angles, the\n"
+      "directions of the links' ends as seen from their roots, the tip's position. A zero in the\n"
+      "right half plane means non-minimum phase.\n"
       "At the state the links are not bent and the rotors stand at the angles of their hubs. The\n"
       "perturbation test simulates the arm from there without friction, with the given torques\n"
       "and with a small square wave added to them. It compares the difference of the two motions\n"

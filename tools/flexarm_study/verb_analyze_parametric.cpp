@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
+#include <array>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "controller/files/external_json.h"
 #include "controller/files/write_file.h"
@@ -16,12 +18,14 @@ namespace {
 struct ParametricOptions {
   ConfigOptions config;
   Excitation excitation;
+  std::optional<std::array<double, 2>> motor_lag_ms;  // empty: the config's
   bool json = false;
   OutputOptions output;
 };
 
-void Analyze(const ParametricOptions& options) {
+void Analyze(ParametricOptions& options) {
   const RigConfig config = options.config.Load();
+  options.excitation.motor_lag_ms = options.motor_lag_ms.value_or(config.sim.motor_lag_ms);
   if (options.output.given()) MakeOutputFolder(options.output.file, options.output.overwrite);
   const std::size_t runs = ParametricRuns(config);
   const ParametricStudy study =
@@ -55,6 +59,10 @@ void RegisterAnalyzeParametric(CLI::App& analyze, Exit&) {
       ->type_name("T1 T2")
       ->check(NumberWithin(1e-6, 1e3))
       ->default_str("0.4 0.1");
+  verb->add_option("--motor-lag-ms", options->motor_lag_ms,
+                   "Time constants of the motors' torques (3.24) (default: sim.motor_lag_ms)")
+      ->type_name("T1 T2")
+      ->check(NumberWithin(0.0, 1000.0));
   AddJson(verb, &options->json);
   options->output.AddTo(
       verb, "Folder for pictures like figures 5.1 to 5.5, all results as CSV, and the table", false,

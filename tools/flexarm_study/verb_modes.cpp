@@ -1,15 +1,22 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "controller/files/external_json.h"
 #include "controller/runlog/errors.h"
 #include "model/arm/arm_model.h"
 #include "model/arm/linearization.h"
 #include "model/beam/link_modes.h"
+#include "model/beam_methods/exact_arm.h"
+#include "model/beam_methods/friction_root.h"
 #include "model/units.h"
 #include "tools/analysis/beam_report.h"
 #include "tools/command_line/options.h"
@@ -20,6 +27,8 @@
 namespace flexarm {
 namespace {
 
+constexpr double kConverged = 0.01;  // relative, of the model with M modes against the exact arm
+
 struct ModesOptions {
   ConfigOptions config;
   int modes = 4;
@@ -28,6 +37,8 @@ struct ModesOptions {
   std::string base = "clamped";
   std::optional<double> base_spring_nm_per_rad;
   bool convergence = false;
+  std::vector<double> friction_amplitude_mm;
+  std::vector<double> friction_nm;  // joints 1 and 2; empty: the config's
   bool json = false;
   OutputOptions output;
 };
@@ -46,11 +57,39 @@ nlohmann::ordered_json ArmJson(const ModesOptions& options, const ArmModel& mode
   const double theta2_rad = options.theta2_deg * kRadPerDeg;
   const Eigen::VectorXd frequency =
       held ? HeldMotorFrequenciesHz(model, theta2_rad) : FreeMotorFrequenciesHz(model, theta2_rad);
+  const std::vector<double> exact_hz = ExactArm(model.parameters(), theta2_rad)
+                                           .FrequenciesHz(static_cast<int>(frequency.size()), held);
   nlohmann::ordered_json json;
   json["theta2_deg"] = options.theta2_deg;
   json["payload_kg"] = model.parameters().payload_mass_kg;
   json["motors"] = held ? "held" : "free";
   json["frequency_hz"] = std::vector<double>(frequency.begin(), frequency.end());
+  json["exact_hz"] = exact_hz;
+  for (std::size_t i = 0; i < exact_hz.size(); ++i) {
+    const double error = frequency[static_cast<Eigen::Index>(i)] / exact_hz[i] - 1.0;
+    json["converged"].push_back(std::abs(error) <= kConverged);
+  }
+  return json;
+}
+
+// The friction of a joint as the support of its link's root, over the amplitudes.
+nlohmann::ordered_json FrictionJson(const ModesOptions& options, const ArmParameters& arm,
+                                    const LinkBeam& beam) {
+  const std::size_t i = static_cast<std::size_t>(beam.link) - 1;
+  const double friction_nm =
+      options.friction_nm.empty() ? arm.joint[i].coulomb_friction_nm : options.friction_nm[i];
+  nlohmann::ordered_json json{{"link", beam.link}, {"friction_nm", friction_nm}};
+  for (const double amplitude_mm : options.friction_amplitude_mm) {
+    nlohmann::ordered_json row{{"amplitude_mm", amplitude_mm}};
+    for (int mode = 1; mode <= options.modes; ++mode) {
+      const FrictionRoot root =
+          FrictionRootMode(beam.section, beam.tip, mode, 1e-3 * amplitude_mm, friction_nm);
+      row["sticks"].push_back(root.sticks);
+      row["clamped_moment_nm"].push_back(root.clamped_moment_nm);
+      row["frequency_hz"].push_back(root.frequency_rad_s / kTwoPi);
+    }
+    json["amplitudes"].push_back(row);
+  }
   return json;
 }
 
@@ -71,6 +110,10 @@ nlohmann::ordered_json Modes(const ModesOptions& options) {
     modes.push_back(NaturalModes(beam.section, beam.tip, root, options.modes,
                                  "link " + std::to_string(beam.link)));
     json["links"].push_back(BeamJson(beam, modes.back()));
+  }
+  if (!options.friction_amplitude_mm.empty()) {
+    for (const LinkBeam& beam : beams)
+      json["friction_roots"].push_back(FrictionJson(options, arm, beam));
   }
   json["arm"] = ArmJson(options, model, false);
   json["arm_motors_held"] = ArmJson(options, model, true);
@@ -93,6 +136,45 @@ void PrintFigures(const std::string& name, const nlohmann::ordered_json& values)
   std::cout << '\n';
 }
 
+// The frequencies of the model with M modes, and below those that have not converged, the exact
+// ones.
+void PrintArm(const std::string& motors, const nlohmann::ordered_json& arm) {
+  PrintFigures("arm, motors " + motors + ": Hz", arm["frequency_hz"]);
+  if (std::all_of(arm["converged"].begin(), arm["converged"].end(),
+                  [](const auto& converged) { return converged.template get<bool>(); })) {
+    return;
+  }
+  std::cout << std::left << std::setw(30) << "  not converged; exact: Hz" << std::right;
+  for (std::size_t i = 0; i < arm["converged"].size(); ++i) {
+    std::cout << ' ' << std::setw(10);
+    if (arm["converged"][i].get<bool>()) {
+      std::cout << "";
+    } else {
+      std::cout << arm["exact_hz"][i].get<double>();
+    }
+  }
+  std::cout << '\n';
+}
+
+void PrintFrictionRoots(const nlohmann::ordered_json& links) {
+  for (const auto& link : links) {
+    for (const auto& row : link["amplitudes"]) {
+      std::ostringstream name;
+      name << "link " << link["link"].get<int>() << ", friction "
+           << link["friction_nm"].get<double>() << " N m, " << row["amplitude_mm"].get<double>()
+           << " mm at its tip";
+      std::cout << name.str() << '\n';
+      PrintFigures("  clamped moment, N m", row["clamped_moment_nm"]);
+      PrintFigures("  Hz", row["frequency_hz"]);
+      std::cout << std::left << std::setw(30) << "  the joint" << std::right;
+      for (const auto& sticks : row["sticks"]) {
+        std::cout << ' ' << std::setw(10) << (sticks.get<bool>() ? "sticks" : "slips");
+      }
+      std::cout << '\n';
+    }
+  }
+}
+
 void PrintModes(const nlohmann::ordered_json& json) {
   std::cout << std::setprecision(6);
   for (const auto& link : json["links"]) {
@@ -101,8 +183,9 @@ void PrintModes(const nlohmann::ordered_json& json) {
     PrintFigures(name + "beta L", link["beta_l"]);
     PrintFigures(name + "Hz", link["frequency_hz"]);
   }
-  PrintFigures("arm, motors free: Hz", json["arm"]["frequency_hz"]);
-  PrintFigures("arm, motors held: Hz", json["arm_motors_held"]["frequency_hz"]);
+  PrintArm("free", json["arm"]);
+  PrintArm("held", json["arm_motors_held"]);
+  if (json.contains("friction_roots")) PrintFrictionRoots(json["friction_roots"]);
   if (!json.contains("convergence")) return;
   std::cout << std::setprecision(4);
   for (const auto& link : json["convergence"]) {
@@ -127,6 +210,20 @@ void AddBase(CLI::App* verb, ModesOptions* options) {
                  "and the fit of its shapes");
 }
 
+void AddFriction(CLI::App* verb, ModesOptions* options) {
+  verb->add_option("--friction-amplitude-mm", options->friction_amplitude_mm,
+                   "Also each link on a root that only dry friction holds (thesis 3.2), at these "
+                   "amplitudes of its tip")
+      ->check(NumberWithin(1e-6, 1e6))
+      ->type_name("MM ..");
+  verb->add_option("--friction-nm", options->friction_nm,
+                   "Friction of joints 1 and 2 for it, instead of the config's")
+      ->check(NumberWithin(0.0, 1e6))
+      ->expected(2)
+      ->type_name("T1 T2")
+      ->needs("--friction-amplitude-mm");
+}
+
 }  // namespace
 
 void RegisterModes(CLI::App& app, Exit&) {
@@ -142,10 +239,14 @@ void RegisterModes(CLI::App& app, Exit&) {
   verb->add_option("--payload-kg", options->payload_kg, "Payload instead of the config's")
       ->check(NumberWithin(0.0, 1000.0));
   AddBase(verb, options.get());
+  AddFriction(verb, options.get());
   AddJson(verb, &options->json);
   options->output.AddTo(verb, "Picture of shapes, frequencies and convergence, .png or .svg",
                         false);
-  verb->footer("Example: flexarm modes -c config/thesis-rig.toml --theta2-deg 45 --payload-kg 0.2");
+  verb->footer(
+      "The arm's frequencies are those of the model with the given number of modes. exact_hz has\n"
+      "those of the arm with distributed mass; a frequency within 1 % of it is called converged.\n"
+      "Example: flexarm modes -c config/thesis-rig.toml --theta2-deg 45 --payload-kg 0.2");
   verb->callback([options] {
     const nlohmann::ordered_json json = Modes(*options);
     if (options->json) {

@@ -9,7 +9,7 @@ LAYERS = {
     "model/math": "",
     "model/parameters": "model",
     "model/beam": "model model/math model/parameters",
-    "model/beam_methods": "model/math model/beam",
+    "model/beam_methods": "model model/math model/parameters model/beam",
     "model/arm": "model model/math model/parameters model/beam",
     "model/simulation": "model/math model/arm",
     "model/perturbation": "model/math model/arm model/simulation",
@@ -58,8 +58,8 @@ LAYERS = {
     "tools/runs": "controller/runlog config",
     "tools/plot": "model model/beam controller/files controller/safety tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
-    "tools/analysis": "model model/math model/beam model/beam_methods model/arm model/simulation "
-                      "model/perturbation model/reduction controller/files config tools/support "
+    "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
+                      "model/simulation model/perturbation model/reduction controller/files config tools/support "
                       "tools/runs tools/plot",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config tools/support tools/runs tools/plot controller/files",
@@ -74,13 +74,13 @@ LAYERS = {
     "tools/report": "model model/beam model/arm model/simulation model/perturbation controller/runlog controller/host config "
                     "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
                     "tools/thesis controller/files",
-    "tools/flexarm": "model model/arm hal/gpiod hal/wired hal/emulation controller/realtime "
+    "tools/flexarm": "model model/math model/arm hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config tools/runs "
                      "tools/plot tools/command_line controller/files",
-    "tools/flexarm_study": "model model/math model/beam model/arm model/simulation "
-                           "model/perturbation controller/runlog tools/support tools/runs "
+    "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
+                           "model/simulation model/perturbation controller/runlog tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "

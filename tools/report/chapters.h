@@ -22,11 +22,14 @@ struct ReportContext {
 };
 
 // One function per chapter: computes the chapter, draws into `folder` and adds to the page.
-void Chapter3(ReportContext* context, HtmlPage* page);   ///< beams, damping, friction
-void Chapter4(ReportContext* context, HtmlPage* page);   ///< the rig, figures 4.4 and 4.5
-void Chapter5(ReportContext* context, HtmlPage* page);   ///< parameters, figures 5.1 to 5.5
-void Chapter6(ReportContext* context, HtmlPage* page);   ///< order reduction, figures 6.1 to 6.9
-void Chapter7(ReportContext* context, HtmlPage* page);   ///< control, figures 7.1 to 7.34
+void Chapter3(ReportContext* context, HtmlPage* page);  ///< beams, damping, friction
+void Chapter4(ReportContext* context, HtmlPage* page);  ///< the rig, figures 4.4 and 4.5
+void Chapter5(ReportContext* context, HtmlPage* page);  ///< parameters, figures 5.1 to 5.5
+void Chapter6(ReportContext* context, HtmlPage* page);  ///< order reduction, figures 6.1 to 6.9
+void Chapter7(ReportContext* context, HtmlPage* page);  ///< control, figures 7.1 to 7.34
+/// Zeros, poles at the origin, model following, cost, torsion.
+void ControlFeatures(ReportContext* context, HtmlPage* page);
+void AppendixB(ReportContext* context, HtmlPage* page);  ///< gauges, figure B.2
 void Baselines(ReportContext* context, HtmlPage* page);  ///< the benchmark of the laws
 /// The laws that estimate the payload, compared with the others and with the design study, and
 /// their limits.

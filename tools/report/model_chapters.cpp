@@ -43,7 +43,32 @@ void ParameterTable(const ArmParameters& arm, HtmlPage* page) {
                row("Mh2, kg", "0.24", arm.hub2_mass_kg),
                row("Mr2, kg", "3.03", arm.motor2_mass_kg),
                row("Ir2, kg m2", "1.15e-2", arm.motor2_inertia_kgm2),
+               row("Ih1, kg m2", "1.43e-7", arm.joint[0].hub_inertia_kgm2),
+               row("Ih2, kg m2", "1.05e-7", arm.joint[1].hub_inertia_kgm2),
+               row("Ratio 1", "0.03", arm.link[0].damping_ratio),
+               row("Ratio 2", "0.03", arm.link[1].damping_ratio),
+               row("Ip, kg m2", "1.078e-7", arm.payload_inertia_kgm2),
                row("Mp, kg", "0.1", arm.payload_mass_kg)});
+}
+
+// Table 1 of the thesis, and what stands for each component here.
+void ComponentTable(HtmlPage* page) {
+  page->Table({"Table 1", "component", "here"},
+              {{"1", "support", "the base, rigid"},
+               {"2", "DC motor 1", "torque 1; rotor in J1"},
+               {"3", "optical encoder 1", "sensors.encoder rotor1"},
+               {"4", "driving gear pair, 5:1", "in J1 and the torque, at the gearbox output"},
+               {"5", "flexible joint 1", "K1"},
+               {"6", "link 1", "link1"},
+               {"7", "optical encoder 3", "sensors.encoder rotor2"},
+               {"8", "DC motor 2, with a harmonic drive of 48.96:1", "torque 2; Mr2, Ir2, J2"},
+               {"9", "flexible joint 2", "K2"},
+               {"10", "hub 2", "Mh2, Ih2"},
+               {"11", "link 2", "link2"},
+               {"12", "optical encoder 4", "sensors.encoder hub2"},
+               {"13", "hub 1", "Ih1"},
+               {"14", "optical encoder 2", "sensors.encoder hub1"},
+               {"15", "payload", "Mp, Ip"}});
 }
 
 // Figures 6.1 and 6.2: a small square wave on the arm at rest.
@@ -82,11 +107,17 @@ void Chapter3(ReportContext* context, HtmlPage* page) {
 void Chapter4(ReportContext* context, HtmlPage* page) {
   page->Section("Chapter 4: the rig");
   page->Paragraph(
-      "Table 2 prints Young's modulus and density ten times too large; the rig is aluminium.");
+      "Table 2 prints Young's modulus and density ten times too large; the rig is aluminium. "
+      "Section 4.2.1 gives link 1 the length of 0.9 m and link 2 that of 0.8 m, Table 2 the other "
+      "way round: this rig follows Table 2. Which encoder of Table 1 sits on which shaft is read "
+      "from the text, not from figure 4.1, and is an assumption.");
+  ComponentTable(page);
   ParameterTable(context->config.arm, page);
   const ArmModel model(context->config.arm, {4, 4});
   const auto figure = context->Figure("figure-4.4-4.5");
-  DrawExcitation(RunExcitation(model, 0.0, {}, 3.0), figure);
+  Excitation excitation;
+  excitation.motor_lag_ms = context->config.sim.motor_lag_ms;
+  DrawExcitation(RunExcitation(model, 0.0, excitation, 3.0), figure);
   page->Picture(figure,
                 "Figures 4.4 and 4.5: bending of the links and angles of the joints after a square "
                 "wave of torque of 1 s. The thesis does not state its amplitude: 0.4 and 0.1 N m.");
@@ -95,10 +126,12 @@ void Chapter4(ReportContext* context, HtmlPage* page) {
 
 void Chapter5(ReportContext* context, HtmlPage* page) {
   page->Section("Chapter 5: effect of the parameters");
-  const Excitation weak;
+  Excitation weak;
+  weak.motor_lag_ms = context->config.sim.motor_lag_ms;
   const ParametricStudy study = RunParametricStudy(context->config, weak);
-  const std::vector<Statement> statements =
+  std::vector<Statement> statements =
       ParametricStatements(study, RunParametricStudy(context->config, Strong(weak)));
+  statements.push_back(MotorLag(context->config, study));
   const std::filesystem::path folder = context->folder / "tables" / "chapter-5";
   for (const auto& file : WriteParametricFolder(study, statements, folder)) {
     if (file.extension() != ".png") continue;

@@ -34,8 +34,8 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
                         .folder = request.folder,
                         .statements = {}};
   HtmlPage page("The flexible arm of the thesis, recomputed: " + request.config.rig_name);
-  const auto chapters = {Chapter3, Chapter4,  Chapter5,       Chapter6,
-                         Chapter7, Baselines, PayloadChapter, PublishedChapter};
+  const auto chapters = {Chapter3, Chapter4,  Chapter5,  Chapter6,       ControlFeatures,
+                         Chapter7, AppendixB, Baselines, PayloadChapter, PublishedChapter};
   std::size_t done = 0;
   const auto progress = ProgressBar("chapters", chapters.size());
   for (auto* chapter : chapters) {

@@ -4,6 +4,7 @@
 
 #include "model/arm/linearization.h"
 #include "model/simulation/arm_simulator.h"
+#include "tools/analysis/torsion_report.h"
 #include "tools/thesis/thesis_check.h"
 
 namespace flexarm {
@@ -77,6 +78,32 @@ Statement Thickness(const ArmParameters& arm) {
           std::abs(thickness_mm - 3.0) < 0.01 ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
+// 4.2.1 gives link 1 0.9 m and link 2 0.8 m, Table 2 the other way round.
+Statement Lengths(const ArmParameters& arm) {
+  constexpr std::array<double, 2> kText_m = {0.9, 0.8};
+  ArmParameters exchanged = arm;
+  std::string text = "Table 2 has";
+  bool same = true;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double length_m = arm.link[i].length_m();
+    text += (i > 0 ? " and " : " ") + Figure(length_m, 2);
+    same = same && std::abs(length_m - kText_m[i]) < 1e-6;
+    for (BeamSection& s : exchanged.link[i].section) s.length_m *= kText_m[i] / length_m;
+  }
+  const ArmModel table(arm, {4, 4}), words(exchanged, {4, 4});
+  const Eigen::VectorXd free = FreeMotorFrequenciesHz(table, 0.0),
+                        free_words = FreeMotorFrequenciesHz(words, 0.0);
+  const Eigen::VectorXd held = HeldMotorFrequenciesHz(table, 0.0),
+                        held_words = HeldMotorFrequenciesHz(words, 0.0);
+  text += " m, the lengths of this rig. With those of 4.2.1 its two lowest frequencies would be " +
+          Figure(free_words[0]) + " and " + Figure(free_words[1]) + " instead of " +
+          Figure(free[0]) + " and " + Figure(free[1]) + " Hz, with the motors held " +
+          Figure(held_words[0]) + " and " + Figure(held_words[1]) + " instead of " +
+          Figure(held[0]) + " and " + Figure(held[1]) + " Hz";
+  return {"4.2.1", "link 1 is 0.9 m long and link 2 0.8 m", text,
+          same ? Verdict::kHolds : Verdict::kDoesNot};
+}
+
 // Radii of gyration of the rigid parts: a hub around a link cannot be smaller than the thickness of
 // the link.
 Statement HubInertias(const ArmParameters& arm) {
@@ -129,6 +156,30 @@ Statement Table2(const ArmParameters& arm) {
           worst < 0.01 ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
+// How the arm carries what lies beside the axis of link 1, as long as nothing supports it.
+std::string TorsionText(const TorsionEffect& effect) {
+  return "elbow at " + Figure(effect.of.theta2_deg, 2) + " deg: link 2 and payload weigh " +
+         Figure(effect.weight_nm) + " N m about the axis of link 1, whose stiffness is " +
+         Figure(effect.link[0].stiffness_nm_per_rad) + " N m/rad with a Poisson's ratio of " +
+         Figure(effect.of.poisson, 2) + ": it twists by " + Figure(effect.twist_deg, 2) +
+         " deg, and the tip drops by " + Figure(effect.drop_by_twist_mm, 2) +
+         " mm; by bending on edge the elbow drops by " + Figure(effect.drop_by_bending_mm, 2) +
+         " mm";
+}
+
+// Sections of the links, 4.2.1.
+Statement StiffInTorsion(const ArmParameters& arm) {
+  constexpr double kSmall_mm = 5.0;
+  const TorsionEffect effect = TorsionOf(arm);
+  return {"4.2.1",
+          "the links' sections are stiff enough for weight and twist to be small and negligible",
+          TorsionText(effect),
+          effect.drop_by_twist_mm < kSmall_mm && effect.drop_by_bending_mm < kSmall_mm
+              ? Verdict::kHolds
+          : effect.drop_by_bending_mm < kSmall_mm ? Verdict::kInPart
+                                                  : Verdict::kDoesNot};
+}
+
 struct Chapter4Run {
   Eigen::Vector2d tip_m;
   double bending1_mm = 0.0, bending2_mm = 0.0;  // largest
@@ -176,8 +227,9 @@ Statement Agreement(ArmParameters arm) {
 }  // namespace
 
 std::vector<Statement> Chapter4Statements(const RigConfig& config) {
-  return {SameEffect(config.arm), LongerOrThinner(config.arm), Thickness(config.arm),
-          Table2(config.arm),     HubInertias(config.arm),     Agreement(config.arm)};
+  return {SameEffect(config.arm),  LongerOrThinner(config.arm), Lengths(config.arm),
+          Thickness(config.arm),   StiffInTorsion(config.arm),  Table2(config.arm),
+          HubInertias(config.arm), Agreement(config.arm)};
 }
 
 }  // namespace flexarm

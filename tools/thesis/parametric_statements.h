@@ -12,4 +12,8 @@ namespace flexarm {
 std::vector<Statement> ParametricStatements(const ParametricStudy& weak,
                                             const ParametricStudy& strong);
 
+/// (3.24) in the simulations of chapters 4 and 5, which the thesis has there without stating its
+/// time constants: what a lag of 10 ms changes of a study.
+Statement MotorLag(const RigConfig& config, const ParametricStudy& study);
+
 }  // namespace flexarm

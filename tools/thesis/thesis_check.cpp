@@ -2,20 +2,30 @@
 
 #include <algorithm>
 
+#include "tools/thesis/appendix_statements.h"
 #include "tools/thesis/chapter7_statements.h"
+#include "tools/thesis/control_features.h"
 #include "tools/thesis/parametric_statements.h"
 
 namespace flexarm {
 namespace {
 
 std::vector<Statement> Chapter5Statements(const RigConfig& config) {
-  const Excitation weak;
-  return ParametricStatements(RunParametricStudy(config, weak),
-                              RunParametricStudy(config, Strong(weak)));
+  Excitation weak;
+  weak.motor_lag_ms = config.sim.motor_lag_ms;
+  const ParametricStudy study = RunParametricStudy(config, weak);
+  std::vector<Statement> all =
+      ParametricStatements(study, RunParametricStudy(config, Strong(weak)));
+  all.push_back(MotorLag(config, study));
+  return all;
 }
 
 std::vector<Statement> ControlStatements(const RigConfig& config) {
-  return Chapter7Statements(ControlStudy(config));
+  std::vector<Statement> all = ControlFeatureStatements(config);
+  for (Statement& statement : Chapter7Statements(ControlStudy(config))) {
+    all.push_back(std::move(statement));
+  }
+  return all;
 }
 
 }  // namespace
@@ -25,7 +35,7 @@ std::vector<Statement> ThesisStatements(const RigConfig& config,
   std::vector<Statement> all;
   std::size_t done = 0;
   for (auto* chapter : {Chapter3Statements, Chapter4Statements, Chapter5Statements,
-                        Chapter6Statements, ControlStatements}) {
+                        Chapter6Statements, ControlStatements, AppendixStatements}) {
     for (Statement& statement : chapter(config)) all.push_back(std::move(statement));
     if (progress) progress(++done);
   }
@@ -40,7 +50,8 @@ std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement
          "\n\nAfter reading this page you know which statements of the thesis agree with the model "
          "of "
          "this project, and by which numbers.\n\n"
-         "The table checks statements of chapters 3 to 7, in our words, against the model with the "
+         "The table checks statements of chapters 3 to 7 and Appendix B, in our words, against the "
+         "model with the "
          "config `" +
          config.rig_name +
          "`. `flexarm analyze check -c FILE -o docs/thesis-check.md` writes this page: every "
@@ -52,8 +63,10 @@ std::string ThesisCheckPage(const RigConfig& config, const std::vector<Statement
          "period of a square wave of " +
          Figure(Excitation::kPeriod_s, 1) + " s, " + Figure(weak.torque_nm[0], 1) + " and " +
          Figure(weak.torque_nm[1], 1) + " N m, with the elbow straight, and again with " +
-         Figure(kStrongExcitation, 1) +
-         " times as much. Bending is the deflection of a link's tip, twist the deflection of a "
+         Figure(kStrongExcitation, 1) + " times as much, and the motors lag by " +
+         Figure(config.sim.motor_lag_ms[0], 2) + " and " + Figure(config.sim.motor_lag_ms[1], 2) +
+         " ms, `sim.motor_lag_ms`. Bending is the deflection of a link's tip, twist the deflection "
+         "of a "
          "joint's spring; \"largest\" is over the whole run, \"after the excitation\" refers to "
          "the "
          "free vibration.\n\nThe statements of chapter 7 are checked with the loop of "

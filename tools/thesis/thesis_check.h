@@ -24,8 +24,8 @@ std::vector<Statement> Chapter4Statements(const RigConfig& config);
 /// Chapter 6: linearisation, power balancing, order reduction over the whole grid.
 std::vector<Statement> Chapter6Statements(const RigConfig& config);
 
-/// All of chapters 3 to 7, chapter 5 by ParametricStatements and 7 by Chapter7Statements, in the
-/// order of their sections.
+/// All of chapters 3 to 7 and Appendix B, chapter 5 by ParametricStatements and 7 by
+/// Chapter7Statements, in the order of their sections.
 /// @param progress  called with the number of chapters done; may be empty
 std::vector<Statement> ThesisStatements(const RigConfig& config,
                                         const std::function<void(std::size_t)>& progress = {});
