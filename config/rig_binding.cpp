@@ -146,7 +146,8 @@ void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
                  {{"kalman", EstimatorKind::kKalman},
                   {"difference", EstimatorKind::kDifference},
                   {"polynomial", EstimatorKind::kPolynomial},
-                  {"ekf-payload", EstimatorKind::kPayload}});
+                  {"ekf-payload", EstimatorKind::kPayload},
+                  {"ideal", EstimatorKind::kIdeal}});
   estimator.Read("modes_per_link", &out->modes_per_link);
   estimator.Read("process_force", &out->process_force);
   estimator.Read("rotor_extra_sigma_rad", &out->rotor_extra_sigma_rad);

@@ -49,7 +49,7 @@ LAYERS = {
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
-    "controller/host": "controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
+    "controller/host": "hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/operator",
     "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
@@ -74,7 +74,7 @@ LAYERS = {
     "tools/report": "model/simulation model/perturbation controller/runlog controller/host config "
                     "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
                     "tools/thesis controller/files",
-    "tools/flexarm": "model model/arm hal/gpiod hal/wired hal/emulation controller/realtime "
+    "tools/flexarm": "model model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config tools/runs "
