@@ -165,23 +165,33 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
   }
 }
 
-void JudgeShape(std::span<const Sample> samples, double period_s, RunMetrics* metrics) {
+void JudgeRoughness(std::span<const Sample> samples, const std::vector<Rest>& rests,
+                    double period_s, RunMetrics* metrics) {
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    double squares = 0, along = 0, rate_squares = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Sample& sample = samples[i];
+    double squares = 0;
+    std::size_t count = 0;
+    for (const Rest& rest : rests) {
+      const auto all = Between(samples, rest.start_s, rest.end_s, period_s / 2);
+      for (std::size_t i = 2; i < all.size(); ++i, ++count) {
+        const double second = all[i].angle_deg[joint] - 2.0 * all[i - 1].angle_deg[joint] +
+                              all[i - 2].angle_deg[joint];
+        squares += second * second;
+      }
+    }
+    metrics->joint_roughness_rad_s2[joint] =
+        std::sqrt(squares / static_cast<double>(count)) / (period_s * period_s * kDegPerRad);
+  }
+}
+
+void JudgeShape(std::span<const Sample> samples, RunMetrics* metrics) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    double along = 0, rate_squares = 0;
+    for (const Sample& sample : samples) {
       metrics->peak_angle_deg[joint] =
           std::max(metrics->peak_angle_deg[joint], std::abs(sample.angle_deg[joint]));
       along += sample.error_deg[joint] * sample.reference_deg_s[joint];
       rate_squares += sample.reference_deg_s[joint] * sample.reference_deg_s[joint];
-      if (i < 2) continue;
-      const double second = sample.error_deg[joint] - 2.0 * samples[i - 1].error_deg[joint] +
-                            samples[i - 2].error_deg[joint];
-      squares += second * second;
     }
-    const auto differences = static_cast<double>(samples.size()) - 2.0;
-    metrics->joint_roughness_rad_s2[joint] =
-        std::sqrt(squares / differences) / (period_s * period_s * kDegPerRad);
     metrics->joint_lag_s[joint] = -along / rate_squares;
   }
 }
@@ -278,7 +288,8 @@ RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& e
     metrics.torque_rms_nm.fill(std::numeric_limits<double>::quiet_NaN());
   } else {
     JudgeAllTicks(running, samples, geometry.layout, &metrics);
-    JudgeShape(samples, period_s, &metrics);
+    JudgeShape(samples, &metrics);
+    JudgeRoughness(samples, RestsOf(experiment, run_end_s), period_s, &metrics);
   }
   return metrics;
 }

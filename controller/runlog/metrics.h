@@ -29,7 +29,8 @@ struct RunMetrics {
   /// Largest over the rests: the tip's rms about its mean over the last second.
   double tip_last_second_rms_mm = 0;
   std::array<double, 2> peak_angle_deg{};  ///< largest |hub angle|
-  /// Rms of the second difference of the hub's error, over period squared: how rough it moves.
+  /// Rms over the rests of the second difference of the hub angle, over period squared: how rough
+  /// it comes to rest.
   std::array<double, 2> joint_roughness_rad_s2{};
   /// Lag behind the reference that fits the errors best, linearised: -sum e r' / sum r'^2.
   std::array<double, 2> joint_lag_s{};
