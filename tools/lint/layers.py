@@ -71,8 +71,8 @@ LAYERS = {
                     "model/perturbation model/reduction controller/types controller/law "
                     "controller/design controller/host config tools/support tools/analysis "
                     "tools/sweep",
-    "tools/report": "model/simulation model/perturbation controller/runlog controller/host config "
-                    "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
+    "tools/report": "model/simulation model/perturbation estimator controller/types controller/runlog controller/host config "
+                    "tools/support tools/plot tools/analysis tools/benchmark "
                     "tools/thesis controller/files",
     "tools/flexarm": "model model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
