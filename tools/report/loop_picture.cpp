@@ -48,7 +48,8 @@ void WritePanel(LoopView view, int which, const std::vector<PlotRun>& runs,
                 std::ostringstream* script) {
   const Panel panel = PanelOf(view);
   *script << "set ylabel " << Quoted(panel.label[static_cast<std::size_t>(which)]) << '\n'
-          << (which == 0 ? "set key at screen 0.75, screen 0.95 top left Left reverse\n" : "unset key\n")
+          << (which == 0 ? "set key at screen 0.75, screen 0.95 top left Left reverse\n"
+                         : "unset key\n")
           << "plot ";
   if (view == LoopView::kTrajectory) {
     *script << "$run0 using 1:" << kReference + which << " with lines lw 2 dt 2 lc rgb '"
