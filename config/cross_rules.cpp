@@ -59,6 +59,7 @@ void CheckNominalModel(const RigConfig& c, ProblemLog* log, std::vector<Problem>
   }
   constexpr unsigned kRotors = 0b1100;
   if (nominal.torsion && c.estimator.kind != EstimatorKind::kKalman &&
+      c.estimator.kind != EstimatorKind::kIdeal &&
       (c.sensors.counters_present() & kRotors) != kRotors) {
     out->push_back({kKey, std::string(NameOf(nominal)),
                     "has rotor angles: without an encoder on each rotor only estimator.name = "
@@ -100,6 +101,8 @@ void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Prob
   const auto require = [&](bool ok, const char* rule) {
     if (!ok) out->push_back({key, value, rule});
   };
+  require(c.estimator.kind != EstimatorKind::kIdeal,
+          "estimates the payload, which estimator.name = \"ideal\" does not give");
   require(c.estimator.payload.has_value(), "needs the table [estimator.payload]");
   require(!by_law || c.controller.payload.has_value(), "needs the table [controller.payload]");
   require(!plans || c.controller.plan.has_value(), "needs the table [controller.plan]");

@@ -174,7 +174,8 @@ void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
                  {{"kalman", EstimatorKind::kKalman},
                   {"difference", EstimatorKind::kDifference},
                   {"polynomial", EstimatorKind::kPolynomial},
-                  {"ekf-payload", EstimatorKind::kPayload}});
+                  {"ekf-payload", EstimatorKind::kPayload},
+                  {"ideal", EstimatorKind::kIdeal}});
   estimator.Read("modes_per_link", &out->modes_per_link);
   estimator.Read("process_force", &out->process_force);
   estimator.Read("rotor_extra_sigma_rad", &out->rotor_extra_sigma_rad);
@@ -212,6 +213,14 @@ void ReadPlan(TableReader plan, PlanAheadConfig* out) {
   plan.Read("payload_change_share", &out->payload_change_share);
 }
 
+void ReadMatrices(TableReader matrices, GainMatrixConfig* out) {
+  if (matrices.Has("T")) matrices.Read("T", &out->T);
+  if (matrices.Has("Tbar")) matrices.Read("Tbar", &out->Tbar);
+  if (matrices.Has("S")) matrices.Read("S", &out->S);
+  if (matrices.Has("K_e")) matrices.Read("K_e", &out->K_e);
+  if (matrices.Has("K_I0")) matrices.Read("K_I0", &out->K_I0);
+}
+
 void ReadController(TableReader controller, ControllerConfig* out) {
   std::vector<NamedValue<ControllerKind>> laws;
   laws.reserve(kLaws.size());
@@ -238,6 +247,9 @@ void ReadController(TableReader controller, ControllerConfig* out) {
   controller.Read("payload_range_kg", &out->payload_range_kg);
   controller.Read("prediction", &out->prediction);
   controller.Read("adaptation", &out->adaptation);
+  if (controller.Has("matrices")) {
+    ReadMatrices(controller.Table("matrices"), &out->matrices.emplace());
+  }
   if (controller.Has("payload")) {
     ReadPayloadLaw(controller.Table("payload"), &out->payload.emplace());
   }

@@ -14,6 +14,7 @@ enum class EstimatorKind : std::uint8_t {
   kDifference,  ///< "difference": rates are backward differences, as in the thesis
   kPolynomial,  ///< "polynomial": the same, on the thesis's polynomial fit (polynomial_fit.h)
   kPayload,     ///< "ekf-payload": estimates payload and friction as well (payload_filter.h)
+  kIdeal,       ///< "ideal": knows the state; only `flexarm simulate` has it (ideal_observer.h)
 };
 
 /// Table [estimator.payload]: the settings of `ekf-payload`. "Walk": standard deviation of a

@@ -10,6 +10,7 @@
 
 #include "controller/design/gain_table_design.h"
 #include "controller/design/input_shaper.h"
+#include "controller/law/adaptation_matrices.h"
 #include "controller/law/tracking_law.h"
 #include "controller/types/control_config.h"
 #include "controller/types/rejected_error.h"
@@ -119,9 +120,9 @@ double SmallestEigenvalue(double a, double d, const std::complex<double>& b) {
 
 // Smallest eigenvalue of S + S* on the unit circle, S(z) = J + K (zI - A_c)^-1 B. The lemma (7.16)
 // says that it is positive; this checks it numerically.
-double PositiveRealMargin(const Design& design) {
+double PositiveRealMargin(const Design& design, const Eigen::MatrixXd& closed) {
   constexpr int kFrequencies = 720;
-  const Eigen::MatrixXcd A_c = (design.A - design.B * design.K).cast<std::complex<double>>();
+  const Eigen::MatrixXcd A_c = closed.cast<std::complex<double>>();
   const Eigen::MatrixXcd B = design.B.cast<std::complex<double>>();
   const Eigen::MatrixXcd K = design.K.cast<std::complex<double>>();
   const Eigen::MatrixXcd J = design.J.cast<std::complex<double>>();
@@ -136,27 +137,49 @@ double PositiveRealMargin(const Design& design) {
   return smallest;
 }
 
+double SmallestEigenvalue(const Eigen::MatrixXd& matrix) {
+  const Eigen::MatrixXd even = 0.5 * (matrix + matrix.transpose());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(even, Eigen::EigenvaluesOnly)
+      .eigenvalues()(0);
+}
+
+// The closed form of the lemma holds with K_e = I; with another K_e the frequencies say whether the
+// transfer matrix is strictly positive real.
 void CheckLemma(double alpha, double period_s, Design* design) {
   const Eigen::MatrixXd A_c = design->A - design->B * design->K;
   const Eigen::MatrixXd mismatch = A_c.transpose() * design->P * design->B - design->K.transpose();
   const Eigen::MatrixXd LLt = design->P - A_c.transpose() * design->P * A_c;
-  const auto smallest = [](const Eigen::MatrixXd& symmetric) {
-    const Eigen::MatrixXd even = 0.5 * (symmetric + symmetric.transpose());
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(even, Eigen::EigenvaluesOnly)
-        .eigenvalues()(0);
-  };
   design->checks.push_back({"lemma-residual",
                             mismatch.cwiseAbs().maxCoeff() / design->K.cwiseAbs().maxCoeff(), 1e-8,
                             true});
   design->checks.push_back({"lemma-dissipation-min-eigenvalue",
-                            smallest(LLt) / design->P.cwiseAbs().maxCoeff(), -1e-12, false});
-  design->checks.push_back({"j-min-eigenvalue", smallest(design->J), 0.0, false});
+                            SmallestEigenvalue(LLt) / design->P.cwiseAbs().maxCoeff(), -1e-12,
+                            false});
+  design->checks.push_back({"j-min-eigenvalue", SmallestEigenvalue(design->J), 0.0, false});
   design->checks.push_back(
-      {"g-minus-j-min-eigenvalue", smallest(design->G - design->J), 0.0, false});
+      {"g-minus-j-min-eigenvalue", SmallestEigenvalue(design->G - design->J), 0.0, false});
   design->checks.push_back(
-      {"positive-real-min-eigenvalue", PositiveRealMargin(*design), 0.0, false});
+      {"positive-real-min-eigenvalue", PositiveRealMargin(*design, A_c), 0.0, false});
   design->checks.push_back({"closed-loop-spectral-radius", SpectralRadius(A_c),
                             std::exp(-alpha * period_s) + 1e-9, true});
+}
+
+// Appendix E with the matrices of the config: T > 0, 2 Tbar - T >= 0, S'SG > J, and (7.15) positive
+// real around A - B K_e K.
+void CheckMatrices(const ControllerConfig& controller, Design* design) {
+  if (!controller.matrices || !IsAdaptive(controller.kind)) return;
+  const AdaptationMatrices m = MatricesOf(controller, *design);
+  const Eigen::MatrixXd closed = design->A - design->B * m.K_e * design->K;
+  const double rounding = -1e-12 * (2.0 * m.Tbar - m.T).cwiseAbs().maxCoeff();
+  design->checks.push_back({"t-min-eigenvalue", SmallestEigenvalue(m.T), 0.0, false});
+  design->checks.push_back({"2tbar-minus-t-min-eigenvalue", SmallestEigenvalue(2.0 * m.Tbar - m.T),
+                            std::min(rounding, -1e-300), false});
+  design->checks.push_back({"ssg-minus-j-min-eigenvalue",
+                            SmallestEigenvalue(m.S.transpose() * m.S * design->G - design->J), 0.0,
+                            false});
+  design->checks.push_back({"ke-spectral-radius", SpectralRadius(closed), 1.0, true});
+  design->checks.push_back(
+      {"ke-positive-real-min-eigenvalue", PositiveRealMargin(*design, closed), 0.0, false});
 }
 
 void DesignShaper(const ControlConfig& config, Design* design) {
@@ -215,6 +238,7 @@ Design DesignController(const ControlConfig& config) {
   DesignRegulator(config, &design);
   CheckLemma(config.controller.design_alpha(), period_s, &design);
   DesignCommandGenerator(nominal, &design);
+  CheckMatrices(config.controller, &design);
   DesignShaper(config, &design);
   DesignForPayload(config, &design);
 

@@ -271,6 +271,14 @@ std::string DesignHash(const ControlConfig& config) {
   digest << c.design_alpha() << c.hub_angle_weight << c.hub_rate_weight << c.torque_weight
          << c.passivity_margin << config.loop.period_ms;
   for (const double weight : c.state_weight) digest << weight;
+  if (c.matrices && IsAdaptive(c.kind)) {
+    const GainMatrixConfig& m = *c.matrices;
+    for (const auto* entries : {&m.T, &m.Tbar, &m.S, &m.K_e, &m.K_I0}) {
+      digest << static_cast<double>(entries->size());
+      for (const double entry : *entries) digest << entry;
+    }
+    digest << static_cast<double>(c.kind) << c.adaptation_gain;
+  }
   if (IsPd(c.kind)) {
     digest << static_cast<double>(c.kind) << c.pd_stiffness_nm_per_rad << c.pd_damping_nms_per_rad;
   }

@@ -149,12 +149,14 @@ LinearEstimator DifferenceOf(const Design& design, double period_s) {
   return out;
 }
 
-// `ekf-payload` enters as the Kalman filter for the payload of the design.
+// `ekf-payload` enters as the Kalman filter for the payload of the design, `ideal` as the filter
+// that an arm would have.
 LinearEstimator EstimatorOf(const ControlConfig& config, const Design& design) {
   const double period_s = config.loop.period_s();
   switch (config.estimator.kind) {
     case EstimatorKind::kKalman:
     case EstimatorKind::kPayload:
+    case EstimatorKind::kIdeal:
       return KalmanOf(design, OwnDelayOf(config.loop).rest_s, period_s);
     case EstimatorKind::kDifference:
     case EstimatorKind::kPolynomial:

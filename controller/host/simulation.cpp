@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "controller/design/run_design.h"
+#include "controller/host/ideal_simulation.h"
 #include "controller/host/run_info.h"
 #include "controller/law/design.h"
 #include "controller/operator/operator_task.h"
@@ -94,6 +95,36 @@ PlannedExperiment PlanOf(const SimulationRequest& request, const Design& design)
   }
 }
 
+SimulationResult ResultOf(const RigConfig& config, const PlannedExperiment& planned,
+                          const RunContents& contents, TripCause trip) {
+  SimulationResult result;
+  result.metrics = ComputeMetrics(contents.tick, planned.accepted, config.loop.period_s(),
+                                  TipGeometryOf(config.arm, config.controller.nominal));
+  result.ticks = result.metrics.ticks;
+  result.trip = trip;
+  result.completed = trip == TripCause::kNone && result.ticks == planned.reference.periods();
+  for (const Move& move : planned.accepted.move) {
+    result.move_duration_s.push_back(move.duration_s.value());
+  }
+  return result;
+}
+
+SimulationResult SimulateIdeal(const SimulationRequest& request) {
+  using Clock = std::chrono::steady_clock;
+  const Design design = DesignFor(request.config);
+  const PlannedExperiment planned = PlanOf(request, design);
+  const RigConfig& plant = request.plant ? *request.plant : request.config;
+  const auto started = Clock::now();
+  RunContents contents;
+  const TripCause trip = RunIdeal(
+      request, design, planned, request.payload_kg.value_or(plant.arm.payload_mass_kg), &contents);
+  const double wall_s = std::chrono::duration<double>(Clock::now() - started).count();
+  SimulationResult result = ResultOf(request.config, planned, contents, trip);
+  result.realtime_factor =
+      static_cast<double>(result.ticks) * request.config.loop.period_s() / wall_s;
+  return result;
+}
+
 class Simulation {
  public:
   explicit Simulation(const SimulationRequest& request);
@@ -178,17 +209,7 @@ double Simulation::Loop(const std::function<void(double)>& progress) {
 }
 
 SimulationResult Simulation::Result(double wall_s) const {
-  SimulationResult result;
-  result.metrics =
-      ComputeMetrics(contents_.tick, planned_.accepted, grid_.period_s(),
-                     TipGeometryOf(request_.config.arm, request_.config.controller.nominal));
-  result.ticks = result.metrics.ticks;
-  result.trip = operator_.run().trip();
-  result.completed =
-      result.trip == TripCause::kNone && result.ticks == planned_.reference.periods();
-  for (const Move& move : planned_.accepted.move) {
-    result.move_duration_s.push_back(move.duration_s.value());
-  }
+  SimulationResult result = ResultOf(request_.config, planned_, contents_, operator_.run().trip());
   for (const TickRecord& record : contents_.tick) {
     const auto samples = int{record.output.delay_found};
     if (samples != 0) result.delay_found = samples;
@@ -214,6 +235,7 @@ SimulationResult Simulate(const SimulationRequest& request,
   if (request.log && std::filesystem::exists(*request.log)) {
     throw RejectedError(request.log->string() + ": exists already; a run is never overwritten");
   }
+  if (request.config.estimator.kind == EstimatorKind::kIdeal) return SimulateIdeal(request);
   return Simulation(request).Run(progress);
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/law/adaptation_matrices.h"
 #include "controller/types/controller_config.h"
 
 namespace flexarm {
@@ -22,6 +23,8 @@ class AdaptiveGain {
   using Regressor = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 20, 1>;
 
   AdaptiveGain(const Eigen::MatrixXd& initial, const ControllerConfig& config);
+  /// With T and S of `matrices` in place of adaptation_gain I and I.
+  AdaptiveGain(const AdaptationMatrices& matrices, const ControllerConfig& config);
 
   void Reset() noexcept { K_I_ = K_I0_; }
 
@@ -34,13 +37,19 @@ class AdaptiveGain {
 
   double change() const noexcept { return (K_I_ - K_I0_).norm(); }  ///< |K_I - K_I0|, Frobenius
 
-  /// tr((K_I - K_I0) T^-1 (K_I - K_I0)'): the gains' part of (7.11), with S = I and Kbar = K_I0,
-  /// the ideal gains of the nominal plant.
+  /// tr(S (K_I - Kbar) T^-1 (K_I - Kbar)' S'): the gains' part of (7.11). Without matrices S = I
+  /// and Kbar = K_I0, the ideal gains of the nominal plant.
   double energy() const noexcept;
 
  private:
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 20, 20>;
+
   double rate_, leak_, dead_zone_nm_, bound_;
   Gain K_I0_, K_I_;
+  bool has_matrices_ = false;
+  Square T_, T_inverse_;
+  Eigen::Matrix2d S_ = Eigen::Matrix2d::Identity();
+  Gain Kbar_;
 };
 
 }  // namespace flexarm

@@ -1,5 +1,6 @@
 #include "controller/law/tracking_law.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
@@ -39,6 +40,7 @@ bool FollowsCommandGenerator(ControllerKind kind) {
 }  // namespace
 
 Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& config) {
+  if (IsAdaptive(config.kind) && config.matrices) return OutputFeedback(config) * design.K;
   return IsPd(config.kind) ? PdGain(config, design.layout) : design.K;
 }
 
@@ -47,7 +49,7 @@ TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
     : config_(config),
       torque_limit_nm_(torque_limit_nm),
       states_(design.A.rows()),
-      Cp_(FeedbackGain(design, config)),
+      Cp_(IsPd(config.kind) ? PdGain(config, design.layout) : design.K),
       G_(design.G),
       feedforward_x_(Matrix2n::Zero(2, states_)),
       feedforward_u_(Eigen::Matrix2d::Zero()),
@@ -57,6 +59,16 @@ TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
       K_I_(InitialGain(design), config) {
   config_.adaptation = config.adaptation && IsAdaptive(config.kind);
   SetFeedforward(design);
+  if (config.matrices && IsAdaptive(config.kind)) SetMatrices(design);
+}
+
+void TrackingLaw::SetMatrices(const Design& design) {
+  const AdaptationMatrices matrices = MatricesOf(config_, design);
+  has_matrices_ = true;
+  Tbar_ = matrices.Tbar;
+  K_e_ = matrices.K_e;
+  StS_inverse_ = (matrices.S.transpose() * matrices.S).inverse();  // start-up
+  K_I_ = AdaptiveGain(matrices, config_);
 }
 
 void TrackingLaw::SetFeedforward(const Design& design) {
@@ -98,6 +110,10 @@ Eigen::Vector2d TrackingLaw::Feedforward(const StateVector& x_m,
 
 double TrackingLaw::Lyapunov(const StateVector& x, const StateVector& x_m,
                              const Eigen::Vector2d& u_m) const noexcept {
+  // P is that of the loop with K_e = I.
+  if (has_matrices_ && K_e_ != Eigen::Matrix2d::Identity()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   if (!FollowsCommandGenerator(config_.kind)) return std::numeric_limits<double>::quiet_NaN();
   StateVector e = S11_.lazyProduct(x_m);  // e = x* - x
   e += S12_.col(0) * u_m(0) + S12_.col(1) * u_m(1);
@@ -112,10 +128,11 @@ LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& refe
   for (Eigen::Index i = 0; i < states_; ++i) x_m(i) = reference.x_m[static_cast<std::size_t>(i)];
   const Eigen::Vector2d u_m(reference.u_m_nm[0], reference.u_m_nm[1]);
   const Eigen::Vector2d y_e = Cp_.lazyProduct(x_m - x);
+  const Eigen::Vector2d fed_back = has_matrices_ ? Eigen::Vector2d(K_e_.lazyProduct(y_e)) : y_e;
   const Eigen::Vector2d u_star = Feedforward(x_m, u_m);
   const double lyapunov = Lyapunov(x, x_m, u_m);
   if (!config_.adaptation) {
-    LawOutput result = Saturate(u_star + y_e, torque_limit_nm_);
+    LawOutput result = Saturate(u_star + fed_back, torque_limit_nm_);
     result.lyapunov_nm2 = lyapunov;
     return result;
   }
@@ -124,11 +141,13 @@ LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& refe
   r.head<2>() = y_e;
   r.segment(2, states_) = x_m;
   r.tail<2>() = u_m;
-  const double rho = config_.adaptation_gain * r.squaredNorm();
+  const double rho = has_matrices_ ? r.dot(AdaptiveGain::Regressor(Tbar_.lazyProduct(r)))
+                                   : config_.adaptation_gain * r.squaredNorm();
   const Eigen::Vector2d from_gain = K_I_.Torque(r);
 
-  // F e = K_e C_p e = y_e, because C_p S11 = C_m and C_p S12 = 0 make C_p x* = C_m x_m.
-  const Eigen::Vector2d drive = y_e + G_.lazyProduct(u_star + y_e - from_gain);
+  // C_p e = y_e, because C_p S11 = C_m and C_p S12 = 0 make C_p x* = C_m x_m.
+  const Eigen::Vector2d F_e = has_matrices_ ? Eigen::Vector2d(StS_inverse_.lazyProduct(y_e)) : y_e;
+  const Eigen::Vector2d drive = F_e + G_.lazyProduct(u_star + fed_back - from_gain);
   const Eigen::Matrix2d loop = Eigen::Matrix2d::Identity() + rho * G_;
   const double determinant = loop(0, 0) * loop(1, 1) - loop(0, 1) * loop(1, 0);
   const Eigen::Vector2d v((loop(1, 1) * drive(0) - loop(0, 1) * drive(1)) / determinant,

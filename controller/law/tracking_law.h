@@ -13,7 +13,8 @@
 
 namespace flexarm {
 
-/// C_p of the law, 2 x n: feedback torque per deviation from the reference, N m per SI unit.
+/// Feedback torque of the law per deviation from the reference, 2 x n, N m per SI unit: C_p, for an
+/// adaptive law K_e C_p.
 Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& config);
 
 /// Every law that follows the reference model: feedforward plus feedback; Sobel's law adapts.
@@ -33,11 +34,12 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 ///
 ///   x* = S11 x_m + S12 u_m,  e = x* - x,  y_e = C_p (x_m - x) = C_p e
 ///   r  = [y_e; x_m; u_m],  rho = r' Tbar r
-///   v  = (I + rho G)^-1 (F e + G (u* + K_e C_p e - K_I r)),  F = C_p, K_e = I
+///   v  = (I + rho G)^-1 (F e + G (u* + K_e C_p e - K_I r)),  F = (S'S)^-1 C_p
 ///   u  = K_I r + rho v, clipped
 ///   K_I <- (1 - sigma) (K_I - K_I0) + K_I0 + v (T r)'
 ///
-/// The algebraic loop between v and u is solved within the sample. With T = Tbar = 0 the law is
+/// T, Tbar, S, K_e and K_I(0) are those of [controller.matrices] (adaptation_matrices.h). The
+/// algebraic loop between v and u is solved within the sample. With T = Tbar = 0 the law is
 /// lqr-cgt.
 /// Real-time: Reset and Compute are safe.
 class TrackingLaw final : public Law {
@@ -53,8 +55,8 @@ class TrackingLaw final : public Law {
   /// @param may_adapt  false: K_I is held (invalid sensor, not Running)
   ///
   /// The result has V = e'Pe + tr((K_I - K_I0) T^-1 (K_I - K_I0)'), N m squared. On the nominal
-  /// plant V decreases from sample to sample (vartheta = 0, u_m constant). NaN for the laws whose
-  /// trajectory is not the command generator's: lqr-um, lqg, pd.
+  /// plant V decreases from sample to sample (vartheta = 0, u_m constant). NaN with another K_e,
+  /// and for the laws whose trajectory is not the command generator's: lqr-um, lqg, pd.
   LawOutput Compute(const StateVector& x, const ReferenceSample& reference,
                     bool may_adapt) noexcept;
   LawOutput Compute(const LawInput& input) noexcept override {
@@ -70,6 +72,8 @@ class TrackingLaw final : public Law {
   using MatrixN2 = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 16, 2>;
 
   void SetFeedforward(const Design& design);
+  /// Replaces the defaults by the matrices of the config.
+  void SetMatrices(const Design& design);
   Eigen::Vector2d Feedforward(const StateVector& x_m, const Eigen::Vector2d& u_m) const noexcept;
   double Lyapunov(const StateVector& x, const StateVector& x_m,
                   const Eigen::Vector2d& u_m) const noexcept;
@@ -84,6 +88,10 @@ class TrackingLaw final : public Law {
   MatrixNn P_, S11_;
   MatrixN2 S12_;
   AdaptiveGain K_I_;
+  bool has_matrices_ = false;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 20, 20> Tbar_;
+  Eigen::Matrix2d K_e_ = Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d StS_inverse_ = Eigen::Matrix2d::Identity();
 };
 
 }  // namespace flexarm

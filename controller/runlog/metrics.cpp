@@ -11,13 +11,15 @@ namespace flexarm {
 namespace {
 
 constexpr double kFinalWindow_s = 0.3;
-constexpr double kSettledWithin_m = 0.015;
+constexpr double kSettledWithin_m = 0.015, kFinelySettledWithin_m = 0.005;
+constexpr double kLongWindow_s = 1.0;
 constexpr double kSettleBy_s = 0.3;  // goal: settled this long after the end of a move
 
 // Values of one tick that the metrics use.
 struct Sample {
   double time_s;  // after sample 0 of the experiment
-  std::array<double, 2> error_deg;
+  std::array<double, 2> angle_deg, error_deg;
+  std::array<double, 2> reference_deg_s;
   std::array<double, 2> tip_m;
 };
 
@@ -43,10 +45,16 @@ std::vector<Sample> Samples(std::span<const TickRecord> ticks, double period_s, 
     const std::int64_t number = record.input.tick - ticks.front().input.tick - 1;
     Sample sample{
         .time_s = static_cast<double>(number) * period_s - late_s,
+        .angle_deg = {},
         .error_deg = {},
+        .reference_deg_s = {},
         .tip_m = truth ? record.truth.tip_m : EstimatedTip(geometry, record.output.x_hat)};
     for (std::size_t joint = 0; joint < 2; ++joint) {
       const double angle = truth ? record.truth.hub_angle_rad[joint] : record.output.x_hat[joint];
+      const int rate = geometry.layout.rate(geometry.layout.hub(static_cast<int>(joint)));
+      sample.angle_deg[joint] = angle * kDegPerRad;
+      sample.reference_deg_s[joint] =
+          record.input.reference_now.x_m[static_cast<std::size_t>(rate)] * kDegPerRad;
       sample.error_deg[joint] = (angle - record.input.reference_now.x_m[joint]) * kDegPerRad;
     }
     samples.push_back(sample);
@@ -86,9 +94,9 @@ std::array<double, 2> MeanTip(std::span<const Sample> window) {
 // @returns the time after the start of the rest from which the tip stays within the bound; nothing
 // if it does not
 std::optional<double> SettlingTime(std::span<const Sample> rest, double start_s,
-                                   const std::array<double, 2>& place) {
+                                   const std::array<double, 2>& place, double within_m) {
   std::size_t settled = rest.size();
-  while (settled > 0 && Distance(rest[settled - 1].tip_m, place) <= kSettledWithin_m) --settled;
+  while (settled > 0 && Distance(rest[settled - 1].tip_m, place) <= within_m) --settled;
   if (settled == rest.size()) return std::nullopt;
   return std::max(0.0, rest[settled].time_s - start_s);
 }
@@ -104,8 +112,8 @@ double ResidualRms_mm(std::span<const Sample> window, const std::array<double, 2
 
 // The last 0.3 s of a rest, or all of a shorter one.
 std::span<const Sample> FinalWindow(std::span<const Sample> samples, const Rest& rest,
-                                    double slack_s) {
-  const double start_s = std::max(rest.start_s, rest.end_s - kFinalWindow_s);
+                                    double slack_s, double window_s = kFinalWindow_s) {
+  const double start_s = std::max(rest.start_s, rest.end_s - window_s);
   return Between(samples, start_s, rest.end_s, slack_s);
 }
 
@@ -116,6 +124,15 @@ std::span<const Sample> AfterSettling(std::span<const Sample> samples, const Res
   return Between(samples, std::max(rest.start_s, start_s), rest.end_s, slack_s);
 }
 
+// The largest of the settling times so far and of one more rest; nothing: never.
+void TakeLonger(const std::optional<double>& settled, std::optional<double>* longest) {
+  if (!settled) {
+    longest->reset();
+  } else if (*longest) {
+    *longest = std::max(**longest, *settled);
+  }
+}
+
 void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double slack_s,
                 RunMetrics* metrics) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -124,9 +141,10 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
   if (rests.empty()) {
     metrics->joint_final_error_deg = {kNone, kNone};
     metrics->tip_residual_rms_mm = metrics->tip_motion_rms_mm = kNone;
+    metrics->tip_last_second_rms_mm = kNone;
     return;
   }
-  metrics->tip_settling_time_s = 0;
+  metrics->tip_settling_time_s = metrics->tip_settling_within_5mm_s = 0;
   for (const Rest& rest : rests) {
     const auto all = Between(samples, rest.start_s - 2 * slack_s, rest.end_s, slack_s);
     const auto window = FinalWindow(samples, rest, slack_s);
@@ -137,12 +155,44 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
     const auto after = AfterSettling(samples, rest, slack_s);
     metrics->tip_motion_rms_mm +=
         ResidualRms_mm(after, MeanTip(after)) / static_cast<double>(rests.size());
-    const std::optional<double> settled = SettlingTime(all, rest.start_s, place);
-    if (!settled) {
-      metrics->tip_settling_time_s.reset();
-    } else if (metrics->tip_settling_time_s) {
-      metrics->tip_settling_time_s = std::max(*metrics->tip_settling_time_s, *settled);
+    const auto last = FinalWindow(samples, rest, slack_s, kLongWindow_s);
+    metrics->tip_last_second_rms_mm =
+        std::max(metrics->tip_last_second_rms_mm, ResidualRms_mm(last, MeanTip(last)));
+    TakeLonger(SettlingTime(all, rest.start_s, place, kSettledWithin_m),
+               &metrics->tip_settling_time_s);
+    TakeLonger(SettlingTime(all, rest.start_s, place, kFinelySettledWithin_m),
+               &metrics->tip_settling_within_5mm_s);
+  }
+}
+
+void JudgeRoughness(std::span<const Sample> samples, const std::vector<Rest>& rests,
+                    double period_s, RunMetrics* metrics) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    double squares = 0;
+    std::size_t count = 0;
+    for (const Rest& rest : rests) {
+      const auto all = Between(samples, rest.start_s, rest.end_s, period_s / 2);
+      for (std::size_t i = 2; i < all.size(); ++i, ++count) {
+        const double second = all[i].angle_deg[joint] - 2.0 * all[i - 1].angle_deg[joint] +
+                              all[i - 2].angle_deg[joint];
+        squares += second * second;
+      }
     }
+    metrics->joint_roughness_rad_s2[joint] =
+        std::sqrt(squares / static_cast<double>(count)) / (period_s * period_s * kDegPerRad);
+  }
+}
+
+void JudgeShape(std::span<const Sample> samples, RunMetrics* metrics) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    double along = 0, rate_squares = 0;
+    for (const Sample& sample : samples) {
+      metrics->peak_angle_deg[joint] =
+          std::max(metrics->peak_angle_deg[joint], std::abs(sample.angle_deg[joint]));
+      along += sample.error_deg[joint] * sample.reference_deg_s[joint];
+      rate_squares += sample.reference_deg_s[joint] * sample.reference_deg_s[joint];
+    }
+    metrics->joint_lag_s[joint] = -along / rate_squares;
   }
 }
 
@@ -238,6 +288,8 @@ RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& e
     metrics.torque_rms_nm.fill(std::numeric_limits<double>::quiet_NaN());
   } else {
     JudgeAllTicks(running, samples, geometry.layout, &metrics);
+    JudgeShape(samples, &metrics);
+    JudgeRoughness(samples, RestsOf(experiment, run_end_s), period_s, &metrics);
   }
   return metrics;
 }

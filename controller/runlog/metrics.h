@@ -24,6 +24,16 @@ struct RunMetrics {
   /// Mean over the rests: the tip's rms about its mean from 0.3 s after the move's end to the end
   /// of the rest (the motion of docs/theory/payload.md 6.1), so slow oscillations count too.
   double tip_motion_rms_mm = 0;
+  /// As tip_settling_time_s, within 5 mm.
+  std::optional<double> tip_settling_within_5mm_s;
+  /// Largest over the rests: the tip's rms about its mean over the last second.
+  double tip_last_second_rms_mm = 0;
+  std::array<double, 2> peak_angle_deg{};  ///< largest |hub angle|
+  /// Rms over the rests of the second difference of the hub angle, over period squared: how rough
+  /// it comes to rest.
+  std::array<double, 2> joint_roughness_rad_s2{};
+  /// Lag behind the reference that fits the errors best, linearised: -sum e r' / sum r'^2.
+  std::array<double, 2> joint_lag_s{};
   std::array<double, 2> peak_torque_nm{};   ///< after the gate
   std::array<double, 2> torque_rms_nm{};    ///< after the gate, all ticks
   std::array<double, 2> peak_bending_mm{};  ///< largest deflection of each link's tip

@@ -56,6 +56,14 @@ ControlStep::ControlStep(const ControlConfig& config, const Design& design)
 
 ControlStep::ControlStep(const ControlConfig& config, const Design& design,
                          std::unique_ptr<Law> law)
+    : ControlStep(config, design, std::move(law), MakeObserver(config, design)) {}
+
+ControlStep::ControlStep(const ControlConfig& config, const Design& design,
+                         std::unique_ptr<Observer> observer)
+    : ControlStep(config, design, MakeLaw(config, design), std::move(observer)) {}
+
+ControlStep::ControlStep(const ControlConfig& config, const Design& design,
+                         std::unique_ptr<Law> law, std::unique_ptr<Observer> observer)
     : period_s_(config.loop.period_s()),
       max_reading_age_ns_(std::llround(config.loop.period_ms * 0.5e6)),
       prediction_(config.controller.prediction),
@@ -64,7 +72,7 @@ ControlStep::ControlStep(const ControlConfig& config, const Design& design,
       tip_accelerometer_(config.sensors.tip_accelerometer),
       decoder_(config.sensors, period_s_, config.estimator.max_joint_rate_rad_s),
       fit_(config.arm, config.sensors, config.estimator),
-      observer_(MakeObserver(config, design)),
+      observer_(std::move(observer)),
       fault_detection_(config.safety, config.estimator, period_s_,
                        config.sensors.counters_present(), fit_.gauges_needed(),
                        config.arm.joint_stiffness_nm_per_rad()),

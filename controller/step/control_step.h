@@ -34,10 +34,16 @@ class ControlStep {
   ControlStep(const ControlConfig& config, const Design& design);
   /// With another law than that of config.controller.
   ControlStep(const ControlConfig& config, const Design& design, std::unique_ptr<Law> law);
+  /// With another observer than that of config.estimator.
+  ControlStep(const ControlConfig& config, const Design& design,
+              std::unique_ptr<Observer> observer);
 
   StepOutput Step(const StepInput& input) noexcept;
 
  private:
+  ControlStep(const ControlConfig& config, const Design& design, std::unique_ptr<Law> law,
+              std::unique_ptr<Observer> observer);
+
   enum class Phase : std::uint8_t { kNoTorque, kRunning, kStopping };
 
   void Reset(const StepInput& input) noexcept;

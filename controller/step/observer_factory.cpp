@@ -1,5 +1,6 @@
 #include "controller/step/observer_factory.h"
 
+#include "controller/types/rejected_error.h"
 #include "estimator/nominal_observer.h"
 #include "estimator/payload_observer.h"
 
@@ -7,6 +8,11 @@ namespace flexarm {
 
 std::unique_ptr<Observer> MakeObserver(const ControlConfig& config, const Design& design) {
   const double period_s = config.loop.period_s();
+  if (config.estimator.kind == EstimatorKind::kIdeal) {
+    throw RejectedError(
+        "estimator.name = \"ideal\" knows the state of a simulated arm, which sensors cannot tell: "
+        "only `flexarm simulate` has it");
+  }
   if (!design.payload_model.empty()) {
     return std::make_unique<PayloadObserver>(  // start-up
         PayloadEstimator(design.payload_model,

@@ -9,6 +9,7 @@
 namespace flexarm {
 
 /// Makes the observer of `estimator.name` with the filter of `design`.
+/// @throws RejectedError  `ideal`: IdealObserver needs who tells it the state
 std::unique_ptr<Observer> MakeObserver(const ControlConfig& config, const Design& design);
 
 }  // namespace flexarm

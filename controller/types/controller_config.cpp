@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 #include "model/problem_list.h"
 
@@ -58,6 +59,32 @@ void CheckPlan(const PlanAheadConfig& p, ProblemList* list) {
                "or this share of the plan's payload");
 }
 
+// Sizes by the entries p of r, and symmetry.
+void CheckMatrices(const GainMatrixConfig& m, std::size_t p, ProblemList* list) {
+  const auto check = [list](const std::string& key, const std::vector<double>& entries,
+                            std::size_t few, std::size_t all, const std::string& what) {
+    list->Require(entries.empty() || entries.size() == few || entries.size() == all, key,
+                  NumberText(entries.size()) + " numbers",
+                  "must have " + NumberText(few) + " or " + NumberText(all) + ": " + what);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      list->Within(ProblemList::Element(key, i), entries[i], -1e6, 1e6, "an entry of the matrix");
+    }
+  };
+  check("matrices.T", m.T, p, p * p, "the diagonal, or all entries row by row");
+  check("matrices.Tbar", m.Tbar, p, p * p, "the diagonal, or all entries row by row");
+  check("matrices.S", m.S, 2, 4, "the diagonal, or all entries row by row");
+  check("matrices.K_e", m.K_e, 2, 4, "the diagonal, or all entries row by row");
+  check("matrices.K_I0", m.K_I0, 1, 2 * p, "the share of [K_e S21 S22], or all entries");
+  for (const auto& [key, entries] :
+       {std::pair{"matrices.T", &m.T}, std::pair{"matrices.Tbar", &m.Tbar}}) {
+    bool symmetric = true;
+    for (std::size_t i = 0; entries->size() == p * p && i < p * p; ++i) {
+      symmetric = symmetric && (*entries)[i] == (*entries)[i % p * p + i / p];
+    }
+    list->Require(symmetric, key, "not symmetric", "must be symmetric, or (7.11) is no norm");
+  }
+}
+
 }  // namespace
 
 std::vector<Problem> ControllerConfig::Problems() const {
@@ -94,6 +121,7 @@ std::vector<Problem> ControllerConfig::Problems() const {
   list.Require(!(payload_range_kg[0] > payload_range_kg[1]), "payload_range_kg",
                NumberText(payload_range_kg[0]) + " .. " + NumberText(payload_range_kg[1]),
                "must be the least payload, then the greatest");
+  if (matrices) CheckMatrices(*matrices, static_cast<std::size_t>(nominal.states()) + 4, &list);
   if (payload) CheckPayload(*payload, &list);
   if (plan) CheckPlan(*plan, &list);
   return list.Take();

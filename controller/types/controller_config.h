@@ -44,6 +44,17 @@ struct PlanAheadConfig {
   double payload_change_share;
 };
 
+/// Table [controller.matrices], optional: the gain matrices of Sobel's law, thesis (7.11) to (7.14)
+/// and Appendix E. p = n + 4 entries of r = [y_e; x_m; u_m], 16 with R12. A key left out keeps the
+/// default in brackets.
+struct GainMatrixConfig {
+  std::vector<double> T;     ///< p: diagonal; p p: row by row; symmetric [adaptation_gain I]
+  std::vector<double> Tbar;  ///< likewise
+  std::vector<double> S;     ///< 2: diagonal; 4: row by row [I]
+  std::vector<double> K_e;   ///< likewise [I]
+  std::vector<double> K_I0;  ///< 1: share of [K_e S21 S22]; 2 p: row by row [1]
+};
+
 /// Section [controller]. Symbols as in the thesis, chapter 7.
 struct ControllerConfig {
   ControllerKind kind;  ///< key `name`
@@ -73,8 +84,9 @@ struct ControllerConfig {
     return kind == ControllerKind::kSobelOriginal || kind == ControllerKind::kLqg ? 0.0 : alpha;
   }
 
-  std::optional<PayloadLawConfig> payload{};  ///< only for the laws that use the payload
-  std::optional<PlanAheadConfig> plan{};      ///< only for `receding-horizon`
+  std::optional<GainMatrixConfig> matrices{};  ///< of the adaptive laws
+  std::optional<PayloadLawConfig> payload{};   ///< only for the laws that use the payload
+  std::optional<PlanAheadConfig> plan{};       ///< only for `receding-horizon`
 
   std::string
       gains_file;  ///< key `gains`, optional: written by `flexarm design`; empty: design at start

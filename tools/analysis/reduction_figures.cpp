@@ -103,10 +103,11 @@ void DrawSurface(const ArmModel& model, const ReductionOptions& options, const S
   script << "EOD\nset multiplot layout 2,2 title "
          << Quoted("Contribution of the first two modes, %: " +
                    Caption(surface.theta2_deg, "", options.scaling))
-         << "\nset hidden3d\nset xlabel \"th1', rad/s\"\nset format z '%.4f'\n"
+         << "\nset xlabel \"th1', rad/s\"\nset format z '%.4f'\n"
             "set xyplane relative 0\nset xtics 2\n";
-  const char* side = "set view 90,0\nunset ytics\nunset ylabel\n";
-  const char* above = "set view 60,30\nset ytics 3\nset ylabel \"th2', rad/s\"\n";
+  // Seen from the side, hidden lines would be removed within the line that the surface is.
+  const char* side = "unset hidden3d\nset view 90,0\nunset ytics\nunset ylabel\n";
+  const char* above = "set hidden3d\nset view 60,30\nset ytics 3\nset ylabel \"th2', rad/s\"\n";
   for (const char* view : {side, above}) {
     for (const int link : {1, 2}) {
       script << view << "set title 'link " << link << "'\nsplot $data using 1:2:" << link + 2

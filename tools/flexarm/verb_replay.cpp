@@ -14,6 +14,7 @@
 #include "controller/runlog/errors.h"
 #include "controller/runlog/replay.h"
 #include "controller/step/control_step.h"
+#include "estimator/ideal_observer.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
@@ -50,6 +51,29 @@ struct Outcome {
   }
 };
 
+/// ControlStep with the observer `ideal`, which is told the state that each record has.
+class IdealReplay {
+ public:
+  IdealReplay(const RigConfig& config, const Design& design)
+      : states_(design.layout.states()),
+        observer_(new IdealObserver(states_)),
+        step_(config, design, std::unique_ptr<Observer>(observer_)) {}
+
+  void Know(const StepOutput& recorded) {
+    StateVector x(states_);
+    for (int i = 0; i < states_; ++i) x(i) = recorded.x_hat[static_cast<std::size_t>(i)];
+    observer_->Know(x);
+  }
+  StepOutput Step(const StepInput& input) { return step_.Step(input); }
+
+ private:
+  int states_;
+  IdealObserver* observer_;  // owned by step_
+  ControlStep step_;
+};
+
+bool IsIdeal(const RigConfig& config) { return config.estimator.kind == EstimatorKind::kIdeal; }
+
 StepFunction Fresh(const RigConfig& config, const Design& design) {
   const auto step = std::make_shared<ControlStep>(config, design);
   return [step](const StepInput& input) { return step->Step(input); };
@@ -74,8 +98,18 @@ Outcome ReplayRun(const ReplayOptions& options) {
   const RigConfig config = asks_for_other ? options.config.Load() : own;
   const bool other_config = config.text != own.text;
   const Design design = other_config ? DesignFor(config) : GainsOf(reader, config);
-  Replay replay(Fresh(config, design), other_config);
-  reader.ForEachTick([&](const TickRecord& record) { replay.Tick(record); });
+  if (IsIdeal(config) && !IsIdeal(own)) {
+    throw InputError(reader.file().string() +
+                     ": the true state is not in this log, which estimator.name = \"ideal\" needs");
+  }
+  const auto ideal = IsIdeal(config) ? std::make_shared<IdealReplay>(config, design) : nullptr;
+  Replay replay(ideal ? [ideal](const StepInput& input) { return ideal->Step(input); }
+                      : Fresh(config, design),
+                other_config);
+  reader.ForEachTick([&](const TickRecord& record) {
+    if (ideal) ideal->Know(record.output);
+    replay.Tick(record);
+  });
   reader.ForEachSafety([&](const SafetyRecord& record) { replay.Safety(record); });
   const std::string& build = reader.info().build_id;
   return {.result = replay.Result(),

@@ -29,6 +29,7 @@ struct SimulateOptions {
   std::optional<std::uint64_t> seed;
   bool without_prediction = false;
   bool without_adaptation = false;
+  bool ideal = false;
   std::filesystem::path output;
   bool json = false;
 };
@@ -40,6 +41,7 @@ RigConfig LoadWithOptions(const SimulateOptions& options) {
     config.overrides.push_back(std::string(key) + "=" + value);
   };
   if (!options.controller.empty()) set("controller.name", options.controller);
+  if (options.ideal) set("estimator.name", "ideal");
   if (!options.estimator.empty()) set("estimator.name", options.estimator);
   if (options.plant_modes) set("sim.plant_modes", std::to_string(*options.plant_modes));
   if (options.seed) set("sim.seed", std::to_string(*options.seed));
@@ -171,6 +173,10 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
   verb->add_flag(
       "--without-adaptation", options->without_adaptation,
       "controller.adaptation = false: the same feedforward and feedback with fixed gains");
+  verb->add_flag("--ideal", options->ideal,
+                 "estimator.name = ideal: the state is known and the torque acts at once, without\n"
+                 "sensors, delay, torque gate and safety tasks, as in the thesis's simulations")
+      ->excludes("--estimator");
   verb->add_option("-o,--output", options->output, "Run log to write (must not exist)")
       ->type_name("RUN");
   AddJson(verb, &options->json);
@@ -181,6 +187,7 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
       "run tripped.\n"
       "Examples: flexarm simulate -c config/hil.toml\n"
       "          flexarm simulate -c config/hil.toml --payload-kg 0.2 --seed 7 -o heavy.flexarm\n"
+      "          flexarm simulate -c config/hil.toml --ideal --payload-kg 0.01\n"
       "          flexarm simulate -c config/hil.toml --set controller.alpha=2 --json");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }

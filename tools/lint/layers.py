@@ -49,7 +49,7 @@ LAYERS = {
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
-    "controller/host": "controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
+    "controller/host": "hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/operator",
     "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
@@ -71,10 +71,11 @@ LAYERS = {
                     "model/perturbation model/reduction controller/types controller/law "
                     "controller/design controller/host config tools/support tools/analysis "
                     "tools/sweep",
-    "tools/report": "model model/beam model/arm model/simulation model/perturbation controller/runlog controller/host config "
-                    "tools/support tools/plot tools/analysis tools/sweep tools/benchmark "
+    "tools/report": "model model/beam model/arm model/simulation model/perturbation estimator "
+                    "controller/types controller/runlog controller/host config "
+                    "tools/support tools/plot tools/analysis tools/benchmark "
                     "tools/thesis controller/files",
-    "tools/flexarm": "model model/math model/arm hal/gpiod hal/wired hal/emulation controller/realtime "
+    "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config tools/runs "

@@ -1,11 +1,12 @@
 #include <cmath>
 
 #include "controller/host/simulation.h"
+#include "controller/types/law_table.h"
+#include "estimator/state_layout.h"
 #include "tools/plot/plot_data.h"
 #include "tools/report/chapters.h"
 #include "tools/report/loop_picture.h"
 #include "tools/support/parallel_for.h"
-#include "tools/sweep/better_sensors.h"
 #include "tools/thesis/chapter7_statements.h"
 #include "tools/thesis/control_study.h"
 
@@ -13,6 +14,8 @@ namespace flexarm {
 namespace {
 
 using Row = std::vector<std::string>;
+
+constexpr double kNominal_kg = 0.1;  // of the nominal model, thesis 7.4
 
 std::string Kilograms(double payload_kg) {
   std::string text = std::to_string(payload_kg);
@@ -28,6 +31,7 @@ struct NamedRun {
   std::vector<std::string> overrides;
   double payload_kg;
   DoubletShape shape = DoubletShape::kSquare;
+  double move_deg = kMove_deg;
 };
 
 std::vector<PlotRun> RunAll(const ReportContext& context, const std::vector<NamedRun>& runs) {
@@ -36,7 +40,7 @@ std::vector<PlotRun> RunAll(const ReportContext& context, const std::vector<Name
     const NamedRun& run = runs[i];
     const std::filesystem::path log = context.folder / "runs" / (run.file + ".flexarm");
     Simulate({.config = WithOverrides(context.config, run.overrides),
-              .experiment = ControlCommand(run.shape),
+              .experiment = ControlCommand(run.shape, run.move_deg),
               .payload_kg = run.payload_kg,
               .log = log});
     plots[i] = PlotDataOf(LoadRun(log));
@@ -51,43 +55,84 @@ std::string Cell(double value) {
 }
 
 Row FigureRow(const std::string& name, const ControlFigures& f) {
-  const auto pair = [](const std::array<double, 2>& v) { return Cell(v[0]) + " " + Cell(v[1]); };
+  const auto pair = [](const std::array<OverSeeds, 2>& v) {
+    return Cell(v[0].median) + " " + Cell(v[1].median);
+  };
   return {name,
           std::to_string(f.completed) + "/" + std::to_string(f.runs),
           pair(f.rms_deg),
           pair(f.final_deg),
-          Cell(f.settling_s),
-          Cell(f.residual_mm),
+          Cell(f.settling_s.median),
+          Cell(f.last_second_mm.median),
           pair(f.peak_nm),
           pair(f.peak_bending_mm)};
 }
 
 Row FigureHead(const std::string& first) {
-  return {first,         "completed",    "rms error, deg",   "final error, deg",
-          "settling, s", "residual, mm", "peak torque, N m", "peak bending, mm"};
+  return {first,         "completed",  "rms error, deg",   "final error, deg",
+          "settling, s", "motion, mm", "peak torque, N m", "peak bending, mm"};
+}
+
+constexpr std::array<LoopView, 3> kViews = {LoopView::kBending, LoopView::kTrajectory,
+                                            LoopView::kEffort};
+
+// The settings of a figure, for its caption.
+std::string SettingsOf(const RigConfig& config, bool ideal) {
+  return std::string(ideal ? "Known state, no delay"
+                           : "The simulated rig with sensors, estimator and delay") +
+         "; law " + LawOf(config.controller.kind).name + ", nominal model " +
+         std::string(NameOf(config.controller.nominal)) + ", " +
+         Figure(static_cast<double>(config.sim.plant_modes), 1) + " modes a link in the plant";
+}
+
+std::string Gains(const RigConfig& config) {
+  return "alpha " + Figure(config.controller.alpha, 2) + ", vartheta " +
+         Figure(config.controller.vartheta, 2);
+}
+
+// Figures first, first + 1 and first + 2: the same runs in the three views.
+void ThreeFigures(const ReportContext& context, int first, const std::vector<PlotRun>& runs,
+                  const std::string& caption, HtmlPage* page) {
+  for (const LoopView view : kViews) {
+    const std::string number = "7." + std::to_string(first + static_cast<int>(view));
+    const auto figure = context.Figure("figure-" + number);
+    DrawLoopRuns(runs, view, figure);
+    page->Picture(figure, "Figure " + number + ": " + TitleOf(view) + ". " + caption);
+  }
+}
+
+// The curves of the thesis (alpha 0 with vartheta 0, alpha 3 with 0 and 0.5), alpha 0 as the table
+// has it, and an alpha above the best.
+void EffectOfAlphaAndVartheta(const ReportContext& context, HtmlPage* page) {
+  const std::string own = Figure(context.config.controller.vartheta, 2);
+  const auto run = [](const std::string& alpha, const std::string& vartheta) {
+    return NamedRun{
+        "alpha " + alpha + ", vartheta " + vartheta,
+        "alpha" + alpha + "-vartheta" + vartheta,
+        {"controller.alpha=" + alpha, "controller.vartheta=" + vartheta, "estimator.name=ideal"},
+        kNominal_kg};
+  };
+  const std::vector<PlotRun> runs =
+      RunAll(context, {run("0", "0"), run("0", own), run("3", "0"), run("3", "0.5"),
+                       run(Figure(kAlphas.back(), 1), "0.5")});
+  ThreeFigures(context, 1, runs,
+               "Effect of alpha and vartheta, " + Kilograms(kNominal_kg) + ", square command of " +
+                   Figure(kMove_deg, 2) + " deg. " + SettingsOf(context.config, true) +
+                   "; a curve ends where the run trips.",
+               page);
 }
 
 void AlphaAndVartheta(const ControlStudy& study, const ReportContext& context, HtmlPage* page) {
-  const std::vector<PlotRun> runs = RunAll(
-      context, {{"alpha 0, vartheta 0",
-                 "alpha0-vartheta0",
-                 {"controller.alpha=0", "controller.vartheta=0"},
-                 0.1},
-                {"alpha 3, vartheta 0", "alpha3-vartheta0", {"controller.vartheta=0"}, 0.1},
-                {"alpha 3, vartheta 0.5", "alpha3-vartheta0.5", {"controller.vartheta=0.5"}, 0.1}});
-  const auto figure = context.Figure("figure-7.1-7.3");
-  DrawLoopRuns(runs, "Effect of alpha and vartheta, 0.1 kg", figure);
-  page->Picture(figure,
-                "Figures 7.1 to 7.3: effect of alpha and vartheta on bending, joint "
-                "trajectory and control effort; the reference is dashed.");
+  EffectOfAlphaAndVartheta(context, page);
+  const std::string own = Figure(context.config.controller.vartheta, 2);
   std::vector<Row> rows;
   for (const double alpha : kAlphas) {
-    for (const double payload_kg : kThesisPayloads_kg) {
+    for (const double payload_kg : kTestedPayloads_kg) {
       rows.push_back(FigureRow("alpha " + Figure(alpha, 2) + ", " + Kilograms(payload_kg),
                                study.Of(AlphaCase(alpha, payload_kg))));
     }
   }
-  page->Table(FigureHead("vartheta 0.35"), rows);
+  page->Table(FigureHead("with sensors, vartheta " + own), rows);
   rows.clear();
   for (const char* sign : {"printed", "corrected"}) {
     for (const double vartheta : kVarthetas) {
@@ -95,69 +140,66 @@ void AlphaAndVartheta(const ControlStudy& study, const ReportContext& context, H
                                study.Of(VarthetaCase(vartheta, sign))));
     }
   }
-  page->Table(FigureHead("alpha 3, 0.1 kg"), rows);
+  page->Table(FigureHead("with sensors, alpha " + Figure(context.config.controller.alpha, 2) +
+                         ", " + Kilograms(kNominal_kg)),
+              rows);
 }
 
-// Figures 7.4 to 7.12: the thesis's simulations know the state; here the sensors are ideal as far
-// as the config allows, and the delay of one sample stays.
-std::vector<std::string> IdealSensors(const RigConfig& config) {
-  constexpr double kFiner = 4000.0;  // 1e7 counts per turn
-  std::vector<std::string> overrides = QuietGauges();
-  const std::vector<std::string> fine = FinerEncoders(config.sensors, kFiner);
-  overrides.insert(overrides.end(), fine.begin(), fine.end());
-  return overrides;
-}
+// Three figures for each payload of a set.
+struct PayloadSet {
+  int first;  ///< number of the first figure
+  const char* about;
+  DoubletShape shape;
+  double move_deg;
+  bool ideal;
+  std::vector<double> payload_kg;
+};
 
 void PayloadFigures(const ReportContext& context, HtmlPage* page) {
-  struct Set {
-    const char *file, *caption;
-    DoubletShape shape;
-    bool ideal;
-    std::vector<double> payload_kg;
-  };
-  const std::vector<Set> sets = {
-      {"figure-7.4-7.12",
-       "Figures 7.4 to 7.12 (simulation): square command, sensors without noise "
-       "and quantisation.",
+  const std::vector<PayloadSet> sets = {
+      {4, "Simulation", DoubletShape::kSquare, kMove_deg, true, {0.01, 0.1, 0.2}},
+      {14,
+       "Experiment, square wave",
        DoubletShape::kSquare,
-       true,
-       {0.01, 0.1, 0.2}},
-      {"figure-7.14-7.25",
-       "Figures 7.14 to 7.25 (experiment; here the simulated rig): square "
-       "command, real sensors.",
-       DoubletShape::kSquare,
+       kMove_deg,
        false,
        {0.0, 0.01, 0.1, 0.2}},
-      {"figure-7.26-7.34",
-       "Figures 7.26 to 7.34 (experiment; here the simulated rig): sine "
-       "command, real sensors.",
+      {26,
+       "Experiment, sine with the square wave's amplitude",
        DoubletShape::kSine,
+       SmallSineCase(kNominal_kg).move_deg,
        false,
        {0.01, 0.1, 0.2}}};
-  for (const Set& set : sets) {
+  for (const PayloadSet& set : sets) {
     std::vector<NamedRun> runs;
     for (const double payload_kg : set.payload_kg) {
-      const std::string name = Kilograms(payload_kg);
-      runs.push_back({name, std::string(set.file) + "-" + name.substr(0, name.find(' ')),
-                      set.ideal ? IdealSensors(context.config) : std::vector<std::string>{},
-                      payload_kg, set.shape});
+      runs.push_back({Kilograms(payload_kg),
+                      "figure-7." + std::to_string(set.first + 3 * static_cast<int>(runs.size())),
+                      set.ideal ? Overrides{"estimator.name=ideal"} : Overrides{}, payload_kg,
+                      set.shape, set.move_deg});
     }
-    const auto figure = context.Figure(set.file);
-    DrawLoopRuns(RunAll(context, runs), set.caption, figure);
-    page->Picture(figure, set.caption);
+    const std::vector<PlotRun> plots = RunAll(context, runs);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      ThreeFigures(context, set.first + 3 * static_cast<int>(i), {plots[i]},
+                   std::string(set.about) + ", payload " + Kilograms(runs[i].payload_kg) +
+                       ", joints turn by " + Figure(set.move_deg, 3) + " deg. " +
+                       SettingsOf(context.config, set.ideal) + "; " + Gains(context.config) + ".",
+                   page);
+    }
   }
 }
 
 void PayloadTable(const ControlStudy& study, HtmlPage* page) {
   std::vector<Row> rows;
-  for (const double payload_kg : {0.0, 0.01, 0.1, 0.2, 0.5, 1.0}) {
+  for (const double payload_kg : kAllPayloads_kg) {
     rows.push_back(
         FigureRow("square, " + Kilograms(payload_kg), study.Of(ChangedCase({}, payload_kg))));
     rows.push_back(FigureRow("the same without adaptation",
                              study.Of(ChangedCase({"controller.adaptation=false"}, payload_kg))));
   }
-  for (const double payload_kg : kThesisPayloads_kg) {
+  for (const double payload_kg : kTestedPayloads_kg) {
     rows.push_back(FigureRow("sine, " + Kilograms(payload_kg), study.Of(SineCase(payload_kg))));
+    rows.push_back(FigureRow("sine of the same amplitude", study.Of(SmallSineCase(payload_kg))));
   }
   page->Table(FigureHead("modified Sobel law"), rows);
 }
@@ -167,11 +209,13 @@ void PayloadTable(const ControlStudy& study, HtmlPage* page) {
 void Chapter7(ReportContext* context, HtmlPage* page) {
   page->Section("Chapter 7: control");
   page->Paragraph(
-      "A doublet of 1 s turns both joints by 30 degrees, a second one 2 s later turns them back. "
-      "Sensors with noise and quantisation, one sample of delay, a plant with four modes a link; "
-      "medians over " +
-      std::to_string(ControlStudy::kSeeds) + " seeds.");
-  const ControlStudy study(context->config, ProgressBar("runs of chapter 7", ControlStudy::Runs()));
+      "A doublet of 1 s turns both joints by " + Figure(kMove_deg, 2) +
+      " degrees, a second one 2 s later turns them back. In the tables: sensors with noise and "
+      "quantisation, one sample of delay; medians over " +
+      std::to_string(ControlStudy::kSeeds) +
+      " seeds; settling within 15 mm, motion of the tip in the last second.");
+  const ControlStudy study(context->config, 1,
+                           ProgressBar("runs of chapter 7", ControlStudy::Runs()));
   AlphaAndVartheta(study, *context, page);
   PayloadFigures(*context, page);
   PayloadTable(study, page);

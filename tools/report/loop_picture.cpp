@@ -16,14 +16,20 @@ constexpr int kBending = 2, kAngle = 4, kReference = 6, kTorque = 8;
 
 struct Panel {
   int column;
-  const char* label;
+  std::array<const char*, 2> label;  ///< of link or joint 1 and 2
 };
-constexpr std::array<Panel, 6> kPanels = {{{kBending, "bending of link 1, mm"},
-                                           {kBending + 1, "bending of link 2, mm"},
-                                           {kAngle, "joint 1, deg"},
-                                           {kAngle + 1, "joint 2, deg"},
-                                           {kTorque, "torque 1, N m"},
-                                           {kTorque + 1, "torque 2, N m"}}};
+
+Panel PanelOf(LoopView view) {
+  switch (view) {
+    case LoopView::kBending:
+      return {kBending, {"link 1, mm", "link 2, mm"}};
+    case LoopView::kTrajectory:
+      return {kAngle, {"joint 1, deg", "joint 2, deg"}};
+    case LoopView::kEffort:
+      break;
+  }
+  return {kTorque, {"motor 1, N m", "motor 2, N m"}};
+}
 
 void WriteData(const PlotRun& run, std::size_t number, std::ostringstream* script) {
   *script << "$run" << number << " << EOD\n";
@@ -38,17 +44,20 @@ void WriteData(const PlotRun& run, std::size_t number, std::ostringstream* scrip
   *script << "EOD\n";
 }
 
-void WritePanel(const Panel& panel, const std::vector<PlotRun>& runs, bool first,
+void WritePanel(LoopView view, int which, const std::vector<PlotRun>& runs,
                 std::ostringstream* script) {
-  *script << "set ylabel " << Quoted(panel.label) << '\n'
-          << (first ? "set key top right\n" : "unset key\n") << "plot ";
-  if (panel.column == kAngle || panel.column == kAngle + 1) {
-    *script << "$run0 using 1:" << panel.column + kReference - kAngle
-            << " with lines lw 2 dt 2 lc rgb '" << Colour(kReferenceColour) << "' notitle, ";
+  const Panel panel = PanelOf(view);
+  *script << "set ylabel " << Quoted(panel.label[static_cast<std::size_t>(which)]) << '\n'
+          << (which == 0 ? "set key at screen 0.75, screen 0.95 top left Left reverse\n"
+                         : "unset key\n")
+          << "plot ";
+  if (view == LoopView::kTrajectory) {
+    *script << "$run0 using 1:" << kReference + which << " with lines lw 2 dt 2 lc rgb '"
+            << Colour(kReferenceColour) << "' title 'reference', ";
   }
-  const char* style = panel.column >= kTorque ? "steps" : "lines";
+  const char* style = view == LoopView::kEffort ? "steps" : "lines";
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    *script << (i > 0 ? ", " : "") << "$run" << i << " using 1:" << panel.column << " with "
+    *script << (i > 0 ? ", " : "") << "$run" << i << " using 1:" << panel.column + which << " with "
             << style << " lw 1.5 lc rgb '" << Colour(i) << "' title " << Quoted(runs[i].name);
   }
   *script << '\n';
@@ -56,14 +65,27 @@ void WritePanel(const Panel& panel, const std::vector<PlotRun>& runs, bool first
 
 }  // namespace
 
-void DrawLoopRuns(const std::vector<PlotRun>& runs, const std::string& title,
+const char* TitleOf(LoopView view) {
+  switch (view) {
+    case LoopView::kBending:
+      return "Bending motion";
+    case LoopView::kTrajectory:
+      return "Joint trajectory";
+    case LoopView::kEffort:
+      break;
+  }
+  return "Control effort";
+}
+
+void DrawLoopRuns(const std::vector<PlotRun>& runs, LoopView view,
                   const std::filesystem::path& output) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 1000) << std::setprecision(7);
+  script << TerminalFor(output, 1000, 560) << std::setprecision(7);
   for (std::size_t i = 0; i < runs.size(); ++i) WriteData(runs[i], i, &script);
-  script << "set multiplot layout 3,2 title " << Quoted(title)
-         << "\nset grid lc rgb '#D9D9D9'\nset xlabel 's'\n";
-  for (std::size_t i = 0; i < kPanels.size(); ++i) WritePanel(kPanels[i], runs, i == 0, &script);
+  script << "set multiplot layout 2,1 title " << Quoted(TitleOf(view))
+         << "\nset lmargin at screen 0.08\nset rmargin at screen 0.74\n"
+            "set grid lc rgb '#D9D9D9'\nset xlabel 's'\nset xrange [0:6]\n";
+  for (const int which : {0, 1}) WritePanel(view, which, runs, &script);
   script << "unset multiplot\n";
   DrawPicture(script.str(), output);
 }

@@ -8,10 +8,17 @@
 
 namespace flexarm {
 
-/// Draws closed-loop runs like the figures of chapter 7: bending of both links, trajectory of both
-/// joints with the reference, control effort. One curve per run.
+/// What one figure of chapter 7 shows of both links or joints.
+enum class LoopView { kBending, kTrajectory, kEffort };
+
+/// "Bending motion", "Joint trajectory", "Control effort", as in the thesis's captions.
+const char* TitleOf(LoopView view);
+
+/// Draws closed-loop runs like a figure of chapter 7, over the 6 s of an experiment: bending, joint
+/// angle with the reference (dashed), or torque of both. One curve per run, their names beside the
+/// curves.
 /// @throws std::runtime_error if gnuplot fails
-void DrawLoopRuns(const std::vector<PlotRun>& runs, const std::string& title,
+void DrawLoopRuns(const std::vector<PlotRun>& runs, LoopView view,
                   const std::filesystem::path& output);
 
 }  // namespace flexarm

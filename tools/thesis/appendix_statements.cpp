@@ -11,7 +11,7 @@
 namespace flexarm {
 namespace {
 
-constexpr double kAsGood = 1.1;     // ratio of errors
+constexpr double kFitAsGood = 1.1;  // ratio of errors
 constexpr double kAccurate = 0.05;  // rms error over the largest deflection
 
 // Size of the errors of two modes together: the root of the ellipse's area.
@@ -44,7 +44,7 @@ Statement Placing(const RigConfig& config) {
   for (const GaugeComparison& gauges : CompareGauges(config, {.modes = 2, .per_link = kBridges})) {
     const GaugeLayout equal = EqualParts(config, gauges);
     const double maxima = ErrorSize(gauges.thesis);
-    best = best && maxima < kAsGood * ErrorSize(gauges.proposed);
+    best = best && maxima < kFitAsGood * ErrorSize(gauges.proposed);
     better = better || maxima < ErrorSize(equal);
     text += (text.empty() ? "standard deviations of modes 1 and 2, um, five gauges with " +
                                 Figure(1e6 * gauges.task.noise_strain) + " microstrain of noise, "

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <vector>
 
 #include "controller/host/simulation.h"
@@ -13,7 +15,9 @@
 namespace flexarm {
 namespace {
 
-constexpr std::array<double, 3> kFarPayloads_kg = {0.0, 0.5, 1.0};
+constexpr const char* kIdealEstimator = "estimator.name=ideal";
+
+constexpr double kTwoOverPi = 2.0 / std::numbers::pi;
 
 std::string Text(double value) {
   std::array<char, 32> text{};
@@ -21,43 +25,61 @@ std::string Text(double value) {
   return text.data();
 }
 
-void AddPayloads(const ControlCase& of, std::vector<ControlCase>* cases) {
-  for (const double payload_kg : kThesisPayloads_kg) {
+template <std::size_t N>
+void AddPayloads(const ControlCase& of, const std::array<double, N>& payloads_kg,
+                 std::vector<ControlCase>* cases) {
+  for (const double payload_kg : payloads_kg) {
     cases->push_back(of);
     cases->back().payload_kg = payload_kg;
   }
 }
 
-std::vector<ControlCase> Cases() {
-  std::vector<ControlCase> cases;
+void AddAlphas(std::vector<ControlCase>* cases) {
   for (const double alpha : kAlphas) {
-    for (const double payload_kg : kThesisPayloads_kg) {
-      cases.push_back(AlphaCase(alpha, payload_kg));
-    }
+    AddPayloads(AlphaCase(alpha, 0.1), kTestedPayloads_kg, cases);
+    AddPayloads(Ideal(AlphaCase(alpha, 0.1)), kTestedPayloads_kg, cases);
+  }
+  for (const char* alpha : {"0", "3"}) {
+    const ControlCase plain = WithoutBlend(alpha, 0.1);
+    AddPayloads(plain, kTestedPayloads_kg, cases);
+    AddPayloads(Ideal(plain), kTestedPayloads_kg, cases);
   }
   for (const char* sign : {"printed", "corrected"}) {
-    for (const double vartheta : kVarthetas) cases.push_back(VarthetaCase(vartheta, sign));
+    for (const double vartheta : kVarthetas) {
+      cases->push_back(VarthetaCase(vartheta, sign));
+      cases->push_back(Ideal(cases->back()));
+    }
   }
-  for (const auto& changed : std::vector<std::vector<std::string>>{
-           {},
-           {"controller.name=sobel-original"},
-           {"controller.name=lqr-cgt"},
-           {"controller.adaptation=false"},
-           {"controller.prediction=false"},
-           {"controller.nominal=T12"},
-           {"controller.nominal=T16"},
-           {"estimator.name=difference"},
-           {"estimator.name=difference", "sensors.strain_input.filter_hz=0",
-            "controller.alpha=2"}}) {
-    AddPayloads(ChangedCase(changed, 0.1), &cases);
+}
+
+std::vector<ControlCase> Cases() {
+  std::vector<ControlCase> cases;
+  AddAlphas(&cases);
+  for (const Overrides& changed :
+       std::vector<Overrides>{{"controller.name=sobel-original"},
+                              {"controller.name=lqr-cgt"},
+                              {"controller.prediction=false"},
+                              {"controller.nominal=T12"},
+                              {"controller.nominal=T16"},
+                              {"estimator.name=difference"},
+                              {"estimator.name=difference", "sensors.strain_input.filter_hz=0",
+                               "controller.alpha=2"}}) {
+    AddPayloads(ChangedCase(changed, 0.1), kTestedPayloads_kg, &cases);
   }
-  AddPayloads(SineCase(0.1), &cases);
-  for (const double payload_kg : kFarPayloads_kg) {
-    cases.push_back(ChangedCase({}, payload_kg));
-    cases.push_back(ChangedCase({"controller.adaptation=false"}, payload_kg));
+  for (const Overrides& changed : std::vector<Overrides>{{},
+                                                         {"controller.name=sobel-original"},
+                                                         {"controller.nominal=T12"},
+                                                         {"controller.nominal=T16"}}) {
+    AddPayloads(Ideal(ChangedCase(changed, 0.1)), kTestedPayloads_kg, &cases);
   }
+  for (const ControlCase& sine : {SineCase(0.1), SmallSineCase(0.1)}) {
+    AddPayloads(sine, kTestedPayloads_kg, &cases);
+  }
+  AddPayloads(ChangedCase({}, 0.1), kAllPayloads_kg, &cases);
+  AddPayloads(ChangedCase({"controller.adaptation=false"}, 0.1), kAllPayloads_kg, &cases);
   for (const char* modes : {"2", "3", "6"}) {
     cases.push_back(ChangedCase({std::string("sim.plant_modes=") + modes}, 0.1));
+    cases.push_back(Ideal(cases.back()));
   }
   return cases;
 }
@@ -72,7 +94,7 @@ SimulationResult RunOf(const RigConfig& config, const ControlCase& of, int seed)
   overrides.push_back("sim.seed=" + std::to_string(seed));
   try {
     return Simulate({.config = WithOverrides(config, overrides),
-                     .experiment = ControlCommand(of.shape),
+                     .experiment = ControlCommand(of.shape, of.move_deg),
                      .payload_kg = of.payload_kg,
                      .log = {}});
   } catch (const RejectedError&) {
@@ -80,51 +102,89 @@ SimulationResult RunOf(const RigConfig& config, const ControlCase& of, int seed)
   }
 }
 
+OverSeeds OverSeedsOf(const std::vector<double>& values) {
+  if (values.empty()) return {};
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return {.median = MedianOf(values), .least = *least, .most = *most};
+}
+
+double OrNever(const std::optional<double>& time_s) {
+  return time_s.value_or(std::numeric_limits<double>::infinity());
+}
+
 ControlFigures FiguresOf(const std::vector<SimulationResult>& results) {
   ControlFigures figures;
   figures.runs = results.size();
-  const auto median = [&](const auto& value_of) {
+  const auto over_seeds = [&](const auto& value_of) {
     std::vector<double> values;
     for (const SimulationResult& result : results) {
       if (result.completed) values.push_back(value_of(result.metrics));
     }
-    return MedianOf(values);
+    return OverSeedsOf(values);
   };
   for (const SimulationResult& result : results) figures.completed += result.completed ? 1 : 0;
   for (std::size_t i = 0; i < 2; ++i) {
-    figures.rms_deg[i] = median([i](const auto& m) { return m.joint_rms_error_deg[i]; });
-    figures.final_deg[i] = median([i](const auto& m) { return m.joint_final_error_deg[i]; });
-    figures.peak_nm[i] = median([i](const auto& m) { return m.peak_torque_nm[i]; });
-    figures.torque_rms_nm[i] = median([i](const auto& m) { return m.torque_rms_nm[i]; });
-    figures.peak_bending_mm[i] = median([i](const auto& m) { return m.peak_bending_mm[i]; });
+    figures.rms_deg[i] = over_seeds([i](const auto& m) { return m.joint_rms_error_deg[i]; });
+    figures.final_deg[i] = over_seeds([i](const auto& m) { return m.joint_final_error_deg[i]; });
+    figures.peak_nm[i] = over_seeds([i](const auto& m) { return m.peak_torque_nm[i]; });
+    figures.torque_rms_nm[i] = over_seeds([i](const auto& m) { return m.torque_rms_nm[i]; });
+    figures.peak_bending_mm[i] = over_seeds([i](const auto& m) { return m.peak_bending_mm[i]; });
+    figures.peak_angle_deg[i] = over_seeds([i](const auto& m) { return m.peak_angle_deg[i]; });
+    figures.roughness_rad_s2[i] =
+        over_seeds([i](const auto& m) { return m.joint_roughness_rad_s2[i]; });
+    figures.lag_s[i] = over_seeds([i](const auto& m) { return m.joint_lag_s[i]; });
   }
-  figures.settling_s = median([](const auto& m) {
-    return m.tip_settling_time_s.value_or(std::numeric_limits<double>::infinity());
+  figures.rms_sum_deg =
+      over_seeds([](const auto& m) { return m.joint_rms_error_deg[0] + m.joint_rms_error_deg[1]; });
+  figures.worst_final_deg = over_seeds([](const auto& m) {
+    return std::max(m.joint_final_error_deg[0], m.joint_final_error_deg[1]);
   });
-  figures.residual_mm = median([](const auto& m) { return m.tip_residual_rms_mm; });
+  figures.settling_s = over_seeds([](const auto& m) { return OrNever(m.tip_settling_time_s); });
+  figures.settling_5mm_s =
+      over_seeds([](const auto& m) { return OrNever(m.tip_settling_within_5mm_s); });
+  figures.residual_mm = over_seeds([](const auto& m) { return m.tip_residual_rms_mm; });
+  figures.last_second_mm = over_seeds([](const auto& m) { return m.tip_last_second_rms_mm; });
   return figures;
+}
+
+// Without noise one run says all.
+int SeedsOf(const ControlCase& of) {
+  const bool ideal =
+      std::find(of.overrides.begin(), of.overrides.end(), kIdealEstimator) != of.overrides.end();
+  return ideal ? 1 : ControlStudy::kSeeds;
 }
 
 }  // namespace
 
-Experiment ControlCommand(DoubletShape shape) {
+Experiment ControlCommand(DoubletShape shape, double move_deg) {
   return {.name = shape == DoubletShape::kSquare ? "square" : "sine",
           .text = "",
           .duration_s = 6.0,
-          .doublet = {Turn(0.0, 30.0, shape), Turn(3.0, -30.0, shape)},
+          .doublet = {Turn(0.0, move_deg, shape), Turn(3.0, -move_deg, shape)},
           .sim_event = {}};
 }
 
-ControlCase ChangedCase(const std::vector<std::string>& overrides, double payload_kg) {
-  return {.overrides = overrides, .payload_kg = payload_kg, .shape = DoubletShape::kSquare};
+ControlCase ChangedCase(const Overrides& overrides, double payload_kg) {
+  return {.overrides = overrides, .payload_kg = payload_kg};
 }
 
 ControlCase SineCase(double payload_kg) {
   return {.overrides = {}, .payload_kg = payload_kg, .shape = DoubletShape::kSine};
 }
 
+ControlCase SmallSineCase(double payload_kg) {
+  ControlCase sine = SineCase(payload_kg);
+  sine.move_deg = kTwoOverPi * kMove_deg;
+  return sine;
+}
+
 ControlCase AlphaCase(double alpha, double payload_kg) {
   return ChangedCase({"controller.alpha=" + Text(alpha)}, payload_kg);
+}
+
+ControlCase WithoutBlend(const char* alpha, double payload_kg) {
+  return ChangedCase({std::string("controller.alpha=") + alpha, "controller.vartheta=0"},
+                     payload_kg);
 }
 
 ControlCase VarthetaCase(double vartheta, const char* sign) {
@@ -133,22 +193,38 @@ ControlCase VarthetaCase(double vartheta, const char* sign) {
       0.1);
 }
 
-ControlStudy::ControlStudy(const RigConfig& config,
-                           const std::function<void(std::size_t)>& progress)
-    : config_(config) {
-  const std::vector<ControlCase> cases = Cases();
-  std::vector<std::vector<SimulationResult>> results(cases.size(),
-                                                     std::vector<SimulationResult>(kSeeds));
-  ParallelFor(
-      cases.size() * kSeeds,
-      [&](std::size_t i) {
-        const std::size_t of = i / kSeeds, seed = i % kSeeds;
-        results[of][seed] = RunOf(config, cases[of], static_cast<int>(seed) + 1);
-      },
-      progress);
-  for (std::size_t i = 0; i < cases.size(); ++i) figures_[cases[i]] = FiguresOf(results[i]);
+ControlCase Ideal(ControlCase of) {
+  of.overrides.emplace_back(kIdealEstimator);
+  return of;
 }
 
-std::size_t ControlStudy::Runs() { return Cases().size() * kSeeds; }
+ControlStudy::ControlStudy(const RigConfig& config, int first_seed,
+                           const std::function<void(std::size_t)>& progress)
+    : config_(config), first_seed_(first_seed) {
+  struct Job {
+    const ControlCase* of;
+    int seed;
+  };
+  const std::vector<ControlCase> cases = Cases();
+  std::vector<Job> jobs;
+  for (const ControlCase& of : cases) {
+    for (int i = 0; i < SeedsOf(of); ++i) jobs.push_back({&of, first_seed + i});
+  }
+  std::vector<SimulationResult> results(jobs.size());
+  ParallelFor(
+      jobs.size(), [&](std::size_t i) { results[i] = RunOf(config, *jobs[i].of, jobs[i].seed); },
+      progress);
+  std::map<ControlCase, std::vector<SimulationResult>> by_case;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    by_case[*jobs[i].of].push_back(std::move(results[i]));
+  }
+  for (const auto& [of, runs] : by_case) figures_[of] = FiguresOf(runs);
+}
+
+std::size_t ControlStudy::Runs() {
+  std::size_t runs = 0;
+  for (const ControlCase& of : Cases()) runs += static_cast<std::size_t>(SeedsOf(of));
+  return runs;
+}
 
 }  // namespace flexarm

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/analysis/sweep_figures.h"
+#include "tools/thesis/verdict_rules.h"
 
 namespace flexarm {
 namespace {
@@ -281,7 +282,7 @@ Finding OwnParametersMatterMore(const ParametricStudy& s) {
                own2 = PeakSpread(s.At(kLength2), kBending2);
   const double other1 = PeakSpread(s.At(kLength2), kBending1),
                other2 = PeakSpread(s.At(kLength1), kBending2);
-  return {Both(other1 < own1, other2 < own2),
+  return {OwnMoreRule({own1, own2}, {other1, other2}),
           "largest bending of link 1 changes by " + Percent(own1) + " with its own length, by " +
               Percent(other1) + " with link 2's; that of link 2 by " + Percent(own2) +
               " with its own, by " + Percent(other2) + " with link 1's"};
@@ -296,9 +297,12 @@ Finding LinkAndItsJointAreCoupled(const ParametricStudy& s) {
 Finding Joint2ActsOnLink2More(const ParametricStudy& s) {
   const double on1 = PeakSpread(s.At(kStiffness2), kBending1);
   const double on2 = PeakSpread(s.At(kStiffness2), kBending2);
-  return {on2 > on1 ? Verdict::kHolds : Verdict::kDoesNot,
+  const double own1 = PeakSpread(s.At(kLength1), kBending1),
+               own2 = PeakSpread(s.At(kLength2), kBending2);
+  return {ActsOnBothRule({on1, on2}, {own1, own2}),
           "joint 2's stiffness changes the largest bending of link 1 by " + Percent(on1) +
-              ", of link 2 by " + Percent(on2)};
+              ", of link 2 by " + Percent(on2) + "; the link's own length by " + Percent(own1) +
+              " and " + Percent(own2)};
 }
 
 struct Question {

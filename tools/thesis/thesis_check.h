@@ -26,8 +26,9 @@ std::vector<Statement> Chapter6Statements(const RigConfig& config);
 
 /// All of chapters 3 to 7 and Appendix B, chapter 5 by ParametricStatements and 7 by
 /// Chapter7Statements, in the order of their sections.
+/// @param first_seed  of the closed loops of chapter 7
 /// @param progress  called with the number of chapters done; may be empty
-std::vector<Statement> ThesisStatements(const RigConfig& config,
+std::vector<Statement> ThesisStatements(const RigConfig& config, int first_seed = 1,
                                         const std::function<void(std::size_t)>& progress = {});
 
 /// The page docs/thesis-check.md: introduction and table. Every number in it is computed, except

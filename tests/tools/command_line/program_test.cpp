@@ -245,6 +245,14 @@ TEST_F(ProgramTest, ReplayWithAnotherConfigComparesNoBytes) {
   ExpectBadInput("replay run.flexarm --set controller.alpha=2", "--set needs --config");
 }
 
+TEST_F(ProgramTest, ReplayOfASimulationWithKnownStateIsBitExact) {
+  RunJson("simulate -c '" + kRig + "' --ideal -o ideal.flexarm");
+  EXPECT_EQ(RunJson("replay ideal.flexarm")["bit_exact"], true);
+  RunJson("simulate -c '" + kRig + "' -o run.flexarm");
+  ExpectBadInput("replay run.flexarm -c '" + kRig + "' --set estimator.name=ideal",
+                 "the true state is not in this log");
+}
+
 TEST_F(ProgramTest, AReplayThatDiffersIsExitCodeOne) {
   WriteRun("run.flexarm", 5);
   const std::string sql =
