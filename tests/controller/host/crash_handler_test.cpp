@@ -120,6 +120,9 @@ TEST_F(CrashDeathTest, OfAStackThatOverflowedIsHandledOnAnother) {
 
 // A pipe that is not read: a write would wait for ever, and the process would never end.
 TEST_F(CrashDeathTest, IsNotHeldByAFullPipe) {
+#if defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the thread sanitizer itself reports to the full pipe, and waits";
+#endif
   EXPECT_EXIT(
       {
         int ends[2];
