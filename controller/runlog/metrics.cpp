@@ -104,8 +104,8 @@ double ResidualRms_mm(std::span<const Sample> window, const std::array<double, 2
 
 // The last 0.3 s of a rest, or all of a shorter one.
 std::span<const Sample> FinalWindow(std::span<const Sample> samples, const Rest& rest,
-                                    double slack_s) {
-  const double start_s = std::max(rest.start_s, rest.end_s - kFinalWindow_s);
+                                    double slack_s, double length_s = kFinalWindow_s) {
+  const double start_s = std::max(rest.start_s, rest.end_s - length_s);
   return Between(samples, start_s, rest.end_s, slack_s);
 }
 
@@ -124,6 +124,7 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
   if (rests.empty()) {
     metrics->joint_final_error_deg = {kNone, kNone};
     metrics->tip_residual_rms_mm = metrics->tip_motion_rms_mm = kNone;
+    metrics->tip_last_second_rms_mm = kNone;
     return;
   }
   metrics->tip_settling_time_s = 0;
@@ -134,6 +135,8 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
     const std::array<double, 2> place = MeanTip(window);
     metrics->tip_residual_rms_mm =
         std::max(metrics->tip_residual_rms_mm, ResidualRms_mm(window, place));
+    const auto second = FinalWindow(samples, rest, slack_s, 1.0);
+    metrics->tip_last_second_rms_mm = ResidualRms_mm(second, MeanTip(second));
     const auto after = AfterSettling(samples, rest, slack_s);
     metrics->tip_motion_rms_mm +=
         ResidualRms_mm(after, MeanTip(after)) / static_cast<double>(rests.size());

@@ -24,6 +24,8 @@ struct RunMetrics {
   /// Mean over the rests: the tip's rms about its mean from 0.3 s after the move's end to the end
   /// of the rest (the motion of docs/theory/payload.md 6.1), so slow oscillations count too.
   double tip_motion_rms_mm = 0;
+  /// The tip's rms about its mean in the last second of the last rest, or in all of a shorter one.
+  double tip_last_second_rms_mm = 0;
   std::array<double, 2> peak_torque_nm{};   ///< after the gate
   std::array<double, 2> torque_rms_nm{};    ///< after the gate, all ticks
   std::array<double, 2> peak_bending_mm{};  ///< largest deflection of each link's tip
