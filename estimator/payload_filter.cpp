@@ -47,6 +47,10 @@ MotionVector Stacked(const GaugedState& x) noexcept {
 // State of the motion that each output measures: th1 th2 th1 th2 phi_f.
 constexpr std::array<int, PayloadFilter::kOutputs> kSeen = {0, 1, 0, 1, 12, 13, 14, 15};
 
+double BeyondBand(double x, double half_width) noexcept {
+  return x > half_width ? x - half_width : x < -half_width ? x + half_width : 0.0;
+}
+
 double Square(double x) noexcept { return x * x; }
 
 // Factor on the variance of an output beyond the gate.
@@ -143,6 +147,7 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const PiecewiseTorque& torq
     Gain PHt;
     for (int i = 0; i < kOutputs; ++i) {
       e[i] = (reading.good >> i & 1u) == 0 ? 0.0 : y[i] - x[kSeen[static_cast<std::size_t>(i)]];
+      if (i < 4) e[i] = BeyondBand(e[i], config_.count_dead_band_rad[static_cast<std::size_t>(i)]);
       PHt.col(i) = P_.col(kSeen[static_cast<std::size_t>(i)]);
     }
     Outputs R = OutputVariance(y, e, reading.good);

@@ -37,6 +37,10 @@ struct PayloadFilterConfig {
   std::array<double, 2> friction_probe_nm;  ///< difference for the derivative, > 0
   double friction_min_rate_rad_s;           ///< the friction of a slower hub has no random walk
 
+  /// Half the width of the band about zero in which the innovation of a hub or rotor counts as
+  /// quantisation: it is zero within, and reduced by this beyond.
+  std::array<double, 4> count_dead_band_rad;
+
   double play_threshold_rad;  ///< a larger distance of rotor 2 from hub 2 is backlash
   double play_memory;         ///< share of the largest such distance kept after a sample, 0..1
   double gate_sigmas;         ///< a single output beyond this is an outlier

@@ -195,7 +195,7 @@ void DesignForPayload(const ControlConfig& config, Design* design) {
   if (!config.uses_payload_estimator()) return;
   const double period_s = config.loop.period_s();
   design->payload_model = PayloadModelConstants(config.arm, config.sensors, period_s);
-  if (!IsScheduled(config.controller.kind)) return;
+  if (!IsScheduled(config.controller.kind) && !Settles(config.controller.kind)) return;
   const ControllerConfig& controller = config.controller;
   const PayloadLawConfig& law = *controller.payload;
   GainGrid grid{.payload_kg = law.gain_payload_kg, .theta2_rad = law.gain_elbow_deg};
@@ -208,6 +208,10 @@ void DesignForPayload(const ControlConfig& config, Design* design) {
     std::copy_n(q.data(), weights.state.size(), weights.state.begin());
     return DesignGainTable(arm, grid, weights, period_s);
   };
+  if (Settles(controller.kind)) {
+    design->settle_gains = table(controller.alpha);
+    return;
+  }
   design->scheduled = ScheduledDesign{.gains = table(controller.alpha),
                                       .start_gains = {},
                                       .max_kg = law.max_kg,

@@ -143,15 +143,18 @@ std::vector<GainTable::Gain> KnotsFromJson(const nlohmann::ordered_json& in,
 // Members of the laws that use the payload.
 nlohmann::ordered_json PayloadToJson(const Design& design) {
   nlohmann::ordered_json out{{"model", design.payload_model}};
-  if (!design.scheduled) return out;
-  const GainTable& table = design.scheduled->gains;
-  out["max_kg"] = design.scheduled->max_kg;
-  out["reference_kg"] = design.scheduled->reference_kg;
+  if (!design.scheduled && !design.settle_gains) return out;
+  const GainTable& table = design.settle_gains ? *design.settle_gains : design.scheduled->gains;
+  if (design.scheduled) {
+    out["max_kg"] = design.scheduled->max_kg;
+    out["reference_kg"] = design.scheduled->reference_kg;
+  }
   out["gain_payload_kg"] = table.grid().payload_kg;
   out["gain_theta2_rad"] = table.grid().theta2_rad;
   out["gain"] = KnotsToJson(table);
-  const auto& start = design.scheduled->start_gains;
-  if (start) out["start_gain"] = KnotsToJson(*start);
+  if (design.scheduled && design.scheduled->start_gains) {
+    out["start_gain"] = KnotsToJson(*design.scheduled->start_gains);
+  }
   return out;
 }
 
@@ -174,12 +177,16 @@ void PayloadFromJson(const nlohmann::ordered_json& in, const ControlConfig& conf
   try {
     design->payload_model = NumbersAt(in, "model");
     static_cast<void>(RigidJointStepper(design->payload_model));
-    if (!IsScheduled(config.controller.kind)) return;
+    if (!IsScheduled(config.controller.kind) && !Settles(config.controller.kind)) return;
     const GainGrid grid{.payload_kg = NumbersAt(in, "gain_payload_kg"),
                         .theta2_rad = NumbersAt(in, "gain_theta2_rad")};
     const auto table = [&](const char* key) {
       return GainTable(grid, KnotsFromJson(NeededAt(in, key), std::string("payload.") + key));
     };
+    if (Settles(config.controller.kind)) {
+      design->settle_gains = table("gain");
+      return;
+    }
     design->scheduled = ScheduledDesign{.gains = table("gain"),
                                         .start_gains = {},
                                         .max_kg = NeededAt(in, "max_kg").get<double>(),
@@ -283,12 +290,12 @@ std::string DesignHash(const ControlConfig& config) {
     digest << static_cast<double>(c.kind) << c.pd_stiffness_nm_per_rad << c.pd_damping_nms_per_rad;
   }
   if (config.uses_payload_estimator()) digest << static_cast<double>(c.kind);
-  if (IsScheduled(c.kind)) {
-    digest << c.payload->max_kg << c.payload->reference_kg;
+  if (IsScheduled(c.kind)) digest << c.payload->max_kg << c.payload->reference_kg;
+  if (IsScheduled(c.kind) || Settles(c.kind)) {
     for (const double knot : c.payload->gain_payload_kg) digest << knot;
     for (const double knot : c.payload->gain_elbow_deg) digest << knot;
-    if (PlansAhead(c.kind)) digest << c.plan->start_alpha;
   }
+  if (PlansAhead(c.kind)) digest << c.plan->start_alpha;
   return digest.Hex();
 }
 

@@ -68,6 +68,9 @@ void CheckTable(const std::string& name, const GainTable& found, const GainTable
 // The reader has taken what the law of the config needs, so both have the same members.
 void CheckPayload(const Design& found, const Design& expected) {
   CheckList("payload.model", found.payload_model, expected.payload_model);
+  if (expected.settle_gains && found.settle_gains) {
+    CheckTable("payload.gain", *found.settle_gains, *expected.settle_gains);
+  }
   if (!expected.scheduled || !found.scheduled) return;
   const ScheduledDesign &a = *found.scheduled, &b = *expected.scheduled;
   CheckNumber("'payload.max_kg'", a.max_kg, b.max_kg, 0.0);

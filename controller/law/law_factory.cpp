@@ -1,6 +1,10 @@
 #include "controller/law/law_factory.h"
 
+#include <optional>
+#include <utility>
+
 #include "controller/law/scheduled_law.h"
+#include "controller/law/settle_term.h"
 #include "controller/law/tracking_law.h"
 
 namespace flexarm {
@@ -12,7 +16,12 @@ std::unique_ptr<Law> MakeLaw(const ControlConfig& config, const Design& design) 
                                           design.scheduled->gains, config.loop.period_s(),
                                           limit_nm);
   }
-  return std::make_unique<TrackingLaw>(design, config.controller, limit_nm);  // start-up
+  std::optional<SettleTerm> settle;
+  if (Settles(config.controller.kind)) {
+    settle = SettleTerm(design, config.arm.joint[0].coulomb_friction_nm, config.loop.period_s());
+  }
+  return std::make_unique<TrackingLaw>(design, config.controller, limit_nm,  // start-up
+                                       std::move(settle));
 }
 
 }  // namespace flexarm

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace flexarm {
 namespace {
@@ -45,7 +46,8 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 }
 
 TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
-                         const std::array<double, 2>& torque_limit_nm)
+                         const std::array<double, 2>& torque_limit_nm,
+                         std::optional<SettleTerm> settle)
     : config_(config),
       torque_limit_nm_(torque_limit_nm),
       states_(design.A.rows()),
@@ -56,7 +58,8 @@ TrackingLaw::TrackingLaw(const Design& design, const ControllerConfig& config,
       P_(design.P),
       S11_(design.S11),
       S12_(design.S12),
-      K_I_(InitialGain(design), config) {
+      K_I_(InitialGain(design), config),
+      settle_(std::move(settle)) {
   config_.adaptation = config.adaptation && IsAdaptive(config.kind);
   SetFeedforward(design);
   if (config.matrices && IsAdaptive(config.kind)) SetMatrices(design);
@@ -73,7 +76,8 @@ void TrackingLaw::SetMatrices(const Design& design) {
 
 void TrackingLaw::SetFeedforward(const Design& design) {
   switch (config_.kind) {
-    case ControllerKind::kSobel: {
+    case ControllerKind::kSobel:
+    case ControllerKind::kSobelSettling: {
       // (7.24) with (7.25): the minus sign in front of (A_m - A) as printed, or the derived sign.
       const double sign = config_.feedforward_sign == FeedforwardSign::kPrinted ? -1.0 : 1.0;
       const double vartheta = config_.vartheta;
@@ -123,7 +127,7 @@ double TrackingLaw::Lyapunov(const StateVector& x, const StateVector& x_m,
 }
 
 LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& reference,
-                               bool may_adapt) noexcept {
+                               bool may_adapt, const PayloadKnowledge& payload) noexcept {
   StateVector x_m(states_);
   for (Eigen::Index i = 0; i < states_; ++i) x_m(i) = reference.x_m[static_cast<std::size_t>(i)];
   const Eigen::Vector2d u_m(reference.u_m_nm[0], reference.u_m_nm[1]);
@@ -131,8 +135,10 @@ LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& refe
   const Eigen::Vector2d fed_back = has_matrices_ ? Eigen::Vector2d(K_e_.lazyProduct(y_e)) : y_e;
   const Eigen::Vector2d u_star = Feedforward(x_m, u_m);
   const double lyapunov = Lyapunov(x, x_m, u_m);
+  Eigen::Vector2d settling = Eigen::Vector2d::Zero();
+  if (settle_) settling = settle_->Torque(x, reference, y_e, u_star + y_e, payload);
   if (!config_.adaptation) {
-    LawOutput result = Saturate(u_star + fed_back, torque_limit_nm_);
+    LawOutput result = Saturate(u_star + fed_back + settling, torque_limit_nm_);
     result.lyapunov_nm2 = lyapunov;
     return result;
   }
@@ -153,7 +159,7 @@ LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& refe
   const Eigen::Vector2d v((loop(1, 1) * drive(0) - loop(0, 1) * drive(1)) / determinant,
                           (loop(0, 0) * drive(1) - loop(1, 0) * drive(0)) / determinant);
 
-  LawOutput result = Saturate(from_gain + rho * v, torque_limit_nm_);
+  LawOutput result = Saturate(from_gain + rho * v + settling, torque_limit_nm_);
   result.lyapunov_nm2 = lyapunov;
   if (!may_adapt || result.limits != 0 || !result.finite) {
     result.limits |= kAdaptationHeld;

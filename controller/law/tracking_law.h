@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "controller/law/adaptive_gain.h"
 #include "controller/law/design.h"
 #include "controller/law/law.h"
+#include "controller/law/settle_term.h"
 #include "controller/types/controller_config.h"
 #include "controller/types/step_types.h"
 #include "estimator/state_estimate.h"
@@ -24,6 +26,7 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 /// | name           | u*                                              | C_p                     |
 /// |----------------|-------------------------------------------------|-------------------------|
 /// | sobel          | vartheta u_f + (1 - vartheta) u_c (7.24)         | LQR with alpha          |
+/// | sobel-settling | of sobel, plus SettleTerm at rest               | LQR with alpha          |
 /// | sobel-original | u_c                                             | LQR with alpha = 0      |
 /// | lqr-cgt        | u_c = S21 x_m + S22 u_m                         | LQR with alpha          |
 /// | lqr-um         | u_m                                             | LQR with alpha          |
@@ -45,10 +48,13 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 class TrackingLaw final : public Law {
  public:
   TrackingLaw(const Design& design, const ControllerConfig& config,
-              const std::array<double, 2>& torque_limit_nm);
+              const std::array<double, 2>& torque_limit_nm, std::optional<SettleTerm> settle = {});
 
   /// Resets K_I to [I, S21, S22]: the law starts as lqr-cgt, without a step in its torque.
-  void Reset() noexcept override { K_I_.Reset(); }
+  void Reset() noexcept override {
+    K_I_.Reset();
+    if (settle_) settle_->Reset();
+  }
 
   /// @param x          plant state at the instant at which the torque acts
   /// @param reference  of the same instant
@@ -57,10 +63,11 @@ class TrackingLaw final : public Law {
   /// The result has V = e'Pe + tr((K_I - K_I0) T^-1 (K_I - K_I0)'), N m squared. On the nominal
   /// plant V decreases from sample to sample (vartheta = 0, u_m constant). NaN with another K_e,
   /// and for the laws whose trajectory is not the command generator's: lqr-um, lqg, pd.
-  LawOutput Compute(const StateVector& x, const ReferenceSample& reference,
-                    bool may_adapt) noexcept;
+  /// @param payload  used by `sobel-settling` only
+  LawOutput Compute(const StateVector& x, const ReferenceSample& reference, bool may_adapt,
+                    const PayloadKnowledge& payload = kNoPayloadEstimate) noexcept;
   LawOutput Compute(const LawInput& input) noexcept override {
-    return Compute(*input.x, *input.reference, input.may_adapt);
+    return Compute(*input.x, *input.reference, input.may_adapt, input.payload);
   }
 
   /// Frobenius norm of K_I - K_I(0).
@@ -92,6 +99,7 @@ class TrackingLaw final : public Law {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 20, 20> Tbar_;
   Eigen::Matrix2d K_e_ = Eigen::Matrix2d::Identity();
   Eigen::Matrix2d StS_inverse_ = Eigen::Matrix2d::Identity();
+  std::optional<SettleTerm> settle_;
 };
 
 }  // namespace flexarm

@@ -156,8 +156,7 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
     metrics->tip_motion_rms_mm +=
         ResidualRms_mm(after, MeanTip(after)) / static_cast<double>(rests.size());
     const auto last = FinalWindow(samples, rest, slack_s, kLongWindow_s);
-    metrics->tip_last_second_rms_mm =
-        std::max(metrics->tip_last_second_rms_mm, ResidualRms_mm(last, MeanTip(last)));
+    metrics->tip_last_second_rms_mm = ResidualRms_mm(last, MeanTip(last));  // the last rest's stays
     TakeLonger(SettlingTime(all, rest.start_s, place, kSettledWithin_m),
                &metrics->tip_settling_time_s);
     TakeLonger(SettlingTime(all, rest.start_s, place, kFinelySettledWithin_m),

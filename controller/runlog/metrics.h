@@ -26,7 +26,7 @@ struct RunMetrics {
   double tip_motion_rms_mm = 0;
   /// As tip_settling_time_s, within 5 mm.
   std::optional<double> tip_settling_within_5mm_s;
-  /// Largest over the rests: the tip's rms about its mean over the last second.
+  /// The tip's rms about its mean in the last second of the last rest, or in all of a shorter one.
   double tip_last_second_rms_mm = 0;
   std::array<double, 2> peak_angle_deg{};  ///< largest |hub angle|
   /// Rms over the rests of the second difference of the hub angle, over period squared: how rough

@@ -1,10 +1,35 @@
 #include "controller/step/observer_factory.h"
 
+#include <array>
+#include <cstddef>
+#include <numbers>
+
 #include "controller/types/rejected_error.h"
 #include "estimator/nominal_observer.h"
 #include "estimator/payload_observer.h"
 
 namespace flexarm {
+namespace {
+
+// For a law that damps the arm at rest, noise of the estimated rates matters more than how fast the
+// payload is found: docs/theory/control-law.md 14.3.
+constexpr std::array<double, 6> kSettlingForceShare = {0.3, 0.3, 0.7, 0.7, 0.75, 0.75};
+constexpr double kSettlingDeadBand = 0.4;  // of half a count
+
+PayloadFilterConfig FilterFor(const ControlConfig& config) {
+  PayloadFilterConfig filter = PayloadFilterFor(config.arm, config.sensors, config.estimator);
+  if (!Settles(config.controller.kind)) return filter;
+  for (std::size_t i = 0; i < filter.process_force.size(); ++i) {
+    filter.process_force[i] *= kSettlingForceShare[i];
+  }
+  for (const EncoderConfig& encoder : config.sensors.encoder) {
+    filter.count_dead_band_rad[static_cast<std::size_t>(encoder.counter)] =
+        kSettlingDeadBand * std::numbers::pi / encoder.counts_per_turn;
+  }
+  return filter;
+}
+
+}  // namespace
 
 std::unique_ptr<Observer> MakeObserver(const ControlConfig& config, const Design& design) {
   const double period_s = config.loop.period_s();
@@ -15,9 +40,7 @@ std::unique_ptr<Observer> MakeObserver(const ControlConfig& config, const Design
   }
   if (!design.payload_model.empty()) {
     return std::make_unique<PayloadObserver>(  // start-up
-        PayloadEstimator(design.payload_model,
-                         PayloadFilterFor(config.arm, config.sensors, config.estimator)),
-        *config.estimator.payload);
+        PayloadEstimator(design.payload_model, FilterFor(config)), *config.estimator.payload);
   }
   const FilterGains gains{.layout = design.layout,
                           .A = design.filter_A,

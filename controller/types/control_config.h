@@ -20,7 +20,8 @@ struct ControlConfig {
 
   /// Whether the state estimator is `ekf-payload`.
   bool uses_payload_estimator() const {
-    return estimator.kind == EstimatorKind::kPayload || IsScheduled(controller.kind);
+    return estimator.kind == EstimatorKind::kPayload || IsScheduled(controller.kind) ||
+           Settles(controller.kind);
   }
 };
 

@@ -20,21 +20,23 @@ enum class ControllerKind : std::uint8_t {
   kPdZvd,
   kGainScheduled,
   kRecedingHorizon,
+  kSobelSettling,
 };
 
 /// What config, programs, benchmark, documents and tests say of a control law.
 struct LawRow {
   ControllerKind kind;
-  const char* name;   ///< value of controller.name
-  const char* about;  ///< a noun phrase for --help
-  bool is_adaptive;   ///< corrects its gains while it runs
-  bool is_pd;         ///< feeds each hub back alone
-  bool is_scheduled;  ///< follows moves with gains for the payload that `ekf-payload` estimates
-  bool plans_ahead;   ///< follows a plan that is made while it runs
+  const char* name;      ///< value of controller.name
+  const char* about;     ///< a noun phrase for --help
+  bool is_adaptive;      ///< corrects its gains while it runs
+  bool is_pd;            ///< feeds each hub back alone
+  bool is_scheduled;     ///< follows moves with gains for the payload that `ekf-payload` estimates
+  bool plans_ahead;      ///< follows a plan that is made while it runs
+  bool settles = false;  ///< damps the arm at rest with the payload that `ekf-payload` estimates
 };
 
 /// All laws. A new one has its row here, its class behind MakeLaw (controller/law/law_factory.h).
-inline constexpr std::array<LawRow, 10> kLaws = {{
+inline constexpr std::array<LawRow, 11> kLaws = {{
     {ControllerKind::kSobel, "sobel", "modified Sobel model-reference adaptive control", true,
      false, false, false},
     {ControllerKind::kSobelOriginal, "sobel-original",
@@ -55,6 +57,9 @@ inline constexpr std::array<LawRow, 10> kLaws = {{
      false, true, false},
     {ControllerKind::kRecedingHorizon, "receding-horizon",
      "the same along a plan that is made while the arm moves", false, false, true, true},
+    {ControllerKind::kSobelSettling, "sobel-settling",
+     "sobel with the estimated payload and friction: comes to rest with light payloads", true,
+     false, false, false, true},
 }};
 
 constexpr const LawRow& LawOf(ControllerKind kind) {
@@ -64,6 +69,7 @@ constexpr const LawRow& LawOf(ControllerKind kind) {
 
 constexpr bool IsScheduled(ControllerKind kind) { return LawOf(kind).is_scheduled; }
 constexpr bool PlansAhead(ControllerKind kind) { return LawOf(kind).plans_ahead; }
+constexpr bool Settles(ControllerKind kind) { return LawOf(kind).settles; }
 constexpr bool IsAdaptive(ControllerKind kind) { return LawOf(kind).is_adaptive; }
 constexpr bool IsPd(ControllerKind kind) { return LawOf(kind).is_pd; }
 

@@ -7,7 +7,7 @@ RIGS = ("thesis-rig.toml", "hil.toml", "hil-wire.toml", "daq-rig.toml", "half-br
         "quanser-2dsfl.toml",
         "thesis-rig-printed.toml", "thesis-rig-stiffened.toml")
 LAWS = ("sobel", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv", "pd-zvd", "gain-scheduled",
-        "receding-horizon")
+        "receding-horizon", "sobel-settling")
 
 
 def changed_config(trial, change):

@@ -24,7 +24,7 @@ inline std::vector<StepVariant> StepVariants() {
   constexpr int kMostWithPayload = 450'000;
   for (const LawRow& law : kLaws) {
     variants.push_back({law.name, {std::string("controller.name=") + law.name}});
-    if (law.is_scheduled) variants.back().most_instructions = kMostWithPayload;
+    if (law.is_scheduled || law.settles) variants.back().most_instructions = kMostWithPayload;
   }
   for (const char* estimator : {"difference", "polynomial"}) {
     variants.push_back({estimator, {std::string("estimator.name=") + estimator}});

@@ -39,7 +39,7 @@ BenchmarkKind BenchmarkKindNamed(const std::string& name) {
 }
 
 std::vector<std::string> CommandLaws() {
-  return LawNames([](const LawRow& law) { return !law.is_scheduled; });
+  return LawNames([](const LawRow& law) { return !law.is_scheduled && !law.settles; });
 }
 
 std::vector<std::string> PayloadLaws() {

@@ -57,6 +57,7 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
   json["tip_settling_time_s"] =
       metrics.tip_settling_time_s ? NumberOrNull(*metrics.tip_settling_time_s) : nullptr;
   json["tip_residual_rms_mm"] = NumberOrNull(metrics.tip_residual_rms_mm);
+  json["tip_last_second_rms_mm"] = NumberOrNull(metrics.tip_last_second_rms_mm);
   json["tip_motion_rms_mm"] = NumberOrNull(metrics.tip_motion_rms_mm);
   json["peak_torque_nm"] = Pair(metrics.peak_torque_nm);
   json["torque_rms_nm"] = Pair(metrics.torque_rms_nm);

@@ -35,7 +35,7 @@ TEST(LawFactory, MakesEveryLawOfTheTable) {
     const ReferenceSample reference{};
     const std::array<RigidPoint, 3> path{};
     PayloadKnowledge payload = kNoPayloadEstimate;
-    if (row.is_scheduled) {
+    if (row.is_scheduled || row.settles) {
       payload = {.payload_kg = 0.1,
                  .payload_sigma_kg = 0.0,
                  .friction_nm = {0.0, 0.0},
