@@ -10,7 +10,7 @@ namespace flexarm {
 /// Sides of a solid rectangular section, from its area and its second moment in the plane of
 /// motion: thickness h = sqrt(12 I / A) along the motion, width b = A / h across it.
 struct RectangularSection {
-  double width_m, thickness_m;
+  double width_m = 0.0, thickness_m = 0.0;
 
   explicit RectangularSection(const BeamSection& s);
 

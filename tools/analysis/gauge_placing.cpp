@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "model/math/dense_decompositions.h"
 
@@ -146,8 +147,8 @@ nlohmann::ordered_json LayoutJson(const GaugeLayout& layout) {
 
 }  // namespace
 
-GaugeShapes::GaugeShapes(const LinkParameters& link, const LinkModes& modes, int count)
-    : link_(link), modes_(modes), count_(count) {}
+GaugeShapes::GaugeShapes(LinkParameters link, LinkModes modes, int count)
+    : link_(std::move(link)), modes_(std::move(modes)), count_(count) {}
 
 VectorXd GaugeShapes::At(double x_m) const {
   VectorXd strain(count_);

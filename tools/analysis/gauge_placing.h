@@ -33,7 +33,7 @@ struct GaugeLayout {
 class GaugeShapes {
  public:
   /// @param count  modes, one more than are fitted
-  GaugeShapes(const LinkParameters& link, const LinkModes& modes, int count);
+  GaugeShapes(LinkParameters link, LinkModes modes, int count);
 
   Eigen::VectorXd At(double x_m) const;
   double length_m() const { return link_.length_m(); }
