@@ -40,7 +40,7 @@ double FrequencyOf(const F& count, int order) {
 }  // namespace
 
 RectangularSection::RectangularSection(const BeamSection& s)
-    : width_m(0.0), thickness_m(std::sqrt(12.0 * s.second_moment_m4 / s.area_m2)) {
+    : thickness_m(std::sqrt(12.0 * s.second_moment_m4 / s.area_m2)) {
   width_m = s.area_m2 / thickness_m;
 }
 
