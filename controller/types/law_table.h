@@ -58,8 +58,8 @@ inline constexpr std::array<LawRow, 11> kLaws = {{
     {ControllerKind::kRecedingHorizon, "receding-horizon",
      "the same along a plan that is made while the arm moves", false, false, true, true},
     {ControllerKind::kSobelSettling, "sobel-settling",
-     "sobel with the estimated payload and friction: comes to rest with light payloads", true,
-     false, false, false, true},
+     "sobel, at rest after a move with 0 to 0.2 kg; trips above 0.5 kg", true, false, false, false,
+     true},
 }};
 
 constexpr const LawRow& LawOf(ControllerKind kind) {

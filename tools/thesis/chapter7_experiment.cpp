@@ -1,6 +1,7 @@
 // Section 7.5: the experiments, with sensors and delay; here the simulated rig.
 
 #include <algorithm>
+#include <utility>
 
 #include "tools/thesis/chapter7_parts.h"
 #include "tools/thesis/control_text.h"
@@ -19,6 +20,11 @@ std::string InBoth(const ControlStudy& study, std::span<const double> payloads_k
     return PerPayload(payloads_kg, [&](double kg) { return of(Square(study, loop, kg)); });
   };
   return each(LoopKind::kSensors) + ", in the simulation " + each(LoopKind::kIdeal);
+}
+
+std::pair<const ControlFigures&, const ControlFigures&> WithSensorsAndIdeal(
+    const ControlStudy& study, double kg) {
+  return {Square(study, LoopKind::kSensors, kg), Square(study, LoopKind::kIdeal, kg)};
 }
 
 Statement Delay(const ControlStudy& study) {
@@ -120,8 +126,7 @@ Statement SineLag(const ControlStudy& study) {
 Statement WorseThanSimulation(const ControlStudy& study) {
   std::vector<Contrast> cases;
   for (const double kg : kSimulatedPayloads_kg) {
-    const ControlFigures &real = Square(study, LoopKind::kSensors, kg),
-                         &ideal = Square(study, LoopKind::kIdeal, kg);
+    const auto& [real, ideal] = WithSensorsAndIdeal(study, kg);
     cases.push_back({real.Of(real.rms_sum_deg), ideal.Of(ideal.rms_sum_deg)});
   }
   return {"7.5", "the experiment performs slightly worse than the simulation",
@@ -135,8 +140,7 @@ Statement WorseThanSimulation(const ControlStudy& study) {
 Statement Rougher(const ControlStudy& study) {
   std::vector<Contrast> cases;
   for (const double kg : kSimulatedPayloads_kg) {
-    const ControlFigures &real = Square(study, LoopKind::kSensors, kg),
-                         &ideal = Square(study, LoopKind::kIdeal, kg);
+    const auto& [real, ideal] = WithSensorsAndIdeal(study, kg);
     for (std::size_t i = 0; i < 2; ++i) {
       cases.push_back({real.Of(real.roughness_rad_s2[i]), ideal.Of(ideal.roughness_rad_s2[i])});
     }
@@ -152,8 +156,7 @@ Statement Rougher(const ControlStudy& study) {
 Statement LastsAsLong(const ControlStudy& study) {
   std::vector<bool> parts;
   for (const double kg : kSimulatedPayloads_kg) {
-    const ControlFigures &real = Square(study, LoopKind::kSensors, kg),
-                         &ideal = Square(study, LoopKind::kIdeal, kg);
+    const auto& [real, ideal] = WithSensorsAndIdeal(study, kg);
     parts.push_back(AsLong(real.settling_s.median, ideal.settling_s.median));
     parts.push_back(AsLong(real.settling_5mm_s.median, ideal.settling_5mm_s.median));
   }

@@ -105,6 +105,15 @@ Statement AlphaAndFrequency(const ControlStudy& study) {
           VerdictOf({fast[0] > kMore * slow[0], fast[1] > kMore * slow[1]})};
 }
 
+std::string IdealRmsErrors(const ControlStudy& study) {
+  return "rms errors of joints 1 and 2, deg, " +
+         PerPayload(kSimulatedPayloads_kg,
+                    [&](double kg) {
+                      return PairText(FiguresOf(study, LoopKind::kIdeal, kSquare(kg)).rms_deg);
+                    }) +
+         AtPayloads(kSimulatedPayloads_kg) + IdealSettings(study);
+}
+
 Statement BestAtNominal(const ControlStudy& study) {
   std::vector<std::array<OverSeeds, 3>> joints;
   for (const std::size_t joint : {0U, 1U}) {
@@ -114,13 +123,7 @@ Statement BestAtNominal(const ControlStudy& study) {
     joints.push_back({rms(0.01), rms(0.1), rms(0.2)});
   }
   return {"7.4", "the performance is best with the payload that the nominal model has, 0.1 kg",
-          "rms errors of joints 1 and 2, deg, " +
-              PerPayload(kSimulatedPayloads_kg,
-                         [&](double kg) {
-                           return PairText(FiguresOf(study, LoopKind::kIdeal, kSquare(kg)).rms_deg);
-                         }) +
-              AtPayloads(kSimulatedPayloads_kg) + IdealSettings(study),
-          BestInMiddleRule(joints)};
+          IdealRmsErrors(study), BestInMiddleRule(joints)};
 }
 
 Statement SecondLink(const ControlStudy& study) {
@@ -129,13 +132,7 @@ Statement SecondLink(const ControlStudy& study) {
     const ControlFigures& f = FiguresOf(study, LoopKind::kIdeal, kSquare(kg));
     cases.push_back({f.Of(f.rms_deg[0]), f.Of(f.rms_deg[1])});
   }
-  return {"7.4", "link 2 performs much better than link 1",
-          "rms errors of joints 1 and 2, deg, " +
-              PerPayload(kSimulatedPayloads_kg,
-                         [&](double kg) {
-                           return PairText(FiguresOf(study, LoopKind::kIdeal, kSquare(kg)).rms_deg);
-                         }) +
-              AtPayloads(kSimulatedPayloads_kg) + IdealSettings(study),
+  return {"7.4", "link 2 performs much better than link 1", IdealRmsErrors(study),
           WorseRule(cases)};
 }
 

@@ -75,6 +75,52 @@ TEST(RunMetrics, FinalErrorIsTheWorstRestsMeanOverItsLastThreeTenths) {
   EXPECT_NEAR(metrics.joint_final_error_deg[1], 0, 1e-12);
 }
 
+TEST(RunMetrics, TheNarrowSettlingIsWithinFiveMillimetres) {
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    record->truth.tip_m = {1.0, 0.0};
+    if (t > 3.5 && t < 4.71) record->truth.tip_m[1] = 0.0051;  // last outside at 4.70
+    if (t > 5.0 && t < 5.1) record->truth.tip_m[1] = 0.0049;   // inside
+  });
+  ASSERT_TRUE(Judge(ticks).tip_settling_within_5mm_s.has_value());
+  EXPECT_NEAR(*Judge(ticks).tip_settling_within_5mm_s, 0.72, 1e-9);
+}
+
+// Every other sample from 5 s to 6 s deviates by 1 mm: 0.5 mm rms about the mean.
+TEST(RunMetrics, TheLastSecondIsThatOfTheLastRest) {
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    record->truth.tip_m = {1.0, 0.0};
+    if (t < 4.99) record->truth.tip_m[0] += 0.3 * std::sin(40.0 * t);  // before it: must not count
+    if (t > 4.99 && record->input.tick % 2 == 0) record->truth.tip_m[1] = 1e-3;
+  });
+  EXPECT_NEAR(Judge(ticks).tip_last_second_rms_mm, 0.5, 1e-9);
+}
+
+// A reference of 0.2 sin t, and a hub that follows it 30 ms late: to first order in the lag.
+TEST(RunMetrics, TheLagIsThatOfTheReferenceThatFitsTheErrors) {
+  constexpr double kLag_s = 0.03;
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    record->input.reference_now.x_m[0] = 0.2 * std::sin(t);
+    record->input.reference_now.x_m[6] = 0.2 * std::cos(t);
+    record->truth.hub_angle_rad[0] = 0.2 * std::sin(t - kLag_s);
+  });
+  const RunMetrics metrics = Judge(ticks);
+  EXPECT_NEAR(metrics.joint_lag_s[0], kLag_s, kLag_s * kLag_s);
+  EXPECT_NEAR(metrics.peak_angle_deg[0], 0.2 / kRadPerDeg, 1e-3);  // between two samples
+}
+
+// An angle that jumps by a between samples, to and fro, has the second difference 2 a throughout;
+// one that turns steadily has none.
+TEST(RunMetrics, RoughnessIsTheSecondDifferenceInTheRests) {
+  constexpr double kJump_rad = 1e-3;
+  const auto ticks = Trace(6, [](double t, TickRecord* record) {
+    record->truth.hub_angle_rad[0] = record->input.tick % 2 == 0 ? kJump_rad : 0.0;
+    record->truth.hub_angle_rad[1] = 0.1 * t;
+  });
+  const RunMetrics metrics = Judge(ticks);
+  EXPECT_NEAR(metrics.joint_roughness_rad_s2[0], 2.0 * kJump_rad / (kPeriod_s * kPeriod_s), 1e-9);
+  EXPECT_NEAR(metrics.joint_roughness_rad_s2[1], 0.0, 1e-9);
+}
+
 TEST(RunMetrics, SettlingIsTheWorstTimeFromTheMovesEnd) {
   const auto ticks = Trace(6, [](double t, TickRecord* record) {
     record->truth.tip_m = {1.0, t < 3.5 ? 0.0 : 0.5};
