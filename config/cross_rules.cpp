@@ -93,7 +93,7 @@ void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Prob
                    "estimator.modes_per_link", "sensors.strain_input"})) {
     return;
   }
-  const bool by_law = IsScheduled(c.controller.kind) || Settles(c.controller.kind);
+  const bool by_law = IsScheduled(c.controller.kind) || c.settles();
   if (!c.uses_payload_estimator()) return;
   const char* key = by_law ? "controller.name" : "estimator.name";
   const bool plans = PlansAhead(c.controller.kind);
@@ -112,6 +112,18 @@ void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Prob
   require(c.sensors.strain_input.filter_hz > 0.0 && !(c.sensors.strain_input.filter_damping > 0.0),
           "needs gauge filters of first order: sensors.strain_input.filter_hz above 0, no "
           "filter_damping");
+}
+
+// Otherwise the friction would hold and release the arm in turn.
+void CheckSettling(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
+  constexpr const char *kHold = "controller.settling.hold_below_mm",
+                       *kRelease = "controller.settling.release_above_mm";
+  if (!log->Clear({kHold, kRelease}) || !c.controller.settling) return;
+  const SettlingConfig& s = *c.controller.settling;
+  if (s.release_above_mm >= s.hold_below_mm) return;
+  out->push_back(
+      {kRelease, NumberText(s.release_above_mm),
+       "must be at least controller.settling.hold_below_mm = " + NumberText(s.hold_below_mm)});
 }
 
 // No backend of a hardware rig can read this sensor. Without the noise term for the error of the
@@ -313,6 +325,7 @@ void CheckCrossRules(const RigConfig& config, ProblemLog* log) {
   CheckStateWeight(config, log, &problems);
   CheckPayloadStart(config, log, &problems);
   CheckPayloadEstimator(config, log, &problems);
+  CheckSettling(config, log, &problems);
   CheckTipAccelerometer(config, log, &problems);
   CheckCounters(config, log, &problems);
   CheckRates(config, log, &problems);

@@ -213,6 +213,16 @@ void ReadPlan(TableReader plan, PlanAheadConfig* out) {
   plan.Read("payload_change_share", &out->payload_change_share);
 }
 
+void ReadSettling(TableReader settling, SettlingConfig* out) {
+  settling.Read("alpha", &out->alpha);
+  settling.Read("payload_filter_below_mm", &out->payload_filter_below_mm);
+  settling.Read("acts_below_mm", &out->acts_below_mm);
+  settling.Read("hold_below_mm", &out->hold_below_mm);
+  settling.Read("release_above_mm", &out->release_above_mm);
+  settling.Read("process_force_share", &out->process_force_share);
+  settling.Read("dead_band_counts", &out->dead_band_counts);
+}
+
 void ReadMatrices(TableReader matrices, GainMatrixConfig* out) {
   if (matrices.Has("T")) matrices.Read("T", &out->T);
   if (matrices.Has("Tbar")) matrices.Read("Tbar", &out->Tbar);
@@ -254,6 +264,9 @@ void ReadController(TableReader controller, ControllerConfig* out) {
     ReadPayloadLaw(controller.Table("payload"), &out->payload.emplace());
   }
   if (controller.Has("plan")) ReadPlan(controller.Table("plan"), &out->plan.emplace());
+  if (controller.Has("settling")) {
+    ReadSettling(controller.Table("settling"), &out->settling.emplace());
+  }
   if (controller.Has("gains")) controller.Read("gains", &out->gains_file);
 }
 

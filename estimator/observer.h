@@ -50,6 +50,8 @@ class Observer {
 
   /// To be called before Update, every sample on which the law follows a path.
   virtual void FollowPath(const PathMotion& /*motion*/) noexcept {}
+  /// To be called before Update, every sample on which the law follows a reference.
+  virtual void FollowReference(bool /*rests*/) noexcept {}
   virtual StateEstimate Update(const Measurement& measurement) noexcept = 0;
 
   /// Delay compensation: predicts the state under the torques that do not act yet.
@@ -62,6 +64,8 @@ class Observer {
   virtual int delay_found() const noexcept { return 0; }
   /// NaN and no warnings for an observer that does not estimate the payload.
   virtual PayloadKnowledge payload() const noexcept { return kNoPayloadEstimate; }
+  /// Share of the terms that bring the arm to rest, from 0 to 1: settling_observer.h.
+  virtual double settling_share() const noexcept { return 0.0; }
 };
 
 }  // namespace flexarm

@@ -195,7 +195,7 @@ void DesignForPayload(const ControlConfig& config, Design* design) {
   if (!config.uses_payload_estimator()) return;
   const double period_s = config.loop.period_s();
   design->payload_model = PayloadModelConstants(config.arm, config.sensors, period_s);
-  if (!IsScheduled(config.controller.kind) && !Settles(config.controller.kind)) return;
+  if (!IsScheduled(config.controller.kind) && !config.settles()) return;
   const ControllerConfig& controller = config.controller;
   const PayloadLawConfig& law = *controller.payload;
   GainGrid grid{.payload_kg = law.gain_payload_kg, .theta2_rad = law.gain_elbow_deg};
@@ -208,8 +208,8 @@ void DesignForPayload(const ControlConfig& config, Design* design) {
     std::copy_n(q.data(), weights.state.size(), weights.state.begin());
     return DesignGainTable(arm, grid, weights, period_s);
   };
-  if (Settles(controller.kind)) {
-    design->settle_gains = table(controller.alpha);
+  if (config.settles()) {
+    design->settle_gains = table(controller.settling->alpha);
     return;
   }
   design->scheduled = ScheduledDesign{.gains = table(controller.alpha),

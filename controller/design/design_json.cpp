@@ -177,13 +177,13 @@ void PayloadFromJson(const nlohmann::ordered_json& in, const ControlConfig& conf
   try {
     design->payload_model = NumbersAt(in, "model");
     static_cast<void>(RigidJointStepper(design->payload_model));
-    if (!IsScheduled(config.controller.kind) && !Settles(config.controller.kind)) return;
+    if (!IsScheduled(config.controller.kind) && !config.settles()) return;
     const GainGrid grid{.payload_kg = NumbersAt(in, "gain_payload_kg"),
                         .theta2_rad = NumbersAt(in, "gain_theta2_rad")};
     const auto table = [&](const char* key) {
       return GainTable(grid, KnotsFromJson(NeededAt(in, key), std::string("payload.") + key));
     };
-    if (Settles(config.controller.kind)) {
+    if (config.settles()) {
       design->settle_gains = table("gain");
       return;
     }
@@ -291,7 +291,8 @@ std::string DesignHash(const ControlConfig& config) {
   }
   if (config.uses_payload_estimator()) digest << static_cast<double>(c.kind);
   if (IsScheduled(c.kind)) digest << c.payload->max_kg << c.payload->reference_kg;
-  if (IsScheduled(c.kind) || Settles(c.kind)) {
+  if (config.settles()) digest << c.settling->alpha;
+  if (IsScheduled(c.kind) || config.settles()) {
     for (const double knot : c.payload->gain_payload_kg) digest << knot;
     for (const double knot : c.payload->gain_elbow_deg) digest << knot;
   }

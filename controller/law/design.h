@@ -51,7 +51,7 @@ struct Design {
   Eigen::RowVectorXd
       shaper;  ///< weights of the samples of an input shaper (input_shaper.h); [1]: none
   std::vector<double> payload_model;         ///< of `ekf-payload`: PayloadModelConstants; or empty
-  std::optional<GainTable> settle_gains;     ///< of `sobel-settling` (settle_term.h)
+  std::optional<GainTable> settle_gains;     ///< of `sobel` at rest (settle_term.h)
   std::optional<ScheduledDesign> scheduled;  ///< of the laws that use the payload estimate
   Eigen::Matrix2d rigid_inertia_kgm2;  ///< M_r at theta2 = 0: a doublet moves by M_r^-1 a T^2/4
   std::vector<DesignCheck> checks;

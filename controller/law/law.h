@@ -19,7 +19,8 @@ struct LawInput {
   const MotionSample* plan;               ///< null: no plan
   PayloadKnowledge payload;
   double rested_s;  ///< time since the last move ended; infinite before the first, 0 during one
-  bool may_adapt;   ///< false: an input is invalid
+  double settling_share;  ///< of the terms that bring the arm to rest, 0 to 1
+  bool may_adapt;         ///< false: an input is invalid
 };
 
 /// Output of a control law.

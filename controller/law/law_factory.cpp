@@ -17,8 +17,10 @@ std::unique_ptr<Law> MakeLaw(const ControlConfig& config, const Design& design) 
                                           limit_nm);
   }
   std::optional<SettleTerm> settle;
-  if (Settles(config.controller.kind)) {
-    settle = SettleTerm(design, config.arm.joint[0].coulomb_friction_nm, config.loop.period_s());
+  if (config.settles()) {
+    const TipSway sway(MakeRigidJointArm(design), config.arm.payload_mass_kg);
+    settle = SettleTerm(design, *config.controller.settling, sway,
+                        config.arm.joint[0].coulomb_friction_nm, config.loop.period_s());
   }
   return std::make_unique<TrackingLaw>(design, config.controller, limit_nm,  // start-up
                                        std::move(settle));

@@ -77,7 +77,7 @@ void TrackingLaw::SetMatrices(const Design& design) {
 void TrackingLaw::SetFeedforward(const Design& design) {
   switch (config_.kind) {
     case ControllerKind::kSobel:
-    case ControllerKind::kSobelSettling: {
+    case ControllerKind::kSobelThesis: {
       // (7.24) with (7.25): the minus sign in front of (A_m - A) as printed, or the derived sign.
       const double sign = config_.feedforward_sign == FeedforwardSign::kPrinted ? -1.0 : 1.0;
       const double vartheta = config_.vartheta;
@@ -127,7 +127,8 @@ double TrackingLaw::Lyapunov(const StateVector& x, const StateVector& x_m,
 }
 
 LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& reference,
-                               bool may_adapt, const PayloadKnowledge& payload) noexcept {
+                               bool may_adapt, const PayloadKnowledge& payload,
+                               double settling_share) noexcept {
   StateVector x_m(states_);
   for (Eigen::Index i = 0; i < states_; ++i) x_m(i) = reference.x_m[static_cast<std::size_t>(i)];
   const Eigen::Vector2d u_m(reference.u_m_nm[0], reference.u_m_nm[1]);
@@ -136,7 +137,7 @@ LawOutput TrackingLaw::Compute(const StateVector& x, const ReferenceSample& refe
   const Eigen::Vector2d u_star = Feedforward(x_m, u_m);
   const double lyapunov = Lyapunov(x, x_m, u_m);
   Eigen::Vector2d settling = Eigen::Vector2d::Zero();
-  if (settle_) settling = settle_->Torque(x, reference, y_e, u_star + y_e, payload);
+  if (settle_) settling = settle_->Torque(x, x_m, settling_share, y_e, u_star + y_e, payload);
   if (!config_.adaptation) {
     LawOutput result = Saturate(u_star + fed_back + settling, torque_limit_nm_);
     result.lyapunov_nm2 = lyapunov;

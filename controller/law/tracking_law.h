@@ -25,8 +25,8 @@ Eigen::MatrixXd FeedbackGain(const Design& design, const ControllerConfig& confi
 ///
 /// | name           | u*                                              | C_p                     |
 /// |----------------|-------------------------------------------------|-------------------------|
-/// | sobel          | vartheta u_f + (1 - vartheta) u_c (7.24)         | LQR with alpha          |
-/// | sobel-settling | of sobel, plus SettleTerm at rest               | LQR with alpha          |
+/// | sobel-thesis   | vartheta u_f + (1 - vartheta) u_c (7.24)        | LQR with alpha          |
+/// | sobel          | the same, plus SettleTerm at rest               | LQR with alpha          |
 /// | sobel-original | u_c                                             | LQR with alpha = 0      |
 /// | lqr-cgt        | u_c = S21 x_m + S22 u_m                         | LQR with alpha          |
 /// | lqr-um         | u_m                                             | LQR with alpha          |
@@ -63,11 +63,13 @@ class TrackingLaw final : public Law {
   /// The result has V = e'Pe + tr((K_I - K_I0) T^-1 (K_I - K_I0)'), N m squared. On the nominal
   /// plant V decreases from sample to sample (vartheta = 0, u_m constant). NaN with another K_e,
   /// and for the laws whose trajectory is not the command generator's: lqr-um, lqg, pd.
-  /// @param payload  used by `sobel-settling` only
+  /// @param payload, settling_share  used by SettleTerm only
   LawOutput Compute(const StateVector& x, const ReferenceSample& reference, bool may_adapt,
-                    const PayloadKnowledge& payload = kNoPayloadEstimate) noexcept;
+                    const PayloadKnowledge& payload = kNoPayloadEstimate,
+                    double settling_share = 0.0) noexcept;
   LawOutput Compute(const LawInput& input) noexcept override {
-    return Compute(*input.x, *input.reference, input.may_adapt, input.payload);
+    return Compute(*input.x, *input.reference, input.may_adapt, input.payload,
+                   input.settling_share);
   }
 
   /// Frobenius norm of K_I - K_I(0).

@@ -18,6 +18,10 @@ constexpr TripCauses kStateLost =
     CauseBit(TripCause::kStateNotFinite) | CauseBit(TripCause::kNoCounterReading) |
     CauseBit(TripCause::kNoStrainReading1) | CauseBit(TripCause::kNoStrainReading2);
 
+// Below this rate of the reference's hubs a sample without commanded torque belongs to a rest; a
+// command of zero torque in the middle of a move does not.
+constexpr double kRestRate_rad_s = 0.05;
+
 void Store(const StateVector& x, std::array<double, kMaxNominalStates>* out) noexcept {
   for (Eigen::Index i = 0; i < x.size(); ++i) (*out)[static_cast<std::size_t>(i)] = x(i);
 }
@@ -106,6 +110,15 @@ void ControlStep::FollowPath(const StepInput& input) noexcept {
       {.begins = begins, .moves = motion_.moving(), .rested_s = motion_.rested_s()});
 }
 
+void ControlStep::FollowReference(const StepInput& input) noexcept {
+  if (input.mode != LoopMode::kFollow) return;
+  const ReferenceSample& next = input.reference_next;
+  const auto rate = static_cast<std::size_t>(layout_.rate(layout_.hub(0)));
+  observer_->FollowReference(next.u_m_nm[0] == 0.0 && next.u_m_nm[1] == 0.0 &&
+                             std::fabs(next.x_m[rate]) < kRestRate_rad_s &&
+                             std::fabs(next.x_m[rate + 1]) < kRestRate_rad_s);
+}
+
 StateEstimate ControlStep::Observe(const StepInput& input, const SensorFrame& frame,
                                    const DecodedCounters& counters, const FittedModes& modes,
                                    const PiecewiseTorque& applied) noexcept {
@@ -150,6 +163,7 @@ LawOutput ControlStep::Follow(const StepInput& input, const StateVector& x,
                         .plan = input.planned != 0 ? &input.plan : nullptr,
                         .payload = observer_->payload(),
                         .rested_s = motion_.rested_s(),
+                        .settling_share = observer_->settling_share(),
                         .may_adapt = sensors_good});
 }
 
@@ -195,6 +209,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const PiecewiseTorque applied = delay_.Applied(input, observer_->delay_found());
   const FittedModes modes = Fit(frame, input.sampling_instant_ns, applied);
   FollowPath(input);
+  FollowReference(input);
   const StateEstimate estimate = Observe(input, frame, counters, modes, applied);
 
   const FaultDetection::Verdict verdict = fault_detection_.Judge(

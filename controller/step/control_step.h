@@ -50,6 +50,7 @@ class ControlStep {
   FittedModes Fit(const SensorFrame& frame, std::int64_t instant_ns,
                   const PiecewiseTorque& applied) noexcept;
   void FollowPath(const StepInput& input) noexcept;
+  void FollowReference(const StepInput& input) noexcept;
   StateEstimate Observe(const StepInput& input, const SensorFrame& frame,
                         const DecodedCounters& counters, const FittedModes& modes,
                         const PiecewiseTorque& applied) noexcept;

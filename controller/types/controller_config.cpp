@@ -59,6 +59,22 @@ void CheckPlan(const PlanAheadConfig& p, ProblemList* list) {
                "or this share of the plan's payload");
 }
 
+void CheckSettling(const SettlingConfig& s, ProblemList* list) {
+  list->Within("settling.alpha", s.alpha, 0.0, 10.0, "1/s; as controller.alpha");
+  list->Positive("settling.payload_filter_below_mm", s.payload_filter_below_mm, 1e4,
+                 "with a larger vibration the state is that of the Kalman filter");
+  list->Positive("settling.acts_below_mm", s.acts_below_mm, 1e4,
+                 "with a larger vibration the torque is that of a move");
+  list->Positive("settling.hold_below_mm", s.hold_below_mm, 1e4,
+                 "with a smaller vibration the friction holds the arm");
+  list->Positive("settling.release_above_mm", s.release_above_mm, 1e4,
+                 "with a larger vibration the arm is damped again");
+  list->EachPositive("settling.process_force_share", s.process_force_share, 100.0,
+                     "without process noise the filter ignores what it measures");
+  list->Within("settling.dead_band_counts", s.dead_band_counts, 0.0, 0.5,
+               "half a count is the error of rounding");
+}
+
 // Sizes by the entries p of r, and symmetry.
 void CheckMatrices(const GainMatrixConfig& m, std::size_t p, ProblemList* list) {
   const auto check = [list](const std::string& key, const std::vector<double>& entries,
@@ -124,6 +140,7 @@ std::vector<Problem> ControllerConfig::Problems() const {
   if (matrices) CheckMatrices(*matrices, static_cast<std::size_t>(nominal.states()) + 4, &list);
   if (payload) CheckPayload(*payload, &list);
   if (plan) CheckPlan(*plan, &list);
+  if (settling) CheckSettling(*settling, &list);
   return list.Take();
 }
 

@@ -25,6 +25,19 @@ struct PayloadLawConfig {
   std::vector<double> gain_elbow_deg;   ///< |theta2|, ascending from 0
 };
 
+/// Table [controller.settling], optional: how `sobel` brings the arm to rest
+/// (docs/theory/control-law.md 14). Distances are amplitudes of the tip: TipSway.
+struct SettlingConfig {
+  double alpha;                    ///< degree of stability of the gains at rest, 1/s
+  double payload_filter_below_mm;  ///< the state is that of the payload filter
+  double acts_below_mm;            ///< gains of the estimated payload, friction is compensated
+  double hold_below_mm;            ///< the friction holds the arm again ..
+  double release_above_mm;         ///< .. until the tip swings by more
+  /// Of estimator.payload.process_force: less noise in the rates that are fed back.
+  std::array<double, 6> process_force_share;
+  double dead_band_counts;  ///< band about zero in which an encoder's innovation is no motion
+};
+
 inline constexpr int kMostReadyPeriods = 20;  ///< 0.4 s: shortest move, docs/theory/payload.md 3.1
 
 /// Table [controller.plan]: settings of the receding-horizon planner;
@@ -87,6 +100,7 @@ struct ControllerConfig {
   std::optional<GainMatrixConfig> matrices{};  ///< of the adaptive laws
   std::optional<PayloadLawConfig> payload{};   ///< only for the laws that use the payload
   std::optional<PlanAheadConfig> plan{};       ///< only for `receding-horizon`
+  std::optional<SettlingConfig> settling{};    ///< only for `sobel`; see ControlConfig::settles
 
   std::string
       gains_file;  ///< key `gains`, optional: written by `flexarm design`; empty: design at start

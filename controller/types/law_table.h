@@ -20,7 +20,7 @@ enum class ControllerKind : std::uint8_t {
   kPdZvd,
   kGainScheduled,
   kRecedingHorizon,
-  kSobelSettling,
+  kSobelThesis,
 };
 
 /// What config, programs, benchmark, documents and tests say of a control law.
@@ -32,15 +32,18 @@ struct LawRow {
   bool is_pd;            ///< feeds each hub back alone
   bool is_scheduled;     ///< follows moves with gains for the payload that `ekf-payload` estimates
   bool plans_ahead;      ///< follows a plan that is made while it runs
-  bool settles = false;  ///< damps the arm at rest with the payload that `ekf-payload` estimates
+  bool settles = false;  ///< can bring the arm to rest: ControlConfig::settles
 };
 
 /// All laws. A new one has its row here, its class behind MakeLaw (controller/law/law_factory.h).
 inline constexpr std::array<LawRow, 11> kLaws = {{
-    {ControllerKind::kSobel, "sobel", "modified Sobel model-reference adaptive control", true,
+    {ControllerKind::kSobel, "sobel",
+     "modified Sobel model-reference adaptive control that brings the tip to rest", true, false,
+     false, false, true},
+    {ControllerKind::kSobelThesis, "sobel-thesis", "the same without what it does at rest", true,
      false, false, false},
     {ControllerKind::kSobelOriginal, "sobel-original",
-     "the same as Sobel published it: alpha = 0, vartheta = 0", true, false, false, false},
+     "sobel-thesis as Sobel published it: alpha = 0, vartheta = 0", true, false, false, false},
     {ControllerKind::kLqrCgt, "lqr-cgt", "LQR around the command generator's trajectory", false,
      false, false, false},
     {ControllerKind::kLqrUm, "lqr-um", "LQR towards the reference model, its command fed forward",
@@ -57,9 +60,6 @@ inline constexpr std::array<LawRow, 11> kLaws = {{
      false, true, false},
     {ControllerKind::kRecedingHorizon, "receding-horizon",
      "the same along a plan that is made while the arm moves", false, false, true, true},
-    {ControllerKind::kSobelSettling, "sobel-settling",
-     "sobel, at rest after a move with 0 to 0.2 kg; trips above 0.5 kg", true, false, false, false,
-     true},
 }};
 
 constexpr const LawRow& LawOf(ControllerKind kind) {
@@ -69,7 +69,6 @@ constexpr const LawRow& LawOf(ControllerKind kind) {
 
 constexpr bool IsScheduled(ControllerKind kind) { return LawOf(kind).is_scheduled; }
 constexpr bool PlansAhead(ControllerKind kind) { return LawOf(kind).plans_ahead; }
-constexpr bool Settles(ControllerKind kind) { return LawOf(kind).settles; }
 constexpr bool IsAdaptive(ControllerKind kind) { return LawOf(kind).is_adaptive; }
 constexpr bool IsPd(ControllerKind kind) { return LawOf(kind).is_pd; }
 

@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 EXPERIMENTS = ROOT / "config/experiments"
 RUNS = {
-    "benchmark-square": ["sobel", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv",
+    "benchmark-square": ["sobel", "sobel-thesis", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv",
                          "pd-zvd"],
     "benchmark-waypoints": ["gain-scheduled", "receding-horizon"],
 }

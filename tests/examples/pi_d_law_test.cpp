@@ -37,6 +37,7 @@ struct Situation {
             .plan = nullptr,
             .payload = kNoPayloadEstimate,
             .rested_s = 0.0,
+            .settling_share = 0.0,
             .may_adapt = true};
   }
 };
@@ -95,7 +96,7 @@ std::array<double, 2> AnglesAfter(double duration_s, std::unique_ptr<Law> law,
 // Friction stops a PD law short of the target: up to 0.16 N m / 30 N m/rad, 0.3 degrees at the
 // shoulder. The integral part removes the error.
 TEST(PiDLaw, InTheControlStepItReachesTheTargetThatProportionalFeedbackMisses) {
-  const RigConfig config = ShippedRig();
+  const RigConfig config = ShippedRig({kThesisLaw});
   const Design design = DesignController(config);
   const std::array<double, 2> target_rad = {0.05, -0.1};
   PiDGains without_integral = kGains;

@@ -6,8 +6,8 @@ from inputs import CONFIGS, EXPERIMENTS, copy_of_configs, special_file
 RIGS = ("thesis-rig.toml", "hil.toml", "hil-wire.toml", "daq-rig.toml", "half-bridges.toml",
         "quanser-2dsfl.toml",
         "thesis-rig-printed.toml", "thesis-rig-stiffened.toml")
-LAWS = ("sobel", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv", "pd-zvd", "gain-scheduled",
-        "receding-horizon", "sobel-settling")
+LAWS = ("sobel", "sobel-thesis", "sobel-original", "lqr-cgt", "lqr-um", "lqg", "pd", "pd-zv", "pd-zvd", "gain-scheduled",
+        "receding-horizon")
 
 
 def changed_config(trial, change):

@@ -152,7 +152,20 @@ void PrintRobustness(const RobustnessAnalysis& robustness) {
   }
 }
 
-void PrintText(const Design& design, const RobustnessAnalysis& robustness,
+// Whether `sobel` brings the arm to rest with this config.
+void PrintSettling(const ControlConfig& config) {
+  if (!LawOf(config.controller.kind).settles) return;
+  const char* why_not = config.why_not_settling();
+  if (why_not == nullptr) {
+    std::printf(
+        "\nat rest: gains of the estimated payload and friction compensation "
+        "([controller.settling])\n");
+  } else {
+    std::printf("\nat rest: as sobel-thesis: %s\n", why_not);
+  }
+}
+
+void PrintText(const RigConfig& config, const Design& design, const RobustnessAnalysis& robustness,
                const Conditioning& conditioning, const ControlFeatures& features,
                const std::filesystem::path& file) {
   const std::string nominal(NameOf(design.layout));
@@ -169,6 +182,7 @@ void PrintText(const Design& design, const RobustnessAnalysis& robustness,
   }
   PrintRobustness(robustness);
   PrintFeatures(features);
+  PrintSettling(config);
   std::printf("\nK (N m per rad, per m, per rad/s, per m/s):\n");
   for (Eigen::Index i = 0; i < design.K.rows(); ++i) {
     for (Eigen::Index j = 0; j < design.K.cols(); ++j) std::printf(" %9.4g", design.K(i, j));
@@ -195,10 +209,11 @@ int Run(const DesignOptions& options) {
   if (design.sound()) WriteFile(options.output.file, DesignToJson(design, hash) + '\n', rules);
   const ControlFeatures features = FeaturesOf(config, design);
   if (options.json) {
-    std::cout << PrintedJson(ToJson(design, robustness, conditioning, features, options, hash))
-              << '\n';
+    nlohmann::ordered_json json = ToJson(design, robustness, conditioning, features, options, hash);
+    json["settles"] = config.settles();
+    std::cout << PrintedJson(json) << '\n';
   } else {
-    PrintText(design, robustness, conditioning, features, options.output.file);
+    PrintText(config, design, robustness, conditioning, features, options.output.file);
   }
   if (!design.sound()) {
     std::cerr << "flexarm: no gains were written: failed: " << verdict.found

@@ -76,6 +76,7 @@ std::vector<ControlCase> Cases() {
     AddPayloads(sine, kTestedPayloads_kg, &cases);
   }
   AddPayloads(ChangedCase({}, 0.1), kAllPayloads_kg, &cases);
+  AddPayloads(ChangedCase(kShippedLaw, 0.1), kTestedPayloads_kg, &cases);
   AddPayloads(ChangedCase({"controller.adaptation=false"}, 0.1), kAllPayloads_kg, &cases);
   for (const char* modes : {"2", "3", "6"}) {
     cases.push_back(ChangedCase({std::string("sim.plant_modes=") + modes}, 0.1));
@@ -100,6 +101,12 @@ SimulationResult RunOf(const RigConfig& config, const ControlCase& of, int seed)
   } catch (const RejectedError&) {
     return {};
   }
+}
+
+// The thesis's law does nothing special at rest.
+RigConfig WithThesisLaw(const RigConfig& config) {
+  if (config.controller.kind != ControllerKind::kSobel) return config;
+  return WithOverrides(config, {"controller.name=sobel-thesis"});
 }
 
 OverSeeds OverSeedsOf(const std::vector<double>& values) {
@@ -200,7 +207,7 @@ ControlCase Ideal(ControlCase of) {
 
 ControlStudy::ControlStudy(const RigConfig& config, int first_seed,
                            const std::function<void(std::size_t)>& progress)
-    : config_(config), first_seed_(first_seed) {
+    : config_(WithThesisLaw(config)), first_seed_(first_seed) {
   struct Job {
     const ControlCase* of;
     int seed;
@@ -212,7 +219,7 @@ ControlStudy::ControlStudy(const RigConfig& config, int first_seed,
   }
   std::vector<SimulationResult> results(jobs.size());
   ParallelFor(
-      jobs.size(), [&](std::size_t i) { results[i] = RunOf(config, *jobs[i].of, jobs[i].seed); },
+      jobs.size(), [&](std::size_t i) { results[i] = RunOf(config_, *jobs[i].of, jobs[i].seed); },
       progress);
   std::map<ControlCase, std::vector<SimulationResult>> by_case;
   for (std::size_t i = 0; i < jobs.size(); ++i) {

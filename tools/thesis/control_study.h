@@ -76,6 +76,9 @@ class ControlStudy {
 
 using Overrides = std::vector<std::string>;
 
+/// The thesis's law with what this program adds at rest. All other cases are without it.
+inline const Overrides kShippedLaw = {"controller.name=sobel"};
+
 // Cases of ControlStudy.
 ControlCase ChangedCase(const Overrides& overrides, double payload_kg);
 ControlCase SineCase(double payload_kg);  ///< the same rotation

@@ -5,17 +5,17 @@ namespace {
 
 constexpr double kDamped_s = 2.0;  // the thesis: within 2 seconds after the command
 
-std::string SettingsOf(const ControlStudy& study, LoopKind loop) {
-  return loop == LoopKind::kIdeal ? IdealSettings(study) : SensorSettings(study);
+std::string SettingsOf(const ControlStudy& study, LoopKind loop, const std::string& changed = {}) {
+  return loop == LoopKind::kIdeal ? IdealSettings(study, changed) : SensorSettings(study, changed);
 }
 
 }  // namespace
 
 Statement Damped(const ControlStudy& study, LoopKind loop, const std::string& section,
-                 const std::string& thesis) {
+                 const std::string& thesis, const Overrides& law) {
   std::vector<RestOutcome> rests;
   for (const double kg : kTestedPayloads_kg) {
-    const ControlFigures& f = FiguresOf(study, loop, ChangedCase({}, kg));
+    const ControlFigures& f = FiguresOf(study, loop, ChangedCase(law, kg));
     rests.push_back({.completed = f.all_completed(),
                      .within_15mm_s = f.settling_s.median,
                      .within_5mm_s = f.settling_5mm_s.median,
@@ -23,7 +23,7 @@ Statement Damped(const ControlStudy& study, LoopKind loop, const std::string& se
   }
   const auto each = [&](FigureOf figure) {
     return PerPayload(kTestedPayloads_kg, [&](double kg) {
-      return FigureOrNever(FiguresOf(study, loop, ChangedCase({}, kg)).*figure, 2);
+      return FigureOrNever(FiguresOf(study, loop, ChangedCase(law, kg)).*figure, 2);
     });
   };
   return {section, thesis,
@@ -32,7 +32,7 @@ Statement Damped(const ControlStudy& study, LoopKind loop, const std::string& se
               each(&ControlFigures::settling_5mm_s) + " s, and moves by " +
               each(&ControlFigures::last_second_mm) + " mm rms in the last second (at most " +
               Figure(kRestMotion_mm, 1) + " counts as rest)," + AtPayloads(kTestedPayloads_kg) +
-              SettingsOf(study, loop),
+              SettingsOf(study, loop, law.empty() ? "" : "law sobel"),
           DampedRule(rests, kDamped_s)};
 }
 

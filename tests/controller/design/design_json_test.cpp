@@ -97,8 +97,9 @@ TEST(DesignJson, AMissingPayloadMemberIsNamed) {
                                               "gain",  "max_kg",          "reference_kg"};
   std::vector<std::string> planned = scheduled;
   planned.emplace_back("start_gain");
-  for (const auto& [law, needs] : {Case{"sobel", {"model"}}, Case{"gain-scheduled", scheduled},
-                                   Case{"receding-horizon", planned}}) {
+  for (const auto& [law, needs] :
+       {Case{"sobel-thesis", {"model"}}, Case{"gain-scheduled", scheduled},
+        Case{"receding-horizon", planned}}) {
     const RigConfig config =
         ShippedRig({std::string("controller.name=") + law, "estimator.name=ekf-payload"});
     const nlohmann::json json = nlohmann::json::parse(JsonOf(DesignController(config), config));
@@ -133,7 +134,9 @@ TEST(DesignJson, MembersThatTheConfigDoesNotNeedAreIgnored) {
   const nlohmann::json of_path = nlohmann::json::parse(JsonOf(DesignController(path), path));
   nlohmann::json json = ShippedJson();
   json["payload"] = of_path["payload"];
-  const Design plain = DesignFromJson(json.dump(), ShippedRig());
+  const RigConfig thesis = ShippedRig({kThesisLaw});
+  json["config_hash"] = DesignHash(thesis);
+  const Design plain = DesignFromJson(json.dump(), thesis);
   EXPECT_TRUE(plain.payload_model.empty());
   EXPECT_FALSE(plain.scheduled);
   const RigConfig estimated = ShippedRig({"estimator.name=ekf-payload"});
@@ -387,11 +390,17 @@ TEST(DesignHash, ChangesExactlyWithTheSettingsOfADesign) {
     }
     EXPECT_NE(DesignHash(config), shipped) << changed;
   }
-  for (const char* same :
-       {"sim.seed=2", "controller.vartheta=0.5", "controller.name=lqr-cgt",
-        "controller.name=lqr-um", "safety.rest_time_s=0.6", "controller.adaptation_gain=0.001"}) {
+  for (const char* same : {"sim.seed=2", "controller.vartheta=0.5", "safety.rest_time_s=0.6",
+                           "controller.adaptation_gain=0.001"}) {
     EXPECT_EQ(DesignHash(ShippedRig({same})), shipped) << same;
   }
+  const std::string thesis = DesignHash(ShippedRig({kThesisLaw}));
+  EXPECT_NE(thesis, shipped);
+  for (const char* same : {"controller.name=lqr-cgt", "controller.name=lqr-um"}) {
+    EXPECT_EQ(DesignHash(ShippedRig({same})), thesis) << same;
+  }
+  EXPECT_EQ(DesignHash(ShippedRig({kThesisLaw, "controller.settling.alpha=5"})), thesis);
+  EXPECT_NE(DesignHash(ShippedRig({"controller.settling.alpha=5"})), shipped);
 }
 
 }  // namespace

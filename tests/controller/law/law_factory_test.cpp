@@ -48,6 +48,7 @@ TEST(LawFactory, MakesEveryLawOfTheTable) {
                                         .plan = nullptr,
                                         .payload = payload,
                                         .rested_s = 10.0,
+                                        .settling_share = 0.0,
                                         .may_adapt = true});
     EXPECT_TRUE(out.finite) << row.name;
     EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0})) << row.name;

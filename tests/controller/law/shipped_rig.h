@@ -15,6 +15,9 @@ inline RigConfig ShippedRig(const std::vector<std::string>& overrides = {}) {
   return LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", overrides);
 }
 
+/// The thesis's law, without what `sobel` adds at rest.
+inline constexpr const char* kThesisLaw = "controller.name=sobel-thesis";
+
 /// Its design, computed once.
 inline const Design& ShippedDesign() {
   static const Design design = DesignController(ShippedRig());

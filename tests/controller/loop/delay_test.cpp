@@ -14,7 +14,7 @@ namespace {
 
 Runs Delayed(double payload_kg, int delay_ms, int declared_ms) {
   const Runs runs =
-      RunSeeds(payload_kg, {"sim.transport_delay_ms=" + std::to_string(delay_ms),
+      RunSeeds(payload_kg, {kThesisLaw, "sim.transport_delay_ms=" + std::to_string(delay_ms),
                             "loop.actuation_delay_ms=" + std::to_string(declared_ms)});
   std::printf("  %.2f kg, %2d ms, %2d declared: rms %.3f %.3f  residual %.2f mm  trips %d\n",
               payload_kg, delay_ms, declared_ms, Median(runs.rms1_deg), Median(runs.rms2_deg),
@@ -47,6 +47,18 @@ TEST(Delay, OfOneSampleUndeclaredExcitesALightArmAndDeclaredDoesNot) {
   EXPECT_EQ(declared.tripped, 0);
   EXPECT_GT(Median(unknown.rms1_deg), 1.3 * Median(declared.rms1_deg));
   EXPECT_GT(Median(unknown.residual_mm), 3.0 * Median(declared.residual_mm));
+}
+
+// `sobel` finds the delay with its payload filter: rms th1 1.21 deg either way.
+TEST(Delay, OfOneSampleUndeclaredIsFoundBySobel) {
+  const auto runs = [](const char* declared) {
+    return RunSeeds(
+        0.01, {"sim.transport_delay_ms=20", std::string("loop.actuation_delay_ms=") + declared});
+  };
+  const Runs declared = runs("20"), unknown = runs("0");
+  EXPECT_EQ(unknown.tripped, 0);
+  EXPECT_LT(Median(unknown.rms1_deg), 1.1 * Median(declared.rms1_deg));
+  EXPECT_LT(Largest(unknown.residual_mm), 6.0);  // the bar of the loop without delay
 }
 
 // Earlier torques can only help; the reference is aligned with the torques, so the tracking error

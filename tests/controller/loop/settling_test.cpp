@@ -1,6 +1,6 @@
-// The law `sobel-settling` brings the tip to rest after the base command with light payloads too:
-// rms of the tip about its mean in the last second of the 6 s experiment. `sobel` keeps link 2 in a
-// limit cycle there: docs/theory/control-law.md 14.
+// The law `sobel` brings the tip to rest after the base command with light payloads too:
+// rms of the tip about its mean in the last second of the 6 s experiment. `sobel-thesis` keeps link
+// 2 in a limit cycle there: docs/theory/control-law.md 14.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ std::vector<double> LastSeconds_mm(const std::string& law, double payload_kg, in
 class SettlingLawWith : public testing::TestWithParam<double> {};
 
 TEST_P(SettlingLawWith, LeavesTheTipAtRestInTheLastSecond) {
-  const std::vector<double> motion_mm = LastSeconds_mm("sobel-settling", GetParam(), kSeeds);
+  const std::vector<double> motion_mm = LastSeconds_mm("sobel", GetParam(), kSeeds);
   EXPECT_LT(Largest(motion_mm), kAtRest_mm);
   EXPECT_LT(Median(motion_mm), kMedian_mm);
 }
@@ -50,7 +50,7 @@ TEST(SettlingLaw, LeavesTheShoulderToItsFrictionAtRest) {
   Experiment long_rest = ShippedExperiment();
   long_rest.duration_s = 14.0;
   for (const double payload_kg : {0.0, 0.1, 0.2}) {
-    StackRun run(ShippedRig(std::vector<std::string>{"controller.name=sobel-settling"}), long_rest,
+    StackRun run(ShippedRig(std::vector<std::string>{"controller.name=sobel"}), long_rest,
                  payload_kg);
     run.Run(15'000'000'000);
     double squares = 0.0;
@@ -69,7 +69,7 @@ TEST(SettlingLaw, LeavesTheShoulderToItsFrictionAtRest) {
 
 // The limit cycle of section 14.1: measured 5 to 8 mm.
 TEST(SettlingLaw, IsNeededWithoutPayload) {
-  EXPECT_GT(Median(LastSeconds_mm("sobel", 0.0, 3)), 4.0 * kAtRest_mm);
+  EXPECT_GT(Median(LastSeconds_mm("sobel-thesis", 0.0, 3)), 4.0 * kAtRest_mm);
 }
 
 }  // namespace

@@ -174,7 +174,8 @@ TEST(ControlStepWithPayload, AMoveWithoutObservabilityWarnsUntilTheNextRun) {
 }
 
 TEST(ControlStepWithPayload, WithoutAPayloadEstimatorItsOutputsAreNaN) {
-  ControlStep step(ShippedRig(), ShippedDesign());
+  const RigConfig config = ShippedRig({kThesisLaw});
+  ControlStep step(config, DesignController(config));
   const StepOutput out = step.Step(AtRest(0, SafetyState::kRunning));
   for (const double value : {out.payload_kg, out.payload_sigma_kg, out.mean_nis, out.friction_nm[0],
                              out.friction_nm[1]}) {

@@ -49,7 +49,7 @@ std::vector<StepInput> ARun() {
 
 class ControlStepTest : public testing::Test {
  protected:
-  const RigConfig config_ = ShippedRig();
+  const RigConfig config_ = ShippedRig({kThesisLaw});
   ControlStep step_{config_, ShippedDesign()};
 };
 
@@ -202,7 +202,7 @@ TEST_F(ControlStepTest, ACommandThatActedLateIsPredictedLate) {
 }
 
 TEST_F(ControlStepTest, WithoutPredictionTheLawUsesTheEstimateAndAFlagIsSet) {
-  ControlStep step(ShippedRig({"controller.prediction=false"}), ShippedDesign());
+  ControlStep step(ShippedRig({kThesisLaw, "controller.prediction=false"}), ShippedDesign());
   step.Step(Moving(0));
   const StepOutput out = step.Step(Moving(1));
   EXPECT_EQ(out.x_next, out.x_hat);
