@@ -44,7 +44,7 @@ void Add(CLI::App& app, Exit& exit) {
 `Arm.Moves` `ArmOver.Stops` `tests/run.sh: it stops` [page](page.md) [web](https://example.org/x)
 [here](#1-what-it-is) `model/arm/` `model/{arm,sym*}` `tests/*.sh` `beam.h` `arm/` `model/NAME.h`
 `beta_length` (`beam.h`), [plant](theory/plant.md) sections 2.1 and 2.2, `docs/theory/PAGE.md N`
-`arm_unit_test --gtest_filter='Arm.*:*/ArmOver.Stops'`, `python3 tests/run_test.py -k it_stops`
+`arm_unit_test --gtest_filter='Arm.*:*/ArmOver.Stops/*'`, `python3 tests/run_test.py -k it_stops`
 `loop.period_ms = 20`, `loop.gate_sigmas`, `rig.toml`, `--config`, `--no-install`, table.md
 ```sh
 flexarm simulate -c config/rig.toml --config x \\
@@ -68,6 +68,8 @@ BROKEN = {
                            "test: tests/run.sh does not say 'it flies'"),
     "a test of a program": ("docs/page.md", "`arm_unit_test --gtest_filter='Arm.Moves:Arm.F*'`",
                             "test: arm_unit_test has no test Arm.F*"),
+    "a test with parameters": ("docs/page.md", "`arm_unit_test --gtest_filter='ArmOver.Stops'`",
+                               "test: arm_unit_test has no test ArmOver.Stops"),
     "a test program": ("docs/page.md", "`leg_unit_test --gtest_filter='Arm.Moves'`",
                        "test: there is no test program leg_unit_test"),
     "a test of a script": ("docs/page.md", "`python3 tests/run_test.py -k it_flies`",
@@ -100,7 +102,7 @@ BROKEN = {
                                      "citation: this page has no heading for #skew"),
     "a folder": ("docs/page.md", "`hal/rig`", "path: there is no hal/rig"),
     "a folder without its own": ("docs/page.md", "`runtime/`", "path: there is no folder runtime/"),
-    "a pattern": ("docs/page.md", "`tests/*.py`", "path: there is no tests/*.py"),
+    "a pattern": ("docs/page.md", "`tests/*.toml`", "path: there is no tests/*.toml"),
     "an alternative": ("docs/page.md", "`model/{arm,hand}`", "path: there is no model/hand"),
     "a file of a command": ("docs/page.md", "```\nrm config/hil.toml\n```",
                             "path: there is no config/hil.toml"),

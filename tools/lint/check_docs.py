@@ -34,7 +34,7 @@ from pathlib import Path
 
 import prose
 
-CPP_TEST = re.compile(r"\bTEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
+CPP_TEST = re.compile(r"\bTEST(_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
 NAMED_TEST = re.compile(r"`([A-Z]\w+)\.([A-Z]\w+)`")
 TEST_PROGRAM = re.compile(r"\bflexarm_tests\((\w+)(.*?)\)", re.S)
 FILTERED = re.compile(r"(\w+) --gtest_filter='?([^'\s`]*)'?")
@@ -129,19 +129,23 @@ class Tree:
 
     @functools.cached_property
     def tests(self):
-        return {test for _, text in self.code("tests/", ".cpp") for test in CPP_TEST.findall(text)}
+        return {(suite, name) for _, text in self.code("tests/", ".cpp")
+                for _, suite, name in CPP_TEST.findall(text)}
 
     @functools.cached_property
     def test_programs(self):
-        """Of each test program, the names of its tests."""
+        """Of each test program, the names of its tests; PREFIX/Suite.Name/NUMBER if they have
+        parameters."""
         found = {}
         for path in self.files:
             if path.name != "CMakeLists.txt" or not self.name(path).startswith("tests/"):
                 continue
             for program, body in TEST_PROGRAM.findall(re.sub(r"#.*", "", self.texts[path])):
                 sources = [path.parent / name for name in re.findall(r"[\w/.-]+\.cpp", body)]
-                found[program] = [".".join(test) for source in sources
-                                  for test in CPP_TEST.findall(self.texts.get(source, ""))]
+                found[program] = [
+                    f"PREFIX/{suite}.{name}/NUMBER" if kind == "_P" else f"{suite}.{name}"
+                    for source in sources
+                    for kind, suite, name in CPP_TEST.findall(self.texts.get(source, ""))]
         return found
 
     @functools.cached_property
@@ -349,9 +353,7 @@ def check_tests(tree, text, _in_block):
             yield "test", f"there is no test program {program}"
             continue
         for pattern in patterns.split(":"):
-            # A test with parameters is called PREFIX/Suite.Name/NUMBER.
-            bare = pattern.removeprefix("*/")
-            if not any(fnmatch(test, bare) for test in tree.test_programs[program]):
+            if not any(fnmatch(test, pattern) for test in tree.test_programs[program]):
                 yield "test", f"{program} has no test {pattern}"
     for script, words in SELECTED.findall(text):
         target = tree.root / script
