@@ -135,8 +135,11 @@ Calibration CalibrationOf(const ReplayOptions& options, const RigConfig& config)
 ReferenceTable ReferenceOf(const ReplayOptions& options, const RigConfig& config,
                            const Design& design, const StepInput& first) {
   const StepOutput start = ControlStep(config, design).Step(first);
-  return {LoadExperiment(options.experiment), design, config.loop.period_s(),
-          {start.angle_rad[0], start.angle_rad[1]}, MotionLimitsOf(config)};
+  return {LoadExperiment(options.experiment),
+          design,
+          config.loop.period_s(),
+          {start.angle_rad[0], start.angle_rad[1]},
+          MotionLimitsOf(config)};
 }
 
 // As ControlTask::FollowReference, without plans.
@@ -162,8 +165,9 @@ Outcome ReplayCsv(const ReplayOptions& options) {
   const double late_periods =
       static_cast<double>(grid.late_ns()) / static_cast<double>(grid.period_ns);
   const int rows_on = 2 + static_cast<int>(std::lround(late_periods));
+  const Calibration calibration = CalibrationOf(options, config);
   for (StepInput& input : inputs) {
-    input.calibration = CalibrationOf(options, config);
+    input.calibration = calibration;
     input.acted_late_ns = input.acts_late_ns = grid.late_ns();
   }
   std::optional<ReferenceTable> reference;
@@ -311,8 +315,10 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "reported.\n"
       "A CSV file comes from `flexarm export`, or has the columns of the table [csv] of the\n"
       "config. It has no reference: with --experiment the loop follows that of the experiment and\n"
-      "ends with it, without it the reference is rest at zero. Its torques are means over a period:\n"
-      "those of the loop only if they act at sampling instants, not with loop.output = \"at_once\".\n"
+      "ends with it, without it the reference is rest at zero. Its torques are means over a "
+      "period:\n"
+      "those of the loop only if they act at sampling instants, not with loop.output = "
+      "\"at_once\".\n"
       "Examples: flexarm replay runs/today.flexarm\n"
       "          flexarm replay today.csv -c config/thesis-rig.toml "
       "--experiment config/experiments/square-30deg.toml");
