@@ -127,6 +127,27 @@ class Replay(ProgramTest):
         self.assertIsNone(replay["bit_exact"])
         self.assertGreaterEqual(replay["ticks"], 300)
 
+    def test_a_csv_with_its_experiment_gives_the_recorded_torques(self):
+        table = self.folder / "run.csv"
+        self.flexarm("export", self.run_file, "-o", table)
+        command = ["replay", table, "-c", HIL]
+        # Another reference, rest at zero, asks for other torques. It is said, and is no failure.
+        without = self.run_program("flexarm", *command)
+        self.assertEqual(without.returncode, 0)
+        self.assertIn("without --experiment the reference is rest at zero", without.stderr)
+        experiments = HIL.parent / "experiments"
+        square = self.flexarm_json(*command, "--experiment", experiments / "square-30deg.toml")
+        self.assertEqual(square["ticks"], 299)
+        self.assertEqual(square["faulty_ticks"], 0)
+        # The file has the shortest decimals that give the same numbers, but times in seconds.
+        self.assertLess(max(square["max_torque_difference_nm"]), 1e-9)
+        other = self.flexarm_json(*command, "--experiment", experiments / "square-20deg.toml")
+        self.assertGreater(max(other["max_torque_difference_nm"]), 1.0)
+        refused = self.run_program("flexarm", "replay", self.run_file,
+                                   "--experiment", experiments / "square-30deg.toml")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--experiment is for CSV files only", refused.stderr)
+
     def test_draws_a_picture(self):
         picture = self.folder / "run.png"
         self.flexarm("plot", self.run_file, "-o", picture)

@@ -14,7 +14,10 @@ import check_docs  # noqa: E402
 
 GOOD = {
     "tests/arm_test.cpp": "TEST(Arm, Moves) {}\nTEST_P(\n    ArmOver,\n    Stops) {}\n",
+    "tests/CMakeLists.txt": "flexarm_tests(arm_unit_test LABEL unit # of the arm\n  FILES\n"
+                            "    arm_test.cpp)\n",
     "tests/run.sh": "check \"it stops\" true\n",
+    "tests/run_test.py": "    def test_it_stops_at_once(self):\n",
     "tools/lanes.sh": "",
     "tools/flexarm/main.cpp": """
 void Add(CLI::App& app, Exit& exit) {
@@ -41,6 +44,7 @@ void Add(CLI::App& app, Exit& exit) {
 `Arm.Moves` `ArmOver.Stops` `tests/run.sh: it stops` [page](page.md) [web](https://example.org/x)
 [here](#1-what-it-is) `model/arm/` `model/{arm,sym*}` `tests/*.sh` `beam.h` `arm/` `model/NAME.h`
 `beta_length` (`beam.h`), [plant](theory/plant.md) sections 2.1 and 2.2, `docs/theory/PAGE.md N`
+`arm_unit_test --gtest_filter='Arm.*:*/ArmOver.Stops/*'`, `python3 tests/run_test.py -k it_stops`
 `loop.period_ms = 20`, `loop.gate_sigmas`, `rig.toml`, `--config`, `--no-install`, table.md
 ```sh
 flexarm simulate -c config/rig.toml --config x \\
@@ -62,6 +66,14 @@ BROKEN = {
     "a script": ("docs/page.md", "`tests/walk.sh: it stops`", "path: there is no tests/walk.sh"),
     "a text of a script": ("docs/page.md", "`tests/run.sh: it flies`",
                            "test: tests/run.sh does not say 'it flies'"),
+    "a test of a program": ("docs/page.md", "`arm_unit_test --gtest_filter='Arm.Moves:Arm.F*'`",
+                            "test: arm_unit_test has no test Arm.F*"),
+    "a test with parameters": ("docs/page.md", "`arm_unit_test --gtest_filter='ArmOver.Stops'`",
+                               "test: arm_unit_test has no test ArmOver.Stops"),
+    "a test program": ("docs/page.md", "`leg_unit_test --gtest_filter='Arm.Moves'`",
+                       "test: there is no test program leg_unit_test"),
+    "a test of a script": ("docs/page.md", "`python3 tests/run_test.py -k it_flies`",
+                           "test: tests/run_test.py has no test with it_flies in its name"),
     "a link":
         ("docs/theory/plant.md", "[page](folder/other.txt)", "link: there is no folder/other.txt"),
     "a page": ("docs/page.md", "See old.md.", "citation: there is no old.md"),
@@ -90,7 +102,7 @@ BROKEN = {
                                      "citation: this page has no heading for #skew"),
     "a folder": ("docs/page.md", "`hal/rig`", "path: there is no hal/rig"),
     "a folder without its own": ("docs/page.md", "`runtime/`", "path: there is no folder runtime/"),
-    "a pattern": ("docs/page.md", "`tests/*.py`", "path: there is no tests/*.py"),
+    "a pattern": ("docs/page.md", "`tests/*.toml`", "path: there is no tests/*.toml"),
     "an alternative": ("docs/page.md", "`model/{arm,hand}`", "path: there is no model/hand"),
     "a file of a command": ("docs/page.md", "```\nrm config/hil.toml\n```",
                             "path: there is no config/hil.toml"),
@@ -220,6 +232,25 @@ lane_unit() {
                          ["docs/theory/README.md:1: law: there is no row for pd: a hub alone",
                           "docs/theory/README.md:1: law: controller/types/law_table.h has no pd: "
                           "both hubs"])
+
+    def coverage_findings(self, *lines):
+        with tempfile.TemporaryDirectory() as folder:
+            write(Path(folder), {"docs/thesis-coverage.md": "\n".join(lines)})
+            return check_docs.check_tree(Path(folder))
+
+    def test_counts_the_rows_of_the_coverage_page(self):
+        rows = ("| 1 | 3.1 | links | works | x |", "| 2 | 3.2 | roots | differs: no | x |",
+                "| 3 | 4.3 | curves | cannot be done: none | x |")
+        count = "3 rows: 1 works, 1 differs, 1 cannot be done."
+        finding = "docs/thesis-coverage.md:1: coverage: "
+        self.assertEqual(self.coverage_findings(count, *rows), [])
+        self.assertEqual(self.coverage_findings(count, rows[0], rows[2], rows[1]),
+                         [finding + "the rows are not numbered 1, 2, 3, .."])
+        wrong = [finding + "it has 2 rows: 1 works, 1 differs, 0 cannot be done"]
+        self.assertEqual(self.coverage_findings(count, *rows[:2]), wrong)
+        self.assertEqual(self.coverage_findings(*rows[:2]), wrong)
+        self.assertIn(finding + "row 4 has the state 'partly'",
+                      self.coverage_findings(count, *rows, "| 4 | 5.1 | load | partly | x |"))
 
     def test_this_tree_speaks_of_what_is_there(self):
         self.assertEqual(check_docs.check_tree(ROOT), [])

@@ -9,11 +9,14 @@
 #include "controller/design/run_design.h"
 #include "controller/files/external_json.h"
 #include "controller/law/design.h"
+#include "controller/reference/motion_limits.h"
+#include "controller/reference/reference.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/csv_import.h"
 #include "controller/runlog/errors.h"
 #include "controller/runlog/replay.h"
 #include "controller/step/control_step.h"
+#include "controller/types/loop_grid.h"
 #include "estimator/ideal_observer.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
@@ -26,6 +29,7 @@ struct ReplayOptions {
   std::filesystem::path source;
   ConfigOptions config;
   std::filesystem::path calibration;  // empty: none
+  std::filesystem::path experiment;   // of a CSV file; empty: rest at zero
   bool json = false;
 };
 
@@ -92,6 +96,9 @@ Outcome ReplayRun(const ReplayOptions& options) {
   if (!options.calibration.empty()) {
     throw InputError("--calibration is for CSV files only: a run log contains its own calibration");
   }
+  if (!options.experiment.empty()) {
+    throw InputError("--experiment is for CSV files only: a run log contains its own reference");
+  }
   RunReader reader(options.source);
   const RigConfig own = ConfigOf(reader);
   const bool asks_for_other = options.config.given() || !options.config.overrides.empty();
@@ -117,27 +124,78 @@ Outcome ReplayRun(const ReplayOptions& options) {
           .digest_holds = reader.DigestHolds()};
 }
 
-// A CSV file has no recorded outputs. The torque applied up to a row was asked for one row before.
+Calibration CalibrationOf(const ReplayOptions& options, const RigConfig& config) {
+  if (options.calibration.empty()) return Calibration{};
+  const auto read = ReadCalibration(options.calibration, config.sensors);
+  if (!read) throw InputError(options.calibration.string() + ": there is no such file");
+  return *read;
+}
+
+/// The reference of the experiment that a CSV file has in its rows, from the first one on.
+ReferenceTable ReferenceOf(const ReplayOptions& options, const RigConfig& config,
+                           const Design& design, const StepInput& first) {
+  const StepOutput start = ControlStep(config, design).Step(first);
+  return {LoadExperiment(options.experiment),
+          design,
+          config.loop.period_s(),
+          {start.angle_rad[0], start.angle_rad[1]},
+          MotionLimitsOf(config)};
+}
+
+// As ControlTask::FollowReference, without plans.
+void FollowReference(const ReferenceTable& reference, int sample, int delay_found,
+                     StepInput* input) {
+  input->reference_now = reference.At(sample - 1);
+  input->reference_next = reference.At(sample + delay_found);
+  input->path = reference.PathAround(sample + delay_found);
+}
+
+// A CSV file has no recorded outputs. The torque of sample k acts late_ns after (k+1) Ts, and a row
+// has the mean over the period before it: that of two rows on, with torques at sampling instants.
 Outcome ReplayCsv(const ReplayOptions& options) {
   if (!options.config.given()) {
     throw InputError(options.source.string() +
                      ": a CSV file needs the config of its rig: add -c FILE");
   }
   const RigConfig config = options.config.Load();
-  const auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr,
-                                 config.sensors, config.loop.period_s());
-  Calibration calibration{};
-  if (!options.calibration.empty()) {
-    const auto read = ReadCalibration(options.calibration, config.sensors);
-    if (!read) throw InputError(options.calibration.string() + ": there is no such file");
-    calibration = *read;
+  const Design design = DesignFor(config);
+  auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr, config.sensors,
+                           config.loop.period_s());
+  const LoopGrid grid(config.loop);
+  const double late_periods =
+      static_cast<double>(grid.late_ns()) / static_cast<double>(grid.period_ns);
+  const int rows_on = 2 + static_cast<int>(std::lround(late_periods));
+  const Calibration calibration = CalibrationOf(options, config);
+  for (StepInput& input : inputs) {
+    input.calibration = calibration;
+    input.acted_late_ns = input.acts_late_ns = grid.late_ns();
   }
-  Replay replay(Fresh(config, DesignFor(config)), true);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
+  std::optional<ReferenceTable> reference;
+  if (!options.experiment.empty()) {
+    reference = ReferenceOf(options, config, design, inputs.front());
+  }
+
+  int delay_found = 0;
+  const StepFunction step = Fresh(config, design);
+  Replay replay(
+      [&](const StepInput& input) {
+        const StepOutput output = step(input);
+        delay_found = int{output.delay_found};
+        return output;
+      },
+      true);
+  const auto rows = static_cast<int>(inputs.size());
+  for (int row = 0; row < rows; ++row) {
     TickRecord record{};
-    record.input = inputs[i];
-    record.input.calibration = calibration;
-    record.output.torque_nm = inputs[std::min(i + 1, inputs.size() - 1)].applied_torque_nm;
+    record.input = inputs[static_cast<std::size_t>(row)];
+    const auto sample = static_cast<int>(record.input.tick);
+    if (reference) {
+      // A torque that acts after the end of the experiment is cut by the stop.
+      if (sample + rows_on > reference->periods() || row + rows_on >= rows) break;
+      FollowReference(*reference, sample, delay_found, &record.input);
+    }
+    const auto acted = static_cast<std::size_t>(std::min(row + rows_on, rows - 1));
+    record.output.torque_nm = inputs[acted].applied_torque_nm;
     replay.Tick(record);
   }
   return {.result = replay.Result(), .other_build = ""};
@@ -211,6 +269,10 @@ void PrintText(const Outcome& outcome) {
 int Run(const ReplayOptions& options) {
   const bool is_run = options.source.extension() != ".csv";
   const Outcome outcome = is_run ? ReplayRun(options) : ReplayCsv(options);
+  if (!is_run && options.experiment.empty()) {
+    std::cerr << "flexarm: without --experiment the reference is rest at zero, so the torques of a "
+                 "run differ\n";
+  }
   if (!outcome.other_build.empty()) {
     std::cerr << "flexarm: this run was recorded by another build: " << outcome.other_build
               << "; this build is " << BuildId() << '\n';
@@ -241,6 +303,9 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
           "--calibration", options->calibration,
           "Calibration of the rig that recorded the CSV file, as written by `flexarm export`")
       ->type_name("FILE");
+  verb->add_option("--experiment", options->experiment,
+                   "Experiment of the CSV file, a TOML file; it begins in the first row")
+      ->type_name("FILE");
   AddJson(verb, &options->json);
   verb->footer(
       "A run log contains its config and gains; its replay must give the same bytes, else the\n"
@@ -249,9 +314,14 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "safety decisions. With -c the loop uses that config instead, and the difference is\n"
       "reported.\n"
       "A CSV file comes from `flexarm export`, or has the columns of the table [csv] of the\n"
-      "config.\n"
+      "config. It has no reference: with --experiment the loop follows that of the experiment and\n"
+      "ends with it, without it the reference is rest at zero. Its torques are means over a "
+      "period:\n"
+      "those of the loop only if they act at sampling instants, not with loop.output = "
+      "\"at_once\".\n"
       "Examples: flexarm replay runs/today.flexarm\n"
-      "          flexarm replay today.csv -c config/thesis-rig.toml");
+      "          flexarm replay today.csv -c config/thesis-rig.toml "
+      "--experiment config/experiments/square-30deg.toml");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }
 

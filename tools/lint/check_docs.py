@@ -2,7 +2,9 @@
 """Checks that what pages and comments name is there. Exit 1 if it is not.
 
 In README.md, docs/ and model/symbols.md:
-test      `Suite.Name` is a C++ test under tests/, `tests/x.sh: text` a script that holds this text
+test      `Suite.Name` is a C++ test under tests/, `tests/x.sh: text` a script that holds this text;
+          PROGRAM --gtest_filter='Suite.Name:Suite.*': the program has a test for each pattern;
+          python3 tests/x_test.py -k TEXT: a test of that file has TEXT in its name
 link      a relative link leads to a file
 path      `controller/law/design.h`, `hal/can*`, `design.h`, `law/`: files and folders are there, a
           header without its folder exactly once, `Name` in `file.h` in that file; words in
@@ -10,6 +12,7 @@ path      `controller/law/design.h`, `hal/can*`, `design.h`, `law/`: files and f
 verb      `flexarm VERB --option`: the programs register both
 key       `table.key` is read by config/ or stands in one of its TOML files
 lane      docs/testing.md has a row for each lane of tools/lanes.sh, with the sets that it runs in
+coverage  docs/thesis-coverage.md numbers its rows from 1 on, and its text counts them by state
 symbol    model/symbols.md: no symbol twice but with another meaning in brackets; the code has the
           names of the columns "in equations", "across files" and "in the code"; and what a display
           line of docs/theory sets (four spaces, then `NAME = ..`) is there, by symbol or name
@@ -31,8 +34,11 @@ from pathlib import Path
 
 import prose
 
-CPP_TEST = re.compile(r"\bTEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
+CPP_TEST = re.compile(r"\bTEST(_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
 NAMED_TEST = re.compile(r"`([A-Z]\w+)\.([A-Z]\w+)`")
+TEST_PROGRAM = re.compile(r"\bflexarm_tests\((\w+)(.*?)\)", re.S)
+FILTERED = re.compile(r"(\w+) --gtest_filter='?([^'\s`]*)'?")
+SELECTED = re.compile(r"python3 (tests/[\w/.-]+\.py) -k (\w+)")
 NAMED_SCRIPT = re.compile(r"`(tests/[\w/.-]+)(?:: ([^`]+))?`")
 LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)[^)]*\)")
 LANES = Path("tools/lanes.sh")
@@ -68,6 +74,11 @@ SAID_COMMAND = re.compile(r"(?:[\"`]\s*|Examples?:\s+|Next:\s+|&& )"
                           r"(flexarm(?:-study)?)((?: +[a-z][\w-]*){1,2})(?![\w./=-])")
 KEY = re.compile(r"([a-z]\w*(?:\.[a-z]\w*)+)(?: = .*)?")
 SET_KEY = re.compile(r"--(?:set|over) ([a-z]\w*(?:\.[a-z]\w*)+)=")
+
+COVERAGE = Path("docs/thesis-coverage.md")
+COVERAGE_STATES = ("works", "differs", "cannot be done")
+COVERAGE_ROW = re.compile(r"^\| (\d+) \|(?:[^|]*\|){2} ([^|:;]*)", re.M)
+COVERAGE_COUNT = re.compile(r"(\d+) rows: (\d+) works, (\d+) differs, (\d+) cannot be done")
 
 LAWS = Path("controller/types/law_table.h")
 LAWS_PAGE = Path("docs/theory/README.md")
@@ -118,7 +129,24 @@ class Tree:
 
     @functools.cached_property
     def tests(self):
-        return {test for _, text in self.code("tests/", ".cpp") for test in CPP_TEST.findall(text)}
+        return {(suite, name) for _, text in self.code("tests/", ".cpp")
+                for _, suite, name in CPP_TEST.findall(text)}
+
+    @functools.cached_property
+    def test_programs(self):
+        """Of each test program, the names of its tests; PREFIX/Suite.Name/NUMBER if they have
+        parameters."""
+        found = {}
+        for path in self.files:
+            if path.name != "CMakeLists.txt" or not self.name(path).startswith("tests/"):
+                continue
+            for program, body in TEST_PROGRAM.findall(re.sub(r"#.*", "", self.texts[path])):
+                sources = [path.parent / name for name in re.findall(r"[\w/.-]+\.cpp", body)]
+                found[program] = [
+                    f"PREFIX/{suite}.{name}/NUMBER" if kind == "_P" else f"{suite}.{name}"
+                    for source in sources
+                    for kind, suite, name in CPP_TEST.findall(self.texts.get(source, ""))]
+        return found
 
     @functools.cached_property
     def headings(self):
@@ -318,6 +346,22 @@ def check_keys(tree, text, in_block):
                 yield "key", f"{key}: config/ does not know {part}"
 
 
+def check_tests(tree, text, _in_block):
+    """Yields (rule, message) of the tests that a piece of code of a page runs."""
+    for program, patterns in FILTERED.findall(text):
+        if program not in tree.test_programs:
+            yield "test", f"there is no test program {program}"
+            continue
+        for pattern in patterns.split(":"):
+            if not any(fnmatch(test, pattern) for test in tree.test_programs[program]):
+                yield "test", f"{program} has no test {pattern}"
+    for script, words in SELECTED.findall(text):
+        target = tree.root / script
+        if target.exists() and not re.search(rf"def test_\w*{words}|def {words}",
+                                             prose.read(target)):
+            yield "test", f"{script} has no test with {words} in its name"
+
+
 def check_page(tree, path, text):
     """Yields (position, rule, message) of what a page names."""
     for match in NAMED_TEST.finditer(text):
@@ -337,7 +381,7 @@ def check_page(tree, path, text):
             if path_there.name == file and not re.search(rf"\b{name.split('::')[-1]}\b", code):
                 yield match.start(), "path", f"{file} does not have {name}"
     for position, span, in_block in prose.spans(text):
-        for check in (check_commands, check_paths, check_keys):
+        for check in (check_commands, check_paths, check_keys, check_tests):
             for rule, message in check(tree, span, in_block):
                 yield position, rule, message
 
@@ -437,6 +481,26 @@ def check_lanes(root):
         yield Finding(LANES_PAGE, 1, "lane", f"there is no row for {lane}")
 
 
+def check_coverage(root):
+    """Yields where the numbers of the rows of the coverage page are not those of its text."""
+    page = root / COVERAGE
+    if not page.exists():
+        return
+    text = page.read_text(encoding="utf-8")
+    rows = COVERAGE_ROW.findall(text)
+    if [int(number) for number, _ in rows] != list(range(1, len(rows) + 1)):
+        yield Finding(COVERAGE, 1, "coverage", "the rows are not numbered 1, 2, 3, ..")
+    states = [state.strip() for _, state in rows]
+    for number, state in zip((number for number, _ in rows), states):
+        if state not in COVERAGE_STATES:
+            yield Finding(COVERAGE, 1, "coverage", f"row {number} has the state '{state}'")
+    counts = (len(rows), *map(states.count, COVERAGE_STATES))
+    said = COVERAGE_COUNT.search(text)
+    if said is None or tuple(map(int, said.groups())) != counts:
+        yield Finding(COVERAGE, 1, "coverage", "it has {} rows: {} works, {} differs, "
+                      "{} cannot be done".format(*counts))
+
+
 def check_laws(root):
     """Yields where the table of laws and the page about it differ."""
     table, page = root / LAWS, root / LAWS_PAGE
@@ -469,7 +533,7 @@ def check_file(tree, path):
 def check_tree(root):
     """All findings in the tree under `root`, as FILE:LINE: text."""
     tree = Tree(root.resolve())
-    findings = [*check_lanes(root), *check_laws(root), *check_symbols(tree)]
+    findings = [*check_lanes(root), *check_laws(root), *check_coverage(root), *check_symbols(tree)]
     for path in (*tree.pages, *tree.files):
         for position, rule, message in sorted(set(check_file(tree, path))):
             line = prose.line_of(tree.texts[path], position)
