@@ -6,7 +6,7 @@ import shutil
 import sqlite3
 import unittest
 
-from program import HIL, ProgramTest, rows, ticks
+from program import HIL, SQUARE, ProgramTest, rows, ticks
 
 
 class Simulate(ProgramTest):
@@ -126,6 +126,35 @@ class Replay(ProgramTest):
         replay = self.flexarm_json("replay", table, "-c", HIL)
         self.assertIsNone(replay["bit_exact"])
         self.assertGreaterEqual(replay["ticks"], 300)
+        self.assertIsNone(replay["max_torque_difference_nm"], "the file has no reference")
+        text = self.flexarm("replay", table, "-c", HIL).stdout
+        self.assertRegex(text, "max torque difference +not compared: .*add --experiment")
+
+    def replay_of_csv(self, run, *options):
+        table = run.with_suffix(".csv")
+        self.flexarm("export", run, "-o", table)
+        return self.flexarm_json("replay", table, "-c", HIL, *options, "--experiment", SQUARE)
+
+    # The file has the mean of the torque over a period, so the sum rounds: 4e-15 N m measured.
+    # Without the reference the difference is 38 N m, with one that is a sample off 6 N m.
+    def test_with_the_experiment_a_csv_file_gives_the_torques_of_the_run(self):
+        for number, options in enumerate(((), ("--set", "loop.output=at_once"),
+                                          ("--set", "loop.actuation_delay_ms=7.0"))):
+            with self.subTest(options=options):
+                run, _ = self.simulate(f"{number}.flexarm", *options)
+                replay = self.replay_of_csv(run, *options)
+                self.assertEqual(replay["ticks"], 300)
+                self.assertEqual(replay["ticks_after_experiment"], 6)
+                self.assertLess(max(replay["max_torque_difference_nm"]), 1e-13)
+                self.assertIsNone(replay["first_different_tick"])
+
+    def test_a_csv_file_shows_what_another_law_would_have_asked_for(self):
+        replay = self.replay_of_csv(self.run_file, "--set", "controller.alpha=2.0")
+        self.assertGreater(replay["max_torque_difference_nm"][0], 0.1)
+
+    def test_an_experiment_is_for_csv_files_only(self):
+        self.assert_refused(self.run_program("flexarm", "replay", self.run_file, "--experiment",
+                                             SQUARE), "--experiment is for CSV files only")
 
     def test_draws_a_picture(self):
         picture = self.folder / "run.png"

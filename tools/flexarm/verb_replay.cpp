@@ -4,19 +4,18 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "controller/commissioning/calibration_file.h"
 #include "controller/design/design_json.h"
 #include "controller/design/run_design.h"
 #include "controller/files/external_json.h"
 #include "controller/law/design.h"
 #include "controller/runlog/build_info.h"
-#include "controller/runlog/csv_import.h"
 #include "controller/runlog/errors.h"
 #include "controller/runlog/replay.h"
 #include "controller/step/control_step.h"
 #include "estimator/ideal_observer.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
+#include "tools/flexarm/csv_replay.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -25,7 +24,7 @@ namespace {
 struct ReplayOptions {
   std::filesystem::path source;
   ConfigOptions config;
-  std::filesystem::path calibration;  // empty: none
+  std::filesystem::path calibration, experiment;  // empty: none
   bool json = false;
 };
 
@@ -36,8 +35,10 @@ constexpr double kEstimateTolerance = 1e-6;
 
 struct Outcome {
   ReplayResult result;
-  std::string other_build;   // the recorded build id, if it is not this one's
-  bool digest_holds = true;  // of a log
+  std::string other_build;            // the recorded build id, if it is not this one's
+  bool digest_holds = true;           // of a log
+  bool has_reference = true;          // without one, torques cannot be compared
+  std::int64_t after_experiment = 0;  // samples of a CSV file that were left out
 
   bool other_processor() const {
     return !other_build.empty() && ProcessorOf(other_build) != ProcessorOf(BuildId());
@@ -92,6 +93,9 @@ Outcome ReplayRun(const ReplayOptions& options) {
   if (!options.calibration.empty()) {
     throw InputError("--calibration is for CSV files only: a run log contains its own calibration");
   }
+  if (!options.experiment.empty()) {
+    throw InputError("--experiment is for CSV files only: a run log contains its own reference");
+  }
   RunReader reader(options.source);
   const RigConfig own = ConfigOf(reader);
   const bool asks_for_other = options.config.given() || !options.config.overrides.empty();
@@ -117,30 +121,19 @@ Outcome ReplayRun(const ReplayOptions& options) {
           .digest_holds = reader.DigestHolds()};
 }
 
-// A CSV file has no recorded outputs. The torque applied up to a row was asked for one row before.
-Outcome ReplayCsv(const ReplayOptions& options) {
+Outcome ReplayTable(const ReplayOptions& options) {
   if (!options.config.given()) {
     throw InputError(options.source.string() +
                      ": a CSV file needs the config of its rig: add -c FILE");
   }
-  const RigConfig config = options.config.Load();
-  const auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr,
-                                 config.sensors, config.loop.period_s());
-  Calibration calibration{};
-  if (!options.calibration.empty()) {
-    const auto read = ReadCalibration(options.calibration, config.sensors);
-    if (!read) throw InputError(options.calibration.string() + ": there is no such file");
-    calibration = *read;
-  }
-  Replay replay(Fresh(config, DesignFor(config)), true);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    TickRecord record{};
-    record.input = inputs[i];
-    record.input.calibration = calibration;
-    record.output.torque_nm = inputs[std::min(i + 1, inputs.size() - 1)].applied_torque_nm;
-    replay.Tick(record);
-  }
-  return {.result = replay.Result(), .other_build = ""};
+  CsvReplayResult replayed = ReplayCsv({.source = options.source,
+                                        .config = options.config.Load(),
+                                        .calibration = options.calibration,
+                                        .experiment = options.experiment});
+  return {.result = std::move(replayed.result),
+          .other_build = "",
+          .has_reference = replayed.left_out.has_value(),
+          .after_experiment = replayed.left_out.value_or(0)};
 }
 
 template <typename T>
@@ -154,8 +147,12 @@ nlohmann::ordered_json ToJson(const Outcome& outcome) {
   json["ticks"] = result.ticks;
   json["ticks_before_reset"] = result.ticks_before_reset;
   json["bit_exact"] = OrNull(result.bit_exact);
-  json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
-                                      NumberOrNull(result.max_torque_difference_nm[1])};
+  json["ticks_after_experiment"] = outcome.after_experiment;
+  json["max_torque_difference_nm"] = nullptr;
+  if (outcome.has_reference) {
+    json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
+                                        NumberOrNull(result.max_torque_difference_nm[1])};
+  }
   json["estimate_difference"] =
       result.estimate_difference ? NumberOrNull(*result.estimate_difference) : nullptr;
   json["hub_innovation_rms_rad"] = {NumberOrNull(result.hub_innovation_rms_rad[0]),
@@ -185,6 +182,14 @@ std::string EstimateText(const Outcome& outcome) {
   return text.str();
 }
 
+std::string TorqueText(const Outcome& outcome) {
+  if (!outcome.has_reference) return "not compared: a CSV file has no reference, add --experiment";
+  std::ostringstream text;
+  text << outcome.result.max_torque_difference_nm[0] << ", "
+       << outcome.result.max_torque_difference_nm[1] << " N m";
+  return text.str();
+}
+
 void PrintText(const Outcome& outcome) {
   const ReplayResult& result = outcome.result;
   std::cout << "ticks                     " << result.ticks << '\n';
@@ -192,9 +197,11 @@ void PrintText(const Outcome& outcome) {
     std::cout << "before the first reset    " << result.ticks_before_reset
               << ", not compared: the log of a trip outside a run begins in the middle\n";
   }
+  if (outcome.after_experiment > 0) {
+    std::cout << "after the experiment      " << outcome.after_experiment << ", left out\n";
+  }
   std::cout << "bit exact                 " << Word(result.bit_exact) << '\n'
-            << "max torque difference     " << result.max_torque_difference_nm[0] << ", "
-            << result.max_torque_difference_nm[1] << " N m\n"
+            << "max torque difference     " << TorqueText(outcome) << '\n'
             << "estimate difference       " << EstimateText(outcome) << '\n'
             << "hub innovations, rms      " << result.hub_innovation_rms_rad[0] << ", "
             << result.hub_innovation_rms_rad[1] << " rad\n"
@@ -210,7 +217,7 @@ void PrintText(const Outcome& outcome) {
 
 int Run(const ReplayOptions& options) {
   const bool is_run = options.source.extension() != ".csv";
-  const Outcome outcome = is_run ? ReplayRun(options) : ReplayCsv(options);
+  const Outcome outcome = is_run ? ReplayRun(options) : ReplayTable(options);
   if (!outcome.other_build.empty()) {
     std::cerr << "flexarm: this run was recorded by another build: " << outcome.other_build
               << "; this build is " << BuildId() << '\n';
@@ -241,6 +248,9 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
           "--calibration", options->calibration,
           "Calibration of the rig that recorded the CSV file, as written by `flexarm export`")
       ->type_name("FILE");
+  verb->add_option("--experiment", options->experiment,
+                   "Experiment of the run in the CSV file, whose first row is the run's first")
+      ->type_name("FILE");
   AddJson(verb, &options->json);
   verb->footer(
       "A run log contains its config and gains; its replay must give the same bytes, else the\n"
@@ -249,9 +259,11 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "safety decisions. With -c the loop uses that config instead, and the difference is\n"
       "reported.\n"
       "A CSV file comes from `flexarm export`, or has the columns of the table [csv] of the\n"
-      "config.\n"
+      "config. It has no reference of the law: with --experiment the law follows that one and its\n"
+      "torques are compared with those of the file; without, the estimator alone says something.\n"
       "Examples: flexarm replay runs/today.flexarm\n"
-      "          flexarm replay today.csv -c config/thesis-rig.toml");
+      "          flexarm replay today.csv -c config/hil.toml \\\n"
+      "            --experiment config/experiments/square-30deg.toml");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }
 
