@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/tasks/follow_reference.h"
+
 namespace flexarm {
 
 ControlTask::ControlTask(const LoopConfig& loop, int window_periods, ControlStep* step,
@@ -117,11 +119,11 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
   input.reset = reset_ ? 1 : 0;
   if (reset_) delay_found_ = 0;
   reset_ = false;
-  if (TorqueAllowed(state)) FollowReference(state, &input);
+  if (TorqueAllowed(state)) Follow(state, &input);
   return input;
 }
 
-void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept {
+void ControlTask::Follow(SafetyState state, StepInput* input) noexcept {
   if (experiment_ == nullptr) {  // no reference: end at once, at the hub angles
     input->reference_now.x_m[0] = input->reference_next.x_m[0] = hub_angle_rad_[0];
     input->reference_now.x_m[1] = input->reference_next.x_m[1] = hub_angle_rad_[1];
@@ -137,12 +139,9 @@ void ControlTask::FollowReference(SafetyState state, StepInput* input) noexcept 
   const ReferenceTable& reference = experiment_->reference;
   const int last = reference.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
-  input->reference_now = ReferenceAtSample(reference);
   // In open loop each torque of the sequence is put out once, so the delay found does not shift it.
   const int acts = input->mode == LoopMode::kFollow ? sample_ + delay_found_ : sample_;
-  input->reference_next = reference.At(acts);
-  input->path = reference.PathAround(acts);
-  input->reference_ended = sample_ >= last ? 1 : 0;
+  FollowReference(reference, grid_, sample_, acts, input);
   if (PlansAhead(*input)) FollowPlan(input);
 }
 
@@ -157,23 +156,6 @@ void ControlTask::FollowPlan(StepInput* input) noexcept {
   if (!plan) return;
   input->plan = *plan;
   input->planned = 1;
-}
-
-// The reference at k Ts. It lies between samples of the reference unless torques act at sampling
-// instants; linear interpolation.
-ReferenceSample ControlTask::ReferenceAtSample(const ReferenceTable& reference) const noexcept {
-  const std::int64_t late_ns = grid_.late_ns();
-  std::int64_t back = 1 + late_ns / grid_.period_ns;  // whole periods, rounded up
-  if (late_ns % grid_.period_ns > 0) ++back;
-  const std::int64_t beyond_ns = (back - 1) * grid_.period_ns - late_ns;
-  const int k = sample_ - static_cast<int>(back);
-  ReferenceSample now = reference.At(k);
-  if (beyond_ns == 0) return now;
-  const double share = static_cast<double>(beyond_ns) / static_cast<double>(grid_.period_ns);
-  const ReferenceSample& after = reference.At(k + 1);
-  for (std::size_t i = 0; i < now.x_m.size(); ++i)
-    now.x_m[i] += share * (after.x_m[i] - now.x_m[i]);
-  return now;
 }
 
 void ControlTask::Publish(const Activation& activation, const StepInput& input,

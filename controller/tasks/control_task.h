@@ -63,10 +63,9 @@ class ControlTask final : public Task {
   void FollowState(const Permit& permit) noexcept;
   void StartRun(const Permit& permit) noexcept;
   void TakeCalibration() noexcept;
-  void FollowReference(SafetyState state, StepInput* input) noexcept;
+  void Follow(SafetyState state, StepInput* input) noexcept;
   void FollowPlan(StepInput* input) noexcept;
   bool PlansAhead(const StepInput& input) const noexcept;
-  ReferenceSample ReferenceAtSample(const ReferenceTable& reference) const noexcept;
   StepInput Gather(const Activation& activation, const FramePacket& packet,
                    SafetyState state) noexcept;
   void Publish(const Activation& activation, const StepInput& input,

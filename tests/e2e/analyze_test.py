@@ -11,6 +11,7 @@ import unittest
 from program import ROOT, ProgramTest
 
 RIG = ROOT / "config/thesis-rig.toml"
+QUANSER = ROOT / "config/quanser-2dsfl.toml"
 REFERENCE = ("-c", RIG, "--set", "arm.link1_tip_inertia=motor")  # the basis of the reference table
 
 # Two unit masses between walls: springs 4 to the walls, 2.5 between. Roots 2 and 3 rad/s.
@@ -227,6 +228,16 @@ class Torsion(ProgramTest):
         self.assert_refused(self.run_program("flexarm", "analyze", "torsion", "-c", RIG,
                                              "--poisson", 0.5), "--poisson")
 
+    def test_sections_that_are_no_rectangles_are_refused(self):
+        for config, said in ((QUANSER, "link1.section[0] is no solid rectangle"),
+                             (ROOT / "config/published/space-manipulator-2007.toml",
+                              "link1.section[0] is no solid rectangle"),
+                             (ROOT / "config/published/flexible-forearm-1990.toml",
+                              "link1.section[0] has no area_m2")):
+            with self.subTest(config.name):
+                self.assert_refused(self.run_program("flexarm", "analyze", "torsion", "-c", config),
+                                    config.name, said)
+
 
 class Check(ProgramTest):
     """The committed page equals the page that the program writes: the same words and verdicts, and
@@ -244,6 +255,20 @@ class Check(ProgramTest):
         self.flexarm("analyze", "check", "-c", RIG, "-o", page)
         self.compare((ROOT / "docs/thesis-check.md").read_text(encoding="utf-8"),
                      page.read_text(encoding="utf-8"))
+
+    def test_a_rig_of_other_links_and_fewer_gauges_has_a_page_that_says_what_it_lacks(self):
+        rows = self.flexarm_json("analyze", "check", "-c", QUANSER)["statements"]
+        page = (ROOT / "docs/thesis-check.md").read_text(encoding="utf-8")
+        for row in rows:
+            self.assertIn(f"| {row['section']} | {row['thesis']} |", page)
+        self.assertEqual(len(rows), len(re.findall(r"^\| [3-8B]", page, re.MULTILINE)))
+        lacking = [row for row in rows if row["model"].startswith("not for this rig: ")]
+        self.assertEqual({row["verdict"] for row in lacking}, {"not testable"})
+        reasons = " ".join(row["model"] for row in lacking)
+        for said in ("estimator.modes_per_link", "controller.nominal", "Table 2", "no solid"):
+            self.assertIn(said, reasons)
+        self.assertEqual(len(lacking), 10)
+        self.assertFalse([row for row in rows if "no finite number" in row["model"]])
 
     def test_the_comparison_sees_another_verdict_and_another_number(self):
         page = (ROOT / "docs/thesis-check.md").read_text(encoding="utf-8")

@@ -1,6 +1,7 @@
 #include "tools/analysis/reduction_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <stdexcept>
@@ -145,6 +146,15 @@ void PrintGramians(const OrderedJson& gramians) {
       gramians["states_within_one_percent"].get<int>());
 }
 
+// Without damping no state decays, so Gramians have no shares.
+void PrintShare(double percent) {
+  if (std::isfinite(percent)) {
+    std::printf("  %8.4f", percent);
+  } else {
+    std::printf("  %8s", "-");
+  }
+}
+
 void PrintLinks(const OrderedJson& json) {
   std::printf("elbow %g deg, rates %g and %g rad/s; scaling of phi: %s\n",
               json["theta2_deg"].get<double>(), json["theta1_rate_rad_s"].get<double>(),
@@ -156,7 +166,7 @@ void PrintLinks(const OrderedJson& json) {
   for (std::size_t k = 0; k < modes; ++k) {
     std::printf("  %2zu", k + 1);
     for (const char* kind : {"epsilon_percent", "gramian_epsilon_percent"}) {
-      for (const OrderedJson& link : links) std::printf("  %8.4f", link[kind][k].get<double>());
+      for (const OrderedJson& link : links) PrintShare(link[kind][k].get<double>());
     }
     std::printf("\n");
   }

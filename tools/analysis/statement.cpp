@@ -18,6 +18,11 @@ std::string Cell(const std::string& text) {
 
 }  // namespace
 
+Statement NotForThisRig(const std::string& section, const std::string& thesis,
+                        const std::string& lacks) {
+  return {section, thesis, "not for this rig: " + lacks, Verdict::kNotTested};
+}
+
 const char* ToString(Verdict verdict) {
   switch (verdict) {
     case Verdict::kHolds:

@@ -26,6 +26,10 @@ struct Statement {
   Verdict verdict;
 };
 
+/// A statement that cannot be asked about a rig: not testable, with what the rig lacks.
+Statement NotForThisRig(const std::string& section, const std::string& thesis,
+                        const std::string& lacks);
+
 /// "holds", "holds in part", "depends on the excitation", "does not hold", "not testable".
 const char* ToString(Verdict verdict);
 

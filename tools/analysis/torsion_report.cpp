@@ -1,10 +1,12 @@
 #include "tools/analysis/torsion_report.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "model/beam/link_modes.h"
 #include "model/beam_methods/link_torsion.h"
 #include "model/units.h"
+#include "tools/analysis/statement.h"
 
 namespace flexarm {
 namespace {
@@ -60,7 +62,31 @@ void AddLink2(const ArmParameters& arm, const TwistingLink& shaft, TorsionEffect
 
 }  // namespace
 
+std::string LacksRectangles(const ArmParameters& arm) {
+  constexpr double kSame = 0.1;
+  for (std::size_t i = 0; i < arm.link.size(); ++i) {
+    const std::vector<BeamSection>& section = arm.link[i].section;
+    for (std::size_t j = 0; j < section.size(); ++j) {
+      const std::string name =
+          "link" + std::to_string(i + 1) + ".section[" + std::to_string(j) + "]";
+      if (!section[j].has_cross_section) {
+        return name + " has no area_m2 and second_moment_m4, from which torsion follows";
+      }
+      const double thickness_m = RectangularSection(section[j]).thickness_m;
+      if (std::abs(thickness_m / (2.0 * section[j].half_thickness_m) - 1.0) <= kSame) continue;
+      return name + " is no solid rectangle, of which alone torsion is computed: area_m2 and " +
+             "second_moment_m4 make it " + Figure(thickness_m / kMm) +
+             " mm thick, half_thickness_m " + Figure(2.0 * section[j].half_thickness_m / kMm) +
+             " mm";
+    }
+  }
+  return "";
+}
+
 TorsionEffect TorsionOf(const ArmParameters& arm, const TorsionCase& of) {
+  if (const std::string lacks = LacksRectangles(arm); !lacks.empty()) {
+    throw std::invalid_argument(lacks);
+  }
   TorsionEffect effect{};
   effect.of = of;
   const TwistingLink shaft1(arm.link[0].section, of.poisson);

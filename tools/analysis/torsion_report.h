@@ -2,6 +2,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "model/parameters/arm_parameters.h"
@@ -46,7 +47,12 @@ struct TorsionEffect {
   double twist_deg_per_mm;         ///< in the lowest mode, by the tip's deflection
 };
 
-/// @throws std::invalid_argument if Poisson's ratio is outside -1 .. 0.5
+/// Why the torsion of a link cannot be told: a section without area and second moment, or whose
+/// thickness by them is not that of half_thickness_m, to 10 %, so that it is no solid rectangle.
+/// Empty: it can.
+std::string LacksRectangles(const ArmParameters& arm);
+
+/// @throws std::invalid_argument if Poisson's ratio is outside -1 .. 0.5, or with LacksRectangles
 TorsionEffect TorsionOf(const ArmParameters& arm, const TorsionCase& of = {});
 
 nlohmann::ordered_json TorsionJson(const TorsionEffect& effect);

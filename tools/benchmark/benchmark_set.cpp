@@ -39,7 +39,7 @@ BenchmarkKind BenchmarkKindNamed(const std::string& name) {
 }
 
 std::vector<std::string> CommandLaws() {
-  return LawNames([](const LawRow& law) { return !law.is_scheduled && !law.settles; });
+  return LawNames([](const LawRow& law) { return !law.is_scheduled; });
 }
 
 std::vector<std::string> PayloadLaws() {

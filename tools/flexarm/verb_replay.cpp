@@ -4,22 +4,18 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "controller/commissioning/calibration_file.h"
 #include "controller/design/design_json.h"
 #include "controller/design/run_design.h"
 #include "controller/files/external_json.h"
 #include "controller/law/design.h"
-#include "controller/reference/motion_limits.h"
-#include "controller/reference/reference.h"
 #include "controller/runlog/build_info.h"
-#include "controller/runlog/csv_import.h"
 #include "controller/runlog/errors.h"
 #include "controller/runlog/replay.h"
 #include "controller/step/control_step.h"
-#include "controller/types/loop_grid.h"
 #include "estimator/ideal_observer.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
+#include "tools/flexarm/csv_replay.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -28,8 +24,7 @@ namespace {
 struct ReplayOptions {
   std::filesystem::path source;
   ConfigOptions config;
-  std::filesystem::path calibration;  // empty: none
-  std::filesystem::path experiment;   // of a CSV file; empty: rest at zero
+  std::filesystem::path calibration, experiment;  // empty: none
   bool json = false;
 };
 
@@ -40,8 +35,10 @@ constexpr double kEstimateTolerance = 1e-6;
 
 struct Outcome {
   ReplayResult result;
-  std::string other_build;   // the recorded build id, if it is not this one's
-  bool digest_holds = true;  // of a log
+  std::string other_build;            // the recorded build id, if it is not this one's
+  bool digest_holds = true;           // of a log
+  bool has_reference = true;          // without one, torques cannot be compared
+  std::int64_t after_experiment = 0;  // samples of a CSV file that were left out
 
   bool other_processor() const {
     return !other_build.empty() && ProcessorOf(other_build) != ProcessorOf(BuildId());
@@ -124,81 +121,19 @@ Outcome ReplayRun(const ReplayOptions& options) {
           .digest_holds = reader.DigestHolds()};
 }
 
-Calibration CalibrationOf(const ReplayOptions& options, const RigConfig& config) {
-  if (options.calibration.empty()) return Calibration{};
-  const auto read = ReadCalibration(options.calibration, config.sensors);
-  if (!read) throw InputError(options.calibration.string() + ": there is no such file");
-  return *read;
-}
-
-/// The reference of the experiment that a CSV file has in its rows, from the first one on.
-ReferenceTable ReferenceOf(const ReplayOptions& options, const RigConfig& config,
-                           const Design& design, const StepInput& first) {
-  const StepOutput start = ControlStep(config, design).Step(first);
-  return {LoadExperiment(options.experiment),
-          design,
-          config.loop.period_s(),
-          {start.angle_rad[0], start.angle_rad[1]},
-          MotionLimitsOf(config)};
-}
-
-// As ControlTask::FollowReference, without plans.
-void FollowReference(const ReferenceTable& reference, int sample, int delay_found,
-                     StepInput* input) {
-  input->reference_now = reference.At(sample - 1);
-  input->reference_next = reference.At(sample + delay_found);
-  input->path = reference.PathAround(sample + delay_found);
-}
-
-// A CSV file has no recorded outputs. The torque of sample k acts late_ns after (k+1) Ts, and a row
-// has the mean over the period before it: that of two rows on, with torques at sampling instants.
-Outcome ReplayCsv(const ReplayOptions& options) {
+Outcome ReplayTable(const ReplayOptions& options) {
   if (!options.config.given()) {
     throw InputError(options.source.string() +
                      ": a CSV file needs the config of its rig: add -c FILE");
   }
-  const RigConfig config = options.config.Load();
-  const Design design = DesignFor(config);
-  auto inputs = ReadAnyCsv(options.source, config.csv ? &*config.csv : nullptr, config.sensors,
-                           config.loop.period_s());
-  const LoopGrid grid(config.loop);
-  const double late_periods =
-      static_cast<double>(grid.late_ns()) / static_cast<double>(grid.period_ns);
-  const int rows_on = 2 + static_cast<int>(std::lround(late_periods));
-  const Calibration calibration = CalibrationOf(options, config);
-  for (StepInput& input : inputs) {
-    input.calibration = calibration;
-    input.acted_late_ns = input.acts_late_ns = grid.late_ns();
-  }
-  std::optional<ReferenceTable> reference;
-  if (!options.experiment.empty()) {
-    reference = ReferenceOf(options, config, design, inputs.front());
-  }
-
-  int delay_found = 0;
-  const StepFunction step = Fresh(config, design);
-  Replay replay(
-      [&](const StepInput& input) {
-        const StepOutput output = step(input);
-        delay_found = int{output.delay_found};
-        return output;
-      },
-      true);
-  const auto rows = static_cast<int>(inputs.size());
-  for (int row = 0; row < rows; ++row) {
-    TickRecord record{};
-    record.input = inputs[static_cast<std::size_t>(row)];
-    const auto sample = static_cast<int>(record.input.tick);
-    if (reference) {
-      // A torque that acts after the end of the experiment is cut by the stop.
-      if (sample + rows_on > reference->periods() || row + rows_on >= rows) break;
-      FollowReference(*reference, sample, delay_found, &record.input);
-    }
-    const auto acted = static_cast<std::size_t>(std::min(row + rows_on, rows - 1));
-    record.output.torque_nm = inputs[acted].applied_torque_nm;
-    replay.Tick(record);
-  }
-  return {.result = replay.Result(), .other_build = ""};
+  CsvReplayResult replayed = ReplayCsv({.source = options.source,
+                                        .config = options.config.Load(),
+                                        .calibration = options.calibration,
+                                        .experiment = options.experiment});
+  return {.result = std::move(replayed.result),
+          .other_build = "",
+          .has_reference = replayed.left_out.has_value(),
+          .after_experiment = replayed.left_out.value_or(0)};
 }
 
 template <typename T>
@@ -212,8 +147,12 @@ nlohmann::ordered_json ToJson(const Outcome& outcome) {
   json["ticks"] = result.ticks;
   json["ticks_before_reset"] = result.ticks_before_reset;
   json["bit_exact"] = OrNull(result.bit_exact);
-  json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
-                                      NumberOrNull(result.max_torque_difference_nm[1])};
+  json["ticks_after_experiment"] = outcome.after_experiment;
+  json["max_torque_difference_nm"] = nullptr;
+  if (outcome.has_reference) {
+    json["max_torque_difference_nm"] = {NumberOrNull(result.max_torque_difference_nm[0]),
+                                        NumberOrNull(result.max_torque_difference_nm[1])};
+  }
   json["estimate_difference"] =
       result.estimate_difference ? NumberOrNull(*result.estimate_difference) : nullptr;
   json["hub_innovation_rms_rad"] = {NumberOrNull(result.hub_innovation_rms_rad[0]),
@@ -243,6 +182,14 @@ std::string EstimateText(const Outcome& outcome) {
   return text.str();
 }
 
+std::string TorqueText(const Outcome& outcome) {
+  if (!outcome.has_reference) return "not compared: a CSV file has no reference, add --experiment";
+  std::ostringstream text;
+  text << outcome.result.max_torque_difference_nm[0] << ", "
+       << outcome.result.max_torque_difference_nm[1] << " N m";
+  return text.str();
+}
+
 void PrintText(const Outcome& outcome) {
   const ReplayResult& result = outcome.result;
   std::cout << "ticks                     " << result.ticks << '\n';
@@ -250,9 +197,11 @@ void PrintText(const Outcome& outcome) {
     std::cout << "before the first reset    " << result.ticks_before_reset
               << ", not compared: the log of a trip outside a run begins in the middle\n";
   }
+  if (outcome.after_experiment > 0) {
+    std::cout << "after the experiment      " << outcome.after_experiment << ", left out\n";
+  }
   std::cout << "bit exact                 " << Word(result.bit_exact) << '\n'
-            << "max torque difference     " << result.max_torque_difference_nm[0] << ", "
-            << result.max_torque_difference_nm[1] << " N m\n"
+            << "max torque difference     " << TorqueText(outcome) << '\n'
             << "estimate difference       " << EstimateText(outcome) << '\n'
             << "hub innovations, rms      " << result.hub_innovation_rms_rad[0] << ", "
             << result.hub_innovation_rms_rad[1] << " rad\n"
@@ -268,11 +217,7 @@ void PrintText(const Outcome& outcome) {
 
 int Run(const ReplayOptions& options) {
   const bool is_run = options.source.extension() != ".csv";
-  const Outcome outcome = is_run ? ReplayRun(options) : ReplayCsv(options);
-  if (!is_run && options.experiment.empty()) {
-    std::cerr << "flexarm: without --experiment the reference is rest at zero, so the torques of a "
-                 "run differ\n";
-  }
+  const Outcome outcome = is_run ? ReplayRun(options) : ReplayTable(options);
   if (!outcome.other_build.empty()) {
     std::cerr << "flexarm: this run was recorded by another build: " << outcome.other_build
               << "; this build is " << BuildId() << '\n';
@@ -304,7 +249,7 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
           "Calibration of the rig that recorded the CSV file, as written by `flexarm export`")
       ->type_name("FILE");
   verb->add_option("--experiment", options->experiment,
-                   "Experiment of the CSV file, a TOML file; it begins in the first row")
+                   "Experiment of the run in the CSV file, whose first row is the run's first")
       ->type_name("FILE");
   AddJson(verb, &options->json);
   verb->footer(
@@ -314,14 +259,11 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "safety decisions. With -c the loop uses that config instead, and the difference is\n"
       "reported.\n"
       "A CSV file comes from `flexarm export`, or has the columns of the table [csv] of the\n"
-      "config. It has no reference: with --experiment the loop follows that of the experiment and\n"
-      "ends with it, without it the reference is rest at zero. Its torques are means over a "
-      "period:\n"
-      "those of the loop only if they act at sampling instants, not with loop.output = "
-      "\"at_once\".\n"
+      "config. It has no reference of the law: with --experiment the law follows that one and its\n"
+      "torques are compared with those of the file; without, the estimator alone says something.\n"
       "Examples: flexarm replay runs/today.flexarm\n"
-      "          flexarm replay today.csv -c config/thesis-rig.toml "
-      "--experiment config/experiments/square-30deg.toml");
+      "          flexarm replay today.csv -c config/hil.toml \\\n"
+      "            --experiment config/experiments/square-30deg.toml");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }
 

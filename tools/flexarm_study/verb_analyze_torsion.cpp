@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/files/external_json.h"
+#include "controller/files/input_error.h"
 #include "tools/analysis/torsion_report.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
@@ -70,13 +71,17 @@ void RegisterAnalyzeTorsion(CLI::App& analyze, Exit&) {
       ->capture_default_str();
   AddJson(verb, &options->json);
   verb->footer(
-      "Sections are taken as solid rectangles whose sides follow from area and second moment. The\n"
+      "Sections must be solid rectangles, whose sides follow from area and second moment. The\n"
       "links are clamped at their roots; link 2 is rigid where link 1 twists under it. Neither "
       "the\n"
       "simulated arm nor the controller's model has torsion.\n"
       "Example: flexarm analyze torsion -c config/thesis-rig.toml --theta2-deg 90");
   verb->callback([options] {
-    const TorsionEffect effect = TorsionOf(options->config.Load().arm, options->of);
+    const ArmParameters arm = options->config.Load().arm;
+    if (const std::string lacks = LacksRectangles(arm); !lacks.empty()) {
+      throw InputError(options->config.file.string() + ": " + lacks);
+    }
+    const TorsionEffect effect = TorsionOf(arm, options->of);
     if (options->json) {
       std::cout << PrintedJson(TorsionJson(effect)) << '\n';
     } else {

@@ -77,7 +77,7 @@ LAYERS = {
                     "tools/thesis controller/files",
     "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
-                     "controller/reference controller/step controller/runlog controller/commissioning "
+                     "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config tools/runs "
                      "tools/plot tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "

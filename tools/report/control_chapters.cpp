@@ -215,7 +215,7 @@ void Chapter7(ReportContext* context, HtmlPage* page) {
       std::to_string(ControlStudy::kSeeds) +
       " seeds; settling within 15 mm, motion of the tip in the last second.");
   const ControlStudy study(context->config, 1,
-                           ProgressBar("runs of chapter 7", ControlStudy::Runs()));
+                           ProgressBar("runs of chapter 7", ControlStudy::Runs(context->config)));
   AlphaAndVartheta(study, *context, page);
   PayloadFigures(*context, page);
   PayloadTable(study, page);

@@ -7,6 +7,7 @@
 #include "model/math/dense_decompositions.h"
 #include "tools/analysis/gauge_placing.h"
 #include "tools/analysis/gauge_verification.h"
+#include "tools/thesis/rig_needs.h"
 
 namespace flexarm {
 namespace {
@@ -38,6 +39,10 @@ std::string Sigmas(const GaugeLayout& layout) {
 }
 
 Statement Placing(const RigConfig& config) {
+  const char* said = "gauges belong where a strain has a local maximum";
+  if (const std::string lacks = LacksTwoModes(config); !lacks.empty()) {
+    return NotForThisRig("B1", said, lacks);
+  }
   constexpr int kBridges = kThesisHalfBridges;
   std::string text;
   bool best = true, better = false;
@@ -55,10 +60,7 @@ Statement Placing(const RigConfig& config) {
             "; there a mm of mode 3 adds " + Figure(std::abs(gauges.proposed.next_mode[0])) +
             " mm to mode 1, at local maxima " + Figure(std::abs(gauges.thesis.next_mode[0]));
   }
-  return {"B1", "gauges belong where a strain has a local maximum", text,
-          best     ? Verdict::kHolds
-          : better ? Verdict::kInPart
-                   : Verdict::kDoesNot};
+  return {"B1", said, text, best ? Verdict::kHolds : better ? Verdict::kInPart : Verdict::kDoesNot};
 }
 
 std::string Errors(const std::array<GaugeVerification::Error, 2>& error) {

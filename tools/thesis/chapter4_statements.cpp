@@ -5,6 +5,7 @@
 #include "model/arm/linearization.h"
 #include "model/simulation/arm_simulator.h"
 #include "tools/analysis/torsion_report.h"
+#include "tools/thesis/rig_needs.h"
 #include "tools/thesis/thesis_check.h"
 
 namespace flexarm {
@@ -69,10 +70,14 @@ Statement LongerOrThinner(const ArmParameters& arm) {
 }
 
 Statement Thickness(const ArmParameters& arm) {
+  const char* said = "link 2 is 30 mm wide and 3.0 mm thick";
+  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
+    return NotForThisRig("4.2.1", said, lacks);
+  }
   const BeamSection& s = arm.link[1].section.front();
   const double thickness_mm = 1e3 * std::sqrt(12.0 * s.second_moment_m4 / s.area_m2);
   const double width_mm = 1e6 * s.area_m2 / thickness_mm;
-  return {"4.2.1", "link 2 is 30 mm wide and 3.0 mm thick",
+  return {"4.2.1", said,
           "its area and second moment (Table 2) belong to " + Figure(width_mm) + " mm by " +
               Figure(thickness_mm, 4) + " mm",
           std::abs(thickness_mm - 3.0) < 0.01 ? Verdict::kHolds : Verdict::kDoesNot};
@@ -80,6 +85,10 @@ Statement Thickness(const ArmParameters& arm) {
 
 // 4.2.1 gives link 1 0.9 m and link 2 0.8 m, Table 2 the other way round.
 Statement Lengths(const ArmParameters& arm) {
+  const char* said = "link 1 is 0.9 m long and link 2 0.8 m";
+  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
+    return NotForThisRig("4.2.1", said, lacks);
+  }
   constexpr std::array<double, 2> kText_m = {0.9, 0.8};
   ArmParameters exchanged = arm;
   std::string text = "Table 2 has";
@@ -100,13 +109,17 @@ Statement Lengths(const ArmParameters& arm) {
           Figure(free[0]) + " and " + Figure(free[1]) + " Hz, with the motors held " +
           Figure(held_words[0]) + " and " + Figure(held_words[1]) + " instead of " +
           Figure(held[0]) + " and " + Figure(held[1]) + " Hz";
-  return {"4.2.1", "link 1 is 0.9 m long and link 2 0.8 m", text,
-          same ? Verdict::kHolds : Verdict::kDoesNot};
+  return {"4.2.1", said, text, same ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
 // Radii of gyration of the rigid parts: a hub around a link cannot be smaller than the thickness of
 // the link.
 Statement HubInertias(const ArmParameters& arm) {
+  const char* said =
+      "the hubs' and the payload's moments of inertia are about 1e-7 kg m2 (Table 2)";
+  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
+    return NotForThisRig("4.3", said, lacks);
+  }
   constexpr double kTimes = 1000.0;
   const double hub_mm = 1e3 * std::sqrt(arm.joint[1].hub_inertia_kgm2 / arm.hub2_mass_kg);
   const double payload_mm = 1e3 * std::sqrt(arm.payload_inertia_kgm2 / arm.payload_mass_kg);
@@ -118,7 +131,7 @@ Statement HubInertias(const ArmParameters& arm) {
   const Eigen::VectorXd with_larger = FreeMotorFrequenciesHz(ArmModel(larger, {4, 4}), 0.0);
   const double moved =
       (with_larger.head(4).array() / as_given.head(4).array() - 1.0).abs().maxCoeff();
-  return {"4.3", "the hubs' and the payload's moments of inertia are about 1e-7 kg m2 (Table 2)",
+  return {"4.3", said,
           "with their masses that is a radius of gyration of " + Figure(hub_mm, 2) +
               " mm for hub 2 and " + Figure(payload_mm, 2) + " mm for the payload, on a link " +
               Figure(thick_mm) + " mm thick; " + Figure(kTimes, 4) +
@@ -138,6 +151,10 @@ ArmParameters TenfoldMaterial(ArmParameters arm) {
 }
 
 Statement Table2(const ArmParameters& arm) {
+  const char* said = "Young's modulus is 6.89e11 Pa and the density 2.707e4 kg/m3 (Table 2)";
+  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
+    return NotForThisRig("4.3", said, lacks);
+  }
   const ArmParameters tenfold = TenfoldMaterial(arm);
   const Eigen::VectorXd right = FreeMotorFrequenciesHz(ArmModel(arm, {4, 4}), 0.0);
   const Eigen::VectorXd wrong = FreeMotorFrequenciesHz(ArmModel(tenfold, {4, 4}), 0.0);
@@ -152,8 +169,7 @@ Statement Table2(const ArmParameters& arm) {
   text += " Hz; link masses " + Figure(arm.link[0].mass_kg()) + " and " +
           Figure(arm.link[1].mass_kg()) + " kg would be " + Figure(tenfold.link[0].mass_kg()) +
           " and " + Figure(tenfold.link[1].mass_kg()) + " kg";
-  return {"4.3", "Young's modulus is 6.89e11 Pa and the density 2.707e4 kg/m3 (Table 2)", text,
-          worst < 0.01 ? Verdict::kHolds : Verdict::kDoesNot};
+  return {"4.3", said, text, worst < 0.01 ? Verdict::kHolds : Verdict::kDoesNot};
 }
 
 // How the arm carries what lies beside the axis of link 1, as long as nothing supports it.
@@ -170,10 +186,13 @@ std::string TorsionText(const TorsionEffect& effect) {
 // Sections of the links, 4.2.1.
 Statement StiffInTorsion(const ArmParameters& arm) {
   constexpr double kSmall_mm = 5.0;
+  const char* said =
+      "the links' sections are stiff enough for weight and twist to be small and negligible";
+  if (const std::string lacks = LacksRectangles(arm); !lacks.empty()) {
+    return NotForThisRig("4.2.1", said, lacks);
+  }
   const TorsionEffect effect = TorsionOf(arm);
-  return {"4.2.1",
-          "the links' sections are stiff enough for weight and twist to be small and negligible",
-          TorsionText(effect),
+  return {"4.2.1", said, TorsionText(effect),
           effect.drop_by_twist_mm < kSmall_mm && effect.drop_by_bending_mm < kSmall_mm
               ? Verdict::kHolds
           : effect.drop_by_bending_mm < kSmall_mm ? Verdict::kInPart

@@ -11,6 +11,7 @@
 #include "tools/thesis/chapter7_parts.h"
 #include "tools/thesis/control_text.h"
 #include "tools/thesis/rest_statements.h"
+#include "tools/thesis/rig_needs.h"
 
 namespace flexarm {
 namespace {
@@ -185,9 +186,15 @@ Statement Spillover(const ControlStudy& study) {
 // A nominal model of 12 states against T16, four angles and two modes a link.
 Statement TwelveStates(const ControlStudy& study, const char* twelve, const char* about) {
   constexpr double kAsGood = 0.1;
+  const std::string said =
+      std::string("a nominal model of order 12 is as good as one of order 16; 12: ") + about;
+  const bool shipped = twelve == std::string("R12");
+  const RigConfig& config = study.config();
+  const std::string lacks = shipped ? LacksR12(config) : LacksTwoModes(config);
+  if (!lacks.empty()) return NotForThisRig("7.4", said, lacks);
   const ControlCase of_twelve = ChangedCase({std::string("controller.nominal=") + twelve}, 0.1),
                     sixteen = ChangedCase({"controller.nominal=T16"}, 0.1);
-  const ControlCase own = twelve == std::string("R12") ? kSquare(0.1) : of_twelve;
+  const ControlCase own = shipped ? kSquare(0.1) : of_twelve;
   std::vector<Contrast> cases;
   std::string text;
   for (const LoopKind loop : {LoopKind::kIdeal, LoopKind::kSensors}) {
@@ -205,9 +212,8 @@ Statement TwelveStates(const ControlStudy& study, const char* twelve, const char
             CompletedText(study, loop, sixteen, kTestedPayloads_kg) + ", sum of the rms errors " +
             rms(own) + " against " + rms(sixteen) + " deg";
   }
-  return {"7.4",
-          std::string("a nominal model of order 12 is as good as one of order 16; 12: ") + about,
-          text + AtPayloads(kTestedPayloads_kg) + BothSettings(study), AsGoodRule(cases, kAsGood)};
+  return {"7.4", said, text + AtPayloads(kTestedPayloads_kg) + BothSettings(study),
+          AsGoodRule(cases, kAsGood)};
 }
 
 }  // namespace

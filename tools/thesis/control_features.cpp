@@ -14,6 +14,7 @@
 #include "model/units.h"
 #include "tools/analysis/arm_zeros.h"
 #include "tools/analysis/torsion_report.h"
+#include "tools/thesis/rig_needs.h"
 
 namespace flexarm {
 namespace {
@@ -148,6 +149,10 @@ Eigen::Index ProductsOfASample(const Design& design) {
 
 // 7.4: "more computation".
 Statement CostOfOrder16(const RigConfig& config) {
+  const char* said = "a nominal model of order 16 takes more computation than one of order 12";
+  if (const std::string lacks = LacksTwoModes(config); !lacks.empty()) {
+    return NotForThisRig("7.4", said, lacks);
+  }
   const auto of = [&](const char* model) {
     return DesignController(WithOverrides(config, {std::string("controller.nominal=") + model}));
   };
@@ -156,7 +161,7 @@ Statement CostOfOrder16(const RigConfig& config) {
   const Eigen::Index unknowns12 = twelve.A.size(), unknowns16 = sixteen.A.size();
   const double design =
       std::pow(static_cast<double>(unknowns16) / static_cast<double>(unknowns12), 3);
-  return {"7.4", "a nominal model of order 16 takes more computation than one of order 12",
+  return {"7.4", said,
           "by the sizes of their matrices, a sample of filter, prediction and law takes " +
               Count(many) + " multiplications with T16, " + Count(few) +
               " with T12: " + Figure(static_cast<double>(many) / static_cast<double>(few)) +
@@ -169,9 +174,13 @@ Statement CostOfOrder16(const RigConfig& config) {
 
 // 7.5, where it led to the support of figure 7.13.
 Statement MajorUnmodelled(const ArmParameters& arm) {
+  const char* said = "torsion of the links is the major unmodelled motion (figure 7.13)";
+  if (const std::string lacks = LacksRectangles(arm); !lacks.empty()) {
+    return NotForThisRig("7.5", said, lacks);
+  }
   const TorsionEffect effect = TorsionOf(arm);
   const double lowest_hz = FreeMotorFrequenciesHz(ArmModel(arm, {4, 4}), 0.0)[0];
-  return {"7.5", "torsion of the links is the major unmodelled motion (figure 7.13)",
+  return {"7.5", said,
           "link 1 twists at " + Figure(effect.carried_hz) + " Hz with the elbow at " +
               Figure(effect.of.theta2_deg, 2) + " deg, below the lowest bending of the arm, " +
               Figure(lowest_hz) + " Hz. A payload " + Figure(effect.of.payload_offset_mm, 2) +

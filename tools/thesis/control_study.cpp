@@ -11,6 +11,7 @@
 #include "controller/types/rejected_error.h"
 #include "tools/support/parallel_for.h"
 #include "tools/sweep/sweep_summary.h"
+#include "tools/thesis/rig_needs.h"
 
 namespace flexarm {
 namespace {
@@ -52,24 +53,30 @@ void AddAlphas(std::vector<ControlCase>* cases) {
   }
 }
 
-std::vector<ControlCase> Cases() {
+// The nominal models other than the config's; T16 has two modes a link.
+std::vector<Overrides> OtherModels(const RigConfig& config) {
+  std::vector<Overrides> models = {{"controller.nominal=T12"}};
+  if (LacksTwoModes(config).empty()) models.push_back({"controller.nominal=T16"});
+  return models;
+}
+
+std::vector<ControlCase> Cases(const RigConfig& config) {
   std::vector<ControlCase> cases;
   AddAlphas(&cases);
   for (const Overrides& changed :
        std::vector<Overrides>{{"controller.name=sobel-original"},
                               {"controller.name=lqr-cgt"},
                               {"controller.prediction=false"},
-                              {"controller.nominal=T12"},
-                              {"controller.nominal=T16"},
                               {"estimator.name=difference"},
                               {"estimator.name=difference", "sensors.strain_input.filter_hz=0",
                                "controller.alpha=2"}}) {
     AddPayloads(ChangedCase(changed, 0.1), kTestedPayloads_kg, &cases);
   }
-  for (const Overrides& changed : std::vector<Overrides>{{},
-                                                         {"controller.name=sobel-original"},
-                                                         {"controller.nominal=T12"},
-                                                         {"controller.nominal=T16"}}) {
+  for (const Overrides& changed : std::vector<Overrides>{{}, {"controller.name=sobel-original"}}) {
+    AddPayloads(Ideal(ChangedCase(changed, 0.1)), kTestedPayloads_kg, &cases);
+  }
+  for (const Overrides& changed : OtherModels(config)) {
+    AddPayloads(ChangedCase(changed, 0.1), kTestedPayloads_kg, &cases);
     AddPayloads(Ideal(ChangedCase(changed, 0.1)), kTestedPayloads_kg, &cases);
   }
   for (const ControlCase& sine : {SineCase(0.1), SmallSineCase(0.1)}) {
@@ -212,7 +219,7 @@ ControlStudy::ControlStudy(const RigConfig& config, int first_seed,
     const ControlCase* of;
     int seed;
   };
-  const std::vector<ControlCase> cases = Cases();
+  const std::vector<ControlCase> cases = Cases(config);
   std::vector<Job> jobs;
   for (const ControlCase& of : cases) {
     for (int i = 0; i < SeedsOf(of); ++i) jobs.push_back({&of, first_seed + i});
@@ -228,9 +235,9 @@ ControlStudy::ControlStudy(const RigConfig& config, int first_seed,
   for (const auto& [of, runs] : by_case) figures_[of] = FiguresOf(runs);
 }
 
-std::size_t ControlStudy::Runs() {
+std::size_t ControlStudy::Runs(const RigConfig& config) {
   std::size_t runs = 0;
-  for (const ControlCase& of : Cases()) runs += static_cast<std::size_t>(SeedsOf(of));
+  for (const ControlCase& of : Cases(config)) runs += static_cast<std::size_t>(SeedsOf(of));
   return runs;
 }
 

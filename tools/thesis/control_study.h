@@ -49,7 +49,8 @@ struct ControlFigures {
 };
 
 /// Simulates every closed loop of the statements of chapter 7 and of figures 7.1 to 7.3: with
-/// sensors, estimator and delay, and with known state and without delay.
+/// sensors, estimator and delay, and with known state and without delay. Nominal models for which
+/// the rig has too few gauges are left out.
 class ControlStudy {
  public:
   static constexpr int kSeeds = 3;
@@ -60,7 +61,7 @@ class ControlStudy {
                         const std::function<void(std::size_t)>& progress = {});
 
   /// Number of runs of a study.
-  static std::size_t Runs();
+  static std::size_t Runs(const RigConfig& config);
 
   const RigConfig& config() const { return config_; }
   int first_seed() const { return first_seed_; }

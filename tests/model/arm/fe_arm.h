@@ -70,6 +70,14 @@ class FeArm {
     return squares.cwiseSqrt() / (2.0 * M_PI);
   }
 
+  /// All frequencies with both rotors held, Hz, ascending.
+  Eigen::VectorXd HeldFrequenciesHz() const {
+    const int kept = dof() - 2;  // the rotors come last
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        K_.topLeftCorner(kept, kept), M_.topLeftCorner(kept, kept), Eigen::EigenvaluesOnly);
+    return eigen.eigenvalues().cwiseSqrt() / (2.0 * M_PI);
+  }
+
   /// Unknowns while hubs and rotors turn and uniform links bend by shapes psi(x), psi'(x): columns
   /// th1, th2, th3, th4, shapes of link 1, shapes of link 2.
   template <typename Shape>
