@@ -58,7 +58,7 @@ TEST_P(FindsThePayload, TheTipIsAtRestWhenTheMoveEnds) {
   EXPECT_LE(cell.rests.residual_mean_mm, 1.5);
 }
 
-// They settle in time in 4 and 1 of 24 runs (the design study: 4 % and 8 %).
+// They settle in time in 4 and 2 of 24 runs (the design study: 4 % and 8 %).
 TEST(TheLawsOfTheThesis, DoNotSettleInTimeOnTheSameMoves) {
   for (const char* law : {"sobel", "lqr-cgt"}) {
     EXPECT_LT(RunMoves(law, "nominal", 1001, kLongSet).rests.settled_in_time, 12U) << law;
