@@ -294,23 +294,18 @@ Finding LinkAndItsJointAreCoupled(const ParametricStudy& s) {
                                           Percent(c1) + " (1) and " + Percent(c2) + " (2)"};
 }
 
-// Joint 2's own parameters: its stiffness and its backlash (the friction is swept in both joints).
+// By its stiffness k and backlash b; the friction is swept in both joints.
 Finding Joint2ActsOnLink2More(const ParametricStudy& s) {
-  const ParametricSweep &stiffness = s.At(kStiffness2), &backlash = s.At(kBacklash);
-  const std::array<double, 2> by_stiffness = {PeakSpread(stiffness, kBending1),
-                                              PeakSpread(stiffness, kBending2)},
-                              by_backlash = {PeakSpread(backlash, kBending1),
-                                             PeakSpread(backlash, kBending2)};
-  const double own1 = PeakSpread(s.At(kLength1), kBending1),
-               own2 = PeakSpread(s.At(kLength2), kBending2);
-  return {
-      ActsOnBothRule(
-          {std::max(by_stiffness[0], by_backlash[0]), std::max(by_stiffness[1], by_backlash[1])},
-          {own1, own2}),
-      "joint 2's stiffness changes the largest bending of link 1 by " + Percent(by_stiffness[0]) +
-          ", of link 2 by " + Percent(by_stiffness[1]) + "; its backlash (dead zone) by " +
-          Percent(by_backlash[0]) + " and " + Percent(by_backlash[1]) +
-          "; the link's own length by " + Percent(own1) + " and " + Percent(own2)};
+  const auto of = [](const ParametricSweep& sweep) -> std::array<double, 2> {
+    return {PeakSpread(sweep, kBending1), PeakSpread(sweep, kBending2)};
+  };
+  const auto k = of(s.At(kStiffness2)), b = of(s.At(kBacklash));
+  const std::array<double, 2> own = {of(s.At(kLength1))[0], of(s.At(kLength2))[1]};
+  return {ActsOnBothRule({std::max(k[0], b[0]), std::max(k[1], b[1])}, own),
+          "joint 2's stiffness changes the largest bending of link 1 by " + Percent(k[0]) +
+              ", of link 2 by " + Percent(k[1]) + "; its backlash (dead zone) by " + Percent(b[0]) +
+              " and " + Percent(b[1]) + "; the link's own length by " + Percent(own[0]) + " and " +
+              Percent(own[1])};
 }
 
 struct Question {
