@@ -11,11 +11,11 @@ constexpr double kAbandonsAbove = 1.5;  // times settles_below_m
 
 }  // namespace
 
-SettlingObserver::SettlingObserver(NominalObserver nominal, PayloadObserver payload,
-                                   const TipSway& sway, double settles_below_m, double period_s)
+SettlingObserver::SettlingObserver(NominalObserver nominal, PayloadObserver payload, TipSway sway,
+                                   double settles_below_m, double period_s)
     : nominal_(std::move(nominal)),
       payload_(std::move(payload)),
-      sway_(sway),
+      sway_(std::move(sway)),
       settles_below_m_(settles_below_m),
       period_s_(period_s) {}
 

@@ -20,7 +20,7 @@ namespace flexarm {
 /// filter's. Real-time: all but construction is safe.
 class SettlingObserver final : public Observer {
  public:
-  SettlingObserver(NominalObserver nominal, PayloadObserver payload, const TipSway& sway,
+  SettlingObserver(NominalObserver nominal, PayloadObserver payload, TipSway sway,
                    double settles_below_m, double period_s);
 
   void Reset() noexcept override;

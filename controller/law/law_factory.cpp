@@ -18,8 +18,8 @@ std::unique_ptr<Law> MakeLaw(const ControlConfig& config, const Design& design) 
   }
   std::optional<SettleTerm> settle;
   if (config.settles()) {
-    const TipSway sway(MakeRigidJointArm(design), config.arm.payload_mass_kg);
-    settle = SettleTerm(design, *config.controller.settling, sway,
+    TipSway sway(MakeRigidJointArm(design), config.arm.payload_mass_kg);
+    settle = SettleTerm(design, *config.controller.settling, std::move(sway),
                         config.arm.joint[0].coulomb_friction_nm, config.loop.period_s());
   }
   return std::make_unique<TrackingLaw>(design, config.controller, limit_nm,  // start-up

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "model/math/portable_math.h"
 
@@ -21,7 +22,7 @@ GainTable SettleGains(const Design& design) {
 
 }  // namespace
 
-SettleTerm::SettleTerm(const Design& design, const SettlingConfig& config, const TipSway& sway,
+SettleTerm::SettleTerm(const Design& design, const SettlingConfig& config, TipSway sway,
                        double friction_nm, double period_s)
     : gains_(SettleGains(design)),
       config_(config),
@@ -29,7 +30,7 @@ SettleTerm::SettleTerm(const Design& design, const SettlingConfig& config, const
       period_s_(period_s),
       hub_after_(design.A.row(0)),
       hub_by_torque_(design.B.row(0)),
-      sway_(sway) {}
+      sway_(std::move(sway)) {}
 
 void SettleTerm::Reset() noexcept {
   gains_share_ = 0.0;

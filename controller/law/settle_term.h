@@ -28,8 +28,8 @@ namespace flexarm {
 class SettleTerm {
  public:
   /// @param design  with `payload_model` and `settle_gains`, of R12
-  SettleTerm(const Design& design, const SettlingConfig& config, const TipSway& sway,
-             double friction_nm, double period_s);
+  SettleTerm(const Design& design, const SettlingConfig& config, TipSway sway, double friction_nm,
+             double period_s);
 
   /// Start of a run.
   void Reset() noexcept;
