@@ -126,11 +126,11 @@ Outcome ReplayTable(const ReplayOptions& options) {
     throw InputError(options.source.string() +
                      ": a CSV file needs the config of its rig: add -c FILE");
   }
-  CsvReplayResult replayed = ReplayCsv({.source = options.source,
-                                        .config = options.config.Load(),
-                                        .calibration = options.calibration,
-                                        .experiment = options.experiment});
-  return {.result = std::move(replayed.result),
+  const CsvReplayResult replayed = ReplayCsv({.source = options.source,
+                                              .config = options.config.Load(),
+                                              .calibration = options.calibration,
+                                              .experiment = options.experiment});
+  return {.result = replayed.result,
           .other_build = "",
           .has_reference = replayed.left_out.has_value(),
           .after_experiment = replayed.left_out.value_or(0)};
