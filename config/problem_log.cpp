@@ -149,13 +149,18 @@ void ProblemLog::ThrowIfAny() {
 
 ConfigProblem ProblemLog::Placed(const toml::node* node, std::string key, std::string value,
                                  std::string rule) const {
-  ConfigProblem problem{file_, 0, Shortened(std::move(key)), Shortened(std::move(value)),
-                        std::move(rule)};
-  if (node == nullptr || !node->source().path) return problem;
-  problem.file = *node->source().path;
-  const bool has_line = problem.file != kOverrideSource;
-  problem.line = has_line ? static_cast<int>(node->source().begin.line) : 0;
-  return problem;
+  ConfigPlace place = PlaceOfNode(node);
+  return {std::move(place.file), place.line, Shortened(std::move(key)), Shortened(std::move(value)),
+          std::move(rule)};
+}
+
+ConfigPlace ProblemLog::PlaceOf(std::string_view key) const { return PlaceOfNode(Locate(key)); }
+
+ConfigPlace ProblemLog::PlaceOfNode(const toml::node* node) const {
+  if (node == nullptr || !node->source().path) return {file_, 0};
+  const std::string& file = *node->source().path;
+  const bool has_line = file != kOverrideSource;
+  return {file, has_line ? static_cast<int>(node->source().begin.line) : 0};
 }
 
 // The deepest existing node on the path.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/config.h"
+#include "config/config_place.h"
 #include "model/problem.h"
 
 namespace flexarm {
@@ -43,6 +44,9 @@ class ProblemLog {
   /// True if no problem is reported at, above or below any of `keys`.
   bool Clear(std::initializer_list<std::string_view> keys) const;
 
+  /// Where the value at a dotted key stands, or the deepest table on its path.
+  ConfigPlace PlaceOf(std::string_view key) const;
+
   /// Reports every key of the document that no reader knows. Call it last.
   void AddUnknown();
 
@@ -59,6 +63,7 @@ class ProblemLog {
 
   ConfigProblem Placed(const toml::node* node, std::string key, std::string value,
                        std::string rule) const;
+  ConfigPlace PlaceOfNode(const toml::node* node) const;
   const toml::node* Locate(std::string_view path) const;
   void AddUnknownIn(const toml::table& table, const std::string& path);
   void AddUnknownKey(const std::string& path, std::string_view key, const toml::node& node);

@@ -38,6 +38,13 @@ class Design(ProgramTest):
         self.assertIs(result["sound"], False)
         self.assertIsNone(result["gains"])
         self.assertFalse(gains.exists())
+        for check in result["checks"]:
+            self.assertEqual("explanation" in check, not check["passed"], check)
+        radius = next(c for c in result["checks"] if c["name"] == "robustness-spectral-radius")
+        self.assertIn("controller.prediction = true", radius["explanation"])
+        printed = self.flexarm("design", "-c", HIL, "-o", gains, *bad, expect=1).stdout
+        self.assertIn("\nrobustness-spectral-radius = 1.", printed)
+        self.assertIn("some arm within controller.payload_range_kg", " ".join(printed.split()))
         told = self.flexarm("design", "-c", HIL, "-o", gains, *bad, expect=1).stderr
         for text in ("robustness-spectral-radius", "unstable with", "--force"):
             self.assertIn(text, told)

@@ -4,9 +4,11 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "controller/design/check_explanation.h"
 #include "controller/design/design_controller.h"
 #include "controller/design/design_json.h"
 #include "controller/design/design_verdict.h"
@@ -103,6 +105,13 @@ void PrintFeatures(const ControlFeatures& features) {
       c.difference, d.input, d.difference, c.follows() ? "satisfied" : "not satisfied");
 }
 
+// What a failed check means and what to do about it.
+std::string ExplanationText(const DesignCheck& check) {
+  const CheckExplanation* explanation = ExplanationOf(check.name);
+  if (explanation == nullptr) return {};
+  return std::string(explanation->meaning) + ". To try: " + std::string(explanation->remedy) + ".";
+}
+
 nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& robustness,
                               const Conditioning& conditioning, const ControlFeatures& features,
                               const DesignOptions& options, const std::string& hash) {
@@ -120,6 +129,8 @@ nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& ro
                               {"must_be", check.below ? "below" : "above"},
                               {"passed", check.passed()},
                               {"waived", check.waived}});
+    const std::string explanation = check.passed() ? "" : ExplanationText(check);
+    if (!explanation.empty()) json["checks"].back()["explanation"] = explanation;
   }
   json["robustness"] = ToJson(robustness);
   json["features"] = ToJson(features);
@@ -130,6 +141,29 @@ nlohmann::ordered_json ToJson(const Design& design, const RobustnessAnalysis& ro
   json["gains"] = design.sound() ? nlohmann::ordered_json(options.output.file.string())
                                  : nlohmann::ordered_json(nullptr);
   return json;
+}
+
+// The text broken into lines of a terminal.
+void PrintWrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 92;
+  std::istringstream words(text);
+  std::string word, line = " ";
+  while (words >> word) {
+    if (line.size() + 1 + word.size() > kWidth) {
+      std::printf("%s\n", line.c_str());
+      line = " ";
+    }
+    line += " " + word;
+  }
+  std::printf("%s\n", line.c_str());
+}
+
+void PrintExplanations(const Design& design) {
+  for (const DesignCheck& check : design.checks) {
+    if (check.passed()) continue;
+    std::printf("\n%s\n", CheckText(check).c_str());
+    PrintWrapped(ExplanationText(check));
+  }
 }
 
 void PrintRobustness(const RobustnessAnalysis& robustness) {
@@ -180,6 +214,7 @@ void PrintText(const RigConfig& config, const Design& design, const RobustnessAn
     std::printf("%-34s %12.4g  %s %.4g%s\n", check.name.c_str(), check.value,
                 check.below ? "below" : "above", check.limit, verdict);
   }
+  PrintExplanations(design);
   PrintRobustness(robustness);
   PrintFeatures(features);
   PrintSettling(config);
@@ -242,8 +277,9 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
   AddJson(verb, &options->json);
   verb->footer(
       "The nominal model is controller.nominal: R8, R12, T12 or T16.\n"
-      "Every check is printed with its value and its limit; gains that fail a check are not\n"
-      "written.\n"
+      "Every check is printed with its value and its limit, a failed one also with its meaning "
+      "and\n"
+      "the keys that change it; gains that fail a check are not written.\n"
       "The robustness analysis closes the loop around the arm with four bending modes a link, at\n"
       "three elbow angles, with every payload, and with the gains x 0.7 and x 1.4. The gain and\n"
       "delay margins are checked too. The daemon makes the same checks with the payloads of\n"

@@ -54,6 +54,7 @@ LAYERS = {
                        "controller/latch controller/operator",
     "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
               "controller/types controller/runlog",
+    "config/plausibility": "model model/arm model/parameters hal estimator controller/types",
     "tools/support": "",
     "tools/runs": "controller/runlog config",
     "tools/plot": "model model/beam controller/files controller/safety tools/runs",
@@ -78,8 +79,8 @@ LAYERS = {
     "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
-                     "controller/operator controller/host config tools/runs "
-                     "tools/plot tools/command_line controller/files",
+                     "controller/operator controller/host config config/plausibility "
+                     "tools/runs tools/plot tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "

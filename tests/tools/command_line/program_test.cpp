@@ -209,6 +209,24 @@ TEST_F(ProgramTest, ConfigCheckGivesItsProblemsAsJsonToo) {
   EXPECT_NE(answer.err.find("hub2 costs 3 ms"), std::string::npos);
 }
 
+TEST_F(ProgramTest, ConfigCheckWarnsAboutAnImplausibleValueWithItsPlaceAndStaysValid) {
+  EXPECT_EQ(RunJson("config check '" + kRig + "'")["warnings"], Json::array());
+  WriteText(File("soft.toml"),
+            "extends = \"" + kRig + "\"\n[joint1]\nstiffness_nm_per_rad = 13.3\n");
+  const Answer answer = Run("config check soft.toml");
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_NE(answer.out.find("soft.toml:3: warning: joint1.stiffness_nm_per_rad = 13.3: the torque "
+                            "limit of 30 N m twists the joint by 129 deg; usual: above 150"),
+            std::string::npos)
+      << answer.out;
+  const Json warnings = RunJson("config check soft.toml")["warnings"];
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0]["line"], 3);
+  EXPECT_EQ(warnings[0]["key"], "joint1.stiffness_nm_per_rad");
+  EXPECT_EQ(warnings[0]["value"], "13.3");
+  EXPECT_TRUE(warnings[0].contains("unusual") && warnings[0].contains("usual"));
+}
+
 TEST_F(ProgramTest, ModesHaveTheKeysOfTheContract) {
   // docs/theory/plant.md 2.5 and docs/theory/control-law.md 1.2: clamped and torque-mode
   // frequencies of the nominal rig.
