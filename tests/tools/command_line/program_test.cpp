@@ -52,7 +52,8 @@ class ProgramTest : public RunLogTest {
 
   // An emulated program cannot start a second one, so a study's program is started directly then.
   static std::string ProgramFor(const std::string& arguments) {
-    const std::string emulator = FLEXARM_EMULATOR;
+    constexpr const char* kEmulator = FLEXARM_EMULATOR;  // empty: this processor runs it
+    const std::string emulator = kEmulator;
     if (emulator.empty()) return "'" FLEXARM_PROGRAM "'";
     const bool is_study = IsStudy(arguments.substr(0, arguments.find(' ')));
     return emulator + (is_study ? " '" FLEXARM_STUDY_PROGRAM "'" : " '" FLEXARM_PROGRAM "'");
