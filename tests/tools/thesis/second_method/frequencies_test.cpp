@@ -74,7 +74,7 @@ TEST(SecondMethod, FrequenciesOfChangedArmsOfChapter4) {
         }
       },
       [](ArmParameters* p) {
-        ScaleLength(&p->link[0], 0.9);
+        ScaleLength(&p->link.front(), 0.9);
         ScaleLength(&p->link[1], 0.8);
       },
       [](ArmParameters* p) {

@@ -117,7 +117,8 @@ class MassPointArm {
     const auto bend = [&](const Eigen::VectorXd& shape, int link) {
       Series sum;
       for (int j = 0; j < modes_; ++j) {
-        sum = sum + Series{shape[j]} * q[static_cast<std::size_t>(4 + link * modes_ + j)];
+        const int place = 4 + link * modes_ + j;
+        sum = sum + Series{shape[j]} * q[static_cast<std::size_t>(place)];
       }
       return sum;
     };
