@@ -93,7 +93,7 @@ void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Prob
                    "estimator.modes_per_link", "sensors.strain_input"})) {
     return;
   }
-  const bool by_law = IsScheduled(c.controller.kind) || c.settles();
+  const bool by_law = IsScheduled(c.controller.kind);
   if (!c.uses_payload_estimator()) return;
   const char* key = by_law ? "controller.name" : "estimator.name";
   const bool plans = PlansAhead(c.controller.kind);

@@ -4,13 +4,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "estimator/settling_observer.h"
 #include "model/math/portable_math.h"
 
 namespace flexarm {
 namespace {
 
-// The payload's gains are faded in over this time.
-constexpr double kFadesIn_s = 0.1;
 // The friction acts against a hub that would turn faster than this: much less than the 0.04 rad/s
 // of one sample of torque equal to the friction.
 constexpr double kTurns_rad_s = 0.007;
@@ -40,7 +39,7 @@ void SettleTerm::Reset() noexcept {
 
 void SettleTerm::Judge(double sway_mm) noexcept {
   if (gains_share_ > 0.0 || sway_mm < config_.acts_below_mm) {
-    gains_share_ = std::min(1.0, gains_share_ + period_s_ / kFadesIn_s);
+    gains_share_ = std::min(1.0, gains_share_ + period_s_ / kSettlingFadesIn_s);
   }
   held_ =
       gains_share_ >= 1.0 && sway_mm < (held_ ? config_.release_above_mm : config_.hold_below_mm);

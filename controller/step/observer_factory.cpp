@@ -48,9 +48,12 @@ NominalObserver NominalObserverOf(const ControlConfig& config, const Design& des
 }
 
 SettlingObserver SettlingObserverOf(const ControlConfig& config, const Design& design) {
-  return {NominalObserverOf(config, design), PayloadObserverOf(config, design),
+  return {NominalObserverOf(config, design),
+          PayloadObserverOf(config, design),
           TipSway(MakeRigidJointArm(design), config.arm.payload_mass_kg),
-          1e-3 * config.controller.settling->payload_filter_below_mm, config.loop.period_s()};
+          1e-3 * config.controller.settling->payload_filter_below_mm,
+          config.arm.payload_mass_kg,
+          config.loop.period_s()};
 }
 
 }  // namespace

@@ -135,6 +135,8 @@ const BrokenText kRange[] = {
      "failed_exchanges_in_window = 0", "safety.failed_exchanges_in_window", "1 .. 200"},
     {"SlowExchangesNeverTrip", "slow_exchanges_in_window = 16", "slow_exchanges_in_window = 0",
      "safety.slow_exchanges_in_window", "1 .. 200"},
+    {"DeadBandOfACount", "dead_band_counts = 0.2", "dead_band_counts = 1.0",
+     "controller.settling.dead_band_counts", "0 .. 0.5"},
     {"ShortPeriod", "period_ms = 20.0", "period_ms = 4.0", "loop.period_ms", "5 .. 100"},
     {"LongPeriod", "period_ms = 20.0", "period_ms = 101.0", "loop.period_ms", "5 .. 100"},
     {"LongSocket", "flexarmd.sock", std::string(107, 'x'), "daemon.socket", "107 bytes"},

@@ -52,6 +52,8 @@ const BrokenText kContradiction[] = {
      "safety.rest_time_s = 0.5"},
     {"StopLongerThanTheServiceMayTake", "stop_timeout_s = 3.0", "stop_timeout_s = 12.0",
      "safety.stop_timeout_s", "the service ends within 15 s"},
+    {"HoldReleasesBelow", "release_above_mm = 1.6", "release_above_mm = 1.0",
+     "controller.settling.release_above_mm", "controller.settling.hold_below_mm = 1.1"},
     {"TorqueBelowFriction", "torque_limit_nm = [30.0, 6.0]", "torque_limit_nm = [0.16, 6.0]",
      "limits.torque_limit_nm[0]", "joint1.coulomb_friction_nm = 0.16"},
     {"StrainTripAboveFullScale", "strain_limit = [1.9e-3, 1.9e-3]", "strain_limit = [1.9e-3, 2e-3]",

@@ -205,6 +205,46 @@ TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
   EXPECT_EQ(c.gain_elbow_deg, (std::vector<double>{0, 45, 90}));
 }
 
+TEST(RigBinding, PutsEveryKeyOfSettlingInItsField) {
+  const SettlingConfig s =
+      HilWith({"controller.settling.alpha=1.5", "controller.settling.payload_filter_below_mm=2.5",
+               "controller.settling.acts_below_mm=3.5", "controller.settling.hold_below_mm=4.5",
+               "controller.settling.release_above_mm=5.5",
+               "controller.settling.process_force_share=[1, 2, 3, 4, 5, 6]",
+               "controller.settling.dead_band_counts=0.45"})
+          .controller.settling.value();
+  EXPECT_EQ(s.alpha, 1.5);
+  EXPECT_EQ(s.payload_filter_below_mm, 2.5);
+  EXPECT_EQ(s.acts_below_mm, 3.5);
+  EXPECT_EQ(s.hold_below_mm, 4.5);
+  EXPECT_EQ(s.release_above_mm, 5.5);
+  EXPECT_EQ(s.process_force_share, (std::array{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+  EXPECT_EQ(s.dead_band_counts, 0.45);
+}
+
+// Where `sobel` cannot bring the arm to rest it is `sobel-thesis`, for the reason that it names.
+TEST(Settling, IsNamedWhereItIsNotPossible) {
+  EXPECT_TRUE(HilWith({}).settles());
+  EXPECT_FALSE(HilWith({"controller.name=sobel-thesis"}).settles());
+  struct Case {
+    const char* override;
+    const char* reason;
+  };
+  for (const auto& [override, reason] :
+       {Case{"estimator.name=difference", "kalman"}, Case{"controller.nominal=T12", "R12"},
+        Case{"sensors.strain_input.filter_damping=0.7", "first order"}}) {
+    const RigConfig config = HilWith({override});
+    EXPECT_FALSE(config.settles()) << override;
+    EXPECT_FALSE(config.uses_payload_estimator()) << override;
+    EXPECT_THAT(config.why_not_settling(), testing::HasSubstr(reason)) << override;
+  }
+  RigConfig config = HilWith({});
+  config.controller.payload.reset();
+  EXPECT_THAT(config.why_not_settling(), testing::HasSubstr("[controller.payload]"));
+  config.controller.settling.reset();
+  EXPECT_THAT(config.why_not_settling(), testing::HasSubstr("[controller.settling]"));
+}
+
 TEST(RigBinding, PutsEveryKeyOfTheControllerInItsField) {
   const ControllerConfig c =
       HilWith({"controller.alpha=0.1", "controller.vartheta=0.2", "controller.sigma=0.3",

@@ -80,10 +80,9 @@ TEST(LoopVariants, ShapingTheReferenceReducesTheVibrationUnderPd) {
 }
 
 // The design study's bar: stable, rms 25 % up at most. Every tenth frame has no reading; the
-// estimator predicts with its model. Measured, rms th1 and th2 with all frames and without a tenth:
-// 1.06 0.69 and 1.10 0.86 at 0.01 kg, 0.73 1.09 and 0.74 1.08 at 0.1 kg, 0.94 2.69 and 0.95 2.87 at
-// 0.2 kg. So th2 at 0.01 kg is at the bar, not below it: 25.0 % with 33 seeds, 24.6 % with 60 (by
-// `sobel-thesis` 24.3 %), single seeds from 8 to 55 %. There two points more are allowed.
+// payload filter bridges it with its model. Measured, rms th1 and th2 with all frames and without a
+// tenth: 1.07 0.69 and 1.06 0.75 at 0.01 kg, 0.73 1.09 and 0.74 1.11 at 0.1 kg, 0.94 2.69 and 0.98
+// 2.69 at 0.2 kg. With the Kalman filter's model it is 1.10 0.87 at 0.01 kg, beyond the bar.
 TEST(LoopVariants, OneFrameInTenMayBeLost) {
   for (const double payload_kg : {0.01, 0.1, 0.2}) {
     const Runs all = RunSeeds(payload_kg),
@@ -93,8 +92,7 @@ TEST(LoopVariants, OneFrameInTenMayBeLost) {
     Print("10 % lost", lossy);
     EXPECT_EQ(lossy.tripped, 0) << payload_kg;
     EXPECT_LE(Median(lossy.rms1_deg), 1.25 * Median(all.rms1_deg)) << payload_kg;
-    const double bar2 = payload_kg < 0.1 ? 1.27 : 1.25;
-    EXPECT_LE(Median(lossy.rms2_deg), bar2 * Median(all.rms2_deg)) << payload_kg;
+    EXPECT_LE(Median(lossy.rms2_deg), 1.25 * Median(all.rms2_deg)) << payload_kg;
     EXPECT_NE(lossy.rms1_deg, all.rms1_deg) << "no frame was lost: the test is inconclusive";
   }
 }

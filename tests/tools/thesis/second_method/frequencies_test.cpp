@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 
-#include "config/config.h"
 #include "model/arm/linearization.h"
 #include "tests/model/arm/fe_arm.h"
 #include "tests/tools/thesis/second_method/element_link.h"
+#include "tests/tools/thesis/second_method/shipped_arm.h"
 
 namespace flexarm {
 namespace {
@@ -20,8 +20,6 @@ using Eigen::VectorXd;
 using second_method::ElementLink;
 
 constexpr int kElements = 30;  // an element less than a tenth of the shortest wave
-
-ArmParameters ShippedArm() { return LoadConfig(FLEXARM_SOURCE_DIR "/config/thesis-rig.toml").arm; }
 
 // Largest relative difference of the lowest two frequencies with motors free and held.
 double Difference(const ArmParameters& arm) {

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/config.h"
 #include "model/math/discretize.h"
 #include "model/units.h"
 #include "tests/tools/thesis/second_method/mass_point_arm.h"
+#include "tests/tools/thesis/second_method/shipped_arm.h"
 
 namespace flexarm {
 namespace {
@@ -25,8 +25,6 @@ using second_method::Complex;
 using second_method::MassPointArm;
 
 constexpr int kElements = 20;
-
-ArmParameters ShippedArm() { return LoadConfig(FLEXARM_SOURCE_DIR "/config/thesis-rig.toml").arm; }
 
 VectorXd Elbow(const MassPointArm& arm, double degrees) {
   VectorXd q = VectorXd::Zero(arm.dof());

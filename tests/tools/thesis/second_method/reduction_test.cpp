@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/config.h"
 #include "model/units.h"
 #include "tests/tools/thesis/second_method/mass_point_arm.h"
+#include "tests/tools/thesis/second_method/shipped_arm.h"
 #include "tools/analysis/reduction_grid.h"
 
 namespace flexarm {
@@ -22,8 +22,6 @@ using second_method::MassPointArm;
 
 constexpr int kModes = 10;     // M of figures 6.3 to 6.9
 constexpr int kElements = 40;  // mode 10 errs by 4e-4 of its frequency
-
-ArmParameters ShippedArm() { return LoadConfig(FLEXARM_SOURCE_DIR "/config/thesis-rig.toml").arm; }
 
 // The arm about motions with one elbow angle: the forces are quadratic in the rates.
 struct AtElbow {
