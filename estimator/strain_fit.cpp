@@ -49,9 +49,8 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     Channel& c = channel_[i];
     c.link = row.link - 1;
     link_mask_[static_cast<std::size_t>(c.link)] |= std::uint32_t{1} << i;
-    const double unit = row.face * sensors.strain_input.volts_per_count() / row.gain_v_per_unit;
-    c.config_unit_per_count = unit;
-    c.config_offset_counts = row.offset_counts;
+    c.config = StrainScaleOf(sensors, i);
+    const double unit = c.config.unit_per_count;
     c.weight = 1.0 / (counts_variance * unit * unit);
     for (std::size_t j = 0; j < static_cast<std::size_t>(modes_); ++j) {
       c.shape[j] = shape(static_cast<std::size_t>(c.link), j, row.position_m);
@@ -109,10 +108,7 @@ void StrainFit::Reset(const Calibration& calibration) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
     Channel& c = channel_[i];
     c.seen = false;
-    c.unit_per_count =
-        c.config_unit_per_count / (1.0 + static_cast<double>(calibration.strain_gain_error[i]));
-    c.offset_counts =
-        c.config_offset_counts + static_cast<double>(calibration.strain_zero_counts[i]);
+    c.scale = Calibrated(c.config, calibration, i);
   }
 }
 
@@ -178,7 +174,7 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
       out.saturated |= bit;
       continue;
     }
-    strain[i] = (static_cast<double>(raw) - channel_[i].offset_counts) * channel_[i].unit_per_count;
+    strain[i] = StrainOf(channel_[i].scale, raw);
     const std::int64_t late_ns = frame.strain_offset_ns[i] - age_ns;
     if (late_ns != 0) {
       strain[i] -= 1e-9 * static_cast<double>(late_ns) * Predicted(channel_[i], modal_rate_m_s);

@@ -6,6 +6,7 @@
 
 #include "estimator/calibration.h"
 #include "estimator/estimator_config.h"
+#include "estimator/strain_scale.h"
 #include "hal/sensor_config.h"
 #include "hal/sensor_frame.h"
 #include "model/beam/link_modes.h"
@@ -79,10 +80,8 @@ class StrainFit {
  private:
   struct Channel {
     int link = 0;
-    double config_unit_per_count = 0.0;  // signed by face and gain
-    double config_offset_counts = 0.0;
-    double unit_per_count = 0.0;  // the same, calibrated
-    double offset_counts = 0.0;
+    StrainScale config;               // of the config
+    StrainScale scale;                // the same, calibrated
     double weight = 0.0;              // 1 / variance
     std::array<double, 2> shape{};    // (h/2) psi_j''(x)
     std::array<double, 2> inverse{};  // column of the pseudo-inverse when all channels are good
