@@ -6,8 +6,6 @@
 #include <map>
 #include <string_view>
 
-#include "controller/runlog/csv_table.h"
-
 namespace flexarm {
 namespace {
 
@@ -20,12 +18,6 @@ std::uint64_t AllMask(const SensorConfig& sensors) {
   const std::uint64_t tip_bit = TipBit(sensors.strain.size());
   const std::uint64_t strain = tip_bit - (std::uint64_t{1} << kCounters);
   return sensors.counters_present() | strain | (sensors.tip_accelerometer ? tip_bit : 0);
-}
-
-std::string Shortest(double value) {
-  std::array<char, 40> text;
-  const auto [end, error] = std::to_chars(text.begin(), text.end(), value);
-  return error == std::errc() ? std::string(text.begin(), end) : std::string("nan");
 }
 
 std::string ValidText(const SensorFrame& frame, std::size_t channels, std::uint64_t all) {
@@ -49,6 +41,10 @@ class Reader {
         all_(AllMask(sensors)),
         strain_(StrainColumns(sensors)),
         period_s_(period_s) {
+    if (IsDecoded(table_)) {
+      table_.Fail("found decoded columns, expected raw counts: write them with " +
+                  std::string("`flexarm export RUN -o FILE.csv`, without --decoded"));
+    }
     for (const char* name : {"time_s", "valid", "torque_1_nm", "torque_2_nm"}) table_.Need(name);
     for (int i = 0; i < kCounters; ++i) {
       if ((counters_ >> i & 1U) != 0) table_.Need("counter_" + std::to_string(i + 1));
@@ -99,7 +95,7 @@ class Reader {
     if (std::abs(time_s) > kLongestCsv_s) table_.FailCell("time_s", "at most 1e8 s");
     StepInput input = CsvInput(time_s, period_s_, before);
     if (!before.empty() && input.tick <= before.back().tick) {
-      table_.FailCell("time_s", "a time at least one period (" + Shortest(period_s_) +
+      table_.FailCell("time_s", "a time at least one period (" + CsvNumber(period_s_) +
                                     " s) after the row before");
     }
     ReadFrame(&input.frame);
@@ -116,6 +112,17 @@ class Reader {
 };
 
 }  // namespace
+
+std::string CsvNumber(double value) {
+  std::array<char, 40> text;
+  const auto [end, error] = std::to_chars(text.begin(), text.end(), value);
+  return error == std::errc() ? std::string(text.begin(), end) : std::string("nan");
+}
+
+bool IsDecoded(const CsvTable& table) {
+  return table.Has("tick") && table.Has("state") && table.Has("torque_applied_1_nm") &&
+         !table.Has("torque_1_nm");
+}
 
 std::vector<std::string> StrainColumns(const SensorConfig& sensors) {
   std::vector<std::string> names;
@@ -143,12 +150,12 @@ CsvWriter::CsvWriter(std::ostream* out, const SensorConfig& sensors, std::int64_
 
 void CsvWriter::Row(const StepInput& input) {
   const SensorFrame& frame = input.frame;
-  *out_ << Shortest(static_cast<double>(input.sampling_instant_ns - start_ns_) * 1e-9);
+  *out_ << CsvNumber(static_cast<double>(input.sampling_instant_ns - start_ns_) * 1e-9);
   for (const std::uint32_t count : frame.counter) *out_ << ',' << count;
   for (std::size_t i = 0; i < strain_columns_.size(); ++i) *out_ << ',' << frame.strain[i];
   if (has_tip_) *out_ << ',' << frame.accelerometer[0];
   *out_ << ',' << ValidText(frame, strain_columns_.size(), readings_);
-  for (const double torque : input.applied_torque_nm) *out_ << ',' << Shortest(torque);
+  for (const double torque : input.applied_torque_nm) *out_ << ',' << CsvNumber(torque);
   *out_ << '\n';
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/runlog/csv_table.h"
 #include "controller/types/step_types.h"
 #include "hal/sensor_config.h"
 
@@ -18,6 +19,12 @@ namespace flexarm {
 // every reading is valid, 0 if none is, otherwise a mask in hexadecimal: bits 0..3 are the
 // counters, bit 4 + i is strain channel i in the order of the config, the next one the
 // accelerometer.
+
+/// The shortest decimals that give the same double.
+std::string CsvNumber(double value);
+
+/// True for a file of DecodedCsvWriter (decoded_csv.h), which lacks what a replay needs.
+bool IsDecoded(const CsvTable& table);
 
 /// Names of the strain columns in the order of the config: link, then number within the link.
 std::vector<std::string> StrainColumns(const SensorConfig& sensors);
@@ -46,7 +53,8 @@ StepInput CsvInput(double time_s, double period_s, const std::vector<StepInput>&
 /// Reads such a file; the order of the columns is free, and unknown columns are ignored. Inputs are
 /// those of CsvInput. Lines that begin with # are skipped.
 /// @param period_s  of the loop
-/// @throws InputError "file:line: column: found .., expected .."
+/// @throws InputError "file:line: column: found .., expected .."; for a decoded file
+///   (decoded_csv.h) with the command that writes a raw one
 std::vector<StepInput> ReadCsv(const std::filesystem::path& file, const SensorConfig& sensors,
                                double period_s);
 

@@ -124,6 +124,9 @@ class ForeignReader {
   std::array<double, 2> torque_before_{}, torque_sum_{};
 };
 
+// A decoded file is ours too: ReadCsv says what to do.
+bool IsOurs(const CsvTable& table) { return table.Has("valid") || IsDecoded(table); }
+
 }  // namespace
 
 std::vector<Problem> ProblemsOf(const CsvImport& import, const SensorConfig& sensors) {
@@ -160,8 +163,9 @@ std::vector<StepInput> ReadForeignCsv(const std::filesystem::path& file, const C
 
 std::vector<StepInput> ReadAnyCsv(const std::filesystem::path& file, const CsvImport* import,
                                   const SensorConfig& sensors, double period_s) {
-  const bool ours = import == nullptr || CsvTable(file).Has("valid");
-  return ours ? ReadCsv(file, sensors, period_s) : ReadForeignCsv(file, *import, sensors, period_s);
+  return import == nullptr || IsOurs(CsvTable(file))
+             ? ReadCsv(file, sensors, period_s)
+             : ReadForeignCsv(file, *import, sensors, period_s);
 }
 
 }  // namespace flexarm

@@ -17,6 +17,7 @@ using ColumnValue = std::variant<std::int64_t, double, std::string_view>;
 struct TickColumn {
   const char* name;
   const char* type;  ///< of SQL
+  const char* unit;  ///< of the units row of an exported file
   ColumnValue (*value)(const TickRecord& record);
 };
 

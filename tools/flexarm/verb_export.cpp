@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -7,6 +8,7 @@
 #include "controller/files/external_text.h"
 #include "controller/files/write_file.h"
 #include "controller/runlog/csv.h"
+#include "controller/runlog/decoded_csv.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
@@ -17,9 +19,15 @@ namespace {
 struct ExportOptions {
   std::filesystem::path run;
   OutputOptions output;
+  bool decoded = false;
+  bool with_raw = false;
 };
 
-void Export(const ExportOptions& options) {
+void ReportSamples(std::int64_t rows, const std::filesystem::path& output) {
+  std::cerr << "wrote " << rows << " samples to " << Shown(output.string(), kMessageBytes) << '\n';
+}
+
+void ExportRaw(const ExportOptions& options) {
   RunReader reader(options.run);
   const RigConfig config = ConfigOf(reader);
   const std::filesystem::path& output = options.output.file;
@@ -35,7 +43,7 @@ void Export(const ExportOptions& options) {
     ++rows;
   });
   WriteFile(output, csv.str(), rules);
-  std::cerr << "wrote " << rows << " samples to " << Shown(output.string(), kMessageBytes) << '\n';
+  ReportSamples(rows, output);
   if (calibration == Calibration{}) return;
   std::filesystem::path beside = output;
   beside.replace_extension(".calibration.json");
@@ -46,20 +54,59 @@ void Export(const ExportOptions& options) {
       << beside.string() << '\n';
 }
 
+void ExportDecoded(const ExportOptions& options) {
+  RunReader reader(options.run);
+  const RigConfig config = ConfigOf(reader);
+  const OutputRules rules = options.output.Rules("decoded samples", kDecodedMark, {options.run});
+  CheckOutput(options.output.file, rules);
+  std::map<std::int64_t, TimingRecord> timing;
+  reader.ForEachTiming([&](const TimingRecord& record) { timing[record.tick] = record; });
+  std::ostringstream csv;
+  DecodedCsvWriter writer(&csv, {.sensors = config.sensors,
+                                 .tip = TipGeometryOf(config.arm, config.controller.nominal),
+                                 .start_ns = reader.info().start_ns,
+                                 .simulated = reader.info().backend == "sim",
+                                 .timed = !timing.empty(),
+                                 .with_raw = options.with_raw});
+  std::int64_t rows = 0;
+  reader.ForEachTick([&](const TickRecord& record) {
+    const auto found = timing.find(record.input.tick);
+    writer.Row({record, found == timing.end() ? nullptr : &found->second});
+    ++rows;
+  });
+  WriteFile(options.output.file, csv.view(), rules);
+  ReportSamples(rows, options.output.file);
+}
+
 }  // namespace
 
 void RegisterExport(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ExportOptions>();
   CLI::App* verb = app.add_subcommand(
-      "export", "Export the samples of a run log as a CSV file that `flexarm replay` reads");
+      "export",
+      "Export the samples of a run log as a CSV file, raw for `flexarm replay` or decoded");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   options->output.AddTo(verb, "CSV file to write", true);
+  CLI::Option* decoded = verb->add_flag("--decoded", options->decoded,
+                                        "Values with units, for plots, in place of raw counts");
+  verb->add_flag("--with-raw", options->with_raw, "Also the counts that they were decoded from")
+      ->needs(decoded);
   verb->footer(
       "Columns: time_s, counter_1..4 and strain_<link>_<number> as raw counts, valid (1, 0 or a\n"
       "mask), torque_1_nm and torque_2_nm as applied. A calibration of the run is\n"
       "written beside the CSV file, as NAME.calibration.json.\n"
-      "Example: flexarm export runs/today.flexarm -o today.csv");
-  verb->callback([options] { Export(*options); });
+      "With --decoded: a row of names, a row of units, then angles, references, strains, modal\n"
+      "coordinates, torques, estimate, tip, state, payload and timing; docs/run-logs.md lists\n"
+      "them. `flexarm replay` does not read that file.\n"
+      "Examples: flexarm export runs/today.flexarm -o today.csv\n"
+      "          flexarm export runs/today.flexarm --decoded -o values.csv");
+  verb->callback([options] {
+    if (options->decoded) {
+      ExportDecoded(*options);
+    } else {
+      ExportRaw(*options);
+    }
+  });
 }
 
 }  // namespace flexarm
