@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "config/cross_rules.h"
+#include "config/derived_keys.h"
 #include "config/document.h"
 #include "config/overrides.h"
 #include "config/problem_log.h"
@@ -50,6 +51,7 @@ RigConfig ReadConfig(const std::string& name, toml::table document,
                      const std::vector<std::string>& overrides) {
   ProblemLog log(name, &document);
   ApplyOverrides(overrides, &document, &log);
+  log.Excuse(AddDerivedKeys(&document).waiting);
   TableReader root(&document, "", &log);
   if (root.Has("extends")) {
     root.Refuse(

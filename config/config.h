@@ -35,11 +35,13 @@ class ConfigError : public std::runtime_error {
   std::vector<ConfigProblem> problems_;
 };
 
-/// Reads a rig from one TOML file and the files that it extends. No key has a default but [hal],
-/// [csv] and controller.gains.
+/// Reads a rig from one TOML file and the files that it extends.
 ///
-/// Reads `file`, what it extends, and `overrides` ("section.key=VALUE", TOML syntax, a bare word is
-/// a string; last wins). A row or element is named by its number: "sensors.strain[3].face=-1".
+/// The tuning keys of DerivableKeys (config/derivation/derivation.h) may be left out, and follow
+/// the arm then. Of the others none has a default, but [hal], [csv], controller.gains and those
+/// that thesis-rig.toml shows as comments. Reads `file`, what it extends, and `overrides`
+/// ("section.key=VALUE", TOML syntax, a bare word is a string; last wins). A row or element is
+/// named by its number: "sensors.strain[3].face=-1".
 /// @throws ConfigError with every problem found
 RigConfig LoadConfig(const std::filesystem::path& file,
                      const std::vector<std::string>& overrides = {});

@@ -45,17 +45,19 @@ void CheckChannelsForFit(const RigConfig& c, ProblemLog* log, std::vector<Proble
   }
 }
 
-// The nominal model may have only modes that are measured, and only measured angles can be
-// differentiated.
+// Only what is measured can be differentiated: the Kalman filter estimates the rest.
 void CheckNominalModel(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   constexpr const char* kKey = "controller.nominal";
   if (!log->Clear({kKey, "estimator.modes_per_link", "estimator.name", "sensors.encoder"})) return;
   const StateLayout& nominal = c.controller.nominal;
-  if (nominal.modes_per_link > c.estimator.modes_per_link) {
+  const bool differentiates = c.estimator.kind == EstimatorKind::kDifference ||
+                              c.estimator.kind == EstimatorKind::kPolynomial;
+  if (nominal.modes_per_link > c.estimator.modes_per_link && differentiates) {
     out->push_back({kKey, std::string(NameOf(nominal)),
                     "has " + NumberText(nominal.modes_per_link) +
-                        " modes a link: estimator.modes_per_link = " +
-                        NumberText(c.estimator.modes_per_link) + " must be at least as many"});
+                        " modes a link: with this estimator.name, estimator.modes_per_link = " +
+                        NumberText(c.estimator.modes_per_link) +
+                        " must be at least as many; \"kalman\" estimates the others"});
   }
   constexpr unsigned kRotors = 0b1100;
   if (nominal.torsion && c.estimator.kind != EstimatorKind::kKalman &&
@@ -87,12 +89,9 @@ void CheckPayloadStart(const RigConfig& c, ProblemLog* log, std::vector<Problem>
                       ": the estimate stays within it"});
 }
 
-// The model of the filter has two modes a link, rigid joints and gauge filters of first order.
+// The model of the filter has two modes a link and rigid joints.
 void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
-  if (!log->Clear({"controller.name", "estimator.name", "controller.nominal",
-                   "estimator.modes_per_link", "sensors.strain_input"})) {
-    return;
-  }
+  if (!log->Clear({"controller.name", "estimator.name", "controller.nominal"})) return;
   const bool by_law = IsScheduled(c.controller.kind);
   if (!c.uses_payload_estimator()) return;
   const char* key = by_law ? "controller.name" : "estimator.name";
@@ -106,12 +105,7 @@ void CheckPayloadEstimator(const RigConfig& c, ProblemLog* log, std::vector<Prob
   require(c.estimator.payload.has_value(), "needs the table [estimator.payload]");
   require(!by_law || c.controller.payload.has_value(), "needs the table [controller.payload]");
   require(!plans || c.controller.plan.has_value(), "needs the table [controller.plan]");
-  require(
-      c.controller.nominal == kR12 && c.estimator.modes_per_link == 2,
-      "needs controller.nominal = \"R12\" and estimator.modes_per_link = 2, as the filter's state");
-  require(c.sensors.strain_input.filter_hz > 0.0 && !(c.sensors.strain_input.filter_damping > 0.0),
-          "needs gauge filters of first order: sensors.strain_input.filter_hz above 0, no "
-          "filter_damping");
+  require(c.controller.nominal == kR12, "needs controller.nominal = \"R12\", the filter's model");
 }
 
 // Otherwise the friction would hold and release the arm in turn.

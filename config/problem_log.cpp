@@ -58,8 +58,11 @@ void ProblemLog::Know(const std::string& path, std::string_view key) {
 void ProblemLog::AddMissing(const std::string& path, std::string_view key,
                             std::string_view wanted) {
   reported_.push_back(JoinKey(path, key));
+  if (std::find(excused_.begin(), excused_.end(), reported_.back()) != excused_.end()) return;
   missing_.push_back({path, std::string(key), std::string(wanted)});
 }
+
+void ProblemLog::Excuse(std::vector<std::string> keys) { excused_ = std::move(keys); }
 
 void ProblemLog::Add(const std::string& key, const toml::node& node, std::string rule) {
   reported_.push_back(key);

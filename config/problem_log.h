@@ -32,6 +32,9 @@ class ProblemLog {
   /// Reports a missing required key. `wanted` describes its value, such as "a number".
   void AddMissing(const std::string& path, std::string_view key, std::string_view wanted);
 
+  /// Does not report these keys as missing: what they depend on is reported.
+  void Excuse(std::vector<std::string> keys);
+
   /// Reports a value that violates `rule`; its text and place are those of `node`.
   void Add(const std::string& key, const toml::node& node, std::string rule);
 
@@ -72,7 +75,8 @@ class ProblemLog {
   std::string file_;
   const toml::table* document_;
   std::map<std::string, std::vector<std::string>> known_;  // table path -> known keys, in order
-  std::vector<std::string> reported_;                      // keys whose rules are not checked
+  std::vector<std::string> excused_;
+  std::vector<std::string> reported_;  // keys whose rules are not checked
   std::vector<Missing> missing_;
   std::vector<ConfigProblem> problems_;
 };

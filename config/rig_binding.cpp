@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 
 #include "config/hal_binding.h"
@@ -166,7 +167,7 @@ void ReadPayloadEstimator(TableReader payload, PayloadEstimatorConfig* out) {
   if (payload.Has("tip_extra_sigma_m_s2")) {
     payload.Read("tip_extra_sigma_m_s2", &out->tip_extra_sigma_m_s2.emplace());
   }
-  payload.Read("detect_delay", &out->detect_delay);
+  if (payload.Has("detect_delay")) payload.Read("detect_delay", &out->detect_delay);
 }
 
 void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
@@ -179,6 +180,7 @@ void ReadEstimator(TableReader estimator, EstimatorConfig* out) {
   estimator.Read("modes_per_link", &out->modes_per_link);
   estimator.Read("process_force", &out->process_force);
   estimator.Read("rotor_extra_sigma_rad", &out->rotor_extra_sigma_rad);
+  estimator.Read("hub_extra_sigma_rad", &out->hub_extra_sigma_rad);
   estimator.Read("modal_sigma_m", &out->modal_sigma_m);
   estimator.Read("max_joint_rate_rad_s", &out->max_joint_rate_rad_s);
   estimator.Read("hub_rotor_limit_rad", &out->hub_rotor_limit_rad);
@@ -365,6 +367,19 @@ void ReadTiming(TableReader root, RigConfig* config) {
 }
 
 }  // namespace
+
+void ReadTuningBasis(TableReader root, TuningBasis* basis) {
+  ReadArm(root, &basis->arm);
+  ReadSensors(root.Table("sensors"), &basis->sensors);
+  double period_ms = 0.0;
+  root.Table("loop").Read("period_ms", &period_ms);
+  basis->period_s = 1e-3 * period_ms;
+  TableReader limits = root.Table("limits");
+  limits.Read("torque_limit_nm", &basis->torque_limit_nm);
+  basis->strain_limit.fill(std::numeric_limits<double>::quiet_NaN());
+  if (limits.Has("strain_limit")) limits.Read("strain_limit", &basis->strain_limit);
+  root.Table("controller").Read("payload_range_kg", &basis->payload_range_kg);
+}
 
 void ReadRig(TableReader root, RigConfig* config) {
   root.Table("rig").Read("name", &config->rig_name);

@@ -47,6 +47,8 @@ std::vector<Problem> EstimatorConfig::Problems() const {
   list.Within("modes_per_link", modes_per_link, 1, 2, "modal coordinates fitted per link");
   list.EachPositive("process_force", process_force, 1e4,
                     "without process noise on every coordinate the filter ignores its sensors");
+  list.EachWithin("hub_extra_sigma_rad", hub_extra_sigma_rad, 0.0, 0.1,
+                  "standard deviation added to the quantisation of a hub encoder");
   list.EachWithin("rotor_extra_sigma_rad", rotor_extra_sigma_rad, 0.0, 0.1,
                   "added to the quantisation of the rotor encoders");
   list.EachPositive("modal_sigma_m", modal_sigma_m, 0.1,

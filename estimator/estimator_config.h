@@ -36,7 +36,7 @@ struct PayloadEstimatorConfig {
   double play_threshold_counts;    ///< of hub 2: a larger distance of rotor 2 is backlash
   double play_memory;              ///< share of the largest such distance kept after a sample
   double gate_sigmas;              ///< a single output beyond this is an outlier
-  bool detect_delay;  ///< test for whole samples of undeclared delay (delay_detector.h)
+  bool detect_delay = true;  ///< test for whole samples of undeclared delay (delay_detector.h)
   /// Of an accelerometer at the tip: model error of its reading, added to its noise.
   /// Needed with [sensors.tip_accelerometer] only.
   std::optional<double> tip_extra_sigma_m_s2{};
@@ -45,13 +45,16 @@ struct PayloadEstimatorConfig {
 /// Section [estimator].
 struct EstimatorConfig {
   EstimatorKind kind;  ///< key `name`
-  int modes_per_link;  ///< modal coordinates fitted per link, 1 or 2; the model may use fewer
+  int modes_per_link;  ///< modal coordinates fitted per link, 1 or 2; the model may have others
   /// Standard deviations of the Kalman filter's generalised process forces on joint 1, joint 2 (hub
   /// and rotor alike, where the model distinguishes them), f11 f12 f21 f22 (N m, N m, N x 4,
   /// tip-normalised).
   std::array<double, 6> process_force;
   std::array<double, 2> rotor_extra_sigma_rad;  ///< added to the quantisation of rotor encoders
-  std::array<double, 4> modal_sigma_m;          ///< of the fitted f11 f12 f21 f22
+  /// Added to the quantisation of hub encoders, also in `ekf-payload`: what a hub does beyond the
+  /// model, as a fine encoder shows it.
+  std::array<double, 2> hub_extra_sigma_rad;
+  std::array<double, 4> modal_sigma_m;  ///< of the fitted f11 f12 f21 f22
   // Plausibility checks of the inputs.
   double max_joint_rate_rad_s;  ///< a faster change of a counter is an impossible jump
   double hub_rotor_limit_rad;   ///< |rotor - hub - u/K| beyond this is a fault

@@ -9,6 +9,12 @@ constexpr double kNoFilterHz = 1600.0;
 
 }  // namespace
 
+double LagCorner_hz(const StrainInputConfig& input) {
+  if (!(input.filter_hz > 0.0)) return kNoFilterHz;
+  return input.filter_damping > 0.0 ? input.filter_hz / (2.0 * input.filter_damping)
+                                    : input.filter_hz;
+}
+
 LinearModel WithGaugeFilter(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, Eigen::Index first,
                             Eigen::Index count, const StrainInputConfig& input) {
   const bool second_order = input.filter_hz > 0.0 && input.filter_damping > 0.0;

@@ -16,4 +16,11 @@ namespace flexarm {
 LinearModel WithGaugeFilter(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, Eigen::Index first,
                             Eigen::Index count, const StrainInputConfig& input);
 
+/// Corner of the first-order filter that delays slow motion by as much as the rig's gauge filter
+/// does: f / (2 zeta) for a second-order one.
+///
+/// The error of the replacement at frequency w is (w / w_f)^2 relative to the motion, to lowest
+/// order in w, w_f that of the second-order filter.
+double LagCorner_hz(const StrainInputConfig& input);
+
 }  // namespace flexarm

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/gauge_model.h"
+#include "estimator/unfitted_mode.h"
 #include "model/math/dense_decompositions.h"
 #include "model/math/discretize.h"
 #include "model/math/riccati.h"
@@ -16,6 +17,11 @@ namespace {
 
 // Regularises W: keeps the Riccati equation definite, far below every physical noise (SI units).
 constexpr double kCovarianceFloor = 1e-13;
+
+// The model has modes that the fit lacks.
+bool FitLacksModes(const StateLayout& layout, const EstimatorConfig& estimator) {
+  return estimator.modes_per_link < layout.modes_per_link;
+}
 
 Eigen::MatrixXd OutputMatrix(const StateLayout& layout, Eigen::Index states) {
   const Eigen::Index flex = Eigen::Index{2} * layout.modes_per_link;
@@ -34,10 +40,9 @@ Eigen::VectorXd OutputVariance(const SensorConfig& sensors, const EstimatorConfi
   Eigen::VectorXd R = Eigen::VectorXd::Ones(layout.outputs());
   for (const EncoderConfig& encoder : sensors.encoder) {
     const double q = kTwoPi / encoder.counts_per_turn;
-    const bool rotor = encoder.counter >= 2;
-    const double extra =
-        rotor ? estimator.rotor_extra_sigma_rad[static_cast<std::size_t>(encoder.counter - 2)]
-              : 0.0;
+    const auto joint = static_cast<std::size_t>(encoder.counter % 2);
+    const double extra = encoder.counter >= 2 ? estimator.rotor_extra_sigma_rad[joint]
+                                              : estimator.hub_extra_sigma_rad[joint];
     R(encoder.counter) = q * q / 12.0 + extra * extra;
   }
   for (int link = 0; link < 2; ++link) {
@@ -93,22 +98,36 @@ Eigen::MatrixXd SteadyCovariance(const NominalModel& nominal, const Eigen::Matri
   }
 }
 
+bool IsMeasured(Eigen::Index output, const StateLayout& layout, const SensorConfig& sensors,
+                const EstimatorConfig& estimator) {
+  if (output < kCounters) return (sensors.counters_present() >> output & 1u) != 0;
+  return (output - kCounters) % layout.modes_per_link < estimator.modes_per_link;
+}
+
 }  // namespace
 
-KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const SensorConfig& sensors,
-                                const EstimatorConfig& estimator, double period_s) {
+KalmanDesign DesignKalmanFilter(const NominalModel& nominal, const ArmParameters& arm,
+                                const SensorConfig& sensors, const EstimatorConfig& estimator,
+                                double period_s) {
   const StateLayout& layout = nominal.layout;
   const LinearModel system =
       WithGaugeFilter(nominal.A, nominal.B, layout.mode(0, 0),
                       Eigen::Index{2} * layout.modes_per_link, sensors.strain_input);
   const DiscreteModel discrete = ZeroOrderHold(system.A, system.B, period_s);
-  const Eigen::MatrixXd C_all = OutputMatrix(layout, system.A.rows());
+  Eigen::MatrixXd C_all = OutputMatrix(layout, system.A.rows());
+  if (FitLacksModes(layout, estimator)) {
+    const std::array<double, 2> second_in_first = SecondModeInFirst(arm, sensors);
+    for (int link = 0; link < 2; ++link) {
+      const Eigen::Index second = layout.output(layout.mode(link, 1));
+      C_all.row(layout.output(layout.mode(link, 0))) +=
+          second_in_first[static_cast<std::size_t>(link)] * C_all.row(second);
+    }
+  }
   const Eigen::VectorXd R_all = OutputVariance(sensors, estimator, layout);
 
   std::vector<Eigen::Index> present;  // rows of C with a sensor on this rig
   for (Eigen::Index row = 0; row < C_all.rows(); ++row) {
-    if (row >= kCounters || (sensors.counters_present() >> row & 1u) != 0)
-      present.push_back(row);  // start-up
+    if (IsMeasured(row, layout, sensors, estimator)) present.push_back(row);  // start-up
   }
   const Eigen::MatrixXd C = C_all(present, Eigen::all);
   const Eigen::MatrixXd R = Eigen::VectorXd(R_all(present)).asDiagonal();

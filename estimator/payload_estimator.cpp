@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <numbers>
 
+#include "estimator/gauge_model.h"
+#include "estimator/unfitted_mode.h"
+
 namespace flexarm {
 namespace {
 
@@ -15,6 +18,9 @@ constexpr double kStartBent_m = 1e-4;  // modal coordinates, and the states of t
 // Difference for a derivative by friction: a hundredth of the level.
 constexpr double kFrictionProbe = 0.01;
 constexpr double kLeastFrictionProbe_nm = 1e-4;
+
+// Bits of PayloadFilterConfig::outputs.
+constexpr std::uint32_t kFirstModeOutputs = 0b0101'0000, kSecondModeOutputs = 0b1010'0000;
 
 double OfQuantum(double quantum, double extra) {
   return std::sqrt(quantum * quantum / 12.0 + extra * extra);
@@ -43,7 +49,7 @@ PayloadFilter::Reading ReadingOf(const DecodedCounters& counters, const FittedMo
 
 std::vector<double> PayloadModelConstants(const ArmParameters& arm, const SensorConfig& sensors,
                                           double period_s) {
-  return RigidJointStepper(RigidJointArm(arm), period_s, sensors.strain_input.filter_hz)
+  return RigidJointStepper(RigidJointArm(arm), period_s, LagCorner_hz(sensors.strain_input))
       .Constants();
 }
 
@@ -56,11 +62,18 @@ PayloadFilterConfig PayloadFilterFor(const ArmParameters& arm, const SensorConfi
     c.friction_start_nm[i] = arm.joint[i].coulomb_friction_nm;
     c.friction_probe_nm[i] =
         std::max(kLeastFrictionProbe_nm, kFrictionProbe * arm.joint[i].coulomb_friction_nm);
-    c.output_sigma[i] = OfQuantum(Quantum(sensors, static_cast<int>(i)), 0.0);
+    c.output_sigma[i] =
+        OfQuantum(Quantum(sensors, static_cast<int>(i)), config.hub_extra_sigma_rad[i]);
     c.output_sigma[2 + i] =
         OfQuantum(Quantum(sensors, 2 + static_cast<int>(i)), p.rotor_extra_sigma_rad[i]);
   }
   std::copy(config.modal_sigma_m.begin(), config.modal_sigma_m.end(), c.output_sigma.begin() + 4);
+  c.outputs = sensors.counters_present() | kFirstModeOutputs;
+  if (config.modes_per_link == 2) {
+    c.outputs |= kSecondModeOutputs;
+  } else {
+    c.second_in_first = SecondModeInFirst(arm, sensors);
+  }
   c.process_force = p.process_force;
   c.start_sigma.fill(kStartBent_m);
   std::fill_n(c.start_sigma.begin(), 2, kStartMotion);

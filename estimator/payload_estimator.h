@@ -15,7 +15,8 @@
 
 namespace flexarm {
 
-/// The constants of PayloadFilter's model, for the design: a replay uses the recorded ones.
+/// The constants of PayloadFilter's model, for the design: a replay uses the recorded ones. Its
+/// gauge filters are of first order: LagCorner_hz.
 /// @returns as RigidJointStepper::Constants
 std::vector<double> PayloadModelConstants(const ArmParameters& arm, const SensorConfig& sensors,
                                           double period_s);

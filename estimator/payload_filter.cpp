@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -46,6 +47,7 @@ MotionVector Stacked(const GaugedState& x) noexcept {
 
 // State of the motion that each output measures: th1 th2 th1 th2 phi_f.
 constexpr std::array<int, PayloadFilter::kOutputs> kSeen = {0, 1, 0, 1, 12, 13, 14, 15};
+constexpr std::array<int, 2> kFirstModes = {4, 6};  // outputs
 
 double BeyondBand(double x, double half_width) noexcept {
   return x > half_width ? x - half_width : x < -half_width ? x + half_width : 0.0;
@@ -61,8 +63,23 @@ double Loosening(double sigmas, double gate_sigmas) noexcept {
 }  // namespace
 
 PayloadFilter::PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config)
-    : stepper_(std::move(stepper)), config_(config) {
+    : stepper_(std::move(stepper)),
+      config_(config),
+      row_(RowsOf(config)),
+      nis_scale_(static_cast<double>(kOutputs) / std::popcount(config.outputs & kAllGood)) {
   Reset(RigidJointArm::Vector::Zero());
+}
+
+std::array<PayloadFilter::Row, PayloadFilter::kOutputs> PayloadFilter::RowsOf(
+    const PayloadFilterConfig& config) noexcept {
+  std::array<Row, kOutputs> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = {kSeen[i], kSeen[i], 0.0};
+  for (std::size_t link = 0; link < 2; ++link) {
+    Row& row = rows[static_cast<std::size_t>(kFirstModes[link])];
+    row.second = row.state + 1;
+    row.share = config.second_in_first[link];
+  }
+  return rows;
 }
 
 void PayloadFilter::Reset(const RigidJointArm::Vector& q) noexcept {
@@ -85,7 +102,7 @@ void PayloadFilter::Reset(const RigidJointArm::Vector& q, const Covariance& P) n
 PayloadFilter::Covariance PayloadFilter::CovarianceAfterRest() const noexcept {
   PayloadFilter resting = *this;
   resting.Reset(RigidJointArm::Vector::Zero());
-  const Reading zero{.z = Outputs::Zero(), .good = kAllGood};
+  const Reading zero{.z = Outputs::Zero(), .good = config_.outputs};
   for (int sample = 0; sample < kRestSamples; ++sample) resting.Update(PiecewiseTorque(), zero);
   return resting.P_;
 }
@@ -138,7 +155,8 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const PiecewiseTorque& torq
   Predict(torque, hypotheses);
   estimate_.nis = 0.0;
   estimate_.innovation.setZero();
-  if (reading.good != 0) {
+  const std::uint32_t good = reading.good & config_.outputs;
+  if (good != 0) {
     const Eigen::Vector2d torsion = Torsion(torque);
     Outputs y = reading.z;
     y.segment<2>(2) -= torsion;
@@ -146,33 +164,39 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const PiecewiseTorque& torq
     Outputs e;
     Gain PHt;
     for (int i = 0; i < kOutputs; ++i) {
-      e[i] = (reading.good >> i & 1u) == 0 ? 0.0 : y[i] - x[kSeen[static_cast<std::size_t>(i)]];
+      const Row& row = row_[static_cast<std::size_t>(i)];
+      e[i] = (good >> i & 1u) == 0 ? 0.0 : y[i] - (x[row.state] + row.share * x[row.second]);
       if (i < 4) e[i] = BeyondBand(e[i], config_.count_dead_band_rad[static_cast<std::size_t>(i)]);
-      PHt.col(i) = P_.col(kSeen[static_cast<std::size_t>(i)]);
-    }
-    Outputs R = OutputVariance(y, e, reading.good);
-    for (int i = 0; i < kOutputs; ++i) {
-      if ((reading.good >> i & 1u) == 0) R[i] = kUnreadVariance;
+      PHt.col(i) = P_.col(row.state) + row.share * P_.col(row.second);
     }
     Eigen::Matrix<double, kOutputs, kOutputs> S;
-    for (int i = 0; i < kOutputs; ++i) S.row(i) = PHt.row(kSeen[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < kOutputs; ++i) {
+      const Row& row = row_[static_cast<std::size_t>(i)];
+      S.row(i) = PHt.row(row.state) + row.share * PHt.row(row.second);
+    }
+    Outputs R = OutputVariance(y, e, S.diagonal(), good);
+    for (int i = 0; i < kOutputs; ++i) {
+      if ((good >> i & 1u) == 0) R[i] = kUnreadVariance;
+    }
     S.diagonal() += R;
     const Eigen::LLT<Eigen::Matrix<double, kOutputs, kOutputs>> S_llt(S);
     const Gain K = S_llt.solve(PHt.transpose()).transpose();
     const Outputs weighted = S_llt.solve(e);
-    estimate_.nis = e.dot(weighted);
+    estimate_.nis = nis_scale_ * e.dot(weighted);
     estimate_.innovation = e;
     mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
     for (Hypothesis& hypothesis : hypotheses) {
       hypothesis.innovation = e;
       for (int i = 0; i < kOutputs; ++i) {
-        if ((reading.good >> i & 1u) == 0) continue;
-        hypothesis.innovation[i] -= hypothesis.apart[kSeen[static_cast<std::size_t>(i)]];
+        if ((good >> i & 1u) == 0) continue;
+        const Row& row = row_[static_cast<std::size_t>(i)];
+        hypothesis.innovation[i] -=
+            hypothesis.apart[row.state] + row.share * hypothesis.apart[row.second];
         if (i == 2 || i == 3)
           hypothesis.innovation[i] -= Torsion(hypothesis.torque)[i - 2] - torsion[i - 2];
       }
       const Outputs rival_weighted = S_llt.solve(hypothesis.innovation);
-      hypothesis.nis = hypothesis.innovation.dot(rival_weighted);
+      hypothesis.nis = nis_scale_ * hypothesis.innovation.dot(rival_weighted);
     }
     Correct(K, e, R, hypotheses);
   }
@@ -264,7 +288,9 @@ void PayloadFilter::AddProcessNoise(const Transition& transition) noexcept {
   }
 }
 
+// Of the readings; `spread` is that of the predicted outputs.
 PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Outputs& innovation,
+                                                     const Outputs& spread,
                                                      std::uint32_t good) noexcept {
   Outputs R;
   for (int i = 0; i < kOutputs; ++i) {
@@ -277,8 +303,7 @@ PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Out
   Outputs sigmas;
   int beyond = 0;
   for (int i = 0; i < kOutputs; ++i) {
-    const int state = kSeen[static_cast<std::size_t>(i)];
-    sigmas[i] = std::fabs(innovation[i]) / std::sqrt(P_(state, state) + R[i]);
+    sigmas[i] = std::fabs(innovation[i]) / std::sqrt(spread[i] + R[i]);
     if (sigmas[i] > config_.gate_sigmas) ++beyond;
   }
   if (beyond > kMostGlitches) return R;
@@ -298,7 +323,11 @@ void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation, cons
   Add(K.lazyProduct(innovation));
   // P <- (I - K H) P (I - K H)' + K R K', valid for any K.
   Matrix J = Matrix::Identity();
-  for (int i = 0; i < kOutputs; ++i) J.col(kSeen[static_cast<std::size_t>(i)]) -= K.col(i);
+  for (int i = 0; i < kOutputs; ++i) {
+    const Row& row = row_[static_cast<std::size_t>(i)];
+    J.col(row.state) -= K.col(i);
+    J.col(row.second) -= row.share * K.col(i);
+  }
   const Matrix JP = J.lazyProduct(P_);
   Gain KR = K;
   for (int i = 0; i < kOutputs; ++i) KR.col(i) *= variance[i];

@@ -21,6 +21,10 @@ struct PayloadFilterConfig {
   std::array<double, 6> process_force;
   /// Of the outputs: hubs 1 and 2, rotors 1 and 2 (rad), modal coordinates (m).
   std::array<double, 8> output_sigma;
+  std::uint32_t outputs;  ///< bit i: the rig measures output i
+  /// Of each link, where the gauges are fitted with its first mode alone: the share of phi_f2 in
+  /// that coordinate (unfitted_mode.h); otherwise 0.
+  std::array<double, 2> second_in_first;
   /// Of the state at the start: q, q' and phi_f, rad and m, and per second.
   std::array<double, 16> start_sigma;
 
@@ -53,7 +57,8 @@ struct PayloadFilterConfig {
 /// Extended Kalman filter that estimates state, payload and joint friction while the arm moves.
 ///
 /// 19 states: q and q' of RigidJointArm, the gauges' filters phi_f, the payload m_p, the Coulomb
-/// levels F_1, F_2. Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f]. A sample:
+/// levels F_1, F_2. Outputs y = [th1, th2, th3 - u1/K1, th4 - u2/K2, phi_f]; a rig may lack those
+/// of the rotors and of the second modes. A sample:
 ///   1. state by RigidJointStepper, its derivatives by TransitionOver and by differences;
 ///   2. P <- F P F' + s G Q G' + random walk, s in 1..30: grows with the normalised innovation
 ///      squared (NIS), so that with a wrong model old data count less;
@@ -85,7 +90,8 @@ class PayloadFilter {
     GaugedState state;
     double payload_kg, payload_sigma_kg;
     std::array<double, 2> friction_nm;
-    double nis;  ///< of this sample, 8 expected; 0 without a frame
+    /// Of this sample, scaled to 8 outputs where the rig has fewer: 8 expected; 0 without a frame.
+    double nis;
     Outputs innovation;
     double tip_innovation_m_s2;  ///< of the accelerometer; 0 without its reading
   };
@@ -148,6 +154,13 @@ class PayloadFilter {
   using Matrix = Covariance;
   using Gain = Eigen::Matrix<double, kStates, kOutputs>;
 
+  /// Row of the output matrix: x[state] + share x[second].
+  struct Row {
+    int state, second;
+    double share;
+  };
+
+  static std::array<Row, kOutputs> RowsOf(const PayloadFilterConfig& config) noexcept;
   void ForgetAllButMotion() noexcept;
   void Add(const Vector& dx) noexcept;
   Eigen::Vector2d Torsion(const PiecewiseTorque& torque) const noexcept;
@@ -155,7 +168,8 @@ class PayloadFilter {
   void AddProcessNoise(const Transition& transition) noexcept;
   GaugedState Through(const PiecewiseTorque& torque, double payload_kg,
                       const std::array<double, 2>& friction_nm) const noexcept;
-  Outputs OutputVariance(const Outputs& y, const Outputs& innovation, std::uint32_t good) noexcept;
+  Outputs OutputVariance(const Outputs& y, const Outputs& innovation, const Outputs& spread,
+                         std::uint32_t good) noexcept;
   void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance,
                std::span<Hypothesis> hypotheses) noexcept;
   void CorrectByTip(double reading_m_s2, const PiecewiseTorque& torque,
@@ -164,6 +178,8 @@ class PayloadFilter {
 
   RigidJointStepper stepper_;
   PayloadFilterConfig config_;
+  std::array<Row, kOutputs> row_;
+  double nis_scale_;  // 8 over the outputs of the rig
   Estimate estimate_;
   Matrix P_;
   double mean_nis_;

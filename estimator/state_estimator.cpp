@@ -1,5 +1,7 @@
 #include "estimator/state_estimator.h"
 
+#include <algorithm>
+
 namespace flexarm {
 
 StateEstimator::StateEstimator(const EstimatorConfig& config, const FilterGains& gains,
@@ -7,6 +9,7 @@ StateEstimator::StateEstimator(const EstimatorConfig& config, const FilterGains&
                                const std::array<double, 2>& joint_stiffness_nm_per_rad)
     : kind_(config.kind),
       layout_(gains.layout),
+      fitted_modes_(std::min(config.modes_per_link, gains.layout.modes_per_link)),
       period_s_(period_s),
       joint_stiffness_(joint_stiffness_nm_per_rad),
       hold_({.A = gains.A, .B = gains.B}, gains.A_rate, gains.B_rate, period_s),
@@ -45,7 +48,7 @@ StateEstimator::OutputVector StateEstimator::Measure(const DecodedCounters& coun
     for (int j = 0; j < layout_.modes_per_link; ++j) {
       const int row = layout_.output(layout_.mode(i, j));
       y(row) = modes.modal_m[2 * link + static_cast<std::size_t>(j)];
-      if (modes.valid[link]) *good |= std::uint32_t{1} << row;
+      if (modes.valid[link] && j < fitted_modes_) *good |= std::uint32_t{1} << row;
     }
   }
   return y;

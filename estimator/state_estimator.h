@@ -74,6 +74,7 @@ class StateEstimator {
 
   EstimatorKind kind_;
   StateLayout layout_;
+  int fitted_modes_;  // a link, at most those of the model
   double period_s_;
   std::array<double, 2> joint_stiffness_;
   FractionalZeroOrderHold hold_;

@@ -19,15 +19,6 @@ constexpr int kMaxOutliersPerLink = 2;
 // squared sine of the angle between the two columns.
 constexpr double kMinSeparation = 1e-4;
 
-double HalfThicknessAt(const LinkParameters& link, double x_m) {
-  double end = 0.0;
-  for (const BeamSection& section : link.section) {
-    end += section.length_m;
-    if (x_m <= end) return section.half_thickness_m;
-  }
-  return link.section.back().half_thickness_m;
-}
-
 }  // namespace
 
 StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
@@ -42,7 +33,7 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
   const double counts_variance =
       sensors.strain_input.noise_counts * sensors.strain_input.noise_counts + 1.0 / 12.0;
   const auto shape = [&](std::size_t link, std::size_t j, double x_m) {
-    return HalfThicknessAt(arm.link[link], x_m) * modes[link].mode[j].Curvature(x_m);
+    return arm.link[link].HalfThicknessAt_m(x_m) * modes[link].mode[j].Curvature(x_m);
   };
   for (std::size_t i = 0; i < sensors.strain.size(); ++i) {
     const StrainChannelConfig& row = sensors.strain[i];
@@ -89,7 +80,7 @@ void StrainFit::FitPolynomials(const ArmParameters& arm, const SensorConfig& sen
       if (channel_[i].link != static_cast<int>(link)) continue;
       const double x_m = sensors.strain[i].position_m;
       stations.push_back({.position_m = x_m,  // start-up
-                          .half_thickness_m = HalfThicknessAt(arm.link[link], x_m),
+                          .half_thickness_m = arm.link[link].HalfThicknessAt_m(x_m),
                           .weight = channel_[i].weight});
       rows.push_back(i);  // start-up
     }

@@ -247,7 +247,7 @@ Design DesignController(const ControlConfig& config) {
   DesignForPayload(config, &design);
 
   const KalmanDesign filter =
-      DesignKalmanFilter(nominal, config.sensors, config.estimator, period_s);
+      DesignKalmanFilter(nominal, config.arm, config.sensors, config.estimator, period_s);
   design.filter_A = filter.A;
   design.filter_B = filter.B;
   design.filter_C = filter.C;

@@ -271,7 +271,7 @@ std::string DesignHash(const ControlConfig& config) {
   digest << config.sensors.strain_input.filter_hz << config.sensors.strain_input.filter_damping;
   const EstimatorConfig& estimator = config.estimator;
   digest << estimator.modes_per_link << estimator.process_force << estimator.rotor_extra_sigma_rad
-         << estimator.modal_sigma_m;
+         << estimator.hub_extra_sigma_rad << estimator.modal_sigma_m;
   digest << static_cast<double>(config.controller.nominal.torsion)
          << config.controller.nominal.modes_per_link;
   const ControllerConfig& c = config.controller;
@@ -290,7 +290,10 @@ std::string DesignHash(const ControlConfig& config) {
     digest << static_cast<double>(c.kind) << c.pd_stiffness_nm_per_rad << c.pd_damping_nms_per_rad;
   }
   if (config.uses_payload_estimator()) digest << static_cast<double>(c.kind);
-  if (IsScheduled(c.kind)) digest << c.payload->max_kg << c.payload->reference_kg;
+  if (IsScheduled(c.kind)) {
+    digest << c.payload->max_kg << c.payload->reference_kg << estimator.payload->process_force
+           << estimator.payload->rotor_extra_sigma_rad;
+  }
   if (config.settles()) digest << c.settling->alpha;
   if (IsScheduled(c.kind) || config.settles()) {
     for (const double knot : c.payload->gain_payload_kg) digest << knot;

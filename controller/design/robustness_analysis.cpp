@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "controller/design/design_at_payload.h"
 #include "controller/law/tracking_law.h"
 #include "controller/types/control_config.h"
 #include "controller/types/loop_grid.h"
@@ -58,7 +59,8 @@ MatrixXd StrainShape(const ArmModel& model, const SensorConfig& sensors) {
   return shape;
 }
 
-// Map from the plant's modal coordinates to the fitted ones, rows of the modes that the law uses.
+// Map from the plant's modal coordinates to the fitted ones, rows of the modes that the law uses:
+// zero for one that is not fitted.
 MatrixXd FitOf(const ArmModel& plant, const ControlConfig& config) {
   const Index modes = config.estimator.modes_per_link;
   const Index known = config.controller.nominal.modes_per_link;
@@ -68,8 +70,10 @@ MatrixXd FitOf(const ArmModel& plant, const ControlConfig& config) {
   const MatrixXd normal = fitted.transpose() * fitted;
   const MatrixXd seen = fitted.transpose() * StrainShape(plant, config.sensors);
   const MatrixXd fit = normal.llt().solve(seen);
-  MatrixXd used(2 * known, fit.cols());
-  used << fit.topRows(known), fit.middleRows(modes, known);
+  const Index both = std::min(modes, known);
+  MatrixXd used = MatrixXd::Zero(2 * known, fit.cols());
+  used.topRows(both) = fit.topRows(both);
+  used.middleRows(known, both) = fit.middleRows(modes, both);
   return used;
 }
 
@@ -149,8 +153,8 @@ LinearEstimator DifferenceOf(const Design& design, double period_s) {
   return out;
 }
 
-// `ekf-payload` enters as the Kalman filter for the payload of the design, `ideal` as the filter
-// that an arm would have.
+// `ekf-payload` enters as the Kalman filter for one payload, `ideal` as the filter that an arm
+// would have.
 LinearEstimator EstimatorOf(const ControlConfig& config, const Design& design) {
   const double period_s = config.loop.period_s();
   switch (config.estimator.kind) {
@@ -294,6 +298,14 @@ double Edge(double stable, double end, const Radius& radius) {
   return outside;
 }
 
+// The design that controls the arm with this payload at this elbow angle: a law that follows the
+// payload has found it.
+Design DesignFor(const ControlConfig& config, const Design& design, double payload_kg,
+                 double theta2_deg) {
+  if (!design.scheduled) return design;
+  return DesignAtPayload(config, design, payload_kg, RadFromDeg(theta2_deg));
+}
+
 // Orders spectral radii: one that is not a number is the worst.
 double Badness(double spectral_radius) {
   return std::isnan(spectral_radius) ? std::numeric_limits<double>::infinity() : spectral_radius;
@@ -337,7 +349,8 @@ RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& 
   for (const double payload : payloads) {
     for (const double theta2_deg : kElbow_deg) {
       const Plant plant = PlantAt(config, payload, theta2_deg);
-      const Loop loop(config, design, plant);
+      const Design own = DesignFor(config, design, payload, theta2_deg);
+      const Loop loop(config, own, plant);
       for (const double gain : kGains) {
         robustness.cases.push_back({.payload_kg = payload,
                                     .theta2_deg = theta2_deg,
@@ -348,7 +361,8 @@ RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& 
     }
   }
   const Plant nominal = PlantAt(config, own_kg, 0.0);
-  robustness.margins = MarginsOf(Loop(config, design, nominal));
+  const Design own = DesignFor(config, design, own_kg, 0.0);
+  robustness.margins = MarginsOf(Loop(config, own, nominal));
   return robustness;
 }
 

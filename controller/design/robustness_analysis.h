@@ -38,6 +38,10 @@ struct RobustnessAnalysis {
 /// payload, gauge filter, strain fit, estimator, prediction and the sample of delay; gains times 1,
 /// 0.7 and 1.4.
 ///
+/// A law that follows the payload enters with the model, filter and gains of the payload and elbow
+/// angle of each case (design_at_payload.h): it has found the payload. While it has not, neither
+/// this analysis nor another linear one applies; docs/theory/payload.md 6 has what was simulated.
+///
 /// Linear: no friction, quantisation or limits. An adaptive law enters with its initial gains,
 /// which adaptation can raise by a factor of at most 1 + 1/G. Positive realness of the nominal
 /// model says nothing about modes that it does not contain, but this analysis includes them

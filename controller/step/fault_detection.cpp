@@ -14,6 +14,16 @@ constexpr int kRateTicks = 2;
 constexpr int kMissingTicks = 2;  // samples in a row that lack a reading
 constexpr double kStalePeriods = 2.0;
 
+// Rates at rest are taken over these times, so that counts and noise look no faster at a higher
+// sampling rate.
+constexpr double kHubRestWindow_s = 0.1;
+constexpr double kStrainRestWindow_s = 0.02;
+
+std::size_t SamplesIn(double window_s, double period_s, std::size_t most) noexcept {
+  const auto samples = static_cast<std::size_t>(std::lround(window_s / period_s));
+  return std::clamp<std::size_t>(samples, 1, most);
+}
+
 std::size_t FirstChannel(std::uint32_t mask) noexcept {
   return mask == 0 ? 0 : static_cast<std::size_t>(std::countr_zero(mask)) + 1;
 }
@@ -34,9 +44,11 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
       counters_present_(counters_present),
       gauges_needed_(gauges_needed),
       joint_stiffness_(joint_stiffness_nm_per_rad),
+      hub_window_(SamplesIn(kHubRestWindow_s, period_s, kMostRestWindow)),
+      strain_window_(SamplesIn(kStrainRestWindow_s, period_s, kMostRestWindow)),
       // Not before the window is full.
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
-                                  static_cast<int>(kRestWindow) + 1)) {}
+                                  static_cast<int>(hub_window_) + 1)) {}
 
 void FaultDetection::Reset() noexcept {
   in_a_row_ = {};
@@ -217,21 +229,21 @@ bool FaultDetection::JudgeRest(const LoopFacts& facts) noexcept {
     before_.fill(now);
     for (Posture& posture : before_) --posture.tick;
   }
-  const Posture& oldest = before_[ring_];
-  const Posture& last = before_[(ring_ + kRestWindow - 1) % kRestWindow];
+  const Posture& hub_before = Before(hub_window_);
+  const Posture& strain_before = Before(strain_window_);
   const auto rate = [this](double change, std::int64_t ticks) {
     return std::fabs(change) / (static_cast<double>(ticks) * period_s_);
   };
   bool slow = true;
   for (std::size_t i = 0; i < 2; ++i) {
     slow = slow &&
-           rate(now.hub_rad[i] - oldest.hub_rad[i], now.tick - oldest.tick) <
+           rate(now.hub_rad[i] - hub_before.hub_rad[i], now.tick - hub_before.tick) <
                safety_.rest_hub_rate_rad_s &&
-           rate(now.root_strain[i] - last.root_strain[i], now.tick - last.tick) <
+           rate(now.root_strain[i] - strain_before.root_strain[i], now.tick - strain_before.tick) <
                safety_.rest_strain_rate_per_s;
   }
   before_[ring_] = now;
-  ring_ = (ring_ + 1) % kRestWindow;
+  ring_ = (ring_ + 1) % kMostRestWindow;
   rest_ticks_ = slow ? std::min(rest_ticks_ + 1, rest_ticks_needed_) : 0;
   return rest_ticks_ == rest_ticks_needed_;
 }

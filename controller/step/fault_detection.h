@@ -62,9 +62,9 @@ class FaultDetection {
   Verdict Judge(const LoopFacts& facts) noexcept;
 
  private:
-  /// The arm is at rest by the mean hub rate over this many periods: one encoder count in one
-  /// period already exceeds the bound on the rate at rest.
-  static constexpr std::size_t kRestWindow = 5;
+  /// The arm is at rest by the mean hub rate over a window: one encoder count in one period already
+  /// exceeds the bound on the rate at rest. Longest window, in samples: 0.1 s at 500 Hz, with room.
+  static constexpr std::size_t kMostRestWindow = 64;
 
   /// What the limits are compared with.
   struct Monitored {
@@ -84,6 +84,10 @@ class FaultDetection {
   void JudgeStrain(const LoopFacts& facts) noexcept;
   void JudgeEstimate(const LoopFacts& facts) noexcept;
   bool JudgeRest(const LoopFacts& facts) noexcept;
+  /// The complete sample so many before the present one.
+  const Posture& Before(std::size_t samples) const noexcept {
+    return before_[(ring_ + kMostRestWindow - samples) % kMostRestWindow];
+  }
   bool MayDamp(const LoopFacts& facts) const noexcept;
   /// Counts the samples in a row with `present`, and raises `cause` from the `ticks`-th on.
   void Raise(TripCause cause, bool present, int ticks, double value, double limit,
@@ -98,13 +102,14 @@ class FaultDetection {
   std::uint32_t counters_present_;
   std::array<int, 2> gauges_needed_;
   std::array<double, 2> joint_stiffness_;
+  std::size_t hub_window_, strain_window_;  // samples over which the rates at rest are taken
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
   int incomplete_ticks_ = 0;  // samples in a row that lacked a reading, up to kMissingTicks
-  std::array<Posture, kRestWindow> before_{};  // ring buffer of the last complete samples
-  std::size_t ring_ = 0;                       // the oldest
-  std::int64_t ticks_ = 0;                     // samples since Reset
-  bool started_ = false;                       // false: before_ is not set yet
+  std::array<Posture, kMostRestWindow> before_{};  // ring buffer of the last complete samples
+  std::size_t ring_ = 0;                           // the oldest
+  std::int64_t ticks_ = 0;                         // samples since Reset
+  bool started_ = false;                           // false: before_ is not set yet
   std::array<int, kTripCauses> in_a_row_{};
   Verdict verdict_{};
 };

@@ -21,15 +21,10 @@ struct ControlConfig {
   /// Why the law `sobel` does not bring the arm to rest, and so is `sobel-thesis`; null: it does.
   const char* why_not_settling() const {
     if (!controller.settling) return "the config has no table [controller.settling]";
-    if (controller.nominal != kR12 || estimator.modes_per_link != 2) {
-      return "it needs controller.nominal = \"R12\" and estimator.modes_per_link = 2";
-    }
+    if (controller.nominal != kR12) return "it needs controller.nominal = \"R12\"";
     if (estimator.kind != EstimatorKind::kKalman) return "it needs estimator.name = \"kalman\"";
     if (!estimator.payload || !controller.payload) {
       return "it needs the tables [estimator.payload] and [controller.payload]";
-    }
-    if (!(sensors.strain_input.filter_hz > 0.0) || sensors.strain_input.filter_damping > 0.0) {
-      return "it needs gauge filters of first order";
     }
     return nullptr;
   }

@@ -8,9 +8,8 @@ namespace flexarm {
 
 std::vector<Problem> LoopConfig::Problems() const {
   ProblemList list("loop.");
-  list.Within(
-      "period_ms", period_ms, 5.0, 100.0,
-      "a slower grid undersamples the bending at 9 Hz, the buses are too slow for a faster one");
+  list.Within("period_ms", period_ms, 2.0, 100.0,
+              "a slower grid undersamples the bending, safety acts every millisecond");
   list.Within("acquire_before_ms", acquire_before_ms, 0.0, 100.0,
               "the time that the buses need to deliver a frame");
   list.Positive("step_deadline_ms", step_deadline_ms, 100.0,

@@ -97,6 +97,15 @@ double LinkParameters::mass_kg() const {
   return sum;
 }
 
+double LinkParameters::HalfThicknessAt_m(double x_m) const {
+  double end_m = 0.0;
+  for (const BeamSection& part : section) {
+    end_m += part.length_m;
+    if (x_m <= end_m) return part.half_thickness_m;
+  }
+  return section.back().half_thickness_m;
+}
+
 bool LinkParameters::has_cross_sections() const {
   return std::all_of(section.begin(), section.end(),
                      [](const BeamSection& s) { return s.has_cross_section; });

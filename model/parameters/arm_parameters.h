@@ -54,6 +54,8 @@ struct LinkParameters {
   double length_m() const;
   double mass_kg() const;
   bool has_cross_sections() const;  ///< of every section
+  /// Half the thickness at `x_m` from the root; at a joint of two sections that of the inner one.
+  double HalfThicknessAt_m(double x_m) const;
 };
 
 struct JointParameters {

@@ -39,8 +39,13 @@ const BrokenText kContradiction[] = {
      "estimator.max_joint_rate_rad_s", "sensors.encoder[0] (8 bits)"},
     {"CounterOfAnotherBitWidth", "counter_bits = 16", "counter_bits = 11",
      "estimator.max_joint_rate_rad_s", "sensors.encoder[3] (11 bits)", "max_joint_rate_rad_s = 14"},
-    {"MoreModesInTheModelThanInTheFit", "modes_per_link = 2", "modes_per_link = 1",
-     "controller.nominal", "has 2 modes a link: estimator.modes_per_link = 1", "nominal = \"R12\""},
+    {"MoreModesInTheModelThanCanBeDifferentiated",
+     "name = \"kalman\"                 # laws that follow the payload use \"ekf-payload\" "
+     "instead\n"
+     "modes_per_link = 2",
+     "name = \"difference\"\nmodes_per_link = 1", "controller.nominal",
+     "has 2 modes a link: with this estimator.name, estimator.modes_per_link = 1",
+     "nominal = \"R12\""},
     {"StateWeightOfAnotherModel", "torque_weight = 2.0",
      "torque_weight = 2.0\nstate_weight = [100, 20, 0, 0, 5, 1, 0, 0]", "controller.state_weight",
      "one weight for each state of controller.nominal: 12", "state_weight = [100"},
@@ -158,8 +163,8 @@ TEST(BrokenConfigs, ALawThatEstimatesThePayloadNeedsItsTables) {
     });
   };
   const std::string payload = "controller.payload", plan = "controller.plan";
-  EXPECT_TRUE(refused(without("gain-scheduled", payload), payload));
-  EXPECT_TRUE(refused(without("receding-horizon", payload), payload));
+  EXPECT_FALSE(refused(without("gain-scheduled", payload), payload)) << "it is derived";
+  EXPECT_FALSE(refused(without("receding-horizon", payload), payload)) << "it is derived";
   EXPECT_TRUE(refused(without("receding-horizon", plan), plan));
   EXPECT_FALSE(refused(without("gain-scheduled", plan), plan)) << "this law has no planner";
 }

@@ -231,8 +231,7 @@ TEST(Settling, IsNamedWhereItIsNotPossible) {
     const char* reason;
   };
   for (const auto& [override, reason] :
-       {Case{"estimator.name=difference", "kalman"}, Case{"controller.nominal=T12", "R12"},
-        Case{"sensors.strain_input.filter_damping=0.7", "first order"}}) {
+       {Case{"estimator.name=difference", "kalman"}, Case{"controller.nominal=T12", "R12"}}) {
     const RigConfig config = HilWith({override});
     EXPECT_FALSE(config.settles()) << override;
     EXPECT_FALSE(config.uses_payload_estimator()) << override;

@@ -51,7 +51,7 @@ TEST(PayloadEstimator, StartsAtRestAtTheMeasuredHubAngles) {
 // A loop is reset when a run begins, whereas the arm has been at rest for long: one count of a
 // hub's encoder must not look like more motion than to a filter that had followed the rest.
 TEST(PayloadEstimator, IsAsCertainAfterAResetAsAfterARest) {
-  const double count_rad = 2.0 * kPi / 2540.0;
+  const double count_rad = 2.0 * M_PI / 2540.0;
   PayloadEstimator fresh = Estimator(), rested = Estimator();
   fresh.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   for (int k = 0; k < 300; ++k) rested.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));

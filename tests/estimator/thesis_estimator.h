@@ -20,6 +20,7 @@ inline EstimatorConfig ThesisEstimator(EstimatorKind kind = EstimatorKind::kKalm
           .modes_per_link = 2,
           .process_force = {0.3, 0.05, 5.0, 5.0, 1.5, 1.5},
           .rotor_extra_sigma_rad = {3e-4, 3e-4},
+          .hub_extra_sigma_rad = {},
           .modal_sigma_m = {2e-4, 1e-4, 2e-4, 1e-4},
           .max_joint_rate_rad_s = 14.0,
           .hub_rotor_limit_rad = 0.1,
@@ -31,8 +32,8 @@ inline EstimatorConfig ThesisEstimator(EstimatorKind kind = EstimatorKind::kKalm
 
 inline KalmanDesign ThesisFilter(const SensorConfig& sensors = ThesisSensors(),
                                  const StateLayout& layout = kR12) {
-  return DesignKalmanFilter(MakeNominalModel(ThesisRig(), layout), sensors, ThesisEstimator(),
-                            kPeriod_s);
+  return DesignKalmanFilter(MakeNominalModel(ThesisRig(), layout), ThesisRig(), sensors,
+                            ThesisEstimator(), kPeriod_s);
 }
 
 }  // namespace flexarm

@@ -1,6 +1,7 @@
 #include "tools/command_line/options.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <iostream>
 #include <sstream>
 #include <string_view>
@@ -46,12 +47,24 @@ void GridOptions::AddTo(CLI::App* verb) {
       ->check(NumberWithin(1, 1024));
 }
 
+std::filesystem::path ExperimentsFolder(const std::filesystem::path& config) {
+  std::error_code ignored;
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  const std::array<std::filesystem::path, 4> folders = {
+      config.parent_path() / "experiments", "config/experiments",
+      program / "../share/flexarm/config/experiments", program / "../../../config/experiments"};
+  for (const std::filesystem::path& folder : folders) {
+    if (std::filesystem::is_directory(folder, ignored)) return folder.lexically_normal();
+  }
+  throw InputError("found no experiments beside " + Shown(config.string(), kMessageBytes) +
+                   ", in config/experiments or with the program: name one with --experiment FILE");
+}
+
 std::filesystem::path ExperimentFile(const std::filesystem::path& given,
-                                     const std::filesystem::path& config) {
+                                     const std::filesystem::path& config, ControllerKind law) {
   if (!given.empty()) return given;
-  const std::filesystem::path name = "experiments/square-30deg.toml";
-  const std::filesystem::path beside = config.parent_path() / name;
-  return std::filesystem::exists(beside) ? beside : "config" / name;
+  return ExperimentsFolder(config) / (IsScheduled(law) ? "moves.toml" : "square-30deg.toml");
 }
 
 std::function<std::string(const std::string&)> NumberWithin(double low, double high) {

@@ -7,6 +7,7 @@
 
 #include "config/config.h"
 #include "controller/files/write_file.h"
+#include "controller/types/law_table.h"
 
 namespace CLI {
 class App;
@@ -36,10 +37,15 @@ struct GridOptions {
   void AddTo(CLI::App* verb);
 };
 
-/// `given`, or if that is empty the default experiment: experiments/square-30deg.toml beside the
-/// config, or in config/ of the current folder.
+/// The folder of the shipped experiments: beside the config, in config/ of the current folder,
+/// where this program was installed, or in the source tree that it was built in.
+/// @throws InputError if there is none
+std::filesystem::path ExperimentsFolder(const std::filesystem::path& config);
+
+/// `given`, or if that is empty the default experiment of ExperimentsFolder: square-30deg.toml, or
+/// moves.toml for a law that follows moves only.
 std::filesystem::path ExperimentFile(const std::filesystem::path& given,
-                                     const std::filesystem::path& config);
+                                     const std::filesystem::path& config, ControllerKind law);
 
 /// Check of a numeric option: low <= value <= high. Unlike CLI::Range it refuses a NaN.
 std::function<std::string(const std::string&)> NumberWithin(double low, double high);

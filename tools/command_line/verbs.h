@@ -31,6 +31,8 @@ void RegisterCheck(CLI::App& app, Exit& exit);
 void RegisterCheckHost(CLI::App& app, Exit& exit);
 void RegisterCommission(CLI::App& app, Exit& exit);  ///< tare, zero, calibrate, pluck, home
 void RegisterConfig(CLI::App& app, Exit& exit);
+void RegisterConfigNew(CLI::App& config, Exit& exit);
+void RegisterConfigShow(CLI::App& config, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);
 void RegisterDiff(CLI::App& app, Exit& exit);
 void RegisterExport(CLI::App& app, Exit& exit);

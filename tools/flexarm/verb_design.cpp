@@ -14,12 +14,14 @@
 #include "controller/design/design_verdict.h"
 #include "controller/design/model_following.h"
 #include "controller/files/external_json.h"
+#include "controller/files/input_error.h"
 #include "controller/files/write_file.h"
 #include "controller/law/design.h"
 #include "controller/types/rejected_error.h"
 #include "model/math/invariant_zeros.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
+#include "tools/flexarm/design_tuning.h"
 
 namespace flexarm {
 namespace {
@@ -29,6 +31,7 @@ struct DesignOptions {
   OutputOptions output;
   std::vector<double> payload_kg;  ///< empty: those of the config
   bool force = false;
+  bool tune = false;
   bool json = false;
 };
 
@@ -227,6 +230,12 @@ void PrintText(const RigConfig& config, const Design& design, const RobustnessAn
 }
 
 int Run(const DesignOptions& options) {
+  if (options.tune) {
+    RigConfig config = options.config.Load();
+    config.controller.gains_file.clear();
+    return TuneAndPrint(config, options.json);
+  }
+  if (!options.output.given()) throw InputError("--output FILE is required, or --tune");
   const OutputRules rules = options.output.Rules("a gains file", kGainsMark, {options.config.file});
   CheckOutput(options.output.file, rules);
   RigConfig config = options.config.Load();
@@ -266,7 +275,7 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
       "design",
       "Design the reference model, gains and filter of a rig, check them and write them to a file");
   options->config.AddTo(verb, true);
-  options->output.AddTo(verb, "Gains file to write (JSON)", true);
+  options->output.AddTo(verb, "Gains file to write (JSON)", false);
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payloads with which the closed loop must be stable, kg (default: six of "
                    "controller.payload_range_kg)")
@@ -274,6 +283,11 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
       ->expected(1, -1);
   verb->add_flag("--force", options->force,
                  "Write the gains even if a check failed; the file and every run's log record it");
+  verb->add_flag("--tune", options->tune,
+                 "Search noises and weights for the best margins over payloads and elbow angles,\n"
+                 "print the lines to change, or what is in the way; writes no file")
+      ->excludes("--output")
+      ->excludes("--force");
   AddJson(verb, &options->json);
   verb->footer(
       "The nominal model is controller.nominal: R8, R12, T12 or T16.\n"
@@ -288,7 +302,8 @@ void RegisterDesign(CLI::App& app, Exit& exit) {
       "simulated backend; on a wired rig `flexarm arm` needs --override-design REASON as well.\n"
       "To run with these gains, set [controller] gains = \"FILE\" in the config. Without that key\n"
       "the daemon designs the gains at start.\n"
-      "Example: flexarm design -c config/thesis-rig.toml -o gains.json");
+      "Examples: flexarm design -c config/thesis-rig.toml -o gains.json\n"
+      "          flexarm design -c rig.toml --tune");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }
 

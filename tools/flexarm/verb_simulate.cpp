@@ -122,7 +122,8 @@ void WarnOfDesign(const DesignVerdict& design) {
 int Run(const SimulateOptions& options) {
   SimulationRequest request;
   request.config = LoadWithOptions(options);
-  request.experiment_file = ExperimentFile(options.experiment, options.config.file);
+  request.experiment_file =
+      ExperimentFile(options.experiment, options.config.file, request.config.controller.kind);
   request.experiment = LoadExperiment(request.experiment_file);
   request.payload_kg = options.payload_kg;
   if (!options.output.empty()) request.log = options.output;
@@ -157,7 +158,8 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
   options->config.AddTo(verb, true);
   verb->add_option(
           "--experiment", options->experiment,
-          "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config)")
+          "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config or\n"
+          "shipped; moves.toml for a law that follows moves only)")
       ->type_name("FILE");
   verb->add_option("--controller", options->controller,
                    "controller.name, the control law:\n" + LawHelp());

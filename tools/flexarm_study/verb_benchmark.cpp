@@ -26,7 +26,7 @@ struct BenchmarkOptions {
 void Run(const BenchmarkOptions& options) {
   const RigConfig config = options.config.Load();
   const BenchmarkSet set = BenchmarkSetOf(BenchmarkKindNamed(options.table), config,
-                                          ExperimentFile({}, options.config.file).parent_path());
+                                          ExperimentsFolder(options.config.file));
   const SweepPlan plan = BenchmarkPlan(config, set, options.laws, options.seeds);
   const OutputRules page{.kind = "a benchmark's page",
                          .mark = kBenchmarkPageMark,

@@ -19,7 +19,7 @@ struct ReportOptions {
 };
 
 void Run(const ReportOptions& options) {
-  const std::filesystem::path experiments = ExperimentFile({}, options.config.file).parent_path();
+  const std::filesystem::path experiments = ExperimentsFolder(options.config.file);
   const std::filesystem::path page =
       WriteReport({.config = options.config.LoadWithCrossSections(),
                    .experiments = experiments,

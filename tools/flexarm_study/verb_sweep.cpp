@@ -77,10 +77,12 @@ std::size_t FailedOf(SweepFile* file, const Shard& shard) {
 }
 
 void Run(const RunOptions& options) {
-  const SweepPlan plan{
-      .config = options.config.Load(),
-      .experiment = LoadExperiment(ExperimentFile(options.experiment, options.config.file)),
-      .grid = SweepGrid(AxesOf(options))};
+  const RigConfig config = options.config.Load();
+  const std::filesystem::path experiment =
+      ExperimentFile(options.experiment, options.config.file, config.controller.kind);
+  const SweepPlan plan{.config = config,
+                       .experiment = LoadExperiment(experiment),
+                       .grid = SweepGrid(AxesOf(options))};
   const Shard shard = ParseShard(options.grid.shard);
   CheckPlan(plan);
   SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
@@ -222,9 +224,9 @@ void RegisterSweep(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* verb = AddStudy(app, "sweep");
   options->config.AddTo(verb, false);
-  verb->add_option(
-          "--experiment", options->experiment,
-          "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config)")
+  verb->add_option("--experiment", options->experiment,
+                   "Experiment, a TOML file (default: experiments/square-30deg.toml beside the "
+                   "config or shipped, or moves.toml for a law that follows moves only)")
       ->type_name("FILE");
   AddAxisOptions(verb, options.get());
   options->grid.AddTo(verb);

@@ -52,8 +52,10 @@ LAYERS = {
     "controller/host": "hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/operator",
+    "config/derivation": "model model/beam model/parameters hal estimator",
     "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
-              "controller/types controller/runlog",
+              "controller/types controller/runlog config/derivation",
+    "config/new_rig": "config config/derivation model",
     "config/plausibility": "model model/arm model/parameters hal estimator controller/types",
     "tools/support": "",
     "tools/runs": "controller/runlog config",
@@ -64,6 +66,7 @@ LAYERS = {
                       "tools/runs tools/plot",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config tools/support tools/runs tools/plot controller/files",
+    "tools/tuning": "model model/beam estimator controller/types controller/design controller/host config config/new_rig tools/sweep",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "
                             "controller/types controller/runlog config tools/support tools/runs "
@@ -79,7 +82,7 @@ LAYERS = {
     "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
-                     "controller/operator controller/host config config/plausibility "
+                     "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
                      "tools/runs tools/plot tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog tools/support tools/runs "

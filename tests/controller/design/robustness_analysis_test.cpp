@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "controller/design/design_at_payload.h"
 #include "controller/design/design_controller.h"
 #include "controller/law/tracking_law.h"
 #include "estimator/state_estimator.h"
@@ -253,6 +254,31 @@ TEST(RobustnessAnalysis, TheMarginsAreContinuousWhereTheDelayPassesAWholePeriod)
     EXPECT_NEAR(own.second, near.second, 2e-2 * own.second);  // the boundary is found to 1 %
   }
   EXPECT_LT(with(20.0).second, own.second);
+}
+
+// At the design's own payload and a straight elbow the model of the scheduled law is the nominal
+// one: both are reduced from the same arm.
+TEST(DesignAtPayload, IsTheNominalModelForThePayloadOfTheDesign) {
+  const RigConfig config = ShippedRig({"controller.name=gain-scheduled"});
+  const Design design = DesignController(config);
+  const Design own = DesignAtPayload(config, design, config.arm.payload_mass_kg, 0.0);
+  EXPECT_LT((own.A - design.A).norm(), 1e-9 * design.A.norm());
+  EXPECT_LT((own.B - design.B).norm(), 1e-9 * design.B.norm());
+  const Design heavy = DesignAtPayload(config, design, 1.0, 0.0);
+  EXPECT_GT((heavy.B - design.B).norm(), 0.01 * design.B.norm());
+}
+
+// A law that follows the payload is judged with the gains of each payload: with those of 0.1 kg
+// alone the loop of the same config is nearer to its limit.
+TEST(RobustnessAnalysis, JudgesAScheduledLawWithTheGainsOfEachPayload) {
+  const RigConfig config = ShippedRig({"controller.name=gain-scheduled"});
+  Design design = DesignController(config);
+  const double scheduled =
+      AnalyzeRobustness(config, design, {0.0, 1.0}).worst_required().spectral_radius;
+  design.scheduled.reset();
+  const double fixed =
+      AnalyzeRobustness(config, design, {0.0, 1.0}).worst_required().spectral_radius;
+  EXPECT_LT(scheduled, fixed - 0.01) << "0.949 and 0.990 measured";
 }
 
 }  // namespace

@@ -434,6 +434,28 @@ TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestButAFlickeringCountIs) {
   EXPECT_TRUE(at_rest);
 }
 
+// At 500 Hz one count of 2540 is 1.2 rad/s from sample to sample, and 1 microstrain of noise 7e-4
+// 1/s: over 0.1 s and 20 ms they are what they are at 50 Hz.
+TEST_F(FaultDetectionTest, AFlickeringCountIsAtRestAtAHighRateToo) {
+  constexpr double kFast_s = 0.002;
+  FaultDetection fast(config_.safety, config_.estimator, kFast_s, 0b1111, kGaugesNeeded,
+                      {761.59, 497.96});
+  Facts flicker;
+  bool at_rest = false;
+  for (int k = 0; k < 500; ++k) {
+    flicker.counters.angle_rad[0] = k % 2 == 0 ? 0.0 : 2.0 * std::numbers::pi / 2540.0;
+    flicker.modes.root_strain[1] = k % 3 == 0 ? 2e-5 : 0.0;
+    at_rest = fast.Judge(flicker.Now()).at_rest;
+  }
+  EXPECT_TRUE(at_rest);
+  Facts moving;
+  for (int k = 0; k < 500; ++k) {
+    moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kFast_s * k;
+    const bool rests = fast.Judge(moving.Now()).at_rest;
+    EXPECT_FALSE(rests && k > 50) << k;  // until then the window has the rest before it
+  }
+}
+
 // 1.2e-4 of strain a sample is 6e-3 1/s, the bound being 5e-3.
 TEST_F(FaultDetectionTest, ABendingLinkIsNotAtRest) {
   Facts bending;

@@ -48,7 +48,7 @@ restart_daemon() {
   flexarmd --config wire.toml --log-dir runs --state-dir "$kept" --socket "$FLEXARM_SOCKET" \
     2>daemon.log &
   daemon=$!
-  check "the daemon starts in $1" within 30 grep -q "Starting -> $1" daemon.log
+  check "the daemon starts in $1" within 300 grep -q "Starting -> $1" daemon.log
   sleep 1 # at rest for half a second
 }
 

@@ -1,0 +1,99 @@
+#include "config/derivation/arm_scales.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "estimator/nominal_model.h"
+#include "estimator/root_strain.h"
+#include "model/beam/link_modes.h"
+#include "model/units.h"
+
+namespace flexarm {
+namespace {
+
+// Of the strain that the amplifier can show: a trip needs a reading beyond the limit.
+constexpr double kShareOfFullScale = 0.95;
+constexpr double kLeastFriction = 1e-3;  // of the torque limit
+
+// The least full scale of the link's gauges.
+double FullScale(const SensorConfig& sensors, int link) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const StrainChannelConfig& gauge : sensors.strain) {
+    if (gauge.link != link) continue;
+    const double counts = sensors.strain_input.highest_count() - std::abs(gauge.offset_counts);
+    least = std::min(
+        least, counts * sensors.strain_input.volts_per_count() / std::abs(gauge.gain_v_per_unit));
+  }
+  return least;
+}
+
+// Bending moment per unit of surface strain, of the weakest section.
+double MomentPerStrain_nm(const LinkParameters& link) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const BeamSection& section : link.section) {
+    least = std::min(least, section.bending_stiffness_nm2() / section.half_thickness_m);
+  }
+  return least;
+}
+
+// Standard deviation of the link's first modal coordinate as its gauges measure it.
+double ModalNoise_m(const SensorConfig& sensors, const LinkParameters& link, const LinkModes& modes,
+                    int number) {
+  const double counts =
+      std::sqrt(sensors.strain_input.noise_counts * sensors.strain_input.noise_counts + 1.0 / 12.0);
+  double information = 0.0;
+  for (const StrainChannelConfig& gauge : sensors.strain) {
+    if (gauge.link != number) continue;
+    const double volts_per_m = gauge.gain_v_per_unit * link.HalfThicknessAt_m(gauge.position_m) *
+                               modes.mode[0].Curvature(gauge.position_m);
+    const double counts_per_m = volts_per_m / sensors.strain_input.volts_per_count();
+    information += counts_per_m * counts_per_m;
+  }
+  return counts / std::sqrt(information);
+}
+
+double AmbiguousRate_rad_s(const TuningBasis& basis) {
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const EncoderConfig& encoder : basis.sensors.encoder) {
+    const double half_range_rad =
+        std::ldexp(kTwoPi / encoder.counts_per_turn, encoder.counter_bits - 1);
+    slowest = std::min(slowest, half_range_rad / basis.period_s);
+  }
+  return slowest;
+}
+
+}  // namespace
+
+ArmScales ScalesOf(const TuningBasis& basis) {
+  ArmScales scales{};
+  const ArmParameters& arm = basis.arm;
+  const std::array<LinkModes, 2> modes = {Link1Modes(arm, 1), Link2Modes(arm, 1)};
+  const Eigen::Matrix2d inertia = MakeNominalModel(arm, kR8).RigidInertia_kgm2();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const LinkParameters& link = arm.link[i];
+    const int number = static_cast<int>(i) + 1;
+    const double limit = basis.strain_limit[i];
+    scales.strain_limit[i] =
+        std::isnan(limit) ? kShareOfFullScale * FullScale(basis.sensors, number) : limit;
+    scales.torque_nm[i] =
+        std::min(basis.torque_limit_nm[i], scales.strain_limit[i] * MomentPerStrain_nm(link));
+    scales.inertia_kgm2[i] = inertia(number - 1, number - 1);
+    scales.deflection_m[i] =
+        scales.strain_limit[i] / std::abs(RootStrainShape(link, modes[i]).front());
+    scales.length_m[i] = link.length_m();
+    scales.friction_nm[i] =
+        std::max(arm.joint[i].coulomb_friction_nm, kLeastFriction * basis.torque_limit_nm[i]);
+    scales.modal_noise_m[i] = ModalNoise_m(basis.sensors, link, modes[i], number);
+  }
+  scales.torque_nm[1] =
+      std::min(scales.torque_nm[1], scales.strain_limit[0] * MomentPerStrain_nm(arm.link[0]));
+  for (std::size_t i = 0; i < 2; ++i) {
+    scales.torsion_rad[i] = scales.torque_nm[i] / arm.joint[i].stiffness_nm_per_rad;
+  }
+  scales.ambiguous_rate_rad_s = AmbiguousRate_rad_s(basis);
+  return scales;
+}
+
+}  // namespace flexarm
