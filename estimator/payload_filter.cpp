@@ -27,9 +27,10 @@ constexpr int kMostGlitches = 2;
 // After so many samples at rest the covariance of the motion no longer changes.
 constexpr int kRestSamples = 100;
 
-// Standard deviations after the payload was assumed lost: of the rest of it, small, so that the
-// first samples do not upset the estimate; of the errors that the wrong payload caused at the hubs.
-constexpr double kDroppedPayload_kg = 0.1;
+// Standard deviations after the payload was assumed lost: of the rest of it, as a share of the
+// greatest (0.1 kg on the thesis's rig), small, so that the first samples do not upset the
+// estimate; of the errors that the wrong payload caused at the hubs.
+constexpr double kDroppedPayload = 1.0 / 11.0;
 constexpr double kDroppedAngle_rad = 3e-3, kDroppedRate_rad_s = 0.1;
 
 // Variance of an output that was not read, with zero innovation: so large that it has no effect.
@@ -139,9 +140,9 @@ void PayloadFilter::AssumePayloadLost(std::span<Hypothesis> hypotheses) noexcept
   for (Hypothesis& hypothesis : hypotheses) hypothesis.apart[kPayload] = 0.0;
   P_.row(kPayload).setZero();
   P_.col(kPayload).setZero();
-  P_(kPayload, kPayload) = Square(kDroppedPayload_kg);
   estimate_.payload_kg = 0.0;
-  estimate_.payload_sigma_kg = kDroppedPayload_kg;
+  estimate_.payload_sigma_kg = kDroppedPayload * config_.payload_max_kg;
+  P_(kPayload, kPayload) = Square(estimate_.payload_sigma_kg);
   for (int hub = 0; hub < 2; ++hub) {
     P_(hub, hub) += Square(kDroppedAngle_rad);
     P_(RigidJointArm::kDof + hub, RigidJointArm::kDof + hub) += Square(kDroppedRate_rad_s);

@@ -8,8 +8,9 @@
 
 namespace flexarm {
 
-/// A payload with this standard deviation, or a larger one, counts as unknown.
-inline constexpr double kPayloadUncertain_kg = 0.1;
+/// A payload with a standard deviation of this share of estimator.payload.max_kg, or a larger one,
+/// counts as unknown: 0.1 kg on the thesis's rig.
+inline constexpr double kPayloadUncertain = 1.0 / 11.0;
 
 /// From this mean NIS on, of 8 outputs, the filter's model and so its estimate are wrong.
 inline constexpr double kModelWrongNis = 60.0;
@@ -22,8 +23,8 @@ constexpr bool ContradictsModel(double mean_nis) noexcept { return mean_nis > kM
 ///
 /// Bound and model are checked at every sample. Whether a move has made the payload observable is
 /// checked once, at its end, and holds until the next one begins: the payload is unknown if its
-/// standard deviation is at least kPayloadUncertain_kg then. At rest the standard deviation only
-/// grows, by the payload's random walk, and does not depend on the move. Real-time: safe.
+/// standard deviation is at least kPayloadUncertain of max_kg then. At rest the standard deviation
+/// only grows, by the payload's random walk, and does not depend on the move. Real-time: safe.
 class PayloadMonitor {
  public:
   explicit PayloadMonitor(const PayloadEstimatorConfig& config) noexcept : max_kg_(config.max_kg) {}
@@ -38,7 +39,7 @@ class PayloadMonitor {
     if (moving) {
       not_found_ = false;
     } else if (moving_) {
-      not_found_ = found.payload_sigma_kg >= kPayloadUncertain_kg;
+      not_found_ = found.payload_sigma_kg >= kPayloadUncertain * max_kg_;
     }
     moving_ = moving;
     std::uint32_t warnings = 0;

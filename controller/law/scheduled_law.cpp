@@ -43,7 +43,8 @@ Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& kno
   const double sigma_kg =
       at_bound ? std::numeric_limits<double>::infinity() : knowledge.payload_sigma_kg;
   const double gain_payload_kg =
-      SchedulingPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s);
+      SchedulingPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s,
+                        gains_.grid().payload_kg.back());
   const Eigen::Vector2d feedback_nm = gains_.At(gain_payload_kg, x[1]).lazyProduct(x_desired - x);
   u += feedback_nm;
   const double share = rested_s > 0.0 ? std::max(0.0, 1.0 - rested_s / kCompensationFades_s) : 0.0;

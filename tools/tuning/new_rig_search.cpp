@@ -117,6 +117,26 @@ NewRigResult Try(const ArmDescription& arm, const Progress& progress) {
   return result;
 }
 
+// With the range of payloads that the owner gave, or the widest about the usual one that passes.
+NewRigResult TryPayloads(const ArmDescription& arm, const Progress& progress) {
+  NewRigResult result = Try(arm, progress);
+  if (result.passed || arm.Has("payload_min_kg") || arm.Has("payload_max_kg")) return result;
+  const double usual_kg = arm.At("tip_mass_kg");
+  for (const double share : {0.5, 0.2}) {
+    ArmDescription narrower = arm;
+    narrower.number["payload_min_kg"] = (1.0 - share) * usual_kg;
+    narrower.number["payload_max_kg"] = (1.0 + share) * usual_kg;
+    NewRigResult other = Try(narrower, progress);
+    if (!other.passed) continue;
+    other.notes.insert(other.notes.begin(), "for payloads of " + Rounded((1.0 - share) * usual_kg) +
+                                                " to " + Rounded((1.0 + share) * usual_kg) +
+                                                " kg only: from nothing to twice " +
+                                                "the usual one, " + result.notes.back());
+    return other;
+  }
+  return result;
+}
+
 /// A change of the description, in words.
 struct Change {
   ArmDescription arm;
@@ -151,7 +171,7 @@ std::vector<Change> ChangesOf(const ArmDescription& arm) {
 }  // namespace
 
 NewRigResult FindRig(const ArmDescription& arm, const Progress& progress) {
-  NewRigResult result = Try(arm, progress);
+  NewRigResult result = TryPayloads(arm, progress);
   if (result.passed) return result;
   for (const Change& change : ChangesOf(arm)) {
     const NewRigResult other =

@@ -115,19 +115,26 @@ TEST(GainTable, DoesNotAllocate) {
 }
 
 TEST(SchedulingPayload, IsTheEstimateWhenItIsCertain) {
-  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 8.0, 0.0), 0.8);
-  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 20.0, 0.5), 0.8);
-  EXPECT_EQ(SchedulingPayload(0.05, 0.3, 200.0, 2.0), 0.05) << "light gains are not made heavier";
+  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 8.0, 0.0, 1.0), 0.8);
+  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 20.0, 0.5, 1.0), 0.8);
+  EXPECT_EQ(SchedulingPayload(0.05, 0.3, 200.0, 2.0, 1.0), 0.05)
+      << "light gains are not made heavier";
+}
+
+// The shares are of the greatest payload: an arm for 4 kg has four times as much of everything.
+TEST(SchedulingPayload, IsAShareOfTheGreatestPayload) {
+  EXPECT_DOUBLE_EQ(SchedulingPayload(2.2, 0.2, 8.0, 0.0, 4.0), 4.0 * (0.55 - 0.25 * 0.40));
+  EXPECT_DOUBLE_EQ(SchedulingPayload(2.2, 0.0, 8.0, 0.51, 4.0), 0.6);
 }
 
 TEST(SchedulingPayload, FallsTo150GramsWithUncertainty) {
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 8.0, 0.0), 0.55 - 0.25 * 0.40);
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.4, 8.0, 0.0), 0.15);
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 40.0, 0.0), 0.35);
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 40.0, 0.0), 0.35)
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 8.0, 0.0, 1.0), 0.55 - 0.25 * 0.40);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.4, 8.0, 0.0, 1.0), 0.15);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 40.0, 0.0, 1.0), 0.35);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 40.0, 0.0, 1.0), 0.35)
       << "the greater uncertainty counts";
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 100.0, 0.0), 0.15);
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 8.0, 0.51), 0.15);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 100.0, 0.0, 1.0), 0.15);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 8.0, 0.51, 1.0), 0.15);
 }
 
 }  // namespace
