@@ -83,7 +83,7 @@ class Reading {
     const std::vector<NamedValue<const Material*>> names = MaterialNames();
     std::array<const Material*, 2> material{};
     const bool for_both = root_.Has(kMaterialKey);
-    if (for_both) root_.Read(kMaterialKey, &material[0], names);
+    if (for_both) root_.Read(kMaterialKey, material.data(), names);
     material[1] = material[0];
     for (std::size_t i = 0; i < 2; ++i) {
       TableReader& link = parts_.at(i == 0 ? "link1" : "link2");
@@ -108,9 +108,9 @@ toml::table Document(const std::filesystem::path& file) {
 
 }  // namespace
 
-ArmDescriptionReader::ArmDescriptionReader(const std::filesystem::path& file,
+ArmDescriptionReader::ArmDescriptionReader(std::filesystem::path file,
                                            std::vector<std::string> values)
-    : file_(file), values_(std::move(values)) {
+    : file_(std::move(file)), values_(std::move(values)) {
   Document(file_);  // reports a file that cannot be read before anything is asked
 }
 

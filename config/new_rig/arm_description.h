@@ -49,8 +49,7 @@ struct ArmDescription {
 class ArmDescriptionReader {
  public:
   /// @throws ConfigError if the file cannot be read
-  explicit ArmDescriptionReader(const std::filesystem::path& file,
-                                std::vector<std::string> values = {});
+  explicit ArmDescriptionReader(std::filesystem::path file, std::vector<std::string> values = {});
 
   /// The required keys that have no value yet, "material" included.
   std::vector<std::string> Missing() const;

@@ -146,7 +146,8 @@ struct Change {
 // Changes of one thing, from small to large.
 std::vector<Change> ChangesOf(const ArmDescription& arm) {
   std::vector<Change> changes;
-  const auto add = [&](std::vector<std::string> keys, double value, const std::string& what) {
+  const auto add = [&](const std::vector<std::string>& keys, double value,
+                       const std::string& what) {
     ArmDescription changed = arm;
     for (const std::string& key : keys) changed.number[key] = value;
     changes.push_back({std::move(changed), what});
