@@ -36,17 +36,6 @@ std::span<const TickRecord> FirstRunningSegment(std::span<const TickRecord> tick
   return {first, std::find_if_not(first, ticks.end(), running)};
 }
 
-// The tip with the hubs at those of a state.
-std::array<double, 2> StraightTip(const TipGeometry& geometry,
-                                  const std::array<double, kMaxNominalStates>& x) {
-  std::array<double, kMaxNominalStates> straight{};
-  for (int joint = 0; joint < 2; ++joint) {
-    const auto hub = static_cast<std::size_t>(geometry.layout.hub(joint));
-    straight[hub] = x[hub];
-  }
-  return EstimatedTip(geometry, straight);
-}
-
 std::vector<Sample> Samples(std::span<const TickRecord> ticks, double period_s, bool truth,
                             const TipGeometry& geometry) {
   std::vector<Sample> samples;
@@ -286,6 +275,16 @@ std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
               std::sin(gamma) * w2,
           std::sin(th1) * length1 + std::cos(th1) * w1 + std::sin(gamma) * length2 +
               std::cos(gamma) * w2};
+}
+
+std::array<double, 2> StraightTip(const TipGeometry& geometry,
+                                  const std::array<double, kMaxNominalStates>& x) {
+  std::array<double, kMaxNominalStates> straight{};
+  for (int joint = 0; joint < 2; ++joint) {
+    const auto hub = static_cast<std::size_t>(geometry.layout.hub(joint));
+    straight[hub] = x[hub];
+  }
+  return EstimatedTip(geometry, straight);
 }
 
 RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& experiment,

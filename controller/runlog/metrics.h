@@ -78,6 +78,11 @@ std::array<double, 2> EstimatedDeflection_m(const StateLayout& layout,
 std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
                                    const std::array<double, kMaxNominalStates>& x);
 
+/// The tip with the hubs of `x` and straight links, in the base frame, m: the target, if `x` is
+/// where the reference ends.
+std::array<double, 2> StraightTip(const TipGeometry& geometry,
+                                  const std::array<double, kMaxNominalStates>& x);
+
 /// Computes the metrics of the first interval of ticks in state Running. Sample 0 of the experiment
 /// is the sampling instant after the first of them.
 RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& experiment,

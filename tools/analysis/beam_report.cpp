@@ -10,6 +10,7 @@
 #include "model/beam_methods/mode_shape_fit.h"
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -111,7 +112,7 @@ nlohmann::ordered_json ConvergenceJson(const LinkBeam& beam, const std::vector<B
 void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector<BeamMode>>& modes,
                const std::filesystem::path& output, const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 850) << std::setprecision(8);
+  script << PictureHead(output, 1200, 850) << std::setprecision(8);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     script << "$shape" << i << " << EOD\n";
     AddShapes(modes[i], &script);

@@ -9,6 +9,7 @@
 #include "model/simulation/arm_simulator.h"
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -52,7 +53,7 @@ ExcitationRun RunExcitation(const ArmModel& model, double theta2_deg, const Exci
 void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output,
                     const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
   const std::size_t stride = std::max<std::size_t>(1, run.sample.size() / 2000);
   for (std::size_t i = 0; i < run.sample.size(); i += stride) {
     const ExcitationRun::Sample& s = run.sample[i];

@@ -196,7 +196,7 @@ GaugeVerification VerifyGauges(const RigConfig& config, bool filtered) {
 void DrawVerification(const GaugeVerification& run, const std::filesystem::path& output,
                       const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 850) << std::setprecision(8) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 850) << std::setprecision(8) << "$data << EOD\n";
   for (const GaugeVerification::Sample& s : run.sample) {
     script << s.time_s;
     for (std::size_t i = 0; i < 2; ++i) {

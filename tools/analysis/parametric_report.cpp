@@ -9,6 +9,7 @@
 
 #include "controller/files/write_file.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -110,7 +111,7 @@ void WritePeaks(const ParametricSweep& sweep, std::ostringstream* script) {
 void DrawSweep(const ParametricStudy& study, const ParametricSweep& sweep,
                const std::filesystem::path& output) {
   std::ostringstream script;
-  script << TerminalFor(output, 1500, 850) << std::setprecision(8);
+  script << PictureHead(output, 1500, 850) << std::setprecision(8);
   for (std::size_t signal = 0; signal < kSignals; ++signal) WriteSpectrum(sweep, signal, &script);
   WritePeaks(sweep, &script);
   std::ostringstream title;

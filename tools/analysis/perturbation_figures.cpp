@@ -6,6 +6,7 @@
 
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -22,7 +23,7 @@ void AddRow(const ArmModel& model, const Eigen::VectorXd& q, std::ostream* out) 
 void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
                       const std::filesystem::path& output, const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
   const std::size_t stride = std::max<std::size_t>(1, run.time_s.size() / 2000);
   for (std::size_t i = 0; i < run.time_s.size(); i += stride) {
     script << run.time_s[i];

@@ -8,6 +8,7 @@
 #include "model/units.h"
 #include "tools/analysis/reduction_report.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -58,7 +59,7 @@ void DrawCurve(const ArmModel& model, const ReductionOptions& options, const Cur
       model, {curve.theta2_deg * kRadPerDeg, curve.theta1_rate_rad_s, curve.theta2_rate_rad_s},
       options.scaling, options.rigid_below_rad2_s2);
   std::ostringstream script;
-  script << TerminalFor(output, 1100, 500) << std::setprecision(10) << "$data << EOD\n0 0 0\n";
+  script << PictureHead(output, 1100, 500) << std::setprecision(10) << "$data << EOD\n0 0 0\n";
   for (Eigen::Index k = 0; k < model.mode_count().link1; ++k) {
     script << k + 1;
     for (const LinkContribution& link : reduction.link) script << ' ' << link.epsilon_percent[k];
@@ -94,7 +95,7 @@ void DrawSurface(const ArmModel& model, const ReductionOptions& options, const S
   }
   const std::vector<ReductionCell> cells = ReduceCells(model, motions, options);
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 950) << std::setprecision(10) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 950) << std::setprecision(10) << "$data << EOD\n";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i > 0 && i % kRatePoints == 0) script << '\n';
     script << cells[i].motion.theta1_rate_rad_s << ' ' << cells[i].motion.theta2_rate_rad_s << ' '

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -48,7 +49,7 @@ void WritePanel(const Panel& panel, const std::vector<std::string>& laws, std::o
 
 void DrawLimits(const BenchmarkTable& table, const std::filesystem::path& output) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 900);
+  script << PictureHead(output, 1200, 900);
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
     WriteData(table.cell[law], law, &script);
   }

@@ -38,9 +38,13 @@ void RegisterPlot(CLI::App& app, Exit&) {
   verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");
   options->output.AddTo(verb, "Picture to write, .png or .svg", true);
   verb->footer(
-      "The picture shows the joint angles with their references, the asked and the applied\n"
-      "torques, the tip deflections, the tip's distance from its resting place, the safety state,\n"
-      "and the arm seen from above.\n"
+      "The picture shows the joint angles with their references, the torques and the strains at "
+      "the\n"
+      "roots of the links with their limits, the tip deflections, the tip's distance from its\n"
+      "target, the payload estimate with its sigma, the safety states with trips and events, and\n"
+      "the arm seen from above in up to six moves. It draws any number of moves, and of a long "
+      "run\n"
+      "the least and the greatest value of each part of the time axis: no peak is lost.\n"
       "Example: flexarm plot runs/today.flexarm runs/yesterday.flexarm -o compare.png");
   verb->callback([options] { Plot(*options); });
 }

@@ -8,6 +8,7 @@
 
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -55,7 +56,7 @@ void DrawComparison(const std::vector<ComparisonColumn>& column,
   const std::size_t rows = column.front().run->signal().size();
   std::ostringstream script;
   script << std::setprecision(8)
-         << TerminalFor(output, kColumnWidth * static_cast<int>(column.size()),
+         << PictureHead(output, kColumnWidth * static_cast<int>(column.size()),
                         kRowHeight * static_cast<int>(rows));
   for (std::size_t i = 0; i < column.size(); ++i) WriteData(i, column[i], &script);
   script << "set multiplot layout " << rows << ',' << column.size()

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -80,7 +81,7 @@ const char* TitleOf(LoopView view) {
 void DrawLoopRuns(const std::vector<PlotRun>& runs, LoopView view,
                   const std::filesystem::path& output) {
   std::ostringstream script;
-  script << TerminalFor(output, 1000, 560) << std::setprecision(7);
+  script << PictureHead(output, 1000, 560) << std::setprecision(7);
   for (std::size_t i = 0; i < runs.size(); ++i) WriteData(runs[i], i, &script);
   script << "set multiplot layout 2,1 title " << Quoted(TitleOf(view))
          << "\nset lmargin at screen 0.08\nset rmargin at screen 0.74\n"

@@ -7,6 +7,7 @@
 
 #include "controller/runlog/errors.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 #include "tools/sweep/sweep_summary.h"
 
 namespace flexarm {
@@ -86,7 +87,7 @@ void DrawSummary(const SweepSummary& summary, const std::filesystem::path& outpu
   const SweepAxis& axis = summary.axes.back();
   const bool numbers = std::all_of(axis.values.begin(), axis.values.end(), IsNumber);
   std::string script =
-      TerminalFor(output, 1200, 1200) +
+      PictureHead(output, 1200, 1200) +
       "set multiplot layout 3,2\nset grid\nset yrange [0:*]\nset key opaque\nset xlabel " +
       Quoted(axis.Column()) + "\nset offsets graph 0.02, graph 0.02\n";
   if (!numbers) {
