@@ -171,7 +171,7 @@ PlotRun PlotDataOf(const LoadedRun& run) {
   PlotRun plot{.name = run.file.stem().string(),
                .title = TitleOf(run),
                .details = DetailsOf(run),
-               .command = "flexarm replay " + run.file.string(),
+               .command = ReplayCommand(run),
                .period_s = run.period_s(),
                .truth = scales.truth,
                .trip = TripText(run, zero_ns),

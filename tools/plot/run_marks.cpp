@@ -81,6 +81,14 @@ std::string DetailsOf(const LoadedRun& run) {
   return text + "; " + run.file.filename().string();
 }
 
+std::string ReplayCommand(const LoadedRun& run) {
+  const std::string file = run.file.string();
+  if (file.find_first_of(" '\"$`\\*?;&|<>()") == std::string::npos) return "flexarm replay " + file;
+  std::string quoted;
+  for (const char c : file) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return "flexarm replay '" + quoted + "'";
+}
+
 std::string TripText(const LoadedRun& run, std::int64_t zero_ns) {
   const std::optional<SafetyRecord> trip = TripOf(run.contents.safety);
   if (!trip) return {};

@@ -18,6 +18,8 @@ std::int64_t TimeZero_ns(const LoadedRun& run);
 std::string TitleOf(const LoadedRun& run);
 /// Date, payload, seed, nominal model.
 std::string DetailsOf(const LoadedRun& run);
+/// "flexarm replay FILE", for a shell.
+std::string ReplayCommand(const LoadedRun& run);
 /// The trip with value, limit and time; empty: none.
 std::string TripText(const LoadedRun& run, std::int64_t zero_ns);
 
