@@ -60,13 +60,13 @@ void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& outpu
     script << s.time_s << ' ' << s.bending_mm[0] << ' ' << s.bending_mm[1] << ' ' << s.joint_deg[0]
            << ' ' << s.joint_deg[1] << '\n';
   }
-  script << "EOD\nset multiplot layout 2,2 title 'One period of a square wave of torque, from "
-            "rest'\nset grid lc rgb '#D9D9D9'\nunset key\nset xlabel 's'\n";
+  script << "EOD\nset multiplot layout 2,2 title 'One period of a square wave of torque of 1 s, "
+            "from rest'\nunset key\nset xlabel 'time, s'\n";
   int column = 2;
   for (const char* label :
        {"bending of link 1, mm", "bending of link 2, mm", "joint 1, deg", "joint 2, deg"}) {
-    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column
-           << " with lines lw 2 lc rgb '" << Colour(0) << "'\n";
+    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column << " with lines "
+           << CurveStyle(0) << '\n';
     ++column;
   }
   script << "unset multiplot\n";

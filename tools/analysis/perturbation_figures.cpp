@@ -32,14 +32,13 @@ void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
     script << '\n';
   }
   script << "EOD\nset multiplot layout 2,2 title 'Deviation from the nominal motion, linear and "
-            "nonlinear model'\nset grid lc rgb '#D9D9D9'\nset key top right\nset xlabel 's'\n";
+            "nonlinear model'\nset tmargin 3.5\nset xlabel 'time, s'\n";
   int column = 2;
   for (const char* label :
        {"joint 1, deg", "joint 2, deg", "tip of link 1, mm", "tip of link 2, mm"}) {
-    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column
-           << " with lines lw 5 lc rgb '" << Colour(4)
-           << "' title 'nonlinear', '' using 1:" << column + 4 << " with lines lw 2 dt 2 lc rgb '"
-           << Colour(1) << "' title 'linear'\n";
+    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column << " with lines "
+           << CurveStyle(0, 4.0) << " title 'nonlinear', '' using 1:" << column + 4
+           << " with lines " << CurveStyle(1) << " title 'linear'\n";
     ++column;
   }
   script << "unset multiplot\n";
