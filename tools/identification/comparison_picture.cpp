@@ -60,7 +60,8 @@ void DrawComparison(const std::vector<ComparisonColumn>& column,
                         kRowHeight * static_cast<int>(rows));
   for (std::size_t i = 0; i < column.size(); ++i) WriteData(i, column[i], &script);
   script << "set multiplot layout " << rows << ',' << column.size()
-         << " columnsfirst\nset autoscale xfix\nset lmargin 10\nset tmargin 3\n"
+         << " columnsfirst\nset autoscale xfix\nset lmargin 10\nset tmargin 2.5\nset key bmargin "
+            "right horizontal\n"
             "set xlabel 'time, s'\n";
   for (std::size_t i = 0; i < column.size(); ++i) {
     const Eigen::VectorXd fit = FitPercent(*column[i].run, column[i].predicted);

@@ -84,10 +84,11 @@ class Views {
             << PaletteStyle() << "unset colorbox\n";
     WriteData();
     for (std::size_t i = 0; i < count; ++i) {
-      const double left = kLeft_px + static_cast<double>(i % columns) * (width + kGap_px);
+      const std::size_t row = i / columns, column = i % columns;
+      const double left = kLeft_px + static_cast<double>(column) * (width + kGap_px);
       const double top =
-          top_px_ + kTitle_px + static_cast<double>(i / columns) * (height + kTitle_px + kGap_px);
-      script_ << "set ylabel '" << (i % columns == 0 ? "y, m" : "") << "' offset 0.8,0\n";
+          top_px_ + kTitle_px + static_cast<double>(row) * (height + kTitle_px + kGap_px);
+      script_ << "set ylabel '" << (column == 0 ? "y, m" : "") << "' offset 0.8,0\n";
       WriteView(i, left, top, width, height);
     }
     WriteText(top_px_ + static_cast<double>(rows) * (height + kTitle_px + kGap_px) + 14.0);

@@ -47,6 +47,7 @@ void AppendExtremes(const std::vector<PlotRow>& rows, std::size_t first, std::si
       most[column] = std::fmax(most[column], rows[i][column]);
     }
   }
+  least[kSigmaColumn] = most[kSigmaColumn];  // no band is drawn narrower than it is
   most[kTimeColumn] = rows[(first + last) / 2][kTimeColumn];
   out->push_back(least);
   out->push_back(most);

@@ -10,8 +10,8 @@ namespace flexarm {
 
 /// Columns of the curves of a run. Those of two joints or links stand side by side.
 enum PlotColumn : std::size_t {
-  kTimeColumn,
-  kReferenceColumn,
+  kTimeColumn = 0,
+  kReferenceColumn = 1,
   kAngleColumn = 3,
   kAskedColumn = 5,
   kAppliedColumn = 7,
@@ -21,7 +21,7 @@ enum PlotColumn : std::size_t {
   kTargetColumn = 15,
   kPayloadColumn = 16,
   kSigmaColumn = 17,
-  kPlotColumns,
+  kPlotColumns = 18,
 };
 
 /// Key of each column on a page of a run, with its unit.
@@ -33,7 +33,8 @@ using PlotRow = std::array<double, kPlotColumns>;
 /// between, so that no curve crosses the gap.
 ///
 /// More than `most` samples become `most` rows: the time is divided into most / 2 parts, and of
-/// each part two rows hold the least and the greatest value of each column. No peak is lost.
+/// each part two rows hold the least and the greatest value of each column, and both the greatest
+/// sigma. No peak is lost.
 std::vector<PlotRow> PlotRows(const PlotRun& run, std::size_t most);
 
 /// Least and greatest finite value of some columns.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -27,8 +28,12 @@ TEST(PlotRows, OfALongRunLoseNoPeak) {
   PlotRun run = PlottedRun(100'000);
   run.sample[12'345].applied_nm[0] = 29.0;
   run.sample[67'890].applied_nm[0] = -28.0;
+  run.sample[12'345].payload_sigma_kg = 0.5;
   const auto rows = PlotRows(run, 2000);
   EXPECT_EQ(rows.size(), 2000U);
+  const auto wide = std::count_if(rows.begin(), rows.end(),
+                                  [](const PlotRow& row) { return row[kSigmaColumn] == 0.5; });
+  EXPECT_EQ(wide, 2) << "the band is as wide in both rows of the part";
   const ValueRange range = RangeOf(rows, kAppliedColumn);
   EXPECT_EQ(range.low, -28.0);
   EXPECT_EQ(range.high, 29.0);
