@@ -11,7 +11,7 @@ namespace flexarm {
 namespace {
 
 constexpr double kFinalWindow_s = 0.3;
-constexpr double kSettledWithin_m = 0.015, kFinelySettledWithin_m = 0.005;
+constexpr double kStillWithin_m = 1e-3 * kSettledWithin_mm, kFinelyStillWithin_m = 0.005;
 constexpr double kLongWindow_s = 1.0;
 constexpr double kSettleBy_s = 0.3;  // goal: settled this long after the end of a move
 
@@ -21,6 +21,7 @@ struct Sample {
   std::array<double, 2> angle_deg, error_deg;
   std::array<double, 2> reference_deg_s;
   std::array<double, 2> tip_m;
+  std::array<double, 2> target_m;  // the tip with the joints on their reference, links straight
 };
 
 double Distance(const std::array<double, 2>& a, const std::array<double, 2>& b) {
@@ -43,12 +44,12 @@ std::vector<Sample> Samples(std::span<const TickRecord> ticks, double period_s, 
       ticks.empty() ? 0.0 : 1e-9 * static_cast<double>(ticks.front().input.acts_late_ns);
   for (const TickRecord& record : ticks) {
     const std::int64_t number = record.input.tick - ticks.front().input.tick - 1;
-    Sample sample{
-        .time_s = static_cast<double>(number) * period_s - late_s,
-        .angle_deg = {},
-        .error_deg = {},
-        .reference_deg_s = {},
-        .tip_m = truth ? record.truth.tip_m : EstimatedTip(geometry, record.output.x_hat)};
+    Sample sample{.time_s = static_cast<double>(number) * period_s - late_s,
+                  .angle_deg = {},
+                  .error_deg = {},
+                  .reference_deg_s = {},
+                  .tip_m = truth ? record.truth.tip_m : EstimatedTip(geometry, record.output.x_hat),
+                  .target_m = StraightTip(geometry, record.input.reference_now.x_m)};
     for (std::size_t joint = 0; joint < 2; ++joint) {
       const double angle = truth ? record.truth.hub_angle_rad[joint] : record.output.x_hat[joint];
       const int rate = geometry.layout.rate(geometry.layout.hub(static_cast<int>(joint)));
@@ -93,7 +94,7 @@ std::array<double, 2> MeanTip(std::span<const Sample> window) {
 
 // @returns the time after the start of the rest from which the tip stays within the bound; nothing
 // if it does not
-std::optional<double> SettlingTime(std::span<const Sample> rest, double start_s,
+std::optional<double> StillAfter_s(std::span<const Sample> rest, double start_s,
                                    const std::array<double, 2>& place, double within_m) {
   std::size_t settled = rest.size();
   while (settled > 0 && Distance(rest[settled - 1].tip_m, place) <= within_m) --settled;
@@ -124,12 +125,12 @@ std::span<const Sample> AfterSettling(std::span<const Sample> samples, const Res
   return Between(samples, std::max(rest.start_s, start_s), rest.end_s, slack_s);
 }
 
-// The largest of the settling times so far and of one more rest; nothing: never.
-void TakeLonger(const std::optional<double>& settled, std::optional<double>* longest) {
-  if (!settled) {
+// The largest of the times so far and of one more rest; nothing: never.
+void TakeLonger(const std::optional<double>& time_s, std::optional<double>* longest) {
+  if (!time_s) {
     longest->reset();
   } else if (*longest) {
-    *longest = std::max(**longest, *settled);
+    *longest = std::max(**longest, *time_s);
   }
 }
 
@@ -141,15 +142,17 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
   if (rests.empty()) {
     metrics->joint_final_error_deg = {kNone, kNone};
     metrics->tip_residual_rms_mm = metrics->tip_motion_rms_mm = kNone;
-    metrics->tip_last_second_rms_mm = kNone;
+    metrics->tip_last_second_rms_mm = metrics->tip_target_error_mm = kNone;
     return;
   }
-  metrics->tip_settling_time_s = metrics->tip_settling_within_5mm_s = 0;
+  metrics->tip_still_within_15mm_s = metrics->tip_still_within_5mm_s = 0;
   for (const Rest& rest : rests) {
     const auto all = Between(samples, rest.start_s - 2 * slack_s, rest.end_s, slack_s);
     const auto window = FinalWindow(samples, rest, slack_s);
     JudgeFinalError(window, metrics);
     const std::array<double, 2> place = MeanTip(window);
+    metrics->tip_target_error_mm =
+        std::max(metrics->tip_target_error_mm, 1e3 * Distance(place, window.back().target_m));
     metrics->tip_residual_rms_mm =
         std::max(metrics->tip_residual_rms_mm, ResidualRms_mm(window, place));
     const auto after = AfterSettling(samples, rest, slack_s);
@@ -157,10 +160,13 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
         ResidualRms_mm(after, MeanTip(after)) / static_cast<double>(rests.size());
     const auto last = FinalWindow(samples, rest, slack_s, kLongWindow_s);
     metrics->tip_last_second_rms_mm = ResidualRms_mm(last, MeanTip(last));  // the last rest's stays
-    TakeLonger(SettlingTime(all, rest.start_s, place, kSettledWithin_m),
-               &metrics->tip_settling_time_s);
-    TakeLonger(SettlingTime(all, rest.start_s, place, kFinelySettledWithin_m),
-               &metrics->tip_settling_within_5mm_s);
+    TakeLonger(StillAfter_s(all, rest.start_s, place, kStillWithin_m),
+               &metrics->tip_still_within_15mm_s);
+    TakeLonger(StillAfter_s(all, rest.start_s, place, kFinelyStillWithin_m),
+               &metrics->tip_still_within_5mm_s);
+  }
+  if (metrics->tip_target_error_mm <= kSettledWithin_mm) {
+    metrics->tip_settling_time_s = metrics->tip_still_within_15mm_s;
   }
 }
 
@@ -269,6 +275,16 @@ std::array<double, 2> EstimatedTip(const TipGeometry& geometry,
               std::sin(gamma) * w2,
           std::sin(th1) * length1 + std::cos(th1) * w1 + std::sin(gamma) * length2 +
               std::cos(gamma) * w2};
+}
+
+std::array<double, 2> StraightTip(const TipGeometry& geometry,
+                                  const std::array<double, kMaxNominalStates>& x) {
+  std::array<double, kMaxNominalStates> straight{};
+  for (int joint = 0; joint < 2; ++joint) {
+    const auto hub = static_cast<std::size_t>(geometry.layout.hub(joint));
+    straight[hub] = x[hub];
+  }
+  return EstimatedTip(geometry, straight);
 }
 
 RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& experiment,

@@ -8,7 +8,7 @@ from program import HIL, ProgramTest
 
 FIGURES = ("4.4", "4.5", "5.1", "5.2", "5.3", "5.4", "5.5", "6.1", "6.2", "6.3", "6.4", "6.5", "6.6",
            "6.7", "6.8", "6.9", "7.1", "7.3", "7.4", "7.12", "7.14", "7.25", "7.26", "7.34", "B.2")
-VOID = {"meta", "img"}
+VOID = {"meta", "img", "input"}
 
 
 class Page(html.parser.HTMLParser):
@@ -17,10 +17,13 @@ class Page(html.parser.HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.open, self.loads, self.captions, self.pictures = [], [], [], 0
+        self.headings, self.lead, self.boxes, self.tables = [], "", 0, 0
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
+        self.boxes += attributes.get("class") == "box"
+        self.tables += tag == "table"
         if tag == "img":
             self.pictures += attributes["src"].startswith("data:image/png;base64,iVBOR")
         self.loads += [v for k, v in attributes.items()
@@ -32,6 +35,10 @@ class Page(html.parser.HTMLParser):
         assert self.open.pop() == tag, tag
 
     def handle_data(self, data):
+        if self.open and self.open[-1] == "h2":
+            self.headings.append(data)
+        if self.open and self.open[-1] == "p" and not self.lead:
+            self.lead = data
         if self.open and self.open[-1] == "figcaption":
             self.captions.append(data)
 
@@ -46,6 +53,11 @@ class Report(ProgramTest):
         self.assertEqual((page.open, page.loads), ([], []))
         self.assertGreaterEqual(page.pictures, 16)
         captions = " ".join(page.captions)
+        self.assertEqual(page.headings[:4],
+                         ["Main result", "The thesis's statements", "The arm", "Contents"])
+        self.assertRegex(page.lead, r"^Computed on \d{4}-\d{2}-\d{2} by flexarm \d")
+        self.assertEqual(page.boxes, page.tables + page.pictures, "what does not scroll by itself")
+        self.assertIn("to scale", page.captions[1])
         for figure in FIGURES:
             self.assertIn(figure, captions)
         for chapter in (3, 4, 5, 6, 7):

@@ -10,6 +10,7 @@
 #include "model/beam_methods/mode_shape_fit.h"
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -69,8 +70,8 @@ std::string Curves(const std::string& block, const std::vector<BeamMode>& modes,
     if (by_frequency) {
       title << std::setprecision(4) << ": " << modes[m].frequency_rad_s() / kTwoPi << " Hz";
     }
-    text << (m > 0 ? ", " : "") << block << " using 1:" << m + 2 << " with " << style << " lc rgb '"
-         << Colour(m) << "' title " << Quoted(title.str());
+    text << (m > 0 ? ", " : "") << block << " using 1:" << m + 2 << " with " << style << ' '
+         << CurveStyle(m) << " title " << Quoted(title.str());
   }
   return text.str() + "\n";
 }
@@ -109,28 +110,31 @@ nlohmann::ordered_json ConvergenceJson(const LinkBeam& beam, const std::vector<B
 }
 
 void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector<BeamMode>>& modes,
-               const std::filesystem::path& output, const OutputRules& rules) {
+               bool convergence, const std::filesystem::path& output, const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 850) << std::setprecision(8);
+  script << PictureHead(output, convergence ? 1300 : 900, 900) << std::setprecision(8);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     script << "$shape" << i << " << EOD\n";
     AddShapes(modes[i], &script);
-    script << "EOD\n$error" << i << " << EOD\n";
+    script << "EOD\n";
+    if (!convergence) continue;
+    script << "$error" << i << " << EOD\n";
     AddErrors(beams[i], modes[i], &script);
     script << "EOD\n";
   }
-  script << "set multiplot layout 2,2 title 'Single links: mode shapes, and error of a beam in N "
-            "parts'\n"
-            "set grid lc rgb '#D9D9D9'\n";
+  script << "set multiplot layout 2," << (convergence ? 2 : 1)
+         << " title 'Single links: mode shapes"
+         << (convergence ? ", and error of a beam in N parts" : "") << "'\nset tmargin 3.5\n";
   for (std::size_t i = 0; i < beams.size(); ++i) {
     script << "unset logscale\nset format '%g'\nset xrange [*:*]\nset yrange [-1.1:1.1]\n"
-              "set key below\nset xlabel 'm'\nset ylabel "
-           << Quoted(NameOf(beams[i]) + ", " + beams[i].base) << "\n"
-           << Curves("$shape" + std::to_string(i), modes[i], true, "lines lw 2")
-           << "set logscale xy\nset yrange [*:*]\nset key inside top right\nset xlabel 'parts a "
-              "section'\n"
+              "set xlabel 'position along the link, m'\nset ylabel "
+           << Quoted(NameOf(beams[i]) + ", " + beams[i].base + ": shape, largest value 1") << "\n"
+           << Curves("$shape" + std::to_string(i), modes[i], true, "lines");
+    if (!convergence) continue;
+    script << "set logscale xy\nset xrange [" << kPartCounts.front() << ':' << kPartCounts.back()
+           << "]\nset yrange [*:*]\nset xlabel 'parts a section'\n"
               "set ylabel 'lumped beam: error of the frequency, %'\n"
-           << Curves("$error" + std::to_string(i), modes[i], false, "linespoints lw 2 pt 7");
+           << Curves("$error" + std::to_string(i), modes[i], false, "linespoints pt 7");
   }
   script << "unset multiplot\n";
   DrawPicture(script.str(), output, rules);

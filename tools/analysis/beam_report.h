@@ -28,8 +28,10 @@ nlohmann::ordered_json BeamJson(const LinkBeam& beam, const std::vector<BeamMode
 /// section, C_1..C_4)}.
 nlohmann::ordered_json ConvergenceJson(const LinkBeam& beam, const std::vector<BeamMode>& modes);
 
-/// Draws mode shapes and convergence of the links. @throws std::runtime_error if gnuplot fails
+/// Draws the mode shapes of the links, each scaled to a largest value of 1, and if asked the
+/// convergence of the lumped beam. @throws std::runtime_error if gnuplot fails
 void DrawBeams(const std::vector<LinkBeam>& beams, const std::vector<std::vector<BeamMode>>& modes,
-               const std::filesystem::path& output, const OutputRules& rules = ReplacedPicture());
+               bool convergence, const std::filesystem::path& output,
+               const OutputRules& rules = ReplacedPicture());
 
 }  // namespace flexarm

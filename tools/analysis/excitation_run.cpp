@@ -9,6 +9,7 @@
 #include "model/simulation/arm_simulator.h"
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -52,20 +53,20 @@ ExcitationRun RunExcitation(const ArmModel& model, double theta2_deg, const Exci
 void DrawExcitation(const ExcitationRun& run, const std::filesystem::path& output,
                     const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
   const std::size_t stride = std::max<std::size_t>(1, run.sample.size() / 2000);
   for (std::size_t i = 0; i < run.sample.size(); i += stride) {
     const ExcitationRun::Sample& s = run.sample[i];
     script << s.time_s << ' ' << s.bending_mm[0] << ' ' << s.bending_mm[1] << ' ' << s.joint_deg[0]
            << ' ' << s.joint_deg[1] << '\n';
   }
-  script << "EOD\nset multiplot layout 2,2 title 'One period of a square wave of torque, from "
-            "rest'\nset grid lc rgb '#D9D9D9'\nunset key\nset xlabel 's'\n";
+  script << "EOD\nset multiplot layout 2,2 title 'One period of a square wave of torque of 1 s, "
+            "from rest'\nunset key\nset xlabel 'time, s'\n";
   int column = 2;
   for (const char* label :
        {"bending of link 1, mm", "bending of link 2, mm", "joint 1, deg", "joint 2, deg"}) {
-    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column
-           << " with lines lw 2 lc rgb '" << Colour(0) << "'\n";
+    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column << " with lines "
+           << CurveStyle(0) << '\n';
     ++column;
   }
   script << "unset multiplot\n";

@@ -196,7 +196,7 @@ GaugeVerification VerifyGauges(const RigConfig& config, bool filtered) {
 void DrawVerification(const GaugeVerification& run, const std::filesystem::path& output,
                       const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 850) << std::setprecision(8) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 850) << std::setprecision(8) << "$data << EOD\n";
   for (const GaugeVerification::Sample& s : run.sample) {
     script << s.time_s;
     for (std::size_t i = 0; i < 2; ++i) {
@@ -205,7 +205,7 @@ void DrawVerification(const GaugeVerification& run, const std::filesystem::path&
     script << '\n';
   }
   script << "EOD\nset multiplot layout 2,2 title 'Deflection of the tips by the gauges (figure "
-            "B.2)'\nset grid lc rgb '#D9D9D9'\nset key below\nset xlabel 's'\n";
+            "B.2)'\nset key below\nset xlabel 'time, s'\n";
   for (const int first : {2, 5}) {
     const std::string link = first == 2 ? "link 1" : "link 2";
     script << "set ylabel " << Quoted(link + ": deflection, mm") << "\nplot $data using 1:" << first

@@ -9,6 +9,7 @@
 
 #include "controller/files/write_file.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -51,8 +52,9 @@ OrderedJson PointJson(const ParametricPoint& point) {
 void DrawSpectrum(const ParametricSweep& sweep, std::size_t signal, std::ostringstream* script) {
   double most = 0.0;
   for (const ParametricPoint& point : sweep.point) {
-    const double peak = point.signal[signal].spectral_peak;
-    if (std::isfinite(peak)) most = std::max(most, peak);
+    for (const double amplitude : point.signal[signal].spectrum.amplitude) {
+      most = std::max(most, amplitude);
+    }
   }
   *script << "set title " << Quoted(kSignalNames[signal].title) << "\nset cbrange [" << 1e-3 * most
           << ':' << most << "]\nsplot $signal" << signal << " using 1:2:3 with pm3d notitle\n";
@@ -73,12 +75,12 @@ void WriteSpectrum(const ParametricSweep& sweep, std::size_t signal, std::ostrin
   *script << "EOD\n";
 }
 
-void DrawPeaks(std::size_t first, const char* label, std::ostringstream* script) {
-  *script << "set ylabel '" << label << "'\nset title 'largest magnitude'\nplot";
+void DrawPeaks(std::size_t first, const char* of, const char* unit, std::ostringstream* script) {
+  *script << "set ylabel 'largest magnitude, " << unit << "'\nunset title\nplot";
   for (const std::size_t which : {0U, 1U}) {
     *script << (which > 0 ? ", " : " ") << "$peaks using 1:" << first + which + 2
-            << " with linespoints lw 2 pt 7 lc rgb '" << Colour(which) << "' title '" << which + 1
-            << "'";
+            << " with linespoints pt 7 " << CurveStyle(which) << " title '" << of << ' '
+            << which + 1 << "'";
   }
   *script << '\n';
 }
@@ -86,15 +88,14 @@ void DrawPeaks(std::size_t first, const char* label, std::ostringstream* script)
 // The axes of the spectrum maps and of the curves beside them.
 std::string MapAxes(const ParametricSweep& sweep) {
   std::ostringstream axes;
-  axes << std::setprecision(8) << "set xlabel 'Hz'\nset xrange [0:" << kDrawn_hz
+  axes << std::setprecision(8) << "set xlabel 'frequency, Hz'\nset xrange [0:" << kDrawn_hz
        << "]\nset yrange [" << sweep.point.front().value << ':' << sweep.point.back().value
        << "]\nset ylabel " << Quoted(sweep.label) << '\n';
   return axes.str();
 }
 
 std::string CurveAxes(const ParametricSweep& sweep) {
-  return "set xlabel " + Quoted(sweep.label) +
-         "\nset autoscale x\nset yrange [0:*]\nset key bottom\n";
+  return "set xlabel " + Quoted(sweep.label) + "\nset autoscale x\nset yrange [0:*]\n";
 }
 
 void WritePeaks(const ParametricSweep& sweep, std::ostringstream* script) {
@@ -110,7 +111,7 @@ void WritePeaks(const ParametricSweep& sweep, std::ostringstream* script) {
 void DrawSweep(const ParametricStudy& study, const ParametricSweep& sweep,
                const std::filesystem::path& output) {
   std::ostringstream script;
-  script << TerminalFor(output, 1500, 850) << std::setprecision(8);
+  script << PictureHead(output, 1600, 850) << std::setprecision(8);
   for (std::size_t signal = 0; signal < kSignals; ++signal) WriteSpectrum(sweep, signal, &script);
   WritePeaks(sweep, &script);
   std::ostringstream title;
@@ -118,15 +119,16 @@ void DrawSweep(const ParametricStudy& study, const ParametricSweep& sweep,
         << study.excitation.torque_nm[0] << " and " << study.excitation.torque_nm[1] << " N m";
   script << "set multiplot layout 2,3 title " << Quoted(title.str())
          << "\nset palette defined (0 '#FFFFFF', 1 '#9ECAE1', 2 '#08519C', 3 '#000000')\n"
-            "set view map\nset logscale cb\nset format cb '10^{%T}'\n"
+            "set view map\nset lmargin 9\nset rmargin 4\nset tmargin 3\nset bmargin 4\nset "
+            "logscale cb\nset format cb '10^{%T}'\n"
          << MapAxes(sweep);
   for (const std::size_t signal : {kBending1, kBending2}) DrawSpectrum(sweep, signal, &script);
   script << CurveAxes(sweep);
-  DrawPeaks(kBending1, "links, mm", &script);
+  DrawPeaks(kBending1, "link", "mm", &script);
   script << MapAxes(sweep);
   for (const std::size_t signal : {kTwist1, kTwist2}) DrawSpectrum(sweep, signal, &script);
   script << CurveAxes(sweep);
-  DrawPeaks(kTwist1, "joints, mrad", &script);
+  DrawPeaks(kTwist1, "joint", "mrad", &script);
   DrawPicture(script.str() + "unset multiplot\n", output);
 }
 

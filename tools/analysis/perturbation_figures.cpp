@@ -6,6 +6,7 @@
 
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -22,7 +23,7 @@ void AddRow(const ArmModel& model, const Eigen::VectorXd& q, std::ostream* out) 
 void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
                       const std::filesystem::path& output, const OutputRules& rules) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 800) << std::setprecision(8) << "$data << EOD\n";
   const std::size_t stride = std::max<std::size_t>(1, run.time_s.size() / 2000);
   for (std::size_t i = 0; i < run.time_s.size(); i += stride) {
     script << run.time_s[i];
@@ -31,14 +32,13 @@ void DrawPerturbation(const ArmModel& model, const PerturbationRun& run,
     script << '\n';
   }
   script << "EOD\nset multiplot layout 2,2 title 'Deviation from the nominal motion, linear and "
-            "nonlinear model'\nset grid lc rgb '#D9D9D9'\nset key top right\nset xlabel 's'\n";
+            "nonlinear model'\nset tmargin 3.5\nset xlabel 'time, s'\n";
   int column = 2;
   for (const char* label :
        {"joint 1, deg", "joint 2, deg", "tip of link 1, mm", "tip of link 2, mm"}) {
-    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column
-           << " with lines lw 5 lc rgb '" << Colour(4)
-           << "' title 'nonlinear', '' using 1:" << column + 4 << " with lines lw 2 dt 2 lc rgb '"
-           << Colour(1) << "' title 'linear'\n";
+    script << "set ylabel " << Quoted(label) << "\nplot $data using 1:" << column << " with lines "
+           << CurveStyle(0, 4.0) << " title 'nonlinear', '' using 1:" << column + 4
+           << " with lines " << CurveStyle(1) << " title 'linear'\n";
     ++column;
   }
   script << "unset multiplot\n";

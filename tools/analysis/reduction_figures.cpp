@@ -8,6 +8,7 @@
 #include "model/units.h"
 #include "tools/analysis/reduction_report.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -46,8 +47,8 @@ std::string BothLinks(const std::string& value) {
   std::ostringstream curves;
   for (const int link : {1, 2}) {
     curves << (link == 2 ? ", " : "") << "c=" << link + 1 << " $data using 1:" << value
-           << " with linespoints lw 2 pt " << (link == 1 ? 7 : 4) << " lc rgb '"
-           << Colour(static_cast<std::size_t>(link - 1)) << "' title 'link " << link << "'";
+           << " with linespoints pt " << (link == 1 ? 7 : 4) << ' '
+           << CurveStyle(static_cast<std::size_t>(link - 1)) << " title 'link " << link << "'";
   }
   return curves.str() + "\n";
 }
@@ -58,7 +59,7 @@ void DrawCurve(const ArmModel& model, const ReductionOptions& options, const Cur
       model, {curve.theta2_deg * kRadPerDeg, curve.theta1_rate_rad_s, curve.theta2_rate_rad_s},
       options.scaling, options.rigid_below_rad2_s2);
   std::ostringstream script;
-  script << TerminalFor(output, 1100, 500) << std::setprecision(10) << "$data << EOD\n0 0 0\n";
+  script << PictureHead(output, 1100, 500) << std::setprecision(10) << "$data << EOD\n";
   for (Eigen::Index k = 0; k < model.mode_count().link1; ++k) {
     script << k + 1;
     for (const LinkContribution& link : reduction.link) script << ' ' << link.epsilon_percent[k];
@@ -69,18 +70,16 @@ void DrawCurve(const ArmModel& model, const ReductionOptions& options, const Cur
   script << "EOD\nset multiplot layout 1,2 title "
          << Quoted("Power of the first k modes: " +
                    Caption(curve.theta2_deg, rates.str(), options.scaling))
-         << "\nset xlabel 'modes k'\nset grid lc rgb '#D9D9D9'\nset key bottom right\n"
-            "set xrange [0:"
-         << model.mode_count().link1 << "]\nset yrange [0:105]\nset ylabel 'contribution, %'\nplot "
+         << "\nset xlabel 'modes k'\nset xrange [1:" << model.mode_count().link1
+         << "]\nset ylabel 'contribution of the first k modes, %'\nplot "
          << BothLinks("(column(c))")
-         << "set key top right\nset logscale y\nset format y '10^{%T}'\nset yrange [1e-8:200]\n"
+         << "set logscale y\nset format y '10^{%T}'\nset yrange [*:*]\n"
             "set ylabel 'contribution of the other modes, %'\nplot "
          << BothLinks("(100-column(c))") << "unset multiplot\n";
   DrawPicture(script.str(), output);
 }
 
-// Two views per link, as in the thesis: from the side, which shows the least value, and at an
-// angle.
+// Two views per link: a map, from which values can be read, and the surface of the thesis.
 void DrawSurface(const ArmModel& model, const ReductionOptions& options, const Surface& surface,
                  const std::filesystem::path& output) {
   ReductionGrid grid;
@@ -94,7 +93,7 @@ void DrawSurface(const ArmModel& model, const ReductionOptions& options, const S
   }
   const std::vector<ReductionCell> cells = ReduceCells(model, motions, options);
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 950) << std::setprecision(10) << "$data << EOD\n";
+  script << PictureHead(output, 1200, 950) << std::setprecision(10) << "$data << EOD\n";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i > 0 && i % kRatePoints == 0) script << '\n';
     script << cells[i].motion.theta1_rate_rad_s << ' ' << cells[i].motion.theta2_rate_rad_s << ' '
@@ -103,16 +102,20 @@ void DrawSurface(const ArmModel& model, const ReductionOptions& options, const S
   script << "EOD\nset multiplot layout 2,2 title "
          << Quoted("Contribution of the first two modes, %: " +
                    Caption(surface.theta2_deg, "", options.scaling))
-         << "\nset xlabel \"th1', rad/s\"\nset format z '%.4f'\n"
-            "set xyplane relative 0\nset xtics 2\n";
-  // Seen from the side, hidden lines would be removed within the line that the surface is.
-  const char* side = "unset hidden3d\nset view 90,0\nunset ytics\nunset ylabel\n";
-  const char* above = "set hidden3d\nset view 60,30\nset ytics 3\nset ylabel \"th2', rad/s\"\n";
-  for (const char* view : {side, above}) {
+         << "\nset xlabel \"th1', rad/s\"\nset ylabel \"th2', rad/s\"\nset format cb '%.4f'\n"
+         << PaletteStyle()
+         << "set format z '%.4f'\nset xyplane relative 0\nset xtics 2\nset ytics 3\n";
+  const char* map = "unset hidden3d\nset view map\nset colorbox\n";
+  const char* above =
+      "set hidden3d\nset view 60,30\nunset colorbox\n"
+      "set xtics offset 0,-0.4\nset ytics offset 0.8,0\n";
+  for (const char* view : {map, above}) {
+    const bool is_map = view == map;
     for (const int link : {1, 2}) {
       script << view << "set title 'link " << link << "'\nsplot $data using 1:2:" << link + 2
-             << " with lines lc rgb '" << Colour(static_cast<std::size_t>(link - 1))
-             << "' notitle\n";
+             << (is_map ? " with pm3d notitle\n"
+                        : std::string(" with lines lc rgb '") +
+                              Colour(static_cast<std::size_t>(link - 1)) + "' notitle\n");
     }
   }
   DrawPicture(script.str() + "unset multiplot\n", output);

@@ -43,6 +43,7 @@ nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
   const RestFigures& rests = cell.rests;
   json["settled_in_time"] = rests.settled_in_time;
   json["latest_settling_s"] = NumberOrNull(rests.latest_settling_s);
+  json["target_error_max_mm"] = NumberOrNull(rests.target_error_max_mm);
   json["residual_mean_mm"] = NumberOrNull(rests.residual_mean_mm);
   json["residual_max_mm"] = NumberOrNull(rests.residual_max_mm);
   json["motion_mean_mm"] = NumberOrNull(rests.motion_mean_mm);

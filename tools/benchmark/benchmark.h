@@ -24,8 +24,8 @@ SweepPlan BenchmarkPlan(const RigConfig& config, const BenchmarkSet& set,
 struct BenchmarkCell {
   SweepGroup group;   ///< over the seeds
   RestFigures rests;  ///< of the same runs
-  /// 100 times the share of the shortest rest in which the tip is at rest, mean over the seeds; a
-  /// run that did not complete or never settled counts 0.
+  /// 100 times the share of the shortest rest in which the tip is settled, mean over the seeds;
+  /// a run that did not complete, or with a rest that is not settled, counts 0.
   double score = 0.0;
 };
 

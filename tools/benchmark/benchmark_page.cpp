@@ -11,7 +11,7 @@ constexpr std::size_t kNominal = 0;  // of the scenarios
 
 std::string Number(double value, const char* format) {
   if (std::isnan(value)) return "-";
-  if (std::isinf(value)) return "never";
+  if (std::isinf(value)) return "not settled";
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), format, value);
   return text.data();
@@ -52,7 +52,7 @@ std::string Settling(const BenchmarkCell& cell) {
 // One row per law: score, worst scenario, and the figures of the nominal one.
 TextTable LawTable(const BenchmarkTable& table) {
   TextTable text{.head = {"law", "score", "lowest", "in", "completed", "settling, s", "rms, deg",
-                          "final, deg", "residual, mm", "torque rms, N m"},
+                          "final, deg", "off target, mm", "residual, mm", "torque rms, N m"},
                  .rows = {}};
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
     const std::size_t worst = table.WorstScenario(law);
@@ -61,8 +61,8 @@ TextTable LawTable(const BenchmarkTable& table) {
                          Number(table.cell[law][worst].score, "%.1f"), table.scenarios[worst].name,
                          Share(table.Completed(law), table.Runs(law)),
                          Settling(table.cell[law][kNominal]), Pair(m[kRms1], m[kRms2], "%.2f"),
-                         Pair(m[2], m[3], "%.2f"), Number(m[kResidual], "%.1f"),
-                         Pair(m[8], m[9], "%.2f")});
+                         Pair(m[2], m[3], "%.2f"), Number(m[kTargetError], "%.1f"),
+                         Number(m[kResidual], "%.1f"), Pair(m[8], m[9], "%.2f")});
   }
   return text;
 }
@@ -80,14 +80,17 @@ std::string InTime(const BenchmarkCell& cell) {
 // Settling, residual, motion and rms of a cell, for the columns of InTimeHead.
 std::vector<std::string> RestCells(const BenchmarkCell& cell) {
   const RestFigures& r = cell.rests;
-  return {Share(r.settled_in_time, cell.group.runs), Number(r.latest_settling_s, "%.2f"),
+  return {Share(r.settled_in_time, cell.group.runs),
+          Number(r.latest_settling_s, "%.2f"),
+          Number(r.target_error_max_mm, "%.1f"),
           Pair(r.residual_mean_mm, r.residual_max_mm, "%.1f"),
           Pair(r.motion_mean_mm, r.motion_max_mm, "%.1f"),
           Pair(r.rms_mean_deg[0], r.rms_mean_deg[1], "%.2f")};
 }
 
 std::vector<std::string> RestHead() {
-  return {"settled in time", "latest, s", "residual, mm", "motion, mm", "rms, deg"};
+  return {"settled in time", "latest, s",  "off target, mm",
+          "residual, mm",    "motion, mm", "rms, deg"};
 }
 
 std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<std::string>& b) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
@@ -37,9 +38,10 @@ void WritePanel(const Panel& panel, const std::vector<std::string>& laws, std::o
     const std::string data = "$law" + std::to_string(i) + " using ($1+" + std::to_string(at) + "):";
     const std::string mean = std::to_string(panel.mean_column);
     *script << (i > 0 ? ", " : "") << data << mean << " with boxes fs solid 0.7 lc rgb '"
-            << Colour(i) << "' title " << Quoted(laws[i]) << ", " << data << mean << ':' << mean
-            << ':' << panel.mean_column + 1 << " with yerrorbars ps 0 lw 1.5 lc rgb '#000000' "
-            << "notitle";
+            << Colour(i) << "' title " << Quoted(laws[i]) << ", " << data << mean << ":(0):($"
+            << panel.mean_column + 1 << "-$" << mean
+            << ") with vectors head filled size 0.06,60 lw "
+            << "1.5 lc rgb '" << kInkColour << "' notitle";
   }
   *script << '\n';
 }
@@ -48,11 +50,12 @@ void WritePanel(const Panel& panel, const std::vector<std::string>& laws, std::o
 
 void DrawLimits(const BenchmarkTable& table, const std::filesystem::path& output) {
   std::ostringstream script;
-  script << TerminalFor(output, 1200, 900);
+  script << PictureHead(output, 1200, 900);
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
     WriteData(table.cell[law], law, &script);
   }
-  script << "set multiplot layout 2,1\nset grid y lc rgb '#D9D9D9'\nset yrange [0:*]\n"
+  script << "set multiplot layout 2,1 title 'Mean over the runs (boxes) and the largest (arrows)'\n"
+            "set offsets 0, 0, graph 0.08, 0\nset yrange [0:*]\n"
          << "set xrange [-0.6:" << static_cast<double>(table.scenarios.size()) - 0.4
          << "]\nset xtics rotate by -20 (";
   for (std::size_t i = 0; i < table.scenarios.size(); ++i) {

@@ -36,6 +36,7 @@ RestFigures RestFiguresOf(const std::vector<SweepRow>& rows) {
   if (completed.empty()) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return {.latest_settling_s = kNone,
+            .target_error_max_mm = kNone,
             .residual_mean_mm = kNone,
             .residual_max_mm = kNone,
             .motion_mean_mm = kNone,
@@ -47,6 +48,7 @@ RestFigures RestFiguresOf(const std::vector<SweepRow>& rows) {
               completed.begin(), completed.end(),
               [](const SweepRow& row) { return row.measure[kSettling] <= kInTime_s; })),
           .latest_settling_s = SpreadOf(completed, kSettling).largest,
+          .target_error_max_mm = SpreadOf(completed, kTargetError).largest,
           .residual_mean_mm = residual.mean,
           .residual_max_mm = residual.largest,
           .motion_mean_mm = motion.mean,

@@ -11,9 +11,10 @@ namespace flexarm {
 /// How the tip came to rest in several runs. All but `settled_in_time` are over the completed runs;
 /// NaN if none completed.
 struct RestFigures {
-  std::size_t settled_in_time = 0;  ///< completed runs that settled at most 0.3 s after every move
-  double latest_settling_s = 0.0;   ///< infinite: a run never settled
-  double residual_mean_mm = 0.0;    ///< over the last 0.3 s of the rests
+  std::size_t settled_in_time = 0;   ///< completed runs that settled at most 0.3 s after every move
+  double latest_settling_s = 0.0;    ///< infinite: a run has a rest that is not settled
+  double target_error_max_mm = 0.0;  ///< farthest resting place from its target
+  double residual_mean_mm = 0.0;     ///< over the last 0.3 s of the rests
   double residual_max_mm = 0.0;
   double motion_mean_mm = 0.0;  ///< from 0.3 s after the moves
   double motion_max_mm = 0.0;

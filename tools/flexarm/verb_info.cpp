@@ -159,12 +159,13 @@ void PrintLine(const std::string& name, const OrderedJson& value, const std::str
             << (unit.empty() || value.is_null() ? "" : " " + unit) << '\n';
 }
 
-void PrintMetrics(const OrderedJson& metrics) {
+void PrintMetrics(const OrderedJson& metrics, const std::string& settling) {
   std::cout << (metrics["truth"].get<bool>() ? "Metrics, from the plant's true motion\n"
                                              : "Metrics, from the estimate\n");
   PrintLine("joint error, rms", metrics["joint_rms_error_deg"], "deg");
   PrintLine("joint error, final", metrics["joint_final_error_deg"], "deg");
-  PrintLine("tip settling time", metrics["tip_settling_time_s"], "s");
+  PrintLine("tip settling time", settling);
+  PrintLine("tip off its target", metrics["tip_target_error_mm"], "mm");
   PrintLine("tip residual, rms", metrics["tip_residual_rms_mm"], "mm");
   PrintLine("peak torque", metrics["peak_torque_nm"], "N m");
   PrintLine("torque, rms", metrics["torque_rms_nm"], "N m");
@@ -187,7 +188,7 @@ void PrintSafety(const RunContents& run) {
   std::cout << std::defaultfloat;
 }
 
-void PrintText(const OrderedJson& json, const RunContents& run) {
+void PrintText(const OrderedJson& json, const LoadedRun& run) {
   std::cout << Text(json["run"]) << '\n';
   for (const char* key : {"start_utc", "rig", "backend", "clock", "seed", "experiment", "version",
                           "build_id", "log", "digest", "ticks", "missing_ticks"}) {
@@ -200,13 +201,13 @@ void PrintText(const OrderedJson& json, const RunContents& run) {
     PrintLine("TRIPPED", json["trip"]["name"]);
     PrintLine("", json["trip"]["text"]);
   }
-  if (!json["metrics"].is_null()) PrintMetrics(json["metrics"]);
+  if (const auto metrics = MetricsOf(run)) PrintMetrics(json["metrics"], SettlingText(*metrics));
   if (!json["timing"].is_null()) {
     std::cout << "Timing of the loop\n";
     PrintLine("lateness, worst", json["timing"]["late_max_us"], "us");
     PrintLine("step duration, worst", json["timing"]["took_max_us"], "us");
   }
-  if (!run.safety.empty()) PrintSafety(run);
+  if (!run.contents.safety.empty()) PrintSafety(run.contents);
 }
 
 }  // namespace
@@ -226,7 +227,7 @@ void RegisterInfo(CLI::App& app, Exit&) {
     if (options->json) {
       std::cout << PrintedJson(json) << '\n';
     } else {
-      PrintText(json, run.contents);
+      PrintText(json, run);
     }
   });
 }

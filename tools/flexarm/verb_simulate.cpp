@@ -88,11 +88,8 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
               m.joint_rms_error_deg[1]);
   std::printf("joint final error         %.2f, %.2f deg\n", m.joint_final_error_deg[0],
               m.joint_final_error_deg[1]);
-  if (m.tip_settling_time_s) {
-    std::printf("tip settling time         %.2f s\n", *m.tip_settling_time_s);
-  } else {
-    std::printf("tip settling time         never within a rest\n");
-  }
+  std::printf("tip settling time         %s\n", SettlingText(m).c_str());
+  std::printf("tip off its target        %.1f mm\n", m.tip_target_error_mm);
   std::printf("tip residual rms          %.1f mm\n", m.tip_residual_rms_mm);
   std::printf("peak torque               %.2f, %.2f N m\n", m.peak_torque_nm[0],
               m.peak_torque_nm[1]);

@@ -123,7 +123,7 @@ nlohmann::ordered_json Modes(const ModesOptions& options) {
     }
   }
   if (options.output.given()) {
-    DrawBeams(beams, modes, options.output.file,
+    DrawBeams(beams, modes, options.convergence, options.output.file,
               PictureRules({options.config.file}, options.output.overwrite));
     ReportWritten(options.output.file);
   }

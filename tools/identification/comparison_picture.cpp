@@ -8,12 +8,13 @@
 
 #include "model/units.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
 
 constexpr int kColumnWidth = 800;
-constexpr int kRowHeight = 240;
+constexpr int kRowHeight = 300;
 
 std::string DataName(std::size_t column) { return "$run" + std::to_string(column); }
 
@@ -41,11 +42,11 @@ void DrawSignal(std::size_t number, const ComparisonColumn& column, std::size_t 
   std::snprintf(fit.data(), fit.size(), "fit %.1f %%", fit_percent);
   const std::string title =
       (signal == 0 ? column.title + ": " : std::string()) + shown.name + ", " + fit.data();
-  *script << "set title " << Quoted(title) << "\nset ylabel '"
-          << (shown.angle ? "angle, deg" : "tip deflection, mm") << "'\nplot " << DataName(number)
-          << " using 1:" << 2 + 2 * signal << " with lines lw 2 lc rgb '" << Colour(0)
-          << "' title 'measured', " << DataName(number) << " using 1:" << 3 + 2 * signal
-          << " with lines lw 1.5 lc rgb '" << Colour(1) << "' title 'predicted'\n";
+  *script << "set title " << Quoted(title) << "\nset ylabel '" << (shown.angle ? "deg" : "mm")
+          << "'\nplot " << DataName(number) << " using 1:" << 2 + 2 * signal << " with lines "
+          << CurveStyle(0) << " title '" << (signal == 0 ? "measured" : "") << "', "
+          << DataName(number) << " using 1:" << 3 + 2 * signal << " with lines " << CurveStyle(1)
+          << " title '" << (signal == 0 ? "predicted" : "") << "'\n";
 }
 
 }  // namespace
@@ -55,11 +56,12 @@ void DrawComparison(const std::vector<ComparisonColumn>& column,
   const std::size_t rows = column.front().run->signal().size();
   std::ostringstream script;
   script << std::setprecision(8)
-         << TerminalFor(output, kColumnWidth * static_cast<int>(column.size()),
+         << PictureHead(output, kColumnWidth * static_cast<int>(column.size()),
                         kRowHeight * static_cast<int>(rows));
   for (std::size_t i = 0; i < column.size(); ++i) WriteData(i, column[i], &script);
   script << "set multiplot layout " << rows << ',' << column.size()
-         << " columnsfirst\nset grid lc rgb '#D9D9D9'\nset key tmargin right horizontal\n"
+         << " columnsfirst\nset autoscale xfix\nset lmargin 10\nset tmargin 2.5\nset key bmargin "
+            "right horizontal\n"
             "set xlabel 'time, s'\n";
   for (std::size_t i = 0; i < column.size(); ++i) {
     const Eigen::VectorXd fit = FitPercent(*column[i].run, column[i].predicted);

@@ -59,7 +59,7 @@ LAYERS = {
     "config/plausibility": "model model/arm model/parameters hal estimator controller/types",
     "tools/support": "",
     "tools/runs": "controller/runlog config",
-    "tools/plot": "model model/beam controller/files controller/safety tools/runs",
+    "tools/plot": "model model/beam hal controller/files controller/runlog controller/safety tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
     "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
                       "model/simulation model/perturbation model/reduction controller/files config tools/support "

@@ -22,8 +22,6 @@ constexpr const char* kPictureMark = "Drawn by flexarm";
 constexpr int kNotFound = 127;            // exit code of a child that could not start the program
 constexpr std::size_t kShownLabel = 200;  // bytes of a label, which may come from a log
 constexpr std::size_t kShownMessages = 300;  // bytes of what gnuplot says
-constexpr std::array<const char*, 8> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                 "#56B4E9", "#E69F00", "#000000", "#7F7F7F"};
 
 // A nameless file that is gone when it is closed.
 class ScratchFile {
@@ -122,8 +120,6 @@ std::string MarkedPicture(std::string picture) {
 
 }  // namespace
 
-const char* Colour(std::size_t i) { return kColours[i % kColours.size()]; }
-
 std::string QuotedPath(const std::string& path) {
   std::string quoted = "'";
   for (const char c : path) quoted += c == '\'' ? "''" : std::string(1, c == '\n' ? ' ' : c);
@@ -137,15 +133,6 @@ std::string Quoted(const std::string& text) {
     plain += c;
   }
   return QuotedPath(plain);
-}
-
-std::string TerminalFor(const std::filesystem::path& output, int width, int height) {
-  const std::string size = std::to_string(width) + "," + std::to_string(height);
-  const std::string font = "enhanced font 'DejaVu Sans,12'";
-  const std::string kind = output.extension() == ".svg"
-                               ? "svg size " + size + " dynamic " + font + " background '#ffffff'"
-                               : "pngcairo size " + size + " " + font;
-  return "set encoding utf8\nset terminal " + kind + "\n";
 }
 
 OutputRules PictureRules(std::vector<std::filesystem::path> inputs, bool overwrite) {

@@ -5,27 +5,16 @@
 #include <limits>
 
 #include "controller/safety/torque_gate.h"
-#include "model/beam/link_modes.h"
 #include "model/units.h"
+#include "tools/plot/run_marks.h"
 
 namespace flexarm {
 namespace {
 
-constexpr double kRestWindow_s = 0.3;
-constexpr double kPoseEvery_s = 0.1;
-constexpr int kPointsPerLink = 16;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool IsRunning(const TickRecord& record) {
   return record.input.safety_state == SafetyState::kRunning;
-}
-
-// Time of sample 0 of the experiment: the torque of the first Running tick acts then.
-std::int64_t TimeZero_ns(const LoadedRun& run) {
-  const auto& ticks = run.contents.tick;
-  const auto first = std::find_if(ticks.begin(), ticks.end(), IsRunning);
-  if (first == ticks.end()) return run.contents.info.start_ns;
-  return first->input.sampling_instant_ns + std::llround(run.period_s() * 1e9) +
-         first->input.acts_late_ns;
 }
 
 std::array<double, 2> Scaled(double factor, double a, double b) { return {factor * a, factor * b}; }
@@ -37,51 +26,73 @@ std::array<double, 2> Gated(const TickRecord& record) {
                                                      kGateZeroed | kGateTorque2 | kGateSlew2};
   for (std::size_t i = 0; i < 2; ++i) {
     if (!IsRunning(record) || (record.gate_reasons & kOfJoint[i]) == 0) {
-      gated_nm[i] = std::numeric_limits<double>::quiet_NaN();
+      gated_nm[i] = kNone;
     }
   }
   return gated_nm;
 }
 
-PlotRun::Sample SampleOf(const TickRecord& record, double time_s, bool truth,
-                         const TipGeometry& geometry) {
+// What turns a record into a sample.
+struct Scales {
+  bool truth;
+  TipGeometry geometry;
+  std::array<double, 2> strain_limit;
+};
+
+PlotRun::Sample SampleOf(const TickRecord& record, double time_s, const Scales& scales) {
   const auto& x = record.output.x_hat;
   const auto& reference = record.input.reference_now.x_m;
   const PlantTruth& plant = record.truth;
-  const auto deflection_m = EstimatedDeflection_m(geometry.layout, x);
+  const bool truth = scales.truth;
+  const auto deflection_m =
+      truth ? plant.tip_deflection_m : EstimatedDeflection_m(scales.geometry.layout, x);
+  const StepOutput& output = record.output;
   return {.time_s = time_s,
-          .reference_deg = Scaled(kDegPerRad, reference[0], reference[1]),
+          .reference_deg = IsRunning(record) ? Scaled(kDegPerRad, reference[0], reference[1])
+                                             : std::array{kNone, kNone},
           .angle_deg = truth ? Scaled(kDegPerRad, plant.hub_angle_rad[0], plant.hub_angle_rad[1])
                              : Scaled(kDegPerRad, x[0], x[1]),
-          .asked_nm = record.output.torque_nm,
+          .asked_nm = output.torque_nm,
           .applied_nm = record.input.applied_torque_nm,
-          .deflection_mm = truth ? Scaled(1e3, plant.tip_deflection_m[0], plant.tip_deflection_m[1])
-                                 : Scaled(1e3, deflection_m[0], deflection_m[1]),
+          .deflection_mm = Scaled(1e3, deflection_m[0], deflection_m[1]),
           .gated_nm = Gated(record),
-          .from_rest_mm = std::numeric_limits<double>::quiet_NaN(),
-          .tip_m = truth ? plant.tip_m : EstimatedTip(geometry, x)};
+          .strain_share = {output.root_strain[0] / scales.strain_limit[0],
+                           output.root_strain[1] / scales.strain_limit[1]},
+          .target_mm = kNone,
+          .tip_m = truth ? plant.tip_m : EstimatedTip(scales.geometry, x),
+          .payload_kg = output.payload_kg,
+          .payload_sigma_kg = output.payload_sigma_kg};
 }
 
-// The resting place is the tip's mean over the last 0.3 s of a rest; a move uses the rest after it.
-void FillDistanceFromRest(const std::vector<Rest>& rests, std::vector<PlotRun::Sample>* samples) {
-  double from_s = 0;
+// A move uses the target of the rest after it: where the reference is at the end of that rest.
+void FillDistanceFromTarget(const LoadedRun& run, const std::vector<Rest>& rests,
+                            const TipGeometry& geometry, std::vector<PlotRun::Sample>* samples) {
+  std::size_t at = 0;
   for (const Rest& rest : rests) {
-    std::array<double, 2> place{};
-    int count = 0;
-    for (const PlotRun::Sample& sample : *samples) {
-      if (sample.time_s <= rest.end_s - kRestWindow_s || sample.time_s > rest.end_s) continue;
-      place[0] += sample.tip_m[0];
-      place[1] += sample.tip_m[1];
-      ++count;
+    const std::size_t first = at;
+    while (at < samples->size() && (*samples)[at].time_s <= rest.end_s + 1e-9) ++at;
+    if (at == first) continue;
+    const auto target_m = StraightTip(geometry, run.contents.tick[at - 1].input.reference_now.x_m);
+    for (std::size_t i = first; i < at; ++i) {
+      PlotRun::Sample& sample = (*samples)[i];
+      if (sample.time_s < 0.0) continue;
+      sample.target_mm =
+          1e3 * std::hypot(sample.tip_m[0] - target_m[0], sample.tip_m[1] - target_m[1]);
     }
-    if (count == 0) continue;
-    for (PlotRun::Sample& sample : *samples) {
-      if (sample.time_s < from_s || sample.time_s > rest.end_s) continue;
-      sample.from_rest_mm =
-          1e3 * std::hypot(sample.tip_m[0] - place[0] / count, sample.tip_m[1] - place[1] / count);
-    }
-    from_s = rest.end_s;
   }
+}
+
+std::vector<PlotRun::Gap> GapsOf(const LoadedRun& run, std::int64_t zero_ns) {
+  std::vector<PlotRun::Gap> gaps;
+  const auto& ticks = run.contents.tick;
+  const auto time_s = [zero_ns](const TickRecord& record) {
+    return static_cast<double>(record.input.sampling_instant_ns - zero_ns) * 1e-9;
+  };
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const std::int64_t missing = ticks[i].input.tick - ticks[i - 1].input.tick - 1;
+    if (missing > 0) gaps.push_back({time_s(ticks[i - 1]), time_s(ticks[i]), missing});
+  }
+  return gaps;
 }
 
 std::vector<PlotRun::StateSpan> StateSpansOf(const LoadedRun& run, std::int64_t zero_ns) {
@@ -99,100 +110,91 @@ std::vector<PlotRun::StateSpan> StateSpansOf(const LoadedRun& run, std::int64_t 
   return spans;
 }
 
-// Draws the arm from the estimated hub angles and modal coordinates.
-class Skeleton {
- public:
-  Skeleton(const ArmParameters& arm, const StateLayout& layout)
-      : layout_(layout), link1_(Link1Modes(arm, 2)), link2_(Link2Modes(arm, 2)) {}
-
-  std::vector<std::array<double, 2>> Points(const std::array<double, kMaxNominalStates>& x) const {
-    std::vector<std::array<double, 2>> points;
-    const std::array<double, 2> f1 = Modes(x, 0), f2 = Modes(x, 1);
-    const double hub1 = x[static_cast<std::size_t>(layout_.hub(0))];
-    const double hub2 = x[static_cast<std::size_t>(layout_.hub(1))];
-    Append(link1_, {0, 0}, hub1, f1, &points);
-    const double slope = link1_.slope_tip(0) * f1[0] + link1_.slope_tip(1) * f1[1];
-    Append(link2_, points.back(), hub1 + std::atan(slope) + hub2, f2, &points);
-    return points;
-  }
-
- private:
-  std::array<double, 2> Modes(const std::array<double, kMaxNominalStates>& x, int link) const {
-    std::array<double, 2> f{};  // a mode that the model does not have is zero
-    for (int mode = 0; mode < layout_.modes_per_link; ++mode) {
-      f[static_cast<std::size_t>(mode)] = x[static_cast<std::size_t>(layout_.mode(link, mode))];
-    }
-    return f;
-  }
-
-  static void Append(const LinkModes& link, std::array<double, 2> root, double angle,
-                     const std::array<double, 2>& f, std::vector<std::array<double, 2>>* points) {
-    for (int i = 0; i <= kPointsPerLink; ++i) {
-      const double u = link.length_m * i / kPointsPerLink;
-      const double w = f[0] * link.mode[0].Value(u) + f[1] * link.mode[1].Value(u);
-      points->push_back({root[0] + std::cos(angle) * u - std::sin(angle) * w,
-                         root[1] + std::sin(angle) * u + std::cos(angle) * w});
-    }
-  }
-
-  StateLayout layout_;
-  LinkModes link1_, link2_;
-};
-
-std::vector<PlotRun::Pose> PosesOf(const LoadedRun& run, std::int64_t zero_ns) {
-  std::vector<PlotRun::Pose> poses;
-  const Skeleton skeleton(run.config.arm, run.config.controller.nominal);
-  double next_s = -std::numeric_limits<double>::infinity();
-  for (const TickRecord& record : run.contents.tick) {
-    const double time_s = static_cast<double>(record.input.sampling_instant_ns - zero_ns) * 1e-9;
-    if (!IsRunning(record) || time_s < next_s) continue;
-    next_s = time_s + kPoseEvery_s - run.period_s() / 2;
-    poses.push_back({.time_s = time_s, .point_m = skeleton.Points(record.output.x_hat)});
-  }
-  return poses;
-}
-
 std::vector<PlotRun::Act> ActsOf(const LoadedRun& run, double running_end_s) {
   std::vector<PlotRun::Act> acts;
   if (run.experiment) {
     for (const Motion& move : run.experiment->Motions()) {
       if (move.start_s >= running_end_s) break;
       if (!acts.empty()) acts.back().until_s = move.start_s;
-      acts.push_back({.from_s = move.start_s, .until_s = running_end_s});
+      acts.push_back({.from_s = move.start_s,
+                      .rest_from_s = std::min(move.start_s + move.duration_s, running_end_s),
+                      .until_s = running_end_s});
     }
   }
-  if (acts.empty()) acts.push_back({.from_s = 0, .until_s = std::max(running_end_s, 0.1)});
+  if (acts.empty()) {
+    const double end_s = std::max(running_end_s, 0.1);
+    acts.push_back({.from_s = 0, .rest_from_s = end_s, .until_s = end_s});
+  }
   return acts;
+}
+
+// All acts, or kMostViews of them: the first, the last, and those evenly between.
+std::vector<PlotRun::View> ViewsOf(const LoadedRun& run, const PlotRun& plot) {
+  constexpr std::size_t kPoses = 12;
+  constexpr std::ptrdiff_t kMostPathPoints = 400;
+  constexpr int kPointsPerLink = 16;
+  std::vector<PlotRun::View> views;
+  const std::size_t count = std::min(plot.act.size(), PlotRun::kMostViews);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t act = count == 1 ? 0 : i * (plot.act.size() - 1) / (count - 1);
+    PlotRun::View view{.number = act + 1,
+                       .from_s = plot.act[act].from_s,
+                       .until_s = plot.act[act].until_s,
+                       .pose = {},
+                       .path = {}};
+    const double moved_s = std::max(plot.act[act].rest_from_s, view.from_s + run.period_s());
+    view.pose = PosesOf(run, view.from_s, moved_s, kPoses, kPointsPerLink);
+    const auto before = [](const PlotRun::Sample& sample, double time_s) {
+      return sample.time_s < time_s;
+    };
+    const auto first =
+        std::lower_bound(plot.sample.begin(), plot.sample.end(), view.from_s, before);
+    const auto last = std::lower_bound(first, plot.sample.end(), view.until_s, before);
+    const auto step = 1 + (last - first) / kMostPathPoints;
+    for (std::ptrdiff_t k = 0; k < last - first; k += step) view.path.push_back(first[k].tip_m);
+    views.push_back(std::move(view));
+  }
+  return views;
 }
 
 }  // namespace
 
 PlotRun PlotDataOf(const LoadedRun& run) {
   const auto& ticks = run.contents.tick;
-  const bool truth =
-      !ticks.empty() &&
-      std::all_of(ticks.begin(), ticks.end(), [](const auto& tick) { return tick.truth.known; });
+  const SafetyConfig& safety = run.config.safety;
+  const Scales scales{
+      .truth = !ticks.empty() && std::all_of(ticks.begin(), ticks.end(),
+                                             [](const auto& tick) { return tick.truth.known; }),
+      .geometry = TipGeometryOf(run.config.arm, run.config.controller.nominal),
+      .strain_limit = safety.strain_limit};
   const std::int64_t zero_ns = TimeZero_ns(run);
-  const TipGeometry geometry = TipGeometryOf(run.config.arm, run.config.controller.nominal);
-  const std::optional<SafetyRecord> trip = TripOf(run.contents.safety);
   PlotRun plot{.name = run.file.stem().string(),
+               .title = TitleOf(run),
+               .details = DetailsOf(run),
+               .command = ReplayCommand(run),
                .period_s = run.period_s(),
-               .truth = truth,
-               .trip = trip ? ToString(trip->after.cause) : "",
+               .truth = scales.truth,
+               .trip = TripText(run, zero_ns),
+               .torque_limit_nm = safety.torque_limit_nm,
+               .strain_limit = safety.strain_limit,
                .sample = {},
+               .gap = GapsOf(run, zero_ns),
                .span = StateSpansOf(run, zero_ns),
-               .pose = PosesOf(run, zero_ns),
+               .mark = MarksOf(run, zero_ns),
                .act = {},
+               .view = {},
                .metrics = MetricsOf(run)};
   double running_end_s = 0;
   for (const TickRecord& record : ticks) {
     const double time_s = static_cast<double>(record.input.sampling_instant_ns - zero_ns) * 1e-9;
-    plot.sample.push_back(SampleOf(record, time_s, truth, geometry));
+    plot.sample.push_back(SampleOf(record, time_s, scales));
     if (IsRunning(record)) running_end_s = time_s;
   }
   plot.act = ActsOf(run, running_end_s);
+  plot.view = ViewsOf(run, plot);
   if (run.experiment) {
-    FillDistanceFromRest(RestsOf(*run.experiment, running_end_s), &plot.sample);
+    FillDistanceFromTarget(run, RestsOf(*run.experiment, running_end_s), scales.geometry,
+                           &plot.sample);
   }
   return plot;
 }

@@ -1,362 +1,290 @@
 #include "tools/plot/plot_script.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
+#include "tools/plot/arm_views.h"
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
+#include "tools/plot/plot_rows.h"
+#include "tools/plot/sheet.h"
+#include "tools/plot/time_axis.h"
 
 namespace flexarm {
 namespace {
 
-const char* StateColour(SafetyState state) {
-  switch (state) {
-    case SafetyState::kStarting:
-    case SafetyState::kIdle:
-      return "#E5E5E5";
-    case SafetyState::kArmed:
-      return "#F5DFA3";
-    case SafetyState::kRunning:
-      return "#BFE3CF";
-    case SafetyState::kStopping:
-      return "#BBD7EE";
-    case SafetyState::kDisarming:
-    case SafetyState::kTestingPump:
-    case SafetyState::kTestingRelay:
-    case SafetyState::kTestingPower:
-      return "#F5DFA3";
-    case SafetyState::kFaultStopping:
-    case SafetyState::kTripped:
-      return "#E9A49C";
-  }
-  return "#000000";
-}
+constexpr std::size_t kMostRows = 4000;  // about five a pixel
+constexpr double kLeft = 0.062, kRight = 0.575;
 
-// Columns 2.. of the data block of a run.
-enum Column : int {
-  kReference = 2,
-  kAngle = 4,
-  kAsked = 6,
-  kApplied = 8,
-  kDeflection = 10,
-  kFromRest = 12,
-  kTipX = 13,
-  kTipY = 14,
-  kGated = 15,
+// A panel of the left column.
+struct Panel {
+  std::string title;
+  ValueRange range;
+  std::vector<std::string> curves;
+  double limit = 0.0;  // drawn at +-limit where the range has them; 0: none
+  bool logarithmic = false;
 };
 
 class Script {
  public:
   Script(const std::vector<PlotRun>& runs, const std::filesystem::path& output) : runs_(runs) {
-    FindTimes();
-    Terminal(output);
-    DataBlocks();
+    for (const PlotRun& run : runs) rows_.push_back(PlotRows(run, kMostRows));
+    for (const int joint : {0, 1}) AddAngle(joint);
+    for (const int joint : {0, 1}) AddTorque(joint);
+    AddStrain();
+    AddDeflections();
+    AddDistance();
+    AddPayload();
+    const int rows = static_cast<int>(runs.size());
+    sheet_.height =
+        kHeader + 20 * rows + kPanel * static_cast<int>(panels_.size()) + 22 * rows + 90;
+    sheet_.height = std::max(sheet_.height, kLeastHeight);
+    text_ << PictureHead(output, sheet_.width, sheet_.height) << std::setprecision(7);
+    for (std::size_t i = 0; i < runs.size(); ++i) WriteData(i);
   }
 
   std::string Text() {
-    text_ << "set multiplot\nset style line 100 lc rgb '#D9D9D9' lw 1\n"
-             "set grid ls 100\nset border lc rgb '#808080'\nset tics textcolor rgb '#404040'\n"
-             "set key opaque samplen 2 spacing 1.1 font ',11'\nset datafile missing 'nan'\n"
-             "set label 1 "
-          << Quoted(Title()) << " at screen 0.055, screen 0.975 left font ',17' front\n";
-    Pair("Joint 1, deg", kAngle, kReference, 0, "reference");
-    Pair("Joint 2, deg", kAngle, kReference, 1, "reference");
-    Pair("Torque 1, N m", kApplied, kAsked, 0, "asked");
-    Pair("Torque 2, N m", kApplied, kAsked, 1, "asked");
-    Deflections();
-    DistanceFromRest();
-    States();
-    FromAbove();
+    text_ << "set multiplot\n";
+    const TimeAxis axis(runs_);
+    axis.WriteMarks(&text_);
+    WriteHeader();
+    double top = kHeader + 20.0 * static_cast<double>(runs_.size());
+    for (const Panel& panel : panels_) {
+      WritePanel(panel, axis, top);
+      top += kPanel;
+    }
+    axis.WriteStates(sheet_, {kLeft, kRight}, top, &text_);
+    WriteArmViews(runs_, axis, sheet_, kHeader + 20.0 * static_cast<double>(runs_.size()), &text_);
     text_ << "unset multiplot\n";
     return text_.str();
   }
 
  private:
-  void FindTimes() {
-    from_s_ = 0;
-    until_s_ = 1;
-    for (const PlotRun& run : runs_) {
-      if (run.sample.empty()) continue;
-      from_s_ = std::min(from_s_, run.sample.front().time_s);
-      until_s_ = std::max(until_s_, run.sample.back().time_s);
-    }
-  }
+  static constexpr int kHeader = 78, kPanel = 142, kPanelBody = 104, kLeastHeight = 1100;
 
-  std::string Title() const {
-    std::string title = runs_.size() == 1 ? runs_[0].name : std::to_string(runs_.size()) + " runs";
-    if (runs_.size() == 1 && !runs_[0].trip.empty()) title += "   TRIPPED: " + runs_[0].trip;
-    return title;
-  }
+  bool alone() const { return runs_.size() == 1; }
 
-  void Terminal(const std::filesystem::path& output) {
-    text_ << TerminalFor(output, static_cast<int>(kWidth), static_cast<int>(kHeight));
-  }
-
-  void DataBlocks() {
-    text_ << "$base << EOD\n0 0\nEOD\n";
-    text_ << std::setprecision(9);
-    for (std::size_t i = 0; i < runs_.size(); ++i) {
-      text_ << "$run" << i << " << EOD\n";
-      for (const PlotRun::Sample& s : runs_[i].sample) {
-        text_ << s.time_s;
-        for (const auto& pair :
-             {s.reference_deg, s.angle_deg, s.asked_nm, s.applied_nm, s.deflection_mm}) {
-          text_ << ' ' << pair[0] << ' ' << pair[1];
-        }
-        text_ << ' ' << s.from_rest_mm << ' ' << s.tip_m[0] << ' ' << s.tip_m[1] << ' '
-              << s.gated_nm[0] << ' ' << s.gated_nm[1] << '\n';
+  void WriteData(std::size_t run) {
+    text_ << "$run" << run << " << EOD\n";
+    for (const PlotRow& row : rows_[run]) {
+      if (std::isnan(row[kAngleColumn])) {
+        text_ << '\n';  // which ends every curve
+        continue;
       }
-      text_ << "EOD\n$pose" << i << " << EOD\n";
-      for (const PlotRun::Pose& pose : runs_[i].pose) {
-        for (const auto& point : pose.point_m) {
-          text_ << point[0] << ' ' << point[1] << ' ' << pose.time_s << '\n';
-        }
-        text_ << "\n\n";
-      }
-      text_ << "EOD\n";
+      for (const double value : row) text_ << value << ' ';
+      text_ << '\n';
     }
+    text_ << "EOD\n";
   }
 
-  // Adds the next panel of the left column; all panels have the same time axis.
-  void Panel(const std::string& label, double height, bool last = false) {
-    text_ << "unset label 2\nunset logscale\nset autoscale y\nset ytics auto\n"
-          << "set lmargin at screen 0.075\nset rmargin at screen 0.60\n"
-          << "set tmargin at screen " << top_ << "\nset bmargin at screen " << top_ - height << '\n'
-          << "set xrange [" << from_s_ << ':' << until_s_ << "]\n"
-          << (last ? "set format x '%g'\nset xlabel 'time, s'\n"
-                   : "set format x ''\nunset xlabel\n")
-          << "set ylabel " << Quoted(label) << " offset 0.5,0 font ',11'\n";
-    top_ -= height + 0.014;
+  ValueRange Range(std::size_t column, std::size_t columns = 1) const {
+    ValueRange range = RangeOf(rows_[0], column, columns);
+    for (const auto& rows : rows_) {
+      const ValueRange more = RangeOf(rows, column, columns);
+      range = {std::min(range.low, more.low), std::max(range.high, more.high)};
+    }
+    return range;
   }
 
-  std::string NameOf(std::size_t run, const char* alone) const {
-    return Quoted(runs_.size() == 1 ? alone : runs_[run].name);
-  }
-
-  void Plot(const std::vector<std::string>& curves) {
-    text_ << "plot ";
-    for (std::size_t i = 0; i < curves.size(); ++i) text_ << (i > 0 ? ", \\\n  " : "") << curves[i];
-    text_ << '\n';
-  }
-
-  std::string Curve(std::size_t run, int column, const std::string& title, const std::string& style,
-                    double later_s = 0) const {
+  // A curve of a run; NaN is written as a missing value, which gnuplot leaves out.
+  static std::string Curve(std::size_t run, std::size_t column, const std::string& with,
+                           const std::string& title, double later_s = 0.0) {
     std::ostringstream curve;
-    curve << "$run" << run << " using ($1+" << later_s << "):" << column << " with " << style
-          << " title " << title;
+    curve << "$run" << run << " using ($1+" << later_s << "):" << column + 1 << " with " << with
+          << (title.empty() ? " notitle" : " title " + Quoted(title));
     return curve.str();
   }
 
-  // A value of one joint as a solid line over its dashed reference.
-  void Pair(const char* label, int value, int wanted, int joint, const char* wanted_name) {
-    Panel(label, 0.124);
-    std::vector<std::string> curves;
-    const bool torque = value == kApplied;
-    const std::string kind = torque ? "steps lw 2 " : "lines lw 2 ";
-    // A torque asked at a tick acts from the next one on; the applied one acted up to its tick.
-    const double later_s = torque ? runs_[0].period_s : 0;
-    if (!torque || runs_.size() == 1) {  // with several runs only the applied torque is drawn
-      curves.push_back(Curve(0, wanted + joint, Quoted(wanted_name),
-                             kind + "dt (6,4) lc rgb '#909090'", later_s));
-    }
-    const char* alone = !torque ? (runs_[0].truth ? "true" : "estimated") : "applied";
+  void Add(Panel panel) {
+    if (!panel.range.empty()) panels_.push_back(std::move(panel));
+  }
+
+  void AddAngle(int joint) {
+    const auto j = static_cast<std::size_t>(joint);
+    Panel panel{.title = "Joint " + std::to_string(joint + 1) + ", deg",
+                .range = Range(kAngleColumn + j),
+                .curves = {}};
+    const char* name = runs_[0].truth ? "true" : "estimated";
     for (std::size_t run = 0; run < runs_.size(); ++run) {
-      curves.push_back(Curve(run, value + joint, NameOf(run, alone),
-                             (torque ? "f" : "") + kind + "lc rgb '" + Colour(run) + "'"));
+      panel.curves.push_back(Curve(run, kAngleColumn + j,
+                                   "lines " + CurveStyle(run, alone() ? 2.6 : 2.0),
+                                   alone() ? name : ""));
     }
-    if (torque && runs_.size() == 1 && IsGated(joint)) {
-      curves.push_back(Curve(0, kGated + joint, Quoted("changed by the gate"),
-                             "points pt 7 ps 0.4 lc rgb '#C03028'"));
+    const ValueRange reference = RangeOf(rows_[0], kReferenceColumn + j);
+    if (!reference.empty()) {
+      panel.range = {std::min(panel.range.low, reference.low),
+                     std::max(panel.range.high, reference.high)};
+      panel.curves.push_back(Curve(0, kReferenceColumn + j, "lines " + ReferenceStyle(),
+                                   alone() ? "reference" : "reference of run 1"));
     }
-    if (joint == 1 || torque) text_ << "set key top right\n";
-    if (joint == 1 && runs_.size() > 1) text_ << "set key off\n";
-    Plot(curves);
-    text_ << "set key on top right\n";
+    Add(panel);
   }
 
-  bool IsGated(int joint) const {
-    const auto& samples = runs_[0].sample;
-    return std::any_of(samples.begin(), samples.end(), [joint](const PlotRun::Sample& sample) {
-      return !std::isnan(sample.gated_nm[static_cast<std::size_t>(joint)]);
-    });
-  }
-
-  void Deflections() {
-    Panel("Tip deflection, mm", 0.124);
-    std::vector<std::string> curves;
+  void AddTorque(int joint) {
+    const auto j = static_cast<std::size_t>(joint);
+    Panel panel{.title = "Torque " + std::to_string(joint + 1) + ", N m",
+                .range = Range(kAppliedColumn + j),
+                .curves = {},
+                .limit = runs_[0].torque_limit_nm[j]};
     for (std::size_t run = 0; run < runs_.size(); ++run) {
-      const std::string colour = Colour(run);
-      curves.push_back(Curve(run, kDeflection, runs_.size() == 1 ? "'link 1'" : "''",
-                             "lines lw 2 lc rgb '" + colour + "'"));
-      const std::string second = runs_.size() == 1 ? Colour(1) : colour;
-      curves.push_back(Curve(run, kDeflection + 1, runs_.size() == 1 ? "'link 2'" : "''",
-                             "lines lw 2 dt (3,2) lc rgb '" + second + "'"));
+      panel.curves.push_back(Curve(run, kAppliedColumn + j,
+                                   "fsteps " + CurveStyle(run, alone() ? 2.6 : 1.6),
+                                   alone() ? "applied" : ""));
     }
-    Plot(curves);
-  }
-
-  void DistanceFromRest() {
-    Panel("Tip to resting place, mm", 0.124);
-    text_ << "set logscale y\nset yrange [0.1:3000]\nset ytics (0.1,1,10,100,1000)\n"
-             "set label 2 '15 mm' at graph 0.995, first 21 right font ',10' textcolor rgb "
-             "'#606060'\n";
-    std::vector<std::string> curves = {"15 with lines lw 1.5 dt (6,4) lc rgb '#909090' notitle"};
-    for (std::size_t run = 0; run < runs_.size(); ++run) {
-      curves.push_back(
-          Curve(run, kFromRest, "''", "lines lw 2 lc rgb '" + std::string(Colour(run)) + "'"));
-    }
-    Plot(curves);
-    text_ << "unset yrange\n";
-  }
-
-  void States() {
-    const double height = 0.022 * static_cast<double>(runs_.size());
-    Panel("", height, true);
-    const double rows = static_cast<double>(runs_.size());
-    text_ << "unset ylabel\nunset ytics\nunset grid\nset yrange [0:" << rows << "]\n";
-    int object = 1;
-    for (std::size_t run = 0; run < runs_.size(); ++run) {
-      const double low = rows - 1 - static_cast<double>(run);
-      for (const PlotRun::StateSpan& span : runs_[run].span) State(span, low, &object);
-    }
-    text_ << "plot 0 with lines lc rgb '#808080' notitle\n";
-    while (--object > 0)
-      text_ << "unset object " << object << "\nunset label " << 100 + object << '\n';
-    text_ << "set ytics auto\nset grid ls 100\n";
-  }
-
-  void State(const PlotRun::StateSpan& span, double low, int* object) {
-    text_ << "set object " << *object << " rectangle from " << span.from_s << ',' << low + 0.04
-          << " to " << span.until_s << ',' << low + 0.96 << " fs solid noborder fc rgb '"
-          << StateColour(span.state) << "' back\n";
-    const bool wide = (span.until_s - span.from_s) > 0.09 * (until_s_ - from_s_);
-    if (wide) {
-      text_ << "set label " << 100 + *object << " '" << ToString(span.state) << "' at "
-            << (span.from_s + span.until_s) / 2 << ',' << low + 0.5 << " center font ',11' front\n";
-    }
-    ++*object;
-  }
-
-  // Sets the axes to the range of arm and tips, with a margin.
-  void SetReach() {
-    std::array<double, 2> low{-0.05, -0.05}, high{0.05, 0.05};
-    const auto reach = [&](const std::array<double, 2>& point) {
-      for (std::size_t axis = 0; axis < 2; ++axis) {
-        low[axis] = std::min(low[axis], point[axis]);
-        high[axis] = std::max(high[axis], point[axis]);
+    if (alone()) {
+      // A torque asked at a tick acts from the next one on; the applied one acted up to its tick.
+      panel.curves.push_back(
+          Curve(0, kAskedColumn + j, "steps " + ReferenceStyle(), "asked", runs_[0].period_s));
+      if (!RangeOf(rows_[0], kGatedColumn + j).empty()) {
+        panel.curves.push_back(
+            Curve(0, kGatedColumn + j,
+                  std::string("points pt 6 ps 0.7 lw 1.5 lc rgb '") + kLimitColour + "'", "gated"));
       }
-    };
-    for (const PlotRun::Pose& pose : runs_[0].pose) {
-      for (const auto& point : pose.point_m) reach(point);
     }
-    for (const PlotRun& run : runs_) {
-      for (const PlotRun::Sample& sample : run.sample) reach(sample.tip_m);
-    }
-    const double margin = 0.05 * std::max(high[0] - low[0], high[1] - low[1]);
-    text_ << "set xrange [" << low[0] - margin << ':' << high[0] + margin << "]\nset yrange ["
-          << low[1] - margin << ':' << high[1] + margin << "]\n";
-    height_per_width_ = (high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin);
+    Add(panel);
   }
 
-  // Stroboscopic pictures of the first run, one per move; the tip paths of all runs.
-  void FromAbove() {
-    text_ << "unset logscale\nset size ratio -1\nset format x '%g'\nset ytics auto\n"
-             "set xlabel ''\nset ylabel 'y, m' offset 1.5,0\nunset key\nunset label 2\n"
-             "set palette defined (0 '#440154', 1 '#3B528B', 2 '#21918C', 3 '#5EC962', 4 "
-             "'#E8D21D')\n";
-    SetReach();
-    const auto& acts = runs_[0].act;
-    const std::size_t count = std::min(acts.size(), kMostActs);
-    const double natural = (kActsRight - kActsLeft) * kWidth / kHeight * height_per_width_;
-    const double height = std::min(natural, 0.66 / static_cast<double>(count) - kActGap);
-    double top = 0.935;
-    for (std::size_t i = 0; i < count; ++i) {
-      FromAbove(acts[i], top, top - height, i + 1 == count);
-      top -= height + kActGap;
+  // One panel of both links for one run; one a link for several.
+  void AddPairs(const std::string& title, std::size_t column, double limit) {
+    for (std::size_t link = 0; link < (alone() ? 1U : 2U); ++link) {
+      Panel panel{.title = alone() ? title : title + ", link " + std::to_string(link + 1),
+                  .range = Range(column + link, alone() ? 2 : 1),
+                  .curves = {},
+                  .limit = limit};
+      for (std::size_t run = 0; run < runs_.size(); ++run) {
+        panel.curves.push_back(
+            Curve(run, column + link, "lines " + CurveStyle(run), alone() ? "link 1" : ""));
+      }
+      if (alone()) {
+        panel.curves.push_back(Curve(0, column + 1, "lines " + CurveStyle(1), "link 2"));
+      }
+      Add(panel);
     }
-    Figures(top - 0.01);
   }
 
-  void FromAbove(const PlotRun::Act& act, double top, double bottom, bool last) {
-    const double until_s = std::max(act.until_s, act.from_s + 0.1);
-    text_ << "set lmargin at screen " << kActsLeft << "\nset rmargin at screen " << kActsRight
-          << "\nset tmargin at screen " << top << "\nset bmargin at screen " << bottom
-          << "\nset cbrange [" << act.from_s << ':' << until_s
-          << "]\nset colorbox user origin screen " << kActsRight + 0.012 << ", screen " << bottom
-          << " size screen 0.01, screen " << top - bottom << "\nset label 3 'From above, "
-          << act.from_s << " to " << std::round(100 * until_s) / 100
-          << " s, every 0.1 s' at graph 0.5, graph 1.045 center font ',12'\n";
-    if (last) text_ << "set xlabel 'x, m'\n";
-    const auto within = [&](const char* time, const char* value) {
-      std::ostringstream text;
-      text << "(" << time << " >= " << act.from_s - 1e-9 << " && " << time
-           << " <= " << until_s + 1e-9 << " ? " << value << " : NaN)";
-      return text.str();
-    };
-    std::vector<std::string> curves;
-    if (!runs_[0].pose.empty()) {
-      curves.push_back("$pose0 using 1:" + within("$3", "$2") + ":3 with lines lw 1.7 lc palette");
-    }
+  void AddStrain() {
+    const auto& limit = runs_[0].strain_limit;
+    std::ostringstream title;
+    title << "Root strain, % of " << std::round(1e6 * limit[0]);
+    if (limit[0] != limit[1]) title << " and " << std::round(1e6 * limit[1]);
+    AddPairs(alone() ? title.str() + " microstrain" : "Root strain, % of its limit", kStrainColumn,
+             100.0);
+  }
+
+  void AddDeflections() { AddPairs("Tip deflection, mm", kDeflectionColumn, 0.0); }
+
+  void AddDistance() {
+    if (Range(kTargetColumn).empty()) return;
+    Panel panel{.title = "Tip to its target, mm",
+                .range = {0.3, 3000.0},
+                .curves = {},
+                .limit = 0.0,
+                .logarithmic = true};
+    std::ostringstream settled;
+    settled << kSettledWithin_mm << " with lines " << ReferenceStyle() << " title '"
+            << kSettledWithin_mm << " mm: settled'";
     for (std::size_t run = 0; run < runs_.size(); ++run) {
-      std::ostringstream path;
-      path << "$run" << run << " using " << kTipX << ':'
-           << within("$1", std::string("$").append(std::to_string(kTipY)).c_str())
-           << " with lines lw 1.3 lc rgb '" << Colour(run) << "'";
-      curves.push_back(path.str());
+      panel.curves.push_back(Curve(run, kTargetColumn, "lines " + CurveStyle(run), ""));
     }
-    curves.push_back("$base using 1:2 with points pt 7 ps 1.6 lc rgb '#404040'");
-    Plot(curves);
+    panel.curves.push_back(settled.str());
+    Add(panel);
   }
 
-  // Writes the metrics as text below the pictures on the right.
-  void Figures(double top) {
-    int label = 900;
-    double y = top;
-    const auto line = [&](const std::string& text, const char* font) {
-      text_ << "set label " << label++ << ' ' << Quoted(text) << " at screen " << kActsLeft - 0.025
-            << ", screen " << y << " left font '" << font << "' front\n";
-      y -= 0.0185;
-    };
-    for (std::size_t run = 0; run < std::min(runs_.size(), kMostActs); ++run) {
-      if (!runs_[run].metrics) continue;
-      const RunMetrics& metrics = *runs_[run].metrics;
-      line(runs_.size() == 1 ? "Figures" : runs_[run].name, ",13");
-      line("joint error rms " + Two(metrics.joint_rms_error_deg) + " deg, final " +
-               Two(metrics.joint_final_error_deg) + " deg",
-           ",11");
-      line("tip settles in " +
-               (metrics.tip_settling_time_s ? Short(*metrics.tip_settling_time_s) + " s"
-                                            : std::string("never")) +
-               ", then moves " + Short(metrics.tip_residual_rms_mm) + " mm rms",
-           ",11");
-      line("peak torque " + Two(metrics.peak_torque_nm) + " N m", ",11");
+  void AddPayload() {
+    Panel panel{.title = "Payload estimate, kg", .range = Range(kPayloadColumn), .curves = {}};
+    const double margin = 0.05;
+    panel.range.low = std::min(panel.range.low, 0.0);
+    panel.range.high += panel.range.empty() ? 0.0 : margin;
+    for (std::size_t run = 0; run < runs_.size(); ++run) {
+      if (RangeOf(rows_[run], kPayloadColumn).empty()) continue;
+      std::ostringstream band;
+      band << "$run" << run << " using 1:($" << kPayloadColumn + 1 << "-$" << kSigmaColumn + 1
+           << "):($" << kPayloadColumn + 1 << "+$" << kSigmaColumn + 1
+           << ") with filledcurves fs transparent solid 0.25 lc rgb '" << Colour(run) << "'"
+           << (alone() ? " title '+- sigma'" : " notitle");
+      panel.curves.push_back(band.str());
+      panel.curves.push_back(
+          Curve(run, kPayloadColumn, "lines " + CurveStyle(run), alone() ? "estimate" : ""));
     }
-    // gnuplot draws labels only with a plot: this one is empty.
-    text_ << "unset label 3\nunset colorbox\nunset border\nunset tics\nunset xlabel\nunset "
-             "ylabel\nset xrange [0:1]\nset yrange [0:1]\nplot NaN\n";
+    if (!panel.curves.empty()) Add(panel);
   }
 
-  static std::string Short(double value) {
-    std::ostringstream text;
-    text << std::setprecision(3) << value;
-    return text.str();
+  void WriteHeader() {
+    const std::string title =
+        alone() ? runs_[0].title : std::to_string(runs_.size()) + " runs in the same axes";
+    text_ << "set label 1 " << Quoted(title) << " at screen " << 0.02 << ", screen " << sheet_.Y(30)
+          << " left font ',17' textcolor rgb '" << kInkColour << "'\n";
+    for (std::size_t run = 0; run < runs_.size(); ++run) {
+      const PlotRun& of = runs_[run];
+      const double y = sheet_.Y(56.0 + 20.0 * static_cast<double>(run));
+      std::string line =
+          alone() ? of.details : std::to_string(run + 1) + "  " + of.title + "; " + of.details;
+      if (!of.trip.empty()) line += "   TRIPPED: " + of.trip;
+      text_ << "set label " << 2 + run << ' ' << Quoted(line) << " at screen "
+            << (alone() ? 0.02 : 0.065) << ", screen " << y << " left font ',12' textcolor rgb '"
+            << (of.trip.empty() ? kMutedColour : kLimitColour) << "'\n";
+      if (alone()) continue;
+      text_ << "set arrow " << 1 + run << " from screen 0.02, screen " << y << " to screen 0.058, "
+            << "screen " << y << " nohead " << CurveStyle(run, 2.6) << '\n';
+    }
   }
 
-  static std::string Two(const std::array<double, 2>& pair) {
-    return Short(pair[0]) + ", " + Short(pair[1]);
+  void WritePanel(const Panel& panel, const TimeAxis& axis, double top) {
+    text_ << "set lmargin at screen " << kLeft << "\nset rmargin at screen " << kRight
+          << "\nset tmargin at screen " << sheet_.Y(top + kPanel - kPanelBody)
+          << "\nset bmargin at screen " << sheet_.Y(top + kPanel) << '\n';
+    axis.WriteRange(false, &text_);
+    std::string title = panel.title;
+    ValueRange range = panel.range;
+    std::vector<std::string> curves = panel.curves;
+    if (panel.logarithmic) {
+      text_ << "set logscale y\nset ytics (1,10,100,1000)\n";
+    } else {
+      const double largest = std::max(std::abs(range.low), std::abs(range.high));
+      if (panel.limit > 0.0 && largest > 0.5 * panel.limit) {
+        range = {std::min(range.low, -1.05 * panel.limit),
+                 std::max(range.high, 1.05 * panel.limit)};
+        for (const double limit : {panel.limit, -panel.limit}) {
+          std::ostringstream line;
+          line << limit << " with lines " << LimitStyle()
+               << (limit > 0.0 ? " title 'limit'" : " notitle");
+          curves.push_back(line.str());
+        }
+      } else if (panel.limit > 0.0) {
+        std::ostringstream beyond;
+        beyond << "; limit " << panel.limit;
+        title += beyond.str();
+      }
+      const double margin = std::max(0.06 * (range.high - range.low), 1e-3);
+      range = {range.low - margin, range.high + margin};
+      text_ << "unset logscale y\nset ytics " << NiceStep(range.high - range.low, 6) << '\n';
+    }
+    text_ << "set yrange [" << range.low << ':' << range.high << "]\nset label 900 "
+          << Quoted(title) << " at graph 0, graph 1 offset 0,0.75 left font ',12' textcolor rgb '"
+          << kInkColour
+          << "'\nset key bottom right at graph 1.01, graph 1.02 horizontal maxrows 1\nplot ";
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      text_ << (i > 0 ? ", \\\n  " : "") << curves[i];
+    }
+    text_ << '\n';
+    ClearHeader();
   }
 
-  static constexpr std::size_t kMostActs = 3;
-  static constexpr double kWidth = 1400, kHeight = 1300;
-  static constexpr double kActsLeft = 0.655, kActsRight = 0.94, kActGap = 0.06;
+  // gnuplot draws labels with every plot of a sheet: the header's belong to the first.
+  void ClearHeader() {
+    for (std::size_t i = 0; i <= runs_.size(); ++i) text_ << "unset label " << i + 1 << '\n';
+    if (!alone()) {
+      for (std::size_t i = 0; i < runs_.size(); ++i) text_ << "unset arrow " << i + 1 << '\n';
+    }
+  }
 
   const std::vector<PlotRun>& runs_;
+  std::vector<std::vector<PlotRow>> rows_;
+  std::vector<Panel> panels_;
+  Sheet sheet_;
   std::ostringstream text_;
-  double from_s_ = 0, until_s_ = 1;
-  double top_ = 0.945;
-  double height_per_width_ = 1;
 };
 
 }  // namespace

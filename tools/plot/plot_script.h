@@ -9,7 +9,9 @@
 namespace flexarm {
 
 /// A gnuplot script, data included, that draws runs into `output` (.png or .svg): joint angles,
-/// torques, deflections, the tip's distance from rest, the safety state, and the arm from above.
+/// torques and root strains with their limits, deflections, the tip's distance from its target, the
+/// payload where the law estimates it, the safety state, events, and the arm from above. For any
+/// number of moves and any duration.
 std::string PlotScript(const std::vector<PlotRun>& runs, const std::filesystem::path& output);
 
 }  // namespace flexarm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "config/config.h"
@@ -14,7 +15,8 @@ struct ReportContext {
   std::filesystem::path experiments;
   std::filesystem::path published;  ///< file of the published cases
   std::filesystem::path folder;
-  std::vector<Statement> statements;  ///< of the chapters written so far
+  std::vector<Statement> statements{};  ///< of the chapters written so far
+  std::vector<std::string> results{};   ///< what they found, a sentence each: for the overview
 
   std::filesystem::path Figure(const std::string& name) const {
     return folder / "figures" / (name + ".png");

@@ -62,7 +62,7 @@ Row FigureRow(const std::string& name, const ControlFigures& f) {
           std::to_string(f.completed) + "/" + std::to_string(f.runs),
           pair(f.rms_deg),
           pair(f.final_deg),
-          Cell(f.settling_s.median),
+          Cell(f.still_15mm_s.median),
           Cell(f.last_second_mm.median),
           pair(f.peak_nm),
           pair(f.peak_bending_mm)};

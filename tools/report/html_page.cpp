@@ -11,15 +11,24 @@ namespace flexarm {
 namespace {
 
 constexpr const char* kStyle =
+    ":root{--ink:#1a1a1a;--paper:#fff;--line:#ddd;--head:#f4f4f4;--muted:#444;--good:#00704a;"
+    "--bad:#b03000;--part:#8a6000}"
+    "@media(prefers-color-scheme:dark){:root{--ink:#ececec;--paper:#16181b;--line:#3a3d42;"
+    "--head:#24272c;--muted:#b0b0b0;--good:#4fd1a5;--bad:#ff8a5c;--part:#e0b050}}"
     "body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;"
-    "color:#1a1a1a;background:#fff}"
-    "h1{font-size:1.8rem}h2{margin-top:3rem;border-bottom:1px solid #ccc}"
-    "table{border-collapse:collapse;margin:1rem 0;font-size:.9rem}"
-    "th,td{border:1px solid #ddd;padding:.3rem .6rem;text-align:left;vertical-align:top}"
-    "th{background:#f4f4f4}figure{margin:1.5rem 0}img{max-width:100%;border:1px solid #eee}"
-    "figcaption{font-size:.9rem;color:#444}nav a{display:block}"
-    ".v{white-space:nowrap;font-weight:600}.holds{color:#00704a}.does-not{color:#b03000}"
-    ".part,.depends{color:#8a6000}.not{color:#666}";
+    "color:var(--ink);background:var(--paper)}a{color:inherit}"
+    "h1{font-size:1.8rem}h2{margin-top:3rem;border-bottom:1px solid var(--line)}"
+    ".box{overflow-x:auto;margin:1rem 0}table{border-collapse:collapse;font-size:.9rem}"
+    "th,td{border:1px solid var(--line);padding:.3rem .6rem;text-align:left;vertical-align:top}"
+    "td{min-width:3rem}td:nth-child(n+2):nth-last-child(n+2){min-width:5rem}"
+    "th{background:var(--head)}figure{margin:1.5rem 0}"
+    "img{max-width:100%;border:1px solid var(--line);background:#fff;cursor:zoom-in}"
+    "input:checked+img{max-width:none;cursor:zoom-out}"
+    "figcaption{font-size:.9rem;color:var(--muted)}nav a{display:block}"
+    "@media(min-width:100rem){nav{position:fixed;top:2rem;left:calc(50% + 38rem);"
+    "max-width:calc(50vw - 39rem);font-size:.85rem}}"
+    ".v{white-space:nowrap;font-weight:600}.holds{color:var(--good)}.does-not{color:var(--bad)}"
+    ".part,.depends{color:var(--part)}.not{color:var(--muted)}";
 
 std::string Escaped(const std::string& text) {
   std::string escaped;
@@ -97,40 +106,43 @@ void HtmlPage::Section(const std::string& title) {
   body_ += "<h2 id=\"" + id + "\">" + Escaped(title) + "</h2>\n";
 }
 
+void HtmlPage::Heading(const std::string& title) { body_ += "<h2>" + Escaped(title) + "</h2>\n"; }
+
 void HtmlPage::Paragraph(const std::string& text) { body_ += "<p>" + Escaped(text) + "</p>\n"; }
 
 void HtmlPage::Table(const std::vector<std::string>& head,
                      const std::vector<std::vector<std::string>>& rows) {
-  body_ += "<table>\n" + TableRow(head, "th");
+  body_ += "<div class=\"box\"><table>\n" + TableRow(head, "th");
   for (const auto& row : rows) body_ += TableRow(row, "td");
-  body_ += "</table>\n";
+  body_ += "</table></div>\n";
 }
 
 void HtmlPage::Picture(const std::filesystem::path& png, const std::string& caption) {
   std::ifstream file(png, std::ios::binary);
   if (!file) throw std::runtime_error(png.string() + ": cannot be read");
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  body_ += "<figure><img alt=\"" + Escaped(caption) + "\" src=\"data:image/png;base64," +
-           Base64(bytes) + "\"><figcaption>" + Escaped(caption) + "</figcaption></figure>\n";
+  body_ += "<figure><div class=\"box\"><label><input type=\"checkbox\" hidden><img alt=\"" +
+           Escaped(caption) + "\" src=\"data:image/png;base64," + Base64(bytes) +
+           "\"></label></div><figcaption>" + Escaped(caption) + "</figcaption></figure>\n";
 }
 
 void HtmlPage::Statements(const std::vector<Statement>& statements) {
-  body_ +=
-      "<table>\n" + TableRow({"section", "the thesis says", "the model says", "verdict"}, "th");
+  body_ += "<div class=\"box\"><table>\n" +
+           TableRow({"section", "the thesis says", "the model says", "verdict"}, "th");
   for (const Statement& s : statements) {
     body_ += "<tr><td>" + Escaped(s.section) + "</td><td>" + Escaped(s.thesis) + "</td><td>" +
              Escaped(s.model) + "</td><td class=\"" + ClassOf(s.verdict) + "\">" +
              ToString(s.verdict) + "</td></tr>\n";
   }
-  body_ += "</table>\n";
+  body_ += "</table></div>\n";
 }
 
 std::string HtmlPage::Text() const {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta "
          "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          Escaped(title_) + "</title>\n<style>" + kStyle + "</style></head>\n<body>\n<h1>" +
-         Escaped(title_) + "</h1>\n<p>" + Escaped(lead_) + "</p>\n<nav>\n" + contents_ +
-         "</nav>\n" + body_ + "</body></html>\n";
+         Escaped(title_) + "</h1>\n<p>" + Escaped(lead_) + "</p>\n" + first_ +
+         "<h2>Contents</h2>\n<nav>\n" + contents_ + "</nav>\n" + body_ + "</body></html>\n";
 }
 
 }  // namespace flexarm

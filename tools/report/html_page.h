@@ -14,15 +14,19 @@ class HtmlPage {
  public:
   explicit HtmlPage(std::string title);
 
-  /// A paragraph before the table of contents.
+  /// A paragraph that begins the page.
   void Lead(const std::string& text) { lead_ = text; }
+  /// All of another page's body, before the table of contents.
+  void PutFirst(const HtmlPage& part) { first_ = part.body_; }
+  /// A heading without a line in the table of contents.
+  void Heading(const std::string& title);
   /// A heading, with a line in the table of contents.
   void Section(const std::string& title);
   void Paragraph(const std::string& text);
-  /// Adds a table. The first column is left-aligned, and so are the others if they hold words.
+  /// Adds a table, which scrolls sideways in its own box where it is wider than the screen.
   void Table(const std::vector<std::string>& head,
              const std::vector<std::vector<std::string>>& rows);
-  /// Embeds a .png file, which may be deleted afterwards.
+  /// Embeds a .png file, which may be deleted afterwards. A click shows it in full size.
   /// @throws std::runtime_error if it cannot be read
   void Picture(const std::filesystem::path& png, const std::string& caption);
   /// Adds a table: statement of the thesis, result of the model, verdict.
@@ -33,7 +37,7 @@ class HtmlPage {
 
  private:
   std::string title_, lead_;
-  std::string contents_, body_;
+  std::string first_, contents_, body_;
   int sections_ = 0;
 };
 

@@ -5,11 +5,10 @@
 #include <sstream>
 
 #include "tools/plot/gnuplot.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
-
-constexpr std::size_t kReferenceColour = 7;
 
 // Columns of the data block: time, then two columns per quantity.
 constexpr int kBending = 2, kAngle = 4, kReference = 6, kTorque = 8;
@@ -48,17 +47,17 @@ void WritePanel(LoopView view, int which, const std::vector<PlotRun>& runs,
                 std::ostringstream* script) {
   const Panel panel = PanelOf(view);
   *script << "set ylabel " << Quoted(panel.label[static_cast<std::size_t>(which)]) << '\n'
-          << (which == 0 ? "set key at screen 0.75, screen 0.95 top left Left reverse\n"
+          << (which == 0 ? "set key at screen 0.75, screen 0.95 top left vertical Left reverse\n"
                          : "unset key\n")
           << "plot ";
-  if (view == LoopView::kTrajectory) {
-    *script << "$run0 using 1:" << kReference + which << " with lines lw 2 dt 2 lc rgb '"
-            << Colour(kReferenceColour) << "' title 'reference', ";
-  }
   const char* style = view == LoopView::kEffort ? "steps" : "lines";
   for (std::size_t i = 0; i < runs.size(); ++i) {
     *script << (i > 0 ? ", " : "") << "$run" << i << " using 1:" << panel.column + which << " with "
-            << style << " lw 1.5 lc rgb '" << Colour(i) << "' title " << Quoted(runs[i].name);
+            << style << ' ' << CurveStyle(i, 1.7) << " title " << Quoted(runs[i].name);
+  }
+  if (view == LoopView::kTrajectory) {
+    *script << ", $run0 using 1:" << kReference + which << " with lines " << ReferenceStyle()
+            << " title 'reference'";
   }
   *script << '\n';
 }
@@ -80,11 +79,11 @@ const char* TitleOf(LoopView view) {
 void DrawLoopRuns(const std::vector<PlotRun>& runs, LoopView view,
                   const std::filesystem::path& output) {
   std::ostringstream script;
-  script << TerminalFor(output, 1000, 560) << std::setprecision(7);
+  script << PictureHead(output, 1000, 560) << std::setprecision(7);
   for (std::size_t i = 0; i < runs.size(); ++i) WriteData(runs[i], i, &script);
   script << "set multiplot layout 2,1 title " << Quoted(TitleOf(view))
          << "\nset lmargin at screen 0.08\nset rmargin at screen 0.74\n"
-            "set grid lc rgb '#D9D9D9'\nset xlabel 's'\nset xrange [0:6]\n";
+            "set xlabel 'time, s'\nset xrange [0:6]\n";
   for (const int which : {0, 1}) WritePanel(view, which, runs, &script);
   script << "unset multiplot\n";
   DrawPicture(script.str(), output);

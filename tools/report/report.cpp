@@ -1,11 +1,14 @@
 #include "tools/report/report.h"
 
+#include <array>
+#include <ctime>
 #include <iterator>
 
 #include "controller/files/write_file.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
 #include "tools/report/chapters.h"
+#include "tools/report/overview.h"
 #include "tools/support/parallel_for.h"
 
 namespace flexarm {
@@ -21,6 +24,16 @@ void CheckFolder(const std::filesystem::path& folder) {
   }
 }
 
+// "on 2026-01-31".
+std::string Today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "on %Y-%m-%d", &utc);
+  return text.data();
+}
+
 }  // namespace
 
 std::filesystem::path WriteReport(const ReportRequest& request) {
@@ -31,8 +44,7 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
   ReportContext context{.config = request.config,
                         .experiments = request.experiments,
                         .published = request.published,
-                        .folder = request.folder,
-                        .statements = {}};
+                        .folder = request.folder};
   HtmlPage page("The flexible arm of the thesis, recomputed: " + request.config.rig_name);
   const auto chapters = {Chapter3, Chapter4,  Chapter5,  Chapter6,       ControlFeatures,
                          Chapter7, AppendixB, Baselines, PayloadChapter, PublishedChapter};
@@ -43,13 +55,13 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
     ++done;
     if (progress) progress(done);
   }
-  page.Lead(Count(std::ssize(context.statements)) + " statements of the thesis (" +
-            Counted(context.statements) +
-            "). Every number on this page, but those that a source prints, is computed by the "
-            "program that "
-            "wrote it (flexarm " +
-            ThisBuild().version + ", " + BuildId() +
-            "); every verdict follows from numbers by a rule. The arm is simulated.");
+  HtmlPage overview({});
+  Overview(&context, &overview);
+  page.PutFirst(overview);
+  page.Lead("Computed " + Today() + " by flexarm " + ThisBuild().version + " (" + BuildId() +
+            "). Every number on this page, but those that a source prints, is computed by this "
+            "program; every verdict follows from numbers by a rule. The arm is simulated. Click "
+            "on a figure to see it in full size.");
   std::filesystem::path file = request.folder / "report.html";
   WriteFile(file, page.Text(), ReplaceAny("a report"));
   return file;

@@ -1,6 +1,8 @@
 #include "tools/runs/run_summary.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "controller/runlog/errors.h"
 
@@ -56,6 +58,7 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
   json["joint_final_error_deg"] = Pair(metrics.joint_final_error_deg);
   json["tip_settling_time_s"] =
       metrics.tip_settling_time_s ? NumberOrNull(*metrics.tip_settling_time_s) : nullptr;
+  json["tip_target_error_mm"] = NumberOrNull(metrics.tip_target_error_mm);
   json["tip_residual_rms_mm"] = NumberOrNull(metrics.tip_residual_rms_mm);
   json["tip_last_second_rms_mm"] = NumberOrNull(metrics.tip_last_second_rms_mm);
   json["tip_motion_rms_mm"] = NumberOrNull(metrics.tip_motion_rms_mm);
@@ -64,6 +67,19 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
   json["peak_bending_mm"] = Pair(metrics.peak_bending_mm);
   json["truth"] = metrics.truth;
   return json;
+}
+
+std::string SettlingText(const RunMetrics& metrics) {
+  if (std::isnan(metrics.tip_target_error_mm)) return "no rest to judge";
+  if (!metrics.tip_still_within_15mm_s) return "not settled: still moving at the end of a rest";
+  std::array<char, 64> text{};
+  if (metrics.tip_settling_time_s) {
+    std::snprintf(text.data(), text.size(), "%.2f s", *metrics.tip_settling_time_s);
+  } else {
+    std::snprintf(text.data(), text.size(), "not settled: %.0f mm off its target",
+                  metrics.tip_target_error_mm);
+  }
+  return text.data();
 }
 
 std::optional<SafetyRecord> TripOf(const std::vector<SafetyRecord>& records) {

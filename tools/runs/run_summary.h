@@ -39,6 +39,10 @@ std::optional<RunMetrics> MetricsOf(const LoadedRun& run);
 /// The metrics with the JSON keys of the contract. Unknown values are null.
 nlohmann::ordered_json ToJson(const RunMetrics& metrics);
 
+/// When the tip settled: "0.46 s", or why it did not: "not settled: 16 mm off its target", "not
+/// settled: still moving at the end of a rest", "no rest to judge".
+std::string SettlingText(const RunMetrics& metrics);
+
 /// The record of the first trip of a run, with its cause; empty if the run did not trip.
 std::optional<SafetyRecord> TripOf(const std::vector<SafetyRecord>& records);
 

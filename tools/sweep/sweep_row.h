@@ -15,7 +15,7 @@ struct SweepMeasure {
   const char* title;   ///< heading in a table
 };
 
-inline constexpr std::array<SweepMeasure, 11> kSweepMeasures = {
+inline constexpr std::array<SweepMeasure, 12> kSweepMeasures = {
     {{"joint1_rms_error_deg", "rms1 deg"},
      {"joint2_rms_error_deg", "rms2 deg"},
      {"joint1_final_error_deg", "final1 deg"},
@@ -26,12 +26,15 @@ inline constexpr std::array<SweepMeasure, 11> kSweepMeasures = {
      {"peak_torque2_nm", "peak2 Nm"},
      {"torque1_rms_nm", "effort1 Nm"},
      {"torque2_rms_nm", "effort2 Nm"},
-     {"tip_motion_rms_mm", "motion mm"}}};
+     {"tip_motion_rms_mm", "motion mm"},
+     {"tip_target_error_mm", "off target mm"}}};
 inline constexpr std::size_t kRms1 = 0;
 inline constexpr std::size_t kRms2 = 1;
-inline constexpr std::size_t kSettling = 4;  ///< NaN in a completed run means: never settled
+inline constexpr std::size_t kSettling =
+    4;  ///< NaN in a completed run means: a rest is not settled
 inline constexpr std::size_t kResidual = 5;
 inline constexpr std::size_t kMotion = 10;
+inline constexpr std::size_t kTargetError = 11;
 
 /// One run of a sweep.
 struct SweepRow {

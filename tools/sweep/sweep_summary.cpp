@@ -91,7 +91,13 @@ SweepGroup GroupOf(const std::vector<std::size_t>& index, const std::vector<Swee
   for (double& time : values[kSettling]) {
     if (std::isnan(time)) time = std::numeric_limits<double>::infinity();
   }
-  for (std::size_t i = 0; i < values.size(); ++i) group.median[i] = MedianOf(values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    group.median[i] = MedianOf(values[i]);
+    if (values[i].empty()) continue;
+    const auto [least, most] = std::minmax_element(values[i].begin(), values[i].end());
+    group.least[i] = *least;
+    group.most[i] = *most;
+  }
   return group;
 }
 

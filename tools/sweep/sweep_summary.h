@@ -23,6 +23,8 @@ struct SweepGroup {
   std::vector<std::string> refused;  ///< distinct reasons
   /// Over the completed runs; NaN: none. An infinite settling time is "never".
   std::array<double, kSweepMeasures.size()> median{};
+  /// Least and greatest of the same runs.
+  std::array<double, kSweepMeasures.size()> least{}, most{};
 };
 
 /// Medians over the seeds.
@@ -52,8 +54,10 @@ OutputRules SummaryCsvRules(std::vector<std::filesystem::path> inputs, bool over
 /// @throws InputError as WriteFile does
 void WriteSummaryCsv(const SweepSummary& summary, const std::filesystem::path& output,
                      const OutputRules& rules);
-/// Draws rms, final errors, settling and residual along the last axis, with one curve for every
-/// combination of the other axes. @throws InputError  there is nothing to draw
+/// Draws rms, final errors, settling, distance from the target, residual and motion along the last
+/// axis, with one curve for every combination of the other axes: medians, with a bar from the least
+/// to the greatest over the seeds. A cross at the top: no run completed, or not settled.
+/// @throws InputError  there is nothing to draw
 void DrawSummary(const SweepSummary& summary, const std::filesystem::path& output,
                  const OutputRules& rules = ReplacedPicture());
 

@@ -153,9 +153,9 @@ ControlFigures FiguresOf(const std::vector<SimulationResult>& results) {
   figures.worst_final_deg = over_seeds([](const auto& m) {
     return std::max(m.joint_final_error_deg[0], m.joint_final_error_deg[1]);
   });
-  figures.settling_s = over_seeds([](const auto& m) { return OrNever(m.tip_settling_time_s); });
-  figures.settling_5mm_s =
-      over_seeds([](const auto& m) { return OrNever(m.tip_settling_within_5mm_s); });
+  figures.still_15mm_s =
+      over_seeds([](const auto& m) { return OrNever(m.tip_still_within_15mm_s); });
+  figures.still_5mm_s = over_seeds([](const auto& m) { return OrNever(m.tip_still_within_5mm_s); });
   figures.residual_mm = over_seeds([](const auto& m) { return m.tip_residual_rms_mm; });
   figures.last_second_mm = over_seeds([](const auto& m) { return m.tip_last_second_rms_mm; });
   return figures;

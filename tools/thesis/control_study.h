@@ -40,9 +40,10 @@ struct ControlFigures {
       roughness_rad_s2, lag_s;
   std::array<OverSeeds, 2> peak_bending_mm;  ///< of the links' tips
   OverSeeds rms_sum_deg, worst_final_deg;    ///< of both joints
-  OverSeeds settling_s, settling_5mm_s;      ///< infinite: never settled
-  OverSeeds residual_mm;                     ///< rms in the last 0.3 s
-  OverSeeds last_second_mm;                  ///< rms in the last second
+  /// The tip stays within 15 mm, 5 mm of its resting place; infinite: never.
+  OverSeeds still_15mm_s, still_5mm_s;
+  OverSeeds residual_mm;     ///< rms in the last 0.3 s
+  OverSeeds last_second_mm;  ///< rms in the last second
 
   bool all_completed() const { return completed == runs; }
   Outcome Of(const OverSeeds& value) const { return {all_completed(), value}; }

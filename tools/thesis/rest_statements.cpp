@@ -17,8 +17,8 @@ Statement Damped(const ControlStudy& study, LoopKind loop, const std::string& se
   for (const double kg : kTestedPayloads_kg) {
     const ControlFigures& f = FiguresOf(study, loop, ChangedCase(law, kg));
     rests.push_back({.completed = f.all_completed(),
-                     .within_15mm_s = f.settling_s.median,
-                     .within_5mm_s = f.settling_5mm_s.median,
+                     .within_15mm_s = f.still_15mm_s.median,
+                     .within_5mm_s = f.still_5mm_s.median,
                      .last_second_mm = f.last_second_mm.median});
   }
   const auto each = [&](FigureOf figure) {
@@ -28,8 +28,8 @@ Statement Damped(const ControlStudy& study, LoopKind loop, const std::string& se
   };
   return {section, thesis,
           "the tip stays within 15 mm of its resting place after " +
-              each(&ControlFigures::settling_s) + " s, within 5 mm after " +
-              each(&ControlFigures::settling_5mm_s) + " s, and moves by " +
+              each(&ControlFigures::still_15mm_s) + " s, within 5 mm after " +
+              each(&ControlFigures::still_5mm_s) + " s, and moves by " +
               each(&ControlFigures::last_second_mm) + " mm rms in the last second (at most " +
               Figure(kRestMotion_mm, 1) + " counts as rest)," + AtPayloads(kTestedPayloads_kg) +
               SettingsOf(study, loop, law.empty() ? "" : "law sobel"),

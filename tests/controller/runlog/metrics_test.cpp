@@ -15,6 +15,9 @@ namespace {
 
 const TipGeometry kGeometry{.layout = kR12, .length_m = {1.0, 0.7}, .tip_slope_per_m = {1.5, 4.0}};
 
+// The tip at the target while the reference is zero: both links straight along x.
+constexpr double kTarget_m = 1.7;
+
 // Two moves: rests are 1..3 s and 4..6 s.
 Experiment TwoMoves() {
   const auto move = [](double start_s) {
@@ -75,14 +78,15 @@ TEST(RunMetrics, FinalErrorIsTheWorstRestsMeanOverItsLastThreeTenths) {
   EXPECT_NEAR(metrics.joint_final_error_deg[1], 0, 1e-12);
 }
 
-TEST(RunMetrics, TheNarrowSettlingIsWithinFiveMillimetres) {
+TEST(RunMetrics, StillWithinFiveMillimetresIsTheNarrowBand) {
   const auto ticks = Trace(6, [](double t, TickRecord* record) {
     record->truth.tip_m = {1.0, 0.0};
     if (t > 3.5 && t < 4.71) record->truth.tip_m[1] = 0.0051;  // last outside at 4.70
     if (t > 5.0 && t < 5.1) record->truth.tip_m[1] = 0.0049;   // inside
   });
-  ASSERT_TRUE(Judge(ticks).tip_settling_within_5mm_s.has_value());
-  EXPECT_NEAR(*Judge(ticks).tip_settling_within_5mm_s, 0.72, 1e-9);
+  const RunMetrics metrics = Judge(ticks);
+  ASSERT_TRUE(metrics.tip_still_within_5mm_s.has_value());
+  EXPECT_NEAR(*metrics.tip_still_within_5mm_s, 0.72, 1e-9);
 }
 
 // Every other sample from 5 s to 6 s deviates by 1 mm: 0.5 mm rms about the mean.
@@ -121,9 +125,11 @@ TEST(RunMetrics, RoughnessIsTheSecondDifferenceInTheRests) {
   EXPECT_NEAR(metrics.joint_roughness_rad_s2[1], 0.0, 1e-9);
 }
 
+// The second target is with joint 1 at 90 deg.
 TEST(RunMetrics, SettlingIsTheWorstTimeFromTheMovesEnd) {
   const auto ticks = Trace(6, [](double t, TickRecord* record) {
-    record->truth.tip_m = {1.0, t < 3.5 ? 0.0 : 0.5};
+    record->truth.tip_m = {t < 3.5 ? kTarget_m : 0.0, t < 3.5 ? 0.0 : kTarget_m};
+    if (t > 3.01) record->input.reference_now.x_m[0] = 90.0 * kRadPerDeg;
     if (t > 0.5 && t < 1.39) record->truth.tip_m[0] += 0.016;   // last outside at 1.38
     if (t > 3.5 && t < 4.71) record->truth.tip_m[1] -= 0.0151;  // last outside at 4.70
     if (t > 5.0 && t < 5.1) record->truth.tip_m[0] += 0.0149;   // inside
@@ -131,12 +137,40 @@ TEST(RunMetrics, SettlingIsTheWorstTimeFromTheMovesEnd) {
   const RunMetrics metrics = Judge(ticks);
   ASSERT_TRUE(metrics.tip_settling_time_s.has_value());
   EXPECT_NEAR(*metrics.tip_settling_time_s, 0.72, 1e-9);
+  EXPECT_EQ(metrics.tip_settling_time_s, metrics.tip_still_within_15mm_s);
   EXPECT_NEAR(metrics.tip_residual_rms_mm, 0, 1e-9);
+  EXPECT_NEAR(metrics.tip_target_error_mm, 0, 1e-9);
 }
 
-TEST(RunMetrics, ATipThatNeverLeavesItsPlaceSettlesAtOnce) {
-  const auto ticks = Trace(6, [](double, TickRecord* record) { record->truth.tip_m = {1, 1}; });
+TEST(RunMetrics, ATipThatNeverLeavesItsTargetSettlesAtOnce) {
+  const auto ticks =
+      Trace(6, [](double, TickRecord* record) { record->truth.tip_m = {kTarget_m, 0}; });
   EXPECT_EQ(Judge(ticks).tip_settling_time_s, 0.0);
+}
+
+// One of two rests is off its target, by a little less and a little more than 15 mm.
+TEST(RunMetrics, ATipThatRestsOffItsTargetIsNotSettled) {
+  for (const double off_m : {0.0149, 0.0151}) {
+    const auto ticks = Trace(6, [off_m](double t, TickRecord* record) {
+      record->truth.tip_m = {kTarget_m, t < 3.5 ? off_m : 0.001};
+    });
+    const RunMetrics metrics = Judge(ticks);
+    EXPECT_EQ(metrics.tip_settling_time_s.has_value(), off_m < 0.015);
+    EXPECT_EQ(metrics.tip_still_within_15mm_s, 0.0);
+    EXPECT_EQ(metrics.tip_still_within_5mm_s, 0.0);
+    EXPECT_NEAR(metrics.tip_target_error_mm, 1e3 * off_m, 1e-9);
+  }
+}
+
+// The joints are where they should be, and so is the tip although the links are bent at the target:
+// the target is that of straight links.
+TEST(RunMetrics, TheTargetIsWhereTheReferencesJointsEnd) {
+  const auto ticks = Trace(6, [](double, TickRecord* record) {
+    record->input.reference_now.x_m = {0.5, -0.3, 0.1, 0.0, 0.1};  // bending of the reference
+    record->truth.tip_m = {std::cos(0.5) + 0.7 * std::cos(0.2),
+                           std::sin(0.5) + 0.7 * std::sin(0.2)};
+  });
+  EXPECT_NEAR(Judge(ticks).tip_target_error_mm, 0.0, 1e-9);
 }
 
 TEST(RunMetrics, ATipThatNeverSettlesHasNoTime) {
@@ -145,6 +179,7 @@ TEST(RunMetrics, ATipThatNeverSettlesHasNoTime) {
   });
   const RunMetrics metrics = Judge(ticks);
   EXPECT_FALSE(metrics.tip_settling_time_s.has_value());
+  EXPECT_FALSE(metrics.tip_still_within_15mm_s.has_value());
   // 15 ticks: mean of +-20 mm with one more of a sign is 20/15 mm off centre.
   EXPECT_NEAR(metrics.tip_residual_rms_mm, std::sqrt(400 - 400.0 / 225), 1e-9);
 }
@@ -208,6 +243,7 @@ TEST(RunMetrics, ARunThatEndedInItsFirstMoveHasNoRest) {
   EXPECT_TRUE(std::isnan(metrics.joint_final_error_deg[0]));
   EXPECT_TRUE(std::isnan(metrics.tip_residual_rms_mm));
   EXPECT_TRUE(std::isnan(metrics.tip_motion_rms_mm));
+  EXPECT_TRUE(std::isnan(metrics.tip_target_error_mm));
   EXPECT_FALSE(metrics.tip_settling_time_s.has_value());
 }
 

@@ -42,6 +42,7 @@ inline std::vector<SweepRow> FiveRuns() {
                                 Made(4, 0.3)};
   rows[0].measure[kResidual] = 2.0;
   rows[0].measure[kMotion] = 5.0;
+  rows[1].measure[kTargetError] = 7.0;
   rows[1].measure[kRms1] = 3.0;
   rows[2].measure[kRms2] = 9.0;
   rows[3].completed = false;

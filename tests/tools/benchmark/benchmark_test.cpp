@@ -291,6 +291,7 @@ TEST(RestFigures, AreOverTheCompletedRuns) {
   const RestFigures figures = RestFiguresOf(FiveRuns());
   EXPECT_EQ(figures.settled_in_time, 2U);
   EXPECT_EQ(figures.latest_settling_s, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(figures.target_error_max_mm, 7.0);
   EXPECT_NEAR(figures.residual_mean_mm, 5.0 / 4.0, 1e-12);
   EXPECT_EQ(figures.residual_max_mm, 2.0);
   EXPECT_NEAR(figures.motion_mean_mm, 8.0 / 4.0, 1e-12);
@@ -321,6 +322,7 @@ TEST(BenchmarkJson, HasTheFiguresOfTheRests) {
   EXPECT_EQ(nominal["completed"], 4);
   EXPECT_EQ(nominal["settled_in_time"], 2);
   EXPECT_TRUE(nominal["latest_settling_s"].is_null());
+  EXPECT_EQ(nominal["target_error_max_mm"], 7.0);
   EXPECT_EQ(nominal["residual_mean_mm"], 1.25);
   EXPECT_EQ(nominal["residual_max_mm"], 2.0);
   EXPECT_EQ(nominal["motion_mean_mm"], 2.0);
