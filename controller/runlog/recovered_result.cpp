@@ -5,10 +5,10 @@
 namespace flexarm {
 
 void RecoveredResult::Add(const RunRecord& record) {
-  if (const auto* tick = std::get_if<TickRecord>(&record)) {
-    if (!first_tick_) first_tick_ = tick->input.tick;
-    last_tick_ = tick->input.tick;
-    ++ticks_;
+  if (const auto* block = std::get_if<TicksRecord>(&record)) {
+    if (!first_tick_) first_tick_ = block->ticks.front().input.tick;
+    last_tick_ = block->ticks.back().input.tick;
+    ticks_ += static_cast<std::int64_t>(block->ticks.size());
   }
   if (const auto* safety = std::get_if<SafetyRecord>(&record)) {
     state_ = safety->after.state;

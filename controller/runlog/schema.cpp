@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "controller/runlog/safety_rows.h"
+#include "controller/runlog/sample_table.h"
 #include "controller/runlog/sqlite_db.h"
-#include "controller/runlog/tick_columns.h"
 
 namespace flexarm {
 namespace {
@@ -39,7 +39,7 @@ void CreateRunTables(SqliteDb* db) {
   db->Execute(("PRAGMA application_id=" + id).c_str());
   db->Execute(("PRAGMA user_version=" + version).c_str());
   db->Execute(kRunLogSchema);
-  db->Execute(CreateTickTable().c_str());
+  db->Execute(CreateSampleTables().c_str());
   db->Execute(kSafetyTable);
 }
 

@@ -22,6 +22,9 @@ struct TickRecord {
   std::uint32_t gate_reasons;
   std::uint32_t run_number;  ///< of the present run, or of the last (Permit); 0: none yet
   PlantTruth truth;          ///< of the simulated stack: the recorder adds it
+  /// Of a record that was read from a log, which has not all of the output (record_blocks.h): of
+  /// all its bytes. 0: the output is whole.
+  std::uint64_t output_checksum;
 };
 
 /// Event: a trip, a refusal, a command of the operator, a gap in the log.
