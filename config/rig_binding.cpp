@@ -349,6 +349,7 @@ void ReadLog(TableReader log, DaemonConfig* out) {
   if (log.Has("keep_free_mb")) log.Read("keep_free_mb", &out->log.keep_free_mb);
   if (log.Has("keep_days")) log.Read("keep_days", &out->log.keep_days);
   if (log.Has("keep_total_mb")) log.Read("keep_total_mb", &out->log.keep_total_mb);
+  if (log.Has("keep_trips")) log.Read("keep_trips", &out->log.keep_trips);
 }
 
 void ReadTiming(TableReader root, RigConfig* config) {

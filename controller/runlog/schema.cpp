@@ -57,7 +57,8 @@ std::string SchemaProblem(SqliteDb* db) {
            " flexarm: read it with the one that wrote it";
   }
   SqliteStatement row = db->Prepare(kSelectSchema);
-  for (const std::string& expected : ExpectedSchema()) {
+  static const std::vector<std::string> kExpected = ExpectedSchema();
+  for (const std::string& expected : kExpected) {
     if (!row.Step()) return "has no " + NameOf(expected) + "; expected the tables of a run log";
     if (SchemaRow(row) == expected) continue;
     return "has tables that are not those of a run log: found another " + NameOf(expected);

@@ -50,6 +50,9 @@ inline constexpr const char* kConfig = "config";
 inline constexpr const char* kExperimentName = "experiment_name";
 inline constexpr const char* kExperiment = "experiment";
 inline constexpr const char* kGains = "gains";
+inline constexpr const char* kLaw = "law";
+inline constexpr const char* kPayload = "payload_kg";  ///< empty: not known
+inline constexpr const char* kLabel = "label";         ///< JSON: name, note, tags
 inline constexpr const char* kResult = "result";
 inline constexpr const char* kDigest = "digest";  ///< run_digest.h
 }  // namespace run_key

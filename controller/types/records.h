@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "controller/types/step_types.h"
 #include "hal/sim/plant_truth.h"
@@ -36,6 +38,14 @@ struct RunEvent {
   std::string value_json;    ///< one JSON object, or empty
 };
 
+/// How users call a run. Its limits: run_label.h of controller/runlog.
+struct RunLabel {
+  std::string name, note;  ///< empty: none
+  std::vector<std::string> tags;
+
+  friend bool operator==(const RunLabel&, const RunLabel&) = default;
+};
+
 /// Metadata of a run: everything that replay needs besides the records.
 struct RunInfo {
   std::string start_utc;      ///< ISO 8601, set by the writer if empty
@@ -49,7 +59,11 @@ struct RunInfo {
   std::string config_text;      ///< complete
   std::string experiment_name;  ///< empty: no experiment was run
   std::string experiment_text;
-  std::string gains_json;   ///< full precision
+  std::string gains_json;  ///< full precision
+  std::string law;         ///< controller.name
+  std::optional<double>
+      payload_kg;  ///< of the simulated arm; empty: a rig, whose payload is unknown
+  RunLabel label;
   std::string result_json;  ///< empty until the run is closed
 };
 

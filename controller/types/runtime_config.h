@@ -38,6 +38,7 @@ struct LogConfig {
   double keep_free_mb = 200.0;  ///< with less space than this beside it, there is no file
   double keep_days = 0.0;       ///< older runs are removed; 0: none
   double keep_total_mb = 0.0;   ///< the oldest runs are removed, until all are within it; 0: none
+  bool keep_trips = true;       ///< neither removes the log of a trip
 };
 
 /// Sections [daemon] and [log].

@@ -4,6 +4,7 @@
 
 #include "controller/files/input_error.h"
 #include "tools/command_line/options.h"
+#include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
 #include "tools/plot/gnuplot.h"
 #include "tools/plot/plot_script.h"
@@ -12,15 +13,16 @@ namespace flexarm {
 namespace {
 
 struct PlotOptions {
-  std::vector<std::filesystem::path> runs;
+  RunChoice runs;
   OutputOptions output;
 };
 
 void Plot(const PlotOptions& options) {
-  const OutputRules rules = PictureRules(options.runs, options.output.overwrite);
+  const std::vector<std::filesystem::path> files = options.runs.Files();
+  const OutputRules rules = PictureRules(files, options.output.overwrite);
   CheckPicture(options.output.file, rules);
   std::vector<PlotRun> runs;
-  for (const auto& file : options.runs) {
+  for (const auto& file : files) {
     runs.push_back(PlotDataOf(LoadRun(file)));
     if (runs.back().sample.empty()) {
       throw InputError(file.string() + ": has no ticks; expected a run with at least one");
@@ -35,13 +37,14 @@ void Plot(const PlotOptions& options) {
 void RegisterPlot(CLI::App& app, Exit&) {
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* verb = app.add_subcommand("plot", "Draw one run, or several runs in the same axes");
-  verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");
+  options->runs.AddManyTo(verb);
   options->output.AddTo(verb, "Picture to write, .png or .svg", true);
   verb->footer(
       "The picture shows the joint angles with their references, the asked and the applied\n"
       "torques, the tip deflections, the tip's distance from its resting place, the safety state,\n"
       "and the arm seen from above.\n"
-      "Example: flexarm plot runs/today.flexarm runs/yesterday.flexarm -o compare.png");
+      "Examples: flexarm plot runs/today.flexarm runs/yesterday.flexarm -o compare.png\n"
+      "          flexarm plot --last -o last.png");
   verb->callback([options] { Plot(*options); });
 }
 
