@@ -128,9 +128,7 @@ void ReadSensors(TableReader sensors, SensorConfig* out) {
   input.Read("converter_bits", &out->strain_input.converter_bits);
   input.Read("range_v", &out->strain_input.range_v);
   input.Read("filter_hz", &out->strain_input.filter_hz);
-  if (input.Has("filter_damping")) {
-    input.Read("filter_damping", &out->strain_input.filter_damping);
-  }
+  if (input.Has("filter_damping")) input.Read("filter_damping", &out->strain_input.filter_damping);
   input.Read("noise_counts", &out->strain_input.noise_counts);
   if (sensors.Has("tip_accelerometer")) {
     ReadTipAccelerometer(sensors.Table("tip_accelerometer"), &out->tip_accelerometer.emplace());
@@ -349,6 +347,7 @@ void ReadLog(TableReader log, DaemonConfig* out) {
   if (log.Has("keep_free_mb")) log.Read("keep_free_mb", &out->log.keep_free_mb);
   if (log.Has("keep_days")) log.Read("keep_days", &out->log.keep_days);
   if (log.Has("keep_total_mb")) log.Read("keep_total_mb", &out->log.keep_total_mb);
+  if (log.Has("keep_trips")) log.Read("keep_trips", &out->log.keep_trips);
 }
 
 void ReadTiming(TableReader root, RigConfig* config) {

@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "controller/runlog/build_info.h"
 
 namespace flexarm {
-namespace {
 
-std::string HashOf(std::string_view text) {
+std::string ConfigHash(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const char c : text) {
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
@@ -20,15 +18,13 @@ std::string HashOf(std::string_view text) {
   return fmt::format("{:016x}", hash);
 }
 
-}  // namespace
-
 nlohmann::json DaemonIdentity(const RigConfig& config, const std::string& config_file) {
-  return {
-      {"rig", config.rig_name},
-      {"config",
-       {{"file", std::filesystem::absolute(config_file).string()}, {"hash", HashOf(config.text)}}},
-      {"version", ThisBuild().version},
-      {"build", BuildId()}};
+  return {{"rig", config.rig_name},
+          {"config",
+           {{"file", std::filesystem::absolute(config_file).string()},
+            {"hash", ConfigHash(config.text)}}},
+          {"version", ThisBuild().version},
+          {"build", BuildId()}};
 }
 
 }  // namespace flexarm

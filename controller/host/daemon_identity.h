@@ -2,15 +2,19 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "controller/types/rig_config.h"
 
 namespace flexarm {
 
+/// Of the whole text of a config, with what it extends and with --set: equal configs have equal
+/// ones. FNV-1a, 16 digits.
+std::string ConfigHash(std::string_view text);
+
 /// Which rig, config and program a daemon is, for its status: {"rig", "config": {"file", "hash"},
 /// "version", "build"}.
-/// @param config_file  as it was given; "hash" is of the whole config, with what it extends and
-///                     with --set: equal configs have equal ones (FNV-1a, 16 digits)
+/// @param config_file  as it was given; "hash" is its ConfigHash
 nlohmann::json DaemonIdentity(const RigConfig& config, const std::string& config_file);
 
 }  // namespace flexarm

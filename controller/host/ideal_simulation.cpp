@@ -105,6 +105,8 @@ std::unique_ptr<RunSink> SinkOf(const SimulationRequest& request, const Design& 
   RunInfo info = MakeRunInfo(request.config, design, "simulated", "sim");
   info.experiment_name = request.experiment.name;
   info.experiment_text = request.experiment.text;
+  info.label = request.label;
+  if (request.payload_kg) info.payload_kg = request.payload_kg;
   return std::make_unique<RunWriter>(*request.log, info);
 }
 

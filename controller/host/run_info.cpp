@@ -1,6 +1,7 @@
 #include "controller/host/run_info.h"
 
 #include "controller/design/design_json.h"
+#include "controller/types/law_table.h"
 
 namespace flexarm {
 
@@ -13,6 +14,8 @@ RunInfo MakeRunInfo(const RigConfig& config, const Design& design, const std::st
   info.seed = config.sim.seed;
   info.config_text = config.text;
   info.gains_json = DesignToJson(design, DesignHash(config));
+  info.law = LawOf(config.controller.kind).name;
+  if (backend == "sim") info.payload_kg = config.arm.payload_mass_kg;
   return info;
 }
 

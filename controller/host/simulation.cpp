@@ -14,6 +14,7 @@
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/runlog/recorder_task.h"
+#include "controller/runlog/run_label.h"
 #include "controller/tasks/simulated_stack.h"
 #include "controller/types/rejected_error.h"
 
@@ -79,6 +80,12 @@ OpenSink SinkFor(const SimulationRequest& request, RunContents* contents) {
       [contents, open = RunInFile(*request.log)](const RunInfo& info) -> std::unique_ptr<RunSink> {
         return std::make_unique<MemoryAndLog>(contents, open(info));
       };
+}
+
+RunInfo InfoOf(const SimulationRequest& request, const Design& design, double payload_kg) {
+  RunInfo info = MakeRunInfo(request.config, design, "simulated", "sim");
+  info.payload_kg = payload_kg;
+  return info;
 }
 
 /// The parts of a simulated run, in order of construction.
@@ -162,8 +169,7 @@ Simulation::Simulation(const SimulationRequest& request)
       payload_kg_(request.payload_kg.value_or(Plant().arm.payload_mass_kg)),
       planned_(PlanOf(request, design_)),
       stack_(request.config, Plant(), design_, payload_kg_),
-      recording_(MakeRunInfo(request.config, design_, "simulated", "sim"),
-                 SinkFor(request, &contents_),
+      recording_(InfoOf(request, design_, payload_kg_), SinkFor(request, &contents_),
                  [this](bool is_error, const std::string& text) {
                    if (is_error && log_error_.empty()) log_error_ = text;
                  }),
@@ -182,7 +188,7 @@ void Simulation::Announce() {
                 .kind = "experiment",
                 .name = planned_.accepted.name,
                 .text = planned_.accepted.text,
-                .value_json = {}});
+                .value_json = Announcement(0, request_.label)});
   events_.Push({.time_ns = 0,
                 .kind = "simulation",
                 .name = "payload",

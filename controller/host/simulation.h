@@ -24,6 +24,7 @@ struct SimulationRequest {
   std::optional<RigConfig> plant = std::nullopt;
   std::optional<double> payload_kg;          ///< of the plant; empty: that of its config
   std::optional<std::filesystem::path> log;  ///< must not exist; empty: no log
+  RunLabel label = {};                       ///< for the log
 };
 
 struct SimulationResult {

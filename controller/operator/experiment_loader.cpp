@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "controller/runlog/run_label.h"
+
 namespace flexarm {
 
 ExperimentLoader::Order ExperimentLoader::Plan(const Experiment& experiment,
@@ -42,7 +44,7 @@ void ExperimentLoader::Announce(std::int64_t now_ns, const Order& order, std::ui
                  .kind = "experiment",
                  .name = order.name,
                  .text = order.text,
-                 .value_json = "{\"number\": " + std::to_string(number) + "}"});
+                 .value_json = Announcement(number, order.label)});
 }
 
 void ExperimentLoader::FreeReleased() {

@@ -26,6 +26,7 @@ class ExperimentLoader {
     std::string name;
     std::string text;  ///< for the log: the experiment's file, or the command that it comes from
     LineLevels may_open = 0;  ///< RunOrder::may_open
+    RunLabel label = {};      ///< for the log
   };
 
   /// All pointers outlive the loader.

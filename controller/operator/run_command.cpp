@@ -6,6 +6,8 @@
 #include "controller/operator/command_text.h"
 #include "controller/operator/log_condition.h"
 #include "controller/operator/request_answers.h"
+#include "controller/runlog/run_label.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 namespace {
@@ -25,6 +27,20 @@ nlohmann::json Failed(const std::string& error, const std::string& remedy) {
   nlohmann::json json{{"ok", false}, {"command", ToString(RequestKind::kRun)}, {"error", error}};
   if (!remedy.empty()) json["remedy"] = remedy;
   return json;
+}
+
+RunLabel LabelOf(const nlohmann::json& command) {
+  const auto given = command.find("label");
+  if (given == command.end()) return {};
+  const std::optional<RunLabel> label = LabelOfJson(*given);
+  if (!label) {
+    throw RejectedError(
+        "label: must be an object of name and note, texts, and tags, a list of texts");
+  }
+  if (const std::string problem = ProblemOfLabel(*label); !problem.empty()) {
+    throw RejectedError("label: " + problem);
+  }
+  return *label;
 }
 
 }  // namespace
@@ -52,13 +68,17 @@ nlohmann::json RunCommand::Start(const nlohmann::json& command, int client,
                                  const OperatorSnapshot& now) {
   std::vector<Override> used;
   std::vector<Override> overrides = OverridesOf(command, {kSwitchesCondition});
+  RunLabel label = LabelOf(command);
   if (nlohmann::json refused = WhyNot(overrides, now, &used); !refused.is_null()) return refused;
   const std::array<double, 2> start_rad = HubsOf(now);
   planner_.Begin([this, start_rad, text = TextOf(command, "experiment", ""),
                   name = TextOf(command, "name", "experiment")](const std::stop_token& stop) {
     return targets_.experiments->Plan(targets_.parse_experiment(text, name), start_rad, stop);
   });
-  waits_ = Waiting{.client = client, .overrides = std::move(overrides), .start_rad = start_rad};
+  waits_ = Waiting{.client = client,
+                   .overrides = std::move(overrides),
+                   .start_rad = start_rad,
+                   .label = std::move(label)};
   return nullptr;
 }
 
@@ -100,6 +120,7 @@ nlohmann::json RunCommand::Decide(Waiting command, ExperimentPlanner::Outcome pl
     if (std::fabs(hub_rad[joint] - command.start_rad[joint]) <= kMoved_rad) continue;
     return Failed("the arm was moved while its run was planned", "repeat the command");
   }
+  planned.order->label = std::move(command.label);
   const std::uint32_t number =
       targets_.experiments->AskForRun(now.now_ns, command.client, std::move(*planned.order));
   if (number == 0) return Refused(Refusal::kBusy, now);

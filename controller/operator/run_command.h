@@ -68,6 +68,7 @@ class RunCommand {
     int client;
     std::vector<Override> overrides;
     std::array<double, 2> start_rad;
+    RunLabel label;
   };
 
   /// The refusal by a condition that does not hold; null: all hold.

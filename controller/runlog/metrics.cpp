@@ -231,9 +231,11 @@ std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s) {
   const std::vector<Motion> motions = experiment.Motions();
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const bool last = i + 1 == motions.size();
+    const double planned_end_s = last ? experiment.duration_s : motions[i + 1].start_s;
     const Rest rest{.start_s = motions[i].start_s + motions[i].duration_s,
-                    .end_s = last ? end_s : std::min(end_s, motions[i + 1].start_s)};
-    if (rest.end_s > rest.start_s) rests.push_back(rest);
+                    .end_s = std::min(end_s, planned_end_s)};
+    const bool is_cut = planned_end_s - rest.end_s > kFinalWindow_s / 2;
+    if (rest.end_s - rest.start_s > (is_cut ? kFinalWindow_s : 0)) rests.push_back(rest);
   }
   return rests;
 }

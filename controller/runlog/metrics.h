@@ -56,7 +56,8 @@ struct Rest {
 };
 
 /// From the end of each move to the start of the next, or to `run_end_s`. Rests that the run did
-/// not reach are left out; a move that the next one retargets has none.
+/// not reach are left out, and one in which it was stopped before there were 0.3 s to judge; a move
+/// that the next one retargets has none.
 std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s);
 
 /// Data for an estimated tip position: the layout of the state, rigid geometry, and the tip slopes

@@ -7,6 +7,7 @@
 
 #include "controller/runlog/blob.h"
 #include "controller/runlog/checksum.h"
+#include "controller/runlog/record_blocks.h"
 #include "controller/runlog/safety_rows.h"
 
 namespace flexarm {
@@ -36,8 +37,9 @@ class PayloadWriter {
   }
   void Text(const std::string& text) {
     Raw(static_cast<std::uint32_t>(text.size()));
-    bytes_->append(text);
+    Bytes(text);
   }
+  void Bytes(std::string_view bytes) { bytes_->append(bytes); }
 
  private:
   std::string* bytes_;
@@ -57,13 +59,16 @@ class PayloadReader {
     Raw(&length);
     *text = Take(length);
   }
+  std::string_view Rest() { return Take(bytes_.size()); }
+  /// What was read is of no known layout.
+  void Refuse() { refused_ = true; }
   /// All that was asked for was there, and nothing is left.
-  bool done() const { return !short_ && bytes_.empty(); }
+  bool done() const { return !refused_ && bytes_.empty(); }
 
  private:
   std::string_view Take(std::size_t length) {
     if (length > bytes_.size()) {
-      short_ = true;
+      Refuse();
       bytes_ = {};
     }
     const std::string_view part = bytes_.substr(0, length);
@@ -72,7 +77,7 @@ class PayloadReader {
   }
 
   std::string_view bytes_;
-  bool short_ = false;
+  bool refused_ = false;
 };
 
 void Encode(PayloadWriter* to, const InfoRecord& record) {
@@ -84,32 +89,19 @@ void Decode(PayloadReader* from, InfoRecord* record) {
   from->Text(&record->value);
 }
 
-void Encode(PayloadWriter* to, const TickRecord& record) {
-  to->Raw(record.input);
-  to->Raw(record.output);
-  to->Raw(record.gate_reasons);
-  to->Raw(std::uint32_t{record.truth.known ? 1U : 0U});
-  if (!record.truth.known) return;
-  to->Raw(record.truth.hub_angle_rad);
-  to->Raw(record.truth.tip_m);
-  to->Raw(record.truth.tip_deflection_m);
+void Encode(PayloadWriter* to, const TicksRecord& record) {
+  to->Bytes(PackTicks(record.ticks, Packing::kFast));
 }
-void Decode(PayloadReader* from, TickRecord* record) {
-  *record = {};
-  std::uint32_t known = 0;
-  from->Raw(&record->input);
-  from->Raw(&record->output);
-  from->Raw(&record->gate_reasons);
-  from->Raw(&known);
-  record->truth.known = known != 0;
-  if (!record->truth.known) return;
-  from->Raw(&record->truth.hub_angle_rad);
-  from->Raw(&record->truth.tip_m);
-  from->Raw(&record->truth.tip_deflection_m);
+void Decode(PayloadReader* from, TicksRecord* record) {
+  if (!UnpackTicks(from->Rest(), &record->ticks).empty()) from->Refuse();
 }
 
-void Encode(PayloadWriter* to, const TimingRecord& record) { to->Raw(record); }
-void Decode(PayloadReader* from, TimingRecord* record) { from->Raw(record); }
+void Encode(PayloadWriter* to, const TimingsRecord& record) {
+  to->Bytes(PackTimings(record.timings, Packing::kFast));
+}
+void Decode(PayloadReader* from, TimingsRecord* record) {
+  if (!UnpackTimings(from->Rest(), &record->timings).empty()) from->Refuse();
+}
 
 void Encode(PayloadWriter* to, const SafetyRecord& record) { to->Raw(record); }
 void Decode(PayloadReader* from, SafetyRecord* record) { from->Raw(record); }

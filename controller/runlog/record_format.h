@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "controller/realtime/timing_record.h"
 #include "controller/safety/safety_record.h"
@@ -25,7 +26,7 @@ namespace flexarm {
 // seed: bytes that belong elsewhere do not pass.
 
 inline constexpr std::string_view kRecordMagic("FlexRec\n", 8);  ///< the first bytes
-inline constexpr std::uint32_t kRecordFormatVersion = 1;
+inline constexpr std::uint32_t kRecordFormatVersion = 2;
 inline constexpr std::size_t kRecordHeaderBytes = 8 + 4 * 4 + 8;
 inline constexpr std::size_t kRecordFrameBytes = 4 + 4 + 8;  ///< of a record, beside its payload
 inline constexpr std::size_t kLargestPayload = 16 << 20;     ///< bytes; configs have kilobytes
@@ -40,8 +41,18 @@ struct EndRecord {
   std::string result_json;
 };
 
+/// The samples of one commit, 1 to kLargestBlock.
+struct TicksRecord {
+  std::vector<TickRecord> ticks;
+};
+
+/// The activations of the control task of one commit, 1 to kLargestBlock.
+struct TimingsRecord {
+  std::vector<TimingRecord> timings;
+};
+
 using RunRecord =
-    std::variant<InfoRecord, TickRecord, TimingRecord, SafetyRecord, RunEvent, EndRecord>;
+    std::variant<InfoRecord, TicksRecord, TimingsRecord, SafetyRecord, RunEvent, EndRecord>;
 
 /// The header of a record file of this build.
 std::string RecordHeader();
@@ -49,8 +60,8 @@ std::string RecordHeader();
 /// What is wrong with the header in the first bytes of a file; "" if this build reads the file.
 std::string RecordHeaderProblem(std::string_view bytes);
 
-/// The record as it stands at `offset` of a record file. Of a tick's truth only what is known is
-/// kept; its run_number is not.
+/// The record as it stands at `offset` of a record file. Ticks and timings are blocks of
+/// record_blocks.h.
 std::string EncodeRecord(const RunRecord& record, std::uint64_t offset);
 
 /// The kind and the length that a record begins with.

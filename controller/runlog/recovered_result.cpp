@@ -5,10 +5,14 @@
 namespace flexarm {
 
 void RecoveredResult::Add(const RunRecord& record) {
-  if (const auto* tick = std::get_if<TickRecord>(&record)) {
-    if (!first_tick_) first_tick_ = tick->input.tick;
-    last_tick_ = tick->input.tick;
-    ++ticks_;
+  if (const auto* block = std::get_if<TicksRecord>(&record)) {
+    if (!first_tick_) {
+      first_tick_ = block->ticks.front().input.tick;
+      first_ns_ = block->ticks.front().input.now_ns;
+    }
+    last_ns_ = block->ticks.back().input.now_ns;
+    last_tick_ = block->ticks.back().input.tick;
+    ticks_ += static_cast<std::int64_t>(block->ticks.size());
   }
   if (const auto* safety = std::get_if<SafetyRecord>(&record)) {
     state_ = safety->after.state;
@@ -26,6 +30,7 @@ std::string RecoveredResult::Json(std::uint64_t left_out_bytes) const {
   result["trip"] = tripped ? nlohmann::json(ToString(trip_)) : nlohmann::json(nullptr);
   result["ticks"] = ticks_;
   result["missing_ticks"] = first_tick_ ? last_tick_ - *first_tick_ + 1 - ticks_ : 0;
+  result["duration_s"] = static_cast<double>(last_ns_ - first_ns_) * 1e-9;
   result["final_state"] = ToString(state_);
   return result.dump();
 }

@@ -19,6 +19,7 @@ class RecoveredResult {
  private:
   std::optional<std::int64_t> first_tick_;
   std::int64_t last_tick_ = 0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::int64_t ticks_ = 0;
   SafetyState state_ = SafetyState::kIdle;
   TripCause trip_ = TripCause::kNone;

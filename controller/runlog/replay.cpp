@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "controller/realtime/float_environment.h"
-#include "controller/runlog/blob.h"
+#include "controller/runlog/record_blocks.h"
 
 namespace flexarm {
 namespace {
@@ -54,7 +54,7 @@ void Replay::Tick(const TickRecord& record) {
         std::max(largest_state_difference_[i], Difference(output.x_hat[i], recorded));
   }
   if (output.faults != 0) ++result_.faulty_ticks;
-  if (SameBytes(output, record.output)) return;
+  if (IsOutputOf(record, output)) return;
   if (result_.bit_exact) result_.bit_exact = false;
   if (!result_.first_different_tick) result_.first_different_tick = tick;
 }

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "controller/files/external_file.h"
+#include "controller/files/input_error.h"
 #include "controller/runlog/record_format.h"
 #include "controller/runlog/run_file_lock.h"
+#include "controller/runlog/run_list.h"
 #include "controller/runlog/schema.h"
 
 namespace flexarm {
@@ -55,6 +57,16 @@ std::vector<Run> Runs(const std::filesystem::path& directory) {
   return runs;
 }
 
+// Its end must be known before it goes.
+bool MustStay(const std::filesystem::path& file, const LogConfig& config) {
+  try {
+    const RunHead head = ReadRunHead(file);
+    return head.end == RunEnd::kOpen || (config.keep_trips && !head.trip.empty());
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
 }  // namespace
 
 void RemoveOldRuns(const std::filesystem::path& directory, const LogConfig& config,
@@ -70,6 +82,7 @@ void RemoveOldRuns(const std::filesystem::path& directory, const LogConfig& conf
     const bool is_old = config.keep_days > 0.0 && days > config.keep_days;
     const bool is_much = config.keep_total_mb > 0.0 && total_mb > config.keep_total_mb;
     if (!is_old && !is_much) return;  // the later ones are younger
+    if (MustStay(run.file, config)) continue;
     std::error_code error;
     std::filesystem::remove(run.file, error);
     if (!error) total_mb -= run.bytes * 1e-6;

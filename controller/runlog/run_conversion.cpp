@@ -35,17 +35,17 @@ RecordFileEnd WritePart(int fd, const std::filesystem::path& part) {
   RecordFileReader reader(fd);
   if (!reader.problem().empty()) throw RunLogError(reader.problem());
   SqliteDb db = SqliteDb::CreateNew(part);
-  db.Execute("PRAGMA page_size=16384");  // of 4096, a tick would fill half
   db.Execute("PRAGMA journal_mode=OFF");
   db.Execute("PRAGMA synchronous=OFF");
   RecordFileEnd end;
   {
-    RunTables tables(&db);
+    RunTables tables(&db, Packing::kSmall);
     RecoveredResult recovered;
     end = FillFrom(&reader, &tables, &recovered);
     if (!end.ended) {
       tables.Add(EndRecord{.result_json = recovered.Json(end.left_out_bytes)});
     }
+    tables.Finish();
     tables.Seal();
     tables.Commit();
   }
@@ -66,9 +66,10 @@ std::filesystem::path DamagedNameOf(const std::filesystem::path& file) {
 }
 
 RecordFileEnd FillTables(RecordFileReader* from, SqliteDb* db) {
-  RunTables tables(db);
+  RunTables tables(db, Packing::kFast);
   RecoveredResult unused;
   const RecordFileEnd end = FillFrom(from, &tables, &unused);
+  tables.Finish();
   tables.Commit();
   return end;
 }

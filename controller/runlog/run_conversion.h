@@ -25,7 +25,7 @@ RecordFileEnd FillTables(RecordFileReader* from, SqliteDb* db);
 /// whole record file or the whole SQLite file, and both have been synced. A run that was not ended
 /// gets a result with `recovered` true. A damaged file also stays, as DamagedNameOf(file).
 ///
-/// A second for each ten minutes of a run, about; it needs about as much space as the record file.
+/// Two seconds for an hour of a run, about; it needs about as much space as the record file.
 /// Not real-time safe. Thread: any, one at a time for a file.
 /// @param fd  of `file`, open for reading, locked (run_file_lock.h)
 /// @throws RunLogError that names file and cause; the record file then is as it was

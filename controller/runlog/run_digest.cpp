@@ -19,8 +19,10 @@ struct TableRows {
 };
 
 constexpr std::array kTables = {
-    TableRows{"tick", "SELECT * FROM tick ORDER BY tick"},
-    TableRows{"timing", "SELECT rowid, * FROM timing ORDER BY rowid"},
+    TableRows{"block", "SELECT * FROM block ORDER BY first_tick"},
+    TableRows{"grid", "SELECT * FROM grid ORDER BY number"},
+    TableRows{"sample", "SELECT * FROM sample ORDER BY tick"},
+    TableRows{"activation", "SELECT * FROM activation ORDER BY number"},
     TableRows{"safety", "SELECT * FROM safety ORDER BY number"},
     TableRows{"event", "SELECT * FROM event ORDER BY number"},
 };

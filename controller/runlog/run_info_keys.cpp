@@ -2,10 +2,13 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 
 #include "controller/runlog/build_info.h"
+#include "controller/runlog/run_label.h"
 #include "controller/runlog/schema.h"
+#include "model/problem_list.h"
 
 namespace flexarm {
 namespace {
@@ -26,6 +29,7 @@ constexpr std::array kTextKeys = {
     TextKey{run_key::kExperimentName, &RunInfo::experiment_name},
     TextKey{run_key::kExperiment, &RunInfo::experiment_text},
     TextKey{run_key::kGains, &RunInfo::gains_json},
+    TextKey{run_key::kLaw, &RunInfo::law},
 };
 
 template <typename T>
@@ -33,6 +37,12 @@ T IntegerOf(const std::string& text) {
   T value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);
   return value;
+}
+
+std::optional<double> NumberOf(const std::string& text) {
+  double value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -44,6 +54,8 @@ std::vector<InfoRecord> InfoKeys(const RunInfo& info) {
   std::vector<InfoRecord> keys = {{run_key::kStartNs, std::to_string(info.start_ns)},
                                   {run_key::kSeed, std::to_string(info.seed)}};
   for (const TextKey& key : kTextKeys) keys.push_back({key.key, filled.*key.text});
+  keys.push_back({run_key::kPayload, info.payload_kg ? NumberText(*info.payload_kg) : ""});
+  keys.push_back({run_key::kLabel, LabelToJson(info.label).dump()});
   return keys;
 }
 
@@ -51,6 +63,8 @@ void SetInfo(RunInfo* info, const std::string& key, const std::string& value) {
   if (key == run_key::kStartNs) info->start_ns = IntegerOf<std::int64_t>(value);
   if (key == run_key::kSeed) info->seed = IntegerOf<std::uint64_t>(value);
   if (key == run_key::kResult) info->result_json = value;
+  if (key == run_key::kPayload) info->payload_kg = NumberOf(value);
+  if (key == run_key::kLabel) info->label = LabelOfText(value);
   for (const TextKey& text : kTextKeys) {
     if (key == text.key) info->*text.text = value;
   }

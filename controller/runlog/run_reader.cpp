@@ -13,13 +13,14 @@
 #include "controller/files/external_file.h"
 #include "controller/files/external_text.h"
 #include "controller/files/input_error.h"
-#include "controller/runlog/blob.h"
 #include "controller/runlog/file_descriptor.h"
+#include "controller/runlog/record_blocks.h"
 #include "controller/runlog/row_order.h"
 #include "controller/runlog/run_conversion.h"
 #include "controller/runlog/run_digest.h"
 #include "controller/runlog/run_file_lock.h"
 #include "controller/runlog/run_info_keys.h"
+#include "controller/runlog/sample_table.h"
 #include "controller/runlog/schema.h"
 
 namespace flexarm {
@@ -27,17 +28,6 @@ namespace {
 
 constexpr std::size_t kShownCause = 200;  // bytes of a message of SQLite, which may quote the file
 constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
-
-constexpr const char* kSelectTick =
-    "SELECT tick, truth_known, truth_hub_1_rad, truth_hub_2_rad, truth_tip_x_m, truth_tip_y_m,"
-    " truth_deflection_1_m, truth_deflection_2_m, input, output, gate FROM tick ORDER BY tick";
-
-PlantTruth ReadTruth(const SqliteStatement& row) {
-  return {.hub_angle_rad = {row.Real(2), row.Real(3)},
-          .tip_m = {row.Real(4), row.Real(5)},
-          .tip_deflection_m = {row.Real(6), row.Real(7)},
-          .known = row.Integer(1) != 0};
-}
 
 // The first bytes of a file.
 std::string BeginningOf(int fd) {
@@ -132,37 +122,35 @@ void RunReader::ReadInfo() {
 
 void RunReader::ForEachTick(const std::function<void(const TickRecord&)>& visit) {
   Guarded([&] {
-    RowOrder<std::int64_t> order("tick");
-    SqliteStatement row = db_.Prepare(kSelectTick);
+    RowOrder<std::int64_t> order("block");
+    std::vector<TickRecord> ticks;
+    SqliteStatement row = db_.Prepare("SELECT first_tick, records FROM block ORDER BY first_tick");
     while (row.Step()) {
-      order.Next(row.Integer(0));
-      TickRecord record;
-      const std::string where = "tick " + std::to_string(row.Integer(0)) + ": ";
-      std::string wrong = DecodeBlob(row.Blob(8), kStepInputVersion, &record.input);
-      if (!wrong.empty()) Fail(where + "input " + wrong);
-      wrong = DecodeBlob(row.Blob(9), kStepOutputVersion, &record.output);
-      if (!wrong.empty()) Fail(where + "output " + wrong);
-      if (record.input.tick != row.Integer(0)) {
-        Fail(where + "input belongs to tick " + std::to_string(record.input.tick));
+      const std::int64_t first = row.Integer(0);
+      const std::string where = "block of tick " + std::to_string(first) + ": ";
+      const std::string wrong = UnpackTicks(row.Text(1), &ticks);
+      if (!wrong.empty()) Fail(where + wrong);
+      if (ticks.front().input.tick != first) {
+        Fail(where + "begins with tick " + std::to_string(ticks.front().input.tick));
       }
-      record.truth = ReadTruth(row);
-      record.gate_reasons = static_cast<std::uint32_t>(row.Integer(10));
-      visit(record);
+      for (const TickRecord& record : ticks) {
+        order.Next(record.input.tick);
+        visit(record);
+      }
     }
   });
 }
 
 void RunReader::ForEachTiming(const std::function<void(const TimingRecord&)>& visit) {
   Guarded([&] {
-    RowOrder<std::int64_t> order("timing");
-    SqliteStatement row =
-        db_.Prepare("SELECT tick, due_ns, woke_ns, finished_ns, rowid FROM timing ORDER BY rowid");
+    RowOrder<std::int64_t> order("activation");
+    SqliteStatement row = db_.Prepare(kSelectTiming);
     while (row.Step()) {
-      order.Next(row.Integer(4));
-      visit({.tick = row.Integer(0),
-             .due_ns = row.Integer(1),
-             .woke_ns = row.Integer(2),
-             .finished_ns = row.Integer(3)});
+      order.Next(row.Integer(0));
+      visit({.tick = row.Integer(1),
+             .due_ns = row.Integer(2),
+             .woke_ns = row.Integer(3),
+             .finished_ns = row.Integer(4)});
     }
   });
 }

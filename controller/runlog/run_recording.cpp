@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "controller/runlog/run_label.h"
 #include "controller/runlog/run_writer.h"
 
 namespace flexarm {
@@ -11,6 +12,12 @@ namespace {
 
 bool Trips(const SafetyRecord& record) {
   return CauseLatched(record.after.state) && !CauseLatched(record.before.state);
+}
+
+// By a command, before the end of the experiment.
+bool Stops(const SafetyRecord& record) {
+  return record.facts.request == RequestKind::kStop && record.refusal == Refusal::kNone &&
+         record.before.state == SafetyState::kRunning && record.facts.experiment_done == 0;
 }
 
 RunEvent TripEvent(const SafetyRecord& record) {
@@ -91,6 +98,8 @@ void RunRecording::Open(std::int64_t start_ns) {
   end_ns_.reset();
   last_tick_.reset();
   ticks_ = missing_ticks_ = 0;
+  last_tick_ns_ = start_ns;
+  stopped_ = false;
   trip_ = TripCause::kNone;
   has_run_ = false;
   sink_ = open_(info_);
@@ -102,6 +111,7 @@ void RunRecording::BeginRun(const SafetyRecord& granted) {
   const RunEvent experiment = context_.Experiment(granted.request_number);
   info_.experiment_name = experiment.name;
   info_.experiment_text = experiment.text;
+  info_.label = LabelOfAnnouncement(experiment);
   Open(granted.due_ns);
   has_run_ = true;
   for (const RunEvent& event : context_.events()) sink_->Event(event);
@@ -112,6 +122,7 @@ void RunRecording::BeginRun(const SafetyRecord& granted) {
 void RunRecording::BeginTrip(const SafetyRecord& trip) {
   info_.experiment_name = std::string("trip-") + ToString(trip.after.cause);
   info_.experiment_text.clear();
+  info_.label = {};
   Open(recent_.empty() ? trip.due_ns : recent_.oldest_ns());
   struct Write {
     RunRecording* recording;
@@ -138,12 +149,15 @@ std::string RunRecording::ResultJson() const {
   result["trip"] = tripped ? nlohmann::json(ToString(trip_)) : nlohmann::json(nullptr);
   result["ticks"] = ticks_;
   result["missing_ticks"] = missing_ticks_;
+  result["stopped"] = stopped_;
+  result["duration_s"] = static_cast<double>(last_tick_ns_ - info_.start_ns) * 1e-9;
   result["final_state"] = ToString(state_);
   return result.dump();
 }
 
 void RunRecording::WriteEventsOf(const SafetyRecord& record) {
   if (record.facts.request != RequestKind::kNone) sink_->Event(RequestEvent(record));
+  stopped_ = stopped_ || Stops(record);
   if (!Trips(record)) return;
   sink_->Event(TripEvent(record));
   trip_ = record.after.cause;
@@ -157,6 +171,7 @@ void RunRecording::WriteTick(const TickRecord& record) {
     sink_->Event(GapEvent(record.input.now_ns, *last_tick_ + 1, missing));
   }
   last_tick_ = tick;
+  last_tick_ns_ = record.input.now_ns;
   ++ticks_;
   sink_->Tick(record);
 }

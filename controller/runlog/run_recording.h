@@ -90,7 +90,9 @@ class RunRecording {
   std::optional<std::int64_t> end_ns_;  // it ends after this instant
   std::optional<std::int64_t> last_tick_;
   std::int64_t ticks_ = 0;
+  std::int64_t last_tick_ns_ = 0;
   std::int64_t missing_ticks_ = 0;
+  bool stopped_ = false;  // by a command
   TripCause trip_ = TripCause::kNone;
   bool has_run_ = false;  // false: a trip outside a run
 };

@@ -4,12 +4,10 @@
 #include <string>
 #include <variant>
 
-#include "controller/runlog/blob.h"
 #include "controller/runlog/run_digest.h"
 #include "controller/runlog/run_info_keys.h"
 #include "controller/runlog/safety_rows.h"
 #include "controller/runlog/schema.h"
-#include "controller/runlog/tick_columns.h"
 
 namespace flexarm {
 namespace {
@@ -35,18 +33,23 @@ class Row {
 
 }  // namespace
 
-RunTables::RunTables(SqliteDb* db) : db_(db) {
+RunTables::RunTables(SqliteDb* db, Packing packing) : db_(db), packing_(packing) {
   db_->Execute("BEGIN IMMEDIATE");
   CreateRunTables(db_);
   set_key_ = db_->Prepare("INSERT OR REPLACE INTO run VALUES (?,?)");
-  insert_tick_ = db_->Prepare(InsertTick());
-  insert_timing_ = db_->Prepare("INSERT INTO timing VALUES (?,?,?,?,?,?)");
+  samples_.emplace(db_);
+  insert_block_ = db_->Prepare("INSERT INTO block VALUES (?,?)");
   insert_safety_ = db_->Prepare(kInsertSafety);
   insert_event_ = db_->Prepare("INSERT INTO event VALUES (NULL,?,?,?,?,?,?)");
 }
 
 void RunTables::Add(const RunRecord& record) {
   std::visit([this](const auto& content) { AddOne(content); }, record);
+}
+
+void RunTables::Finish() {
+  AddBlock();
+  AddTimings();
 }
 
 void RunTables::Seal() {
@@ -68,23 +71,30 @@ void RunTables::AddOne(const InfoRecord& record) {
   set_key_.Execute();
 }
 
-void RunTables::AddOne(const TickRecord& record) {
-  const auto input = EncodeBlob(kStepInputVersion, record.input);
-  const auto output = EncodeBlob(kStepOutputVersion, record.output);
-  Row row(&insert_tick_);
-  row << record.input.tick << SinceStart(record.input.sampling_instant_ns);
-  for (const TickColumn& column : TickColumns()) {
-    std::visit([&row](auto value) { row << value; }, column.value(record));
+void RunTables::AddOne(const TicksRecord& record) {
+  for (const TickRecord& tick : record.ticks) {
+    ticks_.push_back(tick);
+    if (ticks_.size() == kLargestBlock) AddBlock();
   }
-  row << std::span<const std::byte>(input) << std::span<const std::byte>(output);
-  insert_tick_.Execute();
 }
 
-void RunTables::AddOne(const TimingRecord& record) {
-  Row(&insert_timing_) << record.tick << record.due_ns << record.woke_ns << record.finished_ns
-                       << static_cast<double>(record.woke_ns - record.due_ns) * 1e-3
-                       << static_cast<double>(record.finished_ns - record.woke_ns) * 1e-3;
-  insert_timing_.Execute();
+void RunTables::AddOne(const TimingsRecord& record) {
+  timings_.insert(timings_.end(), record.timings.begin(), record.timings.end());
+  if (timings_.size() >= kLargestBlock) AddTimings();
+}
+
+void RunTables::AddBlock() {
+  if (ticks_.empty()) return;
+  const std::string block = PackTicks(ticks_, packing_);
+  Row(&insert_block_) << ticks_.front().input.tick << std::as_bytes(std::span(block));
+  insert_block_.Execute();
+  samples_->Add(ticks_, start_ns_);
+  ticks_.clear();
+}
+
+void RunTables::AddTimings() {
+  samples_->Add(timings_);
+  timings_.clear();
 }
 
 void RunTables::AddOne(const SafetyRecord& record) {

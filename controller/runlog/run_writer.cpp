@@ -5,6 +5,7 @@
 #include <ctime>
 #include <exception>
 
+#include "controller/runlog/record_blocks.h"
 #include "controller/runlog/run_conversion.h"
 #include "controller/runlog/run_file_lock.h"
 #include "controller/runlog/run_info_keys.h"
@@ -75,14 +76,14 @@ RunWriter::~RunWriter() {
   }
 }
 
-void RunWriter::Add(const RunRecord& record) {
+void RunWriter::Add(const RunRecord& record, std::size_t parts) {
   const std::string bytes = EncodeRecord(record, file_->size());
   if (bytes.size() > kLargestPayload) {
     throw RunLogError(name_ + ": cannot write a record of " + std::to_string(bytes.size()) +
                       " bytes");
   }
   if (file_->pending_bytes() + bytes.size() > kLargestBacklog) {
-    ++lost_records_;
+    lost_records_ += parts;
   } else {
     file_->Append(bytes);
   }
@@ -90,7 +91,20 @@ void RunWriter::Add(const RunRecord& record) {
 
 void RunWriter::Tick(const TickRecord& record) {
   last_tick_ns_ = record.input.now_ns;
-  Add(record);
+  ticks_.ticks.push_back(record);
+  if (ticks_.ticks.size() == kLargestBlock) AddBlocks();
+}
+
+void RunWriter::Timing(const TimingRecord& record) {
+  timings_.timings.push_back(record);
+  if (timings_.timings.size() == kLargestBlock) AddBlocks();
+}
+
+void RunWriter::AddBlocks() {
+  if (!ticks_.ticks.empty()) Add(ticks_, ticks_.ticks.size());
+  if (!timings_.timings.empty()) Add(timings_, timings_.timings.size());
+  ticks_.ticks.clear();
+  timings_.timings.clear();
 }
 
 // Beside the limit of the backlog: a loss is told in any case.
@@ -107,6 +121,7 @@ void RunWriter::AddGap() {
 }
 
 void RunWriter::Commit() {
+  AddBlocks();
   if (!file_->Flush()) return;
   name_ = file_->path().string();
   AddGap();

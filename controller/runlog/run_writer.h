@@ -40,7 +40,7 @@ class EndedRun {
 /// Thread: one at a time. Not real-time safe: it allocates and waits for the disk.
 class RunWriter : public RunSink {
  public:
-  static constexpr std::size_t kLargestBacklog = 64 << 20;  ///< bytes; ten minutes at 50 Hz
+  static constexpr std::size_t kLargestBacklog = 64 << 20;  ///< bytes; half an hour at 50 Hz
 
   /// Creates `file`, and its folder if necessary.
   /// @throws RunLogError if it exists already, or cannot be written
@@ -52,7 +52,7 @@ class RunWriter : public RunSink {
   ~RunWriter() override;
 
   void Tick(const TickRecord& record) override;
-  void Timing(const TimingRecord& record) override { Add(record); }
+  void Timing(const TimingRecord& record) override;
   void Safety(const SafetyRecord& record) override { Add(record); }
   void Event(const RunEvent& event) override { Add(event); }
   void Commit() override;
@@ -68,11 +68,15 @@ class RunWriter : public RunSink {
   std::string Name() const override { return name_; }
 
  private:
-  void Add(const RunRecord& record);
+  /// @param parts  records of the log that it holds
+  void Add(const RunRecord& record, std::size_t parts = 1);
+  void AddBlocks();
   void AddGap();
 
   std::unique_ptr<AppendFile> file_;  // null: ended
   std::string name_;
+  TicksRecord ticks_;  // since the last commit, as a rule
+  TimingsRecord timings_;
   std::int64_t last_tick_ns_ = 0;
   std::uint64_t lost_records_ = 0;
 };

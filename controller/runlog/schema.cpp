@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "controller/runlog/safety_rows.h"
+#include "controller/runlog/sample_table.h"
 #include "controller/runlog/sqlite_db.h"
-#include "controller/runlog/tick_columns.h"
 
 namespace flexarm {
 namespace {
@@ -39,7 +39,7 @@ void CreateRunTables(SqliteDb* db) {
   db->Execute(("PRAGMA application_id=" + id).c_str());
   db->Execute(("PRAGMA user_version=" + version).c_str());
   db->Execute(kRunLogSchema);
-  db->Execute(CreateTickTable().c_str());
+  db->Execute(CreateSampleTables().c_str());
   db->Execute(kSafetyTable);
 }
 
@@ -57,7 +57,8 @@ std::string SchemaProblem(SqliteDb* db) {
            " flexarm: read it with the one that wrote it";
   }
   SqliteStatement row = db->Prepare(kSelectSchema);
-  for (const std::string& expected : ExpectedSchema()) {
+  static const std::vector<std::string> kExpected = ExpectedSchema();
+  for (const std::string& expected : kExpected) {
     if (!row.Step()) return "has no " + NameOf(expected) + "; expected the tables of a run log";
     if (SchemaRow(row) == expected) continue;
     return "has tables that are not those of a run log: found another " + NameOf(expected);

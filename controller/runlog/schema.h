@@ -9,24 +9,22 @@ class SqliteDb;
 
 // The tables of a closed run. One SQLite file is one run.
 //
-// Columns are for users and their tools, in the units of their names; the BLOBs contain the same
-// records bit by bit (SQLite's REAL loses NaN), for replay. A column is NULL where a value is NaN
-// or unknown.
+// Table `block` has the records of the control task bit by bit, for replay. The views `tick` and
+// `timing` are for users and their tools, in the units of their names: sample_table.h.
 
 inline constexpr std::int64_t kRunLogApplicationId = 0x466c4172;  ///< "FlAr"
-inline constexpr std::int64_t kRunLogSchemaVersion = 2;           ///< PRAGMA user_version
+inline constexpr std::int64_t kRunLogSchemaVersion = 3;           ///< PRAGMA user_version
 
-/// All tables but `tick`, which tick_columns.h makes.
+/// All but the tables and views of sample_table.h and safety_rows.h.
 inline constexpr const char* kRunLogSchema = R"sql(
 CREATE TABLE run (
   key TEXT PRIMARY KEY,
   value TEXT NOT NULL
 ) WITHOUT ROWID;
 
-CREATE TABLE timing (
-  tick INTEGER,
-  due_ns INTEGER, woke_ns INTEGER, finished_ns INTEGER,
-  late_us REAL, took_us REAL
+CREATE TABLE block (
+  first_tick INTEGER PRIMARY KEY,
+  records BLOB NOT NULL
 );
 
 CREATE TABLE event (
@@ -52,6 +50,9 @@ inline constexpr const char* kConfig = "config";
 inline constexpr const char* kExperimentName = "experiment_name";
 inline constexpr const char* kExperiment = "experiment";
 inline constexpr const char* kGains = "gains";
+inline constexpr const char* kLaw = "law";
+inline constexpr const char* kPayload = "payload_kg";  ///< empty: not known
+inline constexpr const char* kLabel = "label";         ///< JSON: name, note, tags
 inline constexpr const char* kResult = "result";
 inline constexpr const char* kDigest = "digest";  ///< run_digest.h
 }  // namespace run_key

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 #include <variant>
 
@@ -10,25 +9,19 @@
 
 namespace flexarm {
 
-/// Value of a readable column. NaN is stored as NULL.
+/// Value of a readable column. NaN: it is not known.
 using ColumnValue = std::variant<std::int64_t, double, std::string_view>;
 
-/// A readable column of table `tick`: the name carries its unit.
+/// A readable column of a sample: the name carries its unit.
 struct TickColumn {
   const char* name;
-  const char* type;  ///< of SQL
-  const char* unit;  ///< of the units row of an exported file
+  const char* unit;       ///< of the units row of an exported file
+  double steps_per_unit;  ///< view `tick` of the log has it in such steps; 0: exported files only
   ColumnValue (*value)(const TickRecord& record);
 };
 
 /// All of them, in their order: the one place that a new column needs. Before them stand `tick` and
-/// `time_s`, behind them the BLOBs `input` and `output`.
+/// `time_s`; `state` is in both.
 std::span<const TickColumn> TickColumns();
-
-/// The statement that makes table `tick`.
-std::string CreateTickTable();
-
-/// The statement that inserts a row: tick, time_s, the columns, input, output.
-std::string InsertTick();
 
 }  // namespace flexarm

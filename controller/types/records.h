@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "controller/types/step_types.h"
 #include "hal/sim/plant_truth.h"
@@ -22,6 +24,9 @@ struct TickRecord {
   std::uint32_t gate_reasons;
   std::uint32_t run_number;  ///< of the present run, or of the last (Permit); 0: none yet
   PlantTruth truth;          ///< of the simulated stack: the recorder adds it
+  /// Of a record that was read from a log, which has not all of the output (record_blocks.h): of
+  /// all its bytes. 0: the output is whole.
+  std::uint64_t output_checksum;
 };
 
 /// Event: a trip, a refusal, a command of the operator, a gap in the log.
@@ -31,6 +36,14 @@ struct RunEvent {
   std::string name;          ///< short machine name within the kind
   std::string text;          ///< for the operator
   std::string value_json;    ///< one JSON object, or empty
+};
+
+/// How users call a run. Its limits: run_label.h of controller/runlog.
+struct RunLabel {
+  std::string name, note;  ///< empty: none
+  std::vector<std::string> tags;
+
+  friend bool operator==(const RunLabel&, const RunLabel&) = default;
 };
 
 /// Metadata of a run: everything that replay needs besides the records.
@@ -46,7 +59,11 @@ struct RunInfo {
   std::string config_text;      ///< complete
   std::string experiment_name;  ///< empty: no experiment was run
   std::string experiment_text;
-  std::string gains_json;   ///< full precision
+  std::string gains_json;  ///< full precision
+  std::string law;         ///< controller.name
+  std::optional<double>
+      payload_kg;  ///< of the simulated arm; empty: a rig, whose payload is unknown
+  RunLabel label;
   std::string result_json;  ///< empty until the run is closed
 };
 

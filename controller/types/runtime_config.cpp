@@ -50,7 +50,7 @@ std::vector<Problem> DaemonConfig::Problems() const {
   list.Require(!log_directory.empty(), "log.directory", log_directory,
                "must name the directory that holds the run logs");
   list.Within("log.reserve_mb", log.reserve_mb, 1.0, 1e5,
-              "the space reserved for the next run; 10 MB are one minute");
+              "the space reserved for the next run; 2 MB are one minute at 50 Hz");
   list.Within("log.keep_free_mb", log.keep_free_mb, 0.0, 1e6,
               "the space that must remain free when a run begins");
   list.Within("log.keep_days", log.keep_days, 0.0, 36525.0,

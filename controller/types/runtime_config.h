@@ -34,10 +34,11 @@ struct LoopConfig {
 /// Section [log] but for its directory. All of it is optional in a file.
 struct LogConfig {
   bool required = true;         ///< `arm` and `run` are refused without a file for the run's log
-  double reserve_mb = 50.0;     ///< reserved on the disk for the next run: 5 minutes
+  double reserve_mb = 50.0;     ///< reserved on the disk for the next run: 25 minutes
   double keep_free_mb = 200.0;  ///< with less space than this beside it, there is no file
   double keep_days = 0.0;       ///< older runs are removed; 0: none
   double keep_total_mb = 0.0;   ///< the oldest runs are removed, until all are within it; 0: none
+  bool keep_trips = true;       ///< neither removes the log of a trip
 };
 
 /// Sections [daemon] and [log].

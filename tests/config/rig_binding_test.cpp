@@ -331,7 +331,7 @@ TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
                "loop.output=at_once", "loop.output_after_ms=14", "loop.actuation_delay_ms=3",
                "daemon.socket=/tmp/s", "daemon.state_directory=/tmp/k", "log.directory=/tmp/d",
                "log.required=false", "log.reserve_mb=2", "log.keep_free_mb=3", "log.keep_days=4",
-               "log.keep_total_mb=5"});
+               "log.keep_total_mb=5", "log.keep_trips=false"});
   EXPECT_EQ(c.loop.period_ms, 18.0);
   EXPECT_EQ(c.loop.acquire_before_ms, 9.0);
   EXPECT_EQ(c.loop.step_deadline_ms, 4.0);
@@ -347,6 +347,7 @@ TEST(RigBinding, PutsTimesAndPathsInTheirFields) {
   EXPECT_EQ(c.daemon.log.keep_free_mb, 3.0);
   EXPECT_EQ(c.daemon.log.keep_days, 4.0);
   EXPECT_EQ(c.daemon.log.keep_total_mb, 5.0);
+  EXPECT_FALSE(c.daemon.log.keep_trips);
 }
 
 TEST(RigBinding, KnowsEveryNamedChoice) {

@@ -165,7 +165,7 @@ class BadLog(ProgramTest):
         run, _ = self.simulate("run.flexarm")
         with contextlib.closing(sqlite3.connect(run)) as log:
             log.executescript(
-                "DROP TABLE timing; CREATE VIEW timing AS WITH RECURSIVE n(i) AS (SELECT 1 UNION"
+                "DROP VIEW timing; CREATE VIEW timing AS WITH RECURSIVE n(i) AS (SELECT 1 UNION"
                 " ALL SELECT i + 1 FROM n) SELECT i AS tick, i AS due_ns, i AS woke_ns, i AS"
                 " finished_ns, 0.0 AS late_us, 0.0 AS took_us FROM n")
         for verb in ("info", "replay", "check", "export"):

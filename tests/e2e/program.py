@@ -223,8 +223,8 @@ def rows(run, query):
 
 
 def ticks(run):
-    """The whole tick table."""
-    return rows(run, "SELECT * FROM tick ORDER BY tick")
+    """All records of the control task, to the bit."""
+    return rows(run, "SELECT * FROM block ORDER BY first_tick")
 
 
 def missed_deadlines(run, deadline_ms=5.0):

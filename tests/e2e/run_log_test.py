@@ -14,7 +14,9 @@ RUN_S = 1.2
 SMALL = ("--set", "log.reserve_mb=1", "--set", "log.keep_free_mb=0")
 
 
-class RunLog(ProgramTest):
+class DaemonRuns(ProgramTest):
+    """Runs of a daemon, and their logs."""
+
     def arm(self):
         self.wait_for_state("Idle")
         time.sleep(0.8)  # at rest means half a second of rest
@@ -42,6 +44,16 @@ class RunLog(ProgramTest):
             time.sleep(0.1)
         self.fail(f"not {count} closed runs: {self.runs()}\n{self.daemon_log()}")
 
+    def wait_for_samples(self, count, within_s=60):
+        """Waits until the loop has had so many. The start of a daemon takes its time first."""
+        end = time.monotonic() + within_s
+        self.wait_for_state("Idle", within_s=within_s)
+        while self.status()["tick"] < count:
+            self.assertLess(time.monotonic(), end, self.daemon_log())
+            time.sleep(0.1)
+
+
+class RunLog(DaemonRuns):
     @in_real_time
     def test_each_run_is_a_file_that_replays_on_its_own(self):
         self.start_daemon(*SMALL)
@@ -125,14 +137,6 @@ class RunLog(ProgramTest):
         self.addCleanup(subprocess.run, ["umount", "-l", runs], check=True)
         return runs
 
-    def wait_for_samples(self, count, within_s=60):
-        """Waits until the loop has had so many. The start of a daemon takes its time first."""
-        end = time.monotonic() + within_s
-        self.wait_for_state("Idle", within_s=within_s)
-        while self.status()["tick"] < count:
-            self.assertLess(time.monotonic(), end, self.daemon_log())
-            time.sleep(0.1)
-
     def wait_for_log(self, ok, within_s=20):
         end = time.monotonic() + within_s
         while time.monotonic() < end:
@@ -154,20 +158,20 @@ class RunLog(ProgramTest):
         runs = self.small_disk(24)
         self.start_daemon(*SMALL, "--state-dir", self.folder / "state")
         self.arm()
-        self.operate("run", self.experiment(doublet("full", 25.0)))
+        self.operate("run", self.experiment(doublet("full", 80.0)))
         self.wait_for_state("Running")
         filler = runs / "filler"
         with contextlib.suppress(OSError), open(filler, "wb", buffering=0) as file:
             while True:
                 file.write(bytes(4096))
-        log = self.wait_for_log(ok=False)
+        log = self.wait_for_log(ok=False, within_s=70)  # the reserved megabyte is 45 s of records
         self.assertIn("No space left", log["error"])
         self.wait_for_line("its records wait")  # what was reserved for this run is used up
         self.assertEqual(self.status()["state"], "Running", "the run goes on")
         time.sleep(1.0)
         filler.unlink()
         self.wait_for_log(ok=True)
-        self.wait_for_state("Armed", within_s=40)
+        self.wait_for_state("Armed", within_s=90)
         self.operate("disarm")
         self.wait_for_state("Idle")
         run, = self.wait_for_closed_runs(1)

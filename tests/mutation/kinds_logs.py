@@ -49,6 +49,7 @@ def flipped_bit(trial):
         trial.add(["replay and check", file.name], [f"a flipped bit in byte {at} is not noticed"])
 
 
+TABLES = ("run", "block", "grid", "sample", "activation", "safety", "event")
 RECURSIVE = ("WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n LIMIT {rows}) ")
 
 
@@ -57,23 +58,23 @@ def columns_of(log, table):
 
 
 def table_as_view(log, chosen):
-    """A view that never ends in the place of a table."""
-    table = chosen.choice(("run", "tick", "safety", "event", "timing"))
+    """A view that never ends in the place of a table or view."""
+    table = chosen.choice(TABLES + ("tick", "timing"))
     names = columns_of(log, table)
-    log.execute(f"DROP TABLE {table}")
+    log.execute(f"DROP {'TABLE' if table in TABLES else 'VIEW'} {table}")
     rows = chosen.choice((1_000_000, 10**15))
     log.execute(f"CREATE VIEW {table} AS " + RECURSIVE.format(rows=rows) + "SELECT " +
                 ", ".join(f"i AS {name}" for name in names) + " FROM n")
 
 
 def trigger(log, chosen):
-    table = chosen.choice(("run", "tick", "safety", "event", "timing"))
-    log.execute(f"CREATE TRIGGER t AFTER INSERT ON {table} BEGIN DELETE FROM tick; END")
+    table = chosen.choice(TABLES)
+    log.execute(f"CREATE TRIGGER t AFTER INSERT ON {table} BEGIN DELETE FROM block; END")
 
 
 def large_value(log, chosen):
     table, column = chosen.choice((("run", "value"), ("event", "text"), ("event", "value_json"),
-                                   ("safety", "record"), ("tick", "state"), ("event", "kind")))
+                                   ("safety", "record"), ("block", "records"), ("event", "kind")))
     size = chosen.choice((1_000_000, 100_000_000))
     value = chosen.choice((f"zeroblob({size})", f"replace(hex(zeroblob({size // 2})), '0', 'x')"))
     log.execute(f"UPDATE {table} SET {column} = {value}"
@@ -101,10 +102,10 @@ def text_of_run(log, chosen):
 
 def odd_values(log, chosen):
     """Values of other types and sizes in a column."""
-    table = chosen.choice(("tick", "safety", "event", "timing"))
+    table = chosen.choice(TABLES[1:])
     column = chosen.choice(columns_of(log, table))
     value = chosen.choice((None, "x", "\x1b[31m", b"", b"\x00" * 7, 1e300, -1, 2**62, "nan", b"\xff" * 1000))
-    where = "" if column not in ("tick", "number") else " WHERE rowid = (SELECT max(rowid) FROM " + table + ")"
+    where = "" if column not in ("tick", "number", "first_tick") else " WHERE rowid = (SELECT max(rowid) FROM " + table + ")"
     log.execute(f"UPDATE OR IGNORE {table} SET {column} = ?{where}", (value,))
 
 

@@ -48,6 +48,7 @@ void RegisterProveSwitches(CLI::App& app, Exit& exit);
 void RegisterReplay(CLI::App& app, Exit& exit);
 void RegisterReport(CLI::App& app, Exit& exit);
 void RegisterRig(CLI::App& app, Exit& exit);
+void RegisterRuns(CLI::App& app, Exit& exit);  ///< with tag, untag and note
 void RegisterSimulate(CLI::App& app, Exit& exit);
 void RegisterSweep(CLI::App& app, Exit& exit);  ///< with merge and show
 

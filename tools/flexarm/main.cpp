@@ -25,6 +25,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterCheckHost(app, exit);
   RegisterDiff(app, exit);
   RegisterLog(app, exit);
+  RegisterRuns(app, exit);
   RegisterOperate(app, exit);
   RegisterCommission(app, exit);
   RegisterProveSwitches(app, exit);

@@ -70,8 +70,9 @@ Difference Diff(const std::vector<TickRecord>& a, const std::vector<TickRecord>&
   for (std::size_t i = 0; i < both; ++i) {
     const TickRecord from_a = FromStart(a[i], a[0]), from_b = FromStart(b[i], b[0]);
     Compare(from_a, from_b, &difference);
-    const bool same =
-        SameBytes(from_a.input, from_b.input) && SameBytes(from_a.output, from_b.output);
+    const bool same = SameBytes(from_a.input, from_b.input) &&
+                      SameBytes(from_a.output, from_b.output) &&
+                      from_a.output_checksum == from_b.output_checksum;
     if (!same && !difference.first_tick) difference.first_tick = a[i].input.tick;
   }
   if (a.size() != b.size() && !difference.first_tick) {

@@ -10,6 +10,7 @@
 #include "controller/runlog/csv.h"
 #include "controller/runlog/decoded_csv.h"
 #include "tools/command_line/options.h"
+#include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
 
@@ -17,7 +18,8 @@ namespace flexarm {
 namespace {
 
 struct ExportOptions {
-  std::filesystem::path run;
+  RunChoice choice;
+  std::filesystem::path run;  // the chosen one
   OutputOptions output;
   bool decoded = false;
   bool with_raw = false;
@@ -85,7 +87,7 @@ void RegisterExport(CLI::App& app, Exit&) {
   CLI::App* verb = app.add_subcommand(
       "export",
       "Export the samples of a run log as a CSV file, raw for `flexarm replay` or decoded");
-  verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
+  options->choice.AddTo(verb);
   options->output.AddTo(verb, "CSV file to write", true);
   CLI::Option* decoded = verb->add_flag("--decoded", options->decoded,
                                         "Values with units, for plots, in place of raw counts");
@@ -101,6 +103,7 @@ void RegisterExport(CLI::App& app, Exit&) {
       "Examples: flexarm export runs/today.flexarm -o today.csv\n"
       "          flexarm export runs/today.flexarm --decoded -o values.csv");
   verb->callback([options] {
+    options->run = options->choice.File();
     if (options->decoded) {
       ExportDecoded(*options);
     } else {

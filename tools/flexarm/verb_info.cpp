@@ -8,9 +8,12 @@
 #include "controller/files/external_json.h"
 #include "controller/files/external_text.h"
 #include "controller/files/nesting.h"
+#include "controller/host/daemon_identity.h"
+#include "controller/runlog/run_labels_file.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/safety/torque_gate.h"
 #include "tools/command_line/options.h"
+#include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
 
@@ -22,7 +25,7 @@ using OrderedJson = nlohmann::ordered_json;
 constexpr std::size_t kMostShown = 400;  // bytes of a text of the log
 
 struct InfoOptions {
-  std::filesystem::path run;
+  RunChoice run;
   bool json = false;
 };
 
@@ -101,18 +104,43 @@ OrderedJson ResultOf(const std::string& text) {
   return result.is_discarded() ? OrderedJson(nullptr) : result;
 }
 
+// As it is called now: labels can change after a run.
+RunLabel LabelOf(const LoadedRun& run) {
+  const std::filesystem::path folder = run.file.has_parent_path() ? run.file.parent_path() : ".";
+  return ReadRunLabels(folder).Of(run.file.filename().string(), run.contents.info.label);
+}
+
+// That of the first sample: which zeros of the counters, and of how many strain channels.
+OrderedJson CalibrationJson(const LoadedRun& run) {
+  if (run.contents.tick.empty()) return nullptr;
+  const Calibration& calibration = run.contents.tick.front().input.calibration;
+  const auto known = [](const auto& values) {
+    return std::count_if(values.begin(), values.end(), [](float value) { return value != 0.0F; });
+  };
+  return {{"counter_zero", calibration.counter_zero},
+          {"tared_channels", known(calibration.strain_zero_counts)},
+          {"scaled_channels", known(calibration.strain_gain_error)}};
+}
+
 OrderedJson Info(const LoadedRun& run) {
   const RunInfo& info = run.contents.info;
   const auto& ticks = run.contents.tick;
   OrderedJson json;
   json["run"] = run.file.string();
+  const RunLabel label = LabelOf(run);
+  json["name"] = TextOrNull(label.name);
+  json["note"] = TextOrNull(label.note);
+  json["tags"] = label.tags;
   json["start_utc"] = info.start_utc;
   json["rig"] = info.rig_name;
   json["backend"] = info.backend;
   json["clock"] = info.clock;
   json["seed"] = info.seed;
-  json["experiment"] =
-      info.experiment_name.empty() ? OrderedJson(nullptr) : OrderedJson(info.experiment_name);
+  json["experiment"] = TextOrNull(info.experiment_name);
+  json["law"] = TextOrNull(info.law);
+  json["payload_kg"] = info.payload_kg ? NumberOrNull(*info.payload_kg) : OrderedJson(nullptr);
+  json["config_hash"] = ConfigHash(run.config.text);
+  json["calibration"] = CalibrationJson(run);
   json["version"] = info.version;
   json["build_id"] = info.build_id;
   json["closed"] = run.closed();
@@ -190,10 +218,12 @@ void PrintSafety(const RunContents& run) {
 
 void PrintText(const OrderedJson& json, const LoadedRun& run) {
   std::cout << Text(json["run"]) << '\n';
-  for (const char* key : {"start_utc", "rig", "backend", "clock", "seed", "experiment", "version",
-                          "build_id", "log", "digest", "ticks", "missing_ticks"}) {
+  for (const char* key : {"name", "note", "tags", "start_utc", "rig", "backend", "clock", "seed",
+                          "experiment", "law", "config_hash", "calibration", "version", "build_id",
+                          "log", "digest", "ticks", "missing_ticks"}) {
     PrintLine(key, json[key]);
   }
+  PrintLine("payload", json["payload_kg"], "kg");
   PrintLine("duration", json["duration_s"], "s");
   PrintLine("delay, longest", json["delay_max_ms"], "ms");
   PrintLine("final state", json["final_state"]);
@@ -216,13 +246,14 @@ void RegisterInfo(CLI::App& app, Exit&) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* verb = app.add_subcommand(
       "info", "Summarise a run log: result, safety transitions, metrics, timing");
-  verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
+  options->run.AddTo(verb);
   AddJson(verb, &options->json);
   verb->footer(
       "Metrics: tracking errors, settling time and residual of the tip, torques, bending.\n"
-      "Example: flexarm info runs/today.flexarm");
+      "Examples: flexarm info runs/today.flexarm\n"
+      "          flexarm info --last");
   verb->callback([options] {
-    const LoadedRun run = LoadRun(options->run);
+    const LoadedRun run = LoadRun(options->run.File());
     const OrderedJson json = Info(run);
     if (options->json) {
       std::cout << PrintedJson(json) << '\n';

@@ -4,6 +4,7 @@
 
 #include "controller/files/input_error.h"
 #include "tools/command_line/options.h"
+#include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
 #include "tools/plot/gnuplot.h"
 #include "tools/plot/plot_script.h"
@@ -13,7 +14,7 @@ namespace flexarm {
 namespace {
 
 struct PlotOptions {
-  std::vector<std::filesystem::path> runs;
+  RunChoice runs;
   std::filesystem::path page;
   OutputOptions output;
 };
@@ -30,15 +31,16 @@ std::vector<LoadedRun> LoadRuns(const std::vector<std::filesystem::path>& files)
 }
 
 void Plot(const PlotOptions& options) {
-  const OutputRules picture = PictureRules(options.runs, options.output.overwrite);
-  const OutputRules page = options.output.Rules("a page of runs", kRunPageMark, options.runs);
+  const std::vector<std::filesystem::path> files = options.runs.Files();
+  const OutputRules picture = PictureRules(files, options.output.overwrite);
+  const OutputRules page = options.output.Rules("a page of runs", kRunPageMark, files);
   if (!options.output.given() && options.page.empty()) {
     throw InputError(
         "plot: nothing to write; expected -o FILE.png, -o FILE.svg or --html FILE.html");
   }
   if (options.output.given()) CheckPicture(options.output.file, picture);
   if (!options.page.empty()) CheckOutput(options.page, page);
-  const std::vector<LoadedRun> runs = LoadRuns(options.runs);
+  const std::vector<LoadedRun> runs = LoadRuns(files);
   if (options.output.given()) {
     std::vector<PlotRun> plots;
     for (const LoadedRun& run : runs) plots.push_back(PlotDataOf(run));
@@ -56,7 +58,7 @@ void Plot(const PlotOptions& options) {
 void RegisterPlot(CLI::App& app, Exit&) {
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* verb = app.add_subcommand("plot", "Draw one run, or several runs in the same axes");
-  verb->add_option("runs", options->runs, "Run logs")->required()->type_name("RUN..");
+  options->runs.AddManyTo(verb);
   options->output.AddTo(verb, "Picture to write, .png or .svg", false);
   verb->add_option("--html", options->page,
                    "Page to write, one file that needs no network: values, zoom, the arm animated")
@@ -70,7 +72,7 @@ void RegisterPlot(CLI::App& app, Exit&) {
       "run\n"
       "the least and the greatest value of each part of the time axis: no peak is lost.\n"
       "Example: flexarm plot runs/today.flexarm --html today.html\n"
-      "Example: flexarm plot runs/today.flexarm runs/yesterday.flexarm -o compare.png");
+      "Example: flexarm plot --last -o last.png");
   verb->callback([options] { Plot(*options); });
 }
 

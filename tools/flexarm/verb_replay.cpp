@@ -14,6 +14,7 @@
 #include "controller/step/control_step.h"
 #include "estimator/ideal_observer.h"
 #include "tools/command_line/options.h"
+#include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/csv_replay.h"
 #include "tools/runs/run_summary.h"
@@ -22,7 +23,8 @@ namespace flexarm {
 namespace {
 
 struct ReplayOptions {
-  std::filesystem::path source;
+  RunChoice choice;
+  std::filesystem::path source;  // the chosen one
   ConfigOptions config;
   std::filesystem::path calibration, experiment;  // empty: none
   bool json = false;
@@ -240,9 +242,7 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<ReplayOptions>();
   CLI::App* verb = app.add_subcommand(
       "replay", "Run recorded inputs through the control step again and compare the torques");
-  verb->add_option("source", options->source, "Run log, or CSV file (*.csv)")
-      ->required()
-      ->type_name("RUN_OR_CSV");
+  options->choice.AddTo(verb, "Run log, or CSV file (*.csv)", "RUN_OR_CSV");
   options->config.AddTo(verb, false);
   verb->add_option(
           "--calibration", options->calibration,
@@ -262,9 +262,13 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "config. It has no reference of the law: with --experiment the law follows that one and its\n"
       "torques are compared with those of the file; without, the estimator alone says something.\n"
       "Examples: flexarm replay runs/today.flexarm\n"
+      "          flexarm replay --last\n"
       "          flexarm replay today.csv -c config/hil.toml \\\n"
       "            --experiment config/experiments/square-30deg.toml");
-  verb->callback([options, &exit] { exit.code = Run(*options); });
+  verb->callback([options, &exit] {
+    options->source = options->choice.File();
+    exit.code = Run(*options);
+  });
 }
 
 }  // namespace flexarm

@@ -13,6 +13,7 @@
 #include "controller/host/simulation.h"
 #include "controller/runlog/errors.h"
 #include "controller/types/law_table.h"
+#include "tools/command_line/label_options.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
@@ -31,6 +32,7 @@ struct SimulateOptions {
   bool without_adaptation = false;
   bool ideal = false;
   std::filesystem::path output;
+  LabelOptions label;
   bool json = false;
 };
 
@@ -124,6 +126,7 @@ int Run(const SimulateOptions& options) {
   request.experiment = LoadExperiment(request.experiment_file);
   request.payload_kg = options.payload_kg;
   if (!options.output.empty()) request.log = options.output;
+  request.label = options.label.Label();
   const DesignVerdict design = JudgeDesign(request.config, DesignFor(request.config));
   WarnOfDesign(design);
   const bool show = isatty(STDERR_FILENO) == 1 && !options.json;
@@ -178,6 +181,7 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
       ->excludes("--estimator");
   verb->add_option("-o,--output", options->output, "Run log to write (must not exist)")
       ->type_name("RUN");
+  options->label.AddTo(verb);
   AddJson(verb, &options->json);
   verb->footer(
       "Prints tracking errors, settling time of the tip and peak torques, and warns of a design\n"
@@ -185,7 +189,8 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
       "the run log. The same config and seed give the same run, tick for tick. Exit code 1 if the\n"
       "run tripped.\n"
       "Examples: flexarm simulate -c config/hil.toml\n"
-      "          flexarm simulate -c config/hil.toml --payload-kg 0.2 --seed 7 -o heavy.flexarm\n"
+      "          flexarm simulate -c config/hil.toml --payload-kg 0.2 -o heavy.flexarm --tag "
+      "heavy\n"
       "          flexarm simulate -c config/hil.toml --ideal --payload-kg 0.01\n"
       "          flexarm simulate -c config/hil.toml --set controller.alpha=2 --json");
   verb->callback([options, &exit] { exit.code = Run(*options); });

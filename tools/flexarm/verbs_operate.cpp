@@ -10,6 +10,8 @@
 #include "controller/operator/arm_verdict.h"
 #include "controller/operator/prove_switches.h"
 #include "controller/runlog/errors.h"
+#include "controller/runlog/run_label.h"
+#include "tools/command_line/label_options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
 #include "tools/flexarm/override_options.h"
@@ -35,6 +37,7 @@ struct OperateOptions {
   bool watch = false;
   bool wait = false;
   OverrideOptions overrides;
+  LabelOptions label;
 };
 
 int Status(const OperateOptions& options) {
@@ -59,6 +62,9 @@ int RunExperiment(const OperateOptions& options) {
                {"name", options.experiment.filename().string()},
                {"experiment", experiment.text}};
   options.overrides.PutInto(&command);
+  if (const RunLabel label = options.label.Label(); label != RunLabel{}) {
+    command["label"] = LabelToJson(label);
+  }
   if (options.wait) return RunAndWait(options.daemon, command, kLongestPlan_s);
   return options.daemon.Conclude(options.daemon.Ask(command, kLongestPlan_s));
 }
@@ -115,6 +121,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
       ->type_name("EXPERIMENT");
   run->daemon.AddTakeOver(verb);
   verb->add_flag("--wait", run->wait, "Wait for the end of the run; Ctrl-C stops it");
+  run->label.AddTo(verb);
   run->overrides.AddTo(verb, "--override-switches", kSwitchesCondition,
                        "Run a wired rig although its switches have not been proved");
   verb->footer(
@@ -123,7 +130,9 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
       "rig\n"
       "needs the proof of its switches (flexarm prove-switches). With --wait the exit code is the\n"
       "run's: 0 if it ended as planned, 1 if it was stopped or tripped.\n"
-      "Example: flexarm run --wait config/experiments/square-30deg.toml");
+      "Name, note and tags go into the log: `flexarm runs` finds it by them.\n"
+      "Examples: flexarm run --wait config/experiments/square-30deg.toml\n"
+      "          flexarm run square-30deg.toml --name \"new gauge\" --tag bench --tag gauge-7");
   verb->callback([run, &exit] { exit.code = RunExperiment(*run); });
 
   AddCommand(app, exit, "stop", "End the experiment: the controller brings the arm to rest",

@@ -15,6 +15,10 @@ nlohmann::ordered_json Pair(const std::array<double, 2>& pair) {
 
 }  // namespace
 
+nlohmann::ordered_json TextOrNull(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
+}
+
 nlohmann::ordered_json NumberOrNull(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
@@ -39,7 +43,8 @@ LoadedRun LoadRun(const std::filesystem::path& file) {
                 .config = ConfigOf(reader),
                 .experiment = std::nullopt};
   const RunInfo& info = run.contents.info;
-  if (!info.experiment_text.empty()) {
+  // Of pluck and home it is their command, a JSON object: they have no experiment to judge.
+  if (!info.experiment_text.empty() && !info.experiment_text.starts_with('{')) {
     run.experiment = ParseExperiment(info.experiment_text, file.string() + " (its experiment)");
   }
   return run;

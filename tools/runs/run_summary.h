@@ -46,6 +46,9 @@ std::string SettlingText(const RunMetrics& metrics);
 /// The record of the first trip of a run, with its cause; empty if the run did not trip.
 std::optional<SafetyRecord> TripOf(const std::vector<SafetyRecord>& records);
 
+/// A JSON text, or null if it is empty.
+nlohmann::ordered_json TextOrNull(const std::string& text);
+
 /// A JSON number, or null if it is not finite.
 nlohmann::ordered_json NumberOrNull(double value);
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "controller/design/run_design.h"
 #include "controller/law/design.h"
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/lockstep_executor.h"
+#include "controller/runlog/blob.h"
 #include "controller/tasks/planned_experiment.h"
 #include "controller/tasks/simulated_stack.h"
 #include "tests/controller/loop/simulated_runs.h"
@@ -97,11 +97,6 @@ class StackRun {
   std::int64_t now_ns_ = 0;
   std::uint32_t asked_ = 1000;  // apart from the unattended run's numbers
 };
-
-template <typename T>
-bool SameBytes(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
-}
 
 inline bool SameTicks(const StackRun& a, const StackRun& b) {
   if (a.tick.size() != b.tick.size()) return false;

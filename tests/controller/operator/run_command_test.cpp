@@ -5,7 +5,9 @@
 
 #include <atomic>
 
+#include "controller/runlog/run_label.h"
 #include "tests/controller/operator/operator_parts.h"
+#include "tests/support/message_of.h"
 
 namespace flexarm {
 namespace {
@@ -148,6 +150,41 @@ TEST_F(RunCommandTest, TheDaemonEndsWhileAPlanIsMade) {
     EXPECT_TRUE(run.planning());
   }
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+// Where the recorder reads it: in the announcement of the experiment.
+TEST_F(RunCommandTest, ALabelGoesWithTheRunToItsLog) {
+  const Json label = {{"name", "new gauge"}, {"note", "glued"}, {"tags", {"bench", "gauge-7"}}};
+  EXPECT_TRUE(run_.Start({{"command", "run"}, {"experiment", kPlannedMove}, {"label", label}},
+                         kRunClient, now_)
+                  .is_null());
+  FollowToTheEnd();
+  RunEvent event;
+  while (event.kind != "experiment") ASSERT_TRUE(events_.Pop(&event));
+  const RunLabel announced = LabelOfAnnouncement(event);
+  EXPECT_EQ(announced.name, "new gauge");
+  EXPECT_EQ(announced.note, "glued");
+  EXPECT_EQ(announced.tags, (std::vector<std::string>{"bench", "gauge-7"}));
+}
+
+TEST_F(RunCommandTest, AMalformedLabelIsRefusedByName) {
+  const auto refusal = [this](const Json& label) {
+    return MessageOf<RejectedError>([&] {
+      run_.Start({{"command", "run"}, {"experiment", kPlannedMove}, {"label", label}}, kRunClient,
+                 now_);
+    });
+  };
+  for (const Json& label : {Json("text"), Json{{"name", 3}}, Json{{"tags", "bench"}},
+                            Json{{"tags", {1}}}, Json{{"note", nullptr}}}) {
+    EXPECT_THAT(refusal(label), HasSubstr("label: must be an object")) << label;
+  }
+  EXPECT_THAT(refusal({{"name", std::string(kLongestName + 1, 'x')}}),
+              HasSubstr("the name is longer than 80 bytes"));
+  EXPECT_THAT(refusal({{"note", "one\ntwo"}}), HasSubstr("the note contains a control character"));
+  EXPECT_THAT(refusal({{"tags", {""}}}), HasSubstr("a tag is empty"));
+  EXPECT_THAT(refusal({{"tags", std::vector<std::string>(kMostTags + 1, "x")}}),
+              HasSubstr("has 21 tags, expected at most 20"));
+  EXPECT_FALSE(run_.planning());
 }
 
 }  // namespace

@@ -37,8 +37,9 @@ class DamagedFileTest : public RunLogTest {
     sqlite3* db = nullptr;
     std::string dump;
     sqlite3_open(file.c_str(), &db);
-    for (const char* sql : {"SELECT * FROM run", "SELECT * FROM tick", "SELECT rowid,* FROM timing",
-                            "SELECT * FROM safety", "SELECT * FROM event"}) {
+    for (const char* sql :
+         {"SELECT * FROM run", "SELECT * FROM block", "SELECT * FROM grid", "SELECT * FROM sample",
+          "SELECT * FROM activation", "SELECT * FROM safety", "SELECT * FROM event"}) {
       sqlite3_stmt* row = nullptr;
       if (sqlite3_prepare_v2(db, sql, -1, &row, nullptr) != SQLITE_OK) dump += "error";
       while (sqlite3_step(row) == SQLITE_ROW) {
@@ -93,7 +94,7 @@ TEST_F(DamagedFileTest, ALogCutAnywhereIsAnErrorOrAPrefix) {
 TEST_F(DamagedFileTest, ALogWithoutItsLastBytesIsCutShort) {
   WriteRun(20);
   const std::string whole = Bytes(File());
-  for (const std::size_t missing : {1U, 100U, 8'000U, 16'000U}) {
+  for (const std::size_t missing : {1U, 100U, 2'000U, 4'000U}) {
     WriteText(File(), whole.substr(0, whole.size() - missing));
     ExpectError("cut short");
   }
@@ -136,26 +137,51 @@ TEST_F(DamagedFileTest, AnotherApplicationsFileIsRefused) {
 
 TEST_F(DamagedFileTest, ANewerSchemaIsRefused) {
   WriteRun(1);
-  Alter("PRAGMA user_version=3");
-  ExpectError("schema version 3, expected 2; it was written by a newer flexarm");
+  Alter("PRAGMA user_version=4");
+  ExpectError("schema version 4, expected 3; it was written by a newer flexarm");
 }
 
 TEST_F(DamagedFileTest, AnEarlierSchemaIsRefused) {
   WriteRun(1);
-  Alter("PRAGMA user_version=1");
-  ExpectError("schema version 1, expected 2; it was written by an earlier flexarm");
+  Alter("PRAGMA user_version=2");
+  ExpectError("schema version 2, expected 3; it was written by an earlier flexarm");
 }
 
-TEST_F(DamagedFileTest, AShortBlobIsNamedWithItsTick) {
+TEST_F(DamagedFileTest, AShortBlockIsNamedWithItsTick) {
   WriteRun(3);
-  Alter("UPDATE tick SET input = substr(input, 1, 600) WHERE tick = 2");
-  ExpectError("tick 2: input has 600 bytes, expected " + std::to_string(4 + sizeof(StepInput)));
+  Alter("UPDATE block SET records = substr(records, 1, 600)");
+  ExpectError("block of tick 1: is damaged: expected 3 packed records");
+  Alter("UPDATE block SET records = substr(records, 1, 8)");
+  ExpectError("block of tick 1: is cut short");
 }
 
-TEST_F(DamagedFileTest, ABlobOfAnotherVersionIsNamed) {
+// However many records it promises.
+TEST_F(DamagedFileTest, ABlockWithAnotherNumberOfRecordsIsNamed) {
+  for (const char* const count : {"00000000", "01040000", "ffffffff"}) {
+    WriteRun(3);
+    Alter((std::string("UPDATE block SET records = CAST(x'") + count +
+           "' || substr(records, 5) AS BLOB)")
+              .c_str());
+    ExpectError("records, expected 1 to 1024");
+    std::filesystem::remove(File());
+  }
   WriteRun(3);
-  Alter("UPDATE tick SET output = x'09000000' || substr(output, 5) WHERE tick = 3");
-  ExpectError("tick 3: output has version 9, expected 3");
+  Alter("UPDATE block SET records = CAST(x'02000000' || substr(records, 5) AS BLOB)");
+  ExpectError("is damaged: expected 2 packed records");
+}
+
+TEST_F(DamagedFileTest, ABlockOfAnotherTickIsNamed) {
+  WriteRun(3);
+  Alter("UPDATE block SET first_tick = 2");
+  ExpectError("block of tick 2: begins with tick 1");
+}
+
+TEST_F(DamagedFileTest, ABlockOfAnotherVersionIsNamed) {
+  WriteRun(3);
+  Alter(
+      "UPDATE block SET records = CAST(substr(records, 1, 8) || x'09000000' || substr(records, 13)"
+      " AS BLOB)");
+  ExpectError("block of tick 1: has outputs of version 9, expected 3");
 }
 
 TEST_F(DamagedFileTest, AShortSafetyRecordIsNamed) {
@@ -166,7 +192,7 @@ TEST_F(DamagedFileTest, AShortSafetyRecordIsNamed) {
 
 TEST_F(DamagedFileTest, AMissingTableIsNamed) {
   WriteRun(1);
-  Alter("DROP TABLE tick");
+  Alter("DROP TABLE block");
   ExpectError("tables that are not those of a run log: found another table ");
 }
 
@@ -178,10 +204,10 @@ TEST_F(DamagedFileTest, AnySchemaButOurOwnIsRefusedBeforeItIsRead) {
       " value_json FROM n",
       "CREATE VIEW more AS SELECT * FROM tick",
       "CREATE TABLE more (a)",
-      "CREATE INDEX more ON timing(tick)",
-      "CREATE TRIGGER more AFTER INSERT ON tick BEGIN DELETE FROM tick; END",
-      "ALTER TABLE tick DROP COLUMN gate",
-      "ALTER TABLE timing ADD COLUMN big TEXT AS (hex(zeroblob(500000000)))",
+      "CREATE INDEX more ON activation(late_ns)",
+      "CREATE TRIGGER more AFTER INSERT ON block BEGIN DELETE FROM block; END",
+      "DROP VIEW tick",
+      "ALTER TABLE activation ADD COLUMN big TEXT AS (hex(zeroblob(500000000)))",
       "ALTER TABLE run RENAME TO runs",
       "ANALYZE",
   };
@@ -201,7 +227,7 @@ TEST_F(DamagedFileTest, ATableWhosePagesLeadBackIsRefused) {
   WriteRun(400);
   const std::string whole = Bytes(File());
   std::mt19937 random(3);
-  constexpr std::size_t kPage = 16384;
+  constexpr std::size_t kPage = 4096;
   for (int i = 0; i < 200; ++i) {
     std::string damaged = whole;
     const std::size_t pages = whole.size() / kPage;
@@ -238,9 +264,11 @@ TEST_F(DamagedFileTest, NoFlippedBitThatChangesALogPassesItsDigest) {
 
 TEST_F(DamagedFileTest, AnEditedValueOrADigestThatIsGoneIsNamed) {
   for (const char* change :
-       {"UPDATE tick SET hub_1_deg = hub_1_deg + 1 WHERE tick = 2", "DELETE FROM event",
-        "UPDATE run SET value = '8' WHERE key = 'seed'", "DELETE FROM timing WHERE rowid = 2",
-        "DELETE FROM run WHERE key = 'digest'", "UPDATE tick SET time_s = CAST(time_s AS TEXT)"}) {
+       {"UPDATE sample SET hub_1_deg_x10000 = hub_1_deg_x10000 + 1 WHERE tick = 2",
+        "DELETE FROM event", "UPDATE run SET value = '8' WHERE key = 'seed'",
+        "DELETE FROM activation WHERE number = 2", "DELETE FROM run WHERE key = 'digest'",
+        "UPDATE sample SET state = CAST(state AS TEXT) || 'a'",
+        "UPDATE grid SET first_ns = first_ns + 1"}) {
     WriteRun(3);
     EXPECT_EQ(VerificationError(File()), "");
     Alter(change);

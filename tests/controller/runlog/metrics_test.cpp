@@ -78,6 +78,21 @@ TEST(RunMetrics, FinalErrorIsTheWorstRestsMeanOverItsLastThreeTenths) {
   EXPECT_NEAR(metrics.joint_final_error_deg[1], 0, 1e-12);
 }
 
+// What follows the stop does not count, nor a rest that it leaves nothing of.
+TEST(RunMetrics, FiguresEndWhereTheRunWasStopped) {
+  const auto off_after_4s = [](double t, TickRecord* record) {
+    if (t > 4.01) record->truth.hub_angle_rad[0] = 7 * kRadPerDeg;
+  };
+  const RunMetrics in_the_move = Judge(Trace(3.8, off_after_4s));
+  const RunMetrics just_after_it = Judge(Trace(4.2, off_after_4s));
+  const RunMetrics in_the_rest = Judge(Trace(4.6, off_after_4s));
+  EXPECT_EQ(in_the_move.ticks, 192);
+  EXPECT_NEAR(in_the_move.joint_final_error_deg[0], 0, 1e-12);
+  EXPECT_NEAR(just_after_it.joint_final_error_deg[0], 0, 1e-12) << "0.2 s are no rest";
+  EXPECT_NEAR(in_the_rest.joint_final_error_deg[0], 7, 1e-12);
+  EXPECT_FALSE(Judge(Trace(0.8, off_after_4s)).tip_settling_time_s.has_value());
+}
+
 TEST(RunMetrics, StillWithinFiveMillimetresIsTheNarrowBand) {
   const auto ticks = Trace(6, [](double t, TickRecord* record) {
     record->truth.tip_m = {1.0, 0.0};

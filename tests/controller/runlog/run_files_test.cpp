@@ -166,13 +166,17 @@ TEST_F(RunFilesTest, AReservedFileThatWasRemovedIsReplaced) {
 class RetentionTest : public RunLogTest {
  protected:
   // A closed run of an age, in days.
-  std::filesystem::path Run(const std::string& name, double age_days) {
+  std::filesystem::path Run(const std::string& name, double age_days,
+                            const std::string& result = "{}") {
     const std::filesystem::path file = File(name);
-    RunWriter(file, MakeInfo()).Close("{}");
+    RunWriter(file, MakeInfo()).Close(result);
+    SetAge(file, age_days);
+    return file;
+  }
+  static void SetAge(const std::filesystem::path& file, double age_days) {
     const auto age = std::chrono::duration_cast<std::filesystem::file_time_type::duration>(
         std::chrono::duration<double>(age_days * 86400.0));
     std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now() - age);
-    return file;
   }
   void Remove(const LogConfig& config) {
     RemoveOldRuns(folder_, config,
@@ -209,6 +213,39 @@ TEST_F(RetentionTest, TheOldestAreRemovedUntilTheRestIsWithinTheSize) {
   EXPECT_FALSE(std::filesystem::exists(first));
   EXPECT_TRUE(std::filesystem::exists(second));
   EXPECT_TRUE(std::filesystem::exists(third));
+}
+
+TEST_F(RetentionTest, TheLogOfATripStaysUnlessTheConfigSaysOtherwise) {
+  const auto trip = Run("a.flexarm", 30.0, R"({"trip": "emergency-stop"})"),
+             old = Run("b.flexarm", 20.0, R"({"trip": null})");
+  Run("c.flexarm", 0.0);
+  const LogConfig config{.keep_days = 10.0, .keep_total_mb = 1e-6};
+  Remove(config);
+  EXPECT_TRUE(std::filesystem::exists(trip));
+  EXPECT_FALSE(std::filesystem::exists(old));
+  LogConfig told = config;
+  told.keep_trips = false;
+  Remove(told);
+  EXPECT_FALSE(std::filesystem::exists(trip));
+  ASSERT_EQ(lines_.size(), 2U);
+}
+
+// Whether it tripped is not known.
+TEST_F(RetentionTest, WhatAKilledProgramLeftAndWhatCannotBeReadStays) {
+  {
+    RunWriter writer(File("whole"), MakeInfo());
+    writer.Tick(MakeTick(1));
+    writer.Commit();
+    std::filesystem::copy(File("whole"), File("left.flexarm"));
+  }
+  const auto damaged = Run("damaged.flexarm", 0.0);
+  std::filesystem::resize_file(damaged, 5000);
+  for (const auto& file : {File("left.flexarm"), damaged}) SetAge(file, 30.0);
+  Run("new.flexarm", 0.0);
+  Remove({.keep_days = 10.0, .keep_total_mb = 1e-6});
+  EXPECT_TRUE(std::filesystem::exists(File("left.flexarm")));
+  EXPECT_TRUE(std::filesystem::exists(damaged));
+  EXPECT_TRUE(lines_.empty());
 }
 
 TEST_F(RetentionTest, TheNewestAWrittenOneAndFilesOfOthersStay) {

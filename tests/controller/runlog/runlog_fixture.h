@@ -109,6 +109,9 @@ inline RunInfo MakeInfo() {
           .experiment_name = "",
           .experiment_text = "",
           .gains_json = "{\"K\": [0.1]}",
+          .law = "",
+          .payload_kg = {},
+          .label = {},
           .result_json = ""};
 }
 

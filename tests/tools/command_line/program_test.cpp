@@ -274,12 +274,22 @@ TEST_F(ProgramTest, ReplayOfASimulationWithKnownStateIsBitExact) {
 
 TEST_F(ProgramTest, AReplayThatDiffersIsExitCodeOne) {
   WriteRun("run.flexarm", 5);
-  const std::string sql =
-      "UPDATE tick SET output = (SELECT output FROM tick WHERE tick = 2) WHERE tick = 4";
-  ASSERT_EQ(std::system(("sqlite3 '" + File().string() + "' '" + sql + "'").c_str()), 0);
-  const Json json = RunJson("replay run.flexarm", 1);
-  EXPECT_EQ(json["bit_exact"], false);
-  EXPECT_EQ(json["first_different_tick"], 4);
+  const RunContents run = RunReader(File()).ReadAll();
+  // One bit of what a sensor read, and of what the step computed.
+  for (const bool of_input : {true, false}) {
+    RunWriter writer(File(of_input ? "input.flexarm" : "output.flexarm"), run.info);
+    for (TickRecord tick : run.tick) {
+      if (tick.input.tick == 4 && of_input) tick.input.frame.counter[0] ^= 1;
+      if (tick.input.tick == 4 && !of_input) tick.output.x_hat[15] = -0.0;
+      writer.Tick(tick);
+    }
+    writer.Close("{}");
+    const Json json =
+        RunJson(std::string("replay ") + (of_input ? "input.flexarm" : "output.flexarm"), 1);
+    EXPECT_EQ(json["bit_exact"], false);
+    EXPECT_EQ(json["first_different_tick"], 4);
+    EXPECT_EQ(json["digest_holds"], true);
+  }
 }
 
 TEST_F(ProgramTest, ReplayReadsTheCsvFileOfExport) {
@@ -337,9 +347,9 @@ TEST_F(ProgramTest, InfoSummarisesTheRun) {
 TEST_F(ProgramTest, CheckIsExitCodeOneIfARuleIsViolated) {
   WriteRun("run.flexarm", 20);
   EXPECT_EQ(RunJson("check run.flexarm")["passed"], true);
-  ASSERT_EQ(
-      std::system(("sqlite3 '" + File().string() + "' 'DELETE FROM tick WHERE tick = 7'").c_str()),
-      0);
+  ASSERT_EQ(std::system(
+                ("sqlite3 '" + File().string() + "' 'DELETE FROM sample WHERE tick = 7'").c_str()),
+            0);
   EXPECT_EQ(RunJson("check run.flexarm", 1)["passed"], false);
 }
 
