@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "controller/types/rejected_error.h"
 #include "tests/controller/operator/operator_parts.h"
 #include "tests/support/message_of.h"
@@ -86,7 +88,7 @@ TEST_F(ExperimentLoaderTest, ARefusedOneIsForgotten) {
   // Announced, with its number: it names no run, for none was granted with that (RunContext).
   const std::vector<RunEvent> logged = TakeEvents(&events_);
   ASSERT_EQ(logged.size(), 1u);
-  EXPECT_EQ(logged[0].value_json, "{\"number\": " + std::to_string(refused) + "}");
+  EXPECT_EQ(nlohmann::json::parse(logged[0].value_json)["number"], refused);
 }
 
 TEST_F(ExperimentLoaderTest, OneIsKeptUntilTheLoopHasReleasedIt) {

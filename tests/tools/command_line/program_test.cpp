@@ -101,7 +101,7 @@ TEST_F(ProgramTest, HelpAndVersionExitWithZero) {
 TEST_F(ProgramTest, BadUsageIsExitCodeTwo) {
   ExpectBadInput("", "subcommand is required");
   ExpectBadInput("frobnicate", "frobnicate");
-  ExpectBadInput("replay", "source is required");
+  ExpectBadInput("replay", "expected a run log, or --last");
   ExpectBadInput("info run.flexarm --frobnicate", "--frobnicate");
   ExpectBadInput("modes", "--config is required");
   ExpectBadInput("modes -c '" + kRig + "' --modes 7", "--modes");
