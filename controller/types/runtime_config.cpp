@@ -49,7 +49,7 @@ std::vector<Problem> DaemonConfig::Problems() const {
                "must name the directory that keeps a trip over a restart");
   list.Require(!log_directory.empty(), "log.directory", log_directory,
                "must name the directory that holds the run logs");
-  list.Within("log.reserve_mb", log.reserve_mb, 1.0, 1e5,
+  list.Within("log.reserve_mb", log.reserve_mb, 0.1, 1e5,
               "the space reserved for the next run; 2 MB are one minute at 50 Hz");
   list.Within("log.keep_free_mb", log.keep_free_mb, 0.0, 1e6,
               "the space that must remain free when a run begins");

@@ -114,7 +114,7 @@ const BrokenText kRange[] = {
      "safety.missed_deadlines_to_trip", "1 .. 10"},
     {"ArmedForWeeks", "# disarm_after_s = 600.0", "disarm_after_s = 1e6", "safety.disarm_after_s",
      "0 .. 86400"},
-    {"NothingReserved", "[log]\n", "[log]\nreserve_mb = 0.0\n", "log.reserve_mb", "1 .. ",
+    {"NothingReserved", "[log]\n", "[log]\nreserve_mb = 0.0\n", "log.reserve_mb", "0.1 .. ",
      "reserve_mb = 0.0"},
     {"LessThanNothingFree", "[log]\n", "[log]\nkeep_free_mb = -1.0\n", "log.keep_free_mb", "0 .. ",
      "keep_free_mb = -1.0"},

@@ -156,17 +156,19 @@ class RunLog(DaemonRuns):
     @in_real_time
     def test_a_disk_that_fills_in_mid_run_is_told_and_loses_nothing(self):
         runs = self.small_disk(24)
-        self.start_daemon(*SMALL, "--state-dir", self.folder / "state")
+        self.start_daemon(*SMALL, "--set", "log.reserve_mb=0.3", "--state-dir",
+                          self.folder / "state")
         self.arm()
-        self.operate("run", self.experiment(doublet("full", 80.0)))
+        self.operate("run", self.experiment(doublet("full", 70.0)))
         self.wait_for_state("Running")
         filler = runs / "filler"
         with contextlib.suppress(OSError), open(filler, "wb", buffering=0) as file:
             while True:
                 file.write(bytes(4096))
-        log = self.wait_for_log(ok=False, within_s=70)  # the reserved megabyte is 45 s of records
+        log = self.wait_for_log(ok=False)
         self.assertIn("No space left", log["error"])
-        self.wait_for_line("its records wait")  # what was reserved for this run is used up
+        # What was reserved for this run is used up: 0.3 MB are 13 to 25 s of records.
+        self.wait_for_line("its records wait", within_s=55)
         self.assertEqual(self.status()["state"], "Running", "the run goes on")
         time.sleep(1.0)
         filler.unlink()
