@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/run_label.h"

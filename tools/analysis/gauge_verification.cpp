@@ -13,6 +13,7 @@
 #include "model/units.h"
 #include "tools/analysis/gauge_placing.h"
 #include "tools/analysis/parametric_study.h"
+#include "tools/plot/picture_style.h"
 
 namespace flexarm {
 namespace {
