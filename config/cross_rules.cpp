@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "config/derivation/sensor_scales.h"
 #include "estimator/polynomial_fit.h"
 #include "model/problem_list.h"
 
@@ -146,9 +146,7 @@ void CheckCounters(const RigConfig& c, ProblemLog* log, std::vector<Problem>* ou
   std::size_t row = 0;
   for (std::size_t i = 0; i < c.sensors.encoder.size(); ++i) {
     const EncoderConfig& e = c.sensors.encoder[i];
-    const double half_range =
-        std::ldexp(2.0 * std::numbers::pi / e.counts_per_turn, e.counter_bits - 1);
-    const double rate = half_range / c.loop.period_s();
+    const double rate = AmbiguousRate_rad_s(e, c.loop.period_s());
     if (rate < slowest) row = i;
     slowest = std::min(slowest, rate);
   }
@@ -195,12 +193,6 @@ void CheckAnglesAndTorques(const RigConfig& c, ProblemLog* log, std::vector<Prob
   }
 }
 
-// The largest strain that the channel can show on both sides of zero.
-double FullScaleStrain(const SensorConfig& sensors, const StrainChannelConfig& channel) {
-  const double counts = sensors.strain_input.highest_count() - std::abs(channel.offset_counts);
-  return counts * sensors.strain_input.volts_per_count() / std::abs(channel.gain_v_per_unit);
-}
-
 void CheckStrainLimits(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sensors.strain", "sensors.strain_input"})) return;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -222,12 +214,7 @@ void CheckStrainLimits(const RigConfig& c, ProblemLog* log, std::vector<Problem>
 
 void CheckStrainJudgement(const RigConfig& c, ProblemLog* log, std::vector<Problem>* out) {
   if (!log->Clear({"sensors.strain", "sensors.strain_input"})) return;
-  double noise = 0.0;  // largest standard deviation of a channel, at least that of the quantisation
-  for (const StrainChannelConfig& s : c.sensors.strain) {
-    const double counts = std::max(1.0, c.sensors.strain_input.noise_counts);
-    const double volts = counts * c.sensors.strain_input.volts_per_count();
-    noise = std::max(noise, volts / std::abs(s.gain_v_per_unit));
-  }
+  const double noise = StrainNoise(c.sensors);
   const auto require = [&](const char* key, double value) {
     if (!log->Clear({key}) || value >= 4.0 * noise) return;
     out->push_back({key, NumberText(value),

@@ -54,24 +54,18 @@ toml::array ArrayOf(const std::vector<double>& values) {
   return array;
 }
 
-std::string KeyLine(const DerivedValue& derived) {
-  std::string text;
-  if (derived.is_list) {
-    text = ValueText(ArrayOf(derived.value));
-  } else if (derived.is_whole) {
-    text = std::to_string(std::lround(derived.value.front()));
-  } else {
-    text = ValueText(toml::value<double>(derived.value.front()));
-  }
-  return derived.key + " = " + text + "\n";
-}
-
 // The section that the key belongs to is there: a section that is missing as a whole is reported.
 bool HasSection(const toml::table& document, const std::string& key) {
   return document.get_as<toml::table>(key.substr(0, key.find('.'))) != nullptr;
 }
 
 }  // namespace
+
+std::string TomlOf(const DerivedValue& derived) {
+  if (derived.is_list) return ValueText(ArrayOf(derived.value));
+  if (derived.is_whole) return std::to_string(std::lround(derived.value.front()));
+  return ValueText(toml::value<double>(derived.value.front()));
+}
 
 DerivedKeys AddDerivedKeys(toml::table* document) {
   const auto absent = [document](const std::string& key) {
@@ -88,7 +82,7 @@ DerivedKeys AddDerivedKeys(toml::table* document) {
   std::string text;
   for (const DerivedValue& value : *derived) {
     if (!absent(value.key)) continue;
-    text += KeyLine(value);
+    text += value.key + " = " + TomlOf(value) + "\n";
     keys.added.push_back(value);
   }
   Merge(document, ParseToml(text, std::string(kDerivedSource)));

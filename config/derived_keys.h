@@ -13,6 +13,9 @@ namespace flexarm {
 /// Source name of the values that were derived.
 inline constexpr std::string_view kDerivedSource = "derived";
 
+/// The value as TOML.
+std::string TomlOf(const DerivedValue& derived);
+
 /// What became of the derivable keys that a document leaves out.
 struct DerivedKeys {
   std::vector<DerivedValue> added;  ///< now in the document

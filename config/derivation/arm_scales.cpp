@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <limits>
 
+#include "config/derivation/sensor_scales.h"
 #include "estimator/nominal_model.h"
 #include "estimator/root_strain.h"
 #include "model/beam/link_modes.h"
-#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -21,10 +21,7 @@ constexpr double kLeastFriction = 1e-3;  // of the torque limit
 double FullScale(const SensorConfig& sensors, int link) {
   double least = std::numeric_limits<double>::infinity();
   for (const StrainChannelConfig& gauge : sensors.strain) {
-    if (gauge.link != link) continue;
-    const double counts = sensors.strain_input.highest_count() - std::abs(gauge.offset_counts);
-    least = std::min(
-        least, counts * sensors.strain_input.volts_per_count() / std::abs(gauge.gain_v_per_unit));
+    if (gauge.link == link) least = std::min(least, FullScaleStrain(sensors, gauge));
   }
   return least;
 }
@@ -52,16 +49,6 @@ double ModalNoise_m(const SensorConfig& sensors, const LinkParameters& link, con
     information += counts_per_m * counts_per_m;
   }
   return counts / std::sqrt(information);
-}
-
-double AmbiguousRate_rad_s(const TuningBasis& basis) {
-  double slowest = std::numeric_limits<double>::infinity();
-  for (const EncoderConfig& encoder : basis.sensors.encoder) {
-    const double half_range_rad =
-        std::ldexp(kTwoPi / encoder.counts_per_turn, encoder.counter_bits - 1);
-    slowest = std::min(slowest, half_range_rad / basis.period_s);
-  }
-  return slowest;
 }
 
 }  // namespace
@@ -92,7 +79,11 @@ ArmScales ScalesOf(const TuningBasis& basis) {
   for (std::size_t i = 0; i < 2; ++i) {
     scales.torsion_rad[i] = scales.torque_nm[i] / arm.joint[i].stiffness_nm_per_rad;
   }
-  scales.ambiguous_rate_rad_s = AmbiguousRate_rad_s(basis);
+  scales.ambiguous_rate_rad_s = std::numeric_limits<double>::infinity();
+  for (const EncoderConfig& encoder : basis.sensors.encoder) {
+    scales.ambiguous_rate_rad_s =
+        std::min(scales.ambiguous_rate_rad_s, AmbiguousRate_rad_s(encoder, basis.period_s));
+  }
   return scales;
 }
 

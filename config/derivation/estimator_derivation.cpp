@@ -3,6 +3,7 @@
 #include <set>
 
 #include "config/derivation/derivation_parts.h"
+#include "config/derivation/sensor_scales.h"
 #include "model/units.h"
 
 namespace flexarm {
@@ -27,17 +28,6 @@ int FittedModes(const SensorConfig& sensors) {
     if (positions.size() < 2) return 1;
   }
   return 2;
-}
-
-// Standard deviation of the strain that a gauge shows at rest, the larger of the rig.
-double StrainNoise(const SensorConfig& sensors) {
-  double noise = 0.0;
-  for (const StrainChannelConfig& gauge : sensors.strain) {
-    const double counts = std::max(1.0, sensors.strain_input.noise_counts);
-    noise = std::max(
-        noise, counts * sensors.strain_input.volts_per_count() / std::abs(gauge.gain_v_per_unit));
-  }
-  return noise;
 }
 
 double CountsPerRad(const SensorConfig& sensors, int counter) {

@@ -37,14 +37,6 @@ std::string TextOf(const std::vector<RigSection>& sections) {
   return text;
 }
 
-std::string ValueOf(const DerivedValue& derived) {
-  if (derived.is_whole) return TomlNumber(derived.value.front()).substr(0, 1);
-  if (!derived.is_list) return TomlNumber(derived.value.front());
-  std::string text;
-  for (const double value : derived.value) text += (text.empty() ? "" : ", ") + TomlNumber(value);
-  return "[" + text + "]";
-}
-
 // Adds to each section the keys that are derived for it.
 void AddDerived(const TunedValues& tuned, std::vector<RigSection>* sections) {
   toml::table document = ParseToml(TextOf(*sections), kName);
@@ -56,8 +48,8 @@ void AddDerived(const TunedValues& tuned, std::vector<RigSection>* sections) {
                      [&header](const RigSection& each) { return each.header == header; });
     const auto found = tuned.find(derived.key);
     section->Add(
-        derived.key.substr(dot + 1), found == tuned.end() ? ValueOf(derived) : found->second,
-        found == tuned.end() ? "derived: " + derived.how : "tuned; derived: " + ValueOf(derived));
+        derived.key.substr(dot + 1), found == tuned.end() ? TomlOf(derived) : found->second,
+        found == tuned.end() ? "derived: " + derived.how : "tuned; derived: " + TomlOf(derived));
   }
 }
 
@@ -78,7 +70,8 @@ void RigSection::Add(std::string key, double value, std::string source) {
 std::string NewRigText(const ArmDescription& arm, const TunedValues& tuned) {
   std::vector<RigSection> sections = AllSections(arm);
   AddDerived(tuned, &sections);
-  return "# Written by `flexarm config new`. SI units, named in the keys; joint 1 is the shoulder, "
+  return std::string(kNewRigMark) +
+         ". SI units, named in the keys; joint 1 is the shoulder, "
          "in a\n# pair the first number is its own or link 1's. Angles are counter-clockwise "
          "positive, torques at\n# the gearbox output.\n#\n# Sources: \"given\" by the owner; "
          "\"derived\" from that (docs/theory/derivation.md): a line that is\n# removed follows the "

@@ -8,6 +8,9 @@
 
 namespace flexarm {
 
+/// First words of the text of a new config.
+inline constexpr const char* kNewRigMark = "# Written by `flexarm config new`";
+
 /// Values that a search found, by dotted key, as TOML, in place of the derived ones.
 using TunedValues = std::map<std::string, std::string>;
 

@@ -1,34 +1,11 @@
 #include "controller/design/design_at_payload.h"
 
+#include "controller/design/straight_arm_model.h"
 #include "estimator/kalman_design.h"
-#include "estimator/nominal_model.h"
-#include "model/math/dense_decompositions.h"
 #include "model/math/discretize.h"
-#include "model/math/library_math.h"
-#include "model/rigid_joint/rigid_joint_arm.h"
 
 namespace flexarm {
 namespace {
-
-// The arm with rigid joints at rest, its links straight: M q'' + D q' + K q = [u; 0].
-NominalModel ModelAt(const RigidJointArm& arm, double payload_kg, double theta2_rad) {
-  constexpr Eigen::Index n = RigidJointArm::kDof;
-  const RigidJointArm::Vector q = theta2_rad * RigidJointArm::Vector::Unit(1);
-  NominalModel model{
-      .layout = kR12,
-      .M = arm.At<LibraryMath>(arm.Outboard(payload_kg), q, RigidJointArm::Vector::Zero()).M,
-      .D = arm.damping(),
-      .K = arm.stiffness(),
-      .A = Eigen::MatrixXd::Zero(2 * n, 2 * n),
-      .B = Eigen::MatrixXd::Zero(2 * n, 2),
-      .torque_mode_rad_s = {}};
-  const Eigen::MatrixXd M_inverse = model.M.llt().solve(Eigen::MatrixXd::Identity(n, n));
-  model.A.topRightCorner(n, n).setIdentity();
-  model.A.bottomLeftCorner(n, n) = -M_inverse * model.K;
-  model.A.bottomRightCorner(n, n) = -M_inverse * model.D;
-  model.B.bottomRows(n) = M_inverse.leftCols(2);
-  return model;
-}
 
 // The Kalman filter with the noises of `ekf-payload`.
 EstimatorConfig AsKalman(EstimatorConfig estimator) {
@@ -42,7 +19,7 @@ EstimatorConfig AsKalman(EstimatorConfig estimator) {
 Design DesignAtPayload(const ControlConfig& config, const Design& design, double payload_kg,
                        double theta2_rad) {
   const double period_s = config.loop.period_s();
-  const NominalModel model = ModelAt(MakeRigidJointArm(design), payload_kg, theta2_rad);
+  const NominalModel model = StraightArmModel(MakeRigidJointArm(design), payload_kg, theta2_rad);
   const DiscreteModel plant = ZeroOrderHold(model.A, model.B, period_s);
   const KalmanDesign filter =
       DesignKalmanFilter(model, config.arm, config.sensors, AsKalman(config.estimator), period_s);

@@ -4,30 +4,17 @@
 #include <utility>
 #include <vector>
 
-#include "model/math/dense_decompositions.h"
+#include "controller/design/straight_arm_model.h"
 #include "model/math/discretize.h"
-#include "model/math/library_math.h"
 #include "model/math/riccati.h"
 
 namespace flexarm {
 namespace {
 
-// Linear model at rest with straight links: M q'' + D q' + K q = [u; 0].
 DiscreteModel SampledAt(const RigidJointArm& arm, double payload_kg, double theta2_rad,
                         double period_s) {
-  constexpr Eigen::Index n = RigidJointArm::kDof;
-  const RigidJointArm::Vector rest = RigidJointArm::Vector::Zero();
-  const RigidJointArm::Vector q = theta2_rad * RigidJointArm::Vector::Unit(1);
-  const Eigen::MatrixXd mass = arm.At<LibraryMath>(arm.Outboard(payload_kg), q, rest).M;
-  const Eigen::MatrixXd stiffness = arm.stiffness(), damping = arm.damping();
-  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(n, n);
-  const Eigen::LLT<Eigen::MatrixXd> M(mass);
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n), B = Eigen::MatrixXd::Zero(2 * n, 2);
-  A.topRightCorner(n, n).setIdentity();
-  A.bottomLeftCorner(n, n) = -M.solve(stiffness);
-  A.bottomRightCorner(n, n) = -M.solve(damping);
-  B.bottomRows(n) = M.solve(I).leftCols<2>();
-  return ZeroOrderHold(A, B, period_s);
+  const NominalModel model = StraightArmModel(arm, payload_kg, theta2_rad);
+  return ZeroOrderHold(model.A, model.B, period_s);
 }
 
 }  // namespace

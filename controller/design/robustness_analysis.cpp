@@ -300,8 +300,8 @@ double Edge(double stable, double end, const Radius& radius) {
 
 // The design that controls the arm with this payload at this elbow angle: a law that follows the
 // payload has found it.
-Design DesignFor(const ControlConfig& config, const Design& design, double payload_kg,
-                 double theta2_deg) {
+Design DesignInCase(const ControlConfig& config, const Design& design, double payload_kg,
+                    double theta2_deg) {
   if (!design.scheduled) return design;
   return DesignAtPayload(config, design, payload_kg, RadFromDeg(theta2_deg));
 }
@@ -349,7 +349,7 @@ RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& 
   for (const double payload : payloads) {
     for (const double theta2_deg : kElbow_deg) {
       const Plant plant = PlantAt(config, payload, theta2_deg);
-      const Design own = DesignFor(config, design, payload, theta2_deg);
+      const Design own = DesignInCase(config, design, payload, theta2_deg);
       const Loop loop(config, own, plant);
       for (const double gain : kGains) {
         robustness.cases.push_back({.payload_kg = payload,
@@ -361,7 +361,7 @@ RobustnessAnalysis AnalyzeRobustness(const ControlConfig& config, const Design& 
     }
   }
   const Plant nominal = PlantAt(config, own_kg, 0.0);
-  const Design own = DesignFor(config, design, own_kg, 0.0);
+  const Design own = DesignInCase(config, design, own_kg, 0.0);
   robustness.margins = MarginsOf(Loop(config, own, nominal));
   return robustness;
 }

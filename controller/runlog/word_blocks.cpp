@@ -15,10 +15,10 @@ int LevelOf(Packing packing) { return packing == Packing::kFast ? 3 : 9; }
 std::uint64_t Folded(std::uint64_t difference) {
   return difference << 1 ^ (0 - (difference >> 63));
 }
-// What the word of a row is expected to be, from the rows before it in its block. Differences of
-// doubles of one exponent are in order, and all sums wrap around: it need not be near to be right.
-std::uint64_t Expected(std::span<const std::uint64_t> words, std::size_t width, std::size_t row,
-                       const WordSource& source) {
+// Prediction of a word from earlier rows of its block. Doubles of one exponent differ as their bits
+// do, as integers; all sums wrap around, so that a bad prediction costs bytes, not correctness.
+std::uint64_t Predicted(std::span<const std::uint64_t> words, std::size_t width, std::size_t row,
+                        const WordSource& source) {
   if (row < source.rows_before) return 0;
   const auto before = [&](std::size_t rows) { return words[(row - rows) * width + source.word]; };
   if (!source.is_smooth || row < 3) return before(source.rows_before);
@@ -37,7 +37,7 @@ std::string WordBlocks::Pack(std::span<const std::uint64_t> words, Packing packi
     char* plane = planes.data() + word * kWordBytes * rows;
     for (std::size_t row = 0; row < rows; ++row) {
       const std::uint64_t folded =
-          Folded(words[row * width + word] - Expected(words, width, row, source));
+          Folded(words[row * width + word] - Predicted(words, width, row, source));
       for (std::size_t byte = 0; byte < kWordBytes; ++byte) {
         plane[byte * rows + row] = static_cast<char>(folded >> (8 * byte));
       }
@@ -65,7 +65,7 @@ bool WordBlocks::Unpack(std::string_view bytes, std::span<std::uint64_t> words) 
       for (std::size_t byte = 0; byte < kWordBytes; ++byte) {
         folded |= std::uint64_t{static_cast<unsigned char>(plane[byte * rows + row])} << (8 * byte);
       }
-      words[row * width + word] = Unfolded(folded) + Expected(words, width, row, source);
+      words[row * width + word] = Unfolded(folded) + Predicted(words, width, row, source);
     }
   }
   return true;

@@ -12,8 +12,8 @@ namespace flexarm {
 /// How much time a block may take to pack: a few microseconds a row, or twice that for 1 % less.
 enum class Packing { kFast, kSmall };
 
-/// What a word is expected to be: another one of `rows_before` rows before it; or, if it is
-/// smooth, what the parabola through its own last three values gives.
+/// Predictor of a word: the word `word` of the row `rows_before` rows earlier, or, if it is smooth,
+/// the parabola through its own last three values.
 struct WordSource {
   std::size_t word;
   std::size_t rows_before;  ///< at least 1
@@ -22,14 +22,14 @@ struct WordSource {
 
 /// Packs rows of 64-bit words into blocks, without loss. A block is unpacked by itself.
 ///
-/// A word is stored as its difference from what it is expected to be, both as integers; the
-/// sign is the lowest bit. So what is as expected is zero, and so are the upper bytes of what is
-/// near. The bytes of one significance of all rows stand together, which makes the zeros long, and
-/// zstd packs them.
+/// Delta coding: a word is stored as the difference from its prediction, both as integers, with the
+/// sign in the lowest bit, so that small differences have upper bytes of zero. The bytes of one
+/// significance of all rows stand together (byte transposition), and zstd compresses them.
 class WordBlocks {
  public:
-  /// @param sources  one for each word of a row. A source is the word itself or a later one: words
-  ///                 are unpacked from the last to the first.
+  /// @param sources  the predictor of each word of a row. It uses the same word or one that stands
+  ///                 later in the row, because Unpack decodes a row from its last word to its
+  ///                 first.
   explicit WordBlocks(std::vector<WordSource> sources) : sources_(std::move(sources)) {}
 
   std::size_t words_per_row() const { return sources_.size(); }

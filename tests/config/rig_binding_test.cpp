@@ -141,6 +141,7 @@ TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
   const EstimatorConfig set =
       HilWith({"estimator.process_force=[1, 2, 3, 4, 5, 6]",
                "estimator.rotor_extra_sigma_rad=[0.01, 0.02]",
+               "estimator.hub_extra_sigma_rad=[0.03, 0.04]",
                "estimator.modal_sigma_m=[0.01, 0.02, 0.03, 0.04]",
                "estimator.max_joint_rate_rad_s=15", "estimator.hub_rotor_limit_rad=0.11",
                "estimator.strain_family_limit=0.005", "estimator.strain_stuck_limit=0.006",
@@ -148,6 +149,7 @@ TEST(RigBinding, PutsEveryKeyOfTheEstimatorInItsField) {
           .estimator;
   EXPECT_EQ(set.process_force, (std::array{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
   EXPECT_EQ(set.rotor_extra_sigma_rad, (std::array{0.01, 0.02}));
+  EXPECT_EQ(set.hub_extra_sigma_rad, (std::array{0.03, 0.04}));
   EXPECT_EQ(set.modal_sigma_m, (std::array{0.01, 0.02, 0.03, 0.04}));
   EXPECT_EQ(set.max_joint_rate_rad_s, 15.0);
   EXPECT_EQ(set.hub_rotor_limit_rad, 0.11);

@@ -77,6 +77,20 @@ TEST(UnfittedMode, HasNoGainOfItsOwnInTheKalmanFilter) {
   EXPECT_DOUBLE_EQ(design.C(6, 15), share[1]);
 }
 
+// Both filters: the variance of uniform rounding, and what is added to it.
+TEST(HubEncoder, HasTheNoiseThatTheConfigAdds) {
+  EstimatorConfig config = OneMode();
+  config.hub_extra_sigma_rad = {2e-3, 3e-3};
+  const double rounding = kCount_rad * kCount_rad / 12.0;
+  const KalmanDesign design = DesignKalmanFilter(MakeNominalModel(ThesisRig(), kR12), ThesisRig(),
+                                                 FewSensors(), config, kPeriod_s);
+  EXPECT_DOUBLE_EQ(design.R(0), rounding + 4e-6);
+  EXPECT_DOUBLE_EQ(design.R(1), rounding + 9e-6);
+  const PayloadFilterConfig payload = PayloadFilterFor(ThesisRig(), FewSensors(), config);
+  EXPECT_DOUBLE_EQ(payload.output_sigma[0], std::sqrt(rounding + 4e-6));
+  EXPECT_DOUBLE_EQ(payload.output_sigma[1], std::sqrt(rounding + 9e-6));
+}
+
 // A filter of second order and the first-order one that stands for it delay slow motion equally:
 // -d(arg)/dw at w = 0 by differences.
 TEST(LagCorner, DelaysSlowMotionAsTheFilterDoes) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "config/new_rig/arm_description.h"
+#include "config/new_rig/rig_text.h"
 #include "controller/files/external_json.h"
 #include "controller/files/external_text.h"
 #include "tools/command_line/options.h"
@@ -16,8 +17,6 @@
 
 namespace flexarm {
 namespace {
-
-constexpr const char* kConfigMark = "# Written by `flexarm config new`";
 
 struct NewOptions {
   std::filesystem::path from;
@@ -83,7 +82,7 @@ void PrintText(const NewRigResult& result, const std::filesystem::path& file) {
 }
 
 int New(const NewOptions& options) {
-  const OutputRules rules = options.output.Rules("a new config", kConfigMark, {options.from});
+  const OutputRules rules = options.output.Rules("a new config", kNewRigMark, {options.from});
   CheckOutput(options.output.file, rules);
   ArmDescriptionReader reader(options.from);
   for (const auto& [key, value] : options.values) reader.Set(key, value);

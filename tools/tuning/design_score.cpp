@@ -1,9 +1,10 @@
 #include "tools/tuning/design_score.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
+#include <map>
+#include <string>
 
 #include "controller/design/design_controller.h"
 
@@ -12,25 +13,21 @@ namespace {
 
 constexpr double kNoDesign = -10.0;
 
-// Limits of the checks, and values with room.
+// Values of the margins with room.
 constexpr double kRoomDecay_per_s = 0.5;
-constexpr double kGainUp = 1.4, kRoomGainUp = 2.0;
-constexpr double kGainDown = 0.7, kRoomGainDown = 0.5;
-constexpr double kDelay_ms = 4.0, kRoomDelay_ms = 8.0;
+const std::map<std::string, double> kRoom = {
+    {"gain-margin-up", 2.0}, {"gain-margin-down", 0.5}, {"delay-margin-ms", 8.0}};
 
-double Share(double value, double limit, double room) { return (value - limit) / (room - limit); }
-
+// The least of the shares of the way from a check's limit to its value with room.
 double RobustnessScore(const RobustnessAnalysis& robustness, double period_s) {
   const double radius = robustness.worst_required().spectral_radius;
   if (!std::isfinite(radius)) return kNoDesign;
-  const LoopMargins& margins = robustness.margins;
-  const std::array<double, 4> shares = {
-      -std::log(std::max(radius, 1e-6)) / period_s / kRoomDecay_per_s,
-      Share(margins.gain_up, kGainUp, kRoomGainUp),
-      Share(margins.gain_down, kGainDown, kRoomGainDown),
-      Share(1e3 * margins.delay_s, kDelay_ms, kRoomDelay_ms)};
-  double least = 1.0;
-  for (const double share : shares) least = std::min(least, share);
+  double least = std::min(1.0, -std::log(std::max(radius, 1e-6)) / period_s / kRoomDecay_per_s);
+  for (const DesignCheck& check : ChecksOf(robustness)) {
+    const auto room = kRoom.find(check.name);
+    if (room == kRoom.end()) continue;
+    least = std::min(least, (check.value - check.limit) / (room->second - check.limit));
+  }
   return std::max(least, kNoDesign);
 }
 

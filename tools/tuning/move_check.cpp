@@ -1,13 +1,12 @@
 #include "tools/tuning/move_check.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 
 #include "controller/host/simulation.h"
 #include "controller/types/rejected_error.h"
+#include "controller/types/rounded_text.h"
 #include "model/units.h"
 #include "tools/sweep/random_moves.h"
 
@@ -77,10 +76,8 @@ double CountAtTip_m(const RigConfig& config, double reach_m) {
   return count_rad * reach_m;
 }
 
-std::string With(const char* what, double payload_kg) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "%s, with %.3g kg", what, payload_kg);
-  return text.data();
+std::string With(const std::string& what, double payload_kg) {
+  return what + ", with " + RoundedText(payload_kg, 3) + " kg";
 }
 
 /// How the moves with one payload end.
@@ -93,14 +90,14 @@ Ending EndingOf(const RigConfig& config, double payload_kg, std::uint64_t seed, 
   try {
     const SimulationResult result = SimulateMoves(config, payload_kg, seed);
     if (!result.completed) {
-      const std::string trip = std::string("it trips: ") + ToString(result.trip);
-      return {.error_m = 0.0, .problem = With(trip.c_str(), payload_kg)};
+      return {.error_m = 0.0,
+              .problem = With(std::string("it trips: ") + ToString(result.trip), payload_kg)};
     }
     const double error_m = TipError_m(config, result.metrics);
     if (error_m <= most_m) return {.error_m = error_m, .problem = {}};
-    std::array<char, 100> text{};
-    std::snprintf(text.data(), text.size(), "a move ends %.1f mm from its target", 1e3 * error_m);
-    return {.error_m = error_m, .problem = With(text.data(), payload_kg)};
+    const std::string end =
+        "a move ends " + RoundedText(1e3 * error_m, 1, true) + " mm from its target";
+    return {.error_m = error_m, .problem = With(end, payload_kg)};
   } catch (const std::exception& error) {
     return {.error_m = 0.0, .problem = With(error.what(), payload_kg)};
   }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "controller/types/rounded_text.h"
 #include "tools/tuning/move_check.h"
 #include "tools/tuning/tuning_search.h"
 
@@ -21,11 +21,7 @@ constexpr double kShareOfPermitted = 0.7;
 
 using Progress = std::function<void(const std::string&)>;
 
-std::string Rounded(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
+std::string Rounded(double value) { return RoundedText(value, 3); }
 
 std::vector<double> CheckedPayloads(const RigConfig& config) {
   const auto [least, most] = config.controller.payload_range_kg;

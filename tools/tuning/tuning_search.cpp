@@ -1,10 +1,10 @@
 #include "tools/tuning/tuning_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "controller/types/rounded_text.h"
 
 namespace flexarm {
 namespace {
@@ -27,11 +27,7 @@ const std::vector<Direction>& Directions() {
   return directions;
 }
 
-std::string NumberOf(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
+std::string NumberOf(double value) { return RoundedText(value, 3); }
 
 std::string ListOf(const std::vector<double>& values, bool is_list) {
   if (!is_list) return NumberOf(values.front());
