@@ -9,6 +9,7 @@
 #include "estimator/gauge_model.h"
 #include "estimator/kalman_design.h"
 #include "estimator/payload_filter.h"
+#include "estimator/state_estimator.h"
 #include "estimator/strain_fit.h"
 #include "estimator/unfitted_mode.h"
 #include "model/arm/arm_model.h"
@@ -112,6 +113,71 @@ TEST(LagCorner, DelaysSlowMotionAsTheFilterDoes) {
   StrainInputConfig first = second;
   first.filter_damping = 0.0;
   EXPECT_EQ(LagCorner_hz(first), 30.0);
+}
+
+// A measured combination of states is known better after a measurement than by it alone:
+// h P h' = 1 / (1 / s + 1 / r) < r, whatever the prior s.
+TEST(PayloadFilter, KnowsWhatTheFitOfOneModeReadsBetterThanItsNoise) {
+  PayloadFilterConfig config = PayloadFilterFor(ThesisRig(), FewSensors(), OneMode());
+  config.second_in_first = {-3.0, 2.0};  // as large as at the tip of a link
+  const PayloadFilter filter(RigidJointStepper(RigidJointArm(ThesisRig()), kPeriod_s, kGauge_hz),
+                             config);
+  const PayloadFilter::Covariance P = filter.CovarianceAfterRest();
+  for (std::size_t link = 0; link < 2; ++link) {
+    Eigen::VectorXd h = Eigen::VectorXd::Zero(PayloadFilter::kStates);
+    const auto first = static_cast<Eigen::Index>(12 + 2 * link);
+    h(first) = 1.0;
+    h(first + 1) = config.second_in_first[link];
+    const double sigma = config.output_sigma[4 + 2 * link];
+    EXPECT_LT(h.dot(P * h), sigma * sigma) << "link " << link + 1;
+    EXPECT_GT(h.dot(P * h), 0.0);
+  }
+}
+
+// Four of eight outputs: the same innovations weigh twice, so that 8 is expected again.
+TEST(PayloadFilter, ScalesTheNisToEightOutputs) {
+  PayloadFilterConfig few = PayloadFilterFor(ThesisRig(), FewSensors(), OneMode());
+  few.second_in_first = {};
+  PayloadFilterConfig all = few;
+  all.outputs = PayloadFilter::kAllGood;
+  const RigidJointStepper stepper(RigidJointArm(ThesisRig()), kPeriod_s, kGauge_hz);
+  PayloadFilter::Reading reading{.z = PayloadFilter::Outputs::Constant(1e-3), .good = few.outputs};
+  const double of_all = PayloadFilter(stepper, all).Update(PiecewiseTorque(), reading).nis;
+  const double of_few = PayloadFilter(stepper, few).Update(PiecewiseTorque(), reading).nis;
+  EXPECT_GT(of_all, 0.0);
+  EXPECT_DOUBLE_EQ(of_few, 2.0 * of_all);
+}
+
+// The second mode is estimated but not measured: it has no innovation that a fault could be seen
+// in.
+TEST(StateEstimator, AnUnfittedModeHasNoInnovation) {
+  const EstimatorConfig config = OneMode();
+  const KalmanDesign design = DesignKalmanFilter(MakeNominalModel(ThesisRig(), kR12), ThesisRig(),
+                                                 FewSensors(), config, kPeriod_s);
+  EstimatorConfig kalman = config;
+  kalman.kind = EstimatorKind::kKalman;
+  StateEstimator estimator(kalman,
+                           {.layout = kR12,
+                            .A = design.A,
+                            .B = design.B,
+                            .C = design.C,
+                            .L = design.L,
+                            .A_rate = design.A_rate,
+                            .B_rate = design.B_rate,
+                            .W = design.W,
+                            .P = design.P,
+                            .R = design.R},
+                           kPeriod_s, kStiffness);
+  DecodedCounters counters{};
+  counters.good = 0b0011;
+  FittedModes modes{};
+  modes.valid = {true, true};
+  estimator.Update(counters, modes, {0.0, 0.0});
+  StateEstimate estimate{};
+  for (int k = 0; k < 5; ++k) estimate = estimator.Update(counters, modes, {3.0, 1.0});
+  EXPECT_NE(estimate.innovation[4], 0.0);
+  EXPECT_EQ(estimate.innovation[5], 0.0);
+  EXPECT_EQ(estimate.innovation[7], 0.0);
 }
 
 // The elastic arm with 0.6 kg, measured by two hub encoders and the first mode's fit alone: the
