@@ -1,18 +1,19 @@
 #include "estimator/payload_filter.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
+#include "model/math/small_cholesky.h"
+
 namespace flexarm {
 namespace {
 
-constexpr int kMotion = Transition::kStates;  // q, q', phi_f
-constexpr int kPayload = kMotion;
-constexpr int kFriction = kMotion + 1;
+constexpr int kMotion = PayloadCovariance::kMotion;  // q, q', phi_f
+constexpr int kPayload = PayloadCovariance::kPayload;
+constexpr int kFriction = PayloadCovariance::kFriction;
 
 constexpr double kPayloadProbe_kg = 1e-3;
 constexpr double kNoiseFloor = 1e-13;  // keeps P definite, far below every physical noise
@@ -55,6 +56,13 @@ double BeyondBand(double x, double half_width) noexcept {
 }
 
 double Square(double x) noexcept { return x * x; }
+
+// Without the change of the last `frozen` states.
+PayloadCovariance::Vector Learned(const PayloadCovariance::Vector& dx, int frozen) noexcept {
+  PayloadCovariance::Vector learned = dx;
+  learned.segment(kPayload, frozen).setZero();
+  return learned;
+}
 
 // Factor on the variance of an output beyond the gate.
 double Loosening(double sigmas, double gate_sigmas) noexcept {
@@ -157,50 +165,7 @@ const PayloadFilter::Estimate& PayloadFilter::Update(const PiecewiseTorque& torq
   estimate_.nis = 0.0;
   estimate_.innovation.setZero();
   const std::uint32_t good = reading.good & config_.outputs;
-  if (good != 0) {
-    const Eigen::Vector2d torsion = Torsion(torque);
-    Outputs y = reading.z;
-    y.segment<2>(2) -= torsion;
-    const MotionVector x = Stacked(estimate_.state);
-    Outputs e;
-    Gain PHt;
-    for (int i = 0; i < kOutputs; ++i) {
-      const Row& row = row_[static_cast<std::size_t>(i)];
-      e[i] = (good >> i & 1u) == 0 ? 0.0 : y[i] - (x[row.state] + row.share * x[row.second]);
-      if (i < 4) e[i] = BeyondBand(e[i], config_.count_dead_band_rad[static_cast<std::size_t>(i)]);
-      PHt.col(i) = P_.col(row.state) + row.share * P_.col(row.second);
-    }
-    Eigen::Matrix<double, kOutputs, kOutputs> S;
-    for (int i = 0; i < kOutputs; ++i) {
-      const Row& row = row_[static_cast<std::size_t>(i)];
-      S.row(i) = PHt.row(row.state) + row.share * PHt.row(row.second);
-    }
-    Outputs R = OutputVariance(y, e, S.diagonal(), good);
-    for (int i = 0; i < kOutputs; ++i) {
-      if ((good >> i & 1u) == 0) R[i] = kUnreadVariance;
-    }
-    S.diagonal() += R;
-    const Eigen::LLT<Eigen::Matrix<double, kOutputs, kOutputs>> S_llt(S);
-    const Gain K = S_llt.solve(PHt.transpose()).transpose();
-    const Outputs weighted = S_llt.solve(e);
-    estimate_.nis = nis_scale_ * e.dot(weighted);
-    estimate_.innovation = e;
-    mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
-    for (Hypothesis& hypothesis : hypotheses) {
-      hypothesis.innovation = e;
-      for (int i = 0; i < kOutputs; ++i) {
-        if ((good >> i & 1u) == 0) continue;
-        const Row& row = row_[static_cast<std::size_t>(i)];
-        hypothesis.innovation[i] -=
-            hypothesis.apart[row.state] + row.share * hypothesis.apart[row.second];
-        if (i == 2 || i == 3)
-          hypothesis.innovation[i] -= Torsion(hypothesis.torque)[i - 2] - torsion[i - 2];
-      }
-      const Outputs rival_weighted = S_llt.solve(hypothesis.innovation);
-      hypothesis.nis = nis_scale_ * hypothesis.innovation.dot(rival_weighted);
-    }
-    Correct(K, e, R, hypotheses);
-  }
+  if (good != 0) CorrectByOutputs(torque, reading.z, good, hypotheses);
   estimate_.tip_innovation_m_s2 = 0.0;
   if (reading.tip_m_s2) CorrectByTip(*reading.tip_m_s2, torque, hypotheses);
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));
@@ -247,39 +212,38 @@ void PayloadFilter::Predict(const PiecewiseTorque& torque,
       TransitionOver(stepper_, payload_kg, 0.5 * (start.q + end.q), 0.5 * (start.v + end.v),
                      (end.v - start.v) / stepper_.period_s());
 
-  Matrix F = Matrix::Identity();
-  F.topLeftCorner<kMotion, kMotion>() = transition.Phi;
-  F.col(kPayload).head<kMotion>() =
+  PayloadCovariance::Change change;
+  change.by_driving.leftCols<12>() = transition.by_motion;
+  change.by_driving.col(12) =
       (Stacked(Through(torque, payload_kg + kPayloadProbe_kg, friction_nm)) - x) / kPayloadProbe_kg;
   for (int i = 0; i < 2; ++i) {
     const auto j = static_cast<std::size_t>(i);
     friction_nm[j] += config_.friction_probe_nm[j];
-    F.col(kFriction + i).head<kMotion>() =
+    change.by_driving.col(13 + i) =
         (Stacked(Through(torque, payload_kg, friction_nm)) - x) / config_.friction_probe_nm[j];
     friction_nm[j] = estimate_.friction_nm[j];
   }
+  change.gauge_kept = transition.gauge_kept;
   estimate_.state = end;
-  const Matrix FP = F.lazyProduct(P_);
-  P_ = FP.lazyProduct(F.transpose());
-  AddProcessNoise(transition);
+  PropagateCovariance(change, transition);
 
   const std::array<double, 2> mean_nm = torque.mean_nm();
   for (Hypothesis& hypothesis : hypotheses) {
     const std::array<double, 2> other_nm = hypothesis.torque.mean_nm();
     const Eigen::Vector2d more(other_nm[0] - mean_nm[0], other_nm[1] - mean_nm[1]);
-    const Vector apart = F.lazyProduct(hypothesis.apart);
-    hypothesis.apart = apart;
+    hypothesis.apart = change.Of(hypothesis.apart);
     hypothesis.apart.head<kMotion>() += transition.G.leftCols<2>().lazyProduct(more);
   }
 }
 
-void PayloadFilter::AddProcessNoise(const Transition& transition) noexcept {
-  const double s = std::clamp(mean_nis_ / kOutputs, 1.0, kMostFading);
-  Eigen::Matrix<double, kMotion, RigidJointArm::kDof> G = transition.G;
+void PayloadFilter::PropagateCovariance(const PayloadCovariance::Change& change,
+                                        const Transition& transition) noexcept {
+  const double s = std::clamp(mean_nis_ / kOutputs, 1.0, kMostFading), root = std::sqrt(s);
+  Eigen::Matrix<double, kMotion, RigidJointArm::kDof> N = transition.G;
   for (int i = 0; i < RigidJointArm::kDof; ++i) {
-    G.col(i) *= config_.process_force[static_cast<std::size_t>(i)];
+    N.col(i) *= root * config_.process_force[static_cast<std::size_t>(i)];
   }
-  P_.topLeftCorner<kMotion, kMotion>() += s * G.lazyProduct(G.transpose());
+  PayloadCovariance::Propagate(change, N, &P_);
   P_.diagonal().head<kMotion>().array() += kNoiseFloor;
   P_(kPayload, kPayload) += Square(config_.payload_walk_kg * s);
   for (int i = 0; i < 2; ++i) {
@@ -287,6 +251,66 @@ void PayloadFilter::AddProcessNoise(const Transition& transition) noexcept {
     P_(kFriction + i, kFriction + i) +=
         Square(config_.friction_walk_nm[static_cast<std::size_t>(i)]);
   }
+}
+
+void PayloadFilter::CorrectByOutputs(const PiecewiseTorque& torque, const Outputs& z,
+                                     std::uint32_t good,
+                                     std::span<Hypothesis> hypotheses) noexcept {
+  const Eigen::Vector2d torsion = Torsion(torque);
+  Outputs y = z;
+  y.segment<2>(2) -= torsion;
+  const MotionVector x = Stacked(estimate_.state);
+  Outputs e;
+  PayloadCovariance::ByOutput<kOutputs> V;  // P H'
+  for (int i = 0; i < kOutputs; ++i) {
+    const Row& row = row_[static_cast<std::size_t>(i)];
+    e[i] = (good >> i & 1u) == 0 ? 0.0 : y[i] - (x[row.state] + row.share * x[row.second]);
+    if (i < 4) e[i] = BeyondBand(e[i], config_.count_dead_band_rad[static_cast<std::size_t>(i)]);
+    V.col(i) = P_.col(row.state) + row.share * P_.col(row.second);
+  }
+  Eigen::Matrix<double, kOutputs, kOutputs> S;
+  for (int i = 0; i < kOutputs; ++i) {
+    const Row& row = row_[static_cast<std::size_t>(i)];
+    S.row(i) = V.row(row.state) + row.share * V.row(row.second);
+  }
+  Outputs R = OutputVariance(y, e, S.diagonal(), good);
+  for (int i = 0; i < kOutputs; ++i) {
+    if ((good >> i & 1u) == 0) R[i] = kUnreadVariance;
+  }
+  S.diagonal() += R;
+  const SmallCholesky<kOutputs> S_factor(S);
+  const auto whitened = [&S_factor](Outputs innovation) {
+    S_factor.SolveLower(&innovation);
+    return innovation;
+  };
+  const Outputs w = whitened(e);
+  estimate_.nis = nis_scale_ * w.squaredNorm();
+  estimate_.innovation = e;
+  mean_nis_ = kNisMemory * mean_nis_ + (1.0 - kNisMemory) * std::min(estimate_.nis, kNisBound);
+
+  const int frozen = Frozen();
+  // V <- P H' L'^-1: the gain times L.
+  for (int i = 0; i < kOutputs; ++i) {
+    for (int j = 0; j < i; ++j) V.col(i) -= S_factor.L()(i, j) * V.col(j);
+    V.col(i) /= S_factor.L()(i, i);
+  }
+  for (Hypothesis& hypothesis : hypotheses) {
+    const Eigen::Vector2d more = Torsion(hypothesis.torque) - torsion;
+    hypothesis.innovation = e;
+    for (int i = 0; i < kOutputs; ++i) {
+      if ((good >> i & 1u) == 0) continue;
+      const Row& row = row_[static_cast<std::size_t>(i)];
+      hypothesis.innovation[i] -=
+          hypothesis.apart[row.state] + row.share * hypothesis.apart[row.second];
+      if (i == 2 || i == 3) hypothesis.innovation[i] -= more[i - 2];
+    }
+    const Outputs rival = whitened(hypothesis.innovation);
+    hypothesis.nis = nis_scale_ * rival.squaredNorm();
+    hypothesis.apart += Learned(V.lazyProduct(rival - w), frozen);
+  }
+  Add(Learned(V.lazyProduct(w), frozen));
+  PayloadCovariance::Reduce(V, frozen, &P_);
+  P_(kPayload, kPayload) = std::min(P_(kPayload, kPayload), Square(config_.payload_max_sigma_kg));
 }
 
 // Of the readings; `spread` is that of the predicted outputs.
@@ -314,28 +338,6 @@ PayloadFilter::Outputs PayloadFilter::OutputVariance(const Outputs& y, const Out
   return R;
 }
 
-void PayloadFilter::Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance,
-                            std::span<Hypothesis> hypotheses) noexcept {
-  Gain K = optimal;
-  if (!learns_payload()) K.row(kPayload).setZero();
-  if (!learns_) K.bottomRows<2>().setZero();
-  for (Hypothesis& hypothesis : hypotheses)
-    hypothesis.apart += K.lazyProduct(hypothesis.innovation - innovation);
-  Add(K.lazyProduct(innovation));
-  // P <- (I - K H) P (I - K H)' + K R K', valid for any K.
-  Matrix J = Matrix::Identity();
-  for (int i = 0; i < kOutputs; ++i) {
-    const Row& row = row_[static_cast<std::size_t>(i)];
-    J.col(row.state) -= K.col(i);
-    J.col(row.second) -= row.share * K.col(i);
-  }
-  const Matrix JP = J.lazyProduct(P_);
-  Gain KR = K;
-  for (int i = 0; i < kOutputs; ++i) KR.col(i) *= variance[i];
-  P_ = JP.lazyProduct(J.transpose()) + KR.lazyProduct(K.transpose());
-  P_(kPayload, kPayload) = std::min(P_(kPayload, kPayload), Square(config_.payload_max_sigma_kg));
-}
-
 void PayloadFilter::CorrectByTip(double reading_m_s2, const PiecewiseTorque& torque,
                                  std::span<Hypothesis> hypotheses) noexcept {
   const std::array<double, 2> torque_nm = torque.last_nm();
@@ -347,7 +349,7 @@ void PayloadFilter::CorrectByTip(double reading_m_s2, const PiecewiseTorque& tor
   Vector H = Vector::Zero();
   H.head<2 * RigidJointArm::kDof>() = shown.by_motion;
   H[kPayload] = shown.by_payload;
-  H.tail<2>() << shown.by_friction[0], shown.by_friction[1];
+  H.segment<2>(kFriction) << shown.by_friction[0], shown.by_friction[1];
 
   const double e = reading_m_s2 - shown.m_s2;
   const Vector PHt = P_.lazyProduct(H);
@@ -355,9 +357,9 @@ void PayloadFilter::CorrectByTip(double reading_m_s2, const PiecewiseTorque& tor
   double R = Square(config_.tip_sigma_m_s2);
   const double sigmas = std::fabs(e) / std::sqrt(spread + R);
   if (sigmas > config_.gate_sigmas) R *= Loosening(sigmas, config_.gate_sigmas);
-  Vector K = PHt / (spread + R);
-  if (!learns_payload()) K[kPayload] = 0.0;
-  if (!learns_) K.tail<2>().setZero();
+  const PayloadCovariance::ByOutput<1> V = PHt / std::sqrt(spread + R);
+  const int frozen = Frozen();
+  const Vector K = Learned(PHt / (spread + R), frozen);
   estimate_.tip_innovation_m_s2 = e;
   for (Hypothesis& hypothesis : hypotheses) {
     const std::array<double, 2> other_nm = hypothesis.torque.last_nm();
@@ -368,10 +370,7 @@ void PayloadFilter::CorrectByTip(double reading_m_s2, const PiecewiseTorque& tor
     hypothesis.apart -= K * shown_apart;
   }
   Add(K * e);
-  // Joseph's form, as in Correct.
-  const Matrix J = Matrix::Identity() - K.lazyProduct(H.transpose());
-  const Matrix JP = J.lazyProduct(P_);
-  P_ = JP.lazyProduct(J.transpose()) + (R * K).lazyProduct(K.transpose());
+  PayloadCovariance::Reduce(V, frozen, &P_);
 }
 
 bool PayloadFilter::learns_payload() const noexcept {
@@ -379,6 +378,8 @@ bool PayloadFilter::learns_payload() const noexcept {
   return learns_ && (std::fabs(v[0]) >= config_.payload_min_rate_rad_s ||
                      std::fabs(v[1]) >= config_.payload_min_rate_rad_s);
 }
+
+int PayloadFilter::Frozen() const noexcept { return !learns_ ? 3 : learns_payload() ? 0 : 1; }
 
 void PayloadFilter::Add(const Vector& dx) noexcept {
   estimate_.state.q += dx.head<6>();

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "estimator/payload_covariance.h"
 #include "estimator/piecewise_torque.h"
 #include "estimator/tip_output.h"
 #include "model/rigid_joint/rigid_joint_step.h"
@@ -64,18 +65,18 @@ struct PayloadFilterConfig {
 ///      squared (NIS), so that with a wrong model old data count less;
 ///   3. the variance of rotor 2 is raised while joint 2 shows backlash; one or two outputs beyond
 ///      the gate get less weight; three or more mean a wrong model, and all keep their weight;
-///   4. update with the payload's gain row zero at rest, and the friction's too after EndMove. That
-///      gain is not the optimal one, so the covariance follows by Joseph's form;
+///   4. update with the payload's gain row zero at rest, and the friction's too after EndMove: the
+///      covariance follows for that gain (PayloadCovariance::Reduce);
 ///   5. if the tip's acceleration was read, it updates the result of (4), gated and in the same
 ///      form. It is not part of NIS and innovation.
 /// Source: docs/theory/payload.md 2. Real-time: all but the constructor is safe; every loop is
 /// bounded.
 class PayloadFilter {
  public:
-  static constexpr int kStates = 19;
+  static constexpr int kStates = PayloadCovariance::kStates;
   static constexpr int kOutputs = 8;
   using Outputs = Eigen::Matrix<double, kOutputs, 1>;
-  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+  using Covariance = PayloadCovariance::Matrix;
 
   /// Measurements at the end of a sample.
   struct Reading {
@@ -99,10 +100,10 @@ class PayloadFilter {
   /// First-order copy of this filter for another delay hypothesis: same gains and readings, another
   /// torque. The states differ by the effect of the torques that differed.
   struct Hypothesis {
-    PiecewiseTorque torque;                   ///< during the sample
-    Eigen::Matrix<double, kStates, 1> apart;  ///< its state minus this filter's
-    Outputs innovation;                       ///< of the last reading
-    double nis;  ///< of that innovation, by the covariance of this filter
+    PiecewiseTorque torque;           ///< during the sample
+    PayloadCovariance::Vector apart;  ///< its state minus this filter's
+    Outputs innovation;               ///< of the last reading
+    double nis;                       ///< of that innovation, by the covariance of this filter
   };
 
   PayloadFilter(RigidJointStepper stepper, const PayloadFilterConfig& config);
@@ -150,9 +151,7 @@ class PayloadFilter {
   double mean_nis() const noexcept { return mean_nis_; }
 
  private:
-  using Vector = Eigen::Matrix<double, kStates, 1>;
-  using Matrix = Covariance;
-  using Gain = Eigen::Matrix<double, kStates, kOutputs>;
+  using Vector = PayloadCovariance::Vector;
 
   /// Row of the output matrix: x[state] + share x[second].
   struct Row {
@@ -165,23 +164,25 @@ class PayloadFilter {
   void Add(const Vector& dx) noexcept;
   Eigen::Vector2d Torsion(const PiecewiseTorque& torque) const noexcept;
   void Predict(const PiecewiseTorque& torque, std::span<Hypothesis> hypotheses) noexcept;
-  void AddProcessNoise(const Transition& transition) noexcept;
+  void PropagateCovariance(const PayloadCovariance::Change& change,
+                           const Transition& transition) noexcept;
   GaugedState Through(const PiecewiseTorque& torque, double payload_kg,
                       const std::array<double, 2>& friction_nm) const noexcept;
   Outputs OutputVariance(const Outputs& y, const Outputs& innovation, const Outputs& spread,
                          std::uint32_t good) noexcept;
-  void Correct(const Gain& optimal, const Outputs& innovation, const Outputs& variance,
-               std::span<Hypothesis> hypotheses) noexcept;
+  void CorrectByOutputs(const PiecewiseTorque& torque, const Outputs& z, std::uint32_t good,
+                        std::span<Hypothesis> hypotheses) noexcept;
   void CorrectByTip(double reading_m_s2, const PiecewiseTorque& torque,
                     std::span<Hypothesis> hypotheses) noexcept;
   bool learns_payload() const noexcept;
+  int Frozen() const noexcept;  // how many states are not updated: PayloadCovariance::Reduce
 
   RigidJointStepper stepper_;
   PayloadFilterConfig config_;
   std::array<Row, kOutputs> row_;
   double nis_scale_;  // 8 over the outputs of the rig
   Estimate estimate_;
-  Matrix P_;
+  Covariance P_;
   double mean_nis_;
   bool learns_;
   double play_rad_;  // largest distance of rotor 2 from hub 2, decays slowly

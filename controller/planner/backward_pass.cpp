@@ -7,7 +7,6 @@ namespace flexarm {
 namespace {
 
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
-using Matrix12x2 = Eigen::Matrix<double, 12, 2>;
 using Matrix2x12 = Eigen::Matrix<double, 2, 12>;
 
 }  // namespace
@@ -24,10 +23,8 @@ void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const Pla
   for (std::size_t k = stages; k-- > 0;) {
     const PlanState middle = 0.5 * (track.x[k] + track.x[k + 1]);
     const PlanState mean_rate = (track.x[k + 1] - track.x[k]) / stepper.period_s();
-    const Transition transition = TransitionOver(stepper, payload_kg, middle.head<6>(),
-                                                 middle.tail<6>(), mean_rate.tail<6>());
-    const Matrix12 A = transition.Phi.topLeftCorner<12, 12>();
-    const Matrix12x2 B = transition.G.topLeftCorner<12, 2>();
+    const auto [A, B] = MotionTransitionOver(stepper, payload_kg, middle.head<6>(),
+                                             middle.tail<6>(), mean_rate.tail<6>());
 
     const Matrix12 VA = V.lazyProduct(A);
     const Matrix2x12 Q_ux = B.transpose().lazyProduct(VA);

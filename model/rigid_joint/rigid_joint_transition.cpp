@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <bit>
 
+#include "model/math/column_sum.h"
+
 namespace flexarm {
 namespace {
 
@@ -36,10 +38,36 @@ Slopes SlopesAt(const RigidJointArm& arm, const OutboardBody& body, const Vector
   return out;
 }
 
-}  // namespace
+// [Phi G] of a step or several: the columns of q and q', then those of the forces. phi_f depends on
+// itself by gauge_kept alone. kRows: 12, or 16 with phi_f.
+template <int kRows, int kForces>
+struct Steps {
+  static constexpr int kMoving = 2 * RigidJointArm::kDof;
+  static constexpr int kColumns = kMoving + kForces;
+  Eigen::Matrix<double, kRows, kColumns> of;
+  double gauge_kept;
 
-Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg, const Vector& q,
-                          const Vector& v, const Vector& a) noexcept {
+  // Phi <- Phi Phi, G <- G + Phi G. th1 acts on nothing, so its column stays.
+  void Double() noexcept {
+    Eigen::Matrix<double, kRows, kColumns> twice;
+    twice.col(0) = of.col(0);
+    for (int column = 1; column < kColumns; ++column) {
+      ColumnSum<kRows> sum;
+      if (column >= kMoving) sum.Add(1.0, &of(0, column));
+      for (int k = 0; k < kMoving; ++k) sum.Add(of(k, column), &of(0, k));
+      sum.WriteTo(&twice(0, column));
+      for (int row = kMoving; row < kRows; ++row) {
+        twice(row, column) += gauge_kept * of(row, column);
+      }
+    }
+    of = twice;
+    gauge_kept *= gauge_kept;
+  }
+};
+
+template <int kRows, int kForces>
+Steps<kRows, kForces> StepsOver(const RigidJointStepper& stepper, double payload_kg,
+                                const Vector& q, const Vector& v, const Vector& a) noexcept {
   constexpr Eigen::Index n = RigidJointArm::kDof;
   const RigidJointArm& arm = stepper.arm();
   const double h = stepper.step_s();
@@ -54,29 +82,41 @@ Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg, c
 
   const Matrix I = Matrix::Identity();
   const double half = 0.5 * h * h, share = stepper.gauge_share();
-  Transition step;
-  step.Phi.setZero();
-  step.Phi.topLeftCorner<n, n>() = I + half * by_q;
-  step.Phi.block<n, n>(0, n) = h * I + half * by_v;
-  step.Phi.block<n, n>(n, 0) = h * by_q;
-  step.Phi.block<n, n>(n, n) = I + h * by_v;
-  step.G.topRows<n>() = half * by_F;
-  step.G.middleRows<n>(n) = h * by_F;
-  // phi_f moves towards phi of the middle: the mean of the step's ends, less h^2/4 of a.
-  const Matrix middle_q = I + 0.5 * half * by_q, middle_v = 0.5 * h * I + 0.5 * half * by_v;
-  step.Phi.block<4, n>(2 * n, 0) = share * middle_q.bottomRows<4>();
-  step.Phi.block<4, n>(2 * n, n) = share * middle_v.bottomRows<4>();
-  step.Phi.bottomRightCorner<4, 4>().diagonal().setConstant(1.0 - share);
-  step.G.bottomRows<4>() = 0.5 * share * half * by_F.bottomRows<4>();
-
-  const int doublings = std::countr_zero(static_cast<unsigned>(stepper.steps()));
-  for (int i = 0; i < doublings; ++i) {
-    Transition twice;
-    twice.G = step.G + step.Phi.lazyProduct(step.G);
-    twice.Phi = step.Phi.lazyProduct(step.Phi);
-    step = twice;
+  Steps<kRows, kForces> steps;
+  steps.of.template block<n, n>(0, 0) = I + half * by_q;
+  steps.of.template block<n, n>(0, n) = h * I + half * by_v;
+  steps.of.template block<n, n>(n, 0) = h * by_q;
+  steps.of.template block<n, n>(n, n) = I + h * by_v;
+  steps.of.template block<n, kForces>(0, 2 * n) = half * by_F.leftCols<kForces>();
+  steps.of.template block<n, kForces>(n, 2 * n) = h * by_F.leftCols<kForces>();
+  steps.gauge_kept = 1.0 - share;
+  if constexpr (kRows > 2 * n) {
+    // phi_f moves towards phi of the middle: the mean of the step's ends, less h^2/4 of a.
+    const Matrix middle_q = I + 0.5 * half * by_q, middle_v = 0.5 * h * I + 0.5 * half * by_v;
+    steps.of.template block<4, n>(2 * n, 0) = share * middle_q.bottomRows<4>();
+    steps.of.template block<4, n>(2 * n, n) = share * middle_v.bottomRows<4>();
+    steps.of.template block<4, kForces>(2 * n, 2 * n) =
+        0.5 * share * half * by_F.bottomLeftCorner<4, kForces>();
   }
-  return step;
+  const int doublings = std::countr_zero(static_cast<unsigned>(stepper.steps()));
+  for (int i = 0; i < doublings; ++i) steps.Double();
+  return steps;
+}
+
+}  // namespace
+
+Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg, const Vector& q,
+                          const Vector& v, const Vector& a) noexcept {
+  const Steps<16, 6> steps = StepsOver<16, 6>(stepper, payload_kg, q, v, a);
+  return {.by_motion = steps.of.leftCols<12>(),
+          .gauge_kept = steps.gauge_kept,
+          .G = steps.of.rightCols<6>()};
+}
+
+MotionTransition MotionTransitionOver(const RigidJointStepper& stepper, double payload_kg,
+                                      const Vector& q, const Vector& v, const Vector& a) noexcept {
+  const Steps<12, 2> steps = StepsOver<12, 2>(stepper, payload_kg, q, v, a);
+  return {.Phi = steps.of.leftCols<12>(), .G = steps.of.rightCols<2>()};
 }
 
 }  // namespace flexarm

@@ -10,8 +10,15 @@ namespace flexarm {
 /// forces held during the sample, N m for the hubs and N for the modal coordinates.
 struct Transition {
   static constexpr int kStates = 16;
-  Eigen::Matrix<double, kStates, kStates> Phi;
+  Eigen::Matrix<double, kStates, 12> by_motion;  ///< columns of q and q' of Phi
+  double gauge_kept;                             ///< phi_f by itself; by nothing else
   Eigen::Matrix<double, kStates, RigidJointArm::kDof> G;
+};
+
+/// The same of x = [q; q'] and the two hub torques.
+struct MotionTransition {
+  Eigen::Matrix<double, 12, 12> Phi;
+  Eigen::Matrix<double, 12, 2> G;
 };
 
 /// Linearises a sample of RigidJointStepper about its middle.
@@ -25,5 +32,11 @@ struct Transition {
 Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg,
                           const RigidJointArm::Vector& q, const RigidJointArm::Vector& v,
                           const RigidJointArm::Vector& a) noexcept;
+
+/// TransitionOver for the motion without the gauges' filters. Real-time: safe.
+MotionTransition MotionTransitionOver(const RigidJointStepper& stepper, double payload_kg,
+                                      const RigidJointArm::Vector& q,
+                                      const RigidJointArm::Vector& v,
+                                      const RigidJointArm::Vector& a) noexcept;
 
 }  // namespace flexarm
