@@ -1,6 +1,7 @@
 #include "estimator/payload_covariance.h"
 
 #include "model/math/column_sum.h"
+#include "model/math/wide_instructions.h"
 
 namespace flexarm {
 namespace {
@@ -57,6 +58,21 @@ void ReduceColumns(const PayloadCovariance::ByOutput<kOutputs>& V,
   }
 }
 
+template <int kOutputs>
+void ReduceBy(const PayloadCovariance::ByOutput<kOutputs>& V, int frozen,
+              PayloadCovariance::Matrix* P) noexcept {
+  constexpr int kFirst = PayloadCovariance::kPayload;
+  const Eigen::Matrix3d kept = P->block<3, 3>(kFirst, kFirst);
+  ReduceColumns<0>(V, P);
+  ReduceColumns<4>(V, P);
+  ReduceColumns<8>(V, P);
+  ReduceColumns<12>(V, P);
+  ReduceColumns<16>(V, P);
+  if (frozen == 1) (*P)(kFirst, kFirst) = kept(0, 0);
+  if (frozen == 3) P->block<3, 3>(kFirst, kFirst) = kept;
+  MirrorLowerHalf(PayloadCovariance::kPadded, P);
+}
+
 }  // namespace
 
 PayloadCovariance::Vector PayloadCovariance::Change::Of(const Vector& dx) const noexcept {
@@ -68,6 +84,7 @@ PayloadCovariance::Vector PayloadCovariance::Change::Of(const Vector& dx) const 
   return out;
 }
 
+FLEXARM_WIDE_INSTRUCTIONS
 void PayloadCovariance::Propagate(const Change& change,
                                   const Eigen::Matrix<double, kMotion, RigidJointArm::kDof>& N,
                                   Matrix* P) noexcept {
@@ -96,20 +113,14 @@ void PayloadCovariance::Propagate(const Change& change,
   MirrorLowerHalf(kMotion, P);
 }
 
-template <int kOutputs>
-void PayloadCovariance::Reduce(const ByOutput<kOutputs>& V, int frozen, Matrix* P) noexcept {
-  const Eigen::Matrix3d kept = P->block<3, 3>(kPayload, kPayload);
-  ReduceColumns<0>(V, P);
-  ReduceColumns<4>(V, P);
-  ReduceColumns<8>(V, P);
-  ReduceColumns<12>(V, P);
-  ReduceColumns<16>(V, P);
-  if (frozen == 1) (*P)(kPayload, kPayload) = kept(0, 0);
-  if (frozen == 3) P->block<3, 3>(kPayload, kPayload) = kept;
-  MirrorLowerHalf(kPadded, P);
+FLEXARM_WIDE_INSTRUCTIONS
+void PayloadCovariance::Reduce(const ByOutput<8>& V, int frozen, Matrix* P) noexcept {
+  ReduceBy(V, frozen, P);
 }
 
-template void PayloadCovariance::Reduce(const ByOutput<8>&, int, Matrix*) noexcept;
-template void PayloadCovariance::Reduce(const ByOutput<1>&, int, Matrix*) noexcept;
+FLEXARM_WIDE_INSTRUCTIONS
+void PayloadCovariance::Reduce(const ByOutput<1>& V, int frozen, Matrix* P) noexcept {
+  ReduceBy(V, frozen, P);
+}
 
 }  // namespace flexarm

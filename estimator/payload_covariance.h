@@ -43,11 +43,8 @@ struct PayloadCovariance {
   /// With V = P H' L'^-1 and L L' = H P H' + R, this is the covariance after an update by the gain
   /// V L^-1 with zero rows for those states. Joseph's form with that gain gives the same.
   /// @param frozen  0; 1: the payload; 3: friction, too
-  template <int kOutputs>
-  static void Reduce(const ByOutput<kOutputs>& V, int frozen, Matrix* P) noexcept;
+  static void Reduce(const ByOutput<8>& V, int frozen, Matrix* P) noexcept;
+  static void Reduce(const ByOutput<1>& V, int frozen, Matrix* P) noexcept;
 };
-
-extern template void PayloadCovariance::Reduce(const ByOutput<8>&, int, Matrix*) noexcept;
-extern template void PayloadCovariance::Reduce(const ByOutput<1>&, int, Matrix*) noexcept;
 
 }  // namespace flexarm

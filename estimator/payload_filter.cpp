@@ -41,12 +41,6 @@ constexpr std::uint32_t kElbowOutputs = 0b1010;  // hub 2 and rotor 2
 
 using MotionVector = Eigen::Matrix<double, kMotion, 1>;
 
-MotionVector Stacked(const GaugedState& x) noexcept {
-  MotionVector out;
-  out << x.q, x.v, x.phi_f;
-  return out;
-}
-
 // State of the motion that each output measures: th1 th2 th1 th2 phi_f.
 constexpr std::array<int, PayloadFilter::kOutputs> kSeen = {0, 1, 0, 1, 12, 13, 14, 15};
 constexpr std::array<int, 2> kFirstModes = {4, 6};  // outputs
@@ -180,49 +174,25 @@ Eigen::Vector2d PayloadFilter::Torsion(const PiecewiseTorque& torque) const noex
 }
 
 GaugedState PayloadFilter::After(const PiecewiseTorque& torque) const noexcept {
-  return Through(torque, estimate_.payload_kg, estimate_.friction_nm);
+  return MotionAfter(stepper_, Start(), torque);
 }
 
-GaugedState PayloadFilter::Through(const PiecewiseTorque& torque, double payload_kg,
-                                   const std::array<double, 2>& friction_nm) const noexcept {
-  const std::int64_t step_ticks = kPeriodTicks / stepper_.steps();
-  GaugedState x = estimate_.state;
-  std::int64_t ticks = 0, steps_done = 0;
-  for (const TorquePiece& piece : torque.all()) {
-    ticks += piece.ticks;
-    const std::int64_t steps = (ticks + step_ticks / 2) / step_ticks;
-    x = stepper_.Advance(x,
-                         {.torque_nm = {piece.torque_nm[0], piece.torque_nm[1]},
-                          .payload_kg = payload_kg,
-                          .friction_nm = friction_nm},
-                         static_cast<int>(steps - steps_done));
-    steps_done = steps;
-  }
-  return x;
+MotionStart PayloadFilter::Start() const noexcept {
+  return {.state = estimate_.state,
+          .payload_kg = estimate_.payload_kg,
+          .friction_nm = estimate_.friction_nm};
 }
 
 void PayloadFilter::Predict(const PiecewiseTorque& torque,
                             std::span<Hypothesis> hypotheses) noexcept {
-  const double payload_kg = estimate_.payload_kg;
-  std::array<double, 2> friction_nm = estimate_.friction_nm;
   const GaugedState start = estimate_.state;
-  const GaugedState end = After(torque);
-  const MotionVector x = Stacked(end);
+  const auto [end, by_parameter] =
+      MotionAfterWithSlopes(stepper_, Start(), torque, kPayloadProbe_kg, config_.friction_probe_nm);
   const Transition transition =
-      TransitionOver(stepper_, payload_kg, 0.5 * (start.q + end.q), 0.5 * (start.v + end.v),
-                     (end.v - start.v) / stepper_.period_s());
-
+      TransitionOver(stepper_, estimate_.payload_kg, 0.5 * (start.q + end.q),
+                     0.5 * (start.v + end.v), (end.v - start.v) / stepper_.period_s());
   PayloadCovariance::Change change;
-  change.by_driving.leftCols<12>() = transition.by_motion;
-  change.by_driving.col(12) =
-      (Stacked(Through(torque, payload_kg + kPayloadProbe_kg, friction_nm)) - x) / kPayloadProbe_kg;
-  for (int i = 0; i < 2; ++i) {
-    const auto j = static_cast<std::size_t>(i);
-    friction_nm[j] += config_.friction_probe_nm[j];
-    change.by_driving.col(13 + i) =
-        (Stacked(Through(torque, payload_kg, friction_nm)) - x) / config_.friction_probe_nm[j];
-    friction_nm[j] = estimate_.friction_nm[j];
-  }
+  change.by_driving << transition.by_motion, by_parameter;
   change.gauge_kept = transition.gauge_kept;
   estimate_.state = end;
   PropagateCovariance(change, transition);

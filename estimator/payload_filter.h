@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "estimator/motion_prediction.h"
 #include "estimator/payload_covariance.h"
 #include "estimator/piecewise_torque.h"
 #include "estimator/tip_output.h"
@@ -166,8 +167,7 @@ class PayloadFilter {
   void Predict(const PiecewiseTorque& torque, std::span<Hypothesis> hypotheses) noexcept;
   void PropagateCovariance(const PayloadCovariance::Change& change,
                            const Transition& transition) noexcept;
-  GaugedState Through(const PiecewiseTorque& torque, double payload_kg,
-                      const std::array<double, 2>& friction_nm) const noexcept;
+  MotionStart Start() const noexcept;
   Outputs OutputVariance(const Outputs& y, const Outputs& innovation, const Outputs& spread,
                          std::uint32_t good) noexcept;
   void CorrectByOutputs(const PiecewiseTorque& torque, const Outputs& z, std::uint32_t good,

@@ -1,6 +1,8 @@
 #include "controller/planner/backward_pass.h"
 
+#include "model/math/column_sum.h"
 #include "model/math/small_cholesky.h"
+#include "model/math/wide_instructions.h"
 #include "model/rigid_joint/rigid_joint_transition.h"
 
 namespace flexarm {
@@ -11,6 +13,7 @@ using Matrix2x12 = Eigen::Matrix<double, 2, 12>;
 
 }  // namespace
 
+FLEXARM_WIDE_INSTRUCTIONS
 void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const PlanCost& targets,
                   const PlanTrajectory& track, PlanPolicy* policy) noexcept {
   const std::size_t stages = targets.stages();
@@ -26,7 +29,7 @@ void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const Pla
     const auto [A, B] = MotionTransitionOver(stepper, payload_kg, middle.head<6>(),
                                              middle.tail<6>(), mean_rate.tail<6>());
 
-    const Matrix12 VA = V.lazyProduct(A);
+    const Matrix12 VA = ColumnProduct(V, A), A_turned = A.transpose();
     const Matrix2x12 Q_ux = B.transpose().lazyProduct(VA);
     const Matrix2x12 BtV = B.transpose().lazyProduct(V);
     Eigen::Matrix2d Q_uu = BtV.lazyProduct(B);
@@ -43,7 +46,7 @@ void BackwardPass(const RigidJointStepper& stepper, double payload_kg, const Pla
     const PlanState v_next = v;
     v = slope(k) + A.transpose().lazyProduct(v_next) +
         Q_ux.transpose().lazyProduct(policy->step_nm[k]);
-    const Matrix12 W = A.transpose().lazyProduct(VA) + Q_ux.transpose().lazyProduct(K);
+    const Matrix12 W = ColumnProduct(A_turned, VA) + Q_ux.transpose().lazyProduct(K);
     V = 0.5 *
         (W + W.transpose());  // removes round-off asymmetry, which the recursion would amplify
     V.diagonal() += targets.StateWeight(k);

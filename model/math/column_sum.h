@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 
 namespace flexarm {
@@ -10,42 +11,56 @@ namespace flexarm {
 /// instructions, as it loads each entry of the second factor again for every two rows of the first.
 /// Terms are added in the order of the calls. Columns are those of matrices with an even number of
 /// rows, from an even row on, so that they are aligned. Real-time: safe.
-/// @tparam kRows  even, at most 20: more would not fit 16 registers
+/// @tparam kRows  4, 8, .. 20: more would not fit 16 registers of two
 template <int kRows>
 class ColumnSum {
-  static_assert(kRows % 2 == 0 && kRows <= 20);
+  static_assert(kRows % 4 == 0 && kRows <= 20);
 
  public:
   ColumnSum() noexcept {
-    for (Pair& pair : sum_) pair = Pair{0.0, 0.0};
+    for (Four& four : sum_) four = Four{};
   }
 
   /// Starts with this column instead of zero.
   explicit ColumnSum(const double* column) noexcept {
-    const Pair* pairs = Pairs(column);
-    for (std::size_t i = 0; i < kPairs; ++i) sum_[i] = pairs[i];
+    const Four* fours = Fours(column);
+    for (std::size_t i = 0; i < kFours; ++i) sum_[i] = fours[i];
   }
 
   void Add(double factor, const double* column) noexcept {
-    const Pair* pairs = Pairs(column);
-    const Pair factors{factor, factor};
-    for (std::size_t i = 0; i < kPairs; ++i) sum_[i] += factors * pairs[i];
+    const Four* fours = Fours(column);
+    const Four factors{factor, factor, factor, factor};
+    for (std::size_t i = 0; i < kFours; ++i) sum_[i] += factors * fours[i];
   }
 
   void WriteTo(double* column) const noexcept {
-    Pair* pairs = reinterpret_cast<Pair*>(column);
-    for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = sum_[i];
+    Four* fours = reinterpret_cast<Four*>(column);
+    for (std::size_t i = 0; i < kFours; ++i) fours[i] = sum_[i];
   }
 
  private:
-  using Pair = double __attribute__((vector_size(16), may_alias));
-  static constexpr std::size_t kPairs = kRows / 2;
+  using Four = double __attribute__((vector_size(32), may_alias, aligned(16)));
+  static constexpr std::size_t kFours = kRows / 4;
 
-  static const Pair* Pairs(const double* column) noexcept {
-    return reinterpret_cast<const Pair*>(column);
+  static const Four* Fours(const double* column) noexcept {
+    return reinterpret_cast<const Four*>(column);
   }
 
-  Pair sum_[kPairs];
+  Four sum_[kFours];
 };
+
+/// A B. Real-time: safe.
+template <int kRows, int kInner, int kColumns>
+Eigen::Matrix<double, kRows, kColumns> ColumnProduct(
+    const Eigen::Matrix<double, kRows, kInner>& A,
+    const Eigen::Matrix<double, kInner, kColumns>& B) noexcept {
+  Eigen::Matrix<double, kRows, kColumns> product;
+  for (int column = 0; column < kColumns; ++column) {
+    ColumnSum<kRows> sum;
+    for (int k = 0; k < kInner; ++k) sum.Add(B(k, column), A.col(k).data());
+    sum.WriteTo(product.col(column).data());
+  }
+  return product;
+}
 
 }  // namespace flexarm

@@ -78,16 +78,6 @@ RigidJointArm::RigidJointArm(std::span<const double> constants) {
                               " constants, not " + std::to_string(constants.size()));   // start-up
 }
 
-OutboardBody RigidJointArm::Outboard(double payload_kg) const noexcept {
-  const double m = payload_kg;
-  return {.m = empty_.m + m * per_kg_.m,
-          .Sx = empty_.Sx + m * per_kg_.Sx,
-          .I2 = empty_.I2 + m * per_kg_.I2,
-          .k2 = empty_.k2 + m * per_kg_.k2,
-          .a2 = empty_.a2 + m * per_kg_.a2,
-          .N2 = empty_.N2 + m * per_kg_.N2};
-}
-
 double RigidJointArm::TipAcceleration(const Vector& q, const Vector& v,
                                       const Vector& a) const noexcept {
   const auto link1 = [](const Eigen::Vector2d& shape, const Vector& x) {

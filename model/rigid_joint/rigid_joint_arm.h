@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "model/math/portable_math.h"
@@ -10,15 +11,17 @@
 namespace flexarm {
 
 /// Everything that turns with hub 2, as a load on the end of link 1; moments about the elbow.
-/// Affine in the payload.
-struct OutboardBody {
-  double m;            ///< mass, kg
-  double Sx;           ///< first moment along link 2, kg m
-  double I2;           ///< second moment with rotor 2, undeformed, without I_p, kg m^2
-  Eigen::Vector2d k2;  ///< int lam2 psi2 + m_p psi2(L2), kg
-  Eigen::Vector2d a2;  ///< int lam2 u psi2 + m_p L2 psi2(L2), kg m
-  Eigen::Matrix2d N2;  ///< int lam2 psi2 psi2 + m_p psi2(L2) psi2(L2), kg
+/// Affine in the payload. Scalar: double, or Lanes for four payloads.
+template <typename Scalar>
+struct OutboardBodyOf {
+  Scalar m;                        ///< mass, kg
+  Scalar Sx;                       ///< first moment along link 2, kg m
+  Scalar I2;                       ///< second moment with rotor 2, undeformed, without I_p, kg m^2
+  Eigen::Matrix<Scalar, 2, 1> k2;  ///< int lam2 psi2 + m_p psi2(L2), kg
+  Eigen::Matrix<Scalar, 2, 1> a2;  ///< int lam2 u psi2 + m_p L2 psi2(L2), kg m
+  Eigen::Matrix<Scalar, 2, 2> N2;  ///< int lam2 psi2 psi2 + m_p psi2(L2) psi2(L2), kg
 };
+using OutboardBody = OutboardBodyOf<double>;
 
 /// The arm with rigid joints and two modes a link, small enough for the loop:
 ///   M(q; m_p) q'' + bias(q, q'; m_p) + D q' + K q = [tau1 tau2 0 0 0 0]' + friction.
@@ -31,14 +34,20 @@ struct OutboardBody {
 class RigidJointArm {
  public:
   static constexpr int kDof = 6;
-  using Vector = Eigen::Matrix<double, kDof, 1>;
-  using Matrix = Eigen::Matrix<double, kDof, kDof>;
+  template <typename Scalar>
+  using VectorOf = Eigen::Matrix<Scalar, kDof, 1>;
+  template <typename Scalar>
+  using MatrixOf = Eigen::Matrix<Scalar, kDof, kDof>;
+  using Vector = VectorOf<double>;
+  using Matrix = MatrixOf<double>;
 
   /// Result of At.
-  struct Inertia {
-    Matrix M;     ///< mass matrix, symmetric up to round-off
-    Vector bias;  ///< Coriolis and centrifugal forces
+  template <typename Scalar>
+  struct InertiaOf {
+    MatrixOf<Scalar> M;     ///< mass matrix, symmetric to the bit
+    VectorOf<Scalar> bias;  ///< Coriolis and centrifugal forces
   };
+  using Inertia = InertiaOf<double>;
 
   /// Of the payload in `parameters` only the inertia is used; the mass is the argument of Outboard.
   /// @throws std::invalid_argument if the parameters have Problems().
@@ -50,11 +59,22 @@ class RigidJointArm {
   /// @throws std::invalid_argument if their number differs from that of Constants()
   explicit RigidJointArm(std::span<const double> constants);
 
-  OutboardBody Outboard(double payload_kg) const noexcept;
+  OutboardBody Outboard(double payload_kg) const noexcept { return OutboardOf(payload_kg); }
+  template <typename Scalar>
+  OutboardBodyOf<Scalar> OutboardOf(const Scalar& payload_kg) const noexcept;
 
-  /// Mass matrix and bias at (q, v). Math: PortableMath in the loop, LibraryMath off line.
-  template <typename Math = PortableMath>
-  Inertia At(const OutboardBody& body, const Vector& q, const Vector& v) const noexcept;
+  /// Mass matrix and bias at (q, v), one or four. Math: PortableMath in the loop, LibraryMath off
+  /// line.
+  template <typename Math = PortableMath, typename Scalar = double>
+  InertiaOf<Scalar> At(const OutboardBodyOf<Scalar>& body,
+                       const std::type_identity_t<VectorOf<Scalar>>& q,
+                       const std::type_identity_t<VectorOf<Scalar>>& v) const noexcept;
+
+  /// Elastic forces at q and damping forces at v: K q + D v. Hubs have no stiffness, and no mode of
+  /// a link acts on the other link or on a hub.
+  template <typename Scalar>
+  VectorOf<Scalar> RestoringForce(const VectorOf<Scalar>& q,
+                                  const VectorOf<Scalar>& v) const noexcept;
 
   /// Acceleration of the tip along the normal of link 2 there, m/s^2: tip_acceleration.h.
   double TipAcceleration(const Vector& q, const Vector& v, const Vector& a) const noexcept;

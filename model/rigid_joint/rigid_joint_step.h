@@ -3,22 +3,28 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "model/math/lanes.h"
 #include "model/rigid_joint/rigid_joint_arm.h"
 
 namespace flexarm {
 
-/// Motion of the arm with rigid joints and of the analogue filters of its strain gauges.
-struct GaugedState {
-  RigidJointArm::Vector q, v;  ///< as RigidJointArm's, rad and m, and their rates
-  Eigen::Vector4d phi_f;       ///< filtered modal coordinates, phi_f' = w_f (phi - phi_f), m
+/// Motion of the arm with rigid joints and of the analogue filters of its strain gauges. Scalar:
+/// double, or Lanes for four cases.
+template <typename Scalar>
+struct GaugedStateOf {
+  RigidJointArm::VectorOf<Scalar> q, v;  ///< as RigidJointArm's, rad and m, and their rates
+  Eigen::Matrix<Scalar, 4, 1> phi_f;  ///< filtered modal coordinates, phi_f' = w_f (phi - phi_f), m
 };
+using GaugedState = GaugedStateOf<double>;
 
 /// Inputs that are constant during a sample.
-struct SampleInputs {
+template <typename Scalar>
+struct SampleInputsOf {
   Eigen::Vector2d torque_nm;
-  double payload_kg;
-  std::array<double, 2> friction_nm;  ///< Coulomb levels of the hubs, >= 0
+  Scalar payload_kg;
+  std::array<Scalar, 2> friction_nm;  ///< Coulomb levels of the hubs, >= 0
 };
+using SampleInputs = SampleInputsOf<double>;
 
 /// Integrates one sample of the arm with exact Coulomb stiction: a few implicit midpoint steps of
 /// kPasses fixed-point passes each.
@@ -51,6 +57,9 @@ class RigidJointStepper {
   /// @param steps  of step_s() each
   GaugedState Advance(const GaugedState& start, const SampleInputs& inputs,
                       int steps) const noexcept;
+  /// The same for four cases; each gets the bits that it would get alone.
+  GaugedStateOf<Lanes> AdvanceFour(const GaugedStateOf<Lanes>& start,
+                                   const SampleInputsOf<Lanes>& inputs, int steps) const noexcept;
 
   /// Accelerations at this state, rad/s^2 and m/s^2. A hub that friction can stop within a step is
   /// decelerated to rest; a hub at rest remains so.
@@ -65,12 +74,19 @@ class RigidJointStepper {
   double gauge_share() const noexcept { return gauge_share_; }
 
  private:
-  using Vector = RigidJointArm::Vector;
-
-  Vector Solve(const RigidJointArm::Matrix& A, const Vector& r, const Vector& v,
-               const std::array<double, 2>& friction_nm) const noexcept;
-  Vector Acceleration(const OutboardBody& body, const GaugedState& start, const Vector& applied,
-                      const std::array<double, 2>& friction_nm) const noexcept;
+  template <typename Scalar>
+  GaugedStateOf<Scalar> AdvanceOf(const GaugedStateOf<Scalar>& start,
+                                  const SampleInputsOf<Scalar>& inputs, int steps) const noexcept;
+  template <typename Scalar>
+  RigidJointArm::VectorOf<Scalar> Solve(const RigidJointArm::MatrixOf<Scalar>& A,
+                                        const RigidJointArm::VectorOf<Scalar>& r,
+                                        const RigidJointArm::VectorOf<Scalar>& v,
+                                        const std::array<Scalar, 2>& friction_nm) const noexcept;
+  template <typename Scalar>
+  RigidJointArm::VectorOf<Scalar> Acceleration(
+      const OutboardBodyOf<Scalar>& body, const GaugedStateOf<Scalar>& start,
+      const RigidJointArm::VectorOf<Scalar>& applied,
+      const std::array<Scalar, 2>& friction_nm) const noexcept;
 
   static RigidJointArm::Matrix Implicit(const RigidJointArm& arm, double h) {
     return 0.5 * h * arm.damping() + 0.25 * h * h * arm.stiffness();

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "model/math/column_sum.h"
+#include "model/math/wide_instructions.h"
 
 namespace flexarm {
 namespace {
@@ -18,23 +19,40 @@ struct Slopes {
   Matrix by_q, by_v;  // of g(q, v) = M(q) a + bias(q, v)
 };
 
-Slopes SlopesAt(const RigidJointArm& arm, const OutboardBody& body, const Vector& q,
-                const Vector& v, const Vector& a) noexcept {
-  const RigidJointArm::Inertia at = arm.At(body, q, v);
-  const Vector g = at.M.lazyProduct(a) + at.bias;
-  const auto slope = [&](const Vector& q_1, const Vector& v_1) -> Vector {
-    const RigidJointArm::Inertia moved = arm.At(body, q_1, v_1);
-    return (moved.M.lazyProduct(a) + moved.bias - g) / kDifference;
-  };
+// g at (q, v) and at the 11 places beside it that count, four at once.
+Slopes SlopesAt(const RigidJointArm& arm, double payload_kg, const Vector& q, const Vector& v,
+                const Vector& a) noexcept {
+  constexpr int n = RigidJointArm::kDof;
+  using Four = RigidJointArm::VectorOf<Lanes>;
+  const OutboardBodyOf<Lanes> body = arm.OutboardOf(Lanes(payload_kg));
   Slopes out;
-  out.M = at.M;
+  Eigen::Matrix<double, n, 2 * n> g;  // at (q, v), then with a change of q from phi1_1 on, and of v
+  for (int first = 0; first < 2 * n; first += 4) {
+    Four q_near, v_near;
+    for (int i = 0; i < n; ++i) {
+      q_near[i] = q[i];
+      v_near[i] = v[i];
+    }
+    for (int lane = first == 0 ? 1 : 0; lane < 4; ++lane) {
+      const int i = first + lane;
+      Lanes& changed = i < n ? q_near[i] : v_near[i - n];
+      const auto at = static_cast<std::size_t>(lane);
+      changed.Set(at, changed[at] + kDifference);
+    }
+    const RigidJointArm::InertiaOf<Lanes> near = arm.At(body, q_near, v_near);
+    for (int row = 0; row < n; ++row) {
+      Lanes sum = near.bias[row];
+      for (int i = 0; i < n; ++i) sum += near.M(row, i) * a[i];
+      for (int lane = 0; lane < 4; ++lane) {
+        g(row, first + lane) = sum[static_cast<std::size_t>(lane)];
+      }
+      if (first > 0) continue;
+      for (int i = 0; i < n; ++i) out.M(row, i) = near.M(row, i)[0];
+    }
+  }
   out.by_q.col(0).setZero();
-  for (int i = 1; i < RigidJointArm::kDof; ++i) {
-    out.by_q.col(i) = slope(q + kDifference * Vector::Unit(i), v);
-  }
-  for (int i = 0; i < RigidJointArm::kDof; ++i) {
-    out.by_v.col(i) = slope(q, v + kDifference * Vector::Unit(i));
-  }
+  for (int i = 1; i < n; ++i) out.by_q.col(i) = (g.col(i) - g.col(0)) / kDifference;
+  for (int i = 0; i < n; ++i) out.by_v.col(i) = (g.col(n + i) - g.col(0)) / kDifference;
   return out;
 }
 
@@ -71,7 +89,7 @@ Steps<kRows, kForces> StepsOver(const RigidJointStepper& stepper, double payload
   constexpr Eigen::Index n = RigidJointArm::kDof;
   const RigidJointArm& arm = stepper.arm();
   const double h = stepper.step_s();
-  const Slopes slopes = SlopesAt(arm, arm.Outboard(payload_kg), q, v, a);
+  const Slopes slopes = SlopesAt(arm, payload_kg, q, v, a);
   const Matrix D = arm.damping() + slopes.by_v, K = arm.stiffness() + slopes.by_q;
 
   // Accelerations of one step by [q v F]: (M + h/2 D + h^2/4 K) a = F - D v - K (q + h/2 v).
@@ -105,6 +123,7 @@ Steps<kRows, kForces> StepsOver(const RigidJointStepper& stepper, double payload
 
 }  // namespace
 
+FLEXARM_WIDE_INSTRUCTIONS
 Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg, const Vector& q,
                           const Vector& v, const Vector& a) noexcept {
   const Steps<16, 6> steps = StepsOver<16, 6>(stepper, payload_kg, q, v, a);
@@ -113,6 +132,7 @@ Transition TransitionOver(const RigidJointStepper& stepper, double payload_kg, c
           .G = steps.of.rightCols<6>()};
 }
 
+FLEXARM_WIDE_INSTRUCTIONS
 MotionTransition MotionTransitionOver(const RigidJointStepper& stepper, double payload_kg,
                                       const Vector& q, const Vector& v, const Vector& a) noexcept {
   const Steps<12, 2> steps = StepsOver<12, 2>(stepper, payload_kg, q, v, a);

@@ -13,7 +13,7 @@ struct StepVariant {
   const char* name;
   std::vector<std::string> overrides;
   /// Bound on the instructions of a step: 20 us at a billion instructions a second, with a factor
-  /// of three for slower machines; 150 us with payload estimation.
+  /// of three for slower machines; 73 us with payload estimation, on a processor without AVX2.
   int most_instructions = 60'000;
 };
 
@@ -21,7 +21,7 @@ struct StepVariant {
 /// with the most states, and the laws that have their own estimator.
 inline std::vector<StepVariant> StepVariants() {
   std::vector<StepVariant> variants;
-  constexpr int kMostWithPayload = 450'000;
+  constexpr int kMostWithPayload = 220'000;
   for (const LawRow& law : kLaws) {
     variants.push_back({law.name, {std::string("controller.name=") + law.name}});
     if (law.is_scheduled || law.settles) variants.back().most_instructions = kMostWithPayload;

@@ -94,5 +94,27 @@ TEST(PortableMath, ReturnsNanBeyondItsRangeAndForNan) {
   EXPECT_FALSE(std::isnan(PortableMath::SinCos(PortableMath::kMaxAngle_rad).sine));
 }
 
+// Every quarter of a turn, both signs, and angles without a result.
+TEST(PortableMath, FourAnglesHaveTheBitsOfEach) {
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> angle(-20.0, 20.0);
+  for (int round = 0; round < 1000; ++round) {
+    Lanes four;
+    for (std::size_t lane = 0; lane < Lanes::kCount; ++lane) four.Set(lane, angle(engine));
+    if (round % 100 == 0) four.Set(1, PortableMath::kMaxAngle_rad + 1.0);
+    if (round % 150 == 0) four.Set(2, std::nan(""));
+    const SineCosineOf<Lanes> found = PortableMath::SinCos(four);
+    for (std::size_t lane = 0; lane < Lanes::kCount; ++lane) {
+      const SineCosine alone = PortableMath::SinCos(four[lane]);
+      if (std::isnan(alone.sine)) {
+        EXPECT_TRUE(std::isnan(found.sine[lane]) && std::isnan(found.cosine[lane]));
+        continue;
+      }
+      EXPECT_EQ(found.sine[lane], alone.sine);
+      EXPECT_EQ(found.cosine[lane], alone.cosine);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -100,6 +100,40 @@ TEST_F(RigidJointSample, FollowsTheElasticArmWithStiffJoints) {
   EXPECT_GT(farthest, 0.05);
 }
 
+// Lanes that slide, stick, turn around and break away within the sample, each with its own payload.
+TEST_F(RigidJointSample, EachOfFourCasesGetsTheBitsThatItGetsAlone) {
+  const Eigen::Vector2d torque(0.3, -0.02);
+  const std::array<double, 4> payload_kg = {payload_kg_, 0.0, 1.0, 0.2},
+                              rate_share = {1.0, 0.0, -0.02, 0.05};
+  std::array<GaugedState, 4> start;
+  GaugedStateOf<Lanes> four;
+  SampleInputsOf<Lanes> inputs{.torque_nm = torque, .payload_kg = {}, .friction_nm = {}};
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    start[lane] = {.q = q_, .v = rate_share[lane] * v_, .phi_f = 0.9 * q_.tail<4>()};
+    for (int i = 0; i < RigidJointArm::kDof; ++i) {
+      four.q[i].Set(lane, start[lane].q[i]);
+      four.v[i].Set(lane, start[lane].v[i]);
+    }
+    for (int i = 0; i < 4; ++i) four.phi_f[i].Set(lane, start[lane].phi_f[i]);
+    inputs.payload_kg.Set(lane, payload_kg[lane]);
+    for (std::size_t hub = 0; hub < 2; ++hub) {
+      inputs.friction_nm[hub].Set(lane, 0.1 * static_cast<double>(lane + hub));
+    }
+  }
+  const GaugedStateOf<Lanes> end = stepper_.AdvanceFour(four, inputs, 8);
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const GaugedState alone = stepper_.Advance(
+        start[lane], {.torque_nm = torque,
+                      .payload_kg = payload_kg[lane],
+                      .friction_nm = {inputs.friction_nm[0][lane], inputs.friction_nm[1][lane]}});
+    for (int i = 0; i < RigidJointArm::kDof; ++i) {
+      EXPECT_EQ(end.q[i][lane], alone.q[i]) << lane;
+      EXPECT_EQ(end.v[i][lane], alone.v[i]) << lane;
+    }
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(end.phi_f[i][lane], alone.phi_f[i]) << lane;
+  }
+}
+
 TEST_F(RigidJointSample, HubsAtRestDoNotMoveBelowBreakaway) {
   GaugedState x{.q = Vector::Zero(), .v = Vector::Zero(), .phi_f = Eigen::Vector4d::Zero()};
   for (int k = 0; k < 50; ++k) {
