@@ -156,7 +156,7 @@ std::optional<UnmetCondition> RunJudge::Find(const Case& judged) const {
   const std::string trips = Trips(config_, judged);
   if (trips.empty()) return std::nullopt;
   return Objection("predicted-trip", "with controller.name = " + Quoted(law) + trips,
-                   OtherLaw(judged));
+                   OtherLaw(judged) + "; or make it slower, or state lighter payloads");
 }
 
 std::string RunJudge::Trips(const RigConfig& config, const Case& judged) const {
@@ -191,11 +191,8 @@ std::string RunJudge::OtherLaw(const Case& judged) const {
     }
     if (why.empty()) why = std::string(LawOf(law).name) + ": " + not_that;
   }
-  if (why.empty())
-    return std::string("choose another experiment, or one of its laws: ") + kWhichLaw;
-  return "no other law completes it on this rig (" + why +
-         "); make it slower or the payload "
-         "lighter";
+  if (why.empty()) return std::string("choose one of the laws that it is for: ") + kWhichLaw;
+  return "no other law completes it on this rig (" + why + ")";
 }
 
 std::string RunJudge::WhyNot(ControllerKind law, const Case& judged) const {
