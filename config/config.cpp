@@ -81,6 +81,10 @@ RigConfig WithOverrides(const RigConfig& config, const std::vector<std::string>&
   return ReadConfig(config.rig_name, ParseToml(config.text, config.rig_name), overrides);
 }
 
+RigConfig WithLaw(const RigConfig& config, const std::string& law) {
+  return WithOverrides(config, {"controller.name=" + law});
+}
+
 std::optional<double> NumberAt(const RigConfig& config, const std::string& key) {
   const toml::table document = ParseToml(config.text, config.rig_name);
   const toml::node_view<const toml::node> node = document.at_path(key);

@@ -54,6 +54,9 @@ RigConfig ParseConfig(const std::string& text, const std::string& name);
 /// @throws ConfigError with every problem found
 RigConfig WithOverrides(const RigConfig& config, const std::vector<std::string>& overrides);
 
+/// The config with another control law, controller.name. @throws ConfigError
+RigConfig WithLaw(const RigConfig& config, const std::string& law);
+
 /// The number at a dotted key of the config, "sensors.strain[3].position_m".
 std::optional<double> NumberAt(const RigConfig& config, const std::string& key);
 

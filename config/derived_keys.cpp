@@ -67,6 +67,10 @@ std::string TomlOf(const DerivedValue& derived) {
   return ValueText(toml::value<double>(derived.value.front()));
 }
 
+std::vector<DerivedValue> DerivedValues(const toml::table& document) {
+  return Derived(document).value_or(std::vector<DerivedValue>{});
+}
+
 DerivedKeys AddDerivedKeys(toml::table* document) {
   const auto absent = [document](const std::string& key) {
     return HasSection(*document, key) && !document->at_path(key);

@@ -23,6 +23,10 @@ struct DerivedKeys {
   std::vector<std::string> waiting;
 };
 
+/// What every derivable key would be, whether the document has it or not; empty if the document
+/// lacks what they depend on.
+std::vector<DerivedValue> DerivedValues(const toml::table& document);
+
 /// Adds to the document the keys that it leaves out and that can be derived.
 DerivedKeys AddDerivedKeys(toml::table* document);
 

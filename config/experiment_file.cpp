@@ -7,6 +7,7 @@
 #include "config/document.h"
 #include "config/line_key.h"
 #include "config/problem_log.h"
+#include "config/spelling.h"
 #include "config/table_reader.h"
 #include "controller/runlog/errors.h"
 
@@ -130,9 +131,35 @@ void ReadCsv(TableReader csv, const Attachments& attached, Experiment* out) {
   }
 }
 
+// The law of a name; a name that no law has is reported.
+std::optional<ControllerKind> LawByName(const std::string& name, TableReader* root) {
+  std::vector<std::string> known;
+  for (const LawRow& law : kLaws) {
+    if (name == law.name) return law.kind;
+    known.emplace_back(law.name);
+  }
+  const std::optional<std::string> meant = ClosestWord(name, known);
+  std::string list;
+  for (const std::string& law : known) list += " " + law;
+  root->Refuse("laws", "has the unknown law \"" + name + "\"; " +
+                           (meant ? "did you mean \"" + *meant + "\"?" : "the laws are:" + list));
+  return std::nullopt;
+}
+
+void ReadLaws(TableReader root, Experiment* out) {
+  if (!root.Has("laws")) return;
+  std::vector<std::string> names;
+  root.Read("laws", &names);
+  for (const std::string& name : names) {
+    if (const auto law = LawByName(name, &root)) out->laws.push_back(*law);
+  }
+}
+
 void ReadExperiment(TableReader root, Experiment* out) {
   root.Read("name", &out->name);
   root.Read("duration_s", &out->duration_s);
+  ReadLaws(root, out);
+  if (root.Has("payload_kg")) root.Read("payload_kg", &out->payload_kg.emplace());
   for (const TableReader& row : root.OptionalRows("doublet")) {
     ReadDoublet(row, &out->doublet.emplace_back());
   }

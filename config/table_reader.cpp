@@ -166,6 +166,19 @@ void TableReader::Read(std::string_view key, std::vector<double>* out) {
   }
 }
 
+void TableReader::Read(std::string_view key, std::vector<std::string>* out) {
+  constexpr std::string_view kWanted = "an array of strings";
+  const toml::node* node = Find(key, kWanted);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->empty()) return Mistyped(key, *node, kWanted);
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const auto* text = array->get(i)->as_string();
+    if (text == nullptr) return Mistyped(key, *node, kWanted);
+    out->push_back(text->get());
+  }
+}
+
 void TableReader::Mistyped(std::string_view key, const toml::node& node, std::string_view wanted) {
   log_->Add(Key(key), node, "must be " + std::string(wanted));
 }

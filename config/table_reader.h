@@ -40,7 +40,8 @@ class TableReader {
   void Read(std::string_view key, std::array<double, n>* out) {
     ReadNumbers(key, out->data(), n);
   }
-  void Read(std::string_view key, std::vector<double>* out);  // any number of elements
+  void Read(std::string_view key, std::vector<double>* out);       // any number of elements
+  void Read(std::string_view key, std::vector<std::string>* out);  // the same
   template <typename E>
   void Read(std::string_view key, E* out, const std::vector<NamedValue<E>>& values);
   template <typename E>

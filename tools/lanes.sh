@@ -141,10 +141,11 @@ lane_release() {  # all tests but those of whole programs, release build
 }
 
 lane_campaigns() {  # random campaigns at their whole size; `release` runs a sample of each
-  build release operator_loop_test loop_loop_test sensor_loss_loop_test wired_loop_test
+  build release operator_loop_test loop_loop_test sensor_loss_loop_test shipped_runs_loop_test \
+    wired_loop_test
   local program
   for program in operator/operator_loop_test loop/loop_loop_test loop/sensor_loss_loop_test \
-      wired/wired_loop_test; do
+      loop/shipped_runs_loop_test wired/wired_loop_test; do
     FLEXARM_CAMPAIGN=whole "build/release/tests/controller/$program" --gtest_filter='*.Campaign*'
   done
   build release flexarm flexarmd

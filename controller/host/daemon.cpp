@@ -115,6 +115,7 @@ class Daemon {
                    .truth = stack().truth_records()},
                   &recording_, &files_),
         executor_(options.realtime),
+        judge_(options.config, options.with_law),
         operator_(Context()) {}
 
   DaemonResult Run();
@@ -146,6 +147,7 @@ class Daemon {
   RecorderTask recorder_;
   std::unique_ptr<LockstepTask> behind_clock_;  // the loop, if it runs without real time
   RealtimeExecutor executor_;
+  RunJudge judge_;  // used by the operator's planner, one run at a time
   OperatorTask operator_;
   std::jthread recovery_;  // of the logs that killed daemons left; ends within one log
 };
@@ -170,6 +172,9 @@ OperatorContext Daemon::Context() {
       .socket = options_.config.daemon.socket,
       .unattended = options_.experiment,
       .parse_experiment = options_.parse_experiment,
+      .judge_experiment =
+          [this](const Experiment& experiment, const std::array<double, 2>& start_rad,
+                 const std::stop_token& stop) { return judge_.Judge(experiment, start_rad, stop); },
       .report = [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
       .identity = DaemonIdentity(options_.config, options_.config_file),
       .thread_status = [this] { return ThreadStatus(executor_); },

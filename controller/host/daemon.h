@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "controller/host/run_judge.h"
 #include "controller/types/experiment.h"
 #include "controller/types/records.h"
 #include "controller/types/rig_config.h"
@@ -19,6 +20,7 @@ struct DaemonOptions {
   bool realtime = true;                  ///< false: --without-realtime; a simulated loop
                                          ///< runs in lock step then, behind the clock
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
+  RunJudge::WithLaw with_law = {};  ///< RunJudge's
 };
 
 /// Result of the daemon.

@@ -49,6 +49,7 @@ class IdealLoop {
   int plant_modes_;
   std::int64_t period_ns_;
   SimulatedRig rig_;
+  Calibration calibration_;
   IdealObserver* observer_;  // owned by step_
   ControlStep step_;
   std::array<double, 2> torque_nm_{};
@@ -59,7 +60,9 @@ IdealLoop::IdealLoop(const SimulationRequest& request, const Design& design, dou
       plant_modes_((request.plant ? *request.plant : request.config).sim.plant_modes),
       period_ns_(request.config.loop.period_ns()),
       rig_(ArmWith((request.plant ? *request.plant : request.config).arm, payload_kg),
-           request.config.sensors, (request.plant ? *request.plant : request.config).sim),
+           request.config.sensors, (request.plant ? *request.plant : request.config).sim,
+           request.start_rad),
+      calibration_(CalibrationOf(request)),
       observer_(new IdealObserver(layout_.states())),
       step_(request.config, design, std::unique_ptr<Observer>(observer_)) {}
 
@@ -76,6 +79,7 @@ StepInput IdealLoop::Input(std::int64_t tick, const ReferenceTable& reference) {
   input.tick = tick;
   input.now_ns = input.sampling_instant_ns = now_ns;
   input.frame = rig_.Sample(now_ns);
+  input.calibration = calibration_;
   input.applied_torque_nm = torque_nm_;
   input.acted_late_ns = input.acts_late_ns = -period_ns_;  // at k Ts, not at (k+1) Ts
   const int k = static_cast<int>(tick);

@@ -17,6 +17,7 @@
 #include "controller/runlog/run_label.h"
 #include "controller/tasks/simulated_stack.h"
 #include "controller/types/rejected_error.h"
+#include "model/units.h"
 
 namespace flexarm {
 namespace {
@@ -64,7 +65,10 @@ class MemoryAndLog final : public RunMemory {
     log_->Tick(record);
   }
   void Timing(const TimingRecord& record) override { log_->Timing(record); }
-  void Safety(const SafetyRecord& record) override { log_->Safety(record); }
+  void Safety(const SafetyRecord& record) override {
+    RunMemory::Safety(record);
+    log_->Safety(record);
+  }
   void Event(const RunEvent& event) override { log_->Event(event); }
   void Commit() override { log_->Commit(); }
   std::string Trouble() const override { return log_->Trouble(); }
@@ -88,13 +92,25 @@ RunInfo InfoOf(const SimulationRequest& request, const Design& design, double pa
   return info;
 }
 
+std::optional<SimulatedTrip> TripFound(const std::vector<SafetyRecord>& records,
+                                       const LoopGrid& grid) {
+  std::int64_t start_ns = 0;
+  for (const SafetyRecord& record : records) {
+    const bool begins =
+        record.after.state == SafetyState::kRunning && record.before.state != SafetyState::kRunning;
+    if (begins) start_ns = grid.ExperimentStart(record.due_ns);
+    if (record.after.cause == TripCause::kNone || record.before.cause != TripCause::kNone) continue;
+    return SimulatedTrip{.cause = record.after.cause,
+                         .evidence = record.evidence,
+                         .at_s = static_cast<double>(record.due_ns - start_ns) * 1e-9};
+  }
+  return std::nullopt;
+}
+
 /// The parts of a simulated run, in order of construction.
 PlannedExperiment PlanOf(const SimulationRequest& request, const Design& design) {
   try {
-    return {request.experiment,
-            design,
-            request.config.loop.period_s(),
-            {0.0, 0.0},
+    return {request.experiment, design, request.config.loop.period_s(), request.start_rad,
             MotionLimitsOf(request.config)};
   } catch (const RejectedError& error) {
     if (request.experiment_file.empty()) throw;
@@ -168,7 +184,7 @@ Simulation::Simulation(const SimulationRequest& request)
       design_(DesignFor(request.config)),
       payload_kg_(request.payload_kg.value_or(Plant().arm.payload_mass_kg)),
       planned_(PlanOf(request, design_)),
-      stack_(request.config, Plant(), design_, payload_kg_),
+      stack_(request.config, Plant(), design_, payload_kg_, request.start_rad),
       recording_(InfoOf(request, design_, payload_kg_), SinkFor(request, &contents_),
                  [this](bool is_error, const std::string& text) {
                    if (is_error && log_error_.empty()) log_error_ = text;
@@ -181,7 +197,9 @@ Simulation::Simulation(const SimulationRequest& request)
                  .events = &events_,
                  .truth = stack_.truth_records()},
                 &recording_),
-      operator_(&stack_, &planned_) {}
+      operator_(&stack_, &planned_) {
+  stack_.Calibrate(CalibrationOf(request));
+}
 
 void Simulation::Announce() {
   events_.Push({.time_ns = 0,
@@ -216,6 +234,7 @@ double Simulation::Loop(const std::function<void(double)>& progress) {
 
 SimulationResult Simulation::Result(double wall_s) const {
   SimulationResult result = ResultOf(request_.config, planned_, contents_, operator_.run().trip());
+  result.trip_found = TripFound(contents_.safety, grid_);
   for (const TickRecord& record : contents_.tick) {
     const auto samples = int{record.output.delay_found};
     if (samples != 0) result.delay_found = samples;
@@ -235,6 +254,18 @@ SimulationResult Simulation::Run(const std::function<void(double)>& progress) {
 }
 
 }  // namespace
+
+Calibration CalibrationOf(const SimulationRequest& request) {
+  Calibration calibration = request.calibration;
+  calibration.counter_zero = {};
+  for (const EncoderConfig& encoder : request.config.sensors.encoder) {
+    const auto counter = static_cast<std::size_t>(encoder.counter);
+    const double angle_rad = request.start_rad[counter % 2];  // a rotor is where its hub is
+    calibration.counter_zero[counter] =
+        -std::llround(angle_rad * encoder.sign * encoder.counts_per_turn / kTwoPi);
+  }
+  return calibration;
+}
 
 SimulationResult Simulate(const SimulationRequest& request,
                           const std::function<void(double)>& progress) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,6 +10,7 @@
 #include "controller/runlog/metrics.h"
 #include "controller/runlog/run_sink.h"
 #include "controller/types/experiment.h"
+#include "controller/types/messages.h"
 #include "controller/types/rig_config.h"
 #include "controller/types/trip_cause.h"
 
@@ -25,12 +27,27 @@ struct SimulationRequest {
   std::optional<double> payload_kg;          ///< of the plant; empty: that of its config
   std::optional<std::filesystem::path> log;  ///< must not exist; empty: no log
   RunLabel label = {};                       ///< for the log
+  std::array<double, 2> start_rad = {};      ///< hub angles at which the arm rests before the run
+  /// Of the gauges, for the loop; the counters' zeros follow from `start_rad`.
+  Calibration calibration = {};
 };
+
+/// The trip of a simulated run.
+struct SimulatedTrip {
+  TripCause cause;
+  Evidence evidence;
+  double at_s;  ///< after the start of the experiment
+};
+
+/// The calibration of the loop in a simulated run: that of the request, with the zeros of the
+/// counters, which read 0 where the arm stands at the start.
+Calibration CalibrationOf(const SimulationRequest& request);
 
 struct SimulationResult {
   bool completed = false;  ///< every tick of the experiment ran, and no trip
   TripCause trip = TripCause::kNone;
-  std::int64_t ticks = 0;  ///< in state Running
+  std::optional<SimulatedTrip> trip_found;  ///< not of a simulation with a known state
+  std::int64_t ticks = 0;                   ///< in state Running
   RunMetrics metrics;
   std::vector<double> move_duration_s;  ///< of the rows [[move]], as given or as chosen
   int delay_found = 0;                  ///< samples beyond the known delay, last result of the run

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 
+#include "controller/operator/override.h"
 #include "controller/operator/request_tracker.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/tasks/loop_stack.h"
@@ -25,8 +27,9 @@ class ExperimentLoader {
     std::unique_ptr<PlannedExperiment> planned;
     std::string name;
     std::string text;  ///< for the log: the experiment's file, or the command that it comes from
-    LineLevels may_open = 0;  ///< RunOrder::may_open
-    RunLabel label = {};      ///< for the log
+    LineLevels may_open = 0;                   ///< RunOrder::may_open
+    RunLabel label = {};                       ///< for the log
+    std::optional<UnmetCondition> unmet = {};  ///< what speaks against the run
   };
 
   /// All pointers outlive the loader.

@@ -10,6 +10,7 @@
 #include "controller/latch/trip_latch.h"
 #include "controller/operator/arm_verdict.h"
 #include "controller/operator/journal_report.h"
+#include "controller/operator/run_command.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/runlog/run_files.h"
 #include "controller/tasks/loop_stack.h"
@@ -33,6 +34,7 @@ struct OperatorContext {
   /// Reads an experiment that a client sent. Throws std::exception with the reasons. Called by a
   /// thread of its own.
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
+  JudgeExperiment judge_experiment = {};  ///< by the same thread; empty: nothing is judged
   JournalReport report;
   nlohmann::json identity =
       nlohmann::json::object();  ///< keys of the status: which rig and program

@@ -15,10 +15,16 @@
 namespace flexarm {
 namespace {
 
-std::optional<ExperimentLoader::Order> OrderOf(const std::optional<Experiment>& experiment,
+std::optional<ExperimentLoader::Order> OrderOf(const OperatorContext& context,
                                                const ExperimentLoader& loader) {
-  if (!experiment) return std::nullopt;
-  return loader.Plan(*experiment, {0.0, 0.0});
+  if (!context.unattended) return std::nullopt;
+  constexpr std::array<double, 2> kStart_rad = {0.0, 0.0};
+  if (context.judge_experiment) {
+    if (const auto unmet = context.judge_experiment(*context.unattended, kStart_rad, {})) {
+      throw RejectedError(context.unattended->name + ": " + unmet->found + "; " + unmet->remedy);
+    }
+  }
+  return loader.Plan(*context.unattended, kStart_rad);
 }
 
 // Of this thread.
@@ -35,7 +41,7 @@ OperatorTask::OperatorTask(OperatorContext context)
       requests_(context_.stack, context_.latch),
       experiments_(context_.stack, &requests_, context_.events, context_.design, context_.grid,
                    context_.limits),
-      unattended_order_(OrderOf(context_.unattended, experiments_)),
+      unattended_order_(OrderOf(context_, experiments_)),
       commissioning_(*context_.config, {.stack = context_.stack,
                                         .experiments = &experiments_,
                                         .requests = &requests_,
@@ -52,6 +58,7 @@ OperatorTask::OperatorTask(OperatorContext context)
             .overrides = &overrides_,
             .files = context_.files,
             .parse_experiment = context_.parse_experiment,
+            .judge_experiment = context_.judge_experiment,
             .plan_wait = context_.plan_wait}),
       run_watch_(context_.grid.period_s()),
       warnings_(context_.grid.period_ns, context_.delay_margin_s,

@@ -46,7 +46,9 @@ RunLabel LabelOf(const nlohmann::json& command) {
 }  // namespace
 
 nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
-                                  const OperatorSnapshot& now, std::vector<Override>* used) const {
+                                  const OperatorSnapshot& now,
+                                  const std::optional<UnmetCondition>& of_plan,
+                                  std::vector<Override>* used) const {
   if (now.shutting_down) return Refused(Refusal::kShuttingDown, now);
   if (now.permit.state != SafetyState::kArmed) return Refused(Refusal::kWrongState, now);
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
@@ -54,6 +56,11 @@ nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
   }
   std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
   if (const auto no_log = UnmetLog(targets_.files)) unmet.push_back(*no_log);
+  if (of_plan) {
+    unmet.push_back(*of_plan);
+    unmet.back().remedy +=
+        "; or, on your own responsibility, `flexarm run --override-experiment REASON`";
+  }
   ConditionDecision decision = Judge(unmet, overrides);
   if (decision.refused != nullptr) {
     nlohmann::json json = Failed(decision.refused->found, decision.refused->remedy);
@@ -67,19 +74,37 @@ nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
 nlohmann::json RunCommand::Start(const nlohmann::json& command, int client,
                                  const OperatorSnapshot& now) {
   std::vector<Override> used;
-  std::vector<Override> overrides = OverridesOf(command, {kSwitchesCondition});
+  std::vector<Override> overrides =
+      OverridesOf(command, {kSwitchesCondition, kExperimentCondition});
   RunLabel label = LabelOf(command);
-  if (nlohmann::json refused = WhyNot(overrides, now, &used); !refused.is_null()) return refused;
+  if (nlohmann::json refused = WhyNot(overrides, now, {}, &used); !refused.is_null()) {
+    return refused;
+  }
   const std::array<double, 2> start_rad = HubsOf(now);
-  planner_.Begin([this, start_rad, text = TextOf(command, "experiment", ""),
+  planner_.Begin([this, start_rad, overrides, text = TextOf(command, "experiment", ""),
                   name = TextOf(command, "name", "experiment")](const std::stop_token& stop) {
-    return targets_.experiments->Plan(targets_.parse_experiment(text, name), start_rad, stop);
+    return Plan(targets_.parse_experiment(text, name), start_rad, overrides, stop);
   });
   waits_ = Waiting{.client = client,
                    .overrides = std::move(overrides),
                    .start_rad = start_rad,
                    .label = std::move(label)};
   return nullptr;
+}
+
+// What is judged comes first: its refusal says which law would do.
+ExperimentLoader::Order RunCommand::Plan(const Experiment& experiment,
+                                         const std::array<double, 2>& start_rad,
+                                         const std::vector<Override>& overrides,
+                                         const std::stop_token& stop) const {
+  std::optional<UnmetCondition> unmet;
+  if (targets_.judge_experiment) unmet = targets_.judge_experiment(experiment, start_rad, stop);
+  if (unmet && Judge({*unmet}, overrides).refused != nullptr) {
+    return {.planned = nullptr, .name = {}, .text = {}, .unmet = std::move(unmet)};
+  }
+  ExperimentLoader::Order order = targets_.experiments->Plan(experiment, start_rad, stop);
+  order.unmet = std::move(unmet);
+  return order;
 }
 
 std::optional<ClientAnswer> RunCommand::Follow(const OperatorSnapshot& now,
@@ -112,7 +137,8 @@ nlohmann::json RunCommand::Decide(Waiting command, ExperimentPlanner::Outcome pl
                                   const OperatorSnapshot& now) {
   if (!planned.order) return Failed(planned.problem, "");
   std::vector<Override> used;
-  if (nlohmann::json refused = WhyNot(command.overrides, now, &used); !refused.is_null()) {
+  const std::optional<UnmetCondition>& unmet = planned.order->unmet;
+  if (nlohmann::json refused = WhyNot(command.overrides, now, unmet, &used); !refused.is_null()) {
     return refused;
   }
   const std::array<double, 2> hub_rad = HubsOf(now);

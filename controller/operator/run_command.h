@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,15 @@
 #include "controller/runlog/run_files.h"
 
 namespace flexarm {
+
+/// Name of the condition of `run` by which an experiment is for this law and these payloads.
+inline constexpr const char* kExperimentCondition = "experiment";
+
+/// Judges an experiment from these hub angles, rad, before it is planned; nothing: nothing speaks
+/// against it. Throws std::exception if it is impossible, or a stop is requested.
+using JudgeExperiment = std::function<std::optional<UnmetCondition>(
+    const Experiment& experiment, const std::array<double, 2>& start_rad,
+    const std::stop_token& stop)>;
 
 /// The command `run`: reads and plans the experiment on a thread of its own, and asks the safety
 /// task for the run.
@@ -41,6 +51,7 @@ class RunCommand {
     const RunFiles* files = nullptr;  ///< of the logs; null: runs need none
     /// Throws std::exception with the reasons. Called by another thread.
     std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
+    JudgeExperiment judge_experiment = {};  ///< the same; empty: nothing is judged
     /// How long a period waits for a plan: 0 but in lock step, where time stands still meanwhile.
     std::chrono::milliseconds plan_wait{0};
   };
@@ -72,9 +83,15 @@ class RunCommand {
   };
 
   /// The refusal by a condition that does not hold; null: all hold.
-  /// @param used  the overrides without which it would be refused
+  /// @param of_plan  what was found while it was planned
+  /// @param used     the overrides without which it would be refused
   nlohmann::json WhyNot(const std::vector<Override>& overrides, const OperatorSnapshot& now,
+                        const std::optional<UnmetCondition>& of_plan,
                         std::vector<Override>* used) const;
+  /// On the planner's thread. An order without a plan is one that is refused.
+  ExperimentLoader::Order Plan(const Experiment& experiment, const std::array<double, 2>& start_rad,
+                               const std::vector<Override>& overrides,
+                               const std::stop_token& stop) const;
   nlohmann::json Decide(Waiting command, ExperimentPlanner::Outcome planned,
                         const OperatorSnapshot& now);
 

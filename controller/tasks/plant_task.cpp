@@ -16,8 +16,9 @@ ArmParameters WithPayload(ArmParameters arm, double payload_kg) {
 
 }  // namespace
 
-PlantTask::PlantTask(const RigConfig& config, double payload_kg, PlantChannels channels)
-    : rig_(WithPayload(config.arm, payload_kg), config.sensors, config.sim),
+PlantTask::PlantTask(const RigConfig& config, double payload_kg,
+                     const std::array<double, 2>& start_rad, PlantChannels channels)
+    : rig_(WithPayload(config.arm, payload_kg), config.sensors, config.sim, start_rad),
       loss_(config.sim.lost_frame_fraction, config.sim.seed),
       grid_(config.loop),
       limits_(MakeGateLimits(config.safety, grid_)),

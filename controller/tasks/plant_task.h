@@ -55,7 +55,9 @@ class PlantTask final : public Task {
   static constexpr int kPriority = 60;
 
   /// @param payload_kg  payload of the plant, instead of that of the config's arm
-  PlantTask(const RigConfig& config, double payload_kg, PlantChannels channels);
+  /// @param start_rad   hub angles at the start, SimulatedRig
+  PlantTask(const RigConfig& config, double payload_kg, const std::array<double, 2>& start_rad,
+            PlantChannels channels);
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;

@@ -5,7 +5,8 @@
 namespace flexarm {
 
 SimulatedStack::SimulatedStack(const RigConfig& config, const RigConfig& plant,
-                               const Design& design, double payload_kg)
+                               const Design& design, double payload_kg,
+                               const std::array<double, 2>& start_rad)
     : LoopStack(config, design,
                 {.lines = &lines,
                  .frames = {&frames},
@@ -14,7 +15,7 @@ SimulatedStack::SimulatedStack(const RigConfig& config, const RigConfig& plant,
                  .drives = {&drive_reports},
                  .metal_moves = false}),
       control_(&LoopStack::control()),
-      plant_(plant, payload_kg,
+      plant_(plant, payload_kg, start_rad,
              {.commands = &commands,
               .permits = &permits,
               .outputs = &outputs,

@@ -30,9 +30,10 @@ class SimulatedStack final : private SimulatedWires, public LoopStack {
   /// @param payload_kg  of the plant; the design has that of the config
   SimulatedStack(const RigConfig& config, const Design& design, double payload_kg)
       : SimulatedStack(config, config, design, payload_kg) {}
-  /// @param plant  config of the simulated rig, if it differs from that of the design
+  /// @param plant      config of the simulated rig, if it differs from that of the design
+  /// @param start_rad  hub angles at the start, SimulatedRig
   SimulatedStack(const RigConfig& config, const RigConfig& plant, const Design& design,
-                 double payload_kg);
+                 double payload_kg, const std::array<double, 2>& start_rad = {});
 
   PlantTask& plant() { return plant_; }
   std::vector<Task*> drive_tasks() override { return {&plant_}; }

@@ -162,6 +162,12 @@ std::vector<Problem> Experiment::Problems() const {
   list.Require(!name.empty() && name.size() <= 64 && printable, "name", name,
                "must be 1 to 64 printable characters: it names the run in the log");
   list.Positive("duration_s", duration_s, 3600.0, "the duration of the run");
+  if (payload_kg) {
+    list.EachWithin("payload_kg", *payload_kg, 0.0, 100.0, "the payloads that it is for");
+    list.Require(!((*payload_kg)[0] > (*payload_kg)[1]), "payload_kg",
+                 NumberText((*payload_kg)[0]) + ", " + NumberText((*payload_kg)[1]),
+                 "must be the least payload, then the greatest");
+  }
   CheckRows(doublet, "doublet", CheckDoublet, &list);
   CheckRows(move, "move", CheckMove, &list);
   CheckRows(chirp, "chirp", CheckChirp, &list);

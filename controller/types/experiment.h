@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "controller/types/law_table.h"
 #include "controller/types/motion_profile.h"
 #include "hal/sensor_frame.h"
 #include "model/arm/straight_arm.h"
@@ -102,6 +103,8 @@ struct Experiment {
   std::vector<Chirp> chirp{};
   std::vector<Prbs> prbs{};
   std::optional<CsvTrajectory> csv{};
+  std::vector<ControllerKind> laws{};                 ///< that may run it; empty: any
+  std::optional<std::array<double, 2>> payload_kg{};  ///< least, greatest; empty: not predicted
 
   std::vector<Problem> Problems() const;
   std::vector<Motion> Motions() const;  ///< all rows but sim_event, in order of time

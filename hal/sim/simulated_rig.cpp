@@ -9,12 +9,24 @@
 
 namespace flexarm {
 
+namespace {
+
+// At rest: a rotor is where its hub is, the links are straight.
+ArmState RestAt(int dof, const std::array<double, 2>& hub_rad) {
+  ArmState state(dof);
+  state.q(kTheta1) = state.q(kTheta3) = hub_rad[0];
+  state.q(kTheta2) = state.q(kTheta4) = hub_rad[1];
+  return state;
+}
+
+}  // namespace
+
 SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
-                           const SimConfig& sim)
+                           const SimConfig& sim, const std::array<double, 2>& start_rad)
     : arm_(arm, ModeCount{.link1 = sim.plant_modes, .link2 = sim.plant_modes}),
       simulator_(arm_),
-      sensors_(arm_, sensors, sim.seed),
-      state_(arm_.dof()),
+      state_(RestAt(arm_.dof(), start_rad)),
+      sensors_(arm_, sensors, sim.seed, state_.q),
       filter_(sensors.strain_input, sim.step_ms * 1e-3, arm_.dof() - kRigidCoordinates),
       step_ns_(std::llround(sim.step_ms * 1e6)),
       skew_ns_(std::llround(sim.channel_skew_us * 1e3)) {

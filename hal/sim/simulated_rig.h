@@ -18,7 +18,7 @@
 namespace flexarm {
 
 /// Simulation of the arm, its drives, switches and sensors: a passive object that its owner
-/// advances. Starts at rest at zero, switches closed.
+/// advances. Starts at rest, at zero unless told otherwise, switches closed.
 ///
 /// Drive: the torque follows its set-point with the electrical lag of (3.24), first order.
 /// Switches: a limit switch opens while its hub is beyond the switch angle or while it is held open
@@ -26,8 +26,10 @@ namespace flexarm {
 /// Real-time: all but the constructor are safe.
 class SimulatedRig {
  public:
-  /// @param arm  the plant's parameters, with its actual payload
-  SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim);
+  /// @param arm        the plant's parameters, with its actual payload
+  /// @param start_rad  hub angles at the start; the counters read 0 there
+  SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
+               const std::array<double, 2>& start_rad = {});
 
   std::int64_t step_ns() const noexcept { return step_ns_; }
 
@@ -69,8 +71,8 @@ class SimulatedRig {
 
   ArmModel arm_;
   ArmSimulator simulator_;
-  SimulatedSensors sensors_;
   ArmState state_;
+  SimulatedSensors sensors_;
   GaugeFilter filter_;  // filters the modal coordinates
   std::optional<SimulatedAccelerometer> accelerometer_;
   std::int64_t step_ns_;

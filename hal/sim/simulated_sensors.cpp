@@ -7,12 +7,15 @@
 namespace flexarm {
 
 SimulatedSensors::SimulatedSensors(const ArmModel& arm, const SensorConfig& sensors,
-                                   std::uint64_t seed)
+                                   std::uint64_t seed, const ArmVector& start)
     : input_(sensors.strain_input), random_(seed) {
   for (const EncoderConfig& encoder : sensors.encoder) {
+    const double counts_per_rad = encoder.sign * encoder.counts_per_turn / (2.0 * std::numbers::pi);
+    const auto counter = static_cast<std::size_t>(encoder.counter);
     encoder_.push_back(
-        {.counter = static_cast<std::size_t>(encoder.counter),
-         .counts_per_rad = encoder.sign * encoder.counts_per_turn / (2.0 * std::numbers::pi),
+        {.counter = counter,
+         .counts_per_rad = counts_per_rad,
+         .start = std::llround(start(static_cast<Eigen::Index>(counter)) * counts_per_rad),
          .modulus = std::int64_t{1} << encoder.counter_bits});
   }
   for (const StrainChannelConfig& row : sensors.strain) {
@@ -44,7 +47,8 @@ SensorFrame SimulatedSensors::SampleCounters(std::int64_t now_ns, const ArmVecto
   frame.levels = levels;
   for (const Encoder& encoder : encoder_) {
     const double angle = q(static_cast<Eigen::Index>(encoder.counter));
-    std::int64_t counts = std::llround(angle * encoder.counts_per_rad) % encoder.modulus;
+    std::int64_t counts =
+        (std::llround(angle * encoder.counts_per_rad) - encoder.start) % encoder.modulus;
     if (counts < 0) counts += encoder.modulus;
     frame.counter[encoder.counter] = static_cast<std::uint32_t>(counts);
     frame.counter_valid |= std::uint32_t{1} << encoder.counter;

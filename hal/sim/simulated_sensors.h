@@ -20,7 +20,11 @@ namespace flexarm {
 /// frames. Real-time: Sample is safe.
 class SimulatedSensors {
  public:
-  SimulatedSensors(const ArmModel& arm, const SensorConfig& sensors, std::uint64_t seed);
+  SimulatedSensors(const ArmModel& arm, const SensorConfig& sensors, std::uint64_t seed)
+      : SimulatedSensors(arm, sensors, seed, ArmVector::Zero(arm.dof())) {}
+  /// @param start  coordinates of the arm when it is switched on: the counters read 0 there
+  SimulatedSensors(const ArmModel& arm, const SensorConfig& sensors, std::uint64_t seed,
+                   const ArmVector& start);
 
   /// @param q         coordinates of the arm at the sampling instant
   /// @param filtered  its modal coordinates behind the gauge filter, size dof - 4
@@ -41,6 +45,7 @@ class SimulatedSensors {
   struct Encoder {
     std::size_t counter;
     double counts_per_rad;  // signed
+    std::int64_t start;     // counts at the start, from angle 0
     std::int64_t modulus;
   };
   struct Gauge {

@@ -75,6 +75,38 @@ TEST(ExperimentFile, EveryKeyOfAMoveIsRead) {
   EXPECT_EQ(e.move[0].to_deg, (std::array{10.0, -5.0}));
 }
 
+TEST(ExperimentFile, LawsAndPayloadsAreReadAndMayBeLeftOut) {
+  const Experiment any = ParseExperiment(kMoves, "e.toml");
+  EXPECT_TRUE(any.laws.empty());
+  EXPECT_FALSE(any.payload_kg);
+  const Experiment e =
+      ParseExperiment("laws = [\"gain-scheduled\", \"receding-horizon\"]\npayload_kg = [0, 0.5]\n" +
+                          std::string(kMoves),
+                      "e.toml");
+  EXPECT_EQ(e.laws,
+            (std::vector{ControllerKind::kGainScheduled, ControllerKind::kRecedingHorizon}));
+  EXPECT_EQ(e.payload_kg, (std::array{0.0, 0.5}));
+}
+
+TEST(ExperimentFile, WrongLawsAndPayloadsAreNamed) {
+  const auto refusal = [](const std::string& line) {
+    return MessageOf<ConfigError>([&] { ParseExperiment(line + "\n" + kMoves, "e.toml"); });
+  };
+  EXPECT_THAT(refusal("laws = [\"sobell\"]"),
+              AllOf(HasSubstr("e.toml:1: laws"), HasSubstr("did you mean \"sobel\"?")));
+  EXPECT_THAT(refusal("laws = [\"mpc\"]"), HasSubstr("unknown law \"mpc\"; the laws are: sobel "));
+  EXPECT_THAT(refusal("laws = []"), HasSubstr("must be an array of strings"));
+  EXPECT_THAT(refusal("laws = \"sobel\""), HasSubstr("must be an array of strings"));
+  EXPECT_THAT(refusal("laws = [1]"), HasSubstr("must be an array of strings"));
+  EXPECT_THAT(refusal("payload_kg = 0.5"), HasSubstr("e.toml:1: payload_kg"));
+  EXPECT_THAT(refusal("payload_kg = [0.5]"), HasSubstr("e.toml:1: payload_kg"));
+  EXPECT_THAT(refusal("payload_kg = [0.5, 0.1]"),
+              HasSubstr("the least payload, then the greatest"));
+  EXPECT_THAT(refusal("payload_kg = [-0.1, 0.1]"), HasSubstr("payload_kg[0] = -0.1"));
+  EXPECT_THAT(refusal("payload_kg = [0, inf]"), HasSubstr("payload_kg"));
+  EXPECT_THAT(refusal("payload_kgs = [0, 1]"), HasSubstr("did you mean \"payload_kg\"?"));
+}
+
 // The law decides whether it accepts a retarget.
 TEST(ExperimentFile, AMoveMayBeginDuringTheMoveBefore) {
   const Experiment e =

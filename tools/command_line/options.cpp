@@ -16,10 +16,7 @@ void ConfigOptions::AddTo(CLI::App* verb, bool required) {
   verb->add_option("-c,--config", file, "Config of the rig, a TOML file")
       ->required(required)
       ->type_name("FILE");
-  verb->add_option("--set", overrides,
-                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);  // one value each: the next argument may be a run log
+  AddSet(verb, &overrides);
 }
 
 RigConfig ConfigOptions::Load() const {
@@ -36,6 +33,13 @@ RigConfig ConfigOptions::LoadWithCrossSections() const {
                      "youngs_modulus_pa, which statements of the thesis are about");
   }
   return config;
+}
+
+void AddSet(CLI::App* verb, std::vector<std::string>* overrides) {
+  verb->add_option("--set", *overrides,
+                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);  // one value each: the next argument may be a run log
 }
 
 void GridOptions::AddTo(CLI::App* verb) {

@@ -37,6 +37,9 @@ struct GridOptions {
   void AddTo(CLI::App* verb);
 };
 
+/// Adds --set section.key=VALUE alone, to a verb that names its config in another way.
+void AddSet(CLI::App* verb, std::vector<std::string>* overrides);
+
 /// The folder of the shipped experiments: beside the config, in config/ of the current folder,
 /// where this program was installed, or in the source tree that it was built in.
 /// @throws InputError if there is none

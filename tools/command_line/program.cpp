@@ -12,6 +12,8 @@
 #include "controller/files/standard_output.h"
 #include "controller/runlog/build_info.h"
 #include "controller/types/rejected_error.h"
+#include "tools/command_line/config_refusal.h"
+#include "tools/command_line/guess.h"
 #include "tools/command_line/verbs.h"
 
 namespace flexarm {
@@ -21,7 +23,7 @@ void PrintError(const std::string& text) { std::cerr << "flexarm: " << ShownMess
 
 // Adds the program's name and a pointer to --help to CLI11's message.
 int BadUsage(const CLI::App& app, const CLI::ParseError& error) {
-  PrintError(error.what());
+  PrintError(error.what() + GuessFor(InnermostVerb(app)));
   const CLI::App* verb = &app;
   std::string name = "flexarm";
   while (!verb->get_subcommands().empty()) {
@@ -48,9 +50,11 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
       "  flexarm replay RUN.flexarm                recompute it and compare every byte\n"
       "Exit codes: 0 done; 1 a run, replay or check failed; 2 bad usage, config or input.");
   register_verbs(app, exit);
+  RefuseConfigElsewhere(&app);
   const auto is_first = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty()) {
-    PrintError("unknown verb \"" + std::string(argv[1]) + "\"; flexarm --help lists all verbs");
+    PrintError("unknown verb \"" + std::string(argv[1]) + "\"" + GuessVerb(app, argv[1]) +
+               "; flexarm --help lists all verbs");
     return Exit::kBadInput;
   }
   try {

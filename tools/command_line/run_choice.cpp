@@ -23,6 +23,12 @@ void RunChoice::AddManyTo(CLI::App* verb) {
   AddLast(verb);
 }
 
+void RunChoice::AddOptionTo(CLI::App* verb, const std::string& name, const std::string& what) {
+  verb->add_option(name, files_, what)->type_name("RUN")->expected(1);
+  verb->add_flag("--last", last_, "The same with the newest run of the folder");
+  AddRunFolder(verb, &folder_);
+}
+
 void RunChoice::AddLast(CLI::App* verb) {
   verb->add_flag("--last", last_, "The newest run of the folder");
   AddRunFolder(verb, &folder_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace CLI {
@@ -16,6 +17,12 @@ class RunChoice {
   void AddTo(CLI::App* verb, const char* what = "Run log", const char* type = "RUN");
   /// Arguments RUN...
   void AddManyTo(CLI::App* verb);
+
+  /// Option `name` RUN, such as "--like", in place of an argument.
+  void AddOptionTo(CLI::App* verb, const std::string& name, const std::string& what);
+
+  /// A run was named, or --last was given.
+  bool given() const { return last_ || !files_.empty(); }
 
   /// @throws InputError: none was given, or the folder has none
   std::filesystem::path File() const { return Files().front(); }

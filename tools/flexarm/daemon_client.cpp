@@ -4,8 +4,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "config/config.h"
 #include "controller/operator/operator_socket.h"
 #include "controller/runlog/errors.h"
+#include "tools/command_line/config_refusal.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/reply.h"
 
@@ -16,7 +19,7 @@ constexpr int kTries = 50;
 
 std::string SocketOf(const DaemonClient& client) {
   if (!client.socket.empty()) return client.socket;
-  if (client.config.given()) return client.config.Load().daemon.socket;
+  if (!client.config.empty()) return LoadConfig(client.config).daemon.socket;
   const char* named = std::getenv("FLEXARM_SOCKET");
   return named != nullptr ? named : "/run/flexarm/flexarmd.sock";
 }
@@ -25,11 +28,16 @@ std::string SocketOf(const DaemonClient& client) {
 
 CLI::App* DaemonClient::AddVerb(CLI::App& app, const char* name, const char* what) {
   CLI::App* verb = app.add_subcommand(name, what);
-  config.AddTo(verb, false);
+  CLI::Option* file =
+      verb->add_option("-c,--config", config,
+                       "Config that the daemon was started with: only its daemon.socket is read")
+          ->type_name("FILE");
   verb->add_option("--socket", socket,
                    "Socket of the daemon (default: daemon.socket of --config, else "
                    "$FLEXARM_SOCKET, else /run/flexarm/flexarmd.sock)")
-      ->type_name("PATH");
+      ->type_name("PATH")
+      ->excludes(file);
+  RefuseSet(verb, kDaemonHasItsConfig);
   AddJson(verb, &json);
   return verb;
 }

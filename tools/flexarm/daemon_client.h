@@ -1,16 +1,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-
-#include "tools/command_line/options.h"
 
 namespace flexarm {
 
 /// Options of every verb that talks to the running daemon, and the exchange with the daemon.
 struct DaemonClient {
-  ConfigOptions config;
+  std::filesystem::path config;  ///< empty, or that of the daemon, for its socket
   std::string socket;
   bool json = false;
   bool take_over = false;

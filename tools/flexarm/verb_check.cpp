@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "controller/files/external_json.h"
+#include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/conformance.h"
@@ -51,6 +52,7 @@ void RegisterCheck(CLI::App& app, Exit& exit) {
       app.add_subcommand("check", "Check a run log against the safety and consistency rules");
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   AddJson(verb, &options->json);
+  RefuseConfig(verb, kLogHasItsConfig);
   verb->footer(
       "Rules: no missing tick, increasing time, torque and slew limits, torque only in states\n"
       "that allow it, safety transitions as the state machine prescribes, values as they were\n"

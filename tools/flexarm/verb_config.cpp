@@ -215,11 +215,7 @@ void RegisterConfig(CLI::App& app, Exit& exit) {
   check->add_option("file", options->file, "Config of the rig, a TOML file")
       ->required()
       ->type_name("FILE");
-  check
-      ->add_option("--set", options->overrides,
-                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  AddSet(check, &options->overrides);
   AddJson(check, &options->json);
   check->footer(
       "Exit code 2 if the config is not valid. A warning, such as a modulus of 207 Pa, leaves it "

@@ -67,10 +67,7 @@ void RegisterConfigShow(CLI::App& config, Exit&) {
   verb->add_option("file", options->file, "Config of the rig, a TOML file")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--set", options->overrides,
-                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  AddSet(verb, &options->overrides);
   verb->add_option("--only", options->only, "Only keys that begin with this, such as limits")
       ->type_name("SECTION");
   AddJson(verb, &options->json);

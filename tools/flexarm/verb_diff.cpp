@@ -9,6 +9,7 @@
 #include "controller/files/external_json.h"
 #include "controller/runlog/blob.h"
 #include "model/units.h"
+#include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/runs/run_summary.h"
@@ -126,6 +127,7 @@ void RegisterDiff(CLI::App& app, Exit& exit) {
   verb->add_option("first", options->first, "Run log")->required()->type_name("RUN");
   verb->add_option("second", options->second, "Run log")->required()->type_name("RUN");
   AddJson(verb, &options->json);
+  RefuseConfig(verb, kLogHasItsConfig);
   verb->footer(
       "Compares every recorded byte; ticks and times count from the start of each run. Exit\n"
       "code 1 if the runs differ.\n"

@@ -9,6 +9,7 @@
 #include "controller/files/write_file.h"
 #include "controller/runlog/csv.h"
 #include "controller/runlog/decoded_csv.h"
+#include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
@@ -88,6 +89,7 @@ void RegisterExport(CLI::App& app, Exit&) {
       "export",
       "Export the samples of a run log as a CSV file, raw for `flexarm replay` or decoded");
   options->choice.AddTo(verb);
+  RefuseConfig(verb, kLogHasItsConfig);
   options->output.AddTo(verb, "CSV file to write", true);
   CLI::Option* decoded = verb->add_flag("--decoded", options->decoded,
                                         "Values with units, for plots, in place of raw counts");

@@ -12,6 +12,7 @@
 #include "controller/runlog/run_labels_file.h"
 #include "controller/safety/safety_machine.h"
 #include "controller/safety/torque_gate.h"
+#include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
@@ -247,6 +248,7 @@ void RegisterInfo(CLI::App& app, Exit&) {
   CLI::App* verb = app.add_subcommand(
       "info", "Summarise a run log: result, safety transitions, metrics, timing");
   options->run.AddTo(verb);
+  RefuseConfig(verb, kLogHasItsConfig);
   AddJson(verb, &options->json);
   verb->footer(
       "Metrics: tracking errors, settling time and residual of the tip, torques, bending.\n"

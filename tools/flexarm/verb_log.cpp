@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "controller/runlog/run_recovery.h"
+#include "tools/command_line/config_refusal.h"
 #include "tools/command_line/verbs.h"
 
 namespace flexarm {
@@ -31,6 +32,7 @@ void RegisterLog(CLI::App& app, Exit& exit) {
   verb->require_subcommand(1);
   CLI::App* recover = verb->add_subcommand(
       "recover", "Turn logs that a killed program or a full disk left into closed runs");
+  RefuseConfig(recover, kLogHasItsConfig);
   recover->add_option("files", *files, "Run logs")->required()->type_name("FILE");
   recover->footer(
       "While a run is recorded, its log is a record file: it only grows, and each record has a\n"

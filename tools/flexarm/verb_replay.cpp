@@ -91,6 +91,12 @@ Design GainsOf(const RunReader& reader, const RigConfig& config) {
   }
 }
 
+// The config of the replay: --set without -c changes that of the log.
+RigConfig OtherConfig(const ConfigOptions& options, const RigConfig& own) {
+  if (options.given()) return options.Load();
+  return options.overrides.empty() ? own : WithOverrides(own, options.overrides);
+}
+
 Outcome ReplayRun(const ReplayOptions& options) {
   if (!options.calibration.empty()) {
     throw InputError("--calibration is for CSV files only: a run log contains its own calibration");
@@ -100,8 +106,7 @@ Outcome ReplayRun(const ReplayOptions& options) {
   }
   RunReader reader(options.source);
   const RigConfig own = ConfigOf(reader);
-  const bool asks_for_other = options.config.given() || !options.config.overrides.empty();
-  const RigConfig config = asks_for_other ? options.config.Load() : own;
+  const RigConfig config = OtherConfig(options.config, own);
   const bool other_config = config.text != own.text;
   const Design design = other_config ? DesignFor(config) : GainsOf(reader, config);
   if (IsIdeal(config) && !IsIdeal(own)) {
@@ -257,7 +262,7 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "exit code is 1, as for a log that was damaged since it was written (its digest tells). A\n"
       "log of another processor (arm64, amd64) must give the same estimate to 1e-6 and the same\n"
       "safety decisions. With -c the loop uses that config instead, and the difference is\n"
-      "reported.\n"
+      "reported; --set without -c changes values of the log's own config.\n"
       "A CSV file comes from `flexarm export`, or has the columns of the table [csv] of the\n"
       "config. It has no reference of the law: with --experiment the law follows that one and its\n"
       "torques are compared with those of the file; without, the estimator alone says something.\n"

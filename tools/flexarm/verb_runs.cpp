@@ -9,6 +9,7 @@
 #include "controller/files/external_text.h"
 #include "controller/files/input_error.h"
 #include "controller/runlog/run_labels_file.h"
+#include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
@@ -114,6 +115,7 @@ void AddChange(CLI::App* runs, const char* name, const char* what, const char* w
                void (*change)(RunLabel* label, const std::vector<std::string>& words)) {
   const auto options = std::make_shared<LabelChange>();
   CLI::App* verb = runs->add_subcommand(name, what);
+  RefuseConfig(verb, kLogHasItsConfig);
   verb->add_option("run", options->run, "Run log")->required()->type_name("RUN");
   verb->add_option("words", options->words, word)->required()->type_name("TEXT..");
   verb->footer(
@@ -151,6 +153,7 @@ void RegisterRuns(CLI::App& app, Exit&) {
   const auto options = std::make_shared<RunsOptions>();
   CLI::App* verb =
       app.add_subcommand("runs", "List the run logs of a folder, find them, tag them, note");
+  RefuseConfig(verb, kLogHasItsConfig);
   AddRunFolder(verb, &options->folder);
   verb->add_option("--text", options->search.text,
                    "Only runs with this text in name, note, tags, experiment or file; repeatable")

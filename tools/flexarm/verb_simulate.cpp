@@ -10,12 +10,17 @@
 #include "controller/design/run_design.h"
 #include "controller/files/external_json.h"
 #include "controller/files/external_text.h"
+#include "controller/host/run_judge.h"
 #include "controller/host/simulation.h"
 #include "controller/runlog/errors.h"
 #include "controller/types/law_table.h"
+#include "controller/types/rejected_error.h"
 #include "tools/command_line/label_options.h"
 #include "tools/command_line/options.h"
+#include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
+#include "tools/flexarm/like_run.h"
+#include "tools/flexarm/run_pictures.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -23,6 +28,8 @@ namespace {
 
 struct SimulateOptions {
   ConfigOptions config;
+  RunChoice like;
+  std::filesystem::path plot;
   std::filesystem::path experiment;
   std::string controller, estimator;
   std::optional<double> payload_kg;
@@ -31,16 +38,18 @@ struct SimulateOptions {
   bool without_prediction = false;
   bool without_adaptation = false;
   bool ideal = false;
+  bool unchecked = false;
   std::filesystem::path output;
   LabelOptions label;
   bool json = false;
 };
 
-// The short options set config keys, so that the config in the log describes the run completely.
-RigConfig LoadWithOptions(const SimulateOptions& options) {
-  ConfigOptions config = options.config;
-  const auto set = [&config](const char* key, const std::string& value) {
-    config.overrides.push_back(std::string(key) + "=" + value);
+// --set, and the short options, which set config keys, so that the config in the log describes the
+// run completely.
+std::vector<std::string> OverridesOf(const SimulateOptions& options) {
+  std::vector<std::string> overrides = options.config.overrides;
+  const auto set = [&overrides](const char* key, const std::string& value) {
+    overrides.push_back(std::string(key) + "=" + value);
   };
   if (!options.controller.empty()) set("controller.name", options.controller);
   if (options.ideal) set("estimator.name", "ideal");
@@ -49,7 +58,68 @@ RigConfig LoadWithOptions(const SimulateOptions& options) {
   if (options.seed) set("sim.seed", std::to_string(*options.seed));
   if (options.without_prediction) set("controller.prediction", "false");
   if (options.without_adaptation) set("controller.adaptation", "false");
-  return config.Load();
+  return overrides;
+}
+
+SimulationRequest RequestOfConfig(const SimulateOptions& options) {
+  if (!options.config.given()) throw CLI::RequiredError("--config, or --like RUN");
+  SimulationRequest request;
+  request.config = LoadConfig(options.config.file, OverridesOf(options));
+  request.experiment_file =
+      ExperimentFile(options.experiment, options.config.file, request.config.controller.kind);
+  request.experiment = LoadExperiment(request.experiment_file);
+  request.payload_kg = options.payload_kg;
+  return request;
+}
+
+// The same rig, experiment, payload, place and noise as in a run, with other options.
+SimulationRequest RequestLike(const SimulateOptions& options, const std::filesystem::path& file) {
+  const LikeRun like = LoadLikeRun(file);
+  SimulationRequest request;
+  request.config = WithOverrides(like.config, OverridesOf(options));
+  request.experiment_file = file;
+  request.experiment = like.experiment;
+  request.payload_kg = options.payload_kg ? options.payload_kg : like.payload_kg;
+  request.start_rad = like.start_rad;
+  request.calibration = like.calibration;
+  if (request.payload_kg) return request;
+  throw InputError(file.string() + ": the run of a rig, whose payload is not known" +
+                   (like.payload_estimate.empty()
+                        ? ""
+                        : " (" + like.payload_estimate + " by its own estimate)") +
+                   ": give it with --payload-kg");
+}
+
+/// The log that a picture needs, removed at the end unless the user asked for it.
+class ScratchLog {
+ public:
+  explicit ScratchLog(bool wanted) {
+    if (!wanted) return;
+    std::string folder = (std::filesystem::temp_directory_path() / "flexarm-XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) {
+      throw InputError(folder + ": cannot be made; give the log a place with -o RUN");
+    }
+    folder_ = folder;
+  }
+  ~ScratchLog() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
+  ScratchLog(const ScratchLog&) = delete;
+  ScratchLog& operator=(const ScratchLog&) = delete;
+
+  /// @param law  names the file, which names the run in the picture
+  std::filesystem::path File(const std::string& law) const { return folder_ / (law + ".flexarm"); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+RunPictures PicturesOf(const SimulateOptions& options) {
+  RunPictures pictures;
+  const bool page = options.plot.extension() == ".html";
+  (page ? pictures.page : pictures.picture.file) = options.plot;
+  return pictures;
 }
 
 void ShowProgress(double simulated_s) {
@@ -118,15 +188,30 @@ void WarnOfDesign(const DesignVerdict& design) {
             << ShownMessage(design.found) << '\n';
 }
 
+// The experiment's own conditions (docs/experiments.md), as the daemon judges them.
+void CheckConditions(const SimulationRequest& request) {
+  const double payload_kg = request.payload_kg.value_or(request.config.arm.payload_mass_kg);
+  std::optional<UnmetCondition> unmet =
+      PayloadObjection(request.experiment, request.config, payload_kg);
+  if (!unmet) {
+    unmet = RunJudge(request.config, WithLaw).Judge(request.experiment, request.start_rad);
+  }
+  if (!unmet) return;
+  throw RejectedError(request.experiment_file.string() + ": " + unmet->found + "; " +
+                      unmet->remedy + "; --unchecked simulates it nevertheless");
+}
+
 int Run(const SimulateOptions& options) {
-  SimulationRequest request;
-  request.config = LoadWithOptions(options);
-  request.experiment_file =
-      ExperimentFile(options.experiment, options.config.file, request.config.controller.kind);
-  request.experiment = LoadExperiment(request.experiment_file);
-  request.payload_kg = options.payload_kg;
+  const std::filesystem::path like = options.like.given() ? options.like.File() : "";
+  SimulationRequest request = like.empty() ? RequestOfConfig(options) : RequestLike(options, like);
+  const ScratchLog scratch(!options.plot.empty() && options.output.empty());
   if (!options.output.empty()) request.log = options.output;
+  if (!options.plot.empty()) {
+    if (!request.log) request.log = scratch.File(LawOf(request.config.controller.kind).name);
+    PicturesOf(options).Check({*request.log, like});
+  }
   request.label = options.label.Label();
+  if (!options.unchecked) CheckConditions(request);
   const DesignVerdict design = JudgeDesign(request.config, DesignFor(request.config));
   WarnOfDesign(design);
   const bool show = isatty(STDERR_FILENO) == 1 && !options.json;
@@ -137,6 +222,11 @@ int Run(const SimulateOptions& options) {
     std::cout << PrintedJson(ToJson(result, design, options.output)) << '\n';
   } else {
     PrintText(result, options.output);
+  }
+  if (!options.plot.empty()) {
+    std::vector<std::filesystem::path> runs = {*request.log};
+    if (!like.empty()) runs.insert(runs.begin(), like);
+    PicturesOf(options).Draw(runs);
   }
   return result.completed ? Exit::kDone : Exit::kFailed;
 }
@@ -155,7 +245,10 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* verb = app.add_subcommand(
       "simulate", "Simulate an experiment: every task of the controller and the arm, in lock step");
-  options->config.AddTo(verb, true);
+  options->config.AddTo(verb, false);
+  options->like.AddOptionTo(verb, "--like",
+                            "Repeat this run: its config, experiment, payload, seed and place, "
+                            "with the other options here");
   verb->add_option(
           "--experiment", options->experiment,
           "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config or\n"
@@ -179,20 +272,34 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
                  "estimator.name = ideal: the state is known and the torque acts at once, without\n"
                  "sensors, delay, torque gate and safety tasks, as in the thesis's simulations")
       ->excludes("--estimator");
+  verb->add_flag("--unchecked", options->unchecked,
+                 "Simulate also what the experiment's laws and payload_kg refuse: another law,\n"
+                 "another payload, a run that is predicted to trip");
   verb->add_option("-o,--output", options->output, "Run log to write (must not exist)")
       ->type_name("RUN");
+  verb->add_option("--plot", options->plot,
+                   "Picture of the run to write, .png or .svg, or page, .html; with --like also of "
+                   "the run that it repeats")
+      ->type_name("FILE");
+  for (const char* like : {"--like", "--last"}) {
+    verb->get_option(like)->excludes("--config")->excludes("--experiment");
+  }
   options->label.AddTo(verb);
   AddJson(verb, &options->json);
   verb->footer(
       "Prints tracking errors, settling time of the tip and peak torques, and warns of a design\n"
       "that `flexarm design` rejects and the daemon does not arm; `flexarm plot` draws\n"
-      "the run log. The same config and seed give the same run, tick for tick. Exit code 1 if the\n"
-      "run tripped.\n"
+      "the run log. The same config and seed give the same run, tick for tick. An experiment that\n"
+      "states laws or payload_kg refuses what it is not for, and names a law that works\n"
+      "(docs/experiments.md). Exit code 1 if the run tripped.\n"
       "Examples: flexarm simulate -c config/hil.toml\n"
       "          flexarm simulate -c config/hil.toml --payload-kg 0.2 -o heavy.flexarm --tag "
       "heavy\n"
       "          flexarm simulate -c config/hil.toml --ideal --payload-kg 0.01\n"
-      "          flexarm simulate -c config/hil.toml --set controller.alpha=2 --json");
+      "          flexarm simulate -c config/hil.toml --set controller.alpha=2 --json\n"
+      "          flexarm simulate --like runs/today.flexarm --controller gain-scheduled --plot "
+      "laws.png\n"
+      "          flexarm simulate --last --controller pd -o pd.flexarm");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }
 

@@ -9,6 +9,7 @@
 
 #include "controller/operator/arm_verdict.h"
 #include "controller/operator/prove_switches.h"
+#include "controller/operator/run_command.h"
 #include "controller/runlog/errors.h"
 #include "controller/runlog/run_label.h"
 #include "tools/command_line/label_options.h"
@@ -124,10 +125,13 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
   run->label.AddTo(verb);
   run->overrides.AddTo(verb, "--override-switches", kSwitchesCondition,
                        "Run a wired rig although its switches have not been proved");
+  run->overrides.AddTo(verb, "--override-experiment", kExperimentCondition,
+                       "Run although the experiment is not for this law, or is predicted to trip");
   verb->footer(
       "Only from Armed. The daemon first compares the reference with the limits of the rig: a\n"
-      "refusal names the row, the joint, the value and the limit (docs/experiments.md). A wired "
-      "rig\n"
+      "refusal names the row, the joint, the value and the limit (docs/experiments.md).\n"
+      "An experiment that states laws or payload_kg is also simulated before it runs, with the\n"
+      "least, the middle and the greatest payload: a refusal names a law that works. A wired rig\n"
       "needs the proof of its switches (flexarm prove-switches). With --wait the exit code is the\n"
       "run's: 0 if it ended as planned, 1 if it was stopped or tripped.\n"
       "Name, note and tags go into the log: `flexarm runs` finds it by them.\n"

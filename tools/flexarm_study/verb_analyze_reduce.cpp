@@ -32,6 +32,10 @@ void Check(const ReduceOptions& options) {
   if (options.system.empty() == !options.config.given()) {
     throw InputError("analyze reduce: expected either --config FILE or --system FILE");
   }
+  if (!options.system.empty() && !options.config.overrides.empty()) {
+    throw InputError(
+        "analyze reduce: --set has no effect on a --system: it changes a config; change the file");
+  }
   if (!options.system.empty() && (options.with_grid || options.output.given())) {
     throw InputError("analyze reduce: --grid and --output are for an arm: they need --config");
   }

@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/files/external_json.h"
+#include "controller/files/external_text.h"
 #include "controller/files/write_file.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
+#include "tools/identification/changed_lines.h"
 #include "tools/identification/comparison_picture.h"
 #include "tools/identification/identification.h"
 #include "tools/runs/run_summary.h"
@@ -165,12 +167,16 @@ int Run(const IdentifyOptions& options) {
   std::vector<Judged> judged;
   judged.push_back(Judge(std::move(run), config, result.config));
   if (other) judged.push_back(Judge(std::move(*other), config, result.config));
-  const nlohmann::ordered_json json = ToJson(result, judged);
+  const std::vector<ChangedLine> lines =
+      ChangedLines(config, result, options.config.file, options.config.overrides);
+  nlohmann::ordered_json json = ToJson(result, judged);
+  json["changed"] = LinesJson(lines);
   if (options.output.given()) Write(options, result, judged, json);
   if (options.json) {
     std::cout << PrintedJson(json) << '\n';
   } else {
     PrintIdentification(json);
+    std::cout << "\nlines to change:\n" << ShownMessage(LinesText(lines));
   }
   return result.converged ? Exit::kDone : Exit::kFailed;
 }
@@ -206,8 +212,9 @@ void RegisterIdentify(CLI::App& app, Exit& exit) {
       "The nonlinear model gets the torques of the run and the joint angles at its start.\n"
       "fit = 100 (1 - |y - yhat| / |y - mean y|) over the whole run, for the joint angles and for\n"
       "the tip deflections measured by the gauges. The standard errors do not include effects\n"
-      "that the model lacks. Exit code 1: the search did not converge. More in\n"
-      "docs/identification.md.\n"
+      "that the model lacks. At the end stand the lines of the config to change, with file, line\n"
+      "and old value: the identified ones, and those that `flexarm config new` derived from them.\n"
+      "Exit code 1: the search did not converge. More in docs/identification.md.\n"
       "Example: flexarm identify --run a.flexarm --validate b.flexarm -o found\n"
       "             --free joint1.coulomb_friction_nm --free link1.damping_ratio=0:0.2");
   verb->callback([options, &exit] { exit.code = Run(*options); });

@@ -7,6 +7,7 @@
 #include "controller/files/external_json.h"
 #include "controller/files/write_file.h"
 #include "controller/runlog/errors.h"
+#include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
@@ -19,6 +20,7 @@
 namespace flexarm {
 namespace {
 
+constexpr const char* kResultsHaveTheirConfig = "the results have the config of their sweep";
 constexpr std::size_t kMissingNamed = 10;  // points that a message lists
 
 struct RunOptions {
@@ -163,6 +165,7 @@ void RegisterMerge(CLI::App* sweep, Exit& exit) {
   const auto options = std::make_shared<MergeOptions>();
   CLI::App* verb =
       sweep->add_subcommand("merge", "Merge the results of the shards of one sweep into one file");
+  RefuseConfig(verb, kResultsHaveTheirConfig);
   verb->add_option("parts", options->parts, "Result files of the shards")
       ->required()
       ->type_name("FILE");
@@ -179,6 +182,7 @@ void RegisterShow(CLI::App* sweep) {
   const auto options = std::make_shared<ShowOptions>();
   CLI::App* verb =
       sweep->add_subcommand("show", "Show the medians over the seeds as a table or a picture");
+  RefuseConfig(verb, kResultsHaveTheirConfig);
   verb->add_option("results", options->results, "Results of a sweep")
       ->required()
       ->type_name("FILE");
@@ -249,6 +253,12 @@ void RegisterSweep(CLI::App& app, Exit& exit) {
   verb->require_subcommand(0, 1);
   RegisterMerge(verb, exit);
   RegisterShow(verb);
+  verb->parse_complete_callback([options, verb] {  // before those of the verbs below
+    if (verb->get_subcommands().empty()) return;
+    if (!options->config.given() && options->config.overrides.empty()) return;
+    throw InputError("sweep " + verb->get_subcommands().front()->get_name() +
+                     ": --config and --set have no effect here: " + kResultsHaveTheirConfig);
+  });
   verb->callback([options, verb] {
     if (!verb->get_subcommands().empty()) return;
     if (!options->config.given()) throw CLI::RequiredError("--config");

@@ -12,6 +12,7 @@
 #include "controller/runlog/build_info.h"
 #include "controller/types/rejected_error.h"
 #include "hal/bus_device.h"
+#include "tools/command_line/guess.h"
 
 namespace flexarm {
 namespace {
@@ -30,7 +31,7 @@ struct Options {
 };
 
 void AddOptions(CLI::App* app, Options* options) {
-  app->add_option("--config", options->config, "Config of the rig, a TOML file")
+  app->add_option("-c,--config", options->config, "Config of the rig, a TOML file")
       ->required()
       ->type_name("FILE");
   app->add_option("--experiment", options->experiment,
@@ -87,7 +88,8 @@ int Serve(const Options& options) {
                        .experiment = std::nullopt,
                        .run_for_s = options.run_for_s,
                        .realtime = !options.without_realtime,
-                       .parse_experiment = ParseExperiment};
+                       .parse_experiment = ParseExperiment,
+                       .with_law = WithLaw};
   if (!options.experiment.empty()) daemon.experiment = LoadExperiment(options.experiment);
   const DaemonResult result = RunDaemon(daemon);
   return result.tripped || result.refused || result.log_errors > 0 ? kFailed : kDone;
@@ -118,7 +120,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return PrintError(std::string(error.what()) + "\nTry: flexarmd --help", kBadInput);
+    return PrintError(error.what() + GuessFor(app) + "\nTry: flexarmd --help", kBadInput);
   } catch (const RealtimeRejectedError& error) {
     return PrintError(std::string("real-time scheduling is not possible.\n") + error.what(),
                       kFailed);

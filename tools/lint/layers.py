@@ -49,7 +49,7 @@ LAYERS = {
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
-    "controller/host": "hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
+    "controller/host": "model hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/operator",
     "config/derivation": "model model/beam model/parameters hal estimator",
@@ -89,7 +89,7 @@ LAYERS = {
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
-                      "config controller/files",
+                      "config controller/files tools/command_line",
 }
 LAYERS = {folder: uses.split() for folder, uses in LAYERS.items()}
 

@@ -24,7 +24,7 @@ constexpr const char* kPlannedMove =
 class RunCommandTest : public OperatorParts {
  protected:
   RunCommandTest() : OperatorParts(ShippedRig()) {}
-  ~RunCommandTest() override { held_ = false; }
+  ~RunCommandTest() override { held_ = judging_held_ = false; }
 
   // Held: the plan is not there until the test releases it.
   RunCommand::Targets TargetsOf() {
@@ -37,7 +37,19 @@ class RunCommandTest : public OperatorParts {
                   while (held_) std::this_thread::yield();
                   return ParseExperiment(text, name);
                 },
+            .judge_experiment =
+                [this](const Experiment&, const std::array<double, 2>&, const std::stop_token&) {
+                  while (judging_held_) std::this_thread::yield();
+                  return objection_;
+                },
             .plan_wait = {}};
+  }
+  void ObjectToTheExperiment() {
+    objection_ = UnmetCondition{.name = kExperimentCondition,
+                                .refusal = "predicted-trip",
+                                .found = "it trips by bending-strain-1",
+                                .remedy = "controller.name = \"gain-scheduled\" completes it",
+                                .may_override = true};
   }
   Json Start(const std::string& experiment = kPlannedMove) {
     return run_.Start({{"command", "run"}, {"experiment", experiment}}, kRunClient, now_);
@@ -54,6 +66,8 @@ class RunCommandTest : public OperatorParts {
   }
 
   std::atomic<bool> held_ = true;
+  std::atomic<bool> judging_held_ = false;
+  std::optional<UnmetCondition> objection_;
   bool client_is_there_ = true;
   RunCommand run_{TargetsOf()};  // in place of the one that waits
 };
@@ -150,6 +164,59 @@ TEST_F(RunCommandTest, TheDaemonEndsWhileAPlanIsMade) {
     EXPECT_TRUE(run.planning());
   }
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(RunCommandTest, TheOperatorGoesOnWhileAnExperimentIsJudged) {
+  judging_held_ = true;
+  held_ = false;
+  EXPECT_TRUE(Start().is_null());
+  for (int k = 0; k < 1'000; ++k) EXPECT_FALSE(Follow());
+  EXPECT_TRUE(run_.planning());
+  run_.Cancel();
+  EXPECT_EQ(Follow()->json["refusal"], "cancelled");
+  judging_held_ = false;
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(RunCommandTest, AnObjectionRefusesTheRunAndSaysHowToOverrideIt) {
+  ObjectToTheExperiment();
+  EXPECT_TRUE(Start().is_null());
+  const std::optional<ClientAnswer> answer = FollowToTheEnd();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->json["ok"], false);
+  EXPECT_EQ(answer->json["refusal"], "predicted-trip");
+  EXPECT_EQ(answer->json["error"], "it trips by bending-strain-1");
+  EXPECT_THAT(answer->json.value("remedy", ""),
+              AllOf(HasSubstr("gain-scheduled"), HasSubstr("--override-experiment REASON")));
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(RunCommandTest, AnOverriddenObjectionIsRecordedWithItsReason) {
+  ObjectToTheExperiment();
+  EXPECT_TRUE(run_.Start({{"command", "run"},
+                          {"experiment", kPlannedMove},
+                          {"overrides", {{kExperimentCondition, "the stop is padded"}}}},
+                         kRunClient, now_)
+                  .is_null());
+  EXPECT_FALSE(FollowToTheEnd()) << "the safety task answers";
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  overrides_.Answered(now_.now_ns, Answered(RequestKind::kRun, made[0].number, Refusal::kNone));
+  EXPECT_THAT(overrides_.Json().dump(),
+              AllOf(HasSubstr("the stop is padded"), HasSubstr("it trips by bending-strain-1")));
+}
+
+TEST_F(RunCommandTest, AnOverrideWithoutAnObjectionIsNotUsed) {
+  EXPECT_TRUE(run_.Start({{"command", "run"},
+                          {"experiment", kPlannedMove},
+                          {"overrides", {{kExperimentCondition, "to be sure"}}}},
+                         kRunClient, now_)
+                  .is_null());
+  EXPECT_FALSE(FollowToTheEnd());
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  overrides_.Answered(now_.now_ns, Answered(RequestKind::kRun, made[0].number, Refusal::kNone));
+  EXPECT_THAT(overrides_.Json().dump(), Not(HasSubstr("to be sure")));
 }
 
 // Where the recorder reads it: in the announcement of the experiment.
