@@ -165,17 +165,19 @@ lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, wrong in
   ctest --preset e2e
 }
 
-run_blocks() {  # run_blocks LANE
-  build release flexarm flexarm-study flexarmd
-  tests/docs/run_blocks.py "$1" --build build/release --note "$logs/$lane.note"
-}
-
 lane_docs() {  # command blocks `ci` of the pages, from a clean clone and with the installed programs
-  run_blocks ci
+  build release flexarm flexarm-study flexarmd
+  tests/docs/run_blocks.py ci --build build/release --note "$logs/$lane.note"
 }
 
 lane_docs-all() {  # command blocks `all` of the pages, which take minutes
-  run_blocks all
+  build release flexarm flexarm-study flexarmd
+  local pages page
+  pages=$(tests/docs/run_blocks.py all --build build/release --list)
+  for page in $pages; do
+    part "${page//\//-}" tests/docs/run_blocks.py all --build build/release --page "$page"
+  done
+  note "$(wc -w <<<"$pages") pages"
 }
 
 lane_mutation() {  # 20,000 changed inputs of every kind to the programs (part of e2e: 1,000)

@@ -5,16 +5,19 @@ does: all blocks of a page in order, in one shell, in one folder that is new for
 Where:
 clone      a fresh `git clone` of the last commit, with what differs from it in this tree. Its
            build/release is a link to the build folder that is given: the blocks use what is built
-           there, and `cmake --build` in a block builds there. Nothing else is linked.
+           there, and `cmake --build` in a block builds there (`cmake --preset` does not work
+           there). build/guest is a link, too: the image of the guest. Nothing else is linked.
 installed  an empty folder, with what `cmake --install` wrote to a temporary place on PATH and
            `config` a link to the installed configs, as the README tells the reader to make it.
 unbuilt    a fresh clone without a build folder, for blocks that say so: they build everything.
 
 `all` also runs the `ci` blocks of the pages that have an `all` block: those come later on the page
 and use what the others have made. `rig` blocks never run. `guest` writes the pages as scripts for
-tests/guest/docs.sh, which runs them inside the guest.
+tests/guest/docs.sh, which runs them inside the guest; its clone is without what only git, a
+compiler or the tests read.
 
 usage: run_blocks.py ci|all --build FOLDER [--page PAGE]... [--place PLACE]... [--note FILE]
+       run_blocks.py ci|all --build FOLDER --list
        run_blocks.py guest --build FOLDER --share FOLDER
 """
 
@@ -36,8 +39,8 @@ sys.path.insert(0, str(ROOT / "tools" / "lint"))
 import command_blocks  # noqa: E402
 
 PAGE_SHELL = Path(__file__).with_name("page.sh")
-# Of a block; the slowest took a quarter of it on the first machine.
-LIMIT_S = {"ci": 300, "all": 2400}
+# Of a block: much more than any takes, as a busy machine may be thirty times slower.
+LIMIT_S = {"ci": 900, "all": 3000}
 SHOWN_LINES = 40
 
 Outcome = collections.namedtuple("Outcome", "page place blocks failure output")
@@ -90,6 +93,9 @@ class Places:
         if linked:
             (folder / "build").mkdir()
             (folder / "build/release").symlink_to(self.build)
+            guest = ROOT / "build/guest"
+            guest.mkdir(parents=True, exist_ok=True)
+            (folder / "build/guest").symlink_to(guest)
 
     def install(self):
         """What cmake --install writes, once."""
@@ -214,6 +220,11 @@ def write_guest_pages(places, pages, share):
     shutil.copy2(PAGE_SHELL, share)
     clone = share / "clone"
     places.clone(clone, linked=False)
+    # The guest has no git, compiler or Python, and copies each file slowly: what needs them stays.
+    for name in (".git", "tests"):
+        shutil.rmtree(clone / name)
+    for source in (*clone.rglob("*.cpp"), *clone.rglob("*.h")):
+        source.unlink()
     (clone / "build/release/bin").mkdir(parents=True)
     for program in ("flexarm", "flexarmd"):
         shutil.copy2(places.build / "bin" / program, clone / "build/release/bin")
@@ -237,6 +248,7 @@ def arguments():
     parser.add_argument("--page", type=Path, action="append", help="only this page; repeatable")
     parser.add_argument("--place", choices=command_blocks.PLACES, action="append",
                         help="only there; repeatable")
+    parser.add_argument("--list", action="store_true", help="print the pages that have such blocks")
     parser.add_argument("--note", type=Path, help="file for a line of summary")
     parser.add_argument("--share", type=Path, help="guest: folder to write")
     return parser.parse_args()
@@ -247,6 +259,12 @@ def main():
     pages = command_blocks.pages(ROOT)
     if options.page:
         pages = [page.resolve() for page in options.page]
+    if options.list:
+        for page in pages:
+            text = page.read_text(encoding="utf-8")
+            if any(block.lane == options.lane for block in command_blocks.commands(text)):
+                print(page.relative_to(ROOT).as_posix())
+        return 0
     with tempfile.TemporaryDirectory(prefix="flexarm-docs-") as work:
         places = Places(options.build.resolve(), Path(work))
         if options.lane == "guest":
