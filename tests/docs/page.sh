@@ -26,7 +26,7 @@ end_watchdog() {
 # The shell runs a trap only between two commands: what hangs is ended with its whole group.
 start_watchdog() {  # start_watchdog SECONDS LINE WHAT
   (
-    trap - ERR
+    trap - ERR EXIT
     trap 'kill "$!" 2>/dev/null; exit 0' TERM
     sleep "$1" &
     wait $!
@@ -52,6 +52,8 @@ failed() {  # failed STATUS LINE COMMAND
 
 at_end() {
   local status=$? process processes ended
+  # A signal may end a process of this script before it has put the trap away.
+  if [[ $BASHPID != "$$" ]]; then exit "$status"; fi
   trap - ERR
   set +e
   end_watchdog

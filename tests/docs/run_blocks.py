@@ -30,6 +30,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -42,6 +43,9 @@ PAGE_SHELL = Path(__file__).with_name("page.sh")
 # Of a block: much more than any takes, as a busy machine may be thirty times slower.
 LIMIT_S = {"ci": 900, "all": 3000}
 SHOWN_LINES = 40
+
+SESSIONS = set()  # of the pages that run
+STOPPED = threading.Event()
 
 Outcome = collections.namedtuple("Outcome", "page place blocks failure output")
 
@@ -139,6 +143,9 @@ def run_script(file, folder, variables, limit_s):
              str(PAGE_SHELL), str(file), str(limit_s)],
             cwd=folder, env=variables, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
             pass_fds=[writer], start_new_session=True)
+    SESSIONS.add(shell.pid)
+    if STOPPED.is_set():
+        end_session(shell.pid)
     os.close(writer)
     line = None
     with open(reader, encoding="utf-8", errors="replace") as marks:
@@ -158,7 +165,8 @@ def run_script(file, folder, variables, limit_s):
         status = shell.wait(timeout=60)
     except subprocess.TimeoutExpired:
         status = 124
-    end_group(shell.pid)
+    end_session(shell.pid)
+    SESSIONS.discard(shell.pid)
     shell.wait()
     if failure is None and status != 0:
         failure = line or 1, status, "the shell of the page was ended"
@@ -168,11 +176,42 @@ def run_script(file, folder, variables, limit_s):
     return seconds, failure, said
 
 
-def end_group(group):
-    try:
-        os.killpg(group, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
+def members(session):
+    """The processes of a session. A build puts its own into groups of their own."""
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            # After the name, which may have any character: state, parent, group, session.
+            fields = stat.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
+        except OSError:
+            continue  # it has ended
+        if int(fields[3]) == session and fields[0] != "Z":
+            yield int(stat.parent.name)
+
+
+def end_session(session):
+    """Ends what a page has left: by SIGTERM, after 5 s by SIGKILL."""
+    until = time.monotonic() + 5
+    for attempt in range(200):
+        left = list(members(session))
+        if not left:
+            return
+        late = time.monotonic() > until
+        for process in left:
+            if late or attempt == 0:
+                try:
+                    os.kill(process, signal.SIGKILL if late else signal.SIGTERM)
+                except ProcessLookupError:
+                    pass
+        time.sleep(0.1)
+
+
+def end_all(*_):
+    """At SIGTERM, as when the lane runs out of time: ends the pages, which are in sessions of their
+    own, and then this program."""
+    STOPPED.set()
+    for session in list(SESSIONS):
+        end_session(session)
+    sys.exit("stopped by SIGTERM")
 
 
 def run_page(places, page, lane, place):
@@ -197,6 +236,8 @@ def run_place(places, pages, lane, place):
     """All pages in a place, one after the other: blocks that build share a build folder."""
     outcomes = []
     for page in pages:
+        if STOPPED.is_set():
+            break
         outcome = run_page(places, page, lane, place)
         if outcome is None:
             continue
@@ -256,6 +297,7 @@ def arguments():
 
 def main():
     options = arguments()
+    signal.signal(signal.SIGTERM, end_all)
     pages = command_blocks.pages(ROOT)
     if options.page:
         pages = [page.resolve() for page in options.page]
