@@ -8,9 +8,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck disable=SC2034  # tools/run-tests reads them
 {
   quick_lanes=(format layers guards)
-  ci_lanes=(format layers release step-cost install hil bench e2e headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit campaigns mutation build-cost headers-all separate clang-tidy-all asan-all
-                  debian13 arm64)
+  ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
+  only_all_lanes=(guards unit campaigns mutation docs-all build-cost headers-all separate clang-tidy-all
+                  asan-all debian13 arm64)
 }
 
 logs=build/logs
@@ -164,6 +164,21 @@ lane_step-cost() {  # instructions of one control step are within their limits
 lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, wrong input
   build release flexarm flexarm-study flexarmd
   ctest --preset e2e
+}
+
+lane_docs() {  # command blocks `ci` of the pages, from a clean clone and with the installed programs
+  build release flexarm flexarm-study flexarmd
+  tests/docs/run_blocks.py ci --build build/release --note "$logs/$lane.note"
+}
+
+lane_docs-all() {  # command blocks `all` of the pages, which take minutes
+  build release flexarm flexarm-study flexarmd
+  local pages page
+  pages=$(tests/docs/run_blocks.py all --build build/release --list)
+  for page in $pages; do
+    part "${page//\//-}" tests/docs/run_blocks.py all --build build/release --page "$page"
+  done
+  note "$(wc -w <<<"$pages") pages"
 }
 
 lane_mutation() {  # 20,000 changed inputs of every kind to the programs (part of e2e: 1,000)

@@ -20,11 +20,12 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/share/guest"
 DESTDIR=$work/share/machine cmake --install "$build" >/dev/null
-cp -r "$here"/{check.sh,interfaces.sh,daq.sh,gpio.sh,threads.sh,daemon_in_guest} "$work/share/guest"
+cp -r "$here"/{check.sh,interfaces.sh,daq.sh,gpio.sh,threads.sh,docs.sh,daemon_in_guest} "$work/share/guest"
 cp "$build"/tests/{guest/guest_daq_test,guest/guest_gpio_test,hal/canopen/hal_canopen_socketcan_test} \
   "$work/share"
 cp "$build/tests/controller/wired_threads/wired_threads_test" "$work/share"
 cp -r "$root/config" "$work/share"
+"$root/tests/docs/run_blocks.py" guest --build "$build" --share "$work/share/docs"
 echo "$root" >"$work/share/source_folder"  # in which wired_threads_test looks for its config
 # Uses the installed programs, which a build in progress cannot change between two comparisons.
 bin=$(dirname "$(find "$work/share/machine" -type f -name flexarm -path '*/bin/*')")
@@ -79,7 +80,7 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 
 # A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
 # first. `threads` has two processors and real time; it asserts no time.
-names=(service wire hardened commission load hostile experiment refusal threads interfaces daq gpio)
+names=(service wire hardened commission load hostile experiment docs refusal threads interfaces daq gpio)
 running=0
 for name in "${names[@]}"; do
   if ((running == 2)); then
@@ -88,7 +89,7 @@ for name in "${names[@]}"; do
   fi
   case $name in
     service | hardened | refusal) in_guest "daemon_in_guest/$name.sh" --det --systemd & ;;
-    interfaces | daq | gpio) in_guest "$name.sh" --det & ;;
+    docs | interfaces | daq | gpio) in_guest "$name.sh" --det & ;;
     threads) in_guest "$name.sh" & ;;
     *) in_guest "daemon_in_guest/$name.sh" --det & ;;
   esac

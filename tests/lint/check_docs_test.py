@@ -46,7 +46,7 @@ void Add(CLI::App& app, Exit& exit) {
 `beta_length` (`beam.h`), [plant](theory/plant.md) sections 2.1 and 2.2, `docs/theory/PAGE.md N`
 `arm_unit_test --gtest_filter='Arm.*:*/ArmOver.Stops/*'`, `python3 tests/run_test.py -k it_stops`
 `loop.period_ms = 20`, `loop.gate_sigmas`, `rig.toml`, `--config`, `--no-install`, table.md
-```sh
+```sh rig: commands of another arm
 flexarm simulate -c config/rig.toml --config x \\
   --set loop.period_ms=10 && flexarm sweep merge a b   # --anything
 cmake --preset release
@@ -104,7 +104,7 @@ BROKEN = {
     "a folder without its own": ("docs/page.md", "`runtime/`", "path: there is no folder runtime/"),
     "a pattern": ("docs/page.md", "`tests/*.toml`", "path: there is no tests/*.toml"),
     "an alternative": ("docs/page.md", "`model/{arm,hand}`", "path: there is no model/hand"),
-    "a file of a command": ("docs/page.md", "```\nrm config/hil.toml\n```",
+    "a file of a command": ("docs/page.md", "```sh ci\nrm config/hil.toml\n```",
                             "path: there is no config/hil.toml"),
     "a header": ("docs/theory/plant.md", "`screen.h`", "path: there is no screen.h"),
     "a name in a file":
@@ -114,7 +114,7 @@ BROKEN = {
         ("docs/page.md", "`flexarm sweep split`", "verb: flexarm sweep has no verb split"),
     "a verb of the daemon":
         ("docs/page.md", "`flexarmd status`", "verb: flexarmd has no verb status"),
-    "a verb in a block": ("docs/page.md", "```sh\nflexarm fly -c x  # up\n```",
+    "a verb in a block": ("docs/page.md", "```sh ci\nflexarm fly -c x  # up\n```",
                           "verb: flexarm has no verb fly"),
     "a verb in a message":
         ("tools/flexarm/main.cpp", 'const char* kHelp = "Run `flexarm check-host`.";',
@@ -133,6 +133,11 @@ BROKEN = {
          "key: loop.period_s: config/ does not know period_s"),
     "a key of a command": ("docs/page.md", "`flexarm stop --set loop.rate=1`",
                            "key: loop.rate: config/ does not know rate"),
+    "the tag of a block": ("docs/page.md", "```sh\nls\n```", "block: a block of commands has no tag: "
+                           "write ```sh and ci, all, guest or rig: REASON"),
+    "the tag of a block beside code":
+        ("model/arm/notes.md", "```sh\nls\n```",
+         "block: a block of commands has no tag: write ```sh and ci, all, guest or rig: REASON"),
     "a symbol for two things":
         ("model/symbols.md", "| beta | | |",
          "symbol: beta is in line 3 too: say in brackets which one is meant"),

@@ -11,6 +11,7 @@ path      `controller/law/design.h`, `hal/can*`, `design.h`, `law/`: files and f
           capitals stand for names
 verb      `flexarm VERB --option`: the programs register both
 key       `table.key` is read by config/ or stands in one of its TOML files
+block     every block of commands has its tag (command_blocks.py), also on other pages
 lane      docs/testing.md has a row for each lane of tools/lanes.sh, with the sets that it runs in
 coverage  docs/thesis-coverage.md numbers its rows from 1 on, and its text counts them by state
 symbol    model/symbols.md: no symbol twice but with another meaning in brackets; the code has the
@@ -32,6 +33,7 @@ import sys
 from fnmatch import fnmatch
 from pathlib import Path
 
+import command_blocks
 import prose
 
 CPP_TEST = re.compile(r"\bTEST(_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
@@ -516,6 +518,13 @@ def check_laws(root):
             yield Finding(LAWS_PAGE, 1, "law", f"{LAWS} has no {name}: {about}")
 
 
+def check_blocks(root):
+    """Yields what is wrong with the blocks of commands of all pages."""
+    for page in command_blocks.pages(root):
+        for line, message in command_blocks.problems(prose.read(page)):
+            yield Finding(page.relative_to(root).as_posix(), line, "block", message)
+
+
 def check_file(tree, path):
     """Yields (position, rule, message) of one file."""
     text = tree.texts[path]
@@ -533,7 +542,8 @@ def check_file(tree, path):
 def check_tree(root):
     """All findings in the tree under `root`, as FILE:LINE: text."""
     tree = Tree(root.resolve())
-    findings = [*check_lanes(root), *check_laws(root), *check_coverage(root), *check_symbols(tree)]
+    findings = [*check_lanes(root), *check_laws(root), *check_coverage(root), *check_blocks(root),
+                *check_symbols(tree)]
     for path in (*tree.pages, *tree.files):
         for position, rule, message in sorted(set(check_file(tree, path))):
             line = prose.line_of(tree.texts[path], position)
