@@ -23,8 +23,12 @@ nlohmann::json Refused(Refusal refusal, const OperatorSnapshot& now) {
   return json;
 }
 
-nlohmann::json Failed(const std::string& error, const std::string& remedy) {
-  nlohmann::json json{{"ok", false}, {"command", ToString(RequestKind::kRun)}, {"error", error}};
+nlohmann::json Refused(const std::string& refusal, const std::string& error,
+                       const std::string& remedy) {
+  nlohmann::json json{{"ok", false},
+                      {"refusal", refusal},
+                      {"command", ToString(RequestKind::kRun)},
+                      {"error", error}};
   if (!remedy.empty()) json["remedy"] = remedy;
   return json;
 }
@@ -50,15 +54,14 @@ nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
   if (now.shutting_down) return Refused(Refusal::kShuttingDown, now);
   if (now.permit.state != SafetyState::kArmed) return Refused(Refusal::kWrongState, now);
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
-    return Failed(why, "then run");
+    return Refused(targets_.commissioning->NeedsPluck() ? "not-plucked" : "angle-unknown", why,
+                   "then run");
   }
   std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
   if (const auto no_log = UnmetLog(targets_.files)) unmet.push_back(*no_log);
   ConditionDecision decision = Judge(unmet, overrides);
   if (decision.refused != nullptr) {
-    nlohmann::json json = Failed(decision.refused->found, decision.refused->remedy);
-    json["refusal"] = decision.refused->refusal;
-    return json;
+    return Refused(decision.refused->refusal, decision.refused->found, decision.refused->remedy);
   }
   *used = std::move(decision.used);
   return nullptr;
@@ -110,7 +113,7 @@ std::optional<ClientAnswer> RunCommand::Follow(const OperatorSnapshot& now,
 
 nlohmann::json RunCommand::Decide(Waiting command, ExperimentPlanner::Outcome planned,
                                   const OperatorSnapshot& now) {
-  if (!planned.order) return Failed(planned.problem, "");
+  if (!planned.order) return Refused("experiment-refused", planned.problem, "");
   std::vector<Override> used;
   if (nlohmann::json refused = WhyNot(command.overrides, now, &used); !refused.is_null()) {
     return refused;
@@ -118,7 +121,8 @@ nlohmann::json RunCommand::Decide(Waiting command, ExperimentPlanner::Outcome pl
   const std::array<double, 2> hub_rad = HubsOf(now);
   for (std::size_t joint = 0; joint < 2; ++joint) {
     if (std::fabs(hub_rad[joint] - command.start_rad[joint]) <= kMoved_rad) continue;
-    return Failed("the arm was moved while its run was planned", "repeat the command");
+    return Refused("arm-moved", "the arm was moved while its run was planned",
+                   "repeat the command");
   }
   planned.order->label = std::move(command.label);
   const std::uint32_t number =

@@ -89,7 +89,7 @@ LAYERS = {
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
-                      "config controller/files",
+                      "config controller/files tools/command_line",
 }
 LAYERS = {folder: uses.split() for folder, uses in LAYERS.items()}
 

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "controller/types/rig_config.h"
+#include "model/problem.h"
+
+namespace flexarm {
+
+/// The violated rules of every section by itself, one list a struct, in the order of a config file.
+/// @param link_length_m  of link 1, 2, which bound the gauges' positions; NaN: not known
+std::vector<std::vector<Problem>> RulesOfSections(const RigConfig& config,
+                                                  const std::array<double, 2>& link_length_m);
+
+}  // namespace flexarm
