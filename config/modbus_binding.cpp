@@ -71,7 +71,7 @@ void ReadModbusTransport(TableReader row, ModbusDeviceConfig* out) {
     row.Read("port", &out->port, "TCP port, usually 502");
     return;
   }
-  row.Read("device", &out->device, "the serial line: /dev/serial/by-id/..");
+  row.Read("device", &out->device, "the serial line, best by its name in /dev/serial/by-id");
   row.Read("baud", &out->baud, {"rate of the serial line", "bit/s"});
   row.Read(
       "parity", &out->parity,

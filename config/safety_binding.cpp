@@ -23,10 +23,12 @@ void ReadLimits(TableReader limits, SafetyConfig* out) {
 
 void ReadRest(TableReader safety, SafetyConfig* out) {
   safety.Read("rest_hub_rate_rad_s", &out->rest_hub_rate_rad_s,
-              "the arm is at rest when both hubs are slower ..");
+              "the arm is at rest when both hubs are slower than this, "
+              "and what the next two keys say holds");
   safety.Read("rest_strain_rate_per_s", &out->rest_strain_rate_per_s,
-              {".. and the strains at both roots change less ..", "strain/s"});
-  safety.Read("rest_time_s", &out->rest_time_s, ".. for so long");
+              {"the strains at both roots change less than this at rest", "strain/s"});
+  safety.Read("rest_time_s", &out->rest_time_s,
+              "the arm must have been so for this long to be at rest");
   safety.Read("stop_timeout_s", &out->stop_timeout_s,
               "a stop that takes longer trips: stop-timeout");
   safety.Read("fault_stop_s", &out->fault_stop_s,

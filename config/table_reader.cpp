@@ -129,7 +129,8 @@ void TableReader::Missing(std::string_view key, std::string_view wanted) {
 }
 
 void TableReader::Refuse(std::string_view key, std::string rule) {
-  if (table_ != nullptr) log_->Add(Key(key), *table_->get(key), std::move(rule));
+  const toml::node* node = table_ != nullptr ? table_->get(key) : nullptr;
+  if (node != nullptr) log_->Add(Key(key), *node, std::move(rule));
 }
 
 TableReader TableReader::Table(std::string_view key, const Meaning& meaning) {

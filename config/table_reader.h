@@ -77,7 +77,7 @@ class TableReader {
   bool Has(std::string_view key);
   /// Reports that the key is missing, with what it should have; nothing if the table is missing.
   void Missing(std::string_view key, std::string_view wanted);
-  /// Reports that the value of an existing key violates `rule`; nothing if the table is missing.
+  /// Reports that the value of a key violates `rule`; nothing if the key is missing.
   void Refuse(std::string_view key, std::string rule);
 
   /// The table below `key`; a missing table is reported once, as a whole.

@@ -54,8 +54,8 @@ nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
   if (now.shutting_down) return Refused(Refusal::kShuttingDown, now);
   if (now.permit.state != SafetyState::kArmed) return Refused(Refusal::kWrongState, now);
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
-    return Refused(targets_.commissioning->NeedsPluck() ? "not-plucked" : "angle-unknown", why,
-                   "then run");
+    if (targets_.commissioning->NeedsPluck()) return Refused("not-plucked", why, "then run");
+    return Refused("angle-unknown", why, "then run");
   }
   std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
   if (const auto no_log = UnmetLog(targets_.files)) unmet.push_back(*no_log);

@@ -200,8 +200,12 @@ TEST(KeySurvey, FindsTheKeysOfEveryBranch) {
   EXPECT_EQ(found, (std::set<std::string>{"kind", "gold_kg", "a", "b", "third", "part.inner"}));
   for (const SurveyedKey& key : survey.keys()) {
     EXPECT_EQ(key.is_optional, key.path == "a" || key.path == "b" || key.path == "third");
-    if (key.path == "third") EXPECT_EQ(key.without, "0.3");
-    if (key.path == "b") EXPECT_EQ(key.unit, "m");
+    if (key.path == "third") {
+      EXPECT_EQ(key.without, "0.3");
+    }
+    if (key.path == "b") {
+      EXPECT_EQ(key.unit, "m");
+    }
   }
   ASSERT_EQ(survey.tables().size(), 1U);
   EXPECT_TRUE(survey.tables().front().is_optional);

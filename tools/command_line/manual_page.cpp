@@ -66,7 +66,7 @@ std::string Synopsis(const CLI::App& app, const std::string& command) {
   std::string line = Bold(command);
   if (!OptionsOf(app, false).empty()) line += " [" + Italic("OPTIONS") + "]";
   for (const CLI::Option* argument : OptionsOf(app, true)) {
-    const std::string name = Italic(argument->get_type_name());
+    const std::string name = Italic(argument->get_name(true));
     line += argument->get_required() ? " " + name : " [" + name + "]";
   }
   if (!VerbsOf(app).empty()) line += " " + Italic("VERB") + " ...";
@@ -82,7 +82,7 @@ std::string OptionText(const CLI::Option& option) {
     names += (names.empty() ? "" : ", ") + Bold("--" + name);
   }
   if (names.empty()) {
-    names = Italic(option.get_type_name());
+    names = Italic(option.get_name(true)) + " " + Roff(option.get_type_name());
   } else if (TakesValue(option)) {
     names += " " + Italic(option.get_type_name());
   }
