@@ -129,9 +129,14 @@ class Complete(ProgramTest):
         subprocess.run(["zsh", "-n", COMPLETION / "_flexarm"], check=True, timeout=60)
 
     @unittest.skipUnless(shutil.which("fish"), "fish is not installed")
-    def test_the_script_for_fish_is_a_script_for_fish(self):
-        subprocess.run(["fish", "--no-execute", COMPLETION / "flexarm.fish"], check=True,
-                       timeout=60)
+    def test_the_script_for_fish_completes(self):
+        for line, words in (("flexarm explain soft", ["soft-limit-1", "soft-limit-2"]),
+                            ("flexarm modes --js", ["--json"])):
+            told = subprocess.run(
+                ["fish", "-c", f"source {COMPLETION}/flexarm.fish; complete -C '{line}'"],
+                check=True, capture_output=True, text=True, timeout=60,
+                env=dict(os.environ, PATH=f"{BIN}:{os.environ['PATH']}"))
+            self.assertEqual(told.stdout.split(), words)
 
 
 if __name__ == "__main__":
