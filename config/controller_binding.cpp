@@ -91,14 +91,13 @@ void ReadAdaptation(TableReader controller, ControllerConfig* out) {
 
 void ReadWeights(TableReader controller, ControllerConfig* out) {
   controller.Read("hub_angle_weight", &out->hub_angle_weight,
-                  {"weight Q of th1, th2; larger: stiffer", "(N m/rad)^2 per torque_weight"});
-  controller.Read(
-      "hub_rate_weight", &out->hub_rate_weight,
-      {"weight Q of their rates; larger: more damping", "(N m s/rad)^2 per torque_weight"});
+                  {"weight Q of th1, th2; larger: stiffer", "torque_weight (N m/rad)^2"});
+  controller.Read("hub_rate_weight", &out->hub_rate_weight,
+                  {"weight Q of their rates; larger: more damping", "torque_weight (N m s/rad)^2"});
   controller.ReadIfGiven("state_weight", &out->state_weight,
                          {"the whole diagonal of Q, one number a state of the nominal model, in "
                           "place of the two above",
-                          "per torque_weight"});
+                          "torque_weight (N m)^2/(SI unit)^2"});
   controller.Read("torque_weight", &out->torque_weight,
                   {"weight of the torque, R = this I; larger: gentler", "1"});
 }

@@ -86,12 +86,10 @@ std::string OptionText(const CLI::Option& option) {
   } else if (TakesValue(option)) {
     names += " " + Italic(option.get_type_name());
   }
-  std::string text = ".TP\n" + names + "\n" + Paragraph(option.get_description());
-  if (!option.get_default_str().empty()) {
-    text += "Default: " + Roff(option.get_default_str()) + ".\n";
-  }
-  if (option.get_required()) text += "Required.\n";
-  return text;
+  std::string text = option.get_description();
+  if (!option.get_default_str().empty()) text += "; default: " + option.get_default_str();
+  if (option.get_required()) text += "; required";
+  return ".TP\n" + names + "\n" + Paragraph(text);
 }
 
 std::string OptionsText(const CLI::App& app) {
