@@ -28,9 +28,10 @@ double KnownLength(const RigConfig& config, std::size_t link, const ProblemLog& 
 }
 
 void CheckRules(const RigConfig& config, ProblemLog* log) {
+  for (const std::vector<Problem>& problems : RulesOfArm(config)) log->AddRules(problems);
   const std::array<double, 2> length_m = {KnownLength(config, 0, *log),
                                           KnownLength(config, 1, *log)};
-  for (const std::vector<Problem>& problems : RulesOfSections(config, length_m)) {
+  for (const std::vector<Problem>& problems : RulesOfRest(config, length_m)) {
     log->AddRules(problems);
   }
   if (config.csv && log->Clear({"sensors"})) log->AddRules(ProblemsOf(*config.csv, config.sensors));
@@ -59,14 +60,16 @@ RigConfig ReadConfig(const std::string& name, toml::table document,
 
 }  // namespace
 
-std::vector<std::vector<Problem>> RulesOfSections(const RigConfig& config,
-                                                  const std::array<double, 2>& link_length_m) {
+std::vector<std::vector<Problem>> RulesOfArm(const RigConfig& config) {
   ProblemList rig("rig.");
   rig.Require(!config.rig_name.empty(), "name", "\"\"",
               "must name the rig: the logs contain the name");
-  return {rig.Take(),
-          config.arm.Problems(),
-          config.sensors.Problems(link_length_m),
+  return {rig.Take(), config.arm.Problems()};
+}
+
+std::vector<std::vector<Problem>> RulesOfRest(const RigConfig& config,
+                                              const std::array<double, 2>& link_length_m) {
+  return {config.sensors.Problems(link_length_m),
           config.sim.Problems(),
           config.estimator.Problems(),
           config.controller.Problems(),

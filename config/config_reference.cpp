@@ -135,7 +135,8 @@ KeyListing Survey(const std::function<void(TableReader root, Config*)>& read,
 
 void NoteRulesOfRig(const RigConfig& config, bool second, Rules* rules) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  for (const std::vector<Problem>& problems : RulesOfSections(config, {kUnknown, kUnknown})) {
+  for (const std::vector<Problem>& problems : RulesOfArm(config)) NoteRules(problems, rules);
+  for (const std::vector<Problem>& problems : RulesOfRest(config, {kUnknown, kUnknown})) {
     NoteRules(problems, rules);
   }
   if (!config.csv) return;
