@@ -1,7 +1,9 @@
 #include "config/config.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "config/cross_rules.h"
 #include "config/derived_keys.h"
@@ -9,6 +11,7 @@
 #include "config/overrides.h"
 #include "config/problem_log.h"
 #include "config/rig_binding.h"
+#include "config/section_rules.h"
 #include "config/table_reader.h"
 #include "config/toml_text.h"
 #include "controller/runlog/csv_import.h"
@@ -25,24 +28,12 @@ double KnownLength(const RigConfig& config, std::size_t link, const ProblemLog& 
 }
 
 void CheckRules(const RigConfig& config, ProblemLog* log) {
-  ProblemList rig("rig.");
-  rig.Require(!config.rig_name.empty(), "name", "\"\"",
-              "must name the rig: the logs contain the name");
-  log->AddRules(rig.Take());
-  log->AddRules(config.arm.Problems());
-  log->AddRules(
-      config.sensors.Problems({KnownLength(config, 0, *log), KnownLength(config, 1, *log)}));
-  log->AddRules(config.sim.Problems());
-  log->AddRules(config.estimator.Problems());
-  log->AddRules(config.controller.Problems());
-  log->AddRules(config.safety.Problems());
-  log->AddRules(config.commissioning.Problems());
-  log->AddRules(config.loop.Problems());
-  log->AddRules(config.daemon.Problems());
-  log->AddRules(
-      config.hal.Problems({.sensors = config.sensors,
-                           .available_ns = std::llround(config.loop.acquire_before_ms * 1e6),
-                           .torque_limit_nm = config.safety.torque_limit_nm}));
+  for (const std::vector<Problem>& problems : RulesOfArm(config)) log->AddRules(problems);
+  const std::array<double, 2> length_m = {KnownLength(config, 0, *log),
+                                          KnownLength(config, 1, *log)};
+  for (const std::vector<Problem>& problems : RulesOfRest(config, length_m)) {
+    log->AddRules(problems);
+  }
   if (config.csv && log->Clear({"sensors"})) log->AddRules(ProblemsOf(*config.csv, config.sensors));
   CheckCrossRules(config, log);
 }
@@ -53,9 +44,9 @@ RigConfig ReadConfig(const std::string& name, toml::table document,
   ApplyOverrides(overrides, &document, &log);
   log.Excuse(AddDerivedKeys(&document).waiting);
   TableReader root(&document, "", &log);
-  if (root.Has("extends")) {
+  if (root.Has(kExtendsKey)) {
     root.Refuse(
-        "extends",
+        kExtendsKey,
         "must be in a config file: neither the config text of a log nor --set can extend a file");
   }
   RigConfig config{};
@@ -68,6 +59,28 @@ RigConfig ReadConfig(const std::string& name, toml::table document,
 }
 
 }  // namespace
+
+std::vector<std::vector<Problem>> RulesOfArm(const RigConfig& config) {
+  ProblemList rig("rig.");
+  rig.Require(!config.rig_name.empty(), "name", "\"\"",
+              "must name the rig: the logs contain the name");
+  return {rig.Take(), config.arm.Problems()};
+}
+
+std::vector<std::vector<Problem>> RulesOfRest(const RigConfig& config,
+                                              const std::array<double, 2>& link_length_m) {
+  return {config.sensors.Problems(link_length_m),
+          config.sim.Problems(),
+          config.estimator.Problems(),
+          config.controller.Problems(),
+          config.safety.Problems(),
+          config.commissioning.Problems(),
+          config.loop.Problems(),
+          config.daemon.Problems(),
+          config.hal.Problems({.sensors = config.sensors,
+                               .available_ns = std::llround(config.loop.acquire_before_ms * 1e6),
+                               .torque_limit_nm = config.safety.torque_limit_nm})};
+}
 
 RigConfig LoadConfig(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   return ReadConfig(file.string(), LoadDocument(file), overrides);

@@ -26,7 +26,7 @@ toml::table LoadBase(const fs::path& file, const toml::node& extends, Chain chai
   const int line = static_cast<int>(extends.source().begin.line);
   const auto* name = extends.as_string();
   const auto refuse = [&](std::string rule) {
-    throw ConfigError({{file.string(), line, "extends", ValueText(extends), std::move(rule)}});
+    throw ConfigError({{file.string(), line, kExtendsKey, ValueText(extends), std::move(rule)}});
   };
   if (name == nullptr || name->get().empty()) refuse("must be the name of a file, as a string");
   const fs::path base = (file.parent_path() / name->get()).lexically_normal();
@@ -43,10 +43,10 @@ toml::table LoadOnTopOfBase(const fs::path& file, Chain chain) {
   std::error_code ignored;
   chain.push_back(fs::weakly_canonical(file, ignored));
   toml::table own = ParseToml(ReadConfigFile(file), file.string());
-  const toml::node* extends = own.get("extends");
+  const toml::node* extends = own.get(kExtendsKey);
   if (extends == nullptr) return own;
   toml::table document = LoadBase(file, *extends, std::move(chain));
-  own.erase("extends");
+  own.erase(kExtendsKey);
   Merge(&document, std::move(own));
   return document;
 }

@@ -21,6 +21,11 @@ std::string ReadConfigFile(const std::filesystem::path& file, const FileKind& ki
 /// @throws ConfigError  one problem: not UTF-8, not TOML, a key twice, nested too deep
 toml::table ParseToml(std::string_view text, const std::string& name);
 
+/// The key by which a config file stands on another one.
+inline constexpr const char* kExtendsKey = "extends";
+inline constexpr const char* kExtendsMeaning =
+    "file that this one stands on, relative to it: what stands here replaces what stands there";
+
 /// Reads `file` and merges it over the file that its `extends` names, recursively. Nodes keep their
 /// own file and line; the key `extends` is removed.
 /// @throws ConfigError  as above, or a cycle of files

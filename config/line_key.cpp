@@ -12,7 +12,8 @@ void ReadLine(TableReader row, Line* out) {
             {ToString(kLimit2Low), kLimit2Low},
             {ToString(kLimit2High), kLimit2High},
             {ToString(kEmergencyStop), kEmergencyStop},
-            {ToString(kResetButton), kResetButton}});
+            {ToString(kResetButton), kResetButton}},
+           "name of a line of the safety chain");
 }
 
 }  // namespace flexarm

@@ -22,7 +22,8 @@ void ReadQuantity(TableReader row, PublishedFigure* out) {
             {"strip_stiffness_nm_per_rad", Quantity::kStripStiffness},
             {"inertia_11_kgm2", Quantity::kInertia11},
             {"inertia_12_kgm2", Quantity::kInertia12},
-            {"inertia_22_kgm2", Quantity::kInertia22}});
+            {"inertia_22_kgm2", Quantity::kInertia22}},
+           kListedElsewhere);
 }
 
 bool IsShape(PublishedQuantity quantity) {
@@ -59,57 +60,60 @@ void CheckPart(TableReader row, const PublishedFigure& figure) {
 
 PublishedFigure ReadFigure(TableReader row) {
   PublishedFigure figure{};
-  row.Read("symbol", &figure.symbol);
+  row.Read("symbol", &figure.symbol, kListedElsewhere);
   row.Read("of", &figure.part,
            {{"link1", PublishedPart::kLink1},
             {"link1_locked", PublishedPart::kLink1Locked},
             {"link2", PublishedPart::kLink2},
             {"arm", PublishedPart::kArm},
-            {"shoulder_held", PublishedPart::kShoulderHeld}});
+            {"shoulder_held", PublishedPart::kShoulderHeld}},
+           kListedElsewhere);
   ReadQuantity(row, &figure);
   CheckPart(row, figure);
   const bool has_mode =
       !IsOfTheRigidArm(figure.quantity) && figure.quantity != PublishedQuantity::kStripStiffness;
   if (has_mode) {
-    row.Read("mode", &figure.mode);
+    row.Read("mode", &figure.mode, kListedElsewhere);
     if (row.Has("mode") && (figure.mode < 1 || figure.mode > 6)) {
       row.Refuse("mode", "must be 1 to 6");
     }
   }
-  if (row.Has("root")) row.Read("root", &figure.pinned, {{"clamped", false}, {"pinned", true}});
-  if (row.Has("elbow_deg")) row.Read("elbow_deg", &figure.elbow_deg);
+  if (row.Has("root"))
+    row.Read("root", &figure.pinned, {{"clamped", false}, {"pinned", true}}, kListedElsewhere);
+  if (row.Has("elbow_deg")) row.Read("elbow_deg", &figure.elbow_deg, kListedElsewhere);
   if (IsShape(figure.quantity)) {
-    row.Read("modal_mass_kg", &figure.modal_mass_kg);
+    row.Read("modal_mass_kg", &figure.modal_mass_kg, kListedElsewhere);
     if (row.Has("modal_mass_kg") && !(figure.modal_mass_kg > 0.0)) {
       row.Refuse("modal_mass_kg", "must be positive");
     }
   }
-  row.Read("published", &figure.published);
-  row.Read("tolerance", &figure.tolerance);
+  row.Read("published", &figure.published, kListedElsewhere);
+  row.Read("tolerance", &figure.tolerance, kListedElsewhere);
   if (row.Has("tolerance") && !(figure.tolerance > 0.0)) {
     row.Refuse("tolerance", "must be positive");
   }
-  if (row.Has("differs")) row.Read("differs", &figure.differs);
-  if (row.Has("note") || figure.differs) row.Read("note", &figure.note);
+  if (row.Has("differs")) row.Read("differs", &figure.differs, kListedElsewhere);
+  if (row.Has("note") || figure.differs) row.Read("note", &figure.note, kListedElsewhere);
   return figure;
 }
 
 PublishedCase ReadCase(TableReader row, const std::filesystem::path& folder) {
   PublishedCase one{};
   std::string config;
-  row.Read("name", &one.name);
-  row.Read("config", &config);
+  row.Read("name", &one.name, kListedElsewhere);
+  row.Read("config", &config, kListedElsewhere);
   one.config = folder / config;
-  row.Read("links", &one.links);
-  row.Read("author", &one.author);
-  row.Read("title", &one.title);
-  row.Read("year", &one.year);
-  row.Read("place", &one.place);
-  row.Read("table", &one.table);
-  row.Read("read_in", &one.read_in);
-  row.Read("obtained", &one.obtained);
-  row.Read("tolerance_reason", &one.tolerance_reason);
-  for (const TableReader& figure : row.Rows("figure")) one.figure.push_back(ReadFigure(figure));
+  row.Read("links", &one.links, kListedElsewhere);
+  row.Read("author", &one.author, kListedElsewhere);
+  row.Read("title", &one.title, kListedElsewhere);
+  row.Read("year", &one.year, kListedElsewhere);
+  row.Read("place", &one.place, kListedElsewhere);
+  row.Read("table", &one.table, kListedElsewhere);
+  row.Read("read_in", &one.read_in, kListedElsewhere);
+  row.Read("obtained", &one.obtained, kListedElsewhere);
+  row.Read("tolerance_reason", &one.tolerance_reason, kListedElsewhere);
+  for (const TableReader& figure : row.Rows("figure", kListedElsewhere))
+    one.figure.push_back(ReadFigure(figure));
   return one;
 }
 
@@ -120,7 +124,7 @@ std::vector<PublishedCase> LoadPublishedCases(const std::filesystem::path& file)
   ProblemLog log(file.string(), &document);
   TableReader root(&document, "", &log);
   std::vector<PublishedCase> cases;
-  for (const TableReader& row : root.Rows("case")) {
+  for (const TableReader& row : root.Rows("case", kListedElsewhere)) {
     cases.push_back(ReadCase(row, file.parent_path()));
   }
   log.AddUnknown();

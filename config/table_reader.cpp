@@ -28,9 +28,34 @@ std::string Numbers(std::size_t count) {
 TableReader::TableReader(const toml::table* table, std::string path, ProblemLog* log)
     : table_(table), path_(std::move(path)), log_(log) {}
 
-void TableReader::Read(std::string_view key, double* out) {
+TableReader::TableReader(KeySurvey* survey, std::string path, ProblemLog* log)
+    : table_(nullptr), path_(std::move(path)), log_(log), survey_(survey) {}
+
+bool TableReader::Surveyed(std::string_view key, std::string_view wanted, const Meaning& meaning) {
+  if (survey_ == nullptr) return false;
+  survey_->AddKey(Key(key), wanted, meaning);
+  return true;
+}
+
+void TableReader::SurveyDefault(std::string_view key, const std::string& without) {
+  if (survey_ != nullptr) survey_->SetDefault(Key(key), without);
+}
+
+std::string TableReader::DefaultText(double value) { return NumberText(value); }
+std::string TableReader::DefaultText(bool value) { return value ? "true" : "false"; }
+std::string TableReader::DefaultText(const std::string& value) {
+  return value.empty() ? "" : "\"" + value + "\"";
+}
+std::string TableReader::DefaultText(const std::vector<double>& value) {
+  std::string text;
+  for (const double number : value) text += (text.empty() ? "[" : ", ") + NumberText(number);
+  return text.empty() ? "" : text + "]";
+}
+
+void TableReader::Read(std::string_view key, double* out, const Meaning& meaning) {
   constexpr std::string_view kWanted = "a finite number";
   *out = kUnread;
+  if (Surveyed(key, kWanted, meaning)) return;
   const toml::node* node = Find(key, kWanted);
   if (node == nullptr) return;
   const std::optional<double> number = FiniteNumber(*node);
@@ -41,9 +66,13 @@ void TableReader::Read(std::string_view key, double* out) {
   }
 }
 
-void TableReader::Read(std::string_view key, int* out) {
+void TableReader::Read(std::string_view key, int* out, const Meaning& meaning) {
   constexpr std::string_view kWanted = "a whole number of at most 9 digits";
   constexpr std::int64_t kLargest = 999'999'999;
+  if (Surveyed(key, kWanted, meaning)) {
+    *out = survey_->whole_number();
+    return;
+  }
   const toml::node* node = Find(key, kWanted);
   if (node == nullptr) return;
   const auto* number = node->as_integer();
@@ -54,8 +83,9 @@ void TableReader::Read(std::string_view key, int* out) {
   }
 }
 
-void TableReader::Read(std::string_view key, std::uint64_t* out) {
+void TableReader::Read(std::string_view key, std::uint64_t* out, const Meaning& meaning) {
   constexpr std::string_view kWanted = "a whole number, 0 or above";
+  if (Surveyed(key, kWanted, meaning)) return;
   const toml::node* node = Find(key, kWanted);
   if (node == nullptr) return;
   const auto* number = node->as_integer();
@@ -66,7 +96,8 @@ void TableReader::Read(std::string_view key, std::uint64_t* out) {
   }
 }
 
-void TableReader::Read(std::string_view key, bool* out) {
+void TableReader::Read(std::string_view key, bool* out, const Meaning& meaning) {
+  if (Surveyed(key, "true or false", meaning)) return;
   const toml::node* node = Find(key, "true or false");
   if (node == nullptr) return;
   if (const auto* flag = node->as_boolean()) {
@@ -76,7 +107,8 @@ void TableReader::Read(std::string_view key, bool* out) {
   }
 }
 
-void TableReader::Read(std::string_view key, std::string* out) {
+void TableReader::Read(std::string_view key, std::string* out, const Meaning& meaning) {
+  if (Surveyed(key, "a string", meaning)) return;
   const toml::node* node = Find(key, "a string");
   if (node == nullptr) return;
   if (const auto* text = node->as_string()) {
@@ -87,6 +119,7 @@ void TableReader::Read(std::string_view key, std::string* out) {
 }
 
 bool TableReader::Has(std::string_view key) {
+  if (survey_ != nullptr) return survey_->Gives(Key(key));
   log_->Know(path_, key);
   return table_ != nullptr && table_->contains(key);
 }
@@ -96,10 +129,15 @@ void TableReader::Missing(std::string_view key, std::string_view wanted) {
 }
 
 void TableReader::Refuse(std::string_view key, std::string rule) {
-  log_->Add(Key(key), *table_->get(key), std::move(rule));
+  const toml::node* node = table_ != nullptr ? table_->get(key) : nullptr;
+  if (node != nullptr) log_->Add(Key(key), *node, std::move(rule));
 }
 
-TableReader TableReader::Table(std::string_view key) {
+TableReader TableReader::Table(std::string_view key, const Meaning& meaning) {
+  if (survey_ != nullptr) {
+    survey_->AddTable(Key(key), meaning);
+    return {survey_, Key(key), log_};
+  }
   const std::string wanted = "a table, [" + Key(key) + "]";
   const toml::node* node = Find(key, wanted);
   const toml::table* table = node != nullptr ? node->as_table() : nullptr;
@@ -107,11 +145,20 @@ TableReader TableReader::Table(std::string_view key) {
   return {table, Key(key), log_};
 }
 
-std::vector<TableReader> TableReader::OptionalRows(std::string_view key) {
-  return Has(key) ? Rows(key) : std::vector<TableReader>{};
+std::vector<TableReader> TableReader::OptionalRows(std::string_view key, const Meaning& meaning) {
+  return Has(key) ? Rows(key, meaning) : std::vector<TableReader>{};
 }
 
-std::vector<TableReader> TableReader::Rows(std::string_view key) {
+std::vector<TableReader> TableReader::Rows(std::string_view key, const Meaning& meaning) {
+  if (survey_ != nullptr) {
+    std::vector<TableReader> rows;
+    for (std::size_t i = 0; i < survey_->row_count(); ++i) {
+      const std::string row = ProblemList::Element(Key(key), i);
+      survey_->AddTable(row, meaning);
+      rows.push_back(TableReader(survey_, row, log_));
+    }
+    return rows;
+  }
   const std::string wanted = "rows, each [[" + Key(key) + "]]";
   const toml::node* node = Find(key, wanted);
   if (node == nullptr) return {};
@@ -135,8 +182,10 @@ const toml::node* TableReader::Find(std::string_view key, std::string_view wante
   return node;
 }
 
-void TableReader::ReadNumbers(std::string_view key, double* out, std::size_t count) {
+void TableReader::ReadNumbers(std::string_view key, double* out, std::size_t count,
+                              const Meaning& meaning) {
   for (std::size_t i = 0; i < count; ++i) out[i] = kUnread;
+  if (Surveyed(key, Numbers(count), meaning)) return;
   const toml::node* node = Find(key, Numbers(count));
   if (node == nullptr) return;
   const toml::array* array = node->as_array();
@@ -152,8 +201,12 @@ void TableReader::ReadNumbers(std::string_view key, double* out, std::size_t cou
   }
 }
 
-void TableReader::Read(std::string_view key, std::vector<double>* out) {
+void TableReader::Read(std::string_view key, std::vector<double>* out, const Meaning& meaning) {
   constexpr std::string_view kWanted = "an array of finite numbers";
+  if (Surveyed(key, kWanted, meaning)) {
+    out->assign(2, kUnread);  // the first element may have a rule of its own
+    return;
+  }
   const toml::node* node = Find(key, kWanted);
   if (node == nullptr) return;
   const toml::array* array = node->as_array();
@@ -166,8 +219,10 @@ void TableReader::Read(std::string_view key, std::vector<double>* out) {
   }
 }
 
-void TableReader::Read(std::string_view key, std::vector<std::string>* out) {
+void TableReader::Read(std::string_view key, std::vector<std::string>* out,
+                       const Meaning& meaning) {
   constexpr std::string_view kWanted = "an array of strings";
+  if (Surveyed(key, kWanted, meaning)) return;
   const toml::node* node = Find(key, kWanted);
   if (node == nullptr) return;
   const toml::array* array = node->as_array();

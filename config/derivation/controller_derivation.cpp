@@ -24,12 +24,12 @@ void DeriveController(const TuningBasis& basis, const ArmScales& scales, Derived
   const Pair angle = {torque_weight * S[0] * S[0] / (full_rad * full_rad),
                       torque_weight * S[1] * S[1] / (full_rad * full_rad)};
 
-  out->Number(key("alpha"), 1.5, "half of that for the arm of the thesis");
+  out->Constant(key("alpha"), 1.5, "half of that for the arm of the thesis");
   out->List(key("hub_angle_weight"), angle, "torque_weight (S / 6.5 rad)^2");
   out->List(key("hub_rate_weight"), Pair{0.05 * angle[0], 0.05 * angle[1]},
             "hub_angle_weight (0.22 s)^2");
-  out->Number(key("torque_weight"), torque_weight, "the unit of the weights");
-  out->Number(key("passivity_margin"), 5.0, "as for the arm of the thesis: without unit");
+  out->Constant(key("torque_weight"), torque_weight, "the unit of the weights");
+  out->Constant(key("passivity_margin"), 5.0, "as for the arm of the thesis");
   out->Number(key("adaptation_gain"), 2.4 / (S[0] * S[0]), "2.4 / S1^2");
   out->Number(key("adaptation_bound"), S[0] / 15.0, "S1 / 15 N m");
   out->List(key("pd_stiffness_nm_per_rad"), Pair{2.0 * S[0], 0.17 * S[1]}, "2 S1 and 0.17 S2");

@@ -56,9 +56,11 @@ std::vector<DerivedValue> DeriveTuning(const TuningBasis& basis) {
   return list.Take();
 }
 
+std::vector<DerivedValue> DeriveSomeArm() { return DeriveTuning(SomeArm()); }
+
 std::vector<std::string> DerivableKeys() {
   std::vector<std::string> keys;
-  for (const DerivedValue& value : DeriveTuning(SomeArm())) keys.push_back(value.key);
+  for (const DerivedValue& value : DeriveSomeArm()) keys.push_back(value.key);
   return keys;
 }
 

@@ -24,7 +24,10 @@ struct DerivedValue {
 /// @throws std::invalid_argument if the arm has no mode shapes
 std::vector<DerivedValue> DeriveTuning(const TuningBasis& basis);
 
-/// The keys of DeriveTuning, for every arm the same.
+/// DeriveTuning of some arm: keys and texts are the same for every arm.
+std::vector<DerivedValue> DeriveSomeArm();
+
+/// The keys of DeriveTuning.
 std::vector<std::string> DerivableKeys();
 
 }  // namespace flexarm

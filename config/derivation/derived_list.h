@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/derivation/derivation.h"
+#include "model/problem_list.h"
 
 namespace flexarm {
 
@@ -16,6 +17,10 @@ class DerivedList {
  public:
   void Number(std::string key, double value, std::string how) {
     list_.push_back({std::move(key), {Rounded(value)}, false, false, std::move(how)});
+  }
+  /// The same for every arm: `how` begins with the value.
+  void Constant(std::string key, double value, const std::string& how) {
+    Number(std::move(key), value, NumberText(value) + ", " + how);
   }
   void Whole(std::string key, int value, std::string how) {
     list_.push_back({std::move(key), {static_cast<double>(value)}, false, true, std::move(how)});

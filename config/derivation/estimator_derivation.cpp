@@ -101,16 +101,16 @@ void DerivePayloadFilter(const TuningBasis& basis, const ArmScales& scales, Deri
   out->Number(key("max_kg"), filter_most_kg, "1.1 times the greatest payload");
   out->Number(key("move_sigma_kg"), 0.16 * filter_most_kg, "0.16 of max_kg");
   out->Number(key("walk_kg"), 0.0025 * filter_most_kg, "0.0025 of max_kg");
-  out->Number(key("min_rate_rad_s"), 0.03, "as for the arm of the thesis");
+  out->Constant(key("min_rate_rad_s"), 0.03, "as for the arm of the thesis");
   out->List(key("friction_start_sigma_nm"), Pair{0.6 * F[0], F[1]},
             "0.6 and 1 of the Coulomb friction F");
   out->List(key("friction_max_nm"), Pair{6.0 * F[0], 20.0 * F[1]}, "6 and 20 F");
   out->List(key("friction_walk_nm"), Pair{0.025 * F[0], 0.04 * F[1]}, "2.5 and 4 % of F");
-  out->Number(key("friction_min_rate_rad_s"), 0.05, "as for the arm of the thesis");
+  out->Constant(key("friction_min_rate_rad_s"), 0.05, "as for the arm of the thesis");
   out->Number(key("play_threshold_counts"), std::max(1.5, 3.7e-3 * CountsPerRad(basis.sensors, 1)),
               "3.7 mrad, at least 1.5 counts");
-  out->Number(key("play_memory"), 0.999, "as for the arm of the thesis");
-  out->Number(key("gate_sigmas"), 4.0, "as for the arm of the thesis");
+  out->Constant(key("play_memory"), 0.999, "as for the arm of the thesis");
+  out->Constant(key("gate_sigmas"), 4.0, "as for the arm of the thesis");
 }
 
 }  // namespace flexarm

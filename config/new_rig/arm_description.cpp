@@ -49,7 +49,7 @@ class Reading {
   ArmDescription Arm() {
     ArmDescription arm;
     arm.name = "new-rig";
-    if (root_.Has("name")) root_.Read("name", &arm.name);
+    if (root_.Has("name")) root_.Read("name", &arm.name, kListedElsewhere);
     for (const ArmKey& key : ArmKeys()) ReadNumber(key, &arm);
     ReadMaterials(&arm);
     return arm;
@@ -58,7 +58,7 @@ class Reading {
  private:
   TableReader Part(const char* name) {
     static const toml::table empty;
-    return root_.Has(name) ? root_.Table(name) : TableReader(&empty, name, log_);
+    return root_.Has(name) ? root_.Table(name, kListedElsewhere) : TableReader(&empty, name, log_);
   }
 
   void ReadNumber(const ArmKey& key, ArmDescription* arm) {
@@ -69,7 +69,7 @@ class Reading {
       return;
     }
     double value = 0.0;
-    reader.Read(name, &value);
+    reader.Read(name, &value, kListedElsewhere);
     if (std::isnan(value)) return;  // reported
     if (!(value >= key.least && value <= key.most)) {
       reader.Refuse(name, "must lie in " + NumberText(key.least) + " .. " + NumberText(key.most) +
@@ -83,12 +83,12 @@ class Reading {
     const std::vector<NamedValue<const Material*>> names = MaterialNames();
     std::array<const Material*, 2> material{};
     const bool for_both = root_.Has(kMaterialKey);
-    if (for_both) root_.Read(kMaterialKey, material.data(), names);
+    if (for_both) root_.Read(kMaterialKey, material.data(), names, kListedElsewhere);
     material[1] = material[0];
     for (std::size_t i = 0; i < 2; ++i) {
       TableReader& link = parts_.at(i == 0 ? "link1" : "link2");
       if (link.Has(kMaterialKey)) {
-        link.Read(kMaterialKey, &material[i], names);
+        link.Read(kMaterialKey, &material[i], names, kListedElsewhere);
       } else if (!for_both) {
         root_.Missing(kMaterialKey, "the material of both links, such as \"aluminium\"");
         return;

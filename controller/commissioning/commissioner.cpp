@@ -9,7 +9,7 @@
 
 #include "controller/commissioning/calibration_file.h"
 #include "controller/runlog/csv.h"
-#include "controller/types/rejected_error.h"
+#include "controller/types/named_rejection.h"
 #include "hal/line_names.h"
 #include "model/units.h"
 
@@ -25,15 +25,17 @@ bool RemovesACause(const std::string& command) { return command == "tare" || com
 void RequireRelayOpen(const std::string& command, SafetyState state) {
   const bool also_tripped = RemovesACause(command);
   if (state == SafetyState::kIdle || (also_tripped && state == SafetyState::kTripped)) return;
-  throw RejectedError(command + " needs the state Idle" + (also_tripped ? " or Tripped" : "") +
-                      ", but the state is " + ToString(state) + ": run `flexarm disarm`" +
-                      (also_tripped ? "" : ", or `flexarm reset` after a trip"));
+  throw NamedRejection("wrong-state",
+                       command + " needs the state Idle" + (also_tripped ? " or Tripped" : "") +
+                           ", but the state is " + ToString(state) + ": run `flexarm disarm`" +
+                           (also_tripped ? "" : ", or `flexarm reset` after a trip"));
 }
 
 void RequireArmed(const std::string& command, SafetyState state) {
   if (state == SafetyState::kArmed) return;
-  throw RejectedError(command + " moves the arm and needs the state Armed, but the state is " +
-                      ToString(state) + ": run `flexarm arm`");
+  throw NamedRejection("wrong-state",
+                       command + " moves the arm and needs the state Armed, but the state is " +
+                           ToString(state) + ": run `flexarm arm`");
 }
 
 double Number(const Json& command, const char* key) {
@@ -117,7 +119,7 @@ bool Commissioner::Knows(const std::string& command) {
 }
 
 std::string Commissioner::WhyNoRun() const {
-  if (config_.commissioning.prove_before_run && !proven_) {
+  if (NeedsPluck()) {
     return "The wiring has not been tested since the daemon started. Run `flexarm pluck` first.";
   }
   for (std::size_t joint = 0; joint < 2; ++joint) {
@@ -128,8 +130,8 @@ std::string Commissioner::WhyNoRun() const {
 
 CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) {
   if (busy())
-    throw RejectedError("busy with " + job_->command +
-                        ": wait until it ends, or run `flexarm stop`");
+    throw NamedRejection(
+        "busy", "busy with " + job_->command + ": wait until it ends, or run `flexarm stop`");
   const std::string name = command.value("command", "");
   if (name == "pluck") return StartPluck(state);
   if (name == "home") return StartHome(command, state);
@@ -219,8 +221,9 @@ CommissioningMotion Commissioner::StartPluck(SafetyState state) {
 
 CommissioningMotion Commissioner::StartHome(const Json& command, SafetyState state) {
   RequireArmed("home", state);
-  if (config_.commissioning.prove_before_run && !proven_) {
-    throw RejectedError(
+  if (NeedsPluck()) {
+    throw NamedRejection(
+        "not-plucked",
         "homing is a controlled motion, but the wiring has not been tested: run `flexarm pluck`");
   }
   const auto joint = static_cast<std::size_t>(OneOrTwo(command, "joint") - 1);

@@ -49,6 +49,8 @@ class Commissioner {
 
   /// Why no experiment may run yet, and what to do; empty if one may.
   std::string WhyNoRun() const;
+  /// The wiring must be tested before the arm may follow a reference.
+  bool NeedsPluck() const { return config_.commissioning.prove_before_run && !proven_; }
 
   bool busy() const { return job_ != nullptr; }
 

@@ -10,13 +10,20 @@
 #include "controller/operator/log_condition.h"
 #include "controller/operator/operator_roles.h"
 #include "controller/operator/request_answers.h"
+#include "controller/types/named_rejection.h"
 #include "hal/line_names.h"
 
 namespace flexarm {
 namespace {
 
-nlohmann::json Failure(const std::string& error, const std::string& remedy) {
-  return {{"ok", false}, {"error", error}, {"remedy", remedy}};
+nlohmann::json BadRequest(const std::string& error) {
+  return {{"ok", false}, {"refusal", "bad-request"}, {"error", error}};
+}
+
+nlohmann::json BadRequest(const std::string& error, const std::string& remedy) {
+  nlohmann::json json = BadRequest(error);
+  json["remedy"] = remedy;
+  return json;
 }
 
 // Those that the safety task alone judges.
@@ -44,8 +51,12 @@ nlohmann::json CommandDispatch::Answer(int client, const Peer& by, const std::st
   nlohmann::json answer;
   try {
     answer = command ? Dispatch(client, by, *command, now)
-                     : Failure("not a command: expected a line like {\"command\": \"status\"}",
-                               "use the flexarm program");
+                     : BadRequest("not a command: expected a line like {\"command\": \"status\"}",
+                                  "use the flexarm program");
+  } catch (const NamedRejection& error) {
+    answer = {{"ok", false}, {"refusal", error.name()}, {"error", error.what()}};
+  } catch (const RejectedError& error) {
+    answer = BadRequest(error.what());
   } catch (const std::exception& error) {
     answer = {{"ok", false}, {"error", error.what()}};
   }
@@ -112,9 +123,9 @@ nlohmann::json CommandDispatch::Start(const std::string& name, int client,
     if (asked.number != 0) return nullptr;
     return RefusalJson(*kind, asked.refusal, now.permit.state);
   }
-  return Failure("no such command: '" + Shown(name) + "'",
-                 "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
-                 "home, prove-switches, sim");
+  return BadRequest("no such command: '" + Shown(name) + "'",
+                    "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
+                    "home, prove-switches, sim");
 }
 
 nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command) {
@@ -123,12 +134,15 @@ nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command) {
   const bool whole = given != command.end() && given->is_number_integer();
   const std::int64_t level = whole ? given->get<std::int64_t>() : -1;
   if (!line || (level != 0 && level != 1)) {
-    return Failure("no such line or level",
-                   "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop or "
-                   "reset-button, and level 0 or 1");
+    return BadRequest("no such line or level",
+                      "limit-1-low, limit-1-high, limit-2-low, limit-2-high, emergency-stop or "
+                      "reset-button, and level 0 or 1");
   }
   if (!targets_.stack->Press({.line = *line, .level = static_cast<int>(level)})) {
-    return Failure("this backend has no simulated switches", "press the real one");
+    return {{"ok", false},
+            {"refusal", "not-simulated"},
+            {"error", "this backend has no simulated switches"},
+            {"remedy", "press the real one"}};
   }
   targets_.report(
       false, std::string("simulated line ") + ToString(*line) + " set to " + std::to_string(level));

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "controller/operator/request_answers.h"
-#include "controller/types/rejected_error.h"
+#include "controller/types/named_rejection.h"
 
 namespace flexarm {
 namespace {
@@ -47,7 +47,7 @@ void CommissioningCommands::Take(const TickRecord& tick) {
 void CommissioningCommands::Start(const nlohmann::json& command, int client,
                                   const OperatorSnapshot& now) {
   if (targets_.requests->busy()) {
-    throw RejectedError(RefusalText(RequestKind::kRun, Refusal::kBusy, now.permit.state));
+    throw NamedRejection("busy", RefusalText(RequestKind::kRun, Refusal::kBusy, now.permit.state));
   }
   CommissioningMotion motion = commissioner_.Start(command, now.permit.state);
   client_ = client;

@@ -47,6 +47,7 @@ class CommissioningCommands {
 
   /// Why no experiment may run yet, and what to do; empty: it may.
   std::string WhyNoRun() const { return commissioner_.WhyNoRun(); }
+  bool NeedsPluck() const { return commissioner_.NeedsPluck(); }
 
   /// Once a period, before Take: LoopStack::count_epochs.
   void Follow(const CountEpochs& epochs);

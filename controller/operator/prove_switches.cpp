@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "controller/operator/switch_proof_record.h"
-#include "controller/types/rejected_error.h"
+#include "controller/types/named_rejection.h"
 
 namespace flexarm {
 namespace {
@@ -28,11 +28,13 @@ ProveSwitches::ProveSwitches(const RigConfig& config, TripLatch* latch, JournalR
 
 void ProveSwitches::Start(int client, SafetyState state) {
   if (!RelayIsOpen(state)) {
-    throw RejectedError(std::string("prove-switches needs the state Idle or Tripped, but the state "
-                                    "is ") +
-                        ToString(state) + ": run `flexarm disarm`");
+    throw NamedRejection(
+        "wrong-state", std::string("prove-switches needs the state Idle or Tripped, but the state "
+                                   "is ") +
+                           ToString(state) + ": run `flexarm disarm`");
   }
-  if (proof_) throw RejectedError("prove-switches is under way: `flexarm status` says what to do");
+  if (proof_)
+    throw NamedRejection("busy", "prove-switches is under way: `flexarm status` says what to do");
   proof_.emplace(period_s_);
   client_ = client;
   report_(false, "prove-switches: begun");

@@ -23,8 +23,12 @@ nlohmann::json Refused(Refusal refusal, const OperatorSnapshot& now) {
   return json;
 }
 
-nlohmann::json Failed(const std::string& error, const std::string& remedy) {
-  nlohmann::json json{{"ok", false}, {"command", ToString(RequestKind::kRun)}, {"error", error}};
+nlohmann::json Refused(const std::string& refusal, const std::string& error,
+                       const std::string& remedy) {
+  nlohmann::json json{{"ok", false},
+                      {"refusal", refusal},
+                      {"command", ToString(RequestKind::kRun)},
+                      {"error", error}};
   if (!remedy.empty()) json["remedy"] = remedy;
   return json;
 }
@@ -52,7 +56,8 @@ nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
   if (now.shutting_down) return Refused(Refusal::kShuttingDown, now);
   if (now.permit.state != SafetyState::kArmed) return Refused(Refusal::kWrongState, now);
   if (const std::string why = targets_.commissioning->WhyNoRun(); !why.empty()) {
-    return Failed(why, "then run");
+    if (targets_.commissioning->NeedsPluck()) return Refused("not-plucked", why, "then run");
+    return Refused("angle-unknown", why, "then run");
   }
   std::vector<UnmetCondition> unmet = targets_.switches->UnmetToRun();
   if (const auto no_log = UnmetLog(targets_.files)) unmet.push_back(*no_log);
@@ -63,9 +68,7 @@ nlohmann::json RunCommand::WhyNot(const std::vector<Override>& overrides,
   }
   ConditionDecision decision = Judge(unmet, overrides);
   if (decision.refused != nullptr) {
-    nlohmann::json json = Failed(decision.refused->found, decision.refused->remedy);
-    json["refusal"] = decision.refused->refusal;
-    return json;
+    return Refused(decision.refused->refusal, decision.refused->found, decision.refused->remedy);
   }
   *used = std::move(decision.used);
   return nullptr;
@@ -135,7 +138,7 @@ std::optional<ClientAnswer> RunCommand::Follow(const OperatorSnapshot& now,
 
 nlohmann::json RunCommand::Decide(Waiting command, ExperimentPlanner::Outcome planned,
                                   const OperatorSnapshot& now) {
-  if (!planned.order) return Failed(planned.problem, "");
+  if (!planned.order) return Refused("experiment-refused", planned.problem, "");
   std::vector<Override> used;
   const std::optional<UnmetCondition>& unmet = planned.order->unmet;
   if (nlohmann::json refused = WhyNot(command.overrides, now, unmet, &used); !refused.is_null()) {
@@ -144,7 +147,8 @@ nlohmann::json RunCommand::Decide(Waiting command, ExperimentPlanner::Outcome pl
   const std::array<double, 2> hub_rad = HubsOf(now);
   for (std::size_t joint = 0; joint < 2; ++joint) {
     if (std::fabs(hub_rad[joint] - command.start_rad[joint]) <= kMoved_rad) continue;
-    return Failed("the arm was moved while its run was planned", "repeat the command");
+    return Refused("arm-moved", "the arm was moved while its run was planned",
+                   "repeat the command");
   }
   planned.order->label = std::move(command.label);
   const std::uint32_t number =

@@ -82,12 +82,6 @@ void CheckTimes(const CanopenConfig& config, ProblemList* list) {
                "the frames of one exchange take " + NumberText(wire_ms) +
                    " ms at worst, the nodes half a millisecond; the other half of the period is "
                    "reserved for the rest of the loop");
-  list->Within("sdo_timeout_ms", config.sdo_timeout_ms, 1, 1000,
-               "time-out of a node's answer to one SDO");
-  list->Within("boot_timeout_ms", config.boot_timeout_ms, 10, 60000,
-               "time from a node's reset to its boot-up message");
-  list->Within("node_heartbeat_ms", config.node_heartbeat_ms, 5, 1000,
-               "producer heartbeat time of the nodes; 0 would mean none");
   list->Within("node_timeout_ms", config.node_timeout_ms, 2 * config.node_heartbeat_ms, 2000,
                "at least two heartbeats, or one lost frame would count as a lost node");
   // A drive's timer keeps running while one heartbeat is late by a whole period.
@@ -170,6 +164,11 @@ std::vector<Problem> CanopenConfig::Problems(const std::string& section) const {
   list.Within("period_ms", period_ms, 1.0, 100.0, "period of the loop");
   list.Within("master_node_id", master_node_id, 1, kMaxNodeId, "the daemon's own node id");
   CheckNodes(*this, &list);
+  list.Within("sdo_timeout_ms", sdo_timeout_ms, 1, 1000, "time-out of a node's answer to one SDO");
+  list.Within("boot_timeout_ms", boot_timeout_ms, 10, 60000,
+              "time from a node's reset to its boot-up message");
+  list.Within("node_heartbeat_ms", node_heartbeat_ms, 5, 1000,
+              "producer heartbeat time of the nodes; 0 would mean none");
   if (!list.empty()) return list.Take();  // times need valid values
   CheckTimes(*this, &list);
   list.Require(bus_load() <= kMostLoad, "bitrate_bps", NumberText(bitrate_bps),

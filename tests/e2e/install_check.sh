@@ -25,6 +25,15 @@ for program in flexarmd flexarm flexarm-study; do
 done
 flexarm=$(find . -type f -name flexarm -path '*/bin/*')
 
+# Manual pages and completion.
+for page in man1/flexarm.1 man1/flexarm-simulate.1 man1/flexarm-modes.1 man1/flexarm-study.1 man8/flexarmd.8; do
+  [[ -s $(find . -path "*/man/$page") ]] || fail "$page is not installed"
+done
+for program in flexarm flexarmd flexarm-study; do
+  [[ -n $(find . -path "*/bash-completion/completions/$program") ]] || fail "no completion of $program"
+done
+[[ $("$flexarm" --complete modes --js) == --json ]] || fail "the installed flexarm does not complete the verbs of flexarm-study"
+
 # The installed configs find the files that they extend.
 hil=$(find . -name hil.toml)
 [[ -n $hil ]] || fail "no configs are installed"

@@ -7,10 +7,24 @@
 #include <string_view>
 #include <utility>
 
+#include "config/config_reference.h"
 #include "controller/files/external_text.h"
 #include "controller/files/input_error.h"
+#include "tools/command_line/completion.h"
 
 namespace flexarm {
+namespace {
+
+// Keys outside of rows, as --set begins with them.
+std::vector<std::string> KeysToSet() {
+  std::vector<std::string> words;
+  for (const ListedKey& key : RigReference().keys) {
+    if (key.path.find('[') == std::string::npos) words.push_back(key.path + "=");
+  }
+  return words;
+}
+
+}  // namespace
 
 void ConfigOptions::AddTo(CLI::App* verb, bool required) {
   verb->add_option("-c,--config", file, "Config of the rig, a TOML file")
@@ -36,10 +50,12 @@ RigConfig ConfigOptions::LoadWithCrossSections() const {
 }
 
 void AddSet(CLI::App* verb, std::vector<std::string>* overrides) {
-  verb->add_option("--set", *overrides,
-                   "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);  // one value each: the next argument may be a run log
+  CLI::Option* set =
+      verb->add_option("--set", *overrides,
+                       "Replace a value of the config, e.g. --set controller.alpha=2.5; repeatable")
+          ->type_name("KEY=VALUE")
+          ->allow_extra_args(false);  // one value each: the next argument may be a run log
+  OfferWords(set, KeysToSet);
 }
 
 void GridOptions::AddTo(CLI::App* verb) {

@@ -14,6 +14,7 @@
 #include "controller/types/rejected_error.h"
 #include "tools/command_line/config_refusal.h"
 #include "tools/command_line/guess.h"
+#include "tools/command_line/self_description.h"
 #include "tools/command_line/verbs.h"
 
 namespace flexarm {
@@ -34,7 +35,7 @@ int BadUsage(const CLI::App& app, const CLI::ParseError& error) {
   return Exit::kBadInput;
 }
 
-int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
+int Run(const char* name, int argc, char** argv, RegisterVerbs* register_verbs) {
   Exit exit;
   CLI::App app("Controller of a two-link flexible arm: design, simulate, replay, analyse, operate.",
                "flexarm");
@@ -51,6 +52,7 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
       "Exit codes: 0 done; 1 a run, replay or check failed; 2 bad usage, config or input.");
   register_verbs(app, exit);
   RefuseConfigElsewhere(&app);
+  if (const auto code = DescribeItself(app, name, 1, argc, argv)) return *code;
   const auto is_first = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty()) {
     PrintError("unknown verb \"" + std::string(argv[1]) + "\"" + GuessVerb(app, argv[1]) +
@@ -81,13 +83,16 @@ int Run(int argc, char** argv, RegisterVerbs* register_verbs) {
 
 }  // namespace
 
-int RunProgram(int argc, char** argv, RegisterVerbs* register_verbs) noexcept {
+int RunProgram(const char* name, int argc, char** argv, RegisterVerbs* register_verbs) noexcept {
   try {
-    const int code = Run(argc, argv, register_verbs);
+    const int code = Run(name, argc, argv, register_verbs);
     const std::string lost = FlushStandardOutput();
     if (lost.empty()) return code;
     PrintError(lost);
     return code == Exit::kDone ? Exit::kFailed : code;
+  } catch (const std::exception& error) {
+    PrintError(FailureText(error));
+    return Exit::kFailed;
   } catch (...) {  // not even the message could be built
     return Exit::kFailed;
   }

@@ -9,6 +9,7 @@ using RegisterVerbs = void(CLI::App& app, Exit& exit);
 
 /// Runs the verb that the arguments name: the main function of flexarm and of flexarm-study, which
 /// differ in their verbs. Prints errors to stderr. Returns the exit code of the process.
-int RunProgram(int argc, char** argv, RegisterVerbs* register_verbs) noexcept;
+/// @param name  of the program's file: "flexarm"
+int RunProgram(const char* name, int argc, char** argv, RegisterVerbs* register_verbs) noexcept;
 
 }  // namespace flexarm

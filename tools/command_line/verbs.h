@@ -32,9 +32,11 @@ void RegisterCheckHost(CLI::App& app, Exit& exit);
 void RegisterCommission(CLI::App& app, Exit& exit);  ///< tare, zero, calibrate, pluck, home
 void RegisterConfig(CLI::App& app, Exit& exit);
 void RegisterConfigNew(CLI::App& config, Exit& exit);
+void RegisterConfigReference(CLI::App& config, Exit& exit);
 void RegisterConfigShow(CLI::App& config, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);
 void RegisterDiff(CLI::App& app, Exit& exit);
+void RegisterExplain(CLI::App& app, Exit& exit);
 void RegisterExport(CLI::App& app, Exit& exit);
 void RegisterGauges(CLI::App& app, Exit& exit);
 void RegisterIdentify(CLI::App& app, Exit& exit);

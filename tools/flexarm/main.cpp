@@ -1,4 +1,7 @@
+#include <string_view>
+
 #include "tools/command_line/program.h"
+#include "tools/command_line/self_description.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
 
@@ -29,6 +32,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterOperate(app, exit);
   RegisterCommission(app, exit);
   RegisterProveSwitches(app, exit);
+  RegisterExplain(app, exit);
   RegisterRig(app, exit);
   RegisterLinesOff(app, exit);
 }
@@ -37,6 +41,9 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
 }  // namespace flexarm
 
 int main(int argc, char** argv) {
-  if (argc > 1 && flexarm::IsStudy(argv[1])) return flexarm::BecomeStudyProgram(argv);
-  return flexarm::RunProgram(argc, argv, flexarm::RegisterOwnVerbs);
+  // The verb: the first argument, or the first whole word of a command line to be completed.
+  const bool completes = argc > 3 && std::string_view(argv[1]) == flexarm::kCompleteOption;
+  const char* verb = completes ? argv[2] : argc > 1 ? argv[1] : "";
+  if (flexarm::IsStudy(verb)) return flexarm::BecomeStudyProgram(argv);
+  return flexarm::RunProgram("flexarm", argc, argv, flexarm::RegisterOwnVerbs);
 }

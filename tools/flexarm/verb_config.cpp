@@ -202,10 +202,11 @@ void Check(const ConfigCheckOptions& options) {
 
 void RegisterConfig(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<ConfigCheckOptions>();
-  CLI::App* verb = app.add_subcommand("config", "Write, check and show configs");
+  CLI::App* verb = app.add_subcommand("config", "Write, check, show and explain configs");
   verb->require_subcommand(1);
   RegisterConfigNew(*verb, exit);
   RegisterConfigShow(*verb, exit);
+  RegisterConfigReference(*verb, exit);
   CLI::App* check = verb->add_subcommand(
       "check",
       "Validate a config: print every problem with its line, or else the quantities derived from "

@@ -15,6 +15,7 @@
 #include "controller/runlog/errors.h"
 #include "controller/types/law_table.h"
 #include "controller/types/rejected_error.h"
+#include "tools/command_line/completion.h"
 #include "tools/command_line/label_options.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
@@ -254,8 +255,9 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
           "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config or\n"
           "shipped; moves.toml for a law that follows moves only)")
       ->type_name("FILE");
-  verb->add_option("--controller", options->controller,
-                   "controller.name, the control law:\n" + LawHelp());
+  OfferWords(verb->add_option("--controller", options->controller,
+                              "controller.name, the control law:\n" + LawHelp()),
+             [] { return LawNames([](const LawRow&) { return true; }); });
   verb->add_option("--estimator", options->estimator,
                    "estimator.name: kalman, difference, polynomial, ekf-payload");
   verb->add_option("--payload-kg", options->payload_kg,

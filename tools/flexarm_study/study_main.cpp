@@ -18,5 +18,5 @@ void RegisterStudies(CLI::App& app, Exit& exit) {
 }  // namespace flexarm
 
 int main(int argc, char** argv) {
-  return flexarm::RunProgram(argc, argv, flexarm::RegisterStudies);
+  return flexarm::RunProgram("flexarm-study", argc, argv, flexarm::RegisterStudies);
 }

@@ -89,7 +89,7 @@ void AddMotion(CLI::App* verb, ReduceOptions* options) {
   verb->add_option("--scaling", options->reduction.scaling,
                    "Modal coordinates for modes of 1 kg (mass), of int psi^2 = L (length), of "
                    "psi(L) = 1 (tip)")
-      ->transform(CLI::CheckedTransformer(scalings))
+      ->transform(CLI::CheckedTransformer(scalings).description("{length,mass,tip}"))
       ->type_name("NAME")
       ->default_str("mass");
 }

@@ -13,6 +13,7 @@
 #include "controller/types/rejected_error.h"
 #include "hal/bus_device.h"
 #include "tools/command_line/guess.h"
+#include "tools/command_line/self_description.h"
 
 namespace flexarm {
 namespace {
@@ -115,6 +116,7 @@ int Main(int argc, char** argv) {
       "Exit codes: 0 done; 1 tripped and not reset, refused, or a log could not be written; 2 bad "
       "input.");
   try {
+    if (const auto code = DescribeItself(app, "flexarmd", 8, argc, argv)) return *code;
     app.parse(argc, argv);
     return Serve(options);
   } catch (const CLI::Success& help) {

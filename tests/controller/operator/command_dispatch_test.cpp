@@ -62,6 +62,10 @@ struct UnprovenRigTest : CommandDispatchTest {
   UnprovenRigTest() : CommandDispatchTest({"commissioning.prove_before_run=true"}) {}
 };
 
+struct LostAnglesTest : CommandDispatchTest {
+  LostAnglesTest() : CommandDispatchTest({"commissioning.angles_at_start=lost"}) {}
+};
+
 TEST_F(CommandDispatchTest, WhatIsNoCommandIsAnsweredAndChangesNothing) {
   const std::string deep(200'000, '[');
   for (const std::string& line :
@@ -286,7 +290,9 @@ TEST_F(CommandDispatchTest, ALineOrLevelThatThereIsNotIsRefused) {
        {Json{{"command", "sim"}}, Json{{"command", "sim"}, {"line", "limit-3-low"}, {"level", 0}},
         Json{{"command", "sim"}, {"line", "emergency-stop"}},
         Json{{"command", "sim"}, {"line", "emergency-stop"}, {"level", 2}}}) {
-    EXPECT_THAT(Answer(command).value("error", ""), HasSubstr("no such line")) << command;
+    const Json answer = Answer(command);
+    EXPECT_THAT(answer.value("error", ""), HasSubstr("no such line")) << command;
+    EXPECT_EQ(answer["refusal"], "bad-request") << command;
   }
   EXPECT_EQ(stack_.pressed.level, -1);
 }
@@ -296,7 +302,18 @@ TEST_F(CommandDispatchTest, ARealRigHasNoSimulatedLines) {
   const Json answer = Answer({{"command", "sim"}, {"line", "emergency-stop"}, {"level", 0}});
   EXPECT_EQ(answer["ok"], false);
   EXPECT_THAT(answer.value("error", ""), HasSubstr("no simulated switches"));
+  EXPECT_EQ(answer["refusal"], "not-simulated");
   EXPECT_THAT(journal_.lines, IsEmpty());
+}
+
+TEST_F(CommandDispatchTest, ARefusalOfCommissioningHasAName) {
+  now_.permit.state = SafetyState::kIdle;
+  EXPECT_EQ(Answer({{"command", "pluck"}})["refusal"], "wrong-state");
+  EXPECT_EQ(Answer({{"command", "calibrate"}, {"link", 3}})["refusal"], "bad-request");
+  now_.permit.state = SafetyState::kArmed;
+  EXPECT_EQ(Answer({{"command", "tare"}})["refusal"], "wrong-state");
+  EXPECT_EQ(Answer({{"command", "prove-switches"}})["refusal"], "wrong-state");
+  EXPECT_EQ(Answer({{"command", "home"}, {"joint", 1}})["refusal"], "bad-request") << "no side";
 }
 
 TEST_F(CommandDispatchTest, ARunIsPlannedBeforeItIsAskedFor) {
@@ -335,6 +352,15 @@ TEST_F(UnprovenRigTest, ARunIsRefusedUntilTheWiringIsProven) {
   const Json answer = Answer({{"command", "run"}, {"experiment", kOneMove}});
   EXPECT_EQ(answer["ok"], false);
   EXPECT_THAT(answer.value("error", ""), HasSubstr("flexarm pluck"));
+  EXPECT_EQ(answer["refusal"], "not-plucked");
+  EXPECT_EQ(Answer({{"command", "home"}, {"joint", 1}, {"side", "low"}})["refusal"], "not-plucked");
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(LostAnglesTest, ARunIsRefusedUntilTheAnglesAreKnown) {
+  const Json answer = Answer({{"command", "run"}, {"experiment", kOneMove}});
+  EXPECT_EQ(answer["refusal"], "angle-unknown");
+  EXPECT_THAT(answer.value("error", ""), HasSubstr("flexarm zero"));
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
 }
 

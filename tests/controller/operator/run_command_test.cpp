@@ -92,6 +92,7 @@ TEST_F(RunCommandTest, AnExperimentThatIsWrongIsAnsweredWithTheReason) {
   EXPECT_EQ(answer->client, kRunClient);
   EXPECT_EQ(answer->json["ok"], false);
   EXPECT_EQ(answer->json["command"], "run");
+  EXPECT_EQ(answer->json["refusal"], "experiment-refused");
   EXPECT_EQ(answer->json["state"], "Armed");
   EXPECT_THAT(answer->json.value("error", ""), HasSubstr("name"));
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
@@ -133,7 +134,9 @@ TEST_F(RunCommandTest, TheConditionsAreJudgedAgainWhenThePlanIsThere) {
   now_.permit.state = SafetyState::kArmed;
   EXPECT_TRUE(Start().is_null());
   now_.tick.output.angle_rad[1] += 2.0 * RunCommand::kMoved_rad;
-  EXPECT_THAT(FollowToTheEnd()->json.value("error", ""), HasSubstr("was moved"));
+  const std::optional<ClientAnswer> moved = FollowToTheEnd();
+  EXPECT_THAT(moved->json.value("error", ""), HasSubstr("was moved"));
+  EXPECT_EQ(moved->json["refusal"], "arm-moved");
 }
 
 TEST_F(RunCommandTest, APlanWaitsForTheAnswerToAReset) {

@@ -6,6 +6,8 @@
 #include <set>
 #include <string>
 
+#include "controller/types/trip_advice.h"
+
 namespace flexarm {
 namespace {
 
@@ -24,6 +26,21 @@ TEST(TripCause, EveryCauseHasItsOwnMachineNameAndATextThatSaysWhatToDo) {
       EXPECT_GT(std::count(text.begin(), text.end(), '.'), 1) << "what happened, then what to do";
     }
   }
+}
+
+TEST(TripCause, TheTextIsMadeOfItsPartsAndNoPartIsMissing) {
+  for (int i = 1; i < kTripCauses; ++i) {
+    const auto cause = static_cast<TripCause>(i);
+    SCOPED_TRACE(ToString(cause));
+    const TripAdvice advice = AdviceOf(cause);
+    for (const std::string part : {advice.happened, advice.check, advice.remedy}) {
+      ASSERT_FALSE(part.empty());
+      EXPECT_EQ(part.back(), '.');
+    }
+    EXPECT_EQ(OperatorText(cause),
+              std::string(advice.happened) + " " + advice.check + " " + advice.remedy);
+  }
+  EXPECT_STREQ(AdviceOf(static_cast<TripCause>(255)).remedy, "");
 }
 
 // The numbers are in logs: this test fails if a cause is renumbered.
