@@ -44,7 +44,7 @@ class CountingTask final : public Task {
 class PlantTaskTest : public testing::Test {
  protected:
   explicit PlantTaskTest(const std::vector<std::string>& overrides = {})
-      : task_(ShippedRig(overrides), 0.1,
+      : task_(ShippedRig(overrides), 0.1, {0.0, 0.0},
               {.commands = &commands_,
                .permits = &permits_,
                .outputs = &outputs_,
