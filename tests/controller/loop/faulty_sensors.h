@@ -135,7 +135,7 @@ class FaultyStack final : private FaultyWires, public LoopStack {
                    .permits = {&permits},
                    .drives = {&drive_reports}}),
         control_(&LoopStack::control()),
-        plant_(config, config.arm.payload_mass_kg,
+        plant_(config, config.arm.payload_mass_kg, {0.0, 0.0},
                {.commands = &commands,
                 .permits = &permits,
                 .outputs = &outputs,
