@@ -6,7 +6,8 @@
 # that the numbers of the lines are those of the page. Each block begins with `block LINE`. The
 # first command that fails ends the page, and so does a block that takes longer than LIMIT_S. What
 # the page started in the background is stopped at its end: it must not have failed before. To
-# descriptor 9, or to the output without one: `block LINE`, and `failed LINE STATUS COMMAND`.
+# descriptor 9, or to the output without one: `block LINE BYTES`, BYTES the size of the output where
+# it is a file, and `failed LINE STATUS COMMAND`.
 set -Eeo pipefail
 
 { : >&9; } 2>/dev/null || exec 9>&1
@@ -28,7 +29,7 @@ start_watchdog() {  # start_watchdog SECONDS LINE WHAT
   (
     trap - ERR EXIT
     trap 'kill "$!" 2>/dev/null; exit 0' TERM
-    sleep "$1" &
+    sleep "$1" 9>&- &  # one that outlives its watchdog must not hold the reader
     wait $!
     echo "failed $2 124 $3 is not done after $1 s" >&9
     kill -KILL 0
@@ -39,7 +40,7 @@ start_watchdog() {  # start_watchdog SECONDS LINE WHAT
 
 block() {  # block LINE
   end_watchdog
-  echo "block $1" >&9
+  echo "block $1 $(stat -L -c %s "/proc/$$/fd/1")" >&9
   start_watchdog "$limit_s" "$1" "the block"
 }
 

@@ -158,7 +158,7 @@ def run_script(file, folder, variables, limit_s):
                 status, command = more[0].split(" ", 1)
                 failure = failure or (int(number) or line, int(status), command)
                 continue
-            line, began, offset = int(number), now, output.stat().st_size
+            line, began, offset = int(number), now, int(more[0])
     if line is not None:
         seconds.setdefault(line, time.monotonic() - began)
     try:
