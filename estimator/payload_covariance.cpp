@@ -21,10 +21,8 @@ constexpr int StateOf(int driving) noexcept {
 
 template <typename Square>
 void MirrorLowerHalf(int columns, Square* P) noexcept {
-  for (int column = 0; column < columns; ++column) {
-    for (int row = column + 1; row < Square::RowsAtCompileTime; ++row) {
-      (*P)(column, row) = (*P)(row, column);
-    }
+  for (int j = 0; j < columns; ++j) {
+    for (int i = j + 1; i < Square::RowsAtCompileTime; ++i) (*P)(j, i) = (*P)(i, j);
   }
 }
 

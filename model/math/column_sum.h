@@ -39,13 +39,14 @@ class ColumnSum {
   }
 
  private:
-  using Four = double __attribute__((vector_size(32), may_alias, aligned(16)));
+  using Four [[gnu::vector_size(32), gnu::may_alias, gnu::aligned(16)]] = double;
   static constexpr std::size_t kFours = kRows / 4;
 
   static const Four* Fours(const double* column) noexcept {
     return reinterpret_cast<const Four*>(column);
   }
 
+  // NOLINTNEXTLINE(modernize-avoid-c-arrays): std::array would drop the attributes of Four
   Four sum_[kFours];
 };
 

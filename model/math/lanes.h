@@ -20,24 +20,25 @@ struct Lanes {
 
   Lanes() = default;
   /// The same number in all lanes; implicit, so that constants stay doubles.
-  Lanes(double x) noexcept : all{x, x, x, x} {}  // NOLINT(google-explicit-constructor)
+  Lanes(double x) noexcept : all_{x, x, x, x} {}  // NOLINT(google-explicit-constructor)
 
-  double operator[](std::size_t lane) const noexcept { return all[lane]; }
-  void Set(std::size_t lane, double x) noexcept { all[lane] = x; }
+  double operator[](std::size_t lane) const noexcept { return all_[lane]; }
+  void Set(std::size_t lane, double x) noexcept { all_[lane] = x; }
 
   Lanes& operator+=(const Lanes& y) noexcept {
-    all += y.all;
+    all_ += y.all_;
     return *this;
   }
   Lanes& operator-=(const Lanes& y) noexcept {
-    all -= y.all;
+    all_ -= y.all_;
     return *this;
   }
-  Lanes operator-() const noexcept { return Lanes(-all); }
-  friend Lanes operator+(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all + y.all); }
-  friend Lanes operator-(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all - y.all); }
-  friend Lanes operator*(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all * y.all); }
-  friend Lanes operator/(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all / y.all); }
+  Lanes operator-() const noexcept { return Lanes(-all_); }
+  friend Lanes operator+(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all_ + y.all_); }
+  friend Lanes operator-(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all_ - y.all_); }
+  friend Lanes operator*(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all_ * y.all_); }
+  friend Lanes operator/(const Lanes& x, const Lanes& y) noexcept { return Lanes(x.all_ / y.all_); }
+  // NOLINTNEXTLINE(readability-identifier-naming): found beside std::sqrt, by its name
   friend Lanes sqrt(const Lanes& x) noexcept {
     Lanes roots;
     for (std::size_t lane = 0; lane < kCount; ++lane) roots.Set(lane, std::sqrt(x[lane]));
@@ -47,10 +48,10 @@ struct Lanes {
  private:
   // Aligned as a pair: Eigen aligns no more, and neither do the processor's unaligned loads need
   // it.
-  using Four = double __attribute__((vector_size(32), aligned(16)));
-  explicit Lanes(const Four& four) noexcept : all(four) {}
+  using Four [[gnu::vector_size(32), gnu::aligned(16)]] = double;
+  explicit Lanes(const Four& four) noexcept : all_(four) {}
 
-  Four all;
+  Four all_;
 };
 
 }  // namespace flexarm
@@ -62,6 +63,7 @@ struct Eigen::NumTraits<flexarm::Lanes> {
   using NonInteger = flexarm::Lanes;
   using Literal = double;
   using Nested = flexarm::Lanes;
+  // NOLINTBEGIN(readability-identifier-naming): names that Eigen asks for
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -71,4 +73,5 @@ struct Eigen::NumTraits<flexarm::Lanes> {
     AddCost = 2,
     MulCost = 2
   };
+  // NOLINTEND(readability-identifier-naming)
 };

@@ -47,26 +47,28 @@ RigidJointArm::InertiaOf<Scalar> RigidJointArm::At(
   const Scalar sb = root * (th2.sine + s * th2.cosine), cb = root * (th2.cosine - s * th2.sine);
 
   // Of [th1 phi1_1 phi1_2]; that of th2 is 0 for x, y and turn, and 1 for g, whose rest is turn.
-  const Scalar x[] = {sb * L1_ - cb * w, sb * p1_[0], sb * p1_[1]};
-  const Scalar y[] = {cb * L1_ + sb * w, cb * p1_[0], cb * p1_[1]};
-  const Scalar turn[] = {1.0, e * s1_[0], e * s1_[1]};
-  const Scalar p[] = {e2 * s2_[0], e2 * s2_[1]};  // payload against hub 2
+  using Two = Eigen::Matrix<Scalar, 2, 1>;
+  using Three = Eigen::Matrix<Scalar, 3, 1>;
+  const Three x(sb * L1_ - cb * w, sb * p1_[0], sb * p1_[1]);
+  const Three y(cb * L1_ + sb * w, cb * p1_[0], cb * p1_[1]);
+  const Three turn(Scalar(1.0), e * s1_[0], e * s1_[1]);
+  const Two p(e2 * s2_[0], e2 * s2_[1]);  // payload against hub 2
 
-  const Scalar N1f1[] = {N1_(0, 0) * f11 + N1_(0, 1) * f12, N1_(1, 0) * f11 + N1_(1, 1) * f12};
-  const Scalar N2f2[] = {body.N2(0, 0) * f21 + body.N2(0, 1) * f22,
-                         body.N2(1, 0) * f21 + body.N2(1, 1) * f22};
+  const Two N1f1(N1_(0, 0) * f11 + N1_(0, 1) * f12, N1_(1, 0) * f11 + N1_(1, 1) * f12);
+  const Two N2f2(body.N2(0, 0) * f21 + body.N2(0, 1) * f22,
+                 body.N2(1, 0) * f21 + body.N2(1, 1) * f22);
   const Scalar Sy = body.k2[0] * f21 + body.k2[1] * f22;
   const Scalar I = body.I2 + f21 * N2f2[0] + f22 * N2f2[1] + Ip_;
 
   InertiaOf<Scalar> out;
-  constexpr int kAt[] = {0, 2, 3};  // of x, y, turn among the coordinates
+  const auto at = [](int j) { return j == 0 ? 0 : j + 1; };  // of x, y, turn among the coordinates
   MatrixOf<Scalar>& M = out.M;
   M(1, 1) = I;
   for (int j = 0; j < 3; ++j) {
     const Scalar F_x = body.m * x[j] - Sy * turn[j], F_y = body.m * y[j] + body.Sx * turn[j];
     const Scalar T_g = body.Sx * y[j] - Sy * x[j] + I * turn[j], T = T_g + Ir2_ * turn[j];
-    for (int i = j; i < 3; ++i) M(kAt[i], kAt[j]) = x[i] * F_x + y[i] * F_y + turn[i] * T;
-    j == 0 ? M(1, 0) = T_g : M(kAt[j], 1) = T_g;
+    for (int i = j; i < 3; ++i) M(at(i), at(j)) = x[i] * F_x + y[i] * F_y + turn[i] * T;
+    j == 0 ? M(1, 0) = T_g : M(at(j), 1) = T_g;
   }
   M(0, 0) += I1_ + (f11 * N1f1[0] + f12 * N1f1[1]);
   for (int i = 0; i < 2; ++i) {
@@ -74,11 +76,11 @@ RigidJointArm::InertiaOf<Scalar> RigidJointArm::At(
     for (int j = 0; j <= i; ++j) M(2 + i, 2 + j) += N1_(i, j);
     const Scalar by_turn = body.a2[i] + Ip_ * p[i];
     M(4 + i, 1) = by_turn;
-    for (int j = 0; j < 3; ++j) M(4 + i, kAt[j]) = body.k2[i] * y[j] + by_turn * turn[j];
+    for (int j = 0; j < 3; ++j) M(4 + i, at(j)) = body.k2[i] * y[j] + by_turn * turn[j];
     for (int j = 0; j <= i; ++j) M(4 + i, 4 + j) = body.N2(i, j) + Ip_ * p[i] * p[j];
   }
-  for (int column = 1; column < kDof; ++column) {
-    for (int row = 0; row < column; ++row) M(row, column) = M(column, row);
+  for (int i = 1; i < kDof; ++i) {
+    for (int j = 0; j < i; ++j) M(j, i) = M(i, j);
   }
 
   // Accelerations due to the rates alone: elbow in frame 1, then in frame 2; hub 2; payload.
