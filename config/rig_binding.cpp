@@ -317,22 +317,20 @@ void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {
 }
 
 CsvImport ReadCsvImport(TableReader csv) {
+  std::vector<NamedValue<CsvUnit>> units;
+  for (const CsvUnit& unit : kCsvUnits) units.push_back({unit.name, unit});
   CsvImport import{};
-  csv.Read("decimation", &import.decimation);
+  if (csv.Has("separator")) {
+    csv.Read<char>("separator", &import.separator,
+                   {{",", ','}, {";", ';'}, {"tab", '\t'}, {"\t", '\t'}});
+  }
+  if (csv.Has("resample")) csv.Read("resample", &import.resample);
+  if (csv.Has("longest_gap_s")) csv.Read("longest_gap_s", &import.longest_gap_s);
+  if (!import.resample || csv.Has("decimation")) csv.Read("decimation", &import.decimation);
   for (TableReader row : csv.Rows("column")) {
     CsvColumn& column = import.column.emplace_back();
     row.Read("column", &column.column);
-    row.Read<double>("unit", &column.unit,
-                     {{"s", 1.0},
-                      {"ms", 1e-3},
-                      {"rad", 1.0},
-                      {"deg", kRadPerDeg},
-                      {"A", 1.0},
-                      {"V", 1.0},
-                      {"mV", 1e-3},
-                      {"Nm", 1.0},
-                      {"1", 1.0},
-                      {"microstrain", 1e-6}});
+    row.Read("unit", &column.unit, units);
     row.Read("scale", &column.scale);
     if (row.Has("offset")) row.Read("offset", &column.offset);
     row.Read("target", &column.target);
