@@ -47,9 +47,7 @@ std::vector<TrajectoryPoint> ReadTrajectory(const std::string& file, const std::
   const bool degrees = table.Has("th1_deg");
   const std::array<std::string, 2> column = {degrees ? "th1_deg" : "th1_rad",
                                              degrees ? "th2_deg" : "th2_rad"};
-  table.Need("time_s");
-  table.Need(column[0]);
-  table.Need(column[1]);
+  table.Need({"time_s", column[0], column[1]});
   const double unit = degrees ? kRadPerDeg : 1.0;
   std::vector<TrajectoryPoint> points;
   while (table.Next()) {

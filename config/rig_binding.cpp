@@ -27,26 +27,29 @@ void ReadSim(TableReader sim, SimConfig* out) {
 }
 
 CsvImport ReadCsvImport(TableReader csv) {
+  std::vector<NamedValue<CsvUnit>> units;
+  for (const CsvUnit& unit : kCsvUnits) units.push_back({unit.name, unit});
   CsvImport import{};
-  csv.Read("decimation", &import.decimation,
-           {"rows of the file in one period of the loop", "rows"});
+  if (csv.Has("separator")) {
+    csv.Read<char>("separator", &import.separator,
+                   {{",", ','}, {";", ';'}, {"tab", '\t'}, {"\t", '\t'}},
+                   "what separates the cells; without it, found in the file");
+  }
+  csv.ReadIfGiven("resample", &import.resample,
+                  "true: values between the rows are interpolated where their times are not those "
+                  "of the loop");
+  csv.ReadIfGiven("longest_gap_s", &import.longest_gap_s,
+                  "with resample: the longest time between two rows that is interpolated over");
+  if (!import.resample || csv.Has("decimation")) {
+    csv.Read("decimation", &import.decimation,
+             {"rows of the file in one period of the loop", "rows"});
+  }
   for (TableReader row : csv.Rows("column",
                                   "a column of the file and the quantity of the rig that is in it: "
                                   "value = scale * unit * cell + offset")) {
     CsvColumn& column = import.column.emplace_back();
     row.Read("column", &column.column, "its name in the header of the file");
-    row.Read<double>("unit", &column.unit,
-                     {{"s", 1.0},
-                      {"ms", 1e-3},
-                      {"rad", 1.0},
-                      {"deg", kRadPerDeg},
-                      {"A", 1.0},
-                      {"V", 1.0},
-                      {"mV", 1e-3},
-                      {"Nm", 1.0},
-                      {"1", 1.0},
-                      {"microstrain", 1e-6}},
-                     "unit of the cells");
+    row.Read("unit", &column.unit, units, "unit of the cells");
     row.Read(
         "scale", &column.scale,
         {"SI unit of the target for one of the column, such as 8.9 N m for 1 A", "of the target"});

@@ -45,12 +45,7 @@ class Reader {
       table_.Fail("found decoded columns, expected raw counts: write them with " +
                   std::string("`flexarm export RUN -o FILE.csv`, without --decoded"));
     }
-    for (const char* name : {"time_s", "valid", "torque_1_nm", "torque_2_nm"}) table_.Need(name);
-    for (int i = 0; i < kCounters; ++i) {
-      if ((counters_ >> i & 1U) != 0) table_.Need("counter_" + std::to_string(i + 1));
-    }
-    for (const std::string& name : strain_) table_.Need(name);
-    if (has_tip_) table_.Need(kTipColumn);
+    table_.Need(OwnColumns(sensors));
   }
 
   std::vector<StepInput> Read() {
@@ -132,6 +127,18 @@ std::vector<std::string> StrainColumns(const SensorConfig& sensors) {
     names.push_back("strain_" + std::to_string(channel.link) + "_" +
                     std::string(number.size() < 2 ? "0" : "") + number);
   }
+  return names;
+}
+
+std::vector<std::string> OwnColumns(const SensorConfig& sensors) {
+  std::vector<std::string> names = {"time_s", "valid", "torque_1_nm", "torque_2_nm"};
+  for (int i = 0; i < kCounters; ++i) {
+    if ((sensors.counters_present() >> i & 1U) != 0)
+      names.push_back("counter_" + std::to_string(i + 1));
+  }
+  const std::vector<std::string> strain = StrainColumns(sensors);
+  names.insert(names.end(), strain.begin(), strain.end());
+  if (sensors.tip_accelerometer) names.emplace_back(kTipColumn);
   return names;
 }
 

@@ -29,6 +29,9 @@ bool IsDecoded(const CsvTable& table);
 /// Names of the strain columns in the order of the config: link, then number within the link.
 std::vector<std::string> StrainColumns(const SensorConfig& sensors);
 
+/// The columns that a file for this rig has.
+std::vector<std::string> OwnColumns(const SensorConfig& sensors);
+
 /// Writes inputs as CSV. Numbers are written with full precision.
 class CsvWriter {
  public:

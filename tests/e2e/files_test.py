@@ -96,7 +96,7 @@ class Reading(FilesTest):
         self.refused(*self.trajectory(broken), said="trajectory.csv:21: found the byte \\xff")
         broken = b"\n".join(lines[:20] + [b"\x1b[31m"] + lines[21:])
         self.refused(*self.trajectory(broken), said="trajectory.csv:21: found the control")
-        self.refused(*self.trajectory(shipped.replace(b",", b";")), said="semicolons")
+        self.refused(*self.trajectory(shipped.replace(b",", b" ")), said="found spaces in the header")
         self.flexarm(*self.trajectory(b"\xef\xbb\xbf" + shipped.replace(b"\n", b"\r\n")))
 
     def test_nested_json_ends_no_program(self):

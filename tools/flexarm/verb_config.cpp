@@ -10,11 +10,13 @@
 #include "config/plausibility/plausibility.h"
 #include "controller/files/external_json.h"
 #include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
 #include "model/arm/arm_model.h"
 #include "model/arm/linearization.h"
 #include "model/units.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
+#include "tools/csv/csv_report.h"
 #include "tools/flexarm/bus_timing_report.h"
 
 namespace flexarm {
@@ -27,6 +29,7 @@ constexpr std::array<const char*, kCounters> kCounterNames = {"hub1", "hub2", "r
 struct ConfigCheckOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;
+  std::filesystem::path csv;  // empty: none
   bool json = false;
 };
 
@@ -97,6 +100,7 @@ OrderedJson Derived(const RigConfig& config, const std::filesystem::path& file) 
   }
   json["strain"] = StrainJson(config.sensors);
   AddWiring(config, &json);
+  json["csv"] = CsvMappingJson(config);
   return json;
 }
 
@@ -179,7 +183,14 @@ void PrintText(const ConfigCheckOptions& options, const OrderedJson& json) {
                                   Number(strain["full_scale_microstrain"]));
   }
   PrintWiring(json);
+  if (!json["csv"].is_null()) {
+    std::cout << "  columns of a CSV file:\n";
+    for (const std::string& text : CsvMappingText(json["csv"])) std::cout << "    " << text << '\n';
+  }
   PrintWarnings(json["warnings"]);
+  if (json["csv_file"].is_null()) return;
+  std::cout << Shown(options.csv.string(), kMessageBytes) << ":\n";
+  for (const std::string& text : CsvFactsText(json["csv_file"])) std::cout << "  " << text << '\n';
 }
 
 void Check(const ConfigCheckOptions& options) {
@@ -187,10 +198,19 @@ void Check(const ConfigCheckOptions& options) {
     const RigConfig config = LoadConfig(options.file, options.overrides);
     OrderedJson json = Derived(config, options.file);
     json["warnings"] = WarningsJson(options, config);
+    json["csv_file"] =
+        options.csv.empty() ? OrderedJson(nullptr) : CsvFileJson(options.csv, config);
+    const OrderedJson& file = json["csv_file"];
+    const bool refused = !file.is_null() && !file["problem"].is_null();
     if (options.json) {
       std::cout << PrintedJson(json) << '\n';
-    } else {
+    } else if (!refused) {
       PrintText(options, json);
+    }
+    if (refused) {
+      std::string problem = file["problem"];
+      for (const std::string& text : CsvFactsText(file)) problem += "\n  " + text;
+      throw InputError(problem);
     }
   } catch (const ConfigError& error) {
     if (options.json) std::cout << PrintedJson(ProblemsJson(error)) << '\n';
@@ -217,9 +237,15 @@ void RegisterConfig(CLI::App& app, Exit& exit) {
       ->required()
       ->type_name("FILE");
   AddSet(check, &options->overrides);
+  check
+      ->add_option("--csv", options->csv,
+                   "CSV file to check as well: which columns are used, not used and missing, and "
+                   "the rate of its rows")
+      ->type_name("FILE");
   AddJson(check, &options->json);
   check->footer(
-      "Exit code 2 if the config is not valid. A warning, such as a modulus of 207 Pa, leaves it "
+      "Exit code 2 if the config is not valid, or the CSV file cannot be replayed. A warning, such "
+      "as a modulus of 207 Pa, leaves it "
       "0.\n"
       "Example: flexarm config check config/thesis-rig.toml");
   check->callback([options] { Check(*options); });

@@ -16,7 +16,9 @@
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/csv_replay.h"
+#include "tools/csv/csv_replay.h"
+#include "tools/csv/csv_report.h"
+#include "tools/csv/scale_warnings.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -37,10 +39,11 @@ constexpr double kEstimateTolerance = 1e-6;
 
 struct Outcome {
   ReplayResult result;
-  std::string other_build;            // the recorded build id, if it is not this one's
-  bool digest_holds = true;           // of a log
-  bool has_reference = true;          // without one, torques cannot be compared
-  std::int64_t after_experiment = 0;  // samples of a CSV file that were left out
+  std::string other_build;                 // the recorded build id, if it is not this one's
+  bool digest_holds = true;                // of a log
+  bool has_reference = true;               // without one, torques cannot be compared
+  std::int64_t after_experiment = 0;       // samples of a CSV file that were left out
+  nlohmann::ordered_json csv{}, scales{};  // of a CSV file: what it holds, and of its strains
 
   bool other_processor() const {
     return !other_build.empty() && ProcessorOf(other_build) != ProcessorOf(BuildId());
@@ -133,14 +136,18 @@ Outcome ReplayTable(const ReplayOptions& options) {
     throw InputError(options.source.string() +
                      ": a CSV file needs the config of its rig: add -c FILE");
   }
+  const RigConfig config = options.config.Load();
   const CsvReplayResult replayed = ReplayCsv({.source = options.source,
-                                              .config = options.config.Load(),
+                                              .config = config,
                                               .calibration = options.calibration,
                                               .experiment = options.experiment});
   return {.result = replayed.result,
           .other_build = "",
           .has_reference = replayed.left_out.has_value(),
-          .after_experiment = replayed.left_out.value_or(0)};
+          .after_experiment = replayed.left_out.value_or(0),
+          .csv = CsvFactsJson(replayed.facts, config),
+          .scales = ScalesJson(replayed.scales,
+                               ScaleWarnings(replayed.scales, config, replayed.facts), config)};
 }
 
 template <typename T>
@@ -171,6 +178,8 @@ nlohmann::ordered_json ToJson(const Outcome& outcome) {
   json["safety_records"] = result.safety_records;
   json["same_build"] = outcome.other_build.empty();
   json["digest_holds"] = outcome.digest_holds;
+  json["csv"] = outcome.csv;
+  json["strain_scale"] = outcome.scales;
   return json;
 }
 
@@ -222,6 +231,19 @@ void PrintText(const Outcome& outcome) {
   }
 }
 
+// What a CSV file holds, and whether its strains can be.
+void PrintCsv(const Outcome& outcome) {
+  for (const std::string& line : CsvFactsText(outcome.csv)) std::cout << "csv: " << line << '\n';
+  std::cout << "strain scale              ";
+  const char* between = "";
+  for (const auto& link : outcome.scales["links"]) {
+    std::cout << between << link["verdict"].get<std::string>();
+    if (!link["factor"].is_null()) std::cout << ", factor " << link["factor"].get<double>();
+    between = "; ";
+  }
+  std::cout << " (links 1, 2)\n";
+}
+
 int Run(const ReplayOptions& options) {
   const bool is_run = options.source.extension() != ".csv";
   const Outcome outcome = is_run ? ReplayRun(options) : ReplayTable(options);
@@ -237,6 +259,12 @@ int Run(const ReplayOptions& options) {
     std::cout << PrintedJson(ToJson(outcome)) << '\n';
   } else {
     PrintText(outcome);
+    if (!is_run) PrintCsv(outcome);
+  }
+  if (!is_run) {
+    for (const auto& warning : outcome.scales["warnings"]) {
+      std::cerr << "flexarm: warning: " << warning.get<std::string>() << '\n';
+    }
   }
   return outcome.failed() ? Exit::kFailed : Exit::kDone;
 }
@@ -266,6 +294,9 @@ void RegisterReplay(CLI::App& app, Exit& exit) {
       "A CSV file comes from `flexarm export`, or has the columns of the table [csv] of the\n"
       "config. It has no reference of the law: with --experiment the law follows that one and its\n"
       "torques are compared with those of the file; without, the estimator alone says something.\n"
+      "The strains of a CSV file are compared with what torques and angles demand: a scale that "
+      "is\n"
+      "1.5 times off, or more, is a warning (strain_scale in --json).\n"
       "Examples: flexarm replay runs/today.flexarm\n"
       "          flexarm replay --last\n"
       "          flexarm replay today.csv -c config/hil.toml \\\n"

@@ -98,7 +98,8 @@ RunComparison::RunComparison(std::filesystem::path file, const RigConfig& config
 std::vector<StepInput> RunComparison::Inputs(const RigConfig& config) const {
   if (csv_) {
     return ReadAnyCsv(file_, config.csv ? &*config.csv : nullptr, config.sensors,
-                      config.loop.period_s());
+                      config.loop.period_s())
+        .input;
   }
   RunReader reader(file_);
   std::vector<StepInput> inputs;

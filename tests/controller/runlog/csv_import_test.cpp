@@ -2,6 +2,8 @@
 
 #include "controller/runlog/csv_import.h"
 
+#include <gmock/gmock.h>
+
 #include "controller/runlog/csv.h"
 #include "model/units.h"
 #include "tests/controller/runlog/runlog_fixture.h"
@@ -28,18 +30,30 @@ SensorConfig OneGaugeALink() {
   return sensors;
 }
 
+CsvUnit Unit(std::string_view name) {
+  for (const CsvUnit& unit : kCsvUnits) {
+    if (unit.name == name) return unit;
+  }
+  ADD_FAILURE() << "no unit " << name;
+  return kCsvUnits[0];
+}
+
 CsvImport Import() {
-  const auto column = [](const char* name, double unit, double scale, const char* target) {
-    return CsvColumn{.column = name, .unit = unit, .scale = scale, .offset = 0.0, .target = target};
+  const auto column = [](const char* name, const char* unit, double scale, const char* target) {
+    return CsvColumn{
+        .column = name, .unit = Unit(unit), .scale = scale, .offset = 0.0, .target = target};
   };
-  CsvImport import{.decimation = 4, .column = {}};
-  import.column = {column("t", 1e-3, 1.0, "time"),
-                   column("a", kRadPerDeg, 1.0, "hub1"),
-                   column("b", kRadPerDeg, 2.0, "hub2"),
-                   column("i1", 1.0, 8.0, "torque_1"),
-                   column("i2", 1.0, 0.5, "torque_2"),
-                   column("g1", 1.0, 1.0, "strain_1_01"),
-                   column("g2", kRadPerDeg, 100.0, "strain_2_01")};
+  CsvImport import{.decimation = 4};
+  import.column = {column("t", "ms", 1.0, "time"),           column("a", "deg", 1.0, "hub1"),
+                   column("b", "deg", 2.0, "hub2"),          column("i1", "A", 8.0, "torque_1"),
+                   column("i2", "A", 0.5, "torque_2"),       column("g1", "V", 1.0, "strain_1_01"),
+                   column("g2", "deg", 100.0, "strain_2_01")};
+  return import;
+}
+
+CsvImport Resampling() {
+  CsvImport import = Import();
+  import.resample = true;
   return import;
 }
 
@@ -47,11 +61,16 @@ class CsvImportTest : public RunLogTest {
  protected:
   std::vector<StepInput> Read(const std::string& text, const CsvImport& import = Import()) {
     WriteText(File("data.csv"), text);
-    return ReadAnyCsv(File("data.csv"), &import, OneGaugeALink(), 0.02);
+    run_ = ReadAnyCsv(File("data.csv"), &import, OneGaugeALink(), 0.02);
+    return run_.input;
   }
-  void ExpectError(const std::string& text, const std::string& expected) {
-    EXPECT_EQ(MessageOf<InputError>([&] { Read(text); }), File("data.csv").string() + expected);
+  void ExpectError(const std::string& text, const std::string& expected,
+                   const CsvImport& import = Import()) {
+    EXPECT_EQ(MessageOf<InputError>([&] { Read(text, import); }),
+              File("data.csv").string() + expected);
   }
+
+  CsvRun run_;  // of the last Read
 };
 
 const std::string kForeignHeader = "g2,t,a,b,i1,i2,g1,comment\n";
@@ -108,18 +127,165 @@ TEST_F(CsvImportTest, FilesInOurOwnFormatAreRecognised) {
 }
 
 TEST_F(CsvImportTest, MistakesAreNamedWithTheirPlace) {
-  ExpectError("t,a\n", ":1: found no column b in the header, expected it for this config");
+  ExpectError("t,a\n",
+              ":1: found no column b in the header, expected it for this config; also missing: i1, "
+              "i2, g1, g2");
   ExpectError(kForeignHeader, ":1: found no rows, expected at least one sample");
   ExpectError(kForeignHeader + "0,0,east,0,0,0,0,x\n", ":2: a: found \"east\", expected a number");
-  ExpectError(kForeignHeader + "0,0,0,0,0,0,0,x\n0,6,0,0,0,0,0,x\n",
-              ":3: t: found \"6\", expected 0.005 s: the rows are 0.005 s apart, loop.period_ms / "
-              "csv.decimation");
   ExpectError(kForeignHeader + "0,0,0,0,0,0,x\n",
               ":2: found 7 values, expected 8 as in the header");
   ExpectError(kForeignHeader + "0,1e300,0,0,0,0,0,x\n",
               ":2: t: found \"1e300\", expected at most 1e8 s");
   ExpectError(kForeignHeader + "0,0,1e300,0,0,0,0,x\n",
-              ":2: a: found \"1e300\", expected an angle within the range of this encoder");
+              ":2: a: found 1.74533e+298 rad, expected an angle within the range of this encoder");
+  EXPECT_THAT(MessageOf<InputError>([&] {
+                WriteText(File("data.csv"), kForeignHeader);
+                ReadAnyCsv(File("data.csv"), nullptr, OneGaugeALink(), 0.02);
+              }),
+              testing::HasSubstr("a config with a table [csv]"));
+}
+
+std::string TimedRow(double time_ms, double angle_deg = 0.0) {
+  return "0," + CsvNumber(time_ms) + "," + CsvNumber(angle_deg) + ",0,0,0,0,x\n";
+}
+
+TEST_F(CsvImportTest, TimesThatAreNotThoseOfTheLoopAreNamedWithTheWayOut) {
+  const std::string advice = "; `csv.resample = true` interpolates the rows on the loop's samples";
+  const std::string asked = "they should be 0.005 s, 200 Hz, by loop.period_ms / csv.decimation";
+  ExpectError(kForeignHeader + TimedRow(0) + TimedRow(6) + TimedRow(12),
+              ":3: t: found 0.006 s, expected 0.005 s: the rows are 0.006 s apart, 166.667 Hz, and "
+              "should be 0.005 s, 200 Hz, by loop.period_ms / csv.decimation" +
+                  advice);
+  ExpectError(kForeignHeader + TimedRow(0) + TimedRow(10) + TimedRow(20),
+              ":3: t: found 0.01 s, expected 0.005 s: the rows are 0.01 s apart, 100 Hz, and "
+              "should be 0.005 s, 200 Hz, by loop.period_ms / csv.decimation: set csv.decimation = "
+              "2, if that is the rate it was recorded at" +
+                  advice);
+  ExpectError(
+      kForeignHeader + TimedRow(0) + TimedRow(5) + TimedRow(10) + TimedRow(25) + TimedRow(30),
+      ":5: t: found 0.025 s, expected 0.015 s: rows are missing before this one; " + asked +
+          advice);
+  ExpectError(kForeignHeader + TimedRow(0) + TimedRow(5) + TimedRow(11) + TimedRow(15),
+              ":4: t: found 0.011 s, expected 0.01 s: the times are uneven; " + asked + advice);
+  for (const double time_ms : {5.0, 1.0}) {
+    ExpectError(kForeignHeader + TimedRow(0) + TimedRow(5) + TimedRow(time_ms) + TimedRow(10),
+                ":4: t: found " + CsvNumber(1e-3 * time_ms) +
+                    " s, expected a time after that of the row before, 0.005 s; `csv.resample = "
+                    "true` leaves such rows out");
+  }
+  ExpectError(kForeignHeader + "0,0,0,0,0,0,,x\n", ":2: g1: found \"\", expected a number" +
+                                                       advice + " and counts this one as not read");
+}
+
+TEST_F(CsvImportTest, OnRequestRowsAreInterpolatedOnTheLoopsSamples) {
+  // 1 deg a ms and a current that rises by 1 a ms, at uneven times, one of them twice.
+  std::string text = kForeignHeader;
+  for (const int ms : {0, 7, 13, 13, 29, 33, 47, 41, 60, 66}) {
+    const std::string value = std::to_string(ms);
+    text += "0," + value + "," + value + ",0," + value + ",0,0,x\n";
+  }
+  const std::vector<StepInput> inputs = Read(text, Resampling());
+  ASSERT_EQ(inputs.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(inputs[k].tick, static_cast<std::int64_t>(k));
+    EXPECT_EQ(inputs[k].frame.counter[0], (200 * k) % 256U) << k;  // 10 counts a degree, 8 bits
+    EXPECT_EQ(inputs[k].frame.strain_valid, 0b11U);
+    // The mean over the 20 ms before, 8 N m per A.
+    EXPECT_NEAR(inputs[k].applied_torque_nm[0],
+                k == 0 ? 0.0 : 8.0 * (20.0 * static_cast<double>(k) - 10.0), 1e-9);
+  }
+  ASSERT_TRUE(run_.facts.resampling);
+  EXPECT_EQ(run_.facts.resampling->rows_left_out, 2);
+  EXPECT_EQ(run_.facts.resampling->samples_not_read, 0);
+  EXPECT_EQ(run_.facts.resampling->longest_gap_s, 0.04);
+}
+
+TEST_F(CsvImportTest, BeyondTheLongestGapASensorIsNotRead) {
+  std::string text = kForeignHeader;
+  for (int ms = 0; ms <= 400; ms += 10) {
+    if (ms > 100 && ms < 180) continue;                               // rows are missing
+    const std::string gauge = ms > 250 && ms < 300 ? "NaN" : "0.05";  // a gauge has no reading
+    text += "0," + std::to_string(ms) + ",0,0,0,0," + gauge + ",x\n";
+  }
+  const std::vector<StepInput> inputs = Read(text, Resampling());
+  ASSERT_EQ(inputs.size(), 21U);
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const bool rows = k <= 5 || k >= 9, gauge = rows && (k <= 12 || k >= 15);
+    EXPECT_EQ(inputs[k].frame.counter_valid, rows ? 0b11U : 0U) << k;
+    EXPECT_EQ(inputs[k].frame.strain_valid, (rows ? 0b10U : 0U) | (gauge ? 0b1U : 0U)) << k;
+  }
+  EXPECT_EQ(run_.facts.resampling->samples_not_read, 5);
+  EXPECT_NEAR(run_.facts.resampling->longest_missing_s, 0.08, 1e-9);
+  CsvImport wider = Resampling();
+  wider.longest_gap_s = 0.1;
+  Read(text, wider);
+  EXPECT_EQ(run_.facts.resampling->samples_not_read, 0);
+  wider.longest_gap_s = 0.005;
+  ExpectError(text,
+              ":2: found rows 0.01 s apart, expected at most csv.longest_gap_s = 0.005 s, beyond "
+              "which nothing is read",
+              wider);
+  ExpectError(kForeignHeader + TimedRow(0) + TimedRow(10) + TimedRow(2e6),
+              ":4: found no rows for 1999.99 s before this one, expected at most 600 s: cut the "
+              "file here",
+              Resampling());
+}
+
+TEST_F(CsvImportTest, ARowOfUnitsIsSkippedAndMustAgree) {
+  EXPECT_EQ(Read(kForeignHeader + "[deg],[ms],[deg],deg,(A),,volts,\n" + TimedRow(0, 12.0))
+                .at(0)
+                .frame.counter[0],
+            120U);
+  EXPECT_TRUE(run_.facts.units_row);
+  ExpectError(kForeignHeader + "deg,s,deg,deg,A,A,V,\n" + TimedRow(0),
+              ":2: t: found \"s\", expected the unit \"ms\" that csv.column has for it: change it "
+              "there");
+  ExpectError(kForeignHeader + TimedRow(0) + "deg,ms,deg,deg,A,A,V,\n",
+              ":3: t: found \"ms\", expected a number");
+}
+
+TEST_F(CsvImportTest, SemicolonsWithDecimalCommasAreRead) {
+  const std::string text =
+      "sep=;\n\"g2\";t;\"a\";b;i1;i2;g1;\"a \"\"comment\"\"; quoted\"\n"
+      "0;0,0;-12,54;0;+1,5;0;0;\"x;y\"\n";
+  const StepInput input = Read(text).at(0);
+  EXPECT_EQ(input.frame.counter[0], 256U - 125U);
+  EXPECT_DOUBLE_EQ(input.applied_torque_nm[0], 12.0);
+  EXPECT_EQ(run_.facts.separator, ';');
+  EXPECT_TRUE(run_.facts.decimal_comma);
+  EXPECT_EQ(run_.facts.unused, std::vector<std::string>{"a \"comment\"; quoted"});
+  EXPECT_EQ(run_.facts.used.size(), 7U);
+  ExpectError("g2;t;a;b;i1;i2;g1\n0;0,0;1.5;0;0;0;0\n",
+              ":2: a: found \"1.5\", expected a decimal comma, as in line 2");
+  ExpectError("g2;t;a;b;i1;i2;g1\n0;0;1.234,5;0;0;0;0\n",
+              ":2: a: found \"1.234,5\", expected a number without separators between thousands");
+}
+
+TEST_F(CsvImportTest, TabsMarksAndLineEndsOfOtherSystemsAreRead) {
+  const std::string text =
+      "\xEF\xBB\xBF% a recorder\r\ng2\tt\ta\tb\ti1\ti2\tg1\tnote\r\n// "
+      "begins\r\n0\t0\t12\t0\t1\t0\t"
+      "0\t\r\n";
+  EXPECT_EQ(Read(text).at(0).frame.counter[0], 120U);
+  EXPECT_EQ(run_.facts.separator, '\t');
+}
+
+TEST_F(CsvImportTest, AHeaderWithTwoSeparatorsNeedsToBeTold) {
+  const std::string text = "g2;t;a;b;i1;i2;g1;x,y\n0;0;1;0;0;0;0;0\n";
+  EXPECT_THAT(MessageOf<InputError>([&] { Read(text); }),
+              testing::AllOf(testing::HasSubstr(":1: found commas and semicolons in the header"),
+                             testing::HasSubstr("csv.separator")));
+  CsvImport told = Import();
+  told.separator = ';';
+  EXPECT_EQ(Read(text, told).size(), 1U);
+  ExpectError(kForeignHeader + TimedRow(0),
+              ":1: found commas between the columns, expected the separator \";\" that was stated",
+              told);
+  ExpectError("g2 t a b\n0 0 0 0\n",
+              ":1: found spaces in the header, expected commas, semicolons or tabs between the "
+              "columns");
+  ExpectError(kForeignHeader + "0,0,\"1,0,0,0,0,x\n",
+              ":2: found a quote without a second one on the line, expected each cell on one line");
 }
 
 TEST(CsvImportRules, EverySensorAndTorqueNeedsExactlyOneColumn) {

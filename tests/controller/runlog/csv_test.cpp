@@ -114,7 +114,8 @@ TEST_F(CsvTest, ColumnsMayComeInAnyOrderWithOthersBetween) {
 
 TEST_F(CsvTest, AMissingColumnIsNamed) {
   ExpectError("time_s,valid,torque_1_nm,torque_2_nm,counter_1,counter_2,counter_3,strain_1_01\n",
-              ":1: found no column strain_2_01 in the header, expected it for this config");
+              ":1: found no column strain_2_01 in the header, expected it for this config; also "
+              "missing: strain_1_02");
 }
 
 TEST_F(CsvTest, AColumnTwiceIsNamed) {

@@ -1,4 +1,4 @@
-#include "tools/flexarm/csv_replay.h"
+#include "tools/csv/csv_replay.h"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +13,7 @@
 #include "controller/runlog/csv_import.h"
 #include "controller/step/control_step.h"
 #include "controller/types/rejected_error.h"
+#include "tools/csv/strain_scale_check.h"
 
 namespace flexarm {
 namespace {
@@ -25,16 +26,15 @@ Calibration CalibrationOf(const CsvReplayTask& task) {
 }
 
 // The file has no instants of the torques: the loop's grid has those that were planned.
-std::vector<StepInput> InputsOf(const CsvReplayTask& task) {
+CsvRun RunOf(const CsvReplayTask& task, const Calibration& calibration) {
   const RigConfig& config = task.config;
-  std::vector<StepInput> inputs = ReadAnyCsv(task.source, config.csv ? &*config.csv : nullptr,
-                                             config.sensors, config.loop.period_s());
-  const Calibration calibration = CalibrationOf(task);
-  for (StepInput& input : inputs) {
+  CsvRun run = ReadAnyCsv(task.source, config.csv ? &*config.csv : nullptr, config.sensors,
+                          config.loop.period_s());
+  for (StepInput& input : run.input) {
     input.calibration = calibration;
     input.acted_late_ns = input.acts_late_ns = LoopGrid(config.loop).late_ns();
   }
-  return inputs;
+  return run;
 }
 
 std::optional<CsvReference> ReferenceOf(const CsvReplayTask& task, const Design& design,
@@ -88,7 +88,9 @@ class AppliedTorques {
 }  // namespace
 
 CsvReplayResult ReplayCsv(const CsvReplayTask& task) {
-  const std::vector<StepInput> inputs = InputsOf(task);
+  const Calibration calibration = CalibrationOf(task);
+  const CsvRun run = RunOf(task, calibration);
+  const std::vector<StepInput>& inputs = run.input;
   const Design design = DesignFor(task.config);
   const std::optional<CsvReference> reference = ReferenceOf(task, design, inputs.front());
   AppliedTorques torques{LoopGrid(task.config.loop)};
@@ -115,7 +117,10 @@ CsvReplayResult ReplayCsv(const CsvReplayTask& task) {
     if (reference) reference->Give(delay_found, &record.input);
     replay.Tick(record);
   }
-  CsvReplayResult replayed{.result = replay.Result(), .left_out = {}};
+  CsvReplayResult replayed{.result = replay.Result(),
+                           .left_out = {},
+                           .facts = run.facts,
+                           .scales = CheckStrainScales(task.config, calibration, run)};
   replayed.result.max_torque_difference_nm = largest_nm;
   replayed.result.first_different_tick.reset();  // there are no recorded outputs
   if (reference) replayed.left_out = left_out;

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "config/config.h"
+#include "controller/runlog/csv_import.h"
 #include "controller/runlog/replay.h"
+#include "tools/csv/strain_scale_check.h"
 
 namespace flexarm {
 
@@ -22,6 +24,8 @@ struct CsvReplayResult {
   /// Samples after the end of the experiment, left out. Nothing without an experiment: torques
   /// without a reference say nothing about those in the file.
   std::optional<std::int64_t> left_out;
+  CsvFacts facts;
+  StrainScaleResult scales;
 };
 
 /// Runs the samples of a CSV file through a new loop.
