@@ -100,6 +100,27 @@ class Decoded(ProgramTest):
         self.flexarm("export", self.run_file, "--decoded", "-o", raw, expect=2)
         self.flexarm("export", self.run_file, "--with-raw", "-o", self.folder / "x.csv", expect=2)
 
+    def test_a_mat_file_is_decided_by_its_name(self):
+        mat = self.folder / "run.mat"
+        said = self.run_program("flexarm", "export", self.run_file, "-o", mat)
+        self.assert_refused(said, "run.mat", "add --decoded")
+        self.flexarm("export", self.run_file, "--decoded", "-o", mat)
+        self.assertTrue(mat.read_bytes().startswith(b"MATLAB 5.0 MAT-file, decoded samples of"))
+        self.flexarm("export", self.run_file, "--decoded", "-o", mat)  # its own file: replaced
+        mat.write_bytes(b"MATLAB 5.0 MAT-file, of another program" + bytes(200))
+        self.flexarm("export", self.run_file, "--decoded", "-o", mat, expect=2)
+
+    @unittest.skipUnless(has_module("scipy"), "no SciPy")
+    def test_scipy_reads_a_mat_file(self):
+        _, values = self.export()
+        self.flexarm("export", self.run_file, "--decoded", "-o", self.folder / "run.mat")
+        told = self.run_lines(sys.executable, "-c", "import scipy.io\n"
+                              "run = scipy.io.loadmat('run.mat')\n"
+                              "print(len(run['time_s']), repr(float(run['hub_1_deg'][-1, 0])))\n"
+                              "print(run['units']['hub_1_deg'][0, 0][0], run['state'][-1])")
+        self.assertEqual(told.split(), [str(len(values)), repr(float(values[-1]["hub_1_deg"])),
+                                        "deg", values[-1]["state"]])
+
     def run_lines(self, *command):
         result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True,
                                 timeout=120, check=False)

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include "controller/commissioning/calibration_file.h"
 #include "controller/files/external_text.h"
+#include "controller/files/input_error.h"
 #include "controller/files/write_file.h"
 #include "controller/runlog/csv.h"
 #include "controller/runlog/decoded_csv.h"
@@ -13,6 +15,7 @@
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
+#include "tools/mat/decoded_mat.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -57,27 +60,46 @@ void ExportRaw(const ExportOptions& options) {
       << beside.string() << '\n';
 }
 
-void ExportDecoded(const ExportOptions& options) {
-  RunReader reader(options.run);
-  const RigConfig config = ConfigOf(reader);
-  const OutputRules rules = options.output.Rules("decoded samples", kDecodedMark, {options.run});
-  CheckOutput(options.output.file, rules);
-  std::map<std::int64_t, TimingRecord> timing;
-  reader.ForEachTiming([&](const TimingRecord& record) { timing[record.tick] = record; });
-  std::ostringstream csv;
-  DecodedCsvWriter writer(&csv, {.sensors = config.sensors,
-                                 .tip = TipGeometryOf(config.arm, config.controller.nominal),
-                                 .start_ns = reader.info().start_ns,
-                                 .simulated = reader.info().backend == "sim",
-                                 .timed = !timing.empty(),
-                                 .with_raw = options.with_raw});
+bool IsMat(const std::filesystem::path& file) { return file.extension() == ".mat"; }
+
+// Gives every sample of the run to `row`. @returns how many there are
+std::int64_t ForEachDecoded(RunReader& reader, const std::map<std::int64_t, TimingRecord>& timing,
+                            const std::function<void(const DecodedSample&)>& row) {
   std::int64_t rows = 0;
   reader.ForEachTick([&](const TickRecord& record) {
     const auto found = timing.find(record.input.tick);
-    writer.Row({record, found == timing.end() ? nullptr : &found->second});
+    row({record, found == timing.end() ? nullptr : &found->second});
     ++rows;
   });
-  WriteFile(options.output.file, csv.view(), rules);
+  return rows;
+}
+
+void ExportDecoded(const ExportOptions& options) {
+  RunReader reader(options.run);
+  const RigConfig config = ConfigOf(reader);
+  const bool mat = IsMat(options.output.file);
+  const OutputRules rules =
+      options.output.Rules("decoded samples", mat ? kDecodedMatMark : kDecodedMark, {options.run});
+  CheckOutput(options.output.file, rules);
+  std::map<std::int64_t, TimingRecord> timing;
+  reader.ForEachTiming([&](const TimingRecord& record) { timing[record.tick] = record; });
+  const DecodedRun run{.sensors = config.sensors,
+                       .tip = TipGeometryOf(config.arm, config.controller.nominal),
+                       .start_ns = reader.info().start_ns,
+                       .simulated = reader.info().backend == "sim",
+                       .timed = !timing.empty(),
+                       .with_raw = options.with_raw};
+  std::int64_t rows = 0;
+  if (mat) {
+    DecodedMat file(run);
+    rows = ForEachDecoded(reader, timing, [&](const DecodedSample& sample) { file.Row(sample); });
+    WriteFile(options.output.file, file.Bytes(), rules);
+  } else {
+    std::ostringstream csv;
+    DecodedCsvWriter file(&csv, run);
+    rows = ForEachDecoded(reader, timing, [&](const DecodedSample& sample) { file.Row(sample); });
+    WriteFile(options.output.file, csv.view(), rules);
+  }
   ReportSamples(rows, options.output.file);
 }
 
@@ -87,10 +109,11 @@ void RegisterExport(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ExportOptions>();
   CLI::App* verb = app.add_subcommand(
       "export",
-      "Export the samples of a run log as a CSV file, raw for `flexarm replay` or decoded");
+      "Export the samples of a run log as a CSV file, raw for `flexarm replay` or decoded, or as a "
+      "MAT file");
   options->choice.AddTo(verb);
   RefuseConfig(verb, kLogHasItsConfig);
-  options->output.AddTo(verb, "CSV file to write", true);
+  options->output.AddTo(verb, "CSV file to write; with --decoded also NAME.mat", true);
   CLI::Option* decoded = verb->add_flag("--decoded", options->decoded,
                                         "Values with units, for plots, in place of raw counts");
   verb->add_flag("--with-raw", options->with_raw, "Also the counts that they were decoded from")
@@ -101,13 +124,18 @@ void RegisterExport(CLI::App& app, Exit&) {
       "written beside the CSV file, as NAME.calibration.json.\n"
       "With --decoded: a row of names, a row of units, then angles, references, strains, modal\n"
       "coordinates, torques, estimate, tip, state, payload and timing; docs/run-logs.md lists\n"
-      "them. `flexarm replay` does not read that file.\n"
+      "them. `flexarm replay` does not read that file. A file that is called NAME.mat gets the\n"
+      "same columns as variables for MATLAB, Octave and SciPy, and their units in `units`.\n"
       "Examples: flexarm export runs/today.flexarm -o today.csv\n"
-      "          flexarm export runs/today.flexarm --decoded -o values.csv");
+      "          flexarm export runs/today.flexarm --decoded -o values.csv\n"
+      "          flexarm export runs/today.flexarm --decoded -o values.mat");
   verb->callback([options] {
     options->run = options->choice.File();
     if (options->decoded) {
       ExportDecoded(*options);
+    } else if (IsMat(options->output.file)) {
+      throw InputError(Shown(options->output.file.string(), kMessageBytes) +
+                       ": a MAT file has decoded columns only: add --decoded, or name a .csv file");
     } else {
       ExportRaw(*options);
     }

@@ -60,6 +60,7 @@ LAYERS = {
     "tools/support": "",
     "tools/runs": "controller/runlog config",
     "tools/plot": "model model/beam hal controller/files controller/runlog controller/safety tools/runs",
+    "tools/mat": "controller/runlog",
     "tools/csv": "model model/math model/beam estimator controller/files controller/types "
                  "controller/design controller/step controller/runlog controller/commissioning "
                  "controller/host config tools/runs",
@@ -86,7 +87,7 @@ LAYERS = {
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/runs tools/plot tools/csv tools/command_line controller/files",
+                     "tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
