@@ -88,12 +88,12 @@ TEST(RigBinding, PutsEveryKeyOfAForeignCsvInItsField) {
   ASSERT_EQ(rig.csv->column.size(), 7U);
   const CsvColumn& torque = rig.csv->column[3];
   EXPECT_EQ(torque.column, "motor1_current_a");
-  EXPECT_EQ(torque.unit, 1.0);
+  EXPECT_EQ(torque.unit.si, 1.0);
   EXPECT_EQ(torque.scale, 8.925);
   EXPECT_EQ(torque.offset, 0.25);
   EXPECT_EQ(torque.target, "torque_1");
-  EXPECT_DOUBLE_EQ(rig.csv->column[1].unit * 180.0, std::numbers::pi);  // degrees
-  EXPECT_EQ(rig.csv->column[0].offset, 0.0);                            // without the key
+  EXPECT_DOUBLE_EQ(rig.csv->column[1].unit.si * 180.0, std::numbers::pi);  // degrees
+  EXPECT_EQ(rig.csv->column[0].offset, 0.0);                               // without the key
   EXPECT_THROW(LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[0].unit=parsec"}),
                ConfigError);
   EXPECT_THROW(LoadConfig(Shipped("quanser-2dsfl.toml"), {"csv.column[0].target=hub3"}),
