@@ -12,7 +12,7 @@ struct Meaning {
   constexpr Meaning(const char* said, const char* in) : text(said), unit(in) {}
 
   std::string_view text;       ///< one line, without a full stop
-  std::string_view unit = "";  ///< "N m"; empty: that of the key's name, or none
+  std::string_view unit;  ///< "N m"; empty: that of the key's name, or none
 };
 
 /// Of a key that the reference does not list: one of a file that is no config of a user, or one

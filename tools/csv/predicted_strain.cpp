@@ -48,7 +48,7 @@ JointMotion MotionOf(const RigConfig& config, const Calibration& calibration, co
 }
 
 std::size_t HalfWindow(double period_s) {
-  return static_cast<std::size_t>(0.5 * kSmooth_s / period_s + 0.5);
+  return static_cast<std::size_t>(std::lround(0.5 * kSmooth_s / period_s));
 }
 
 RootMoment RootMomentOf(std::size_t joint, const RigConfig& config, const CsvRun& run,
