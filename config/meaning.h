@@ -11,7 +11,7 @@ struct Meaning {
   constexpr Meaning(const char* said) : text(said) {}
   constexpr Meaning(const char* said, const char* in) : text(said), unit(in) {}
 
-  std::string_view text;       ///< one line, without a full stop
+  std::string_view text;  ///< one line, without a full stop
   std::string_view unit;  ///< "N m"; empty: that of the key's name, or none
 };
 
