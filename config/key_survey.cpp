@@ -91,9 +91,9 @@ void KeySurvey::AddKey(const std::string& path, std::string_view wanted, const M
 
 void KeySurvey::SetDefault(const std::string& path, std::string value) {
   const std::string pattern = Pattern(path);
-  for (SurveyedKey& row : keys_) {
-    if (row.path == pattern) row.without = std::move(value);
-  }
+  const auto row = std::find_if(keys_.begin(), keys_.end(),
+                                [&](const SurveyedKey& key) { return key.path == pattern; });
+  if (row != keys_.end()) row->without = std::move(value);
 }
 
 bool KeySurvey::Gives(const std::string& path) {

@@ -194,8 +194,11 @@ void CheckConditions(const SimulationRequest& request) {
   const double payload_kg = request.payload_kg.value_or(request.config.arm.payload_mass_kg);
   std::optional<UnmetCondition> unmet =
       PayloadObjection(request.experiment, request.config, payload_kg);
-  if (!unmet) {
-    unmet = RunJudge(request.config, WithLaw).Judge(request.experiment, request.start_rad);
+  try {
+    RunJudge judge(request.config, WithLaw);
+    if (!unmet) unmet = judge.Judge(request.experiment, request.start_rad);
+  } catch (const RejectedError& error) {
+    throw RejectedError(request.experiment_file.string() + ": " + error.what());
   }
   if (!unmet) return;
   throw RejectedError(request.experiment_file.string() + ": " + unmet->found + "; " +
