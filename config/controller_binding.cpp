@@ -9,6 +9,11 @@ namespace {
 void ReadPayloadLaw(TableReader payload, PayloadLawConfig* out) {
   payload.Read("max_kg", &out->max_kg,
                "moves are planned so that the arm can follow with this payload");
+  payload.Read("fast_fraction", &out->fast_fraction,
+               {"share of the limits that moves with duration = \"shortest\" use: without payload, "
+                "with max_kg; linear between",
+                "1"});
+  payload.Read("fast_least_s", &out->fast_least_s, "no such move is shorter");
   payload.Read("reference_kg", &out->reference_kg,
                "the reference is the motion of an arm with this payload");
   payload.Read("gain_payload_kg", &out->gain_payload_kg,

@@ -30,6 +30,15 @@ void ReadMove(TableReader row, Move* out) {
   row.ReadIfGiven(
       "duration_s", &out->duration_s,
       "how long it takes; without it: the shortest duration within limits.plan_fraction");
+  if (row.Has("duration")) {
+    row.Read("duration", &out->shortest, {{"shortest", true}},
+             "in place of duration_s: the shortest for the payload that is found, for laws that "
+             "estimate it; docs/experiments.md");
+    if (row.Has("duration_s"))
+      row.Refuse("duration_s", "must not be given beside duration = \"shortest\"");
+  }
+  row.ReadIfGiven("same_load", &out->same_load,
+                  "true: the payload is that of the move before, so its estimate is kept");
   row.ReadIfGiven("profile", &out->profile,
                   {{"quintic", MoveProfile::kQuintic}, {"septic", MoveProfile::kSeptic}},
                   "polynomial of the angles; \"septic\" has no jump of the jerk");
@@ -48,6 +57,10 @@ void ReadMove(TableReader row, Move* out) {
         "elbow", &out->elbow.emplace(), {{"left", ElbowSide::kLeft}, {"right", ElbowSide::kRight}},
         "with to_tip_m: side of the line from shoulder to tip; needed where both are possible");
   }
+}
+
+void ReadLoadChange(TableReader row, LoadChange* out) {
+  row.Read("at_s", &out->at_s, "when, after the start of the experiment");
 }
 
 void ReadChirp(TableReader row, Chirp* out) {
@@ -198,6 +211,11 @@ void ReadExperiment(TableReader root, Experiment* out) {
   if (root.Has("csv"))
     ReadCsv(root.Table("csv", "a trajectory of both joints from a file"), attached, out);
   ReadPlannedMoves(root, out);
+  for (const TableReader& row :
+       root.OptionalRows("load_change",
+                         "the payload changes, as a gripper announces it: the estimate restarts")) {
+    ReadLoadChange(row, &out->load_change.emplace_back());
+  }
   for (const TableReader& row :
        root.OptionalRows("sim_event", "an event on the simulated rig; real rigs refuse it")) {
     ReadSimEvent(row, &out->sim_event.emplace_back());

@@ -27,7 +27,9 @@ struct PathMotion {
   bool begins;  ///< a move begins
   bool moves;
   double
-      rested_s;  ///< time since the end of the last move; infinite before the first, 0 during one
+      rested_s;    ///< time since the end of the last move; infinite before the first, 0 during one
+  bool same_load;  ///< the payload is that of the move before
+  bool load_changes;  ///< the payload changes now
 };
 
 /// A state observer: measurements in, the state of the arm out, and its open-loop prediction.

@@ -21,24 +21,19 @@ namespace flexarm {
 std::vector<double> PayloadModelConstants(const ArmParameters& arm, const SensorConfig& sensors,
                                           double period_s);
 
-/// The filter's settings for a rig: the noise of its
-/// encoders and gauges, the friction of its joints.
+/// The filter's settings for a rig: the noise of its encoders and gauges, the friction of its
+/// joints.
 /// @param config  with `payload`
 PayloadFilterConfig PayloadFilterFor(const ArmParameters& arm, const SensorConfig& sensors,
                                      const EstimatorConfig& config);
 
-/// The estimator `ekf-payload`: an extended Kalman filter
-/// (PayloadFilter) on decoded counters and fitted modal
-/// coordinates, with a test for undeclared delay
-/// (DelayDetector). An input that is not good is ignored
-/// in that sample. The first Update after a Reset starts
-/// at rest at the measured hub angles. Real-time: all but
-/// the constructor is safe.
+/// The estimator `ekf-payload`: an extended Kalman filter (PayloadFilter) on decoded counters and
+/// fitted modal coordinates, with a test for undeclared delay (DelayDetector). An input that is not
+/// good is ignored in that sample. The first Update after a Reset starts at rest at the measured
+/// hub angles. Real-time: all but the constructor is safe.
 class PayloadEstimator {
  public:
-  using State = Eigen::Matrix<double, 12,
-                              1>;  ///< q, q' of RigidJointArm: the
-                                   ///< order of R12
+  using State = Eigen::Matrix<double, 12, 1>;  ///< q, q' of RigidJointArm: the order of R12
 
   /// @param model  as PayloadModelConstants
   PayloadEstimator(std::span<const double> model, const PayloadFilterConfig& config);
@@ -49,18 +44,14 @@ class PayloadEstimator {
     delay_.Reset();
   }
 
-  /// @param tip_m_s2  of the accelerometer at the tip
-  /// (TipReading), if it was read
+  /// @param tip_m_s2  of the accelerometer at the tip (TipReading), if it was read
   const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
                                         const PiecewiseTorque& applied,
                                         std::optional<double> tip_m_s2 = std::nullopt) noexcept;
 
-  /// The same with the torques of all delay hypotheses,
-  /// followed by the test. If it switches to another
-  /// hypothesis, the payload and friction estimates
-  /// restart.
-  /// @param applied  must contain the torque of the
-  /// current hypothesis
+  /// The same with the torques of all delay hypotheses, followed by the test. If it switches to
+  /// another hypothesis, the payload and friction estimates restart.
+  /// @param applied  must contain the torque of the current hypothesis
   const PayloadFilter::Estimate& Update(const DecodedCounters& counters, const FittedModes& modes,
                                         const TorqueByDelay& applied,
                                         std::optional<double> tip_m_s2 = std::nullopt) noexcept;
@@ -68,18 +59,17 @@ class PayloadEstimator {
   /// Estimated delay beyond the declared one, in samples.
   int delay_found() const noexcept { return delay_.samples(); }
 
-  /// A move starts: the payload may have changed since
-  /// the last one.
-  void BeginMove() noexcept { filter_.BeginMove(); }
-  /// The readings contradict the model: resets the
-  /// payload estimate to 0 kg.
+  /// A move starts; PayloadFilter::BeginMove.
+  void BeginMove(bool same_load) noexcept { filter_.BeginMove(same_load); }
+  /// The payload is another from now on; PayloadFilter::PayloadMayChange.
+  void PayloadMayChange() noexcept { filter_.PayloadMayChange(); }
+  /// The readings contradict the model: resets the payload estimate to 0 kg.
   void AssumePayloadLost() noexcept { filter_.AssumePayloadLost(hypotheses_); }
-  /// The arm is at rest after a move: payload and
-  /// friction are not updated until the next move.
+  /// The arm is at rest after a move: payload and friction are not updated until the next move.
   void EndMove() noexcept { filter_.EndMove(); }
 
-  /// Rates of the modal coordinates as the gauges read
-  /// them, behind their filters, m/s: f11 f12 f21 f22.
+  /// Rates of the modal coordinates as the gauges read them, behind their filters, m/s: f11 f12 f21
+  /// f22.
   std::array<double, 4> ModalRates() const noexcept;
 
   State Now() const noexcept { return StateOf(filter_.estimate().state); }
@@ -103,8 +93,8 @@ class PayloadEstimator {
   PayloadFilter filter_;
   PayloadFilter::Covariance covariance_after_rest_;
   DelayDetector delay_;
-  std::array<PayloadFilter::Hypothesis, kDelays> hypotheses_;  // by delay; filter_ itself is the
-                                                               // current one
+  // By delay; filter_ itself is the current one.
+  std::array<PayloadFilter::Hypothesis, kDelays> hypotheses_;
   bool started_ = false;
 };
 

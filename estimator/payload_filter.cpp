@@ -130,8 +130,12 @@ void PayloadFilter::SwitchTo(const Hypothesis& hypothesis) noexcept {
   ForgetAllButMotion();
 }
 
-void PayloadFilter::BeginMove() noexcept {
+void PayloadFilter::BeginMove(bool same_load) noexcept {
   learns_ = true;
+  if (!same_load) PayloadMayChange();
+}
+
+void PayloadFilter::PayloadMayChange() noexcept {
   estimate_.payload_kg = std::max(estimate_.payload_kg, config_.payload_start_kg);
   P_(kPayload, kPayload) = std::max(P_(kPayload, kPayload), Square(config_.payload_move_sigma_kg));
   estimate_.payload_sigma_kg = std::sqrt(P_(kPayload, kPayload));

@@ -119,8 +119,13 @@ class PayloadFilter {
   /// takes as long as a hundred samples.
   Covariance CovarianceAfterRest() const noexcept;
 
-  /// A move starts: the payload may have changed, and is updated again.
-  void BeginMove() noexcept;
+  /// A move starts: the payload is updated again.
+  /// @param same_load  it is that of the move before; otherwise PayloadMayChange
+  void BeginMove(bool same_load) noexcept;
+
+  /// The payload is another from now on: the estimate is at least that of the start, and its
+  /// standard deviation that of the start of a move.
+  void PayloadMayChange() noexcept;
 
   /// Resets the payload estimate to 0 kg after the readings contradicted the model. A lost payload
   /// is the likely cause, and the safe assumption: a torque for an empty arm does little to a

@@ -28,7 +28,8 @@ std::array<double, 4> PayloadObserver::ModalRates(
 
 void PayloadObserver::FollowPath(const PathMotion& motion) noexcept {
   moves_ = motion.moves;
-  if (motion.begins) estimator_.BeginMove();
+  if (motion.begins) estimator_.BeginMove(motion.same_load);
+  if (motion.load_changes) estimator_.PayloadMayChange();
   if (std::isfinite(motion.rested_s) && motion.rested_s > kVibrationDecays_s) estimator_.EndMove();
 }
 

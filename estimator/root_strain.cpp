@@ -1,7 +1,9 @@
 #include "estimator/root_strain.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace flexarm {
 
@@ -17,6 +19,19 @@ std::array<double, 2> RootStrainShape(const LinkParameters& link, const LinkMode
     start += section.length_m;
   }
   return most;
+}
+
+std::array<std::array<double, 2>, 2> RootStrainShapes(const ArmParameters& arm, int modes) {
+  return {RootStrainShape(arm.link[0], Link1Modes(arm, modes)),
+          RootStrainShape(arm.link[1], Link2Modes(arm, modes))};
+}
+
+double MomentPerStrain_nm(const LinkParameters& link) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const BeamSection& section : link.section) {
+    least = std::min(least, section.bending_stiffness_nm2() / section.half_thickness_m);
+  }
+  return least;
 }
 
 }  // namespace flexarm

@@ -15,4 +15,11 @@ namespace flexarm {
 /// Source: thesis B.2. Real-time: start-up only.
 std::array<double, 2> RootStrainShape(const LinkParameters& link, const LinkModes& modes);
 
+/// RootStrainShape of both links, of the arm's first modes.
+/// @param modes  a link, 1 or 2
+std::array<std::array<double, 2>, 2> RootStrainShapes(const ArmParameters& arm, int modes);
+
+/// Bending moment per unit of surface strain, EI / (h/2), of the weakest section, N m.
+double MomentPerStrain_nm(const LinkParameters& link);
+
 }  // namespace flexarm

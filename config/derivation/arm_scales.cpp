@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 
 #include "config/derivation/sensor_scales.h"
 #include "estimator/nominal_model.h"
@@ -22,15 +23,6 @@ double FullScale(const SensorConfig& sensors, int link) {
   double least = std::numeric_limits<double>::infinity();
   for (const StrainChannelConfig& gauge : sensors.strain) {
     if (gauge.link == link) least = std::min(least, FullScaleStrain(sensors, gauge));
-  }
-  return least;
-}
-
-// Bending moment per unit of surface strain, of the weakest section.
-double MomentPerStrain_nm(const LinkParameters& link) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const BeamSection& section : link.section) {
-    least = std::min(least, section.bending_stiffness_nm2() / section.half_thickness_m);
   }
   return least;
 }
@@ -79,6 +71,10 @@ ArmScales ScalesOf(const TuningBasis& basis) {
   for (std::size_t i = 0; i < 2; ++i) {
     scales.torsion_rad[i] = scales.torque_nm[i] / arm.joint[i].stiffness_nm_per_rad;
   }
+  ArmParameters heavy = arm;
+  heavy.payload_mass_kg = std::max(arm.payload_mass_kg, basis.payload_range_kg[1]);
+  scales.torque_mode_hz =
+      MakeNominalModel(heavy, kR12).torque_mode_rad_s(0) / (2.0 * std::numbers::pi);
   scales.ambiguous_rate_rad_s = std::numeric_limits<double>::infinity();
   for (const EncoderConfig& encoder : basis.sensors.encoder) {
     scales.ambiguous_rate_rad_s =

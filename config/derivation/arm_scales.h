@@ -30,6 +30,8 @@ struct ArmScales {
   std::array<double, 2> torsion_rad;    ///< S / K: twist of the joint
   std::array<double, 2> friction_nm;    ///< F: Coulomb friction, at least a thousandth of the limit
   std::array<double, 2> modal_noise_m;  ///< of the first modal coordinate, from the gauges' noise
+  /// Lowest undamped frequency with the greatest payload and free hubs, elbow straight.
+  double torque_mode_hz;
   /// Rate at which the coarsest counter turns by half its range in a period.
   double ambiguous_rate_rad_s;
 };

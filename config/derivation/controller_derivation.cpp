@@ -7,9 +7,11 @@ namespace {
 
 using Pair = std::array<double, 2>;
 
-// Shares of the greatest payload at which gains are computed, denser where the arm is light.
-constexpr std::array<double, 8> kGainPayloads = {0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0};
+// Shares of the greatest payload at which gains are computed, denser where the arm is light. Gains
+// of more than half of it shake the bent arm: docs/theory/payload.md 4.2.
+constexpr std::array<double, 8> kGainPayloads = {0.0, 0.05, 0.1, 0.2, 0.3, 0.35, 0.4, 0.5};
 constexpr std::array<double, 8> kGainElbow_deg = {0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 150.0};
+constexpr Pair kFastFraction = {0.68, 0.58};
 
 }  // namespace
 
@@ -39,10 +41,13 @@ void DeriveController(const TuningBasis& basis, const ArmScales& scales, Derived
   const double top_kg = std::max(most_kg, 1e-3);
   for (double& payload : payloads) payload *= top_kg;
   out->Number(key("payload.max_kg"), top_kg, "the greatest payload");
+  out->List(key("payload.fast_fraction"), kFastFraction, "as for the arm of the thesis");
+  out->Number(key("payload.fast_least_s"), 3.36 / scales.torque_mode_hz,
+              "3.36 periods of the lowest torque mode with the greatest payload");
   out->Number(key("payload.reference_kg"),
               std::clamp(1.5 * basis.arm.payload_mass_kg, least_kg, top_kg),
               "1.5 times the nominal payload, within its range");
-  out->List(key("payload.gain_payload_kg"), payloads, "shares of max_kg");
+  out->List(key("payload.gain_payload_kg"), payloads, "shares of max_kg, at most half");
   out->List(key("payload.gain_elbow_deg"), kGainElbow_deg, "as for the arm of the thesis");
 }
 

@@ -94,12 +94,10 @@ void DerivePayloadFilter(const TuningBasis& basis, const ArmScales& scales, Deri
   out->List(key("rotor_extra_sigma_rad"),
             Pair{0.02 * scales.torsion_rad[0], 0.06 * scales.torsion_rad[1]},
             "2 and 6 % of the joint's twist S / K");
-  out->Number(key("start_kg"),
-              std::clamp(basis.arm.payload_mass_kg, least_kg, std::max(least_kg, most_kg)),
-              "the nominal payload");
+  out->Number(key("start_kg"), std::max(least_kg, 0.5 * most_kg), "half of the greatest payload");
   out->Number(key("start_sigma_kg"), 0.33 * filter_most_kg, "0.33 of max_kg");
   out->Number(key("max_kg"), filter_most_kg, "1.1 times the greatest payload");
-  out->Number(key("move_sigma_kg"), 0.16 * filter_most_kg, "0.16 of max_kg");
+  out->Number(key("move_sigma_kg"), 0.27 * filter_most_kg, "0.27 of max_kg");
   out->Number(key("walk_kg"), 0.0025 * filter_most_kg, "0.0025 of max_kg");
   out->Constant(key("min_rate_rad_s"), 0.03, "as for the arm of the thesis");
   out->List(key("friction_start_sigma_nm"), Pair{0.6 * F[0], F[1]},

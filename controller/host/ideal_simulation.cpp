@@ -10,6 +10,7 @@
 #include "controller/realtime/float_environment.h"
 #include "controller/runlog/run_writer.h"
 #include "controller/step/control_step.h"
+#include "controller/tasks/follow_reference.h"
 #include "controller/types/rejected_error.h"
 #include "controller/types/trip_cause.h"
 #include "estimator/ideal_observer.h"
@@ -39,11 +40,11 @@ class IdealLoop {
   IdealLoop(const SimulationRequest& request, const Design& design, double payload_kg);
 
   /// One period. @returns the faults of the step
-  TripCauses Advance(std::int64_t tick, const ReferenceTable& reference, RunSink* sink);
+  TripCauses Advance(std::int64_t tick, const TimedReference& reference, RunSink* sink);
 
  private:
   StateVector TrueState() const;
-  StepInput Input(std::int64_t tick, const ReferenceTable& reference);
+  StepInput Input(std::int64_t tick, const TimedReference& reference);
 
   StateLayout layout_;
   int plant_modes_;
@@ -73,7 +74,7 @@ StateVector IdealLoop::TrueState() const {
   return x;
 }
 
-StepInput IdealLoop::Input(std::int64_t tick, const ReferenceTable& reference) {
+StepInput IdealLoop::Input(std::int64_t tick, const TimedReference& reference) {
   StepInput input{};
   const std::int64_t now_ns = tick * period_ns_;
   input.tick = tick;
@@ -85,13 +86,15 @@ StepInput IdealLoop::Input(std::int64_t tick, const ReferenceTable& reference) {
   const int k = static_cast<int>(tick);
   input.reference_now = input.reference_next = reference.At(k);
   input.path = reference.PathAround(k);
+  input.same_load = reference.KeepsLoad(k) ? 1 : 0;
+  input.load_changes = reference.LoadChanges(k) ? 1 : 0;
   input.safety_state = SafetyState::kRunning;
   input.reset = tick == 0 ? 1 : 0;
   input.reference_ended = k >= reference.periods() - 1 ? 1 : 0;
   return input;
 }
 
-TripCauses IdealLoop::Advance(std::int64_t tick, const ReferenceTable& reference, RunSink* sink) {
+TripCauses IdealLoop::Advance(std::int64_t tick, const TimedReference& reference, RunSink* sink) {
   TickRecord record{};
   record.input = Input(tick, reference);
   observer_->Know(TrueState());
@@ -149,8 +152,11 @@ TripCause RunIdeal(const SimulationRequest& request, const Design& design,
   const FlushDenormals as_in_the_tasks;
   TripCauses faults = 0;
   std::int64_t tick = 0;
+  TimedReference reference;
+  reference.Start(&planned.reference, &planned.load_change);
   for (; tick < planned.reference.periods() && faults == 0; ++tick) {
-    faults = loop.Advance(tick, planned.reference, &sink);
+    reference.Choose(static_cast<int>(tick), kNoPayloadEstimate);
+    faults = loop.Advance(tick, reference, &sink);
   }
   const auto trip =
       faults == 0 ? TripCause::kNone : static_cast<TripCause>(std::countr_zero(faults));

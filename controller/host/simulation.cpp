@@ -13,6 +13,7 @@
 #include "controller/operator/operator_task.h"
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/lockstep_executor.h"
+#include "controller/runlog/durations_of_run.h"
 #include "controller/runlog/recorder_task.h"
 #include "controller/runlog/run_label.h"
 #include "controller/tasks/simulated_stack.h"
@@ -126,7 +127,9 @@ SimulationResult ResultOf(const RigConfig& config, const PlannedExperiment& plan
   result.ticks = result.metrics.ticks;
   result.trip = trip;
   result.completed = trip == TripCause::kNone && result.ticks == planned.reference.periods();
-  for (const Move& move : planned.accepted.move) {
+  const Experiment of_run =
+      WithDurationsOfRun(planned.accepted, contents.tick, config.loop.period_s());
+  for (const Move& move : of_run.move) {
     result.move_duration_s.push_back(move.duration_s.value());
   }
   return result;

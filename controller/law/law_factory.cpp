@@ -13,7 +13,8 @@ std::unique_ptr<Law> MakeLaw(const ControlConfig& config, const Design& design) 
   const std::array<double, 2>& limit_nm = config.safety.torque_limit_nm;
   if (design.scheduled) {
     return std::make_unique<ScheduledLaw>(MakeRigidJointArm(design),  // start-up
-                                          design.scheduled->gains, config.loop.period_s(),
+                                          design.scheduled->gains, BendingGuard(config),
+                                          design.scheduled->max_kg, config.loop.period_s(),
                                           limit_nm);
   }
   std::optional<SettleTerm> settle;

@@ -16,10 +16,13 @@ constexpr double kFrictionRate_rad_s = 0.05;
 
 // Friction compensation of the feedback after a move. The feedback torque is then smaller than the
 // friction: the joints stick, and the links would vibrate undamped as if their roots were clamped.
-// The compensation adds up to 0.7 of the friction, with the scale of half the friction for the
-// feedback torque. It is faded out over 2 s, so that encoder quantisation in the feedback does not
-// move an arm at rest.
-constexpr double kFrictionShare = 0.7, kFeedbackScale = 0.5, kCompensationFades_s = 2.0;
+// The compensation adds the whole friction, with the scale of a tenth of it for the feedback
+// torque: breakaway pulses with the sign of the feedback. It is faded out over 4 s, so that encoder
+// quantisation in the feedback does not move an arm at rest, and not given while the payload is
+// unknown: the friction then holds an arm whose load has changed, which wrong gains would move.
+constexpr double kFeedbackScale = 0.1, kCompensationFades_s = 4.0;
+// Standard deviation as a share of the greatest payload; after an announced change it is 0.27.
+constexpr double kUnknownPayload = 0.2;
 
 }  // namespace
 
@@ -42,17 +45,19 @@ Eigen::Vector2d ScheduledLaw::Torque(const State& x, const PayloadKnowledge& kno
   const bool at_bound = (knowledge.warnings & kPayloadAtBound) != 0;
   const double sigma_kg =
       at_bound ? std::numeric_limits<double>::infinity() : knowledge.payload_sigma_kg;
-  const double gain_payload_kg =
-      SchedulingPayload(knowledge.payload_kg, sigma_kg, knowledge.mean_nis, rested_s,
-                        gains_.grid().payload_kg.back());
-  const Eigen::Vector2d feedback_nm = gains_.At(gain_payload_kg, x[1]).lazyProduct(x_desired - x);
+  const double gain_payload_kg = SchedulingPayload(knowledge.payload_kg, sigma_kg,
+                                                   knowledge.mean_nis, rested_s, payload_max_kg_);
+  Eigen::Vector2d feedback_nm = gains_.At(gain_payload_kg, x[1]).lazyProduct(x_desired - x);
+  guard_.Limit(x, &u, &feedback_nm);
   u += feedback_nm;
-  const double share = rested_s > 0.0 ? std::max(0.0, 1.0 - rested_s / kCompensationFades_s) : 0.0;
+  const bool unknown = knowledge.payload_sigma_kg > kUnknownPayload * payload_max_kg_;
+  const double share =
+      rested_s > 0.0 && !unknown ? std::max(0.0, 1.0 - rested_s / kCompensationFades_s) : 0.0;
   for (int i = 0; i < 2; ++i) {
     const double friction_nm = knowledge.friction_nm[static_cast<std::size_t>(i)];
     if (share == 0.0 || friction_nm <= 0.0) continue;
-    u[i] += share * kFrictionShare * friction_nm *
-            PortableMath::Tanh(feedback_nm[i] / (kFeedbackScale * friction_nm));
+    u[i] +=
+        share * friction_nm * PortableMath::Tanh(feedback_nm[i] / (kFeedbackScale * friction_nm));
   }
   return u;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "controller/law/bending_guard.h"
 #include "controller/law/gain_table.h"
 #include "controller/law/law.h"
 #include "model/rigid_joint/quasi_static_map.h"
@@ -16,9 +17,10 @@ namespace flexarm {
 ///
 ///   u = u_d + F tanh(theta_d' / 0.05 rad/s) + u_K + h,  u_K = K(m_K, |theta2|) (x_d - x)
 ///
-/// - h: friction compensation of the feedback after a move, 0.7 F tanh(u_K / 0.5 F), faded out
-///   linearly over 2 s. It is not in the design study; it reduces the tip's motion in that time by
-///   a fifth to a quarter.
+/// - h: friction compensation of the feedback after a move, F tanh(u_K / 0.1 F), faded out linearly
+///   over 4 s, none while sigma is above 0.2 of the greatest payload. It is not in the design
+///   study.
+/// - BendingGuard limits u_K, and u_d with its friction.
 /// - x_d, u_d: of the plan (horizon_plan.h) if there is one, else the quasi-static motion in closed
 ///   form for the payload estimate, on which the links bend without vibration.
 /// - K: of the gain table at m_K = SchedulingPayload. An estimate at its bound counts as fully
@@ -28,10 +30,13 @@ class ScheduledLaw final : public Law {
  public:
   using State = Eigen::Matrix<double, 12, 1>;
 
-  ScheduledLaw(RigidJointArm arm, GainTable gains, double period_s,
-               const std::array<double, 2>& torque_limit_nm)
+  /// @param payload_max_kg  the greatest payload, > 0; the gain table may end before it
+  ScheduledLaw(RigidJointArm arm, GainTable gains, BendingGuard guard, double payload_max_kg,
+               double period_s, const std::array<double, 2>& torque_limit_nm)
       : arm_(std::move(arm)),
         gains_(std::move(gains)),
+        guard_(guard),
+        payload_max_kg_(payload_max_kg),
         period_s_(period_s),
         torque_limit_nm_(torque_limit_nm) {}
 
@@ -54,6 +59,8 @@ class ScheduledLaw final : public Law {
  private:
   RigidJointArm arm_;
   GainTable gains_;
+  BendingGuard guard_;
+  double payload_max_kg_;
   double period_s_;
   std::array<double, 2> torque_limit_nm_;
 };

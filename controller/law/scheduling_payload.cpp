@@ -7,7 +7,7 @@ namespace {
 
 // Shares of the greatest payload.
 constexpr double kStableForAll = 0.15, kUncertain = 0.1;
-constexpr double kRested_s = 0.5;
+constexpr double kRested_s = 2.0;
 constexpr double kNisDoubtful = 20.0;  // 8 expected
 
 }  // namespace

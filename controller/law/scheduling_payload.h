@@ -13,11 +13,11 @@ namespace flexarm {
 ///   - the estimate is uncertain: weight (sigma / (0.1 of the greatest payload))^2, at most 1;
 ///   - the innovations contradict the filter's model: weight from 0 at a mean NIS of 20 to 1 at
 ///   kModelWrongNis;
-///   - the arm has rested for more than 0.5 s: weight 1, as a payload may change unobserved.
+///   - the arm has rested for more than 2 s: weight 1, as a payload may change unobserved.
 /// Source: docs/theory/payload.md 4.3. Real-time: safe.
 /// @param payload_sigma_kg  standard deviation of the estimate, >= 0
 /// @param mean_nis          smoothed NIS, as PayloadFilter::mean_nis
-/// @param most_kg           the greatest payload of the gain table, > 0
+/// @param most_kg           the greatest payload, > 0
 /// @param rested_s          time since the end of the last move; 0 or less during a move
 double SchedulingPayload(double payload_kg, double payload_sigma_kg, double mean_nis,
                          double rested_s, double most_kg) noexcept;

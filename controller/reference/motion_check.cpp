@@ -59,7 +59,7 @@ double RootStrain(const ReferenceSample& sample, std::size_t link, int states,
 }  // namespace
 
 std::optional<BrokenLimit> FirstBrokenLimit(std::span<const ReferenceSample> reference, int states,
-                                            const MotionLimits& limits, double share,
+                                            const MotionLimits& limits, const LimitShares& shares,
                                             double period_s, int first) {
   ReferenceSample before = first > 0 ? reference.front() : ReferenceSample{};
   for (std::size_t n = first > 0 ? 1 : 0; n < reference.size(); ++n) {
@@ -76,10 +76,10 @@ std::optional<BrokenLimit> FirstBrokenLimit(std::span<const ReferenceSample> ref
       const double jump = u - before.u_m_nm[i];
       const std::array<Check, 5> checks = {{
           {kAngle, now.x_m[i], limits.soft_angle_rad[i], 1.0},
-          {kTorque, torque, limits.torque_nm[i], share},
-          {kJump, jump, kJumpPeriods * limits.slew_nm_per_s[i] * period_s, share},
-          {kRate, rate, limits.hub_rate_rad_s[i], share},
-          {kStrain, RootStrain(now, i, states, limits), limits.strain[i], share},
+          {kTorque, torque, limits.torque_nm[i], shares.torque},
+          {kJump, jump, kJumpPeriods * limits.slew_nm_per_s[i] * period_s, shares.jump},
+          {kRate, rate, limits.hub_rate_rad_s[i], shares.rate},
+          {kStrain, RootStrain(now, i, states, limits), limits.strain[i], shares.strain},
       }};
       for (const Check& check : checks) {
         const double limit = check.share * check.limit;

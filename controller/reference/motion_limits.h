@@ -14,6 +14,9 @@ struct MotionLimits {
   std::array<double, 2> hub_rate_rad_s;  ///< |th'|
   std::array<double, 2> strain;          ///< surface strain at the root of a link
   double plan_fraction;                  ///< share of them for moves without duration_s
+  std::array<double, 2> fast_fraction;   ///< for the shortest moves, without payload and with the
+                                         ///< largest; linear between
+  double fast_least_s;                   ///< no shortest move is shorter
   std::array<double, 2> coulomb_friction_nm;
   std::array<double, 2> viscous_friction_nm_s_per_rad;
   int modes_per_link;                                      ///< of the reference model, 1 or 2

@@ -1,5 +1,6 @@
 #include "controller/reference/motion_plan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -71,6 +72,22 @@ std::string BeginText(const PlannedMove& move) {
          DegText(move.from.rate_rad_s) + " per second, and goes";
 }
 
+// Whether the payload at a move is that of the move before it: no announced change since.
+bool KeepsLoad(const Experiment& experiment, std::size_t row) {
+  if (!experiment.move[row].same_load) return false;
+  const double until_s = experiment.move[row].start_s;
+  const double since_s = row == 0 ? 0.0 : experiment.move[row - 1].start_s;
+  return std::none_of(
+      experiment.load_change.begin(), experiment.load_change.end(),
+      [&](const LoadChange& change) { return change.at_s >= since_s && change.at_s <= until_s; });
+}
+
+[[noreturn]] void RefuseForLimits(const PlannedMove& planned, const std::string& share) {
+  throw RejectedError(RowOf(planned) + ".duration_s: no duration up to " +
+                      NumberText(kLongestChosen_s) + " s keeps " + share +
+                      " of the limits: " + BeginText(planned) + " to " + DegText(planned.to_rad));
+}
+
 // The number of periods of the last of `moves`, whose other members are set.
 int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Design& design,
               double period_s, const MotionLimits& limits) {
@@ -83,10 +100,25 @@ int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Des
                         NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
   }
   const auto periods = ShortestPeriods(moves, design, period_s, limits, limits.plan_fraction);
-  if (periods) return *periods;
-  throw RejectedError(key + ": no duration up to " + NumberText(kLongestChosen_s) +
-                      " s keeps limits.plan_fraction of the limits: " + BeginText(planned) +
-                      " to " + DegText(planned.to_rad));
+  if (!periods) RefuseForLimits(planned, "limits.plan_fraction");
+  return *periods;
+}
+
+// Sets the durations of a move `duration = "shortest"`. Where its payload is that of the move
+// before, the run chooses among them; otherwise every payload must be possible. A law that plans
+// ahead needs to know the end of a move before it begins.
+void Shorten(const Move& move, const Design& design, double period_s, const MotionLimits& limits,
+             PlannedMove* planned) {
+  std::optional<DurationTable> table = ShortestByPayload(*planned, design, period_s, limits);
+  if (!table) RefuseForLimits(*planned, "controller.payload.fast_fraction");
+  planned->periods = move.duration_s
+                         ? OnGrid(*move.duration_s, period_s, RowOf(*planned) + ".duration_s")
+                         : table->Longest();
+  planned->is_shortest = true;
+  const bool plans_ahead = design.scheduled->start_gains.has_value();
+  if (!planned->same_load || plans_ahead) return;
+  table->LimitTo(planned->periods);
+  planned->choice = table;
 }
 
 void RequireTakeOver(const PlannedMove& planned, const PlannedMove& above, const Design& design,
@@ -143,7 +175,8 @@ std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& d
                         .retargets = false,
                         .from = {},
                         .to_rad = GoalOf(move, name, limits),
-                        .profile = move.profile};
+                        .profile = move.profile,
+                        .same_load = KeepsLoad(experiment, row)};
     if (Retargets(moves, planned.first)) {
       RequireTakeOver(planned, moves.back(), design, period_s);
       planned.retargets = true;
@@ -152,7 +185,11 @@ std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& d
       planned.from.angle_rad = PlaceBefore(experiment, moves, start_rad, move.start_s);
     }
     moves.push_back(planned);
-    moves.back().periods = PeriodsOf(move, moves, design, period_s, limits);
+    if (move.shortest && design.scheduled && !planned.retargets) {
+      Shorten(move, design, period_s, limits, &moves.back());
+    } else {
+      moves.back().periods = PeriodsOf(move, moves, design, period_s, limits);
+    }
   }
   return moves;
 }

@@ -25,24 +25,35 @@ std::vector<ReferenceSample> RigidReference(const RigidPath& path, int states, i
 
 }  // namespace
 
-PathCheck::PathCheck(const Design& design, const MotionLimits& limits, double share,
+PathCheck::PathCheck(const Design& design, const MotionLimits& limits, const LimitShares& shares,
                      double period_s)
     : arm_(MakeRigidJointArm(design)),
       max_kg_(design.scheduled->max_kg),
       states_(static_cast<int>(design.Am.rows())),
       limits_(limits),
-      share_(share),
+      shares_(shares),
       period_s_(period_s) {}
 
-std::optional<BrokenLimit> PathCheck::First(const RigidPath& path, int first, int last) const {
+std::optional<BrokenLimit> PathCheck::FirstWith(double payload_kg, const RigidPath& path, int first,
+                                                int last) const {
   const int from = std::max(first - 1, 0);  // the sample before, for the change of the torque
-  auto heavy = FirstBrokenLimit(QuasiStaticReference(path, arm_, max_kg_, period_s_, from, last),
-                                states_, limits_, share_, period_s_, from);
-  auto rigid = FirstBrokenLimit(RigidReference(path, states_, from, last), states_, limits_, share_,
-                                period_s_, from);
-  if (rigid && (!heavy || rigid->sample < heavy->sample)) return rigid;
+  return FirstBrokenLimit(QuasiStaticReference(path, arm_, payload_kg, period_s_, from, last),
+                          states_, limits_, shares_, period_s_, from);
+}
+
+std::optional<BrokenLimit> PathCheck::First(const RigidPath& path, int first, int last) const {
+  auto heavy = FirstWith(max_kg_, path, first, last);
+  auto empty = FirstWith(0.0, path, first, last);
+  const int from = std::max(first - 1, 0);
+  const auto rigid = FirstBrokenLimit(RigidReference(path, states_, from, last), states_, limits_,
+                                      shares_, period_s_, from);
   if (heavy) heavy->text += " (with " + NumberText(max_kg_) + " kg, controller.payload.max_kg)";
-  return heavy;
+  if (empty) empty->text += " (without payload)";
+  std::optional<BrokenLimit> earliest = heavy;
+  for (const auto& broken : {empty, rigid}) {
+    if (broken && (!earliest || broken->sample < earliest->sample)) earliest = broken;
+  }
+  return earliest;
 }
 
 }  // namespace flexarm

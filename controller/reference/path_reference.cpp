@@ -24,15 +24,22 @@ const RigidPoint& RigidPath::At(int k) const noexcept {
   return point_[static_cast<std::size_t>(std::clamp(k, 0, periods()))];
 }
 
+ReferenceSample QuasiStaticSample(const RigidJointArm& arm, double payload_kg,
+                                  const std::array<RigidPoint, 3>& path, double period_s) noexcept {
+  const MotionSample bent = QuasiStaticOver(arm, payload_kg, path, period_s);
+  ReferenceSample sample{};
+  std::copy(bent.x.begin(), bent.x.end(), sample.x_m.begin());
+  sample.u_m_nm = bent.torque_nm;
+  return sample;
+}
+
 std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,
                                                   double payload_kg, double period_s, int first,
                                                   int last) {
   std::vector<ReferenceSample> samples(static_cast<std::size_t>(last - first) + 1);
   for (int k = first; k <= last; ++k) {
-    ReferenceSample& sample = samples[static_cast<std::size_t>(k - first)];
-    const MotionSample bent = QuasiStaticOver(arm, payload_kg, path.Around(k), period_s);
-    std::copy(bent.x.begin(), bent.x.end(), sample.x_m.begin());
-    sample.u_m_nm = bent.torque_nm;
+    samples[static_cast<std::size_t>(k - first)] =
+        QuasiStaticSample(arm, payload_kg, path.Around(k), period_s);
   }
   return samples;
 }

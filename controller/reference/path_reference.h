@@ -34,6 +34,12 @@ class RigidPath {
   std::vector<RigidPoint> point_;
 };
 
+/// Sample of the reference of the laws that use the estimated payload: x_m and u_m by
+/// QuasiStaticOver. Real-time: safe.
+/// @param path  at the sample before, at it, and after
+ReferenceSample QuasiStaticSample(const RigidJointArm& arm, double payload_kg,
+                                  const std::array<RigidPoint, 3>& path, double period_s) noexcept;
+
 /// The reference of the laws that use the estimated payload: an arm bent quasi-statically along the
 /// path, without vibration; x_m and u_m by QuasiStaticOver for the samples `first` to `last`.
 std::vector<ReferenceSample> QuasiStaticReference(const RigidPath& path, const RigidJointArm& arm,

@@ -14,8 +14,10 @@ RigidPoint PlannedMove::At(double sample, double period_s) const noexcept {
   if (retargets) {
     return SepticToRest(from, to_rad, periods * period_s, (sample - first) * period_s);
   }
-  const double T = (periods - 1) * period_s;
-  const ProfilePoint point = ProfileAt(profile, (sample - 0.5 - first) / (periods - 1));
+  const double begins = is_shortest ? first : first + 0.5;
+  const double takes = is_shortest ? periods : periods - 1;
+  const double T = takes * period_s;
+  const ProfilePoint point = ProfileAt(profile, (sample - begins) / takes);
   RigidPoint out{};
   for (std::size_t i = 0; i < 2; ++i) {
     const double by_rad = to_rad[i] - from.angle_rad[i];

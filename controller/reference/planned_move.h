@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "controller/law/design.h"
+#include "controller/reference/duration_table.h"
 #include "controller/types/motion_profile.h"
 #include "model/rigid_joint/rigid_point.h"
 
@@ -22,11 +24,16 @@ struct PlannedMove {
   RigidPoint from;               ///< Y at sample `first`: at rest, or of the move that it replaces
   std::array<double, 2> to_rad;  ///< th1, th2
   MoveProfile profile;           ///< from rest; a move that retargets is SepticToRest
+  bool same_load = false;        ///< the payload is that of the move before
+  bool is_shortest = false;      ///< takes all its periods: At
+  /// The durations from which the run chooses when the move begins; `periods` is the longest.
+  std::optional<DurationTable> choice{};
 
   /// Y and its derivatives of this move, `sample` periods after the experiment's start; analytic.
   ///
   /// A move from rest takes n - 1 periods, half a period after `first`, as the reference model's
-  /// rigid angles do (ProfileAccelerations). A move that retargets begins at sample `first` itself,
+  /// rigid angles do (ProfileAccelerations); a shortest one takes all n, from `first` on, as only
+  /// laws that follow the path use it. A move that retargets begins at sample `first` itself,
   /// where it matches the path before it, and takes all n. Before `first` Y is `from`.
   /// Real-time: safe.
   RigidPoint At(double sample, double period_s) const noexcept;

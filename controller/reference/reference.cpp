@@ -155,7 +155,8 @@ std::string Remedy(std::span<const PlannedMove> moves, const Design& design, dou
 ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& design, double period_s,
                                const std::array<double, 2>& start_rad, const MotionLimits& limits,
                                const std::stop_token& stop)
-    : moves_(PlanMoves(experiment, design, period_s, start_rad, limits, stop)),
+    : period_s_(period_s),
+      moves_(PlanMoves(experiment, design, period_s, start_rad, limits, stop)),
       segments_(MotionSegmentsOf(moves_)) {
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
   const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
@@ -193,16 +194,22 @@ void ReferenceTable::FollowPath(const Experiment& planned, const Design& design,
         ": a law that estimates the payload follows [[move]] rows only, whose acceleration "
         "is continuous; use another controller.name, or moves");
   }
-  samples_ = QuasiStaticReference(*path_, MakeRigidJointArm(design), design.scheduled->reference_kg,
-                                  period_s, 0, periods());
+  arm_ = MakeRigidJointArm(design);
+  reference_kg_ = design.scheduled->reference_kg;
+  samples_ = QuasiStaticReference(*path_, *arm_, reference_kg_, period_s, 0, periods());
+}
+
+ReferenceSample ReferenceTable::Along(const std::array<RigidPoint, 3>& path) const noexcept {
+  return QuasiStaticSample(*arm_, reference_kg_, path, period_s_);
 }
 
 void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design, double period_s,
                                  const MotionLimits& limits) const {
   const int states = static_cast<int>(design.Am.rows());
-  const auto broken = design.scheduled
-                          ? PathCheck(design, limits, 1.0, period_s).First(*path_, 0, periods())
-                          : FirstBrokenLimit(samples_, states, limits, 1.0, period_s);
+  const auto broken =
+      design.scheduled
+          ? PathCheck(design, limits, LimitShares::Of(1.0), period_s).First(*path_, 0, periods())
+          : FirstBrokenLimit(samples_, states, limits, LimitShares::Of(1.0), period_s);
   if (!broken) return;
   const std::string row = RowAt(planned, broken->sample * period_s);
   std::string remedy;

@@ -52,6 +52,13 @@ class ReferenceTable {
   /// Where the path moves, in order of time. Real-time: safe.
   const std::vector<MotionSegment>& segments() const noexcept { return segments_; }
 
+  /// The reference of a law that follows a path, for another motion than the table's: the sample
+  /// that belongs to the path at k - 1, k and k + 1. Real-time: safe.
+  /// @pre there is a move, and the law follows a path
+  ReferenceSample Along(const std::array<RigidPoint, 3>& path) const noexcept;
+
+  double period_s() const noexcept { return period_s_; }
+
   /// Sample k; before 0 the state of rest at the start, after the end the last sample. Real-time:
   /// safe.
   const ReferenceSample& At(int k) const noexcept;
@@ -72,6 +79,9 @@ class ReferenceTable {
                    const std::array<double, 2>& start_rad);
   void FollowPath(const Experiment& planned, const Design& design, double period_s);
 
+  double period_s_ = 0.0;
+  std::optional<RigidJointArm> arm_;  ///< of a law that follows a path, with reference_kg_
+  double reference_kg_ = 0.0;
   ReferenceSample rest_{};
   std::optional<RigidPath> path_;
   std::vector<PlannedMove> moves_;

@@ -1,6 +1,7 @@
 #include "controller/reference/shortest_move.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -23,14 +24,14 @@ bool FitsFromRest(PlannedMove move, int periods, const Design& design, double pe
   const int samples = periods + kDecayPeriods;
   if (design.scheduled) {
     const RigidPath path({&move, 1}, move.from.angle_rad, samples, period_s);
-    return !PathCheck(design, limits, share, period_s).First(path, 0, samples);
+    return !PathCheck(design, limits, LimitShares::Of(share), period_s).First(path, 0, samples);
   }
   std::vector<ReferenceSample> reference(static_cast<std::size_t>(samples));
   AddTorques(TorqueOf(move, design), ProfileAccelerations(move.profile, periods, period_s), 0,
              &reference);
   RunReferenceModel(design, move.from.angle_rad, &reference);
   const int states = static_cast<int>(design.Am.rows());
-  return !FirstBrokenLimit(reference, states, limits, share, period_s);
+  return !FirstBrokenLimit(reference, states, limits, LimitShares::Of(share), period_s);
 }
 
 template <typename Fits>
@@ -78,7 +79,81 @@ class RetargetSearch {
   int broken_ = kFirst;
 };
 
+// Rates have a larger share: a rate just reached does no harm, and trips have a margin above.
+constexpr double kRateShare = 0.8 / 0.68;
+
+// The hubs of a fast move are farther from their reference than those of a slow one.
+constexpr double kAngleMargin_rad = 0.05;
+
+// Tests durations of a move from rest for one payload after the other.
+class FastSearch {
+ public:
+  FastSearch(const PlannedMove& move, const Design& design, double period_s,
+             const MotionLimits& limits)
+      : move_(move), design_(design), period_s_(period_s), limits_(limits) {
+    move_.first = 0;
+    move_.is_shortest = true;
+    for (double& angle_rad : limits_.soft_angle_rad) angle_rad -= kAngleMargin_rad;
+  }
+
+  bool Fits(double payload_kg, int periods) {
+    move_.periods = periods;
+    const double light = limits_.fast_fraction[0], heavy = limits_.fast_fraction[1];
+    const double share = light + (heavy - light) * payload_kg / design_.scheduled->max_kg;
+    const LimitShares shares = {
+        .torque = share, .jump = 1.0, .rate = std::min(1.0, kRateShare * share), .strain = share};
+    const RigidPath path({&move_, 1}, move_.from.angle_rad, periods + 1, period_s_);
+    const PathCheck check(design_, limits_, shares, period_s_);
+    return !check.FirstWith(payload_kg, path, 0, periods + 1);
+  }
+
+  // Starts from the duration of the payload before, which is near.
+  std::optional<int> Shortest(double payload_kg, int near) {
+    const int least = std::max(
+        kFewestPeriods, static_cast<int>(std::ceil(limits_.fast_least_s / period_s_ - 1e-9)));
+    int periods = std::max(near, least);
+    if (Fits(payload_kg, periods)) {
+      while (periods > least && Fits(payload_kg, periods - 1)) --periods;
+      return periods;
+    }
+    const int most = MostPeriods(period_s_);
+    int too_few = periods;
+    while (periods < most && !Fits(payload_kg, periods)) {
+      too_few = periods;
+      periods = std::min(periods + periods / 4 + 1, most);
+    }
+    if (!Fits(payload_kg, periods)) return std::nullopt;
+    while (periods - too_few > 1) {
+      const int middle = (periods + too_few) / 2;
+      (Fits(payload_kg, middle) ? periods : too_few) = middle;
+    }
+    return periods;
+  }
+
+ private:
+  PlannedMove move_;
+  const Design& design_;
+  double period_s_;
+  MotionLimits limits_;
+};
+
 }  // namespace
+
+std::optional<DurationTable> ShortestByPayload(const PlannedMove& move, const Design& design,
+                                               double period_s, const MotionLimits& limits) {
+  FastSearch search(move, design, period_s, limits);
+  const double max_kg = design.scheduled->max_kg;
+  DurationTable::Periods periods{};
+  int near = 0;
+  for (std::size_t i = 0; i < periods.size(); ++i) {
+    const double payload_kg = max_kg * static_cast<double>(i) / (DurationTable::kPayloads - 1);
+    const std::optional<int> shortest = search.Shortest(payload_kg, near);
+    if (!shortest) return std::nullopt;
+    near = *shortest;
+    periods[i] = static_cast<std::int16_t>(near);
+  }
+  return DurationTable(periods, max_kg);
+}
 
 std::optional<int> ShortestPeriods(std::span<const PlannedMove> moves, const Design& design,
                                    double period_s, const MotionLimits& limits, double share) {
@@ -88,7 +163,7 @@ std::optional<int> ShortestPeriods(std::span<const PlannedMove> moves, const Des
       return FitsFromRest(moves.back(), periods, design, period_s, limits, share);
     });
   }
-  const PathCheck check(design, limits, share, period_s);
+  const PathCheck check(design, limits, LimitShares::Of(share), period_s);
   RetargetSearch move(moves, check, period_s);
   for (int periods = kFewestPeriods; periods <= most; ++periods) {
     if (move.Fits(periods)) return periods;

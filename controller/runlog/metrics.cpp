@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "controller/runlog/durations_of_run.h"
 #include "model/beam/link_modes.h"
 #include "model/units.h"
 
@@ -160,6 +161,12 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
         ResidualRms_mm(after, MeanTip(after)) / static_cast<double>(rests.size());
     const auto last = FinalWindow(samples, rest, slack_s, kLongWindow_s);
     metrics->tip_last_second_rms_mm = ResidualRms_mm(last, MeanTip(last));  // the last rest's stays
+    const auto whole = Between(samples, rest.motion_s - 2 * slack_s, rest.end_s, slack_s);
+    metrics->arrival.push_back(
+        {.start_s = rest.motion_s,
+         .at_rest_s = StillAfter_s(whole, rest.motion_s, place, kStillWithin_m),
+         .on_target_s =
+             StillAfter_s(whole, rest.motion_s, window.back().target_m, kStillWithin_m)});
     TakeLonger(StillAfter_s(all, rest.start_s, place, kStillWithin_m),
                &metrics->tip_still_within_15mm_s);
     TakeLonger(StillAfter_s(all, rest.start_s, place, kFinelyStillWithin_m),
@@ -233,7 +240,8 @@ std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s) {
     const bool last = i + 1 == motions.size();
     const double planned_end_s = last ? experiment.duration_s : motions[i + 1].start_s;
     const Rest rest{.start_s = motions[i].start_s + motions[i].duration_s,
-                    .end_s = std::min(end_s, planned_end_s)};
+                    .end_s = std::min(end_s, planned_end_s),
+                    .motion_s = motions[i].start_s};
     const bool is_cut = planned_end_s - rest.end_s > kFinalWindow_s / 2;
     if (rest.end_s - rest.start_s > (is_cut ? kFinalWindow_s : 0)) rests.push_back(rest);
   }
@@ -299,14 +307,16 @@ RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& e
                                       [](const TickRecord& record) { return record.truth.known; });
   const auto samples = Samples(running, period_s, metrics.truth, geometry);
   const double run_end_s = samples.empty() ? 0 : samples.back().time_s;
-  JudgeRests(samples, RestsOf(experiment, run_end_s), period_s / 2, &metrics);
+  const std::vector<Rest> rests =
+      RestsOf(WithDurationsOfRun(experiment, running, period_s), run_end_s);
+  JudgeRests(samples, rests, period_s / 2, &metrics);
   if (samples.empty()) {
     metrics.joint_rms_error_deg.fill(std::numeric_limits<double>::quiet_NaN());
     metrics.torque_rms_nm.fill(std::numeric_limits<double>::quiet_NaN());
   } else {
     JudgeAllTicks(running, samples, geometry.layout, &metrics);
     JudgeShape(samples, &metrics);
-    JudgeRoughness(samples, RestsOf(experiment, run_end_s), period_s, &metrics);
+    JudgeRoughness(samples, rests, period_s, &metrics);
   }
   return metrics;
 }

@@ -17,6 +17,14 @@ namespace flexarm {
 /// the joints where the reference ends and both links straight.
 inline constexpr double kSettledWithin_mm = 15.0;
 
+/// How long a move took in the end, from its start until the tip stays within kSettledWithin_mm of
+/// a place for the rest of its rest; it may be shorter than the move. Nothing: never.
+struct Arrival {
+  double start_s;                     ///< of the move
+  std::optional<double> at_rest_s;    ///< the place where the tip rests, over the last 0.3 s
+  std::optional<double> on_target_s;  ///< the target
+};
+
 /// Performance metrics of a run (docs/benchmark.md, "Settled"). A metric for which the run was too
 /// short is NaN.
 struct RunMetrics {
@@ -46,6 +54,7 @@ struct RunMetrics {
   std::array<double, 2> peak_torque_nm{};   ///< after the gate
   std::array<double, 2> torque_rms_nm{};    ///< after the gate, all ticks
   std::array<double, 2> peak_bending_mm{};  ///< largest deflection of each link's tip
+  std::vector<Arrival> arrival;             ///< of the motions with a rest, in order of time
   bool truth = false;  ///< angles and tip are the plant's true ones; otherwise estimated
 };
 
@@ -53,6 +62,7 @@ struct RunMetrics {
 struct Rest {
   double start_s;
   double end_s;
+  double motion_s = 0.0;  ///< start of the motion before it
 };
 
 /// From the end of each move to the start of the next, or to `run_end_s`. Rests that the run did

@@ -106,8 +106,11 @@ FittedModes ControlStep::Fit(const SensorFrame& frame, std::int64_t instant_ns,
 void ControlStep::FollowPath(const StepInput& input) noexcept {
   if (input.mode != LoopMode::kFollow) return;
   const bool begins = motion_.Take(input.path[1], period_s_);
-  observer_->FollowPath(
-      {.begins = begins, .moves = motion_.moving(), .rested_s = motion_.rested_s()});
+  observer_->FollowPath({.begins = begins,
+                         .moves = motion_.moving(),
+                         .rested_s = motion_.rested_s(),
+                         .same_load = input.same_load != 0,
+                         .load_changes = input.load_changes != 0});
 }
 
 void ControlStep::FollowReference(const StepInput& input) noexcept {

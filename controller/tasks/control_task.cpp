@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "controller/tasks/follow_reference.h"
+#include "controller/types/known_payload.h"
 
 namespace flexarm {
 
@@ -50,6 +51,7 @@ void ControlTask::Run(const Activation& activation) noexcept {
   record.run_number = run_number_;
   counts_ = record.output.counts;
   delay_found_ = int{record.output.delay_found};
+  known_ = KnownPayload(record.output);
   hub_angle_rad_ = {record.output.angle_rad[0], record.output.angle_rad[1]};
   Publish(activation, record.input, record.output);
   if (PlansAhead(record.input)) {
@@ -92,6 +94,9 @@ void ControlTask::StartRun(const Permit& permit) noexcept {
   released_.store(run_number_, std::memory_order_release);
   sample_ = -1;
   reset_ = true;
+  if (experiment_ != nullptr) {
+    reference_.Start(&experiment_->reference, &experiment_->load_change);
+  }
   if (channels_.planner != nullptr) channels_.planner->Start(run_number_);
   if (experiment_ != nullptr && experiment_->mode == LoopMode::kRegulate) {
     homing_.Start(experiment_->homing, hub_angle_rad_);
@@ -136,12 +141,12 @@ void ControlTask::Follow(SafetyState state, StepInput* input) noexcept {
     input->reference_ended = homing_.ended() ? 1 : 0;
     return;
   }
-  const ReferenceTable& reference = experiment_->reference;
-  const int last = reference.periods() - 1;
+  const int last = reference_.periods() - 1;
   if (state == SafetyState::kStopping && sample_ >= last) sample_ = last + 1;  // rest after the end
   // In open loop each torque of the sequence is put out once, so the delay found does not shift it.
   const int acts = input->mode == LoopMode::kFollow ? sample_ + delay_found_ : sample_;
-  FollowReference(reference, grid_, sample_, acts, input);
+  reference_.Choose(acts, known_);
+  FollowReference(reference_, grid_, sample_, acts, input);
   if (PlansAhead(*input)) FollowPlan(input);
 }
 

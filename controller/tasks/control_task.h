@@ -6,6 +6,7 @@
 
 #include "controller/exchange/spsc_queue.h"
 #include "controller/realtime/task.h"
+#include "controller/reference/timed_reference.h"
 #include "controller/safety/windowed_count.h"
 #include "controller/step/control_step.h"
 #include "controller/tasks/homing_reference.h"
@@ -77,6 +78,7 @@ class ControlTask final : public Task {
   const PlannedExperiment* experiment_ = nullptr;  // of the present run, or of the last
   std::uint32_t run_number_ = 0;                   // its number; 0: none yet
   std::atomic<std::uint32_t> released_{0};
+  TimedReference reference_;  // of the experiment
   HomingReference homing_;
   Calibration calibration_{};
   SafetyState state_ = SafetyState::kStarting;
@@ -86,6 +88,7 @@ class ControlTask final : public Task {
   bool reset_ = true;                             // the next step is a reset
   std::array<std::int64_t, kCounters> counts_{};  // of the last step
   std::array<double, 2> hub_angle_rad_{};         // of the last step
+  PayloadKnowledge known_ = kNoPayloadEstimate;   // by the last step
   WindowedCount missed_;                          // deadlines
   std::int64_t due_before_ns_ = INT64_MIN;        // of the last activation
   CommandHistory commands_{kNoCommand};

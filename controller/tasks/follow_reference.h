@@ -1,6 +1,6 @@
 #pragma once
 
-#include "controller/reference/reference.h"
+#include "controller/reference/timed_reference.h"
 #include "controller/types/loop_grid.h"
 #include "controller/types/step_types.h"
 
@@ -15,7 +15,7 @@ namespace flexarm {
 /// @param acts  sample at the instant at which the torque of this step acts: `sample`, and the
 ///        delay found where the law follows the reference
 /// Real-time: safe.
-void FollowReference(const ReferenceTable& reference, const LoopGrid& grid, int sample, int acts,
+void FollowReference(const TimedReference& reference, const LoopGrid& grid, int sample, int acts,
                      StepInput* input) noexcept;
 
 }  // namespace flexarm

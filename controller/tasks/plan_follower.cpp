@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "controller/types/known_payload.h"
+
 namespace flexarm {
 
 void PlanFollower::Start(std::uint32_t run) noexcept {
@@ -50,11 +52,7 @@ void PlanFollower::Send(int sample, std::int64_t due_ns, const MotionSegment& se
   request_.end = segment.end;
   request_.needed_ns = due_ns + schedule_.ready * schedule_.period_ns;
   std::copy_n(output.x_next.begin(), request_.x.size(), request_.x.begin());
-  request_.known = {.payload_kg = output.payload_kg,
-                    .payload_sigma_kg = output.payload_sigma_kg,
-                    .friction_nm = output.friction_nm,
-                    .mean_nis = output.mean_nis,
-                    .warnings = output.payload_warnings};
+  request_.known = KnownPayload(output);
   const int points = last + 1 - (sample - 1) + 1;
   request_.points = static_cast<std::uint32_t>(
       std::min(static_cast<std::size_t>(points), PlanRequest::kMostPoints));

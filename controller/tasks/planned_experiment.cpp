@@ -1,6 +1,7 @@
 #include "controller/tasks/planned_experiment.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "controller/types/rejected_error.h"
 
@@ -14,6 +15,9 @@ PlannedExperiment::PlannedExperiment(const Experiment& experiment, const Design&
       sim_events(experiment.sim_event) {
   std::stable_sort(sim_events.begin(), sim_events.end(),
                    [](const SimEvent& a, const SimEvent& b) { return a.at_s < b.at_s; });
+  for (const LoadChange& change : experiment.load_change) {
+    load_change.push_back(static_cast<int>(std::lround(change.at_s / period_s)));
+  }
 }
 
 void RefuseSimEvents(const Experiment& experiment) {

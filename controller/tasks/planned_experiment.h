@@ -26,6 +26,7 @@ struct PlannedExperiment {
 
   ReferenceTable reference;          ///< empty for a homing run
   Experiment accepted{};             ///< the experiment, with the chosen durations
+  std::vector<int> load_change;      ///< samples at which a change of the payload is announced
   std::vector<SimEvent> sim_events;  ///< in order of time; simulated backend only
   LoopMode mode = LoopMode::kFollow;
   HomingPlan homing{};  ///< if mode is kRegulate

@@ -38,8 +38,8 @@ PlanSchedule PlanScheduleOf(const RigConfig& config) {
 PlannerTask::PlannerTask(const RigConfig& config, const Design& design)
     : grid_(config.loop),
       schedule_(PlanScheduleOf(config)),
-      law_(MakeRigidJointArm(design), design.scheduled->gains, grid_.period_s(),
-           config.safety.torque_limit_nm),
+      law_(MakeRigidJointArm(design), design.scheduled->gains, BendingGuard(config),
+           design.scheduled->max_kg, grid_.period_s(), config.safety.torque_limit_nm),
       stepper_(MakeRigidJointArm(design), grid_.period_s(), kAnyGauge_hz),
       config_(PlannerConfigOf(config)),
       torque_limit_nm_(Eigen::Vector2d::Map(config_.torque_limit_nm.data())),

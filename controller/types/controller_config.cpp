@@ -30,6 +30,9 @@ void CheckGrid(const std::string& key, const std::vector<double>& grid, double l
 
 void CheckPayload(const PayloadLawConfig& p, ProblemList* list) {
   list->Positive("payload.max_kg", p.max_kg, 100.0, "moves are planned for this payload");
+  list->EachPositive("payload.fast_fraction", p.fast_fraction, 1.0,
+                     "share of the limits for the shortest moves");
+  list->Positive("payload.fast_least_s", p.fast_least_s, 60.0, "no move is shorter");
   list->Within("payload.reference_kg", p.reference_kg, 0.0, 100.0,
                "the reference is the motion of an arm with this payload");
   CheckGrid("payload.gain_payload_kg", p.gain_payload_kg, 100.0, list);

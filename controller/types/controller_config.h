@@ -20,6 +20,9 @@ enum class FeedforwardSign : std::uint8_t {
 /// Table [controller.payload]: settings of the laws that use the estimated payload.
 struct PayloadLawConfig {
   double max_kg;                        ///< heaviest payload that moves are planned for
+  std::array<double, 2> fast_fraction;  ///< share of the limits for moves of the shortest duration:
+                                        ///< without payload, with max_kg
+  double fast_least_s;                  ///< no such move is shorter
   double reference_kg;                  ///< the reference is the motion of an arm with this payload
   std::vector<double> gain_payload_kg;  ///< grid of the gain table, ascending from 0
   std::vector<double> gain_elbow_deg;   ///< |theta2|, ascending from 0

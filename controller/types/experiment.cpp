@@ -175,6 +175,13 @@ std::vector<Problem> Experiment::Problems() const {
   const std::vector<Act> acts = ActsOf(*this);
   for (std::size_t i = 0; i < acts.size(); ++i) CheckTimes(acts, i, duration_s, &list);
   for (std::size_t i = 0; i < sim_event.size(); ++i) CheckSimEvent(*this, i, &list);
+  for (std::size_t i = 0; i < load_change.size(); ++i) {
+    const double at_s = load_change[i].at_s;
+    const double above_s = i == 0 ? 0.0 : load_change[i - 1].at_s;
+    list.Require(at_s >= above_s && !(at_s > duration_s),
+                 ProblemList::Element("load_change", i) + ".at_s", NumberText(at_s),
+                 "must lie inside the experiment, and rows are in order of time");
+  }
   return list.Take();
 }
 

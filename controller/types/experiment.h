@@ -30,7 +30,10 @@ struct Doublet {
 struct Move {
   double start_s;
   std::optional<double> duration_s{};  ///< none: the shortest within the limits, see PlanMoves
-  std::array<double, 2> to_deg{};      ///< th1 and th2 at the end, absolute
+  bool shortest = false;   ///< duration = "shortest": docs/theory/fast-moves.md; then the longest
+                           ///< that a payload needs is in duration_s, once the moves are planned
+  bool same_load = false;  ///< the payload is that of the move before
+  std::array<double, 2> to_deg{};                   ///< th1 and th2 at the end, absolute
   std::optional<std::array<double, 2>> to_tip_m{};  ///< x, y of the tip instead, base frame
   std::optional<ElbowSide> elbow{};                 ///< with to_tip_m, if both sides are possible
   MoveProfile profile = MoveProfile::kQuintic;
@@ -72,6 +75,11 @@ struct CsvTrajectory {
   double duration_s() const { return point.empty() ? 0.0 : point.back().time_s; }
 };
 
+/// The payload changes, [[load_change]]: announced by the gripper or the operator.
+struct LoadChange {
+  double at_s;  ///< after the start of the experiment
+};
+
 enum class FreezeTarget : std::uint8_t { kNone, kPlant, kControl };
 
 /// An event on the simulated rig, [[sim_event]]. Real backends reject it.
@@ -100,6 +108,7 @@ struct Experiment {
   std::vector<Doublet> doublet;  ///< the rows of a kind in order of time; only moves overlap
   std::vector<SimEvent> sim_event;
   std::vector<Move> move{};
+  std::vector<LoadChange> load_change{};
   std::vector<Chirp> chirp{};
   std::vector<Prbs> prbs{};
   std::optional<CsvTrajectory> csv{};

@@ -50,8 +50,10 @@ struct StepInput {
   std::uint8_t reset;  ///< 1: clear all state but counts_before (just armed, or calibrated)
   std::uint8_t reference_ended;  ///< 1: reference_next is the last sample of the experiment
   LoopMode mode;
-  std::uint8_t planned;  ///< 1: `plan` is valid; 0: the law uses its closed form
-  std::array<std::uint8_t, 3> reserved;
+  std::uint8_t planned;       ///< 1: `plan` is valid; 0: the law uses its closed form
+  std::uint8_t same_load;     ///< 1: the move has the payload of the one before it
+  std::uint8_t load_changes;  ///< 1: a change of the payload is announced for now
+  std::uint8_t reserved;
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
 static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 32 + 2 * sizeof(ReferenceSample) +

@@ -107,6 +107,34 @@ TEST(ExperimentFile, WrongLawsAndPayloadsAreNamed) {
   EXPECT_THAT(refusal("payload_kgs = [0, 1]"), HasSubstr("did you mean \"payload_kg\"?"));
 }
 
+TEST(ExperimentFile, AMoveMayBeTheShortestForTheLoadOfTheMoveBefore) {
+  const Experiment e = ParseExperiment(
+      Replaced(kMoves, "duration_s = 1.4", "duration = \"shortest\"\nsame_load = true") +
+          "[[load_change]]\nat_s = 1.5\n[[load_change]]\nat_s = 2.5\n",
+      "e.toml");
+  EXPECT_FALSE(e.move[0].shortest || e.move[0].same_load);
+  EXPECT_TRUE(e.move[1].shortest && e.move[1].same_load);
+  EXPECT_FALSE(e.move[1].duration_s);
+  ASSERT_EQ(e.load_change.size(), 2U);
+  EXPECT_EQ(e.load_change[1].at_s, 2.5);
+}
+
+TEST(ExperimentFile, WrongDurationsAndLoadChangesAreNamed) {
+  const auto refusal = [](const std::string& line, const std::string& rows = "") {
+    return MessageOf<ConfigError>(
+        [&] { ParseExperiment(Replaced(kMoves, "duration_s = 1.4", line) + rows, "e.toml"); });
+  };
+  EXPECT_THAT(refusal("duration = \"longest\""),
+              AllOf(HasSubstr("e.toml:17: move[1].duration"), HasSubstr("shortest")));
+  EXPECT_THAT(refusal("duration = 1.4"), HasSubstr("move[1].duration"));
+  EXPECT_THAT(refusal("duration = \"shortest\"\nduration_s = 1.4"),
+              HasSubstr("must not be given beside duration"));
+  EXPECT_THAT(refusal("duration_s = 1.4", "[[load_change]]\nat_s = 6.5\n"),
+              AllOf(HasSubstr("load_change[0].at_s = 6.5"), HasSubstr("inside the experiment")));
+  EXPECT_THAT(refusal("duration_s = 1.4", "[[load_change]]\nat_s = 3\n[[load_change]]\nat_s = 2\n"),
+              AllOf(HasSubstr("load_change[1].at_s = 2"), HasSubstr("in order of time")));
+}
+
 // The law decides whether it accepts a retarget.
 TEST(ExperimentFile, AMoveMayBeginDuringTheMoveBefore) {
   const Experiment e =

@@ -176,6 +176,8 @@ TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
                                  "estimator.payload.gate_sigmas=5",
                                  "estimator.payload.detect_delay=false",
                                  "controller.payload.max_kg=0.9",
+                                 "controller.payload.fast_fraction=[0.5, 0.4]",
+                                 "controller.payload.fast_least_s=0.7",
                                  "controller.payload.reference_kg=0.25",
                                  "controller.payload.gain_payload_kg=[0, 0.5]",
                                  "controller.payload.gain_elbow_deg=[0, 45, 90]",
@@ -202,6 +204,8 @@ TEST(RigBinding, PutsEveryKeyOfThePayloadTablesInItsField) {
   EXPECT_FALSE(e.detect_delay);
   const PayloadLawConfig& c = set.controller.payload.value();
   EXPECT_EQ(c.max_kg, 0.9);
+  EXPECT_EQ(c.fast_fraction, (std::array{0.5, 0.4}));
+  EXPECT_EQ(c.fast_least_s, 0.7);
   EXPECT_EQ(c.reference_kg, 0.25);
   EXPECT_EQ(c.gain_payload_kg, (std::vector<double>{0, 0.5}));
   EXPECT_EQ(c.gain_elbow_deg, (std::vector<double>{0, 45, 90}));

@@ -21,7 +21,8 @@ SHORT = doublet("short", 2.0)
 
 PERIOD_MS = 20.0
 
-LONG = doublet("long", 30.0)
+# Slow, so that it coasts a few degrees after a trip and not to a limit switch.
+LONG = doublet("long", 30.0, move_deg=1.0)
 
 ONE_MOVE = """
 name = "one-move"

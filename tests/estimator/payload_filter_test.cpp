@@ -341,7 +341,7 @@ TEST(PayloadFilter, AMoveRaisesThePayloadVariance) {
                   {.z = plant.Run(MoveTorque(k)), .good = PayloadFilter::kAllGood});
   }
   ASSERT_LT(filter.estimate().payload_sigma_kg, 0.1);
-  filter.BeginMove();
+  filter.BeginMove(false);
   EXPECT_DOUBLE_EQ(filter.estimate().payload_sigma_kg, 0.1);
 }
 
@@ -357,7 +357,7 @@ TEST(PayloadFilter, NoMoveStartsBelowTheFirstPayloadEstimate) {
     }
     const double found_kg = filter.estimate().payload_kg;
     ASSERT_NEAR(found_kg, payload_kg, 0.05);
-    filter.BeginMove();
+    filter.BeginMove(false);
     EXPECT_EQ(filter.estimate().payload_kg,
               payload_kg == 0.0 ? StudyPayload().payload_start_kg : found_kg);
   }
@@ -400,7 +400,7 @@ TEST(PayloadFilter, PayloadAndFrictionAreNotUpdatedBetweenMoves) {
   EXPECT_EQ(filter.estimate().payload_kg, StudyPayload().payload_start_kg);
   EXPECT_EQ(filter.estimate().friction_nm, StudyPayload().friction_start_nm);
   EXPECT_GT(std::fabs(filter.estimate().state.q[0]), 0.01) << "the motion is still estimated";
-  filter.BeginMove();
+  filter.BeginMove(false);
   for (int k = 30; k < 60; ++k) sample(k);
   EXPECT_NE(filter.estimate().payload_kg, StudyPayload().payload_start_kg);
   EXPECT_NE(filter.estimate().friction_nm, StudyPayload().friction_start_nm);
@@ -411,7 +411,7 @@ TEST(PayloadFilter, DoesNotAllocate) {
   const NoAlloc armed;
   filter.Update(Held({2.0, 0.4}), {.z = Outputs::Zero(), .good = PayloadFilter::kAllGood});
   filter.Update(Held({2.0, 0.4}), {.z = Outputs::Zero(), .good = 0, .tip_m_s2 = 1.0});
-  filter.BeginMove();
+  filter.BeginMove(false);
   filter.Reset(RigidJointArm::Vector::Zero());
 }
 

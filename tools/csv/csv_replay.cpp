@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "controller/commissioning/calibration_file.h"
@@ -37,13 +38,13 @@ CsvRun RunOf(const CsvReplayTask& task, const Calibration& calibration) {
   return run;
 }
 
-std::optional<CsvReference> ReferenceOf(const CsvReplayTask& task, const Design& design,
-                                        const StepInput& first) {
-  if (task.experiment.empty()) return std::nullopt;
+std::unique_ptr<CsvReference> ReferenceOf(const CsvReplayTask& task, const Design& design,
+                                          const StepInput& first) {
+  if (task.experiment.empty()) return nullptr;
   const StepOutput at_start = ControlStep(task.config, design).Step(first);
   try {
-    return CsvReference(task.config, design, LoadExperiment(task.experiment),
-                        {at_start.angle_rad[0], at_start.angle_rad[1]});
+    return std::make_unique<CsvReference>(task.config, design, LoadExperiment(task.experiment),
+                                          std::array{at_start.angle_rad[0], at_start.angle_rad[1]});
   } catch (const RejectedError& error) {
     throw RejectedError(task.experiment.string() + ": " + error.what());
   }
@@ -92,16 +93,15 @@ CsvReplayResult ReplayCsv(const CsvReplayTask& task) {
   const CsvRun run = RunOf(task, calibration);
   const std::vector<StepInput>& inputs = run.input;
   const Design design = DesignFor(task.config);
-  const std::optional<CsvReference> reference = ReferenceOf(task, design, inputs.front());
+  const std::unique_ptr<CsvReference> reference = ReferenceOf(task, design, inputs.front());
   AppliedTorques torques{LoopGrid(task.config.loop)};
   ControlStep step(task.config, design);
-  int delay_found = 0;
+  StepOutput before{};
   Replay replay(
       [&](const StepInput& input) {
-        const StepOutput output = step.Step(input);
-        delay_found = int{output.delay_found};
-        torques.Asked(input.tick, output.torque_nm);
-        return output;
+        before = step.Step(input);
+        torques.Asked(input.tick, before.torque_nm);
+        return before;
       },
       true);
   std::int64_t left_out = 0;
@@ -114,7 +114,7 @@ CsvReplayResult ReplayCsv(const CsvReplayTask& task) {
     torques.Compare(input, &largest_nm);
     TickRecord record{};
     record.input = input;
-    if (reference) reference->Give(delay_found, &record.input);
+    if (reference) reference->Give(before, &record.input);
     replay.Tick(record);
   }
   CsvReplayResult replayed{.result = replay.Result(),

@@ -31,7 +31,7 @@ LAYERS = {
                         "estimator controller/exchange",
     "controller/safety": "hal controller/types",
     "controller/law": "model/math model/rigid_joint estimator controller/types",
-    "controller/reference": "model model/beam model/rigid_joint estimator controller/types "
+    "controller/reference": "model model/rigid_joint estimator controller/types "
                             "controller/law",
     "controller/planner": "model/math model/rigid_joint controller/types controller/law",
     "controller/design": "model model/math model/arm model/rigid_joint estimator controller/types "

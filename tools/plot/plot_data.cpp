@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "controller/runlog/durations_of_run.h"
 #include "controller/safety/torque_gate.h"
 #include "model/units.h"
 #include "tools/plot/run_marks.h"
@@ -110,10 +112,11 @@ std::vector<PlotRun::StateSpan> StateSpansOf(const LoadedRun& run, std::int64_t 
   return spans;
 }
 
-std::vector<PlotRun::Act> ActsOf(const LoadedRun& run, double running_end_s) {
+std::vector<PlotRun::Act> ActsOf(const std::optional<Experiment>& experiment,
+                                 double running_end_s) {
   std::vector<PlotRun::Act> acts;
-  if (run.experiment) {
-    for (const Motion& move : run.experiment->Motions()) {
+  if (experiment) {
+    for (const Motion& move : experiment->Motions()) {
       if (move.start_s >= running_end_s) break;
       if (!acts.empty()) acts.back().until_s = move.start_s;
       acts.push_back({.from_s = move.start_s,
@@ -190,11 +193,12 @@ PlotRun PlotDataOf(const LoadedRun& run) {
     plot.sample.push_back(SampleOf(record, time_s, scales));
     if (IsRunning(record)) running_end_s = time_s;
   }
-  plot.act = ActsOf(run, running_end_s);
+  std::optional<Experiment> experiment = run.experiment;
+  if (experiment) experiment = WithDurationsOfRun(*experiment, ticks, run.period_s());
+  plot.act = ActsOf(experiment, running_end_s);
   plot.view = ViewsOf(run, plot);
-  if (run.experiment) {
-    FillDistanceFromTarget(run, RestsOf(*run.experiment, running_end_s), scales.geometry,
-                           &plot.sample);
+  if (experiment) {
+    FillDistanceFromTarget(run, RestsOf(*experiment, running_end_s), scales.geometry, &plot.sample);
   }
   return plot;
 }

@@ -116,7 +116,7 @@ TEST(GainTable, DoesNotAllocate) {
 
 TEST(SchedulingPayload, IsTheEstimateWhenItIsCertain) {
   EXPECT_EQ(SchedulingPayload(0.8, 0.0, 8.0, 0.0, 1.0), 0.8);
-  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 20.0, 0.5, 1.0), 0.8);
+  EXPECT_EQ(SchedulingPayload(0.8, 0.0, 20.0, 2.0, 1.0), 0.8);
   EXPECT_EQ(SchedulingPayload(0.05, 0.3, 200.0, 2.0, 1.0), 0.05)
       << "light gains are not made heavier";
 }
@@ -124,7 +124,7 @@ TEST(SchedulingPayload, IsTheEstimateWhenItIsCertain) {
 // The shares are of the greatest payload: an arm for 4 kg has four times as much of everything.
 TEST(SchedulingPayload, IsAShareOfTheGreatestPayload) {
   EXPECT_DOUBLE_EQ(SchedulingPayload(2.2, 0.2, 8.0, 0.0, 4.0), 4.0 * (0.55 - 0.25 * 0.40));
-  EXPECT_DOUBLE_EQ(SchedulingPayload(2.2, 0.0, 8.0, 0.51, 4.0), 0.6);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(2.2, 0.0, 8.0, 2.01, 4.0), 0.6);
 }
 
 TEST(SchedulingPayload, FallsTo150GramsWithUncertainty) {
@@ -134,7 +134,7 @@ TEST(SchedulingPayload, FallsTo150GramsWithUncertainty) {
   EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.05, 40.0, 0.0, 1.0), 0.35)
       << "the greater uncertainty counts";
   EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 100.0, 0.0, 1.0), 0.15);
-  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 8.0, 0.51, 1.0), 0.15);
+  EXPECT_DOUBLE_EQ(SchedulingPayload(0.55, 0.0, 8.0, 2.01, 1.0), 0.15);
 }
 
 }  // namespace

@@ -43,7 +43,11 @@ ReferenceTable ScheduledTable(const Experiment& experiment,
 }
 
 ScheduledLaw ShippedLaw() {
-  return {MakeRigidJointArm(ShippedPathDesign()), ShippedPathDesign().scheduled->gains, kPeriod_s,
+  return {MakeRigidJointArm(ShippedPathDesign()),
+          ShippedPathDesign().scheduled->gains,
+          BendingGuard(ShippedRig()),
+          ShippedPathDesign().scheduled->max_kg,
+          kPeriod_s,
           ShippedRig().safety.torque_limit_nm};
 }
 
@@ -178,9 +182,10 @@ TEST(ScheduledLaw, UsesTheRobustGainsForAnUncertainPayload) {
   heavy.payload_kg = 1.0;
   const Vector2d sure = AskedOf(x, heavy, path, 0.0);
   const GainTable& gains = ShippedPathDesign().scheduled->gains;
+  // At rest the friction is compensated for four seconds.
   const Vector2d robust = gains.At(0.15, 0.0) * -x;
   EXPECT_GT((sure - robust).norm(), 0.01) << "the same gains: the test is inconclusive";
-  EXPECT_LT((AskedOf(x, heavy, path, 3.0) - robust).norm(), 1e-12);
+  EXPECT_LT((AskedOf(x, heavy, path, 5.0) - robust).norm(), 1e-12);
   heavy.payload_sigma_kg = 0.2;
   EXPECT_LT((AskedOf(x, heavy, path, 0.0) - robust).norm(), 1e-12);
   heavy.payload_sigma_kg = 0.0;
@@ -194,9 +199,9 @@ TEST(ScheduledLaw, UsesTheRobustGainsForAnUncertainPayload) {
       << "the payload may be heavier, however small sigma is";
 }
 
-// 0.7 of the friction for a large feedback torque, 0.76 of that (tanh 1) for one of half the
-// friction; three quarters of it half a second after the move, and none during a move or later than
-// two seconds after it.
+// The friction for a large feedback torque, 0.76 of it (tanh 1) for one of a tenth of the friction;
+// three quarters of it a second after the move, and none during a move or later than four seconds
+// after it.
 TEST(ScheduledLaw, AfterAMoveTheFrictionOfTheFeedbackIsCompensated) {
   const auto path = ScheduledTable(OneMove({30, -20}, 2.0)).PathAround(0);
   const Vector2d friction_nm(0.16, 0.01);
@@ -210,14 +215,14 @@ TEST(ScheduledLaw, AfterAMoveTheFrictionOfTheFeedbackIsCompensated) {
     const auto help = [&](double rested_s) -> Vector2d {
       return AskedOf(x, rough, path, rested_s) - AskedOf(x, slippery, path, rested_s);
     };
-    const Vector2d feedback_nm = AskedOf(x, slippery, path, 0.5);
+    const Vector2d feedback_nm = AskedOf(x, slippery, path, 1.0);
     for (int i = 0; i < 2; ++i) {
-      EXPECT_NEAR(help(0.5)[i],
-                  0.75 * 0.7 * friction_nm[i] * std::tanh(feedback_nm[i] / (0.5 * friction_nm[i])),
+      EXPECT_NEAR(help(1.0)[i],
+                  0.75 * friction_nm[i] * std::tanh(feedback_nm[i] / (0.1 * friction_nm[i])),
                   1e-12);
     }
-    EXPECT_GT(std::fabs(help(0.5)[0]), 1e-4) << "no compensation: the test is inconclusive";
-    for (const double rested_s : {0.0, 2.0, 5.0, std::numeric_limits<double>::infinity()}) {
+    EXPECT_GT(std::fabs(help(1.0)[0]), 1e-4) << "no compensation: the test is inconclusive";
+    for (const double rested_s : {0.0, 4.0, 5.0, std::numeric_limits<double>::infinity()}) {
       EXPECT_EQ(help(rested_s), Vector2d(0.0, 0.0)) << rested_s;
     }
   }

@@ -26,8 +26,9 @@ constexpr int kDelayRuns = 40;
 
 // An undeclared delay is beyond what the loop is designed for: of 560 other runs (both laws, one
 // and two samples more) 4 % had not settled in time after the first move, and 1 to 2 % tripped. The
-// bounds are the most of these 40 runs of any row below, and one run more.
-constexpr int kLate = 4, kMissed = 1;
+// bounds are the most of these 40 runs of any row below, and one run more. One choice that is
+// reversed costs two changes.
+constexpr int kLate = 4, kMissed = 1, kReversed = 2;
 
 // How the plant's delay differs from the declared one.
 struct Undeclared {
@@ -142,7 +143,7 @@ TEST_P(UndeclaredDelay, IsFoundAndTheLaterMovesSettleInTime) {
   EXPECT_EQ(all.found, kDelayRuns);
   // Torques that act earlier do little harm, and have little effect on the innovations.
   EXPECT_GE(all.found_in_first, rig.samples > 0 ? kDelayRuns - kMissed : 4 * kDelayRuns / 5);
-  EXPECT_LE(all.changes, kDelayRuns + kMissed) << "one per run, hardly one is reversed";
+  EXPECT_LE(all.changes, kDelayRuns + kReversed) << "one per run, hardly one is reversed";
   EXPECT_LE(all.tripped, 1 + kMissed);
   EXPECT_GE(all.settled, kDelayRuns - kLate);
   EXPECT_GE(all.settled_later, kDelayRuns - 1 - kMissed);

@@ -25,6 +25,8 @@ constexpr MotionLimits kLimits = {.soft_angle_rad = {1.5, 1.0},
                                   .hub_rate_rad_s = {2.0, 3.0},
                                   .strain = {1e-3, 2e-3},
                                   .plan_fraction = 0.5,
+                                  .fast_fraction = {},
+                                  .fast_least_s = 0.0,
                                   .coulomb_friction_nm = {1.0, 0.5},
                                   .viscous_friction_nm_s_per_rad = {0.5, 0.25},
                                   .modes_per_link = 2,
@@ -39,7 +41,8 @@ std::vector<ReferenceSample> SamplesWith(const std::function<void(ReferenceSampl
 }
 
 std::string Broken(const std::vector<ReferenceSample>& samples, double share = 1.0) {
-  const auto broken = FirstBrokenLimit(samples, kStates, kLimits, share, kPeriod_s);
+  const auto broken =
+      FirstBrokenLimit(samples, kStates, kLimits, LimitShares::Of(share), kPeriod_s);
   return broken ? broken->text : "none";
 }
 
@@ -105,9 +108,10 @@ TEST(MotionCheckPart, CountsFromItsFirstSampleAndDoesNotCheckIt) {
   std::vector<ReferenceSample> samples(10);
   for (ReferenceSample& sample : samples) sample.u_m_nm[0] = 5.0;
   samples[0].x_m[0] = 2.0;
-  EXPECT_FALSE(FirstBrokenLimit(samples, kStates, kLimits, 1.0, kPeriod_s, 30));
+  EXPECT_FALSE(FirstBrokenLimit(samples, kStates, kLimits, LimitShares::Of(1.0), kPeriod_s, 30));
   samples[1].u_m_nm[0] = 0.9;
-  const auto jump = FirstBrokenLimit(samples, kStates, kLimits, 1.0, kPeriod_s, 30);
+  const auto jump =
+      FirstBrokenLimit(samples, kStates, kLimits, LimitShares::Of(1.0), kPeriod_s, 30);
   ASSERT_TRUE(jump.has_value());
   EXPECT_EQ(jump->sample, 31);
   EXPECT_THAT(jump->text, testing::AllOf(HasSubstr("a jump of the torque of joint 1 reaches -4.1"),

@@ -87,7 +87,7 @@ TEST(PathCheck, FindsTheFirstSampleAtWhichEitherArmBreaksALimitAndNamesIt) {
         MotionLimits limits = NoLimits();
         const double limit = 0.01 * percent * largest;
         (limits.*c.limit)[i] = limit / c.share;
-        const PathCheck check(ShippedPathDesign(), limits, kShare, kPeriod_s);
+        const PathCheck check(ShippedPathDesign(), limits, LimitShares::Of(kShare), kPeriod_s);
         for (const auto& [first, last] :
              {std::array{0, kPeriods}, {30, 50}, {60, 90}, {70, 70}, {100, 140}}) {
           SCOPED_TRACE(testing::Message() << "joint " << i + 1 << ", " << percent << " %, samples "
@@ -127,7 +127,8 @@ TEST(PathCheck, APathCheckedFromItsMiddleDoesNotBeginWithAJump) {
   const auto broken = [&](double slew_nm) {
     MotionLimits limits = NoLimits();
     limits.slew_nm_per_s[0] = slew_nm / (4.0 * kPeriod_s * kShare);  // over four periods
-    return PathCheck(ShippedPathDesign(), limits, kShare, kPeriod_s).First(path, 31, 50);
+    return PathCheck(ShippedPathDesign(), limits, LimitShares::Of(kShare), kPeriod_s)
+        .First(path, 31, 50);
   };
   EXPECT_FALSE(broken(1.01 * largest_nm));
   EXPECT_TRUE(broken(0.99 * largest_nm));

@@ -242,7 +242,7 @@ TEST(Retarget, AngleLimitsHoldForLightArmsToo) {
   }
   MotionLimits limits = ShippedLimits();
   limits.soft_angle_rad[0] = 0.5 * (heavy + farthest_Y);
-  const PathCheck check(ShippedPathDesign(), limits, 1.0, kPeriod_s);
+  const PathCheck check(ShippedPathDesign(), limits, LimitShares::Of(1.0), kPeriod_s);
   const auto broken = check.First(path, 0, table.periods());
   ASSERT_TRUE(broken.has_value());
   EXPECT_THAT(broken->text, AllOf(HasSubstr("the angle of joint 1"), Not(HasSubstr("max_kg"))));

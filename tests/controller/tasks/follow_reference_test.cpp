@@ -14,8 +14,9 @@ namespace {
 struct Followed {
   explicit Followed(const std::vector<std::string>& overrides)
       : config(ShippedRig(overrides)),
-        reference(ShippedExperiment(), ShippedDesign(), config.loop.period_s(), {0.0, 0.0},
-                  ShippedLimits()) {
+        table(ShippedExperiment(), ShippedDesign(), config.loop.period_s(), {0.0, 0.0},
+              ShippedLimits()) {
+    reference.Start(&table, nullptr);
     FollowReference(reference, LoopGrid(config.loop), kSample, kSample, &input);
   }
 
@@ -24,7 +25,8 @@ struct Followed {
 
   static constexpr int kSample = 30;  // the arm moves
   RigConfig config;
-  ReferenceTable reference;
+  ReferenceTable table;
+  TimedReference reference;
   StepInput input{};
 };
 

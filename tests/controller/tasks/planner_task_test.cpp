@@ -80,7 +80,8 @@ class PlannerTaskTest : public testing::Test {
   template <typename Desired>
   PlanState FiveSamplesAfter(int sample, const PlanState& x, const Desired& desired) {
     const RigidJointArm arm = MakeRigidJointArm(DesignOfRig());
-    const ScheduledLaw law(arm, DesignOfRig().scheduled->gains, kPeriod_s, {30.0, 6.0});
+    const ScheduledLaw law(arm, DesignOfRig().scheduled->gains, BendingGuard(ShippedRig()), 1.0,
+                           kPeriod_s, {30.0, 6.0});
     const RigidJointStepper stepper(arm, kPeriod_s, 1.0);
     const PayloadKnowledge known{.payload_kg = 0.3,
                                  .payload_sigma_kg = 0.0,
