@@ -26,6 +26,11 @@ void AddIfReached(const MotionTrace& trace, Quantity quantity, const char* key,
 
 }  // namespace
 
+Eigen::Vector2d RigidStrain(const Eigen::Vector2d& torque_nm, const BoundLimits& limits) {
+  return {torque_nm[0] / limits.root_moment_nm[0] * limits.strain[0],
+          torque_nm[1] / limits.root_moment_nm[1] * limits.strain[1]};
+}
+
 std::vector<BindingLimit> BindingLimits(const MotionTrace& trace, const BoundLimits& limits) {
   std::vector<BindingLimit> found;
   AddIfReached(trace, &TracePoint::torque_nm, "limits.torque_limit_nm", limits.torque_nm, &found);

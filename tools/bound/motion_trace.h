@@ -14,10 +14,13 @@ struct TracePoint {
   Eigen::Vector2d angle_rad;   ///< hubs
   Eigen::Vector2d rate_rad_s;  ///< hubs
   Eigen::Vector2d torque_nm;   ///< hubs
-  Eigen::Vector2d strain;  ///< at the roots; of a rigid arm: torque over the link's moment limit
+  Eigen::Vector2d strain;      ///< at the roots; of a rigid arm: RigidStrain
 };
 
 using MotionTrace = std::vector<TracePoint>;
+
+/// Strain at the roots of links that do not bend: the hubs' torques over the root moments.
+Eigen::Vector2d RigidStrain(const Eigen::Vector2d& torque_nm, const BoundLimits& limits);
 
 /// A limit that a motion reaches.
 struct BindingLimit {

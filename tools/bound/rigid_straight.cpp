@@ -62,8 +62,7 @@ MotionTrace RigidStraightMotion(const RigidJointArm& arm, const BoundLimits& lim
                      .angle_rad = move.from_rad + static_cast<double>(k) * kStep * way_rad,
                      .rate_rad_s = std::sqrt(z[k]) * way_rad,
                      .torque_nm = torque_nm,
-                     .strain = {torque_nm[0] / limits.root_moment_nm[0] * limits.strain[0],
-                                torque_nm[1] / limits.root_moment_nm[1] * limits.strain[1]}});
+                     .strain = RigidStrain(torque_nm, limits)});
   }
   return trace;
 }

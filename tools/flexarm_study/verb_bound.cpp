@@ -10,6 +10,7 @@
 #include "model/units.h"
 #include "tools/bound/bound_limits.h"
 #include "tools/bound/motion_trace.h"
+#include "tools/bound/rigid_free.h"
 #include "tools/bound/rigid_straight.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
@@ -53,6 +54,7 @@ nlohmann::ordered_json Bounds(const BoundOptions& options) {
       BoundLimitsOf(config, options.torque_share.value_or(PlanTorqueShare(config)));
   const RigidJointArm arm(config.arm);
   const MotionTrace straight = RigidStraightMotion(arm, limits, move);
+  const FoundMotion free = RigidFreeMotion(arm, limits, move);
   nlohmann::ordered_json json;
   json["from_deg"] = options.from_deg;
   json["to_deg"] = options.to_deg;
@@ -60,13 +62,18 @@ nlohmann::ordered_json Bounds(const BoundOptions& options) {
   json["torque_nm"] = limits.torque_nm;
   json["root_moment_nm"] = limits.root_moment_nm;
   json["rigid_straight_s"] = straight.back().time_s;
+  json["rigid_free_s"] = free.trace.back().time_s;
+  json["iterations"]["rigid_free"] = free.iterations;
   json["limits_reached"]["rigid_straight"] = LimitsJson(straight, limits);
+  json["limits_reached"]["rigid_free"] = LimitsJson(free.trace, limits);
   return json;
 }
 
 void PrintBounds(const nlohmann::ordered_json& json) {
   std::printf("rigid arm, straight line in the joint angles   %.3f s\n",
               json["rigid_straight_s"].get<double>());
+  std::printf("rigid arm, any path, best found                %.3f s\n",
+              json["rigid_free_s"].get<double>());
 }
 
 void AddMove(CLI::App* verb, BoundOptions* options) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stdexcept>
 #include <string>
 
 #include "config/config.h"
@@ -20,6 +21,13 @@ inline const RigConfig& BoundRig() {
 
 /// With the share of the drives' torques of golden/bounds.json.
 inline BoundLimits GoldenLimits() { return BoundLimitsOf(BoundRig(), 14.0 / 15.0); }
+
+/// The 30 moves of golden/bounds.json.
+inline nlohmann::json GoldenMoves() {
+  nlohmann::json moves = GoldenFile("bounds.json")["moves"];
+  if (moves.size() != 30) throw std::runtime_error("bounds.json has not its 30 moves");
+  return moves;
+}
 
 inline RestMove MoveOf(const nlohmann::json& golden) {
   return {.from_rad = AsVector(golden["from_deg"]) * kRadPerDeg,

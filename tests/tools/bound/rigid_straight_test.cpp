@@ -18,7 +18,8 @@ using testing::HasSubstr;
 // Grids and rounded limits (15.459 N m) are the rest.
 TEST(RigidStraight, AgreesWithAnotherProgramOnEveryMove) {
   const RigidJointArm arm(BoundRig().arm);
-  for (const auto& golden : GoldenFile("bounds.json")["moves"]) {
+  const nlohmann::json moves = GoldenMoves();
+  for (const auto& golden : moves) {
     const double expected_s = golden["rigid_straight_s"];
     EXPECT_NEAR(RigidStraight_s(arm, GoldenLimits(), MoveOf(golden)), expected_s,
                 5e-4 + 1e-3 * expected_s)
