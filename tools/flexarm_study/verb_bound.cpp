@@ -1,20 +1,26 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "controller/files/external_json.h"
+#include "controller/types/rounded_text.h"
 #include "model/units.h"
 #include "tools/bound/bound_limits.h"
+#include "tools/bound/flexible_best.h"
 #include "tools/bound/motion_trace.h"
 #include "tools/bound/rigid_free.h"
 #include "tools/bound/rigid_straight.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
+#include "tools/support/parallel_for.h"
 
 namespace flexarm {
 namespace {
@@ -23,6 +29,7 @@ struct BoundOptions {
   ConfigOptions config;
   std::vector<double> from_deg, to_deg;
   std::optional<double> payload_kg, torque_share;
+  bool rigid = false;
   bool json = false;
 };
 
@@ -46,6 +53,33 @@ nlohmann::ordered_json LimitsJson(const MotionTrace& trace, const BoundLimits& l
   return json;
 }
 
+// With a progress bar: the search takes some seconds.
+FoundMotion SearchFlexible(const RigidJointArm& arm, const BoundLimits& limits,
+                           const RestMove& move, double period_s) {
+  const auto show = ProgressBar("linear programs", kMostFlexiblePrograms);
+  if (!show) return FlexibleBestFound(arm, limits, move, period_s);
+  std::size_t done = 0;
+  FoundMotion found = FlexibleBestFound(arm, limits, move, period_s, [&] { show(++done); });
+  show(kMostFlexiblePrograms);
+  return found;
+}
+
+void AddFlexible(const FoundMotion& found, const BoundLimits& limits,
+                 nlohmann::ordered_json* json) {
+  (*json)["iterations"]["flexible"] = found.iterations;
+  (*json)["flexible_violation"] = found.violation;
+  if (found.trace.empty()) {
+    (*json)["flexible_best_found_s"] = nullptr;
+    (*json)["flexible_reason"] =
+        "no motion within the limits was found; the best exceeds them by " +
+        RoundedText(100.0 * found.violation, 2) + " % of a limit, or misses the end";
+    return;
+  }
+  (*json)["flexible_best_found_s"] = found.trace.back().time_s;
+  (*json)["flexible_hold_s"] = found.trace[1].time_s;
+  (*json)["limits_reached"]["flexible"] = LimitsJson(found.trace, limits);
+}
+
 nlohmann::ordered_json Bounds(const BoundOptions& options) {
   const RigConfig config = options.config.Load();
   const RestMove move = MoveOf(options, config);
@@ -66,14 +100,44 @@ nlohmann::ordered_json Bounds(const BoundOptions& options) {
   json["iterations"]["rigid_free"] = free.iterations;
   json["limits_reached"]["rigid_straight"] = LimitsJson(straight, limits);
   json["limits_reached"]["rigid_free"] = LimitsJson(free.trace, limits);
+  if (!options.rigid) {
+    AddFlexible(SearchFlexible(arm, limits, move, 1e-3 * config.loop.period_ms), limits, &json);
+  }
   return json;
 }
 
+std::string LimitsText(const nlohmann::ordered_json& reached) {
+  std::string text;
+  for (const auto& limit : reached) {
+    if (limit["time_share"].get<double>() < 0.01) continue;
+    text += text.empty() ? "" : ", ";
+    text += limit["key"].get<std::string>() + " " + std::to_string(limit["index"].get<int>()) +
+            " (" + std::to_string(std::lround(100.0 * limit["time_share"].get<double>())) + " %)";
+  }
+  return text.empty() ? "no limit for long" : text;
+}
+
+void PrintLine(const char* name, const nlohmann::ordered_json& time_s,
+               const nlohmann::ordered_json& reached) {
+  std::printf("%-36s %7.3f s, at %s\n", name, time_s.get<double>(), LimitsText(reached).c_str());
+}
+
 void PrintBounds(const nlohmann::ordered_json& json) {
-  std::printf("rigid arm, straight line in the joint angles   %.3f s\n",
-              json["rigid_straight_s"].get<double>());
-  std::printf("rigid arm, any path, best found                %.3f s\n",
-              json["rigid_free_s"].get<double>());
+  const auto& reached = json["limits_reached"];
+  std::printf(
+      "payload %g kg, torques up to %.3g and %.3g N m; shortest time from rest to rest,\n"
+      "and the limits at which it is, with their share of the time:\n",
+      json["payload_kg"].get<double>(), json["torque_nm"][0].get<double>(),
+      json["torque_nm"][1].get<double>());
+  PrintLine("rigid arm, straight in joint angles", json["rigid_straight_s"],
+            reached["rigid_straight"]);
+  PrintLine("rigid arm, any path, best found", json["rigid_free_s"], reached["rigid_free"]);
+  if (!json.contains("flexible_best_found_s")) return;
+  if (json["flexible_best_found_s"].is_null()) {
+    std::printf("flexible arm: %s\n", json["flexible_reason"].get<std::string>().c_str());
+  } else {
+    PrintLine("flexible arm, best found", json["flexible_best_found_s"], reached["flexible"]);
+  }
 }
 
 void AddMove(CLI::App* verb, BoundOptions* options) {
@@ -99,21 +163,35 @@ void AddMove(CLI::App* verb, BoundOptions* options) {
 
 }  // namespace
 
-void RegisterBound(CLI::App& app, Exit&) {
+void RegisterBound(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<BoundOptions>();
   CLI::App* verb = AddStudy(app, "bound");
   options->config.AddTo(verb, true);
   AddMove(verb, options.get());
+  verb->add_flag("--rigid", options->rigid,
+                 "The rigid arm only: a fraction of a second instead of some seconds");
   AddJson(verb, &options->json);
   verb->footer(
-      "Example: flexarm bound -c config/thesis-rig.toml --from 0,0 --to 30,-60 --payload-kg 0.2");
-  verb->callback([options] {
+      "Three times of a move from rest to rest, to judge laws and planners by:\n"
+      "  rigid_straight_s       rigid arm over the straight line in the joint angles: the "
+      "shortest\n"
+      "  rigid_free_s           rigid arm over any path: the best found, about 3 % less\n"
+      "  flexible_best_found_s  the arm with bending links, which rest at the end too: the best\n"
+      "                         found, so an upper limit of the shortest, not a bound\n"
+      "Limits: torque, strain at the roots, hub rates and hub angles of [limits]; for the rigid\n"
+      "arm the torque of a hub is at most what bends its link to the strain limit. Without\n"
+      "friction and without the limit of the torque's rate of change. docs/theory/bound.md.\n"
+      "Exit code 1 if no motion of the flexible arm was found: its time is then null in --json.\n"
+      "Examples: flexarm bound -c config/thesis-rig.toml --from 0,0 --to 30,-60 --payload-kg 0.2\n"
+      "          flexarm bound -c config/thesis-rig.toml --from -20,40 --to 35,-30 --rigid --json");
+  verb->callback([options, &exit] {
     const nlohmann::ordered_json json = Bounds(*options);
     if (options->json) {
       std::cout << PrintedJson(json) << '\n';
     } else {
       PrintBounds(json);
     }
+    if (json.contains("flexible_reason")) exit.code = Exit::kFailed;
   });
 }
 

@@ -93,7 +93,7 @@ LAYERS = {
                            "model/simulation model/perturbation controller/runlog tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot "
-                           "tools/bound",
+                           "controller/types tools/bound",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
                       "config controller/files tools/command_line",
 }
