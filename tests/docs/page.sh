@@ -45,6 +45,8 @@ block() {  # block LINE
 }
 
 failed() {  # failed STATUS LINE COMMAND
+  # The trap also runs in processes of this script, such as a watchdog that was ended.
+  if [[ $BASHPID != "$$" ]]; then exit "$1"; fi
   trap - ERR
   told=yes
   echo "failed $2 $1 ${3//$'\n'/ }" >&9

@@ -101,6 +101,47 @@ class Modes(ProgramTest):
                 self.assert_refused(self.run_program("flexarm", "modes", "-c", RIG, *options), said)
 
 
+class Bound(ProgramTest):
+    MOVE = ("--from", "0,0", "--to", "5,50", "--payload-kg", 0)
+
+    def test_three_times_of_a_move(self):
+        # tests/golden/bounds.json: 0.301, 0.299, 0.40 s with 5.6 N m; here 5.58 N m, 0.2 % slower.
+        bound = self.flexarm_json("bound", "-c", RIG, *self.MOVE)
+        self.assertAlmostEqual(bound["rigid_straight_s"], 0.301, delta=0.002)
+        self.assertAlmostEqual(bound["rigid_free_s"], 0.299, delta=0.004)
+        self.assertAlmostEqual(bound["flexible_best_found_s"], 0.40, delta=0.06)
+        self.assertLess(bound["flexible_violation"], 0.002)
+        straight = bound["limits_reached"]["rigid_straight"][0]
+        self.assertEqual((straight["key"], straight["index"]), ("limits.strain_limit", 1))
+        self.assertGreater(bound["iterations"]["flexible"], 10)
+
+    def test_the_rigid_arm_alone_as_text_and_with_all_torque(self):
+        # The elbow alone, which its torque limits: 2 sqrt(M22 D / u), M22 = 0.881906 kg m^2 with 1 kg
+        # by the other program, D = 60 deg, u = 0.93 and 1 of 6 N m.
+        move = ("--from", "0,-30", "--to", "0,30", "--payload-kg", 1, "--rigid")
+        text = self.flexarm("bound", "-c", RIG, *move).stdout
+        self.assertIn("rigid arm, straight in joint angles", text)
+        self.assertIn("0.814 s, at limits.torque_limit_nm 2 (100 %)", text)
+        self.assertNotIn("flexible", text)
+        more = self.flexarm_json("bound", "-c", RIG, *move, "--torque-share", 1)
+        self.assertEqual(more["torque_nm"], [30.0, 6.0])
+        self.assertAlmostEqual(more["rigid_straight_s"], 0.78465, delta=1e-4)
+        self.assertNotIn("flexible_best_found_s", more)
+
+    def test_bad_options_are_refused(self):
+        for options, said in ((("--from", "0,0", "--to", "0,95"), "limits.soft_angle_deg"),
+                              (("--from", "0,0", "--to", "0,0"), "ends where it begins"),
+                              (("--from", "0", "--to", "1,1"), "--from"),
+                              (("--from", "0,x", "--to", "1,1"), "found x"),
+                              (("--to", "1,1"), "--from"),
+                              (("--from", "0,0", "--to", "1,1", "--payload-kg", "1.5"),
+                               "controller.payload_range_kg"),
+                              (("--from", "0,0", "--to", "1,1", "--torque-share", "nan"),
+                               "--torque-share")):
+            with self.subTest(options=options):
+                self.assert_refused(self.run_program("flexarm", "bound", "-c", RIG, *options), said)
+
+
 class Gauges(ProgramTest):
     def gauges(self, *arguments, rig=RIG):
         return self.flexarm_json("gauges", "-c", rig, *arguments)

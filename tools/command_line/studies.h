@@ -23,6 +23,8 @@ inline constexpr std::array kStudies = {
           "Strain gauges: how well they know the modes, and where they would know them best"},
     Study{"analyze",
           "Analyse the model: linearization, order reduction, parameters, claims of the thesis"},
+    Study{"bound",
+          "How fast a move can be: a rigid arm's shortest time, and the best found with bending"},
     Study{"sweep",
           "Simulate an experiment over a grid of parameter values, on all cores; resumable"},
     Study{"benchmark",

@@ -27,6 +27,7 @@ void RegisterAnalyzeParametric(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeTorsion(CLI::App& analyze, Exit& exit);
 void RegisterBenchmark(CLI::App& app, Exit& exit);
+void RegisterBound(CLI::App& app, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);
 void RegisterCheckHost(CLI::App& app, Exit& exit);
 void RegisterCommission(CLI::App& app, Exit& exit);  ///< tare, zero, calibrate, pluck, home

@@ -15,6 +15,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   AddStudy(app, "analyze");
   RegisterDesign(app, exit);
   RegisterSimulate(app, exit);
+  AddStudy(app, "bound");
   AddStudy(app, "sweep");
   AddStudy(app, "benchmark");
   AddStudy(app, "report");

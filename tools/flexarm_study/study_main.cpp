@@ -7,6 +7,7 @@ namespace {
 void RegisterStudies(CLI::App& app, Exit& exit) {
   RegisterModes(app, exit);
   RegisterAnalyze(app, exit);
+  RegisterBound(app, exit);
   RegisterSweep(app, exit);
   RegisterBenchmark(app, exit);
   RegisterReport(app, exit);

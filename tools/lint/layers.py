@@ -70,6 +70,7 @@ LAYERS = {
                       "tools/runs tools/plot",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config tools/support tools/runs tools/plot controller/files",
+    "tools/bound": "model model/math model/beam model/rigid_joint estimator controller/types",
     "tools/tuning": "model model/beam estimator controller/types controller/design controller/host config config/new_rig tools/sweep",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "
@@ -91,7 +92,8 @@ LAYERS = {
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
-                           "tools/identification tools/thesis tools/report controller/files tools/plot",
+                           "tools/identification tools/thesis tools/report controller/files tools/plot "
+                           "controller/types tools/bound",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
                       "config controller/files tools/command_line",
 }
