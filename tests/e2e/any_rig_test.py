@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """simulate, benchmark, report and analyze on arms that have nothing to do with the thesis's."""
 
-import json
+import csv
 import re
 import unittest
 
@@ -99,9 +99,9 @@ class AnyRig(ProgramTest):
                    "  0.8 ")
         self.assertTrue((out / "payload_kg.png").exists())
         self.assertFalse((out / "statements.md").exists())
-        study = json.loads(self.flexarm("analyze", "parametric", "-c", rig, "--json").stdout)
-        self.assertEqual(study["statements"], [])
-        payloads = [p["value"] for p in study["sweeps"][0]["points"]]
+        with open(out / "parametric.csv", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        payloads = [float(row[1]) for row in rows if row[0] == "payload_kg"]
         self.assertEqual((payloads[0], payloads[-1]), (0.0, 0.8))
         self.assert_refused(self.run_program("flexarm", "analyze", "check", "-c", rig),
                             "link 1 has another cross section than the thesis's")
