@@ -83,6 +83,7 @@ class AnyRig(ProgramTest):
 
     def test_a_period_that_is_no_divisor_and_no_range_of_payloads(self):
         rig = self.rig(FAST)
+        (self.folder / "experiments").mkdir()  # without the default ones: the shipped ones serve
         self.check(self.told("simulate", "-c", rig), "completed                 yes")
         self.check(self.told("simulate", "-c", rig, "--controller", "sobel"),
                    "completed                 yes", "on samples of 8 ms")
