@@ -206,7 +206,7 @@ lane_bench() {  # benchmarks; the default experiment runs 100 times faster than 
 
 lane_headers() {  # public headers that changed recently compile on their own
   build release flexarm_build_info
-  tools/lint/headers.py --changed --within 60 --jobs "$jobs" --note "$logs/$lane.note"
+  tools/lint/headers.py --changed --within 40 --jobs "$jobs" --note "$logs/$lane.note"
 }
 
 lane_headers-all() {  # every public header compiles on its own
@@ -274,7 +274,7 @@ tidy() {  # tidy OPTION.. FOLDER..: a finding is an error (WarningsAsErrors)
 
 # In CI the time is limited; the files left out are named, and clang-tidy-all checks them.
 lane_clang-tidy() {  # .clang-tidy on files of the product that changed recently
-  tidy --changed --within 240 "${product[@]}"
+  tidy --changed --within 150 "${product[@]}"
 }
 
 lane_clang-tidy-all() {  # .clang-tidy on product and tests; unchanged files are skipped

@@ -123,7 +123,7 @@ SimulationResult ResultOf(const RigConfig& config, const PlannedExperiment& plan
                           const RunContents& contents, TripCause trip) {
   SimulationResult result;
   result.metrics = ComputeMetrics(contents.tick, planned.accepted, config.loop.period_s(),
-                                  TipGeometryOf(config.arm, config.controller.nominal));
+                                  TipGeometryOf(config));
   result.ticks = result.metrics.ticks;
   result.trip = trip;
   result.completed = trip == TripCause::kNone && result.ticks == planned.reference.periods();

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "controller/runlog/durations_of_run.h"
+#include "controller/types/tip_tolerance.h"
 #include "model/beam/link_modes.h"
 #include "model/units.h"
 
@@ -12,7 +13,7 @@ namespace flexarm {
 namespace {
 
 constexpr double kFinalWindow_s = 0.3;
-constexpr double kStillWithin_m = 1e-3 * kSettledWithin_mm, kFinelyStillWithin_m = 0.005;
+constexpr double kStillWithin_m = 0.015, kFinelyStillWithin_m = 0.005;
 constexpr double kLongWindow_s = 1.0;
 constexpr double kSettleBy_s = 0.3;  // goal: settled this long after the end of a move
 
@@ -136,7 +137,7 @@ void TakeLonger(const std::optional<double>& time_s, std::optional<double>* long
 }
 
 void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double slack_s,
-                RunMetrics* metrics) {
+                double settled_within_m, RunMetrics* metrics) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::erase_if(rests,
                 [&](const Rest& rest) { return FinalWindow(samples, rest, slack_s).empty(); });
@@ -147,6 +148,7 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
     return;
   }
   metrics->tip_still_within_15mm_s = metrics->tip_still_within_5mm_s = 0;
+  std::optional<double> settling_s = 0;
   for (const Rest& rest : rests) {
     const auto all = Between(samples, rest.start_s - 2 * slack_s, rest.end_s, slack_s);
     const auto window = FinalWindow(samples, rest, slack_s);
@@ -164,16 +166,17 @@ void JudgeRests(std::span<const Sample> samples, std::vector<Rest> rests, double
     const auto whole = Between(samples, rest.motion_s - 2 * slack_s, rest.end_s, slack_s);
     metrics->arrival.push_back(
         {.start_s = rest.motion_s,
-         .at_rest_s = StillAfter_s(whole, rest.motion_s, place, kStillWithin_m),
+         .at_rest_s = StillAfter_s(whole, rest.motion_s, place, settled_within_m),
          .on_target_s =
-             StillAfter_s(whole, rest.motion_s, window.back().target_m, kStillWithin_m)});
+             StillAfter_s(whole, rest.motion_s, window.back().target_m, settled_within_m)});
     TakeLonger(StillAfter_s(all, rest.start_s, place, kStillWithin_m),
                &metrics->tip_still_within_15mm_s);
     TakeLonger(StillAfter_s(all, rest.start_s, place, kFinelyStillWithin_m),
                &metrics->tip_still_within_5mm_s);
+    TakeLonger(StillAfter_s(all, rest.start_s, place, settled_within_m), &settling_s);
   }
-  if (metrics->tip_target_error_mm <= kSettledWithin_mm) {
-    metrics->tip_settling_time_s = metrics->tip_still_within_15mm_s;
+  if (metrics->tip_target_error_mm <= 1e3 * settled_within_m) {
+    metrics->tip_settling_time_s = settling_s;
   }
 }
 
@@ -248,11 +251,13 @@ std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s) {
   return rests;
 }
 
-TipGeometry TipGeometryOf(const ArmParameters& arm, const StateLayout& layout) {
+TipGeometry TipGeometryOf(const ControlConfig& config) {
+  const ArmParameters& arm = config.arm;
   const LinkModes modes = Link1Modes(arm, 2);
-  return {.layout = layout,
+  return {.layout = config.controller.nominal,
           .length_m = {arm.link[0].length_m(), arm.link[1].length_m()},
-          .tip_slope_per_m = {modes.slope_tip(0), modes.slope_tip(1)}};
+          .tip_slope_per_m = {modes.slope_tip(0), modes.slope_tip(1)},
+          .settled_within_m = SettledWithin_m(config)};
 }
 
 std::array<double, 2> EstimatedDeflection_m(const StateLayout& layout,
@@ -309,7 +314,7 @@ RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& e
   const double run_end_s = samples.empty() ? 0 : samples.back().time_s;
   const std::vector<Rest> rests =
       RestsOf(WithDurationsOfRun(experiment, running, period_s), run_end_s);
-  JudgeRests(samples, rests, period_s / 2, &metrics);
+  JudgeRests(samples, rests, period_s / 2, geometry.settled_within_m, &metrics);
   if (samples.empty()) {
     metrics.joint_rms_error_deg.fill(std::numeric_limits<double>::quiet_NaN());
     metrics.torque_rms_nm.fill(std::numeric_limits<double>::quiet_NaN());

@@ -5,20 +5,16 @@
 #include <span>
 #include <vector>
 
+#include "controller/types/control_config.h"
 #include "controller/types/experiment.h"
 #include "controller/types/records.h"
 #include "estimator/state_layout.h"
-#include "model/parameters/arm_parameters.h"
 
 namespace flexarm {
 
-/// A rest is settled from when the tip stays within this distance of its resting place, its mean
-/// over the last 0.3 s of the rest; and only if that place is within it of the target: the tip with
-/// the joints where the reference ends and both links straight.
-inline constexpr double kSettledWithin_mm = 15.0;
-
-/// How long a move took in the end, from its start until the tip stays within kSettledWithin_mm of
-/// a place for the rest of its rest; it may be shorter than the move. Nothing: never.
+/// How long a move took in the end, from its start until the tip stays within the distance that
+/// counts as settled (tip_tolerance.h) of a place for the rest of its rest; it may be shorter than
+/// the move. Nothing: never.
 struct Arrival {
   double start_s;                     ///< of the move
   std::optional<double> at_rest_s;    ///< the place where the tip rests, over the last 0.3 s
@@ -31,8 +27,10 @@ struct RunMetrics {
   std::int64_t ticks = 0;                         ///< in state Running
   std::array<double, 2> joint_rms_error_deg{};    ///< against the reference model, all ticks
   std::array<double, 2> joint_final_error_deg{};  ///< largest over the rests of |mean, last 0.3 s|
-  /// Settling time, largest over the rests: from the end of the move until the rest is settled
-  /// (kSettledWithin_mm). Nothing: a rest is not settled.
+  /// Settling time, largest over the rests: from the end of the move until the rest is settled: the
+  /// tip stays within TipGeometry::settled_within_m of its resting place, its mean over the last
+  /// 0.3 s of the rest, and that place is within it of the target: the tip with the joints where
+  /// the reference ends and both links straight. Nothing: a rest is not settled.
   std::optional<double> tip_settling_time_s;
   /// Largest over the rests: distance of the resting place from the target.
   double tip_target_error_mm = 0;
@@ -71,15 +69,15 @@ struct Rest {
 std::vector<Rest> RestsOf(const Experiment& experiment, double run_end_s);
 
 /// Data for an estimated tip position: the layout of the state, rigid geometry, and the tip slopes
-/// of link 1's modes.
+/// of link 1's modes; and how near the tip must be to count as settled.
 struct TipGeometry {
   StateLayout layout;
   std::array<double, 2> length_m;
   std::array<double, 2> tip_slope_per_m;  ///< psi_1j'(L1), j = 1, 2
+  double settled_within_m;                ///< SettledWithin_m
 };
 
-/// @param layout  of the estimated state
-TipGeometry TipGeometryOf(const ArmParameters& arm, const StateLayout& layout);
+TipGeometry TipGeometryOf(const ControlConfig& config);
 
 /// Elastic tip deflection of each link, m: the sum of its modal coordinates, as psi(L) = 1.
 std::array<double, 2> EstimatedDeflection_m(const StateLayout& layout,

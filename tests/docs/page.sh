@@ -1,52 +1,25 @@
 #!/usr/bin/env bash
 # Runs the blocks of one page, in one shell and one folder, as a reader types them.
-# usage: page.sh PAGE LIMIT_S < /dev/null
+# usage: page.sh PAGE < /dev/null
 #
 # PAGE is a page of which all lines but those of its blocks are empty (run_blocks.py writes it), so
 # that the numbers of the lines are those of the page. Each block begins with `block LINE`. The
-# first command that fails ends the page, and so does a block that takes longer than LIMIT_S. What
-# the page started in the background is stopped at its end: it must not have failed before. To
-# descriptor 9, or to the output without one: `block LINE BYTES`, BYTES the size of the output where
-# it is a file, and `failed LINE STATUS COMMAND`.
+# first command that fails ends the page. What the page started in the background is stopped at its
+# end: it must not have failed before. The caller limits its time. To descriptor 9, or to the output
+# without one: `block LINE BYTES`, BYTES the size of the output where it is a file, and `failed LINE
+# STATUS COMMAND`.
 set -Eeo pipefail
 
 { : >&9; } 2>/dev/null || exec 9>&1
 
 page=$1
-limit_s=$2
-watchdog=
 told=no  # yes: the page came to its end, or what failed has been told
 
-end_watchdog() {
-  if [[ -n $watchdog ]]; then
-    kill "$watchdog" 2>/dev/null || true
-  fi
-  watchdog=
-}
-
-# The shell runs a trap only between two commands: what hangs is ended with its whole group.
-start_watchdog() {  # start_watchdog SECONDS LINE WHAT
-  (
-    trap - ERR EXIT
-    trap 'kill "$!" 2>/dev/null; exit 0' TERM
-    sleep "$1" 9>&- &  # one that outlives its watchdog must not hold the reader
-    wait $!
-    echo "failed $2 124 $3 is not done after $1 s" >&9
-    kill -KILL 0
-  ) >/dev/null 2>&1 &
-  watchdog=$!
-  disown "$watchdog"  # a `wait` of the page does not wait for it
-}
-
 block() {  # block LINE
-  end_watchdog
   echo "block $1 $(stat -L -c %s "/proc/$$/fd/1")" >&9
-  start_watchdog "$limit_s" "$1" "the block"
 }
 
 failed() {  # failed STATUS LINE COMMAND
-  # The trap also runs in processes of this script, such as a watchdog that was ended.
-  if [[ $BASHPID != "$$" ]]; then exit "$1"; fi
   trap - ERR
   told=yes
   echo "failed $2 $1 ${3//$'\n'/ }" >&9
@@ -59,13 +32,11 @@ at_end() {
   if [[ $BASHPID != "$$" ]]; then exit "$status"; fi
   trap - ERR
   set +e
-  end_watchdog
   if [[ $told == no ]]; then
     echo "failed 0 $status the block ended the shell" >&9
     status=1
   fi
   processes=$(jobs -p)
-  start_watchdog 60 0 "what runs in the background"
   for process in $processes; do
     if kill -TERM "$process" 2>/dev/null; then
       wait "$process"
@@ -79,7 +50,6 @@ at_end() {
       status=1
     fi
   done
-  end_watchdog
   exit "$status"
 }
 

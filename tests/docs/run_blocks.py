@@ -25,6 +25,7 @@ import argparse
 import collections
 import concurrent.futures
 import os
+import select
 import shutil
 import signal
 import subprocess
@@ -131,6 +132,21 @@ def environment(programs):
     return {**kept, "PATH": f"{programs}:{os.environ['PATH']}", "TERM": "dumb"}
 
 
+def marks_of(reader, limit_s):
+    """The lines of a pipe as they come, and None where none comes within the time."""
+    text = b""
+    while True:
+        if not select.select([reader], [], [], limit_s)[0]:
+            yield None
+            continue
+        more = os.read(reader, 1 << 16)
+        if not more:
+            os.close(reader)
+            return
+        *lines, text = (text + more).split(b"\n")
+        yield from (line.decode("utf-8", "replace") for line in lines)
+
+
 def run_script(file, folder, variables, limit_s):
     """Runs a page. Returns the seconds of each block, what failed as (line, status, command), and
     the output of the block that failed."""
@@ -140,7 +156,7 @@ def run_script(file, folder, variables, limit_s):
     with open(output, "wb") as log:
         shell = subprocess.Popen(
             ["bash", "-c", f"exec 9>&{writer}; exec {writer}>&-; exec bash \"$@\"", "bash",
-             str(PAGE_SHELL), str(file), str(limit_s)],
+             str(PAGE_SHELL), str(file)],
             cwd=folder, env=variables, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
             pass_fds=[writer], start_new_session=True)
     SESSIONS.add(shell.pid)
@@ -148,17 +164,20 @@ def run_script(file, folder, variables, limit_s):
         end_session(shell.pid)
     os.close(writer)
     line = None
-    with open(reader, encoding="utf-8", errors="replace") as marks:
-        for mark in marks:
-            kind, number, *more = mark.rstrip("\n").split(" ", 2)
-            now = time.monotonic()
-            if line is not None:
-                seconds[line] = now - began
-            if kind == "failed":
-                status, command = more[0].split(" ", 1)
-                failure = failure or (int(number) or line, int(status), command)
-                continue
-            line, began, offset = int(number), now, int(more[0])
+    for mark in marks_of(reader, limit_s):
+        if mark is None:
+            failure = failure or (line or 1, 124, f"the block is not done after {limit_s} s")
+            end_session(shell.pid)
+            continue
+        kind, number, *more = mark.split(" ", 2)
+        now = time.monotonic()
+        if line is not None:
+            seconds[line] = now - began
+        if kind == "failed":
+            status, command = more[0].split(" ", 1)
+            failure = failure or (int(number) or line, int(status), command)
+            continue
+        line, began, offset = int(number), now, int(more[0])
     if line is not None:
         seconds.setdefault(line, time.monotonic() - began)
     try:

@@ -46,6 +46,11 @@ class ConfigReference(ProgramTest):
         self.assertNotIn("sensors.encoder", told)
         self.assertIn("In an experiment:", self.flexarm("config", "reference", "move").stdout)
 
+    def test_explains_a_key_of_a_description_of_an_arm(self):
+        told = self.flexarm("config", "reference", "gauges_per_link").stdout
+        self.assertIn("In a description of an arm:\ngauges_per_link\n", told)
+        self.assertIn("must lie in 1 .. 10", told)
+
     def test_guesses_a_misspelt_key(self):
         refused = self.flexarm("config", "reference", "limits.torque_limit", expect=2)
         self.assertIn("did you mean limits.torque_limit_nm?", refused.stderr)
@@ -61,6 +66,11 @@ class ConfigReference(ProgramTest):
         self.assertTrue(keys["loop.period_ms"]["required"])
         self.assertTrue(all(row["meaning"] for row in keys.values()))
         self.assertTrue(any(row["key"] == "move[].to_deg" for row in told["experiment"]["keys"]))
+        arm = {row["key"]: row for row in told["arm"]["keys"]}
+        self.assertEqual(len(arm), 42)  # 38 numbers, a name, three materials
+        self.assertEqual(arm["link1.width_mm"]["unit"], "mm")
+        self.assertTrue(arm["link1.width_mm"]["required"])
+        self.assertEqual(arm["payload_max_kg"]["without"], "twice tip_mass_kg")
         one = json.loads(self.flexarm("config", "reference", "alpha", "--json").stdout)
         self.assertEqual([row["key"] for row in one["rig"]["keys"]],
                          ["controller.alpha", "controller.settling.alpha"])

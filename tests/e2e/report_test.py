@@ -53,11 +53,11 @@ class Report(ProgramTest):
         self.assertEqual((page.open, page.loads), ([], []))
         self.assertGreaterEqual(page.pictures, 16)
         captions = " ".join(page.captions)
-        self.assertEqual(page.headings[:4],
-                         ["Main result", "The thesis's statements", "The arm", "Contents"])
+        self.assertEqual(page.headings[:5], ["The arm", "Main result", "Summary",
+                                             "The thesis's statements", "Contents"])
         self.assertRegex(page.lead, r"^Computed on \d{4}-\d{2}-\d{2} by flexarm \d")
         self.assertEqual(page.boxes, page.tables + page.pictures, "what does not scroll by itself")
-        self.assertIn("to scale", page.captions[1])
+        self.assertIn("to scale", page.captions[0])
         for figure in FIGURES:
             self.assertIn(figure, captions)
         for chapter in (3, 4, 5, 6, 7):

@@ -128,6 +128,11 @@ class Sweep(ProgramTest):
         self.assertEqual(len((self.folder / "table.csv").read_text().splitlines()), 1 + 6)
         self.flexarm("sweep", "show", file, "-o", self.folder / "picture.png")
         self.assertEqual((self.folder / "picture.png").read_bytes()[:4], b"\x89PNG")
+        self.flexarm("sweep", "show", file, "--by", "controller.alpha", "-o",
+                     self.folder / "picture.svg")
+        picture = (self.folder / "picture.svg").read_text(encoding="utf-8")
+        for label in ("controller.alpha, 1/s", " kg"):  # of the axis; of the curves' payloads
+            self.assertIn(label, picture)
 
     def test_wrong_input_is_refused(self):
         out = ("-o", self.folder / "x.sqlite")

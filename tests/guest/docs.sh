@@ -31,8 +31,8 @@ for place in clone installed; do
     PATH=$programs
     if [[ $place == clone ]]; then PATH=$folder/build/release/bin:$programs; fi
     cd "$folder" || exit
-    # A group of its own, which the limit of a block ends.
-    check "$place: $(basename "$page")" setsid --wait bash $docs/page.sh "$page" 300 </dev/null
+    # A session of its own, which the limit ends.
+    check "$place: $(basename "$page")" setsid --wait timeout 1800 bash $docs/page.sh "$page" </dev/null
     cd - >/dev/null || exit
     take_down
   done

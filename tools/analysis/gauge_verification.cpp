@@ -170,7 +170,7 @@ GaugeVerification VerifyGauges(const RigConfig& config, bool filtered) {
   for (const GaugeComparison& link : CompareGauges(config)) {
     gauges.push_back(MakeGauges(config, link, filtered));
   }
-  const Excitation excitation;
+  const Excitation excitation = ExcitationFor(config);
   const Eigen::Vector2d torque(excitation.torque_nm[0], excitation.torque_nm[1]);
   const double h = ArmSimulator::kDefaultStep_s;
   const long every = std::max(1L, std::lround(config.loop.period_s() / h));

@@ -168,6 +168,19 @@ OrderedJson ParametricJson(const ParametricStudy& study, const std::vector<State
   return json;
 }
 
+void PrintSweeps(const ParametricStudy& study) {
+  std::printf("square wave of torque, 1 s: %.3g and %.3g N m\n", study.excitation.torque_nm[0],
+              study.excitation.torque_nm[1]);
+  for (const ParametricSweep& sweep : study.sweep) {
+    std::printf("%s\n  value    lowest Hz, motors free, held    largest bending 1, 2, mm\n",
+                sweep.label.c_str());
+    for (const ParametricPoint& p : sweep.point) {
+      std::printf("  %-8.4g %8.4g %8.4g %8.4g    %8.3g %8.3g\n", p.value, p.free_hz[0],
+                  p.free_hz[1], p.held_hz, p.signal[kBending1].peak, p.signal[kBending2].peak);
+    }
+  }
+}
+
 void PrintStatements(const std::vector<Statement>& statements) {
   for (const Statement& s : statements) {
     std::printf("%s  %s\n     model: %s\n     %s\n", s.section.c_str(), s.thesis.c_str(),
@@ -181,12 +194,14 @@ std::vector<std::filesystem::path> WriteParametricFolder(const ParametricStudy& 
   MakeFolder(folder);
   std::vector<std::filesystem::path> files;
   for (std::size_t i = 0; i < study.sweep.size(); ++i) {
-    files.push_back(folder /
-                    ("figure-" + std::string(kFigureOf[i]) + "-" + study.sweep[i].name + ".png"));
+    const std::string figure =
+        study.sweep.size() == kSweeps ? "figure-" + std::string(kFigureOf[i]) + "-" : "";
+    files.push_back(folder / (figure + study.sweep[i].name + ".png"));
     DrawSweep(study, study.sweep[i], files.back());
   }
   files.push_back(folder / "parametric.csv");
   WriteFile(files.back(), Csv(study), ReplaceAny("a table"));
+  if (statements.empty()) return files;
   files.push_back(folder / "statements.md");
   WriteFile(files.back(), StatementTable(statements), ReplaceAny("a page"));
   return files;

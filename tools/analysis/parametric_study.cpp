@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "config/thesis_arm.h"
 #include "model/arm/dc_motor.h"
 #include "model/arm/linearization.h"
 #include "model/simulation/arm_simulator.h"
@@ -76,11 +77,23 @@ SweepPlan BacklashPlan(const ArmParameters& arm, BacklashModel model, const char
           }};
 }
 
-std::vector<SweepPlan> Plans(const ArmParameters& arm) {
-  return {{"payload_kg",
-           "payload, kg",
-           arm.payload_mass_kg,
-           {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0},
+// From the least to the greatest payload of the rig; to twice the nominal one if there is one only.
+std::vector<double> Payloads_kg(const RigConfig& config) {
+  auto [least, most] = config.controller.payload_range_kg;
+  if (!(most > least)) most = least + std::max(config.arm.payload_mass_kg, 0.01);
+  constexpr int kSteps = 10;
+  constexpr double kMilligrams = 1e6;
+  std::vector<double> values;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double kg = least + (most - least) * i / kSteps;
+    values.push_back(std::round(kMilligrams * kg) / kMilligrams);
+  }
+  return values;
+}
+
+std::vector<SweepPlan> AllPlans(const RigConfig& config) {
+  const ArmParameters& arm = config.arm;
+  return {{"payload_kg", "payload, kg", arm.payload_mass_kg, Payloads_kg(config),
            [](ArmParameters* p, double value) {
              p->payload_mass_kg = p->shape_payload_mass_kg = value;
            }},
@@ -98,6 +111,12 @@ std::vector<SweepPlan> Plans(const ArmParameters& arm) {
                        "backlash of joint 2 in the thesis's form, deg"),
           LengthPlan(arm, 0),
           LengthPlan(arm, 1)};
+}
+
+std::vector<SweepPlan> Plans(const RigConfig& config) {
+  std::vector<SweepPlan> plans = AllPlans(config);
+  if (!IsThesisArm(config.arm)) plans.erase(plans.begin() + kThesisBacklash);
+  return plans;
 }
 
 Samples Respond(const RigConfig& config, const ArmModel& model, const Excitation& excitation) {
@@ -165,8 +184,19 @@ ParametricPoint Run(const RigConfig& config, const SweepPlan& plan, double value
 
 std::size_t ParametricRuns(const RigConfig& config) {
   std::size_t runs = 0;
-  for (const SweepPlan& plan : Plans(config.arm)) runs += plan.values.size();
+  for (const SweepPlan& plan : Plans(config)) runs += plan.values.size();
   return runs;
+}
+
+Excitation ExcitationFor(const RigConfig& config) {
+  Excitation excitation;
+  excitation.motor_lag_ms = config.sim.motor_lag_ms;
+  if (IsThesisArm(config.arm)) return excitation;
+  constexpr std::array<double, 2> kThesisLimit_nm = {30.0, 6.0};
+  for (std::size_t i = 0; i < 2; ++i) {
+    excitation.torque_nm[i] *= config.safety.torque_limit_nm[i] / kThesisLimit_nm[i];
+  }
+  return excitation;
 }
 
 Excitation Strong(const Excitation& weak) {
@@ -177,7 +207,7 @@ Excitation Strong(const Excitation& weak) {
 
 ParametricStudy RunParametricStudy(const RigConfig& config, const Excitation& excitation,
                                    const std::function<void(std::size_t)>& progress) {
-  const std::vector<SweepPlan> plans = Plans(config.arm);
+  const std::vector<SweepPlan> plans = Plans(config);
   ParametricStudy study{excitation, {}};
   std::vector<std::pair<std::size_t, std::size_t>> runs;
   for (const SweepPlan& plan : plans) {

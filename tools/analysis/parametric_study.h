@@ -22,6 +22,10 @@ struct Excitation {
   static constexpr double kPeriod_s = 1.0;
 };
 
+/// The excitation for a rig, with the lag of its motors: 0.4 and 0.1 N m for the thesis's arm, for
+/// others the same shares of the torque limits as there.
+Excitation ExcitationFor(const RigConfig& config);
+
 /// One signal of one run. mm for bending, mrad for twist. All infinite if the run diverged.
 struct SignalMeasures {
   double peak;               ///< largest magnitude of the whole run
@@ -47,8 +51,8 @@ struct ParametricSweep {
   std::vector<ParametricPoint> point;  ///< ascending values
 };
 
-/// Payload, joint stiffnesses, friction, backlash (as a dead zone with impacts, and in the thesis's
-/// dissipation form) and link lengths, in this order.
+/// Payload, joint stiffnesses, friction, backlash (as a dead zone with impacts, and for the
+/// thesis's arm in its dissipation form) and link lengths, in this order.
 enum SweepPlace : std::size_t {
   kPayload,
   kStiffness1,
@@ -63,8 +67,9 @@ enum SweepPlace : std::size_t {
 
 struct ParametricStudy {
   Excitation excitation;
-  std::vector<ParametricSweep> sweep;  ///< by SweepPlace
+  std::vector<ParametricSweep> sweep;  ///< by SweepPlace; without kThesisBacklash for another arm
 
+  /// Of the thesis's arm.
   const ParametricSweep& At(SweepPlace place) const { return sweep[place]; }
 };
 

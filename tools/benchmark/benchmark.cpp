@@ -14,7 +14,7 @@ namespace flexarm {
 namespace {
 
 double ShortestRest_s(const Scenario& scenario) {
-  if (scenario.random_up_to_kg) return kRandomMovesRest_s;
+  if (scenario.random) return kRandomMovesRest_s;
   double shortest_s = std::numeric_limits<double>::infinity();
   for (const Rest& rest : RestsOf(scenario.experiment, scenario.experiment.duration_s)) {
     shortest_s = std::min(shortest_s, rest.end_s - rest.start_s);
@@ -52,21 +52,29 @@ nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
   return json;
 }
 
+void RefuseLeftOut(const BenchmarkSet& set, const std::vector<std::string>& laws) {
+  for (const LeftOut& out : set.left_out) {
+    const bool is_asked = std::find(laws.begin(), laws.end(), out.name) != laws.end();
+    if (is_asked || laws.empty()) throw InputError("--laws " + out.name + ": " + out.why);
+  }
+}
+
 }  // namespace
 
 SweepPlan BenchmarkPlan(const RigConfig& config, const BenchmarkSet& set, const std::string& laws,
                         const std::string& seeds) {
+  const std::vector<std::string> chosen = laws.empty() ? set.laws : ParseValues(laws);
+  RefuseLeftOut(set, chosen);
   SweepPlan plan{.config = config, .experiment = {}, .grid = {}, .scenarios = set.scenarios};
   plan.experiment = plan.scenarios.front().experiment;
   std::vector<std::string> names;
   for (const Scenario& scenario : plan.scenarios) names.push_back(scenario.name);
-  plan.grid = SweepGrid({{.target = AxisTarget::kConfig,
-                          .key = "controller.name",
-                          .values = laws.empty() ? set.laws : ParseValues(laws)},
-                         {.target = AxisTarget::kScenario, .key = {}, .values = names},
-                         {.target = AxisTarget::kSeed,
-                          .key = {},
-                          .values = ParseValues(seeds.empty() ? set.seeds : seeds)}});
+  plan.grid =
+      SweepGrid({{.target = AxisTarget::kConfig, .key = "controller.name", .values = chosen},
+                 {.target = AxisTarget::kScenario, .key = {}, .values = names},
+                 {.target = AxisTarget::kSeed,
+                  .key = {},
+                  .values = ParseValues(seeds.empty() ? set.seeds : seeds)}});
   CheckPlan(plan);
   return plan;
 }
@@ -96,11 +104,14 @@ std::size_t BenchmarkTable::Runs(std::size_t law) const {
   return sum;
 }
 
-BenchmarkTable TableOf(BenchmarkKind kind, const SweepPlan& plan,
+BenchmarkTable TableOf(const BenchmarkSet& set, const SweepPlan& plan,
                        const std::vector<SweepRow>& rows) {
   const std::vector<SweepAxis>& axes = plan.grid.axes();
-  BenchmarkTable table{
-      .kind = kind, .laws = axes[0].values, .scenarios = plan.scenarios, .cell = {}};
+  BenchmarkTable table{.kind = set.kind,
+                       .laws = axes[0].values,
+                       .scenarios = plan.scenarios,
+                       .cell = {},
+                       .left_out = set.left_out};
   std::vector<std::vector<std::vector<SweepRow>>> of_cell(
       table.laws.size(), std::vector<std::vector<SweepRow>>(table.scenarios.size()));
   for (const SweepRow& row : rows) {
@@ -133,6 +144,10 @@ nlohmann::ordered_json BenchmarkJson(const BenchmarkTable& table) {
       of_law["scenarios"][table.scenarios[i].name] = CellJson(table.cell[law][i]);
     }
     json["laws"].push_back(of_law);
+  }
+  json["left_out"] = nlohmann::ordered_json::array();
+  for (const LeftOut& out : table.left_out) {
+    json["left_out"].push_back({{"name", out.name}, {"why", out.why}});
   }
   return json;
 }

@@ -16,7 +16,7 @@ namespace flexarm {
 /// Every law in every scenario with every seed, as a sweep.
 /// @param laws   names with commas between; empty: the set's
 /// @param seeds  empty: the set's
-/// @throws InputError  no such law, no such seeds
+/// @throws InputError  no such law, none that the rig permits, no such seeds
 SweepPlan BenchmarkPlan(const RigConfig& config, const BenchmarkSet& set,
                         const std::string& laws = {}, const std::string& seeds = {});
 
@@ -35,6 +35,7 @@ struct BenchmarkTable {
   std::vector<std::string> laws;
   std::vector<Scenario> scenarios;
   std::vector<std::vector<BenchmarkCell>> cell;  ///< [law][scenario]
+  std::vector<LeftOut> left_out{};
 
   double Score(std::size_t law) const;               ///< mean over the scenarios
   std::size_t WorstScenario(std::size_t law) const;  ///< that with the lowest score
@@ -42,9 +43,9 @@ struct BenchmarkTable {
   std::size_t Runs(std::size_t law) const;
 };
 
-/// @param plan  of a set of this kind
+/// @param plan  of this set
 /// @param rows  of the plan; points may be missing
-BenchmarkTable TableOf(BenchmarkKind kind, const SweepPlan& plan,
+BenchmarkTable TableOf(const BenchmarkSet& set, const SweepPlan& plan,
                        const std::vector<SweepRow>& rows);
 
 nlohmann::ordered_json BenchmarkJson(const BenchmarkTable& table);

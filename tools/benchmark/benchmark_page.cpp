@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "tools/benchmark/benchmark.h"
 
@@ -141,9 +142,21 @@ TextTable LimitTable(const BenchmarkTable& table) {
   return text;
 }
 
-}  // namespace
+// What the rig does not permit, and what was refused before it ran.
+TextTable RefusedTable(const BenchmarkTable& table) {
+  TextTable text{.head = {"law or scenario", "why"}, .rows = {}};
+  for (const LeftOut& out : table.left_out) text.rows.push_back({out.name, out.why});
+  for (std::size_t law = 0; law < table.laws.size(); ++law) {
+    std::set<std::string> reasons;
+    for (const BenchmarkCell& cell : table.cell[law]) {
+      reasons.insert(cell.group.refused.begin(), cell.group.refused.end());
+    }
+    for (const std::string& why : reasons) text.rows.push_back({table.laws[law], why});
+  }
+  return text;
+}
 
-std::vector<TablePart> TableParts(const BenchmarkTable& table) {
+std::vector<TablePart> ResultParts(const BenchmarkTable& table) {
   switch (table.kind) {
     case BenchmarkKind::kCommands:
       return {{"Score over all scenarios; the other figures are those of the nominal one, medians "
@@ -167,6 +180,17 @@ std::vector<TablePart> TableParts(const BenchmarkTable& table) {
            LimitTable(table)}};
   }
   return {};
+}
+
+}  // namespace
+
+std::vector<TablePart> TableParts(const BenchmarkTable& table) {
+  std::vector<TablePart> parts = ResultParts(table);
+  TextTable refused = RefusedTable(table);
+  if (!refused.rows.empty()) {
+    parts.push_back({"Left out on this rig, or refused before the run:", std::move(refused)});
+  }
+  return parts;
 }
 
 std::string BenchmarkMarkdown(const BenchmarkTable& table) {

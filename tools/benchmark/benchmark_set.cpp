@@ -5,6 +5,7 @@
 
 #include "controller/runlog/errors.h"
 #include "controller/types/law_table.h"
+#include "tools/sweep/sweep.h"
 
 namespace flexarm {
 namespace {
@@ -14,6 +15,44 @@ constexpr std::array kKinds = {BenchmarkKind::kCommands, BenchmarkKind::kMoves,
 
 // No law was tried on these seeds during its development, tests included.
 constexpr const char* kMoveSeeds = "4001..4010";
+
+// One line, without the option in which the problem lies.
+std::string WhyOf(const ConfigError& error) {
+  std::string why;
+  for (const ConfigProblem& problem : error.problems()) {
+    why += (why.empty() ? "" : "; ") + problem.key + " = " + problem.value + ": " + problem.rule;
+  }
+  return why;
+}
+
+void LeaveOutLaws(const RigConfig& config, BenchmarkSet* set) {
+  std::erase_if(set->laws, [&](const std::string& law) {
+    try {
+      WithLaw(config, law);
+      return false;
+    } catch (const ConfigError& error) {
+      set->left_out.push_back({.name = law, .why = WhyOf(error)});
+      return true;
+    }
+  });
+}
+
+void LeaveOutScenarios(const RigConfig& config, BenchmarkSet* set) {
+  std::erase_if(set->scenarios, [&](const Scenario& scenario) {
+    SweepPlan plan{.config = config,
+                   .experiment = scenario.experiment,
+                   .grid = SweepGrid(
+                       {{.target = AxisTarget::kScenario, .key = {}, .values = {scenario.name}}}),
+                   .scenarios = {scenario}};
+    try {
+      CheckPlan(plan);
+      return false;
+    } catch (const ConfigError& error) {
+      set->left_out.push_back({.name = scenario.name, .why = WhyOf(error)});
+      return true;
+    }
+  });
+}
 
 }  // namespace
 
@@ -51,7 +90,7 @@ BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const RigConfig& config,
   BenchmarkSet set{.kind = kind, .scenarios = {}, .laws = PayloadLaws(), .seeds = kMoveSeeds};
   switch (kind) {
     case BenchmarkKind::kCommands:
-      set.scenarios = CommandScenarios(experiments);
+      set.scenarios = CommandScenarios(config, experiments);
       set.laws = CommandLaws();
       set.seeds = "1..3";
       break;
@@ -65,6 +104,8 @@ BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const RigConfig& config,
       set.scenarios = LimitScenarios(config);
       break;
   }
+  LeaveOutLaws(config, &set);
+  LeaveOutScenarios(config, &set);
   return set;
 }
 

@@ -1,3 +1,7 @@
+#include <array>
+
+#include "config/thesis_arm.h"
+#include "controller/types/rounded_text.h"
 #include "tools/benchmark/benchmark_set.h"
 #include "tools/benchmark/disturbance.h"
 #include "tools/sweep/better_sensors.h"
@@ -9,7 +13,6 @@ namespace {
 using Overrides = std::vector<std::string>;
 
 const Overrides kNoFriction = {"joint1.coulomb_friction_nm=0", "joint2.coulomb_friction_nm=0"};
-constexpr double kHeaviest_kg = 1.0;
 constexpr double kFiner = 10.0;
 
 Overrides Both(Overrides a, const Overrides& b) {
@@ -17,16 +20,16 @@ Overrides Both(Overrides a, const Overrides& b) {
   return a;
 }
 
-Scenario RandomScenario(const Disturbance& d, double up_to_kg = kHeaviest_kg) {
+Scenario RandomScenario(const RigConfig& config, const MoveRecipe& recipe, const Disturbance& d) {
   Scenario scenario{.name = d.name,
                     .what = d.what,
                     .experiment = {},
                     .payload_kg = 0.0,
                     .variant = d.variant,
                     .plant = d.plant,
-                    .config = Both(kWideRig, d.config),
+                    .config = IsThesisArm(config.arm) ? Both(kWideRig, d.config) : d.config,
                     .tuned_on = false,
-                    .random_up_to_kg = up_to_kg};
+                    .random = recipe};
   scenario.experiment.name = "random-moves";
   return scenario;
 }
@@ -47,8 +50,19 @@ Disturbance NoFriction() {
   return {.name = "no-friction", .what = "no Coulomb friction", .plant = kNoFriction};
 }
 
+// A rate of 1 rad/s costs 1/600 and 1/300 of the joints' torques.
+Disturbance Viscous(const RigConfig& config) {
+  const std::array<double, 2>& limit_nm = config.safety.torque_limit_nm;
+  const std::string first = RoundedText(limit_nm[0] / 600.0, 3);
+  const std::string second = RoundedText(limit_nm[1] / 300.0, 3);
+  return {.name = "viscous",
+          .what = "viscous friction of the motors, " + first + " and " + second + " N m s/rad",
+          .plant = {"joint1.viscous_friction_nm_s_per_rad=" + first,
+                    "joint2.viscous_friction_nm_s_per_rad=" + second}};
+}
+
 // Plants of the design study beyond those that are common to all tables.
-std::vector<Disturbance> MorePlants() {
+std::vector<Disturbance> MorePlants(const RigConfig& config) {
   return {
       NoFriction(),
       {.name = "backlash-0.2",
@@ -58,26 +72,36 @@ std::vector<Disturbance> MorePlants() {
       {.name = "modal-damping-1",
        .what = "modal damping 1 %",
        .plant = {"arm.damping=modal", "link1.damping_ratio=0.01", "link2.damping_ratio=0.01"}},
-      {.name = "viscous",
-       .what = "viscous friction of the motors, 0.05 and 0.02 N m s/rad",
-       .plant = {"joint1.viscous_friction_nm_s_per_rad=0.05",
-                 "joint2.viscous_friction_nm_s_per_rad=0.02"}},
+      Viscous(config),
       {.name = "together",
        .what = "backlash, friction, softness, damping and lost frames at once",
        .variant = "together"},
   };
 }
 
+std::string Payloads(const MoveRecipe& recipe) {
+  return RoundedText(recipe.payload_kg[0], 3) + " to " + RoundedText(recipe.payload_kg[1], 3) +
+         " kg";
+}
+
 }  // namespace
 
 std::vector<Scenario> MoveScenarios(const RigConfig& config) {
-  std::vector<Scenario> scenarios = {RandomScenario({.name = "nominal", .what = "0 to 1 kg"}),
-                                     RandomScenario({.name = "light", .what = "0 to 0.2 kg"}, 0.2)};
-  for (const auto& disturbances : {CommonDisturbances(), MorePlants()}) {
-    for (const Disturbance& d : disturbances) scenarios.push_back(RandomScenario(d));
+  const MoveRecipe recipe = RecipeFor(config);
+  MoveRecipe light = recipe;
+  light.payload_kg[1] = 2.0 * config.arm.payload_mass_kg;
+  std::vector<Scenario> scenarios = {
+      RandomScenario(config, recipe, {.name = "nominal", .what = Payloads(recipe)})};
+  if (light.payload_kg[0] < light.payload_kg[1] && light.payload_kg[1] < recipe.payload_kg[1]) {
+    scenarios.push_back(RandomScenario(config, light, {.name = "light", .what = Payloads(light)}));
   }
-  scenarios.push_back(RandomScenario(FineTheta1(config)));
-  scenarios.push_back(RandomScenario(FineEncoders(config)));
+  for (const auto& disturbances : {CommonDisturbances(config), MorePlants(config)}) {
+    for (const Disturbance& d : disturbances) {
+      scenarios.push_back(RandomScenario(config, recipe, d));
+    }
+  }
+  scenarios.push_back(RandomScenario(config, recipe, FineTheta1(config)));
+  scenarios.push_back(RandomScenario(config, recipe, FineEncoders(config)));
   return scenarios;
 }
 
@@ -107,7 +131,9 @@ std::vector<Scenario> LimitScenarios(const RigConfig& config) {
   };
   std::vector<Scenario> scenarios;
   scenarios.reserve(taken_away.size());
-  for (const Disturbance& d : taken_away) scenarios.push_back(RandomScenario(d));
+  for (const Disturbance& d : taken_away) {
+    scenarios.push_back(RandomScenario(config, RecipeFor(config), d));
+  }
   return scenarios;
 }
 

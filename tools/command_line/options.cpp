@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "config/config_reference.h"
+#include "config/fitted_experiment.h"
 #include "controller/files/external_text.h"
 #include "controller/files/input_error.h"
 #include "tools/command_line/completion.h"
@@ -38,17 +39,6 @@ RigConfig ConfigOptions::Load() const {
   return LoadConfig(file, overrides);
 }
 
-RigConfig ConfigOptions::LoadWithCrossSections() const {
-  RigConfig config = Load();
-  for (std::size_t i = 0; i < config.arm.link.size(); ++i) {
-    if (config.arm.link[i].has_cross_sections()) continue;
-    throw InputError(file.string() + ": link" + std::to_string(i + 1) +
-                     ".section: needs area_m2, second_moment_m4, density_kg_m3 and "
-                     "youngs_modulus_pa, which statements of the thesis are about");
-  }
-  return config;
-}
-
 void AddSet(CLI::App* verb, std::vector<std::string>* overrides) {
   CLI::Option* set =
       verb->add_option("--set", *overrides,
@@ -67,7 +57,8 @@ void GridOptions::AddTo(CLI::App* verb) {
       ->check(NumberWithin(1, 1024));
 }
 
-std::filesystem::path ExperimentsFolder(const std::filesystem::path& config) {
+std::filesystem::path ExperimentsFolder(const std::filesystem::path& config,
+                                        const std::string& file) {
   std::error_code ignored;
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
@@ -75,16 +66,25 @@ std::filesystem::path ExperimentsFolder(const std::filesystem::path& config) {
       config.parent_path() / "experiments", "config/experiments",
       program / "../share/flexarm/config/experiments", program / "../../../config/experiments"};
   for (const std::filesystem::path& folder : folders) {
-    if (std::filesystem::is_directory(folder, ignored)) return folder.lexically_normal();
+    if (std::filesystem::exists(folder / file, ignored)) return folder.lexically_normal();
   }
-  throw InputError("found no experiments beside " + Shown(config.string(), kMessageBytes) +
+  throw InputError("found no experiments/" + file + " beside " +
+                   Shown(config.string(), kMessageBytes) +
                    ", in config/experiments or with the program: name one with --experiment FILE");
 }
 
-std::filesystem::path ExperimentFile(const std::filesystem::path& given,
-                                     const std::filesystem::path& config, ControllerKind law) {
-  if (!given.empty()) return given;
-  return ExperimentsFolder(config) / (IsScheduled(law) ? "moves.toml" : "square-30deg.toml");
+ChosenExperiment ChooseExperiment(const std::filesystem::path& given,
+                                  const std::filesystem::path& config_file,
+                                  const RigConfig& config) {
+  if (!given.empty()) return {.file = given, .experiment = LoadExperiment(given)};
+  const char* name = IsScheduled(config.controller.kind) ? "moves.toml" : "square-30deg.toml";
+  const std::filesystem::path file = ExperimentsFolder(config_file, name) / name;
+  const FittedExperiment fitted = FitExperiment(LoadExperiment(file), config);
+  if (!fitted.how.empty()) {
+    std::cerr << "flexarm: note: " << Shown(file.string(), kMessageBytes)
+              << " is fitted to this rig: " << fitted.how << '\n';
+  }
+  return {.file = file, .experiment = fitted.experiment};
 }
 
 std::function<std::string(const std::string&)> NumberWithin(double low, double high) {

@@ -24,9 +24,6 @@ struct ConfigOptions {
   bool given() const { return !file.empty(); }
   /// @throws ConfigError; InputError if --set was given without --config
   RigConfig Load() const;
-  /// Load() for the statements of the thesis, of which some are about cross-sections.
-  /// @throws InputError if a section has its mass per length and bending stiffness instead
-  RigConfig LoadWithCrossSections() const;
 };
 
 /// The options --shard I/N and --jobs J of every verb that runs the points of a grid.
@@ -40,15 +37,25 @@ struct GridOptions {
 /// Adds --set section.key=VALUE alone, to a verb that names its config in another way.
 void AddSet(CLI::App* verb, std::vector<std::string>* overrides);
 
-/// The folder of the shipped experiments: beside the config, in config/ of the current folder,
+/// The folder experiments/ that has `file`: beside the config, in config/ of the current folder,
 /// where this program was installed, or in the source tree that it was built in.
 /// @throws InputError if there is none
-std::filesystem::path ExperimentsFolder(const std::filesystem::path& config);
+std::filesystem::path ExperimentsFolder(const std::filesystem::path& config,
+                                        const std::string& file);
 
-/// `given`, or if that is empty the default experiment of ExperimentsFolder: square-30deg.toml, or
-/// moves.toml for a law that follows moves only.
-std::filesystem::path ExperimentFile(const std::filesystem::path& given,
-                                     const std::filesystem::path& config, ControllerKind law);
+/// What a verb runs.
+struct ChosenExperiment {
+  std::filesystem::path file;
+  Experiment experiment;
+};
+
+/// The experiment of the file `given`. If that is empty, the default of ExperimentsFolder,
+/// square-30deg.toml or for a law that follows moves only moves.toml, fitted to the rig
+/// (FitExperiment); tells on stderr what was fitted.
+/// @throws ConfigError, InputError
+ChosenExperiment ChooseExperiment(const std::filesystem::path& given,
+                                  const std::filesystem::path& config_file,
+                                  const RigConfig& config);
 
 /// Check of a numeric option: low <= value <= high. Unlike CLI::Range it refuses a NaN.
 std::function<std::string(const std::string&)> NumberWithin(double low, double high);

@@ -29,8 +29,9 @@ inline constexpr std::array kStudies = {
           "Simulate an experiment over a grid of parameter values, on all cores; resumable"},
     Study{"benchmark",
           "Compare the control laws in the same scenarios: settling, errors, torque, one score"},
-    Study{"report",
-          "Recompute every figure and table of chapters 4 to 7 of the thesis, in one HTML page"},
+    Study{
+        "report",
+        "Describe the arm and compare its laws in one HTML page; recompute the thesis for its arm"},
     Study{"identify", "Identify parameters of the rig from a measured run"},
 };
 

@@ -93,8 +93,8 @@ void AddFile(const KeyListing& reference, std::string* page) {
 
 constexpr const char* kHead =
     "# Config reference\n\n"
-    "After reading this page you can say what every key of a config or an experiment means, in "
-    "which unit and range, and what holds without it.\n\n"
+    "After reading this page you can say what every key of a config, an experiment or a "
+    "description of an arm means, in which unit and range, and what holds without it.\n\n"
     "The program writes this page from the code that reads the files: `flexarm config reference`. "
     "`flexarm config reference KEY` prints one key, a\n"
     "table, or all keys of a name; `--json` prints all for programs. "
@@ -112,12 +112,17 @@ constexpr const char* kHead =
 
 }  // namespace
 
-std::string ReferencePage(const KeyListing& rig, const KeyListing& experiment) {
+std::string ReferencePage(const KeyListing& rig, const KeyListing& experiment,
+                          const KeyListing& arm) {
   std::string page = kHead;
   page += "\n## Config of a rig\n\n";
   AddFile(rig, &page);
   page += "\n## Experiment\n\nHow to write one: [experiments.md](experiments.md).\n\n";
   AddFile(experiment, &page);
+  page +=
+      "\n## Description of an arm\n\nThe file of `flexarm config new --from`: "
+      "[own-arm.md](own-arm.md). Each key is also an option of the same name.\n\n";
+  AddFile(arm, &page);
   return page;
 }
 

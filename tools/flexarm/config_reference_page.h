@@ -8,8 +8,10 @@
 
 namespace flexarm {
 
-/// The page docs/config-reference.md: every key of a config and of an experiment.
-std::string ReferencePage(const KeyListing& rig, const KeyListing& experiment);
+/// The page docs/config-reference.md: every key of a config, an experiment, a description of an
+/// arm.
+std::string ReferencePage(const KeyListing& rig, const KeyListing& experiment,
+                          const KeyListing& arm);
 
 /// {"tables": [..], "keys": [..]} of one kind of file.
 nlohmann::ordered_json ReferenceJson(const KeyListing& reference);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "config/new_rig/arm_reference.h"
 #include "config/spelling.h"
 #include "controller/files/external_json.h"
 #include "controller/files/external_text.h"
@@ -22,10 +23,15 @@ struct ReferenceOptions {
   bool json = false;
 };
 
+/// The keys of each kind of file.
+struct Listings {
+  KeyListing rig = RigReference(), experiment = ExperimentReference(), arm = ArmReference();
+};
+
 // What may be asked for: keys, with and without their tables, and tables.
-std::vector<std::string> WordsOf(const KeyListing& rig, const KeyListing& experiment) {
+std::vector<std::string> WordsOf(const Listings& listings) {
   std::vector<std::string> words;
-  for (const KeyListing* reference : {&rig, &experiment}) {
+  for (const KeyListing* reference : {&listings.rig, &listings.experiment, &listings.arm}) {
     for (const ListedKey& key : reference->keys) {
       words.push_back(key.path);
       words.push_back(key.name);
@@ -35,35 +41,49 @@ std::vector<std::string> WordsOf(const KeyListing& rig, const KeyListing& experi
   return words;
 }
 
-[[noreturn]] void FailUnknown(const std::string& word, const KeyListing& rig,
-                              const KeyListing& experiment) {
-  const std::optional<std::string> close = ClosestWord(word, WordsOf(rig, experiment));
-  throw InputError("no config and no experiment has a key or table " + Shown(word) + "; " +
+[[noreturn]] void FailUnknown(const std::string& word, const Listings& listings) {
+  const std::optional<std::string> close = ClosestWord(word, WordsOf(listings));
+  throw InputError("no config, experiment or description of an arm has a key or table " +
+                   Shown(word) + "; " +
                    (close ? "did you mean " + *close + "?"
                           : "`flexarm config reference` lists all, and `flexarm config reference "
                             "limits` those of a table"));
 }
 
+void PrintJson(const Listings& listings) {
+  std::cout << PrintedJson({{"rig", ReferenceJson(listings.rig)},
+                            {"experiment", ReferenceJson(listings.experiment)},
+                            {"arm", ReferenceJson(listings.arm)}})
+            << '\n';
+}
+
+void PrintKeys(const char* head, const KeyListing& listing) {
+  if (!listing.keys.empty()) std::cout << head;
+  for (const ListedKey& key : listing.keys) std::cout << ReferenceText(key);
+}
+
 void Print(const ReferenceOptions& options) {
-  KeyListing rig = RigReference(), experiment = ExperimentReference();
-  if (!options.key.empty()) {
-    std::vector<ListedKey> of_rig = KeysMeant(rig, options.key);
-    std::vector<ListedKey> of_experiment = KeysMeant(experiment, options.key);
-    if (of_rig.empty() && of_experiment.empty()) FailUnknown(options.key, rig, experiment);
-    rig = {.tables = {}, .keys = std::move(of_rig)};
-    experiment = {.tables = {}, .keys = std::move(of_experiment)};
+  const Listings all;
+  if (options.key.empty()) {
+    if (options.json) {
+      PrintJson(all);
+    } else {
+      std::cout << ReferencePage(all.rig, all.experiment, all.arm);
+    }
+    return;
   }
-  if (options.json) {
-    std::cout << PrintedJson(
-                     {{"rig", ReferenceJson(rig)}, {"experiment", ReferenceJson(experiment)}})
-              << '\n';
-  } else if (options.key.empty()) {
-    std::cout << ReferencePage(rig, experiment);
-  } else {
-    for (const ListedKey& key : rig.keys) std::cout << ReferenceText(key);
-    if (!experiment.keys.empty()) std::cout << "In an experiment:\n";
-    for (const ListedKey& key : experiment.keys) std::cout << ReferenceText(key);
+  const auto meant = [&](const KeyListing& reference) {
+    return KeyListing{.tables = {}, .keys = KeysMeant(reference, options.key)};
+  };
+  const Listings asked{
+      .rig = meant(all.rig), .experiment = meant(all.experiment), .arm = meant(all.arm)};
+  if (asked.rig.keys.empty() && asked.experiment.keys.empty() && asked.arm.keys.empty()) {
+    FailUnknown(options.key, all);
   }
+  if (options.json) return PrintJson(asked);
+  PrintKeys("", asked.rig);
+  PrintKeys("In an experiment:\n", asked.experiment);
+  PrintKeys("In a description of an arm:\n", asked.arm);
 }
 
 }  // namespace
@@ -72,12 +92,13 @@ void RegisterConfigReference(CLI::App& config, Exit&) {
   const auto options = std::make_shared<ReferenceOptions>();
   CLI::App* verb = config.add_subcommand(
       "reference",
-      "Print what every key of a config and of an experiment means: unit, range, value without it");
+      "Print what every key of a config, an experiment and a description of an arm means: unit, "
+      "range, value without it");
   CLI::Option* key =
       verb->add_option("key", options->key,
                        "Only this key, the keys of this table, or all keys of this name")
           ->type_name("KEY");
-  OfferWords(key, [] { return WordsOf(RigReference(), ExperimentReference()); });
+  OfferWords(key, [] { return WordsOf({}); });
   AddJson(verb, &options->json);
   verb->footer(
       "Without KEY it prints a page in Markdown, docs/config-reference.md.\n"

@@ -84,7 +84,7 @@ void ExportDecoded(const ExportOptions& options) {
   std::map<std::int64_t, TimingRecord> timing;
   reader.ForEachTiming([&](const TimingRecord& record) { timing[record.tick] = record; });
   const DecodedRun run{.sensors = config.sensors,
-                       .tip = TipGeometryOf(config.arm, config.controller.nominal),
+                       .tip = TipGeometryOf(config),
                        .start_ns = reader.info().start_ns,
                        .simulated = reader.info().backend == "sim",
                        .timed = !timing.empty(),

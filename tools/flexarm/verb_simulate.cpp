@@ -66,9 +66,10 @@ SimulationRequest RequestOfConfig(const SimulateOptions& options) {
   if (!options.config.given()) throw CLI::RequiredError("--config, or --like RUN");
   SimulationRequest request;
   request.config = LoadConfig(options.config.file, OverridesOf(options));
-  request.experiment_file =
-      ExperimentFile(options.experiment, options.config.file, request.config.controller.kind);
-  request.experiment = LoadExperiment(request.experiment_file);
+  ChosenExperiment chosen =
+      ChooseExperiment(options.experiment, options.config.file, request.config);
+  request.experiment_file = std::move(chosen.file);
+  request.experiment = std::move(chosen.experiment);
   request.payload_kg = options.payload_kg;
   return request;
 }
@@ -256,7 +257,8 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
   verb->add_option(
           "--experiment", options->experiment,
           "Experiment, a TOML file (default: experiments/square-30deg.toml beside the config or\n"
-          "shipped; moves.toml for a law that follows moves only)")
+          "shipped, moves.toml for a law that follows moves only; slower or smaller if the rig "
+          "needs it)")
       ->type_name("FILE");
   OfferWords(verb->add_option("--controller", options->controller,
                               "controller.name, the control law:\n" + LawHelp()),

@@ -3,7 +3,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "config/thesis_arm.h"
 #include "controller/files/external_json.h"
+#include "controller/files/input_error.h"
 #include "controller/files/write_file.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
@@ -21,7 +23,11 @@ struct ThesisCheckOptions {
 };
 
 void Analyze(const ThesisCheckOptions& options) {
-  const RigConfig config = options.config.LoadWithCrossSections();
+  const RigConfig config = options.config.Load();
+  if (const std::string differs = DiffersFromThesisArm(config.arm); !differs.empty()) {
+    throw InputError(options.config.file.string() +
+                     ": the statements of the thesis are about its arm: " + differs);
+  }
   const OutputRules rules =
       options.output.Rules("such a page", kThesisCheckTitle, {options.config.file});
   if (options.output.given()) CheckOutput(options.output.file, rules);

@@ -21,7 +21,7 @@ struct ExciteOptions {
   int modes = 4;
   double theta2_deg = 0.0;
   Excitation excitation;
-  std::optional<std::array<double, 2>> motor_lag_ms;  // empty: the config's
+  std::optional<std::array<double, 2>> torque_nm, motor_lag_ms;  // empty: the config's
   double duration_s = 3.0;
   bool without_dissipation = false;
   bool json = false;
@@ -31,7 +31,9 @@ struct ExciteOptions {
 ExcitationRun RunOf(ExciteOptions& options) {
   const RigConfig config = options.config.Load();
   ArmParameters arm = config.arm;
-  options.excitation.motor_lag_ms = options.motor_lag_ms.value_or(config.sim.motor_lag_ms);
+  options.excitation = ExcitationFor(config);
+  if (options.torque_nm) options.excitation.torque_nm = *options.torque_nm;
+  if (options.motor_lag_ms) options.excitation.motor_lag_ms = *options.motor_lag_ms;
   if (options.without_dissipation) {
     arm.damping = DampingReading::kNone;
     for (JointParameters& joint : arm.joint) joint.coulomb_friction_nm = 0.0;
@@ -83,10 +85,10 @@ void RegisterAnalyzeExcite(CLI::App& analyze, Exit&) {
   verb->add_option("--theta2-deg", options->theta2_deg, "Elbow angle at the start")
       ->check(NumberWithin(-180.0, 180.0))
       ->capture_default_str();
-  verb->add_option("--torque-nm", options->excitation.torque_nm, "Amplitudes of the motor torques")
+  verb->add_option("--torque-nm", options->torque_nm,
+                   "Amplitudes of the motor torques (default: 1/75 and 1/60 of the torque limits)")
       ->check(NumberWithin(-1e4, 1e4))
-      ->type_name("TAU1 TAU2")
-      ->capture_default_str();
+      ->type_name("TAU1 TAU2");
   verb->add_option("--motor-lag-ms", options->motor_lag_ms,
                    "Time constants of the motors' torques (3.24) (default: sim.motor_lag_ms)")
       ->check(NumberWithin(0.0, 1000.0))

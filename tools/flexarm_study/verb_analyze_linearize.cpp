@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "controller/files/external_json.h"
@@ -18,6 +19,7 @@
 #include "model/simulation/arm_simulator.h"
 #include "model/units.h"
 #include "tools/analysis/arm_zeros.h"
+#include "tools/analysis/parametric_study.h"
 #include "tools/analysis/perturbation_figures.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
@@ -35,6 +37,7 @@ struct LinearizeOptions {
   double theta2_deg = 0.0, theta1_rate_rad_s = 0.0, theta2_rate_rad_s = 0.0;
   std::array<double, 2> torque_nm = {0.0, 0.0};
   double friction_gain_s_per_rad = 0.0;
+  std::optional<std::array<double, 2>> delta;  // empty: the config's
   std::array<double, 2> delta_nm = {0.05, 0.0125};
   double duration_s = 2.0;
   bool json = false;
@@ -44,6 +47,12 @@ struct LinearizeOptions {
 struct State {
   VectorXd q, v;
 };
+
+// An eighth of the excitation of chapter 4.
+std::array<double, 2> SmallTorque_nm(const RigConfig& config) {
+  const Excitation excitation = ExcitationFor(config);
+  return {excitation.torque_nm[0] / 8.0, excitation.torque_nm[1] / 8.0};
+}
 
 // The links are not bent, the rotors stand at the angles of their hubs.
 State StateOf(const LinearizeOptions& options, const ArmModel& model) {
@@ -188,11 +197,13 @@ void PrintLinearization(const nlohmann::ordered_json& json) {
   }
 }
 
-void Run(const LinearizeOptions& options) {
+void Run(LinearizeOptions& options) {
   if (options.output.given())
     CheckPicture(options.output.file,
                  PictureRules({options.config.file}, options.output.overwrite));
-  const ArmModel model(options.config.Load().arm, {options.modes, options.modes});
+  const RigConfig config = options.config.Load();
+  options.delta_nm = options.delta.value_or(SmallTorque_nm(config));
+  const ArmModel model(config.arm, {options.modes, options.modes});
   const State x = StateOf(options, model);
   nlohmann::ordered_json json = LinearJson(options, model, x);
   const PerturbationRun run = PerturbationOf(options, model, x);
@@ -240,10 +251,11 @@ void RegisterAnalyzeLinearize(CLI::App& analyze, Exit&) {
       "Linearize the model at a state: its roots, and its error against the nonlinear model");
   options->config.AddTo(verb, true);
   AddState(verb, options.get());
-  verb->add_option("--delta-nm", options->delta_nm, "Torques of the perturbation test")
+  verb->add_option(
+          "--delta-nm", options->delta,
+          "Torques of the perturbation test (default: 1/600 and 1/480 of the torque limits)")
       ->check(NumberWithin(-1e4, 1e4))
-      ->type_name("TAU1 TAU2")
-      ->capture_default_str();
+      ->type_name("TAU1 TAU2");
   verb->add_option("--duration-s", options->duration_s, "Length of the perturbation test")
       ->check(NumberWithin(0.01, 60.0))
       ->capture_default_str();

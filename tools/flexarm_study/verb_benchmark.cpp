@@ -26,7 +26,7 @@ struct BenchmarkOptions {
 void Run(const BenchmarkOptions& options) {
   const RigConfig config = options.config.Load();
   const BenchmarkSet set = BenchmarkSetOf(BenchmarkKindNamed(options.table), config,
-                                          ExperimentsFolder(options.config.file));
+                                          ExperimentsFolder(options.config.file, kBenchmarkFile));
   const SweepPlan plan = BenchmarkPlan(config, set, options.laws, options.seeds);
   const OutputRules page{.kind = "a benchmark's page",
                          .mark = kBenchmarkPageMark,
@@ -37,7 +37,7 @@ void Run(const BenchmarkOptions& options) {
   const std::vector<std::size_t> points = PointsToRun(&file, ParseShard(options.grid.shard));
   RunSweep(plan, points, &file, options.grid.jobs, ProgressBar("runs", points.size()));
   const std::size_t missing = PointsToRun(&file, {}).size();
-  const BenchmarkTable table = TableOf(set.kind, plan, file.Rows());
+  const BenchmarkTable table = TableOf(set, plan, file.Rows());
   if (!options.page.empty()) {
     WriteFile(options.page, kBenchmarkPageMark + ("\n\n" + BenchmarkMarkdown(table)), page);
     ReportWritten(options.page);
@@ -61,8 +61,8 @@ void RegisterBenchmark(CLI::App& app, Exit&) {
   options->config.AddTo(verb, true);
   verb->add_option("--table", options->table,
                    "commands (default): the commands of config/experiments\n"
-                   "moves: random smooth moves with payloads of 0 to 1 kg, also for the laws that "
-                   "estimate the payload\n"
+                   "moves: random smooth moves with the payloads of the rig, also for the laws "
+                   "that estimate the payload\n"
                    "limits: the same moves for those laws, with encoders, gauges and friction "
                    "made ideal")
       ->type_name("NAME");

@@ -80,11 +80,9 @@ std::size_t FailedOf(SweepFile* file, const Shard& shard) {
 
 void Run(const RunOptions& options) {
   const RigConfig config = options.config.Load();
-  const std::filesystem::path experiment =
-      ExperimentFile(options.experiment, options.config.file, config.controller.kind);
-  const SweepPlan plan{.config = config,
-                       .experiment = LoadExperiment(experiment),
-                       .grid = SweepGrid(AxesOf(options))};
+  const ChosenExperiment chosen = ChooseExperiment(options.experiment, options.config.file, config);
+  const SweepPlan plan{
+      .config = config, .experiment = chosen.experiment, .grid = SweepGrid(AxesOf(options))};
   const Shard shard = ParseShard(options.grid.shard);
   CheckPlan(plan);
   SweepFile file = SweepFile::Resume(options.output, IdentityOf(plan));
@@ -230,7 +228,9 @@ void RegisterSweep(CLI::App& app, Exit& exit) {
   options->config.AddTo(verb, false);
   verb->add_option("--experiment", options->experiment,
                    "Experiment, a TOML file (default: experiments/square-30deg.toml beside the "
-                   "config or shipped, or moves.toml for a law that follows moves only)")
+                   "config or shipped, or moves.toml for a law that follows moves only; slower or "
+                   "smaller if the "
+                   "rig needs it)")
       ->type_name("FILE");
   AddAxisOptions(verb, options.get());
   options->grid.AddTo(verb);

@@ -37,7 +37,7 @@ LAYERS = {
     "controller/design": "model model/math model/arm model/rigid_joint estimator controller/types "
                          "controller/law controller/files",
     "controller/step": "model model/rigid_joint hal estimator controller/types controller/law",
-    "controller/runlog": "model model/parameters model/beam hal estimator controller/exchange "
+    "controller/runlog": "model model/beam hal estimator controller/exchange "
                          "controller/realtime controller/types controller/safety controller/files",
     "controller/tasks": "hal hal/sim controller/exchange controller/realtime controller/types "
                         "controller/safety controller/law controller/reference "
@@ -53,7 +53,7 @@ LAYERS = {
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/operator",
     "config/derivation": "model model/beam model/parameters hal estimator",
-    "config": "model hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
+    "config": "model model/parameters hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
               "controller/types controller/runlog config/derivation",
     "config/new_rig": "config config/derivation model",
     "config/plausibility": "model model/arm model/parameters hal estimator controller/types",
@@ -69,7 +69,7 @@ LAYERS = {
                       "model/simulation model/perturbation model/reduction controller/files config tools/support "
                       "tools/runs tools/plot",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
-                   "config tools/support tools/runs tools/plot controller/files",
+                   "config config/derivation tools/support tools/runs tools/plot controller/files",
     "tools/bound": "model model/math model/beam model/rigid_joint estimator controller/types",
     "tools/tuning": "model model/beam estimator controller/types controller/design controller/host config config/new_rig tools/sweep",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
@@ -83,14 +83,14 @@ LAYERS = {
     "tools/report": "model model/beam model/arm model/simulation model/perturbation estimator "
                     "controller/types controller/runlog controller/host config "
                     "tools/support tools/plot tools/analysis tools/benchmark "
-                    "tools/thesis controller/files",
+                    "tools/sweep tools/thesis controller/files",
     "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
                      "tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
-                           "model/simulation model/perturbation controller/runlog tools/support tools/runs "
+                           "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot "
                            "controller/types tools/bound",

@@ -168,7 +168,7 @@ PlotRun PlotDataOf(const LoadedRun& run) {
   const Scales scales{
       .truth = !ticks.empty() && std::all_of(ticks.begin(), ticks.end(),
                                              [](const auto& tick) { return tick.truth.known; }),
-      .geometry = TipGeometryOf(run.config.arm, run.config.controller.nominal),
+      .geometry = TipGeometryOf(run.config),
       .strain_limit = safety.strain_limit};
   const std::int64_t zero_ns = TimeZero_ns(run);
   PlotRun plot{.name = run.file.stem().string(),
@@ -180,6 +180,7 @@ PlotRun PlotDataOf(const LoadedRun& run) {
                .trip = TripText(run, zero_ns),
                .torque_limit_nm = safety.torque_limit_nm,
                .strain_limit = safety.strain_limit,
+               .settled_within_mm = 1e3 * scales.geometry.settled_within_m,
                .sample = {},
                .gap = GapsOf(run, zero_ns),
                .span = StateSpansOf(run, zero_ns),

@@ -64,6 +64,7 @@ struct PlotRun {
   bool truth;        ///< angles, tip and deflections are the plant's own
   std::string trip;  ///< "bending-strain-1: 2057 of 1900 at 0.46 s"; empty: none
   std::array<double, 2> torque_limit_nm, strain_limit;
+  double settled_within_mm;  ///< SettledWithin_m
   std::vector<Sample> sample;
   std::vector<Gap> gap;
   std::vector<StateSpan> span;

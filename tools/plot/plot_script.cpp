@@ -183,8 +183,9 @@ class Script {
                 .limit = 0.0,
                 .logarithmic = true};
     std::ostringstream settled;
-    settled << kSettledWithin_mm << " with lines " << ReferenceStyle() << " title '"
-            << kSettledWithin_mm << " mm: settled'";
+    const double settled_mm = std::round(10.0 * runs_[0].settled_within_mm) / 10.0;
+    settled << settled_mm << " with lines " << ReferenceStyle() << " title '" << settled_mm
+            << " mm: settled'";
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       panel.curves.push_back(Curve(run, kTargetColumn, "lines " + CurveStyle(run), ""));
     }

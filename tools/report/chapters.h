@@ -12,9 +12,12 @@ namespace flexarm {
 /// Data shared by the chapters of a report.
 struct ReportContext {
   RigConfig config;
+  Experiment experiment;  ///< of the overview's run
   std::filesystem::path experiments;
   std::filesystem::path published;  ///< file of the published cases
   std::filesystem::path folder;
+  std::vector<std::string> laws{};      ///< of the benchmark; empty: all
+  int runs = 5;                         ///< of random moves for each law and scenario
   std::vector<Statement> statements{};  ///< of the chapters written so far
   std::vector<std::string> results{};   ///< what they found, a sentence each: for the overview
 

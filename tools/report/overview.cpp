@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
 
 #include "controller/host/simulation.h"
+#include "controller/types/rejected_error.h"
+#include "controller/types/rounded_text.h"
+#include "controller/types/tip_tolerance.h"
 #include "model/arm/arm_model.h"
 #include "model/arm/linearization.h"
 #include "tools/plot/gnuplot.h"
 #include "tools/plot/plot_script.h"
 #include "tools/report/arm_picture.h"
-#include "tools/thesis/control_study.h"
 
 namespace flexarm {
 namespace {
@@ -60,22 +63,53 @@ void Arm(ReportContext* context, HtmlPage* page) {
         Two(arm.hub2_mass_kg + arm.motor2_mass_kg, arm.payload_mass_kg)},
        {"lowest frequencies, motors free", Lowest(FreeMotorFrequenciesHz(model, 0))},
        {"lowest frequencies, motors held", Lowest(HeldMotorFrequenciesHz(model, 0))},
+       {"payloads that the laws are for, kg",
+        RoundedText(config.controller.payload_range_kg[0], 3) + " to " +
+            RoundedText(config.controller.payload_range_kg[1], 3)},
        {"sampling period, ms", Figure(config.loop.period_ms)}});
+}
+
+std::string SettlingCell(const RunMetrics& metrics) {
+  return metrics.tip_settling_time_s ? Figure(*metrics.tip_settling_time_s) : "not settled";
+}
+
+std::string FigureOrDash(double value) { return std::isfinite(value) ? Figure(value) : "-"; }
+
+void RunTable(const RigConfig& config, const SimulationResult& result, HtmlPage* page) {
+  const RunMetrics& m = result.metrics;
+  page->Table(
+      {"run of the law " + std::string(LawOf(config.controller.kind).name), ""},
+      {{"completed",
+        result.completed ? "yes" : "no, it trips: " + std::string(ToString(result.trip))},
+       {"settled within " + Figure(1e3 * SettledWithin_m(config), 2) + " mm after the move, s",
+        SettlingCell(m)},
+       {"tip off its target, mm", FigureOrDash(m.tip_target_error_mm)},
+       {"rms error of joints 1 and 2, deg",
+        FigureOrDash(m.joint_rms_error_deg[0]) + " and " + FigureOrDash(m.joint_rms_error_deg[1])},
+       {"peak torque, N m",
+        FigureOrDash(m.peak_torque_nm[0]) + " and " + FigureOrDash(m.peak_torque_nm[1])}});
 }
 
 // A run of the law of the config, drawn as `flexarm plot` does.
 void Run(ReportContext* context, HtmlPage* page) {
   const auto log = context->folder / "runs" / "overview.flexarm";
-  Simulate({.config = context->config,
-            .experiment = ControlCommand(DoubletShape::kSquare),
-            .payload_kg = context->config.arm.payload_mass_kg,
-            .log = log});
+  const RigConfig& config = context->config;
+  page->Heading("Summary");
+  try {
+    const SimulationResult result = Simulate({.config = config,
+                                              .experiment = context->experiment,
+                                              .payload_kg = config.arm.payload_mass_kg,
+                                              .log = log});
+    RunTable(config, result, page);
+  } catch (const RejectedError& error) {
+    page->Paragraph(std::string("The law of the config does not run: ") + error.what());
+    return;
+  }
   const auto figure = context->Figure("overview-run");
   DrawPicture(PlotScript({PlotDataOf(LoadRun(log))}, figure), figure);
-  page->Picture(
-      figure,
-      "The base command, with the law of the config on the simulated rig: both joints turn by 30 "
-      "degrees, rest and turn back.");
+  page->Picture(figure, "The experiment " + context->experiment.name +
+                            ", with the law of the config on the simulated rig, " +
+                            RoundedText(config.arm.payload_mass_kg, 3) + " kg.");
 }
 
 // "Chapter 7" of "7.3.3".
@@ -114,11 +148,11 @@ void Verdicts(const std::vector<Statement>& statements, HtmlPage* page) {
 }  // namespace
 
 void Overview(ReportContext* context, HtmlPage* page) {
+  Arm(context, page);
   page->Heading("Main result");
   for (const std::string& result : context->results) page->Paragraph(result);
   Run(context, page);
-  Verdicts(context->statements, page);
-  Arm(context, page);
+  if (!context->statements.empty()) Verdicts(context->statements, page);
 }
 
 }  // namespace flexarm

@@ -4,12 +4,14 @@
 #include <ctime>
 #include <iterator>
 
+#include "config/thesis_arm.h"
 #include "controller/files/write_file.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
 #include "tools/report/chapters.h"
 #include "tools/report/overview.h"
 #include "tools/support/parallel_for.h"
+#include "tools/sweep/sweep_grid.h"
 
 namespace flexarm {
 namespace {
@@ -34,6 +36,20 @@ std::string Today() {
   return text.data();
 }
 
+using Chapter = void (*)(ReportContext*, HtmlPage*);
+
+std::vector<Chapter> ThesisChapters() {
+  return {Chapter3, Chapter4,  Chapter5,  Chapter6,       ControlFeatures,
+          Chapter7, AppendixB, Baselines, PayloadChapter, PublishedChapter};
+}
+
+// Those that are about the rig itself.
+std::vector<Chapter> AnyChapters() { return {Baselines, PayloadChapter}; }
+
+std::vector<std::string> Words(const std::string& commas) {
+  return commas.empty() ? std::vector<std::string>{} : ParseValues(commas);
+}
+
 }  // namespace
 
 std::filesystem::path WriteReport(const ReportRequest& request) {
@@ -42,12 +58,17 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
     MakeFolder(request.folder / part);
   }
   ReportContext context{.config = request.config,
+                        .experiment = request.experiment,
                         .experiments = request.experiments,
                         .published = request.published,
-                        .folder = request.folder};
-  HtmlPage page("The flexible arm of the thesis, recomputed: " + request.config.rig_name);
-  const auto chapters = {Chapter3, Chapter4,  Chapter5,  Chapter6,       ControlFeatures,
-                         Chapter7, AppendixB, Baselines, PayloadChapter, PublishedChapter};
+                        .folder = request.folder,
+                        .laws = Words(request.laws),
+                        .runs = request.runs};
+  const bool is_thesis = IsThesisArm(request.config.arm);
+  HtmlPage page((is_thesis ? "The flexible arm of the thesis, recomputed: "
+                           : "The flexible arm and its control laws, simulated: ") +
+                request.config.rig_name);
+  const std::vector<Chapter> chapters = is_thesis ? ThesisChapters() : AnyChapters();
   std::size_t done = 0;
   const auto progress = ProgressBar("chapters", chapters.size());
   for (auto* chapter : chapters) {
@@ -59,9 +80,11 @@ std::filesystem::path WriteReport(const ReportRequest& request) {
   Overview(&context, &overview);
   page.PutFirst(overview);
   page.Lead("Computed " + Today() + " by flexarm " + ThisBuild().version + " (" + BuildId() +
-            "). Every number on this page, but those that a source prints, is computed by this "
-            "program; every verdict follows from numbers by a rule. The arm is simulated. Click "
-            "on a figure to see it in full size.");
+            "). " +
+            (is_thesis ? "Every number on this page, but those that a source prints, is computed "
+                         "by this program; every verdict follows from numbers by a rule. "
+                       : "Every number on this page is computed by this program. ") +
+            "The arm is simulated. Click on a figure to see it in full size.");
   std::filesystem::path file = request.folder / "report.html";
   WriteFile(file, page.Text(), ReplaceAny("a report"));
   return file;

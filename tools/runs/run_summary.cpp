@@ -53,7 +53,7 @@ LoadedRun LoadRun(const std::filesystem::path& file) {
 std::optional<RunMetrics> MetricsOf(const LoadedRun& run) {
   if (!run.experiment) return std::nullopt;
   return ComputeMetrics(run.contents.tick, *run.experiment, run.period_s(),
-                        TipGeometryOf(run.config.arm, run.config.controller.nominal));
+                        TipGeometryOf(run.config));
 }
 
 nlohmann::ordered_json ToJson(const RunMetrics& metrics) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/config.h"
+#include "tools/sweep/random_moves.h"
 
 namespace flexarm {
 
@@ -18,9 +18,9 @@ struct Scenario {
   std::vector<std::string> plant;   ///< --set of the simulated rig alone
   std::vector<std::string> config;  ///< --set of the rig and the controller
   bool tuned_on;                    ///< parameters of some law were chosen on it
-  /// If set, the run's seed determines random moves and a payload up to this value
+  /// If set, the run's seed determines random moves and a payload by this recipe
   /// (MakeRandomMoves), in place of `experiment` and `payload_kg`.
-  std::optional<double> random_up_to_kg = std::nullopt;
+  std::optional<MoveRecipe> random = std::nullopt;
 };
 
 }  // namespace flexarm

@@ -79,10 +79,9 @@ SimulationRequest RequestFor(const SweepPlan& plan, const Changes& changes) {
       .plant = {},
       .payload_kg = changes.payload_kg,
       .log = {}};
-  if (changes.scenario != nullptr && changes.scenario->random_up_to_kg) {
-    const RandomMoves drawn =
-        MakeRandomMoves(RigidJointArm(request.config.arm), request.config.sim.seed,
-                        *changes.scenario->random_up_to_kg);
+  if (changes.scenario != nullptr && changes.scenario->random) {
+    const RandomMoves drawn = MakeRandomMoves(RigidJointArm(request.config.arm),
+                                              request.config.sim.seed, *changes.scenario->random);
     request.experiment = drawn.experiment;
     request.payload_kg = drawn.payload_kg;
   }

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "config/config_reference.h"
+#include "config/key_survey.h"
+#include "config/key_units.h"
 #include "controller/runlog/errors.h"
 #include "tools/plot/gnuplot.h"
 #include "tools/plot/picture_style.h"
@@ -41,14 +44,31 @@ struct Curve {
   std::vector<const SweepGroup*> groups;
 };
 
+// The unit of its values; "" of words and of numbers without one.
+std::string UnitOf(const SweepAxis& axis) {
+  const bool is_key = axis.target == AxisTarget::kConfig || axis.target == AxisTarget::kPlant;
+  if (!is_key) return UnitOfName(axis.Column());
+  const std::string path = KeySurvey::Pattern(axis.key);
+  for (const ListedKey& key : RigReference().keys) {
+    if (key.path == path || key.path + "[]" == path) return key.unit == "1" ? "" : key.unit;
+  }
+  return "";
+}
+
+std::string LabelOf(const SweepAxis& axis) {
+  const std::string unit = UnitOf(axis);
+  return axis.Column() + (unit.empty() ? "" : ", " + unit);
+}
+
 std::vector<Curve> CurvesOf(const SweepSummary& summary) {
   std::vector<Curve> curves;
   for (const SweepGroup& group : summary.groups) {
     std::string title;
     for (std::size_t i = 0; i + 1 < summary.axes.size(); ++i) {
       if (summary.axes[i].values.size() == 1) continue;
+      const std::string unit = UnitOf(summary.axes[i]);
       title += (title.empty() ? "" : ", ") + summary.axes[i].Column() + " " +
-               summary.axes[i].values[group.index[i]];
+               summary.axes[i].values[group.index[i]] + (unit.empty() ? "" : " " + unit);
     }
     if (curves.empty() || curves.back().title != title) curves.push_back({title, {}});
     curves.back().groups.push_back(&group);
@@ -138,7 +158,7 @@ void DrawSummary(const SweepSummary& summary, const std::filesystem::path& outpu
                  ": medians over the completed runs, bars from the "
                  "least to the greatest; cross: none completed, or not settled")
        << "\nset yrange [0:*]\nset y2range [0:1.06]\nset tmargin 3\nset xlabel "
-       << Quoted(last.Column()) << "\nset xrange [" << axis.low() - margin << ':'
+       << Quoted(LabelOf(last)) << "\nset xrange [" << axis.low() - margin << ':'
        << axis.high() + margin + kShift * axis.width() * static_cast<double>(curves.size())
        << "]\n";
   std::string script = head.str();

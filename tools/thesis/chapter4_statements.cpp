@@ -5,7 +5,6 @@
 #include "model/arm/linearization.h"
 #include "model/simulation/arm_simulator.h"
 #include "tools/analysis/torsion_report.h"
-#include "tools/thesis/rig_needs.h"
 #include "tools/thesis/thesis_check.h"
 
 namespace flexarm {
@@ -71,9 +70,6 @@ Statement LongerOrThinner(const ArmParameters& arm) {
 
 Statement Thickness(const ArmParameters& arm) {
   const char* said = "link 2 is 30 mm wide and 3.0 mm thick";
-  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
-    return NotForThisRig("4.2.1", said, lacks);
-  }
   const BeamSection& s = arm.link[1].section.front();
   const double thickness_mm = 1e3 * std::sqrt(12.0 * s.second_moment_m4 / s.area_m2);
   const double width_mm = 1e6 * s.area_m2 / thickness_mm;
@@ -86,9 +82,6 @@ Statement Thickness(const ArmParameters& arm) {
 // 4.2.1 gives link 1 0.9 m and link 2 0.8 m, Table 2 the other way round.
 Statement Lengths(const ArmParameters& arm) {
   const char* said = "link 1 is 0.9 m long and link 2 0.8 m";
-  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
-    return NotForThisRig("4.2.1", said, lacks);
-  }
   constexpr std::array<double, 2> kText_m = {0.9, 0.8};
   ArmParameters exchanged = arm;
   std::string text = "Table 2 has";
@@ -117,9 +110,6 @@ Statement Lengths(const ArmParameters& arm) {
 Statement HubInertias(const ArmParameters& arm) {
   const char* said =
       "the hubs' and the payload's moments of inertia are about 1e-7 kg m2 (Table 2)";
-  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
-    return NotForThisRig("4.3", said, lacks);
-  }
   constexpr double kTimes = 1000.0;
   const double hub_mm = 1e3 * std::sqrt(arm.joint[1].hub_inertia_kgm2 / arm.hub2_mass_kg);
   const double payload_mm = 1e3 * std::sqrt(arm.payload_inertia_kgm2 / arm.payload_mass_kg);
@@ -152,9 +142,6 @@ ArmParameters TenfoldMaterial(ArmParameters arm) {
 
 Statement Table2(const ArmParameters& arm) {
   const char* said = "Young's modulus is 6.89e11 Pa and the density 2.707e4 kg/m3 (Table 2)";
-  if (const std::string lacks = LacksThesisLinks(arm); !lacks.empty()) {
-    return NotForThisRig("4.3", said, lacks);
-  }
   const ArmParameters tenfold = TenfoldMaterial(arm);
   const Eigen::VectorXd right = FreeMotorFrequenciesHz(ArmModel(arm, {4, 4}), 0.0);
   const Eigen::VectorXd wrong = FreeMotorFrequenciesHz(ArmModel(tenfold, {4, 4}), 0.0);

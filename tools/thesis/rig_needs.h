@@ -6,11 +6,8 @@
 
 namespace flexarm {
 
-// What a statement needs of a rig, which a rig other than the thesis's may lack. Each returns what
-// is missing, for NotForThisRig; empty: nothing.
-
-/// Statements about the numbers of 4.2.1 and Table 2: links of their lengths.
-std::string LacksThesisLinks(const ArmParameters& arm);
+// What a statement needs of a config, which one of the thesis's arm may lack. Each returns what is
+// missing, for NotForThisRig; empty: nothing.
 
 /// Nominal models with two modes a link: gauges that measure them.
 std::string LacksTwoModes(const RigConfig& config);

@@ -7,6 +7,7 @@
 #include "controller/host/simulation.h"
 #include "controller/types/rejected_error.h"
 #include "controller/types/rounded_text.h"
+#include "controller/types/tip_tolerance.h"
 #include "model/units.h"
 #include "tools/sweep/random_moves.h"
 
@@ -16,7 +17,6 @@ namespace {
 constexpr int kMoves = 4;
 constexpr double kRest_s = 2.0;
 constexpr double kFirstGap_s = 5.0, kLongestGap_s = 40.0;
-constexpr double kMost_m = 0.015, kMostOfReach = 0.01;
 
 Experiment RandomTargets(const RigConfig& config, std::uint64_t seed, double gap_s) {
   UniformNumbers random(seed);
@@ -68,14 +68,6 @@ double TipError_m(const RigConfig& config, const RunMetrics& metrics) {
          (reach * metrics.joint_final_error_deg[0] + upper * metrics.joint_final_error_deg[1]);
 }
 
-double CountAtTip_m(const RigConfig& config, double reach_m) {
-  double count_rad = 0.0;
-  for (const EncoderConfig& encoder : config.sensors.encoder) {
-    if (encoder.counter < 2) count_rad = std::max(count_rad, kTwoPi / encoder.counts_per_turn);
-  }
-  return count_rad * reach_m;
-}
-
 std::string With(const std::string& what, double payload_kg) {
   return what + ", with " + RoundedText(payload_kg, 3) + " kg";
 }
@@ -107,9 +99,9 @@ Ending EndingOf(const RigConfig& config, double payload_kg, std::uint64_t seed, 
 
 MoveCheck CheckMoves(const RigConfig& config, const std::vector<double>& payload_kg,
                      std::span<const std::uint64_t> seeds, double share) {
-  const double reach_m = config.arm.link[0].length_m() + config.arm.link[1].length_m();
   const double permitted_m =
-      std::min(kMost_m, kMostOfReach * reach_m) + CountAtTip_m(config, reach_m);
+      std::min(kLargestTipError_m, kLargestTipErrorOfReach * Reach_m(config)) +
+      CountAtTip_m(config);
   MoveCheck check{
       .passed = true, .problem = {}, .largest_error_mm = 0.0, .permitted_mm = 1e3 * permitted_m};
   for (const std::uint64_t seed : seeds) {

@@ -44,8 +44,7 @@ struct Figures {
 
 void Add(const StackRun& run, const RandomMoves& moves, Figures* figures) {
   const RunMetrics metrics =
-      ComputeMetrics(run.tick, moves.experiment, kPeriod_s,
-                     TipGeometryOf(run.config().arm, run.config().controller.nominal));
+      ComputeMetrics(run.tick, moves.experiment, kPeriod_s, TipGeometryOf(run.config()));
   const auto running = std::find_if(run.tick.begin(), run.tick.end(), [](const TickRecord& r) {
     return r.input.safety_state == SafetyState::kRunning;
   });

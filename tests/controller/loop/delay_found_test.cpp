@@ -61,8 +61,7 @@ double Settling_s(const StackRun& run, const Experiment& experiment, std::size_t
   one.move = {experiment.move[move]};
   if (move + 1 < experiment.move.size()) one.duration_s = experiment.move[move + 1].start_s;
   const RunMetrics metrics =
-      ComputeMetrics(run.tick, one, run.grid().period_s(),
-                     TipGeometryOf(run.config().arm, run.config().controller.nominal));
+      ComputeMetrics(run.tick, one, run.grid().period_s(), TipGeometryOf(run.config()));
   return metrics.tip_settling_time_s.value_or(std::numeric_limits<double>::infinity());
 }
 

@@ -116,8 +116,8 @@ EventOutcome PayloadEvents::RunOne(const Scene& scene) const {
         std::max(out.last_rate_rad_s,
                  std::fabs(last.truth.hub_angle_rad[i] - earlier.truth.hub_angle_rad[i]) / 0.5);
   }
-  const RunMetrics metrics = ComputeMetrics(run.tick, scene.experiment, kPeriod_s,
-                                            TipGeometryOf(config.arm, config.controller.nominal));
+  const RunMetrics metrics =
+      ComputeMetrics(run.tick, scene.experiment, kPeriod_s, TipGeometryOf(config));
   out.settling_s = metrics.tip_settling_time_s.value_or(std::numeric_limits<double>::infinity());
   return out;
 }

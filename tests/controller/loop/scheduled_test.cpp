@@ -30,7 +30,7 @@ BenchmarkCell RunMoves(const std::string& law, const std::string& scenario, int 
     EXPECT_EQ(result.delay_found, 0) << law << ' ' << scenario << ' ' << point;
     rows.push_back(RowOf(point, result));
   }
-  const BenchmarkCell cell = TableOf(set.kind, plan, rows).cell.at(0).at(0);
+  const BenchmarkCell cell = TableOf(set, plan, rows).cell.at(0).at(0);
   const RestFigures& r = cell.rests;
   std::printf(
       "  %-14s %-16s %2zu of %2d settle in time, %2zu complete; rms %.2f %.2f deg, settled after "

@@ -37,7 +37,10 @@ SensorConfig Sensors() {
 
 DecodedRun Everything() {
   return {.sensors = Sensors(),
-          .tip = {.layout = kR12, .length_m = {0.4, 0.3}, .tip_slope_per_m = {2.0, -5.0}},
+          .tip = {.layout = kR12,
+                  .length_m = {0.4, 0.3},
+                  .tip_slope_per_m = {2.0, -5.0},
+                  .settled_within_m = 0.007},
           .start_ns = kTestPeriodNs,
           .simulated = true,
           .timed = true,

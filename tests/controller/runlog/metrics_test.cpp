@@ -13,7 +13,11 @@
 namespace flexarm {
 namespace {
 
-const TipGeometry kGeometry{.layout = kR12, .length_m = {1.0, 0.7}, .tip_slope_per_m = {1.5, 4.0}};
+// The distances in the tests below are about the 15 mm of an arm of 1.7 m.
+const TipGeometry kGeometry{.layout = kR12,
+                            .length_m = {1.0, 0.7},
+                            .tip_slope_per_m = {1.5, 4.0},
+                            .settled_within_m = 0.015};
 
 // The tip at the target while the reference is zero: both links straight along x.
 constexpr double kTarget_m = 1.7;

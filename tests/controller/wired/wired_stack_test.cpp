@@ -19,8 +19,7 @@ TEST_F(WiredStackTest, AnExperimentOverTwoBusesMeetsTheBarsOfTheInProcessBackend
   RunUntil(9'000 * kMs);
   EXPECT_EQ(permit().state, SafetyState::kIdle) << ToString(permit().cause);
   EXPECT_TRUE(operator_.ran());
-  const RunMetrics metrics = ComputeMetrics(ticks_, experiment_, 0.02,
-                                            TipGeometryOf(config_.arm, config_.controller.nominal));
+  const RunMetrics metrics = ComputeMetrics(ticks_, experiment_, 0.02, TipGeometryOf(config_));
   EXPECT_EQ(metrics.ticks, 300);
   EXPECT_LE(metrics.joint_rms_error_deg[0], 0.90);  // docs/theory/control-law.md 12.7
   EXPECT_LE(metrics.joint_rms_error_deg[1], 1.35);

@@ -73,6 +73,7 @@ RigConfig ThesisConfig() {
   config.arm = ThesisRig();
   config.sim.plant_modes = 2;
   config.sim.step_ms = 0.5;
+  config.controller.payload_range_kg = {0.0, 1.0};
   return config;
 }
 

@@ -25,7 +25,7 @@ inline SweepPlan Plan(const std::string& laws, const std::string& seeds,
 
 inline BenchmarkTable Table(const SweepPlan& plan, const std::vector<SweepRow>& rows,
                             BenchmarkKind kind = BenchmarkKind::kCommands) {
-  return TableOf(kind, plan, rows);
+  return TableOf({.kind = kind, .scenarios = {}, .laws = {}, .seeds = {}}, plan, rows);
 }
 
 /// A completed run; every measure except the settling time is 1.

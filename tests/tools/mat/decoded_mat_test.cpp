@@ -26,7 +26,10 @@ DecodedRun TwoGauges() {
                               .filter_hz = 0.0,
                               .noise_counts = 0.0,
                               .filter_damping = 0.0};  // 1 microstrain a count
-  run.tip = {.layout = kR12, .length_m = {0.4, 0.3}, .tip_slope_per_m = {2.0, -5.0}};
+  run.tip = {.layout = kR12,
+             .length_m = {0.4, 0.3},
+             .tip_slope_per_m = {2.0, -5.0},
+             .settled_within_m = 0.007};
   run.with_raw = true;
   return run;
 }

@@ -19,6 +19,7 @@ inline PlotRun PlottedRun(std::size_t samples) {
               .trip = {},
               .torque_limit_nm = {30.0, 6.0},
               .strain_limit = {1.9e-3, 1.9e-3},
+              .settled_within_mm = 15.0,
               .sample = {},
               .gap = {},
               .span = {},

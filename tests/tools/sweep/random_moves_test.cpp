@@ -75,6 +75,37 @@ TEST(RandomMoves, AreTheSameOnEveryMachine) {
   EXPECT_NEAR(moves.experiment.move[0].to_deg[0], 120.0 * third / 0x1p64 - 60.0, 1e-12);
 }
 
+// The recipe of the thesis's rig is the design study's, to the bit.
+TEST(MoveRecipe, OfTheThesisRigIsTheDesignStudys) {
+  const RigConfig rig = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml");
+  const MoveRecipe recipe = RecipeFor(rig);
+  const RandomMoves of_rig = MakeRandomMoves(Arm(), 7, recipe),
+                    study = MakeRandomMoves(Arm(), 7, 1.0);
+  EXPECT_EQ(recipe.grid_s, kMoveGrid_s);
+  EXPECT_EQ(of_rig.payload_kg, study.payload_kg);
+  for (std::size_t i = 0; i < study.experiment.move.size(); ++i) {
+    EXPECT_EQ(of_rig.experiment.move[i].to_deg, study.experiment.move[i].to_deg);
+    EXPECT_EQ(of_rig.experiment.move[i].start_s, study.experiment.move[i].start_s);
+    EXPECT_EQ(of_rig.experiment.move[i].duration_s, study.experiment.move[i].duration_s);
+  }
+}
+
+// plan_fraction is 0.6. Targets and payloads within the rig's, 8 ms.
+TEST(MoveRecipe, OfAnotherArmKeepsItsLimits) {
+  const RigConfig rig = LoadConfig(
+      FLEXARM_SOURCE_DIR "/config/hil.toml",
+      {"arm.motor2_mass_kg=1.0", "limits.soft_angle_deg=[30, 60]", "limits.hub_rate_rad_s=[2, 3]",
+       "controller.payload_range_kg=[0.2, 0.4]", "loop.period_ms=8", "loop.acquire_before_ms=4",
+       "loop.step_deadline_ms=2", "loop.output_after_ms=6"});
+  const MoveRecipe recipe = RecipeFor(rig);
+  EXPECT_EQ(recipe.within_deg, (std::array{2.0 / 3.0 * 30.0, 2.0 / 3.0 * 60.0}));
+  EXPECT_EQ(recipe.ability.rate_rad_s, (std::array{0.6 * 2.0, 0.6 * 3.0}));
+  EXPECT_NEAR(recipe.grid_s, 0.024, 1e-12) << "the first multiple of 8 ms from 20 ms on";
+  const RandomMoves moves = MakeRandomMoves(RigidJointArm(rig.arm), 1, recipe);
+  EXPECT_GE(moves.payload_kg, 0.2);
+  EXPECT_LE(moves.payload_kg, 0.4);
+}
+
 TEST(RandomMoves, HaveTheRequestedNumberAndTheSameBeginning) {
   const RandomMoves four = MakeRandomMoves(Arm(), 1, 1.0),
                     seven = MakeRandomMoves(Arm(), 1, 1.0, 7);
