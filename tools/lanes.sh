@@ -148,6 +148,8 @@ lane_campaigns() {  # random campaigns at their whole size; `release` runs a sam
       loop/shipped_runs_loop_test wired/wired_loop_test; do
     FLEXARM_CAMPAIGN=whole "build/release/tests/controller/$program" --gtest_filter='*.Campaign*'
   done
+  build release tools_bound_long_test
+  FLEXARM_CAMPAIGN=whole build/release/tests/tools/bound/tools_bound_long_test
   build release flexarm flexarmd
   FLEXARM_CAMPAIGN=whole FLEXARM_BIN="$PWD/build/release/bin" python3 tests/e2e/killed_run_test.py
   build tsan wired_threads_test

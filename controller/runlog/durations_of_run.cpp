@@ -65,7 +65,8 @@ Experiment WithDurationsOfRun(const Experiment& experiment, std::span<const Tick
     const int until = i + 1 < of_run.move.size() ? on_grid(of_run.move[i + 1].start_s)
                                                  : std::numeric_limits<int>::max();
     const auto periods = PeriodsOf(path, on_grid(move.start_s), until);
-    if (periods) move.duration_s = *periods * period_s;
+    // To the microsecond, as in a file.
+    if (periods) move.duration_s = std::round(1e6 * *periods * period_s) / 1e6;
   }
   return of_run;
 }

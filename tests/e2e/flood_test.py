@@ -95,11 +95,11 @@ class Flood(ProgramTest):
         time.sleep(0.05)
 
     def assert_withstands(self, flood, clients=6, in_memory=True):
-        """The loop of a daemon whose arm runs is as punctual during the flood of so many clients as before, every stop of
-        FLOOD_S has its turn at once, and the memory returns (in_memory)."""
+        """The loop of a daemon whose arm runs is as punctual during the flood of so many clients as
+        before, every stop of FLOOD_S has its turn at once, and the memory returns (in_memory)."""
         self.heard = []
-        start_mb = self.resident_mb()
         quiet, quiet_allowed = self.late_in(QUIET_S, lambda: time.sleep(0.05))
+        start_mb = self.resident_mb()  # with the buffers of a log: 12 MB from its first block on
         fork = multiprocessing.get_context("fork")
         floods = [fork.Process(target=self.keep_on, args=(flood,)) for _ in range(clients)]
         for process in floods:

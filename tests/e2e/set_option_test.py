@@ -14,6 +14,7 @@ NEEDS = {
     ("benchmark",): ("-o", "benchmark"),
     ("identify",): ("--run", "run.flexarm", "--free", "joint1.coulomb_friction_nm"),
     ("replay",): ("run.flexarm",),
+    ("bound",): ("--from", "0,0", "--to", "30,30"),
 }
 NAMES_FILE = {("config", "check"), ("config", "show")}  # the config is an argument
 

@@ -6,7 +6,7 @@ import shutil
 import sqlite3
 import unittest
 
-from program import HIL, SQUARE, ProgramTest, rows, ticks
+from program import HIL, ROOT, SQUARE, ProgramTest, rows, ticks
 
 
 class Simulate(ProgramTest):
@@ -32,6 +32,23 @@ class Simulate(ProgramTest):
         self.assertNotEqual(ticks(first), ticks(other))
         self.assertIs(self.flexarm_json("diff", first, second)["identical"], True)
         self.assertIs(self.flexarm_json("diff", first, other, expect=1)["identical"], False)
+
+    def test_a_light_arm_moves_faster_once_its_payload_is_known(self):
+        fast = ROOT / "config/experiments/fast-moves.toml"
+        durations = []
+        for payload_kg in (0.1, 1.0):
+            run, result = self.simulate(f"{payload_kg}.flexarm", "--controller", "gain-scheduled",
+                                        "--payload-kg", payload_kg, experiment=fast)
+            self.assertIs(result["completed"], True)
+            self.assertLessEqual(result["tip_settling_time_s"], 0.3)
+            durations.append(result["move_duration_s"])
+            self.assertIs(self.flexarm_json("replay", run)["bit_exact"], True)
+        light, heavy = durations
+        self.assertEqual(light[0], heavy[0], "planned for any payload")
+        # By tests/golden/fast-moves.json (-20, 40) to (35, -30) takes 1.16 s with 0.1 kg and 1.42 s
+        # with 1 kg; two standard deviations of the estimate add up to two periods.
+        self.assertAlmostEqual(light[2], 1.16, delta=0.041)
+        self.assertAlmostEqual(heavy[2], 1.42, delta=0.041)
 
     def test_never_overwrites_a_log(self):
         run, _ = self.simulate("run.flexarm")

@@ -80,7 +80,7 @@ TEST(ShippedRuns, CampaignOfEveryRunThatIsNotRefusedCompletes) {
 // What was found by running all of them (docs/laws.md).
 TEST(ShippedRuns, WhatTripsIsRefusedAndALawThatCompletesItIsNamed) {
   const RigConfig config = LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml");
-  for (const char* name : {"moves", "tip-positions", "retarget"}) {
+  for (const char* name : {"moves", "tip-positions", "retarget", "fast-moves"}) {
     const Experiment experiment =
         LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/" + std::string(name) + ".toml");
     const auto objection = RunJudge(config, WithLaw).Judge(experiment, {0.0, 0.0});
