@@ -34,8 +34,9 @@ void KeySurvey::Run(const std::function<void(KeySurvey*)>& read) {
   }
   Pass(read, Answer::kNone, 0);
   // Grows while it is read, when a key is asked for in these passes only.
-  for (std::size_t i = 0; i < asked_.size(); ++i) {
-    only_ = asked_[i];
+  std::size_t next = 0;
+  while (next < asked_.size()) {
+    only_ = asked_[next++];
     Pass(read, Answer::kOnly, 0);
   }
   for (SurveyedKey& key : keys_) key.is_optional = Asked(key.path);

@@ -18,7 +18,7 @@ constexpr double kLeadPeriods = 0.25;
 
 }  // namespace
 
-BendingGuard::BendingGuard(const ControlConfig& config) : link_{}, lead_s_(0.0) {
+BendingGuard::BendingGuard(const ControlConfig& config) : link_{} {
   const ArmParameters& arm = config.arm;
   const std::array<std::array<double, 2>, 2> strain_per_m = RootStrainShapes(arm, 2);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -48,8 +48,7 @@ void BendingGuard::Limit(const State& x, Eigen::Vector2d* feedforward_nm,
     const double room_nm = kFeedbackShare * link.moment_nm;
     const double most_nm = room_nm * std::max(0.0, 1.0 + ahead / kNoFeedback);
     const double least_nm = -room_nm * std::max(0.0, 1.0 - ahead / kNoFeedback);
-    if (feedback > most_nm) feedback = most_nm;
-    if (feedback < least_nm) feedback = least_nm;
+    feedback = std::clamp(feedback, least_nm, most_nm);
     if (bent > kFullFeedforward && further * (feedforward + feedback) > 0.0) {
       feedforward *= std::max(0.0, (1.0 - bent) / (1.0 - kFullFeedforward));
     }

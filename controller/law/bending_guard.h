@@ -40,7 +40,7 @@ class BendingGuard {
   };
 
   std::array<Link, 2> link_;
-  double lead_s_;
+  double lead_s_ = 0.0;
 };
 
 }  // namespace flexarm
