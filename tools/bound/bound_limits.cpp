@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
 
 #include "controller/types/rejected_error.h"
 #include "controller/types/rounded_text.h"
 #include "estimator/root_strain.h"
-#include "model/beam/link_modes.h"
 #include "model/problem_list.h"
 #include "model/units.h"
 #include "tools/bound/rest_move.h"
@@ -18,14 +16,6 @@ namespace flexarm {
 namespace {
 
 constexpr int kModes = 2;  // of RigidJointArm
-
-double RootMoment_nm(const LinkParameters& link, double strain_limit) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const BeamSection& section : link.section) {
-    least = std::min(least, section.bending_stiffness_nm2() / section.half_thickness_m);
-  }
-  return least * strain_limit;
-}
 
 void CheckPlace(const ControlConfig& config, const Eigen::Vector2d& place_rad, const char* which) {
   const std::array<double, 2> limit_rad = SoftAngleRad(config.safety);
@@ -54,13 +44,12 @@ BoundLimits BoundLimitsOf(const ControlConfig& config, double torque_share) {
   const SafetyConfig& safety = config.safety;
   return {.torque_nm = {torque_share * safety.torque_limit_nm[0],
                         torque_share * safety.torque_limit_nm[1]},
-          .root_moment_nm = {RootMoment_nm(link[0], safety.strain_limit[0]),
-                             RootMoment_nm(link[1], safety.strain_limit[1])},
+          .root_moment_nm = {MomentPerStrain_nm(link[0]) * safety.strain_limit[0],
+                             MomentPerStrain_nm(link[1]) * safety.strain_limit[1]},
           .strain = safety.strain_limit,
           .hub_rate_rad_s = safety.hub_rate_rad_s,
           .hub_angle_rad = SoftAngleRad(safety),
-          .root_strain_per_m = {RootStrainShape(link[0], Link1Modes(config.arm, kModes)),
-                                RootStrainShape(link[1], Link2Modes(config.arm, kModes))}};
+          .root_strain_per_m = RootStrainShapes(config.arm, kModes)};
 }
 
 void CheckMove(const ControlConfig& config, const RestMove& move) {

@@ -70,7 +70,7 @@ LAYERS = {
                       "tools/runs tools/plot",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config config/derivation tools/support tools/runs tools/plot controller/files",
-    "tools/bound": "model model/math model/beam model/rigid_joint estimator controller/types",
+    "tools/bound": "model model/math model/rigid_joint estimator controller/types",
     "tools/tuning": "model model/beam estimator controller/types controller/design controller/host config config/new_rig tools/sweep",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "
