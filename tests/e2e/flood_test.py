@@ -29,8 +29,8 @@ MOST_LEFT_MB = 16
 # its turn must come in the first look, before the look has taken this long.
 LONGEST_TURN_US = 8_000
 
-QUIET_S = 4.0
-FLOOD_S = 6.0
+QUIET_S = 2.0
+FLOOD_S = 4.0
 THREADS = ("safety", "control")
 
 
@@ -50,9 +50,9 @@ class Flood(ProgramTest):
         self.wait_for_state("Running")
 
     def flood_first(self, process):
-        """Three seconds of a flood, and the end of a run: locked memory that was used once stays."""
+        """Two seconds of a flood, and the end of a run: locked memory that was used once stays."""
         process.start()
-        time.sleep(3.0)
+        time.sleep(2.0)
         process.kill()
         process.join()
         self.ask(STOP)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A daemon that is killed leaves a log that opens, replays and is recovered, by itself alone.
 
-FLEXARM_CAMPAIGN=whole kills at 200 instants instead of 10, FLEXARM_CAMPAIGN=N at N.
+FLEXARM_CAMPAIGN=whole kills at 200 instants instead of 5, FLEXARM_CAMPAIGN=N at N.
 """
 
 import os
@@ -24,7 +24,7 @@ SEED = int(os.environ.get("FLEXARM_SEED", "14"))
 
 
 def cases():
-    wanted = os.environ.get("FLEXARM_CAMPAIGN", "10")
+    wanted = os.environ.get("FLEXARM_CAMPAIGN", "5")
     return 200 if wanted == "whole" else int(wanted)
 
 

@@ -156,10 +156,10 @@ class RunLog(DaemonRuns):
     @in_real_time
     def test_a_disk_that_fills_in_mid_run_is_told_and_loses_nothing(self):
         runs = self.small_disk(24)
-        self.start_daemon(*SMALL, "--set", "log.reserve_mb=0.3", "--state-dir",
+        self.start_daemon(*SMALL, "--set", "log.reserve_mb=0.1", "--state-dir",
                           self.folder / "state")
         self.arm()
-        self.operate("run", self.experiment(doublet("full", 70.0)))
+        self.operate("run", self.experiment(doublet("full", 22.0)))
         self.wait_for_state("Running")
         filler = runs / "filler"
         with contextlib.suppress(OSError), open(filler, "wb", buffering=0) as file:
@@ -167,8 +167,8 @@ class RunLog(DaemonRuns):
                 file.write(bytes(4096))
         log = self.wait_for_log(ok=False)
         self.assertIn("No space left", log["error"])
-        # What was reserved for this run is used up: 0.3 MB are 13 to 25 s of records.
-        self.wait_for_line("its records wait", within_s=55)
+        # What was reserved for this run is used up: 0.1 MB are 4 to 9 s of records.
+        self.wait_for_line("its records wait", within_s=20)
         self.assertEqual(self.status()["state"], "Running", "the run goes on")
         time.sleep(1.0)
         filler.unlink()
