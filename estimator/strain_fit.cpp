@@ -240,10 +240,32 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
   out->root_strain[static_cast<std::size_t>(link)] = root_strain;
 }
 
+bool StrainFit::SeesStuck(std::size_t link, std::uint32_t used,
+                          const Variance& variance) const noexcept {
+  return std::popcount(used) >= gauges_needed_[link] &&
+         variance.root <= stuck_limit_ * stuck_limit_ / 100.0;
+}
+
+bool StrainFit::OthersMoved(const Channel& channel, std::uint32_t others,
+                            const std::array<double, kMaxStrainChannels>& strain) const noexcept {
+  const std::uint32_t both = others & channel.used_at_change & LinkMask(channel.link);
+  std::array<double, kMaxStrainChannels> change{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i)
+    change[i] = strain[i] - channel.all_at_change[i];
+  std::array<double, 4> modal{};
+  Variance variance{};
+  if (!Solve(channel.link, both, change, &modal, &variance)) return true;
+  if (!SeesStuck(static_cast<std::size_t>(channel.link), both, variance)) return true;
+  return std::fabs(Predicted(channel, modal)) > stuck_limit_;
+}
+
 // A channel is stuck when its raw value has not changed while the bending at its station has moved
 // by more than the limit. Stuck channels pull the fit with them, a pair near the root by more than
 // half: the bending is that of the link's other channels, without all that repeat their value in
 // this sample, if their noise moves it by a tenth of the limit at most.
+// The strain that the others predict now and that of the fit when the channel changed come from
+// different channels: where the link bends in more than its fitted modes, they differ though
+// nothing moves.
 std::uint32_t StrainFit::JudgeStuck(const SensorFrame& frame,
                                     const std::array<double, kMaxStrainChannels>& strain,
                                     FittedModes* out) noexcept {
@@ -259,10 +281,7 @@ std::uint32_t StrainFit::JudgeStuck(const SensorFrame& frame,
     std::array<double, 4> apart = modal;
     Variance variance{};
     const bool solved = Solve(link, others, strain, &apart, &variance);
-    if (solved && std::popcount(others) >= gauges_needed_[static_cast<std::size_t>(link)] &&
-        variance.root <= stuck_limit_ * stuck_limit_ / 100.0) {
-      modal = apart;
-    }
+    if (solved && SeesStuck(static_cast<std::size_t>(link), others, variance)) modal = apart;
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
     Channel& c = channel_[i];
@@ -271,7 +290,10 @@ std::uint32_t StrainFit::JudgeStuck(const SensorFrame& frame,
       c.seen = true;
       c.last_raw = frame.strain[i];
       c.strain_at_change = bent;
-    } else if ((repeats >> i & 1u) != 0 && std::fabs(bent - c.strain_at_change) > stuck_limit_) {
+      c.all_at_change = strain;
+      c.used_at_change = out->used;
+    } else if ((repeats >> i & 1u) != 0 && std::fabs(bent - c.strain_at_change) > stuck_limit_ &&
+               OthersMoved(c, out->used & ~repeats, strain)) {
       out->stuck |= std::uint32_t{1} << i;
     }
   }

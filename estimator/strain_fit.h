@@ -85,9 +85,12 @@ class StrainFit {
     double weight = 0.0;              // 1 / variance
     std::array<double, 2> shape{};    // (h/2) psi_j''(x)
     std::array<double, 2> inverse{};  // column of the pseudo-inverse when all channels are good
-    // Stuck detection: the last raw value, and the fitted strain when it last changed.
+    // Stuck detection: the last raw value, and when it last changed the fitted strain here, the
+    // strains of all channels, and which of them were used.
     std::int32_t last_raw = 0;
     double strain_at_change = 0.0;
+    std::array<double, kMaxStrainChannels> all_at_change{};
+    std::uint32_t used_at_change = 0;
     bool seen = false;
   };
 
@@ -109,6 +112,13 @@ class StrainFit {
   bool Determines(std::size_t link, std::uint32_t used, const Variance& variance) const noexcept;
   void FitLink(int link, const std::array<double, kMaxStrainChannels>& strain,
                FittedModes* out) noexcept;
+  /// Whether the channels of `others` alone confirm that the strain at a channel that repeats its
+  /// value has changed by more than the limit since it last changed; true if they cannot tell.
+  bool OthersMoved(const Channel& channel, std::uint32_t others,
+                   const std::array<double, kMaxStrainChannels>& strain) const noexcept;
+  /// Whether a fit of these channels of the link determines the strain at its root to a tenth of
+  /// the limit of the stuck detection.
+  bool SeesStuck(std::size_t link, std::uint32_t used, const Variance& variance) const noexcept;
   /// @returns bit i: valid channel i repeats its last value
   std::uint32_t JudgeStuck(const SensorFrame& frame,
                            const std::array<double, kMaxStrainChannels>& strain,

@@ -80,7 +80,7 @@ class RetargetSearch {
 };
 
 // Rates have a larger share: a rate just reached does no harm, and trips have a margin above.
-constexpr double kRateShare = 0.8 / 0.68;
+constexpr double kRateShare = 0.8 / 0.72;
 
 // The hubs of a fast move are farther from their reference than those of a slow one.
 constexpr double kAngleMargin_rad = 0.05;

@@ -23,7 +23,7 @@ std::optional<int> ShortestPeriods(std::span<const PlannedMove> moves, const Des
                                    double period_s, const MotionLimits& limits, double share);
 
 /// The fewest periods of a move from rest with each payload, for a law that follows a path: with
-/// limits.fast_fraction of the torque and strain limits, 0.8 / 0.68 of that of the rate limits, and
+/// limits.fast_fraction of the torque and strain limits, 0.8 / 0.72 of that of the rate limits, and
 /// at least limits.fast_least_s. Nothing if a minute is not enough for some payload.
 /// Source: docs/theory/fast-moves.md 1.
 std::optional<DurationTable> ShortestByPayload(const PlannedMove& move, const Design& design,

@@ -98,7 +98,7 @@ const BrokenText kRange[] = {
      "estimator.payload.start_sigma_kg", "never estimated"},
     {"PlayIsNeverForgotten", "play_memory = 0.999", "play_memory = 1.999",
      "estimator.payload.play_memory", "0 .. 1"},
-    {"FastBeyondTheLimits", "fast_fraction = [0.68, 0.58]", "fast_fraction = [0.68, 1.58]",
+    {"FastBeyondTheLimits", "fast_fraction = [0.72, 0.62]", "fast_fraction = [0.72, 1.62]",
      "controller.payload.fast_fraction[1]", "at most 1"},
     {"MovesOfNoTime", "fast_least_s = 0.56", "fast_least_s = 0.0",
      "controller.payload.fast_least_s", "above 0"},

@@ -50,7 +50,7 @@ class Benchmark(ProgramTest):
             self.assertIn(f"| {name} |", page.read_text())
         self.assert_refused(
             self.run_program("flexarm", "benchmark", "-c", HIL, "--table", "pictures", "-o",
-                             self.folder / "x.sqlite"), "commands, moves, limits")
+                             self.folder / "x.sqlite"), "commands, moves, limits, fast")
         self.assert_refused(
             self.run_program("flexarm", "benchmark", "-c", HIL, "-o", results), "another sweep")
 

@@ -126,6 +126,18 @@ TEST_F(StrainJudgement, ChannelsOfAnArmAtRestAreNotStuck) {
   for (int k = 0; k < 500; ++k) EXPECT_EQ(fit.Fit(FrameOf(kBent)).stuck, 0u);
 }
 
+// A link that bends in more than its fitted modes, in a steady part of a move: the two channels at
+// the root repeat their values once, by chance, and the others alone expect another strain there.
+TEST_F(StrainJudgement, ChannelsThatRepeatByChanceAreNotStuck) {
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  SensorFrame frame = FrameOf(kBent);
+  for (const std::size_t i : {0U, 1U}) frame.strain[i] += 250;
+  for (const std::size_t i : {3U, 4U, 5U}) frame.strain[i] -= 150;
+  EXPECT_EQ(fit.Fit(frame).outlier, 0U);
+  for (std::size_t i = 2; i < 10; ++i) frame.strain[i] += i % 2 == 0 ? 1 : -1;
+  EXPECT_EQ(fit.Fit(frame).stuck, 0U);
+}
+
 TEST_F(StrainJudgement, ALinkWhoseGoodChannelsAllRepeatIsTold) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
   SensorFrame frame = FrameOf(kBent);

@@ -37,6 +37,15 @@ BenchmarkCell CellOf(const std::vector<std::size_t>& index, const std::vector<Sw
   return cell;
 }
 
+nlohmann::ordered_json BoundJson(const RestFigures& rests) {
+  return {{"first_at_rest_over_bound", NumberOrNull(rests.at_rest_over_bound[0])},
+          {"later_at_rest_over_bound", NumberOrNull(rests.at_rest_over_bound[1])},
+          {"first_on_target_over_bound", NumberOrNull(rests.on_target_over_bound[0])},
+          {"later_on_target_over_bound", NumberOrNull(rests.on_target_over_bound[1])},
+          {"at_rest", rests.at_rest},
+          {"on_target", rests.on_target}};
+}
+
 nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
   nlohmann::ordered_json json = GroupJson(cell.group);
   json["score"] = cell.score;
@@ -48,6 +57,7 @@ nlohmann::ordered_json CellJson(const BenchmarkCell& cell) {
   json["residual_max_mm"] = NumberOrNull(rests.residual_max_mm);
   json["motion_mean_mm"] = NumberOrNull(rests.motion_mean_mm);
   json["motion_max_mm"] = NumberOrNull(rests.motion_max_mm);
+  if (!std::isnan(rests.at_rest_over_bound[1])) json.update(BoundJson(rests));
   json["rms_mean_deg"] = {NumberOrNull(rests.rms_mean_deg[0]), NumberOrNull(rests.rms_mean_deg[1])};
   return json;
 }

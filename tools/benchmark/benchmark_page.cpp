@@ -1,7 +1,8 @@
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <set>
+#include <map>
 
 #include "tools/benchmark/benchmark.h"
 
@@ -129,6 +130,36 @@ TextTable ScenarioTable(const BenchmarkTable& table, std::string (*says)(const B
   return text;
 }
 
+// Runs whose moves all came to rest, and the time of the first and of the later moves over the
+// bound; in brackets how many completed if not all did.
+std::string OverBound(const BenchmarkCell& cell) {
+  const SweepGroup& group = cell.group;
+  if (!group.refused.empty() && group.completed == 0) return "refused";
+  std::string text =
+      Share(cell.rests.at_rest, group.runs) + ", " +
+      Pair(cell.rests.at_rest_over_bound[0], cell.rests.at_rest_over_bound[1], "%.2f");
+  if (group.completed < group.runs) text += " (" + Share(group.completed, group.runs) + ")";
+  return text;
+}
+
+// One row per law on the fast moves: counts over all scenarios, figures of the nominal one.
+TextTable FastLawTable(const BenchmarkTable& table) {
+  TextTable text{.head = {"law", "completed", "at rest", "first", "later", "on target",
+                          "first, target", "later, target", "motion, mm"},
+                 .rows = {}};
+  for (std::size_t law = 0; law < table.laws.size(); ++law) {
+    const BenchmarkCell& nominal = table.cell[law][kNominal];
+    const RestFigures& r = nominal.rests;
+    text.rows.push_back(
+        {table.laws[law], Share(table.Completed(law), table.Runs(law)),
+         Share(r.at_rest, nominal.group.runs), Number(r.at_rest_over_bound[0], "%.2f"),
+         Number(r.at_rest_over_bound[1], "%.2f"), Share(r.on_target, nominal.group.runs),
+         Number(r.on_target_over_bound[0], "%.2f"), Number(r.on_target_over_bound[1], "%.2f"),
+         Pair(r.motion_mean_mm, r.motion_max_mm, "%.1f")});
+  }
+  return text;
+}
+
 // One row per scenario and law.
 TextTable LimitTable(const BenchmarkTable& table) {
   TextTable text{.head = Joined({"scenario", "what", "law"}, RestHead()), .rows = {}};
@@ -142,16 +173,22 @@ TextTable LimitTable(const BenchmarkTable& table) {
   return text;
 }
 
-// What the rig does not permit, and what was refused before it ran.
+std::string WithoutDigits(std::string text) {
+  std::erase_if(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+  return text;
+}
+
+// What the rig does not permit, and what was refused before it ran: of reasons that differ in their
+// numbers alone the first.
 TextTable RefusedTable(const BenchmarkTable& table) {
   TextTable text{.head = {"law or scenario", "why"}, .rows = {}};
   for (const LeftOut& out : table.left_out) text.rows.push_back({out.name, out.why});
   for (std::size_t law = 0; law < table.laws.size(); ++law) {
-    std::set<std::string> reasons;
+    std::map<std::string, std::string> reasons;  // by their text without numbers
     for (const BenchmarkCell& cell : table.cell[law]) {
-      reasons.insert(cell.group.refused.begin(), cell.group.refused.end());
+      for (const std::string& why : cell.group.refused) reasons.emplace(WithoutDigits(why), why);
     }
-    for (const std::string& why : reasons) text.rows.push_back({table.laws[law], why});
+    for (const auto& [kind, why] : reasons) text.rows.push_back({table.laws[law], why});
   }
   return text;
 }
@@ -178,6 +215,17 @@ std::vector<TablePart> ResultParts(const BenchmarkTable& table) {
           {"The result with one limit after the other removed: residual and motion "
            "mean and largest, rms mean of joints 1 and 2:",
            LimitTable(table)}};
+    case BenchmarkKind::kFast:
+      return {
+          {"Time from the start of a move until the tip stays within the distance that counts as "
+           "settled, of its resting place and of its target, over the shortest time of a rigid "
+           "arm: first moves, at which the payload is unknown, and later ones. Completed runs "
+           "over all scenarios; the other figures are those of the nominal one, and of the runs "
+           "whose moves all came to rest:",
+           FastLawTable(table)},
+          {"Runs whose moves all came to rest, and that time over the bound, first and later "
+           "moves, in every scenario; in brackets the runs that completed, where not all did:",
+           ScenarioTable(table, OverBound)}};
   }
   return {};
 }

@@ -11,10 +11,11 @@ namespace flexarm {
 namespace {
 
 constexpr std::array kKinds = {BenchmarkKind::kCommands, BenchmarkKind::kMoves,
-                               BenchmarkKind::kLimits};
+                               BenchmarkKind::kLimits, BenchmarkKind::kFast};
 
 // No law was tried on these seeds during its development, tests included.
 constexpr const char* kMoveSeeds = "4001..4010";
+constexpr const char* kFastSeeds = "4101..4110";
 
 // One line, without the option in which the problem lies.
 std::string WhyOf(const ConfigError& error) {
@@ -23,6 +24,10 @@ std::string WhyOf(const ConfigError& error) {
     why += (why.empty() ? "" : "; ") + problem.key + " = " + problem.value + ": " + problem.rule;
   }
   return why;
+}
+
+void AddTo(std::vector<std::string>* laws, const std::vector<std::string>& others) {
+  laws->insert(laws->end(), others.begin(), others.end());
 }
 
 void LeaveOutLaws(const RigConfig& config, BenchmarkSet* set) {
@@ -64,6 +69,8 @@ const char* ToString(BenchmarkKind kind) {
       return "moves";
     case BenchmarkKind::kLimits:
       return "limits";
+    case BenchmarkKind::kFast:
+      return "fast";
   }
   return "?";
 }
@@ -94,14 +101,17 @@ BenchmarkSet BenchmarkSetOf(BenchmarkKind kind, const RigConfig& config,
       set.laws = CommandLaws();
       set.seeds = "1..3";
       break;
-    case BenchmarkKind::kMoves: {
-      const std::vector<std::string> others = CommandLaws();
+    case BenchmarkKind::kMoves:
       set.scenarios = MoveScenarios(config);
-      set.laws.insert(set.laws.end(), others.begin(), others.end());
+      AddTo(&set.laws, CommandLaws());
       break;
-    }
     case BenchmarkKind::kLimits:
       set.scenarios = LimitScenarios(config);
+      break;
+    case BenchmarkKind::kFast:
+      set.scenarios = FastScenarios(config);
+      AddTo(&set.laws, CommandLaws());
+      set.seeds = kFastSeeds;
       break;
   }
   LeaveOutLaws(config, &set);

@@ -15,9 +15,10 @@ enum class BenchmarkKind : std::uint8_t {
   kCommands,  ///< the commands of config/experiments
   kMoves,     ///< random smooth moves, also for the laws that follow no other command
   kLimits,    ///< the same moves, with the limits of the rig removed one by one
+  kFast,      ///< moves as short as each law makes them, over the shortest possible time
 };
 
-const char* ToString(BenchmarkKind kind);  ///< "commands", "moves", "limits"
+const char* ToString(BenchmarkKind kind);  ///< "commands", "moves", "limits", "fast"
 /// @throws InputError  there is no table of that name
 BenchmarkKind BenchmarkKindNamed(const std::string& name);
 
@@ -56,6 +57,8 @@ std::vector<Scenario> CommandScenarios(const RigConfig& config,
 /// The payload ranges and the plants of docs/theory/payload.md 6.2 and 6.3, and finer encoders.
 std::vector<Scenario> MoveScenarios(const RigConfig& config);
 std::vector<Scenario> LimitScenarios(const RigConfig& config);
+/// Payloads, each known to be the same in a run, and plants (docs/theory/fast-moves.md 5).
+std::vector<Scenario> FastScenarios(const RigConfig& config);
 
 /// The set with these scenarios only, in the order of the set.
 BenchmarkSet Only(BenchmarkSet set, const std::vector<std::string>& scenarios);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "config/thesis_arm.h"
@@ -14,6 +15,8 @@ using Overrides = std::vector<std::string>;
 
 const Overrides kNoFriction = {"joint1.coulomb_friction_nm=0", "joint2.coulomb_friction_nm=0"};
 constexpr double kFiner = 10.0;
+// The reference keeps 0.05 rad from the soft limit of 90 deg.
+constexpr double kFastElbow_deg = 80.0;
 
 Overrides Both(Overrides a, const Overrides& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -84,6 +87,13 @@ std::string Payloads(const MoveRecipe& recipe) {
          " kg";
 }
 
+Scenario FastScenario(const RigConfig& config, const MoveRecipe& recipe, const Disturbance& d) {
+  Scenario scenario = RandomScenario(config, recipe, d);
+  scenario.config = d.config;  // they keep the soft limits of the rig
+  scenario.fast = true;
+  return scenario;
+}
+
 }  // namespace
 
 std::vector<Scenario> MoveScenarios(const RigConfig& config) {
@@ -133,6 +143,26 @@ std::vector<Scenario> LimitScenarios(const RigConfig& config) {
   scenarios.reserve(taken_away.size());
   for (const Disturbance& d : taken_away) {
     scenarios.push_back(RandomScenario(config, RecipeFor(config), d));
+  }
+  return scenarios;
+}
+
+std::vector<Scenario> FastScenarios(const RigConfig& config) {
+  MoveRecipe recipe = RecipeFor(config);
+  recipe.within_deg[1] = std::min(recipe.within_deg[1], kFastElbow_deg);
+  std::vector<Scenario> scenarios = {
+      FastScenario(config, recipe, {.name = "nominal", .what = Payloads(recipe)})};
+  const auto [least_kg, greatest_kg] = config.controller.payload_range_kg;
+  for (const double share : {0.0, 0.1, 0.2, 0.5, 1.0}) {
+    const double payload_kg = least_kg + share * (greatest_kg - least_kg);
+    MoveRecipe fixed = recipe;
+    fixed.payload_kg = {payload_kg, payload_kg};
+    const std::string text = RoundedText(payload_kg, 3);
+    scenarios.push_back(
+        FastScenario(config, fixed, {.name = "payload-" + text, .what = text + " kg"}));
+  }
+  for (const auto& disturbances : {CommonDisturbances(config), MorePlants(config)}) {
+    for (const Disturbance& d : disturbances) scenarios.push_back(FastScenario(config, recipe, d));
   }
   return scenarios;
 }

@@ -23,6 +23,25 @@ Spread SpreadOf(const std::vector<SweepRow>& completed, std::size_t i) {
   return {.mean = sum / static_cast<double>(completed.size()), .largest = largest};
 }
 
+// The mean over the runs that have the measure; NaN: none has.
+double MeanOfThoseWith(const std::vector<SweepRow>& completed, std::size_t i) {
+  double sum = 0.0;
+  int count = 0;
+  for (const SweepRow& row : completed) {
+    if (std::isnan(row.measure[i])) continue;
+    sum += row.measure[i];
+    ++count;
+  }
+  return sum / count;
+}
+
+std::size_t HaveBoth(const std::vector<SweepRow>& completed, std::size_t i, std::size_t j) {
+  return static_cast<std::size_t>(
+      std::count_if(completed.begin(), completed.end(), [=](const SweepRow& row) {
+        return !std::isnan(row.measure[i]) && !std::isnan(row.measure[j]);
+      }));
+}
+
 }  // namespace
 
 RestFigures RestFiguresOf(const std::vector<SweepRow>& rows) {
@@ -41,7 +60,9 @@ RestFigures RestFiguresOf(const std::vector<SweepRow>& rows) {
             .residual_max_mm = kNone,
             .motion_mean_mm = kNone,
             .motion_max_mm = kNone,
-            .rms_mean_deg = {kNone, kNone}};
+            .rms_mean_deg = {kNone, kNone},
+            .at_rest_over_bound = {kNone, kNone},
+            .on_target_over_bound = {kNone, kNone}};
   }
   const Spread residual = SpreadOf(completed, kResidual), motion = SpreadOf(completed, kMotion);
   return {.settled_in_time = static_cast<std::size_t>(std::count_if(
@@ -53,7 +74,13 @@ RestFigures RestFiguresOf(const std::vector<SweepRow>& rows) {
           .residual_max_mm = residual.largest,
           .motion_mean_mm = motion.mean,
           .motion_max_mm = motion.largest,
-          .rms_mean_deg = {SpreadOf(completed, kRms1).mean, SpreadOf(completed, kRms2).mean}};
+          .rms_mean_deg = {SpreadOf(completed, kRms1).mean, SpreadOf(completed, kRms2).mean},
+          .at_rest_over_bound = {MeanOfThoseWith(completed, kFirstAtRest),
+                                 MeanOfThoseWith(completed, kLaterAtRest)},
+          .on_target_over_bound = {MeanOfThoseWith(completed, kFirstOnTarget),
+                                   MeanOfThoseWith(completed, kLaterOnTarget)},
+          .at_rest = HaveBoth(completed, kFirstAtRest, kLaterAtRest),
+          .on_target = HaveBoth(completed, kFirstOnTarget, kLaterOnTarget)};
 }
 
 }  // namespace flexarm

@@ -19,6 +19,9 @@ struct RestFigures {
   double motion_mean_mm = 0.0;  ///< from 0.3 s after the moves
   double motion_max_mm = 0.0;
   std::array<double, 2> rms_mean_deg{};  ///< of the joints, against the reference
+  /// BoundRatios of the first move and of the later ones, mean over the runs that have them.
+  std::array<double, 2> at_rest_over_bound{}, on_target_over_bound{};
+  std::size_t at_rest = 0, on_target = 0;  ///< runs whose moves all came to rest, on target
 };
 
 RestFigures RestFiguresOf(const std::vector<SweepRow>& rows);

@@ -64,12 +64,15 @@ void RegisterBenchmark(CLI::App& app, Exit&) {
                    "moves: random smooth moves with the payloads of the rig, also for the laws "
                    "that estimate the payload\n"
                    "limits: the same moves for those laws, with encoders, gauges and friction "
-                   "made ideal")
+                   "made ideal\n"
+                   "fast: moves as short as each law makes them, and their time over the bound of "
+                   "a rigid arm")
       ->type_name("NAME");
   verb->add_option("--laws", options->laws, "Only these laws, by name, separated by commas")
       ->type_name("NAMES");
   verb->add_option("--seeds", options->seeds,
-                   "Seeds of the noise and of random moves (default: 1..3, or 4001..4010 on moves)")
+                   "Seeds of the noise and of random moves (default: 1..3; on moves 4001..4010, "
+                   "fast 4101..4110)")
       ->type_name("VALUES");
   options->grid.AddTo(verb);
   verb->add_option("--page", options->page, "Also write the tables to this file, in Markdown")

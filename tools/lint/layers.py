@@ -68,9 +68,9 @@ LAYERS = {
     "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
                       "model/simulation model/perturbation model/reduction controller/files config tools/support "
                       "tools/runs tools/plot",
-    "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
-                   "config config/derivation tools/support tools/runs tools/plot controller/files",
     "tools/bound": "model model/math model/rigid_joint estimator controller/types",
+    "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
+                   "config config/derivation tools/support tools/runs tools/plot tools/bound controller/files",
     "tools/tuning": "model model/beam estimator controller/types controller/design controller/host config config/new_rig tools/sweep",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "

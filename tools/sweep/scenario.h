@@ -21,6 +21,7 @@ struct Scenario {
   /// If set, the run's seed determines random moves and a payload by this recipe
   /// (MakeRandomMoves), in place of `experiment` and `payload_kg`.
   std::optional<MoveRecipe> random = std::nullopt;
+  bool fast = false;  ///< with `random`: MakeFastMoves
 };
 
 }  // namespace flexarm

@@ -12,6 +12,7 @@
 #include "controller/runlog/errors.h"
 #include "controller/types/rejected_error.h"
 #include "tools/support/parallel_for.h"
+#include "tools/sweep/fast_moves.h"
 #include "tools/sweep/plant_variant.h"
 #include "tools/sweep/random_moves.h"
 
@@ -80,8 +81,11 @@ SimulationRequest RequestFor(const SweepPlan& plan, const Changes& changes) {
       .payload_kg = changes.payload_kg,
       .log = {}};
   if (changes.scenario != nullptr && changes.scenario->random) {
-    const RandomMoves drawn = MakeRandomMoves(RigidJointArm(request.config.arm),
-                                              request.config.sim.seed, *changes.scenario->random);
+    const MoveRecipe& recipe = *changes.scenario->random;
+    const std::uint64_t seed = request.config.sim.seed;
+    const RandomMoves drawn =
+        changes.scenario->fast ? MakeFastMoves(request.config, seed, recipe)
+                               : MakeRandomMoves(RigidJointArm(request.config.arm), seed, recipe);
     request.experiment = drawn.experiment;
     request.payload_kg = drawn.payload_kg;
   }
@@ -129,7 +133,8 @@ SweepRow RunPoint(const SweepPlan& plan, std::size_t point) {
   const auto started = std::chrono::steady_clock::now();
   SweepRow row;
   try {
-    row = RowOf(point, Simulate(RequestAt(plan, point)));
+    const SimulationRequest request = RequestAt(plan, point);
+    row = RowOf(point, request, Simulate(request));
   } catch (const RejectedError& error) {
     row = RefusedRow(point, error.what());
   } catch (const ConfigError& error) {  // values that are valid one by one, but not together

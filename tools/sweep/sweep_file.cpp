@@ -11,7 +11,7 @@
 namespace flexarm {
 namespace {
 
-constexpr int kFormat = 4;
+constexpr int kFormat = 5;
 constexpr std::size_t kShownCause = 200, kShownDifference = 400;  // bytes
 
 // Runs `body`; an error of SQLite becomes an InputError that names the file.

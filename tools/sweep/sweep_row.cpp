@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/sweep/fast_moves.h"
+
 namespace flexarm {
 namespace {
 
@@ -10,18 +12,21 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-SweepRow RowOf(std::size_t point, const SimulationResult& result) {
+SweepRow RowOf(std::size_t point, const SimulationRequest& request,
+               const SimulationResult& result) {
   const RunMetrics& m = result.metrics;
+  const BoundRatios ratios = RatiosOf(request, m);
   return {.point = point,
           .completed = result.completed,
           .trip = result.trip == TripCause::kNone ? "" : ToString(result.trip),
           .refused = {},
           .ticks = result.ticks,
-          .measure = {m.joint_rms_error_deg[0], m.joint_rms_error_deg[1],
-                      m.joint_final_error_deg[0], m.joint_final_error_deg[1],
-                      m.tip_settling_time_s.value_or(kNone), m.tip_residual_rms_mm,
-                      m.peak_torque_nm[0], m.peak_torque_nm[1], m.torque_rms_nm[0],
-                      m.torque_rms_nm[1], m.tip_motion_rms_mm, m.tip_target_error_mm}};
+          .measure = {
+              m.joint_rms_error_deg[0], m.joint_rms_error_deg[1], m.joint_final_error_deg[0],
+              m.joint_final_error_deg[1], m.tip_settling_time_s.value_or(kNone),
+              m.tip_residual_rms_mm, m.peak_torque_nm[0], m.peak_torque_nm[1], m.torque_rms_nm[0],
+              m.torque_rms_nm[1], m.tip_motion_rms_mm, m.tip_target_error_mm, ratios.first_at_rest,
+              ratios.later_at_rest, ratios.first_on_target, ratios.later_on_target}};
 }
 
 SweepRow RefusedRow(std::size_t point, const std::string& why) {

@@ -15,7 +15,7 @@ struct SweepMeasure {
   const char* title;   ///< heading in a table
 };
 
-inline constexpr std::array<SweepMeasure, 12> kSweepMeasures = {
+inline constexpr std::array<SweepMeasure, 16> kSweepMeasures = {
     {{"joint1_rms_error_deg", "rms1 deg"},
      {"joint2_rms_error_deg", "rms2 deg"},
      {"joint1_final_error_deg", "final1 deg"},
@@ -27,7 +27,11 @@ inline constexpr std::array<SweepMeasure, 12> kSweepMeasures = {
      {"torque1_rms_nm", "effort1 Nm"},
      {"torque2_rms_nm", "effort2 Nm"},
      {"tip_motion_rms_mm", "motion mm"},
-     {"tip_target_error_mm", "off target mm"}}};
+     {"tip_target_error_mm", "off target mm"},
+     {"first_at_rest_over_bound", "first/bound"},
+     {"later_at_rest_over_bound", "later/bound"},
+     {"first_on_target_over_bound", "first on target/bound"},
+     {"later_on_target_over_bound", "later on target/bound"}}};
 inline constexpr std::size_t kRms1 = 0;
 inline constexpr std::size_t kRms2 = 1;
 inline constexpr std::size_t kSettling =
@@ -35,6 +39,12 @@ inline constexpr std::size_t kSettling =
 inline constexpr std::size_t kResidual = 5;
 inline constexpr std::size_t kMotion = 10;
 inline constexpr std::size_t kTargetError = 11;
+/// BoundRatios, of moves `duration = "shortest"` alone. NaN in a completed run: one of them never
+/// came to rest, or not on its target.
+inline constexpr std::size_t kFirstAtRest = 12;
+inline constexpr std::size_t kLaterAtRest = 13;
+inline constexpr std::size_t kFirstOnTarget = 14;
+inline constexpr std::size_t kLaterOnTarget = 15;
 
 /// One run of a sweep.
 struct SweepRow {
@@ -49,7 +59,7 @@ struct SweepRow {
 };
 
 /// The row of a run; the caller sets its wall time.
-SweepRow RowOf(std::size_t point, const SimulationResult& result);
+SweepRow RowOf(std::size_t point, const SimulationRequest& request, const SimulationResult& result);
 SweepRow RefusedRow(std::size_t point, const std::string& why);
 
 /// True if two rows are equal in all but their wall time.

@@ -59,8 +59,15 @@ std::vector<std::string> CellsOf(const SweepSummary& summary, const SweepGroup& 
     cells.push_back(summary.axes[i].values[group.index[i]]);
   }
   cells.push_back(std::to_string(group.completed) + "/" + std::to_string(group.runs));
-  for (const double median : group.median) cells.push_back(NumberText(median));
+  for (const std::size_t i : summary.Measured()) cells.push_back(NumberText(group.median[i]));
   return cells;
+}
+
+// A missing time of a completed run is longer than every other.
+void CountAsNever(std::vector<double>* times) {
+  for (double& time : *times) {
+    if (std::isnan(time)) time = std::numeric_limits<double>::infinity();
+  }
 }
 
 std::string Joined(const std::vector<std::string>& parts) {
@@ -88,8 +95,11 @@ SweepGroup GroupOf(const std::vector<std::size_t>& index, const std::vector<Swee
     ++group.completed;
     for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(row.measure[i]);
   }
-  for (double& time : values[kSettling]) {
-    if (std::isnan(time)) time = std::numeric_limits<double>::infinity();
+  CountAsNever(&values[kSettling]);
+  for (std::size_t i = kFirstAtRest; i < values.size(); ++i) {
+    const bool has_value = std::any_of(values[i].begin(), values[i].end(),
+                                       [](double ratio) { return !std::isnan(ratio); });
+    if (has_value) CountAsNever(&values[i]);
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     group.median[i] = MedianOf(values[i]);
@@ -99,6 +109,18 @@ SweepGroup GroupOf(const std::vector<std::size_t>& index, const std::vector<Swee
     group.most[i] = *most;
   }
   return group;
+}
+
+std::vector<std::size_t> SweepSummary::Measured() const {
+  std::vector<std::size_t> measured;
+  for (std::size_t i = 0; i < kSweepMeasures.size(); ++i) {
+    const bool is_bound_ratio = i >= kFirstAtRest;
+    const bool has_value = std::any_of(groups.begin(), groups.end(), [i](const SweepGroup& group) {
+      return !std::isnan(group.median[i]);
+    });
+    if (!is_bound_ratio || has_value) measured.push_back(i);
+  }
+  return measured;
 }
 
 double MedianOf(std::vector<double> values) {
@@ -161,7 +183,7 @@ void PrintSummary(const SweepSummary& summary) {
   std::vector<std::vector<std::string>> table(1);
   for (const SweepAxis& axis : summary.axes) table[0].push_back(axis.Column());
   table[0].emplace_back("completed");
-  for (const SweepMeasure& measure : kSweepMeasures) table[0].emplace_back(measure.title);
+  for (const std::size_t i : summary.Measured()) table[0].emplace_back(kSweepMeasures[i].title);
   for (const SweepGroup& group : summary.groups) table.push_back(CellsOf(summary, group));
   for (auto& line : table) {
     for (std::string& cell : line) cell = Shown(cell);

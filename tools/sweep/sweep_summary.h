@@ -32,6 +32,9 @@ struct SweepSummary {
   std::vector<SweepAxis> axes;     ///< without the seeds; the axis to compare along is last
   std::vector<SweepGroup> groups;  ///< the last axis varies fastest
   std::size_t points = 0, done = 0;
+
+  /// The measures to show: those over the bound only if a run has them.
+  std::vector<std::size_t> Measured() const;
 };
 
 /// @param by  column of the axis to compare along; empty: the first with more than one value

@@ -9,6 +9,7 @@
 #include "controller/types/rounded_text.h"
 #include "controller/types/tip_tolerance.h"
 #include "model/units.h"
+#include "tools/sweep/fast_moves.h"
 #include "tools/sweep/random_moves.h"
 
 namespace flexarm {
@@ -49,6 +50,7 @@ SimulationResult SimulateMoves(const RigConfig& config, double payload_kg, std::
   for (double gap_s = kFirstGap_s;; gap_s *= 2.0) {
     SimulationRequest request;
     request.config = config;
+    request.config.sim.seed = seed;
     request.experiment = RandomTargets(config, seed, gap_s);
     request.payload_kg = payload_kg;
     try {
@@ -115,6 +117,33 @@ MoveCheck CheckMoves(const RigConfig& config, const std::vector<double>& payload
     }
   }
   return check;
+}
+
+std::string ProblemOfFastMoves(const RigConfig& config, const std::vector<double>& payload_kg,
+                               std::span<const std::uint64_t> seeds) {
+  for (const std::uint64_t seed : seeds) {
+    for (const double payload : payload_kg) {
+      SimulationRequest request;
+      request.config = config;
+      request.config.sim.seed = seed;
+      request.experiment = MakeFastMoves(config, seed, RecipeFor(config)).experiment;
+      request.payload_kg = payload;
+      try {
+        const SimulationResult result = Simulate(request);
+        if (!result.completed) {
+          return With(std::string("fast moves trip: ") + ToString(result.trip), payload);
+        }
+        const std::vector<Arrival>& arrival = result.metrics.arrival;
+        if (!std::all_of(arrival.begin(), arrival.end(),
+                         [](const Arrival& move) { return move.at_rest_s.has_value(); })) {
+          return With("a fast move does not come to rest", payload);
+        }
+      } catch (const std::exception& error) {
+        return With(error.what(), payload);
+      }
+    }
+  }
+  return {};
 }
 
 }  // namespace flexarm

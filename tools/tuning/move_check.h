@@ -26,4 +26,9 @@ struct MoveCheck {
 MoveCheck CheckMoves(const RigConfig& config, const std::vector<double>& payload_kg,
                      std::span<const std::uint64_t> seeds, double share);
 
+/// Simulates random moves `duration = "shortest"` (MakeFastMoves) of each seed with each payload.
+/// @returns "" if no run trips and every move comes to rest, else the first problem
+std::string ProblemOfFastMoves(const RigConfig& config, const std::vector<double>& payload_kg,
+                               std::span<const std::uint64_t> seeds);
+
 }  // namespace flexarm

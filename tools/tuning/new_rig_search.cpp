@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/types/law_table.h"
 #include "controller/types/rounded_text.h"
 #include "tools/tuning/move_check.h"
 #include "tools/tuning/tuning_search.h"
@@ -16,6 +17,8 @@ constexpr int kMostDesigns = 120;
 constexpr std::array<double, 3> kStiffer = {1.0, 1.5, 2.2};  // factors on controller.alpha
 constexpr std::array<double, 5> kPlanFractions = {0.6, 0.45, 0.3, 0.2, 0.12};
 constexpr std::array<std::uint64_t, 3> kSeeds = {1, 2, 3};
+constexpr std::array<double, 6> kFastShares = {1.0, 0.85, 0.7, 0.55, 0.4, 0.3};
+constexpr std::array<std::uint64_t, 8> kFastSeeds = {11, 12, 13, 14, 15, 16, 17, 18};
 // Of the permitted error: other moves may end farther from their targets than these.
 constexpr double kShareOfPermitted = 0.7;
 
@@ -48,9 +51,15 @@ std::vector<Pace> Paces(double most) {
   return paces;
 }
 
-// Looks for the fastest moves that pass.
-bool FindPace(const ArmDescription& arm, const TunedValues& tuned, const Progress& progress,
-              NewRigResult* result) {
+/// What a rig is made of.
+struct Described {
+  ArmDescription arm;
+  TunedValues tuned;
+};
+
+// Looks for the fastest moves that pass. @returns nothing if there are none
+std::optional<Described> FindPace(const ArmDescription& arm, const TunedValues& tuned,
+                                  const Progress& progress, NewRigResult* result) {
   const double most = arm.Or("plan_fraction", kPlanFractions.front());
   const double alpha = NewRig(arm, tuned).controller.alpha;
   std::string problem;
@@ -76,10 +85,43 @@ bool FindPace(const ArmDescription& arm, const TunedValues& tuned, const Progres
                               ", controller.alpha = " + Rounded(config.controller.alpha) +
                               ": with a faster or softer one, " + problem);
     }
-    return true;
+    return Described{slower, stiffer};
   }
   result->notes.push_back("no simulated moves pass, not even slow ones: " + problem);
-  return false;
+  return std::nullopt;
+}
+
+// Lowers the shares of the limits that moves of the shortest duration use until they pass. The
+// smallest is kept even if they do not: without them the rig is sound.
+void FindFastFraction(Described found, const Progress& progress, NewRigResult* result) {
+  const RigConfig derived = NewRig(found.arm, found.tuned);
+  if (!IsScheduled(derived.controller.kind)) return;
+  const auto [light, heavy] = derived.controller.payload->fast_fraction;
+  const auto [least_kg, most_kg] = derived.controller.payload_range_kg;
+  const std::vector<double> payloads = {least_kg, derived.arm.payload_mass_kg,
+                                        0.5 * (least_kg + most_kg), most_kg};
+  std::string problem;
+  for (const double share : kFastShares) {
+    if (share != 1.0) {
+      found.tuned["controller.payload.fast_fraction"] =
+          "[" + Rounded(share * light) + ", " + Rounded(share * heavy) + "]";
+    }
+    const RigConfig config = NewRig(found.arm, found.tuned);
+    progress("simulating moves as short as the payload allows, with " +
+             Rounded(100.0 * share * light) + " % of the limits");
+    const std::string with_this = ProblemOfFastMoves(config, payloads, kFastSeeds);
+    result->text = NewRigText(found.arm, found.tuned);
+    if (with_this.empty() && problem.empty()) return;
+    const std::string key =
+        "controller.payload.fast_fraction = " + found.tuned["controller.payload.fast_fraction"];
+    if (with_this.empty()) {
+      result->notes.push_back(key + ": with more, " + problem);
+      return;
+    }
+    problem = with_this;
+  }
+  result->notes.push_back("do not use moves with duration = \"shortest\": " + problem +
+                          " even with the least controller.payload.fast_fraction");
 }
 
 NewRigResult Try(const ArmDescription& arm, const Progress& progress) {
@@ -109,7 +151,9 @@ NewRigResult Try(const ArmDescription& arm, const Progress& progress) {
     }
     result.notes.emplace_back("tuned until every check passed");
   }
-  result.passed = FindPace(arm, tuned, progress, &result);
+  const std::optional<Described> found = FindPace(arm, tuned, progress, &result);
+  result.passed = found.has_value();
+  if (found) FindFastFraction(*found, progress, &result);
   return result;
 }
 

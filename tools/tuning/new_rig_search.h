@@ -22,7 +22,8 @@ struct NewRigResult {
 };
 
 /// Derives, designs, tunes if a check fails, simulates moves to random places with the least, the
-/// usual and the greatest payload, and lowers limits.plan_fraction until they end well.
+/// usual and the greatest payload, and lowers limits.plan_fraction until they end well, then
+/// controller.payload.fast_fraction until fast moves do, where the payload is estimated.
 /// @param progress  called with what is being done
 NewRigResult FindRig(const ArmDescription& arm,
                      const std::function<void(const std::string&)>& progress);

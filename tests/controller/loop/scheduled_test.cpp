@@ -26,9 +26,10 @@ BenchmarkCell RunMoves(const std::string& law, const std::string& scenario, int 
       config, set, law, std::to_string(first_seed) + ".." + std::to_string(first_seed + seeds - 1));
   std::vector<SweepRow> rows;
   for (std::size_t point = 0; point < plan.grid.size(); ++point) {
-    const SimulationResult result = Simulate(RequestAt(plan, point));
+    const SimulationRequest request = RequestAt(plan, point);
+    const SimulationResult result = Simulate(request);
     EXPECT_EQ(result.delay_found, 0) << law << ' ' << scenario << ' ' << point;
-    rows.push_back(RowOf(point, result));
+    rows.push_back(RowOf(point, request, result));
   }
   const BenchmarkCell cell = TableOf(set, plan, rows).cell.at(0).at(0);
   const RestFigures& r = cell.rests;

@@ -34,6 +34,23 @@ TEST(BenchmarkPage, OfTheMovesCountsTheRunsThatSettledInTime) {
       << page;
 }
 
+// Two of three completed runs have all moves at rest; their means are 2.5 and 1.4, on target one's.
+TEST(BenchmarkPage, OfTheFastMovesHasTheTimesOverTheBound) {
+  const SweepPlan plan = Plan("gain-scheduled", "1..4", BenchmarkKind::kFast);
+  std::vector<SweepRow> rows = {Made(0, 0.1), Made(1, 0.1), Made(2, 0.1), Made(3, 0.1)};
+  rows[0].measure[kFirstAtRest] = 2.0;
+  rows[0].measure[kLaterAtRest] = 1.3;
+  rows[1].measure[kFirstAtRest] = 3.0;
+  rows[1].measure[kLaterAtRest] = std::nan("");
+  rows[2].measure[kFirstAtRest] = 2.5;
+  rows[2].measure[kLaterAtRest] = 1.5;
+  rows[2].measure[kLaterOnTarget] = std::nan("");
+  rows[3].completed = false;
+  const std::string page = BenchmarkMarkdown(Table(plan, rows, BenchmarkKind::kFast));
+  EXPECT_NE(page.find("| 2/4 | 2.50 | 1.40 | 2/4 | 1.00 | 1.00 |"), std::string::npos) << page;
+  EXPECT_NE(page.find("| nominal | 0 to 1 kg | 2/4, 2.50 1.40 (3/4) |"), std::string::npos) << page;
+}
+
 using Cells = std::vector<std::string>;
 
 TEST(BenchmarkPage, OfTheCommandsHasARowPerLawAndARowPerScenario) {

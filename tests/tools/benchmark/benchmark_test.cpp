@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 
 constexpr std::array kKinds = {BenchmarkKind::kCommands, BenchmarkKind::kMoves,
-                               BenchmarkKind::kLimits};
+                               BenchmarkKind::kLimits, BenchmarkKind::kFast};
 
 TEST(BenchmarkPlan, RunsEveryLawInEveryScenarioWithEverySeed) {
   for (const BenchmarkKind kind : kKinds) {
@@ -32,7 +32,7 @@ TEST(BenchmarkPlan, RunsEveryLawInEveryScenarioWithEverySeed) {
     EXPECT_EQ(BenchmarkKindNamed(ToString(kind)), kind);
   }
   EXPECT_THAT(MessageOf<InputError>([] { BenchmarkKindNamed("pictures"); }),
-              HasSubstr("expected one of commands, moves, limits"));
+              HasSubstr("expected one of commands, moves, limits, fast"));
 }
 
 TEST(BenchmarkPlan, AnUnknownLawIsRefusedBeforeARunIsMade) {

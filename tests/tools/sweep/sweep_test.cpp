@@ -147,13 +147,13 @@ TEST_F(SweepFiles, HoldTheResultsOfSingleRunsForAnyNumberOfJobs) {
   ASSERT_EQ(rows.size(), 4U);
   ASSERT_EQ(rows4.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(SameOutcome(rows[i], rows4[i])) << i;
-  const SimulationResult single =
-      Simulate({.config = LoadConfig(kHilRig, {"controller.alpha=3.0", "sim.seed=1"}),
-                .experiment = plan.experiment,
-                .plant = {},
-                .payload_kg = {},
-                .log = {}});
-  EXPECT_TRUE(SameOutcome(rows[2], RowOf(2, single)));
+  const SimulationRequest single{
+      .config = LoadConfig(kHilRig, {"controller.alpha=3.0", "sim.seed=1"}),
+      .experiment = plan.experiment,
+      .plant = {},
+      .payload_kg = {},
+      .log = {}};
+  EXPECT_TRUE(SameOutcome(rows[2], RowOf(2, single, Simulate(single))));
   EXPECT_TRUE(PointsToRun(&one, {}).empty());
 }
 
