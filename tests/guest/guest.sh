@@ -31,8 +31,8 @@ guest_packages=(
   can-utils gpiod jq libstdc++6 rt-tests sqlite3 stress-ng
 )
 dev_packages=(
-  libcomedi-dev libfmt-dev libgpiod-dev libmodbus-dev libnlopt-dev libspdlog-dev libsqlite3-dev
-  libsystemd-dev libtomlplusplus-dev
+  libcomedi-dev libfmt-dev libgpiod-dev libmatio-dev libmodbus-dev libnlopt-dev libspdlog-dev libsqlite3-dev
+  libsystemd-dev libtomlplusplus-dev libzstd-dev
 )
 # Modules in addition to gpio-sim, for the root image and for the initial RAM disk.
 root_modules=(autofs4 can can-raw comedi comedi_parport comedi_test configfs vcan)

@@ -84,7 +84,7 @@ sleep 1
 start_run
 sleep 1
 check "the relay is closed" equal "$(hardware | jq -c '.[1:]')" '[true,true]'
-kill -SEGV "$(service MainPID)"
+signal_service SEGV
 check "systemd sees it" within 10 service_is failed
 check "with this reason" equal "$(service Result) $(service ExecMainStatus)" "signal 11"
 check "the hardware has no power" equal "$(hardware)" "$dead"

@@ -17,6 +17,13 @@ operate() { as member flexarm "$@"; }
 state() { operate status --json | jq -r .state; }
 in_state() { [[ $(state) == "$1" ]]; }
 service() { systemctl show flexarmd --value -p "$1"; }
+# Without a process its number is 0, and kill would end this script's own group: the guest would
+# run on, without a result.
+signal_service() {
+  local pid
+  pid=$(service MainPID)
+  if ((pid > 0)); then kill "-$1" "$pid"; else check "the service has a process for SIG$1" false; fi
+}
 service_is() { [[ $(service ActiveState) == "$1" ]]; }
 
 # The arm must have been at rest for half a second before it may be armed.

@@ -98,7 +98,7 @@ echo "== hung"
 systemctl start flexarmd
 start_moving
 seen=$(tick)
-kill -STOP "$(service MainPID)"
+signal_service STOP
 since=$SECONDS
 check "systemd's watchdog kills it" within 20 service_is failed
 echo "after $((SECONDS - since)) s"
@@ -123,7 +123,7 @@ systemctl start flexarmd
 press_and_reset
 start_moving
 seen=$(tick)
-kill -KILL "$(service MainPID)"
+signal_service KILL
 check "systemd sees it" within 5 service_is failed
 check "with this reason" equal "$(service Result) $(service ExecMainStatus)" "signal 9"
 left_behind killed "$seen"
