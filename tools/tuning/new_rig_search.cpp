@@ -112,10 +112,10 @@ void FindFastFraction(Described found, const Progress& progress, NewRigResult* r
     const std::string with_this = ProblemOfFastMoves(config, payloads, kFastSeeds);
     result->text = NewRigText(found.arm, found.tuned);
     if (with_this.empty() && problem.empty()) return;
-    const std::string key =
-        "controller.payload.fast_fraction = " + found.tuned["controller.payload.fast_fraction"];
     if (with_this.empty()) {
-      result->notes.push_back(key + ": with more, " + problem);
+      result->notes.push_back(
+          "controller.payload.fast_fraction = " + found.tuned["controller.payload.fast_fraction"] +
+          ": with more, " + problem);
       return;
     }
     problem = with_this;
