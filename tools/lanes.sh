@@ -231,7 +231,7 @@ asan_labels='^(unit|loop|hostile)$'
 
 lane_asan() {  # address, undefined behaviour: code that parses input or drives a bus
   local folder
-  build asan flexarm flexarmd "${exposed_tests[@]/%//all}"
+  build asan flexarm flexarm-study flexarmd "${exposed_tests[@]/%//all}"
   use_environment_of asan
   for folder in "${exposed_tests[@]}"; do test_folder asan "$folder" "$asan_labels"; done
   test_folder asan tests/e2e '^hostile$'
