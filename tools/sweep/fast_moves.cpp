@@ -50,10 +50,10 @@ RandomMoves MakeFastMoves(const RigConfig& config, std::uint64_t seed, const Mov
   Eigen::Vector2d from_rad = Eigen::Vector2d::Zero();
   double now_s = 0.0;
   for (int i = 0; i < moves; ++i) {
-    const double to2_deg = random.Between(-recipe.within_deg[1], recipe.within_deg[1]);
-    const double to1_deg = random.Between(-recipe.within_deg[0], recipe.within_deg[0]);
-    out.experiment.move.push_back(
-        {.start_s = now_s, .shortest = true, .same_load = i > 0, .to_deg = {to1_deg, to2_deg}});
+    out.experiment.move.push_back({.start_s = now_s,
+                                   .shortest = true,
+                                   .same_load = i > 0,
+                                   .to_deg = RandomTarget_deg(recipe, &random)});
     const Eigen::Vector2d to_rad = Radians(out.experiment.move.back().to_deg);
     double bound_s = 0.0;
     for (const double payload_kg : config.controller.payload_range_kg)

@@ -68,6 +68,11 @@ MoveRecipe RecipeFor(const RigConfig& config) {
   return recipe;
 }
 
+std::array<double, 2> RandomTarget_deg(const MoveRecipe& recipe, UniformNumbers* random) {
+  const double to2_deg = random->Between(-recipe.within_deg[1], recipe.within_deg[1]);
+  return {random->Between(-recipe.within_deg[0], recipe.within_deg[0]), to2_deg};
+}
+
 RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed, double heaviest_kg,
                             int moves) {
   return MakeRandomMoves(arm, seed, MoveRecipe{.payload_kg = {0.0, heaviest_kg}}, moves);
@@ -82,12 +87,11 @@ RandomMoves MakeRandomMoves(const RigidJointArm& arm, std::uint64_t seed, const 
   Eigen::Vector2d from_deg = Eigen::Vector2d::Zero();
   double now_s = 0.0;
   for (int i = 0; i < moves; ++i) {
-    const double to2_deg = random.Between(-recipe.within_deg[1], recipe.within_deg[1]);
-    const double to1_deg = random.Between(-recipe.within_deg[0], recipe.within_deg[0]);
-    const Eigen::Vector2d to_deg(to1_deg, to2_deg);
+    const std::array<double, 2> target_deg = RandomTarget_deg(recipe, &random);
+    const Eigen::Vector2d to_deg(target_deg[0], target_deg[1]);
     const double rule_s = RuleDuration_s(arm, recipe.rule_for_kg, from_deg * kRadPerDeg,
                                          to_deg * kRadPerDeg, recipe.ability);
-    Move move{.start_s = now_s, .to_deg = {to1_deg, to2_deg}, .profile = MoveProfile::kSeptic};
+    Move move{.start_s = now_s, .to_deg = target_deg, .profile = MoveProfile::kSeptic};
     move.duration_s = OnMoveGrid(rule_s * random.Between(1.0, 1.5), recipe.grid_s);
     out.experiment.move.push_back(move);
     now_s = OnMoveGrid(now_s + *move.duration_s + kRandomMovesRest_s, recipe.grid_s);

@@ -61,6 +61,9 @@ struct MoveRecipe {
 /// of the rate limits and of the torques that joints and links bear (ArmScales).
 MoveRecipe RecipeFor(const RigConfig& config);
 
+/// The next target of random moves: th1, th2, deg. Takes two numbers, that of th2 first.
+std::array<double, 2> RandomTarget_deg(const MoveRecipe& recipe, UniformNumbers* random);
+
 /// Moves that no law was tuned on, and the payload of the run.
 struct RandomMoves {
   Experiment experiment;
