@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlopt.hpp>
+#include <optional>
 
 #include "controller/runlog/errors.h"
 #include "model/math/dense_decompositions.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr double kFactor = 10.0;      // half-width factor of a range that was not given
 constexpr double kTolerance = 2e-4;   // of a parameter, relative to its range
 constexpr double kFirstStep = 0.03;   // relative to the range
+constexpr double kNewStep = 0.2;      // of a search that starts again where one ended
+constexpr double kBetter = 0.99;      // a misfit below this share of the last is worth another
 constexpr double kDifference = 1e-3;  // of the central differences, relative to the range
 constexpr double kCorrelation_s = 1.0;
 constexpr double kLost = 1e3;  // misfit if the simulated arm diverges
@@ -93,21 +96,40 @@ double Objective(const std::vector<double>& x, std::vector<double>&, void* searc
   return (*static_cast<Search*>(search))(x);
 }
 
-// Minimises from *x. False: the limit of predictions was reached first.
-bool Minimise(Search* search, std::vector<double>* x) {
+// Minimises from *x, which it leaves at the best point. Returns the least misfit, or none if the
+// limit of predictions was reached first.
+std::optional<double> MinimiseOnce(Search* search, double first_step, std::vector<double>* x) {
+  const std::size_t left = MostPredictions(x->size()) - 1 - search->predictions;
   nlopt::opt optimiser(nlopt::LN_BOBYQA, static_cast<unsigned>(x->size()));
   optimiser.set_min_objective(Objective, search);
   optimiser.set_lower_bounds(0.0);
   optimiser.set_upper_bounds(1.0);
-  optimiser.set_initial_step(kFirstStep);
+  optimiser.set_initial_step(first_step);
   optimiser.set_xtol_abs(kTolerance);
-  optimiser.set_maxeval(static_cast<int>(MostPredictions(x->size()) - 1));
+  optimiser.set_maxeval(static_cast<int>(left));
   double misfit = 0.0;
   try {
-    return optimiser.optimize(*x, misfit) != nlopt::MAXEVAL_REACHED;
+    if (optimiser.optimize(*x, misfit) == nlopt::MAXEVAL_REACHED) return std::nullopt;
   } catch (const nlopt::roundoff_limited&) {
-    return true;  // limited by round-off; x is the best point
+    // x and misfit are the best point
   }
+  return misfit;
+}
+
+// Friction that starts a joint late or early makes false minima: a search that ended starts again
+// from there with a wide step, until that finds nothing better. False: the limit of predictions was
+// reached first.
+bool Minimise(Search* search, std::vector<double>* x) {
+  std::optional<double> least = MinimiseOnce(search, kFirstStep, x);
+  while (least) {
+    std::vector<double> other = *x;
+    const std::optional<double> misfit = MinimiseOnce(search, kNewStep, &other);
+    if (!misfit) return false;
+    if (*misfit < *least) *x = other;
+    if (!(*misfit < kBetter * *least)) return true;
+    least = misfit;
+  }
+  return false;
 }
 
 // Newey and West: sum of g_k g_(k-l)' over the lags, with weights that fall to zero.

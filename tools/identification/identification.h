@@ -46,9 +46,10 @@ double Misfit(const RunComparison& run, const Eigen::MatrixXd& predicted);
 /// Identifies parameters by the output-error method: those that predict the run best (NLopt's
 /// BOBYQA).
 ///
-/// BOBYQA needs no derivatives: with dry friction the prediction is not smooth. Standard errors
-/// come from central differences at the end, J, and the residuals r, whose correlation in time is
-/// taken into account up to 1 s (Newey and West):
+/// BOBYQA needs no derivatives: with dry friction the prediction is not smooth. Friction also makes
+/// false minima, so the search starts again where it ended, with a wide step, until that finds
+/// nothing better. Standard errors come from central differences at the end, J, and the residuals
+/// r, whose correlation in time is taken into account up to 1 s (Newey and West):
 ///   cov = (J'J)^-1 (sum over lags of weighted J' r r' J) (J'J)^-1
 /// They do not include errors of the model structure.
 /// @param progress  called with the number of predictions so far; may be empty
