@@ -63,6 +63,7 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     most_[static_cast<std::size_t>(channel_[i].link)] = {
         .modal_m2 = {kMost * variance.modal_m2[0], kMost * variance.modal_m2[1]},
         .root = kMost * variance.root};
+    of_all_[static_cast<std::size_t>(channel_[i].link)] = variance;
     solvable_[static_cast<std::size_t>(channel_[i].link)] = true;
     const std::size_t first = channel_[i].link == 0 ? 0 : 2;
     channel_[i].inverse = {modal[first], modal[first + 1]};
@@ -91,6 +92,8 @@ void StrainFit::FitPolynomials(const ArmParameters& arm, const SensorConfig& sen
             map(j, static_cast<Eigen::Index>(k));
       }
     }
+    of_all_[link] =
+        {};  // no least squares: a channel is judged by its distance from the polynomial
   }
 }
 
@@ -138,7 +141,8 @@ bool StrainFit::Solve(int link, std::uint32_t used,
   *variance = {
       .modal_m2 = {c / determinant, a / determinant},
       .root = (root[0] * root[0] * c - 2.0 * root[0] * root[1] * b + root[1] * root[1] * a) /
-              determinant};
+              determinant,
+      .modal_covariance_m2 = -b / determinant};
   return true;
 }
 
@@ -195,13 +199,44 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
   return out;
 }
 
+// Without channel i the weighted sum of squares falls by w d^2 / (1 - h), with its distance d from
+// the fit and its leverage h: the square of its studentised distance.
+StrainFit::Suspect StrainFit::SuspectOf(int link, std::uint32_t used,
+                                        const std::array<double, kMaxStrainChannels>& strain,
+                                        const std::array<double, 4>& modal,
+                                        const Variance& variance, double* residual) const noexcept {
+  constexpr double kAlone = 1e-6;  // 1 - h of a channel that alone determines a mode
+  Suspect suspect{};
+  double most = 0.0, sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
+    const Channel& channel = channel_[i];
+    if (channel.link != link || (used >> i & 1U) == 0) continue;
+    const double distance = std::fabs(strain[i] - Predicted(channel, modal));
+    sum += distance * distance;
+    ++count;
+    const double s0 = channel.shape[0], s1 = channel.shape[1];
+    const double spread = s0 * s0 * variance.modal_m2[0] + s1 * s1 * variance.modal_m2[1] +
+                          2.0 * s0 * s1 * variance.modal_covariance_m2;
+    const double rest = 1.0 - channel.weight * spread;  // 1 - h
+    if (!(rest > kAlone)) continue;
+    const double falls = channel.weight * distance * distance / rest;
+    if (!(falls > most)) continue;
+    most = falls;
+    suspect = {.bit = std::uint32_t{1} << i, .apart = distance / std::sqrt(rest)};
+  }
+  *residual = std::sqrt(sum / count);
+  return suspect;
+}
+
 void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& strain,
                         FittedModes* out) noexcept {
   const std::uint32_t all = LinkMask(link);
-  const std::size_t first = link == 0 ? 0 : 2;
+  const std::size_t at = static_cast<std::size_t>(link), first = link == 0 ? 0 : 2;
   std::array<double, 4> modal{};
   for (int removed = 0;; ++removed) {
-    if ((out->used & all) == all && solvable_[static_cast<std::size_t>(link)]) {
+    Variance variance = of_all_[at];
+    if ((out->used & all) == all && solvable_[at]) {
       modal[first] = modal[first + 1] = 0.0;
       for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
         if (channel_[i].link != link) continue;
@@ -209,28 +244,14 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
         modal[first + 1] += channel_[i].inverse[1] * strain[i];
       }
     } else {
-      Variance variance{};
       if (!Solve(link, out->used, strain, &modal, &variance)) return;
-      if (!Determines(static_cast<std::size_t>(link), out->used, variance)) return;
+      if (!Determines(at, out->used, variance)) return;
     }
-    double worst = 0.0, sum = 0.0;
-    std::uint32_t worst_bit = 0;
-    int count = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
-      if (channel_[i].link != link || (out->used >> i & 1u) == 0) continue;
-      const double distance = std::fabs(strain[i] - Predicted(channel_[i], modal));
-      sum += distance * distance;
-      ++count;
-      if (distance > worst) {
-        worst = distance;
-        worst_bit = std::uint32_t{1} << i;
-      }
-    }
-    out->residual[static_cast<std::size_t>(link)] = std::sqrt(sum / count);
-    if (worst <= family_limit_ || removed == kMaxOutliersPerLink) break;
-    out->outlier |= worst_bit;
-    out->used &= ~worst_bit;
-    out->worst_outlier = std::fmax(out->worst_outlier, worst);
+    const Suspect suspect = SuspectOf(link, out->used, strain, modal, variance, &out->residual[at]);
+    if (suspect.apart <= family_limit_ || removed == kMaxOutliersPerLink) break;
+    out->outlier |= suspect.bit;
+    out->used &= ~suspect.bit;
+    out->worst_outlier = std::fmax(out->worst_outlier, suspect.apart);
   }
   const double root_strain = RootStrain(static_cast<std::size_t>(link), modal);
   if (!std::isfinite(root_strain)) return;  // a gain or zero that is not a number

@@ -30,7 +30,7 @@ struct FittedModes {
   /// Per link: its used channels if each repeats its last value to the bit, else 0. Noise makes
   /// that rare, and an arm that bends impossible.
   std::array<std::uint32_t, 2> repeated;
-  double worst_outlier;  ///< its distance from the fit, unit strain
+  double worst_outlier;  ///< of its studentised distance from the fit, unit strain
 };
 
 /// Weighted least-squares fit of one or two modal coordinates per link to the strain channels.
@@ -43,7 +43,10 @@ struct FittedModes {
 /// Channels are weighted by the inverse variance of their noise. With all channels good the fit is
 /// one product with a precomputed pseudo-inverse; otherwise the 2 x 2 normal equations of the good
 /// ones are solved. A channel that is saturated, stuck, or farther from the fit than the limit is
-/// excluded in the same sample; outliers are removed worst first, at most two per link.
+/// excluded in the same sample; outliers are removed worst first, at most two per link. The
+/// distance is studentised: divided by sqrt(1 - h), with the channel's leverage h, because the fit
+/// follows a channel of great leverage, such as the one next to the root, wherever it goes. So
+/// noise is as large in the distance of each channel.
 ///
 /// The fit of a link is valid while its good channels determine the modes nearly as well as all of
 /// them: no coordinate, and not the strain at the root, has more than kMostSpread times the
@@ -98,6 +101,7 @@ class StrainFit {
   struct Variance {
     std::array<double, 2> modal_m2;
     double root;  ///< of RootStrain
+    double modal_covariance_m2 = 0.0;
   };
 
   double Predicted(const Channel& channel, const std::array<double, 4>& modal) const noexcept;
@@ -110,6 +114,18 @@ class StrainFit {
   bool Solve(int link, std::uint32_t used, const std::array<double, kMaxStrainChannels>& strain,
              std::array<double, 4>* modal, Variance* variance) const noexcept;
   bool Determines(std::size_t link, std::uint32_t used, const Variance& variance) const noexcept;
+  /// The channel without which the others agree best.
+  struct Suspect {
+    std::uint32_t bit;  ///< 0: there is none
+    double apart;       ///< its studentised distance from the fit, unit strain
+  };
+  /// @param modal     the fit of the used channels
+  /// @param variance  of that fit
+  /// @param residual  rms of channel minus fit
+  Suspect SuspectOf(int link, std::uint32_t used,
+                    const std::array<double, kMaxStrainChannels>& strain,
+                    const std::array<double, 4>& modal, const Variance& variance,
+                    double* residual) const noexcept;
   void FitLink(int link, const std::array<double, kMaxStrainChannels>& strain,
                FittedModes* out) noexcept;
   /// Whether the channels of `others` alone confirm that the strain at a channel that repeats its
@@ -135,7 +151,7 @@ class StrainFit {
   std::array<std::array<double, 2>, 2> root_shape_{};  // (h/2) psi_j'' there
   std::array<std::uint32_t, 2> link_mask_{};           // bit i: channel i is on the link
   std::array<int, 2> gauges_needed_{};
-  std::array<Variance, 2> most_{};  // of a valid fit
+  std::array<Variance, 2> of_all_{}, most_{};  // with all channels good; of a valid fit
   std::array<double, 4> last_modal_{};
 };
 

@@ -78,6 +78,26 @@ TEST_F(StrainJudgement, AnOutlierChannelIsExcludedInTheSameSample) {
   }
 }
 
+// The fit follows the channel next to the root: with an error e it is e (1 - h) from the fit, less
+// than the limit of 400 microstrain, and e sqrt(1 - h) studentised, more than that. So the squares
+// of the second over e is the first, whatever the leverage h is.
+TEST_F(StrainJudgement, AnOutlierThatTheFitFollowsIsSeenToo) {
+  constexpr double kMicrostrainPerCount = 0.9766;  // 20 V / 4096 / 5000 V
+  const std::array<std::int32_t, 2> error_of_link = {580, 655};
+  for (const std::size_t root : {0U, 10U}) {
+    const std::int32_t error_counts = error_of_link[root / 10];
+    StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+    SensorFrame frame = FrameOf(kBent);
+    frame.strain[root] += error_counts;
+    const FittedModes out = fit.Fit(frame);
+    EXPECT_EQ(out.outlier, 1U << root) << root;
+    EXPECT_GT(out.worst_outlier, 4e-4);
+    const double error = 1e-6 * kMicrostrainPerCount * error_counts;
+    EXPECT_LT(out.worst_outlier * out.worst_outlier / error, 4e-4) << "not seen by the distance";
+    ExpectBend(out, kBent, root);
+  }
+}
+
 // At most two outliers per link are removed.
 TEST_F(StrainJudgement, TwoOutlierChannelsOfALinkAreExcluded) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
