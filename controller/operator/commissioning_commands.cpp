@@ -41,6 +41,7 @@ void CommissioningCommands::Take(const TickRecord& tick) {
   const std::uint8_t before = angles().unknown();
   const Calibration calibration = commissioner_.calibration();
   commissioner_.Take(tick);
+  stepped_ = true;
   if (angles().unknown() != before || commissioner_.calibration() != calibration) Publish(before);
 }
 
@@ -51,6 +52,8 @@ void CommissioningCommands::Start(const nlohmann::json& command, int client,
   }
   CommissioningMotion motion = commissioner_.Start(command, now.permit.state);
   client_ = client;
+  command_ = command["command"];
+  heard_ns_ = now.now_ns;
   request_ = 0;
   if (motion.planned == nullptr) return;
   request_ = targets_.experiments->AskForRun(now.now_ns, RequestTracker::kNoClient,
@@ -61,10 +64,18 @@ void CommissioningCommands::Start(const nlohmann::json& command, int client,
   commissioner_.Expect(request_);
 }
 
-std::optional<ClientAnswer> CommissioningCommands::TakeAnswer(const Permit& permit) {
+std::optional<ClientAnswer> CommissioningCommands::TakeAnswer(const OperatorSnapshot& now) {
+  if (std::exchange(stepped_, false)) heard_ns_ = now.now_ns;
   std::optional<nlohmann::json> answer = commissioner_.TakeAnswer();
-  if (!answer) return std::nullopt;
-  return Finish(std::move(*answer), permit);
+  if (answer) return Finish(std::move(*answer), now.permit);
+  if (!commissioner_.busy() || now.now_ns - heard_ns_ < kLoopStandsNs) return std::nullopt;
+  commissioner_.Abort();
+  return Finish({{"ok", false},
+                 {"command", command_},
+                 {"error",
+                  "the control loop stands: it sent no sample for a second; see `flexarm status`, "
+                  "and repeat the command when it runs"}},
+                now.permit);
 }
 
 std::optional<ClientAnswer> CommissioningCommands::Answered(const RequestAnswer& answer,

@@ -58,8 +58,11 @@ class CommissioningCommands {
   /// Which joint angles are known.
   const AngleKnowledge& angles() const { return commissioner_.angles(); }
 
-  /// The answer of a command that has ended, once; empty: none has.
-  std::optional<ClientAnswer> TakeAnswer(const Permit& permit);
+  /// A command waits so long for the next step of the loop; then it ends with an error.
+  static constexpr std::int64_t kLoopStandsNs = 1'000'000'000;
+
+  /// Once a period, after Take. The answer of a command that has ended, once; empty: none has.
+  std::optional<ClientAnswer> TakeAnswer(const OperatorSnapshot& now);
 
   /// Every answer of the safety task.
   /// @returns the answer of the command whose motion the safety task has refused; empty: none
@@ -73,6 +76,9 @@ class CommissioningCommands {
   Targets targets_;
   Commissioner commissioner_;
   int client_ = -1;            // of the newest command
+  std::string command_;        // its name
+  std::int64_t heard_ns_ = 0;  // it began then, or a step of the loop came
+  bool stepped_ = false;       // since the last TakeAnswer
   std::uint32_t request_ = 0;  // of its motion; 0: none
 };
 

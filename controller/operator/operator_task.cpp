@@ -164,7 +164,7 @@ void OperatorTask::TakeTicks() {
     switches_.Take(now_.tick);
     warnings_.Take(now_.now_ns, now_.tick);
   }
-  Reply(commissioning_.TakeAnswer(now_.permit));
+  Reply(commissioning_.TakeAnswer(now_));
   Reply(switches_.TakeAnswer(now_.permit));
 }
 

@@ -93,20 +93,40 @@ TEST_F(CommissioningCommandsTest, AGrantedMotionHasOnlyBegun) {
   EXPECT_FALSE(AnswerOf(stack_.TakeRequests().at(0).number, Refusal::kNone));
 }
 
+// A control thread that hangs sends no steps: the client would wait for ever.
+TEST_F(CommissioningCommandsTest, AMeasurementEndsWhenTheLoopStands) {
+  now_.permit.state = SafetyState::kIdle;
+  commissioning_.Start({{"command", "tare"}}, 9, now_);
+  MeasureButOne();
+  EXPECT_FALSE(commissioning_.TakeAnswer(now_));
+  now_.now_ns += CommissioningCommands::kLoopStandsNs - 1;
+  EXPECT_FALSE(commissioning_.TakeAnswer(now_));
+  now_.now_ns += 1;
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->client, 9);
+  EXPECT_EQ(answer->json["ok"], false);
+  EXPECT_EQ(answer->json["command"], "tare");
+  EXPECT_NE(answer->json["error"].get<std::string>().find("the control loop stands"),
+            std::string::npos);
+  EXPECT_FALSE(commissioning_.TakeAnswer(now_)) << "once";
+  EXPECT_NO_THROW(commissioning_.Start({{"command", "tare"}}, 8, now_));
+}
+
 TEST_F(CommissioningCommandsTest, AMeasurementIsAnsweredToItsClientWhenItHasEnded) {
   now_.permit.state = SafetyState::kIdle;
   commissioning_.Start({{"command", "tare"}}, 9, now_);
   EXPECT_TRUE(stack_.TakeRequests().empty()) << "nothing moves";
   MeasureButOne();
-  EXPECT_FALSE(commissioning_.TakeAnswer(now_.permit));
+  EXPECT_FALSE(commissioning_.TakeAnswer(now_));
   commissioning_.Take(last_);
-  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->client, 9);
   EXPECT_EQ(answer->json["ok"], true) << answer->json;
   EXPECT_EQ(answer->json["command"], "tare");
   EXPECT_EQ(answer->json["state"], "Idle");
-  EXPECT_FALSE(commissioning_.TakeAnswer(now_.permit)) << "once";
+  EXPECT_FALSE(commissioning_.TakeAnswer(now_)) << "once";
   ASSERT_EQ(journal_.lines.size(), 1u);
   EXPECT_FALSE(journal_.lines[0].first);
   EXPECT_THAT(journal_.lines[0].second, HasSubstr("tare: done, kept in " + Folder()));
@@ -130,7 +150,7 @@ TEST_F(CommissioningCommandsTest, ALossOfCountAnswersTheCommandThatItSpoils) {
   MeasureButOne();
   commissioning_.Follow(CountEpochs{1, 0, 0, 0});
   commissioning_.Take(last_);
-  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->client, 9);
   EXPECT_EQ(answer->json["ok"], false);
@@ -143,7 +163,7 @@ TEST_F(CommissioningCommandsTest, AMeasurementThatFailsIsAnError) {
   MeasureButOne();
   last_.input.safety_state = SafetyState::kArmed;
   commissioning_.Take(last_);
-  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->json["ok"], false);
   ASSERT_EQ(journal_.lines.size(), 1u);
@@ -157,7 +177,7 @@ TEST_F(CommissioningCommandsTest, ACommandThatIsRefusedLeavesTheOneThatGoesOn) {
   EXPECT_THROW(commissioning_.Start({{"command", "zero"}}, 10, now_), RejectedError);
   MeasureButOne();
   commissioning_.Take(last_);
-  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_.permit);
+  const std::optional<ClientAnswer> answer = commissioning_.TakeAnswer(now_);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->client, 9);
   EXPECT_EQ(answer->json["command"], "tare");
