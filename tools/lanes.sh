@@ -150,7 +150,10 @@ lane_campaigns() {  # random campaigns at their whole size; `release` runs a sam
   done
   build release tools_bound_long_test
   FLEXARM_CAMPAIGN=whole build/release/tests/tools/bound/tools_bound_long_test
-  build release flexarm flexarmd
+  build release tools_torture_long_test
+  FLEXARM_CAMPAIGN=whole build/release/tests/tools/torture/tools_torture_long_test
+  build release flexarm flexarm-study flexarmd
+  tests/e2e/fault_matrix_check.sh build/release/bin/flexarm
   FLEXARM_CAMPAIGN=whole FLEXARM_BIN="$PWD/build/release/bin" python3 tests/e2e/killed_run_test.py
   build tsan wired_threads_test
   use_environment_of tsan

@@ -65,6 +65,13 @@ class PlantTask final : public Task {
   /// Any thread. Experiments with a lower number than this are no longer used.
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 
+  // In lock step, between two activations.
+  const SimulatedRig& rig() const noexcept { return rig_; }
+  /// The arm has been integrated up to here.
+  std::int64_t integrated_ns() const noexcept { return now_ns_; }
+  /// What acts on the arm since the last slice, N m.
+  const std::array<double, 2>& drive_torque_nm() const noexcept { return drive_.torque_nm; }
+
  private:
   // A drive with a delay of its commands.
   struct Drive {

@@ -9,6 +9,7 @@ void RegisterStudies(CLI::App& app, Exit& exit) {
   RegisterAnalyze(app, exit);
   RegisterBound(app, exit);
   RegisterSweep(app, exit);
+  RegisterTorture(app, exit);
   RegisterBenchmark(app, exit);
   RegisterReport(app, exit);
   RegisterGauges(app, exit);

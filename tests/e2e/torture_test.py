@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""`flexarm torture`: sessions of the whole daemon under faults, and the same in shards."""
+
+import unittest
+
+from program import HIL, ProgramTest
+
+
+class Torture(ProgramTest):
+    def torture(self, *options):
+        return self.flexarm_json("torture", "-c", HIL, *options)
+
+    def test_sessions_break_no_rule_and_shards_make_the_whole(self):
+        whole = self.torture("--seeds", "1..12")
+        self.assertEqual(whole["scenarios"], 12)
+        self.assertEqual(whole["failures"], [])
+        parts = [self.torture("--seeds", "1..12", "--shard", f"{i}/3") for i in (1, 2, 3)]
+        for key in ("scenarios", "without_fault", "observable", "tripped", "replayed_steps"):
+            self.assertEqual(sum(part[key] for part in parts), whole[key], key)
+        self.assertEqual(max(part["peak_strain_share"] for part in parts),
+                         whole["peak_strain_share"])
+
+    def test_results_do_not_depend_on_the_number_of_jobs(self):
+        one, two = (self.torture("--seeds", "20..27", "--jobs", jobs) for jobs in ("1", "2"))
+        self.assertEqual(one, two)
+
+    def test_wrong_seeds_and_laws_are_refused(self):
+        for options, text in ((("--seeds", "x"), "x"), (("--laws", "fastest"), "fastest")):
+            self.assert_refused(self.run_program("flexarm", "torture", "-c", HIL, *options), text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,153 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "controller/files/external_json.h"
+#include "controller/files/write_file.h"
+#include "controller/runlog/build_info.h"
+#include "controller/runlog/errors.h"
+#include "tools/command_line/options.h"
+#include "tools/command_line/studies.h"
+#include "tools/command_line/verbs.h"
+#include "tools/support/parallel_for.h"
+#include "tools/sweep/sweep_grid.h"
+#include "tools/torture/campaign.h"
+#include "tools/torture/fault_matrix.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::size_t kShown = 20;  // failures in the text
+
+struct TortureOptions {
+  ConfigOptions config;
+  GridOptions grid;
+  std::vector<std::string> laws = {"sobel", "sobel-thesis", "gain-scheduled", "lqg"};
+  std::string seeds = "1..1000";
+  bool minimise = false;
+  bool matrix = false;
+  OutputOptions page;
+  bool json = false;
+};
+
+std::vector<std::uint64_t> SeedsOf(const TortureOptions& options) {
+  const Shard shard = ParseShard(options.grid.shard);
+  std::vector<std::uint64_t> seeds;
+  std::size_t number = 0;
+  for (const std::string& value : ParseValues(options.seeds)) {
+    if (shard.Has(number++)) seeds.push_back(std::stoull(value));
+  }
+  return seeds;
+}
+
+void PrintSummary(const TortureSummary& summary) {
+  std::printf("seeds %llu to %llu: %zu scenarios, %.0f s simulated, %zu tripped\n",
+              static_cast<unsigned long long>(summary.first_seed),
+              static_cast<unsigned long long>(summary.last_seed), summary.scenarios,
+              summary.simulated_s, summary.tripped);
+  std::printf("  %zu without a fault, %zu with one that had to be named in time\n", summary.clean,
+              summary.observable);
+  std::printf(
+      "  %lld steps replayed; largest share of its limit while torque is allowed: torque "
+      "%.2f, angle %.2f, rate %.2f, strain %.2f\n",
+      static_cast<long long>(summary.replayed_steps), summary.peaks.torque_share,
+      summary.peaks.angle_share, summary.peaks.rate_share, summary.peaks.strain_share);
+  std::printf("  %zu broke a rule\n", summary.failures.size());
+  for (std::size_t i = 0; i < std::min(summary.failures.size(), kShown); ++i) {
+    const TortureFailure& failure = summary.failures[i];
+    std::printf("seed %llu: %s at %.3f s: %s\n  %s\n",
+                static_cast<unsigned long long>(failure.seed), failure.violation.rule.c_str(),
+                static_cast<double>(failure.violation.at_ns) * 1e-9, failure.violation.what.c_str(),
+                failure.text.c_str());
+  }
+}
+
+int RunMatrix(const TortureOptions& options, const TorturedRigs& rigs, const TortureSpace& space,
+              const RigConfig& config) {
+  const OutputRules rules{.kind = "a fault matrix",
+                          .mark = kMatrixMark,
+                          .inputs = {options.config.file},
+                          .overwrite = options.page.overwrite};
+  if (options.page.given()) CheckOutput(options.page.file, rules);
+  const std::vector<MatrixRow> rows =
+      FaultMatrix(rigs, space, config, options.grid.jobs, ProgressBar("cells", MatrixCells(space)));
+  if (options.page.given()) {
+    WriteFile(options.page.file, MatrixMarkdown(rows, config), rules);
+    ReportWritten(options.page.file);
+  }
+  const std::vector<std::string> broken = BrokenCells(rows);
+  if (options.json) {
+    std::cout << PrintedJson({{"cells", MatrixJson(rows)}, {"broken_rules", broken}}) << '\n';
+  } else if (!options.page.given()) {
+    std::cout << MatrixMarkdown(rows, config);
+  }
+  for (const std::string& line : broken) std::cerr << line << '\n';
+  return broken.empty() ? Exit::kDone : Exit::kFailed;
+}
+
+int Run(const TortureOptions& options) {
+  const RigConfig config = options.config.Load();
+  const TorturedRigs rigs(
+      [&options](const std::string& law) {
+        ConfigOptions with_law = options.config;
+        with_law.overrides.push_back("controller.name=" + law);
+        return with_law.Load();
+      },
+      options.laws);
+  const TortureSpace space = SpaceOf(config, options.laws);
+  if (options.matrix) return RunMatrix(options, rigs, space, config);
+  const std::vector<std::uint64_t> seeds = SeedsOf(options);
+  const TortureSummary summary = RunTorture(rigs, space, config, seeds, options.grid.jobs,
+                                            ProgressBar("scenarios", seeds.size()));
+  nlohmann::ordered_json json = TortureJson(summary);
+  json["build"] = BuildId();
+  if (!summary.failures.empty() && options.minimise) {
+    const TortureFailure& first = summary.failures.front();
+    const TortureScenario small =
+        Minimised(rigs, ScenarioOf(first.seed, space, config), first.violation.rule);
+    json["minimised"] = Text(small);
+  }
+  if (options.json) {
+    std::cout << PrintedJson(json) << '\n';
+  } else {
+    PrintSummary(summary);
+    if (json.contains("minimised")) {
+      std::cout << "the first, minimised: " << json["minimised"].get<std::string>() << '\n';
+    }
+  }
+  return summary.failures.empty() ? Exit::kDone : Exit::kFailed;
+}
+
+}  // namespace
+
+void RegisterTorture(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<TortureOptions>();
+  CLI::App* verb = AddStudy(app, "torture");
+  options->config.AddTo(verb, true);
+  verb->add_option("--seeds", options->seeds,
+                   "Seeds of the scenarios, such as 1..1000 (default) or 4711")
+      ->type_name("VALUES");
+  verb->add_option("--laws", options->laws, "Laws, separated by commas")
+      ->type_name("NAMES")
+      ->delimiter(',');
+  options->grid.AddTo(verb);
+  verb->add_flag("--minimise", options->minimise,
+                 "Search the smallest scenario that breaks the rule of the first failure");
+  verb->add_flag("--matrix", options->matrix,
+                 "Instead: every fault in every state with every law, on the nominal arm");
+  options->page.AddTo(verb, "With --matrix: write the tables to this file, in Markdown", false);
+  AddJson(verb, &options->json);
+  verb->footer(
+      "Each scenario is a session of the whole daemon on a simulated clock, with random faults,\n"
+      "commands, arms and wake-ups of the threads. docs/torture.md lists the rules.\n"
+      "Exit code 1: a rule was broken. A seed runs alone with --seeds SEED.\n"
+      "Examples:\n"
+      "  flexarm torture -c config/hil.toml\n"
+      "  flexarm torture -c config/hil.toml --seeds 1..20000 --shard 1/4 --json\n"
+      "  flexarm torture -c config/hil.toml --seeds 4711 --minimise");
+  verb->callback([options, &exit] { exit.code = Run(*options); });
+}
+
+}  // namespace flexarm

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "controller/types/frame_packet.h"
+#include "controller/types/rig_config.h"
+#include "tools/torture/fault.h"
+#include "tools/torture/faulty_signal.h"
+
+namespace flexarm {
+
+/// Spoils the readings of frames on their way from the sensors to the loop.
+class FaultyFrames {
+ public:
+  FaultyFrames(const RigConfig& config, const std::vector<Fault>& faults);
+
+  /// The next frame. Also keeps since when its readings are visibly wrong.
+  SensorFrame Next(const SensorFrame& sampled, std::int64_t sampled_ns);
+
+  /// Instant of the first of kSeenFrames frames in a row of which a reading is off by more than the
+  /// thresholds of the loop's checks, or missing; INT64_MAX: there is none so far.
+  std::int64_t seen_ns() const { return seen_ns_; }
+
+  /// Frames in a row that make a fault observable: the checks of the loop need two, and one more.
+  static constexpr int kSeenFrames = 3;
+
+ private:
+  /// One reading with its fault.
+  struct Channel {
+    const Fault* fault;
+    bool is_gauge;
+    std::size_t row;  ///< in the frame
+    FaultySignal signal;
+    double seen_counts;  ///< a reading that is off by more is visibly wrong
+    double modulus;      ///< of a counter
+    std::int64_t turns;  ///< of a counter: its value without wrapping, before this sample
+    std::uint32_t last;  ///< of a counter: as read
+  };
+
+  void AddGauge(const RigConfig& config, const Fault& fault, std::size_t row);
+  void AddCounter(const RigConfig& config, const Fault& fault, const EncoderConfig& encoder);
+  bool Spoil(Channel* channel, std::int64_t sampled_ns, const SensorFrame& sampled,
+             SensorFrame* frame);
+
+  int lowest_count_, highest_count_;
+  std::vector<Channel> channels_;
+  std::int64_t period_ns_;
+  int wrong_in_a_row_ = 0;
+  std::int64_t wrong_since_ns_ = 0;
+  std::int64_t seen_ns_ = INT64_MAX;
+};
+
+}  // namespace flexarm

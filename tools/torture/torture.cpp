@@ -1,0 +1,321 @@
+#include "tools/torture/torture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "controller/runlog/replay.h"
+#include "controller/step/control_step.h"
+#include "model/units.h"
+#include "tools/torture/detection.h"
+
+namespace flexarm {
+namespace {
+
+constexpr std::int64_t kFirstArmNs = 700 * kMs;    // the arm has been at rest for half a second
+constexpr std::int64_t kRestNs = 4'000 * kMs;      // an arm without torque comes to rest
+constexpr std::int64_t kShutDownNs = 4'500 * kMs;  // stop_timeout_s, its margin, and the operator's
+
+bool HasFaultOf(const TortureScenario& scenario, FaultPlace place) {
+  return std::any_of(scenario.faults.begin(), scenario.faults.end(),
+                     [place](const Fault& fault) { return fault.place == place; });
+}
+
+class Scenario {
+ public:
+  Scenario(const TorturedRig& rig, const TortureScenario& scenario, const Peaks& envelope)
+      : rig_(rig), scenario_(scenario), session_(rig, scenario, RulesOf(rig, scenario, envelope)) {}
+
+  TortureOutcome Run() {
+    out_.reached = Reach();
+    if (!out_.reached) {
+      session_.watch().Add(session_.now_ns(), "situation-reached", ToString(scenario_.situation));
+    } else {
+      Trouble();
+      if (scenario_.recovers) Recover();
+    }
+    End();
+    out_.violations = session_.watch().violations();
+    out_.simulated_ns = session_.now_ns();
+    return std::move(out_);
+  }
+
+ private:
+  static WatchRules RulesOf(const TorturedRig& rig, const TortureScenario& scenario,
+                            const Peaks& envelope) {
+    // Within a millisecond the drive has the permit of the tick in which the state changed: the
+    // slice that begins with the tick has no torque. With a fault of the safety thread, the permit
+    // must be too old.
+    const auto permit_ns = std::llround(rig.config.safety.permit_timeout_ms * 1e6);
+    return {.torque_after_ns = HasFaultOf(scenario, FaultPlace::kSafety) ? permit_ns + 2 * kMs : -1,
+            .most = envelope};
+  }
+
+  bool Reach() {
+    switch (scenario_.situation) {
+      case Situation::kStarting:
+        session_.RunUntil(scenario_.after_ns);
+        return true;
+      case Situation::kIdle:
+        session_.RunUntil(kFirstArmNs);
+        return session_.state() == SafetyState::kIdle && Wait(scenario_.after_ns);
+      case Situation::kArmed:
+        return Arm() && Wait(scenario_.after_ns);
+      case Situation::kRunning:
+        return Start() && Wait(scenario_.after_ns);
+      case Situation::kStopping:
+        if (!Start() || !Wait(std::llround(0.4e9 * scenario_.move_s))) return false;
+        session_.Command("stop");
+        return session_.RunUntilState(SafetyState::kStopping, 100 * kMs) &&
+               Wait(scenario_.after_ns);
+      case Situation::kDisarming:
+        if (!Arm()) return false;
+        session_.Command("disarm");
+        return session_.RunUntilState(SafetyState::kDisarming, 100 * kMs);
+      case Situation::kTripped:
+        if (!Start() || !Wait(std::llround(0.4e9 * scenario_.move_s))) return false;
+        session_.Press("emergency-stop", 0);
+        return session_.RunUntilState(SafetyState::kTripped, 100 * kMs) && Wait(scenario_.after_ns);
+    }
+    return false;
+  }
+
+  bool Wait(std::int64_t ns) {
+    session_.RunFor(ns);
+    return true;
+  }
+
+  bool Arm() {
+    session_.RunUntil(kFirstArmNs);
+    constexpr int kTries = 20;  // a lost frame may hide that the arm is at rest
+    for (int i = 0; i < kTries && session_.state() != SafetyState::kArmed; ++i) {
+      session_.Command("arm");
+      session_.RunUntilAnswered(200 * kMs);
+    }
+    return session_.state() == SafetyState::kArmed;
+  }
+
+  bool Start() {
+    if (!Arm()) return false;
+    session_.RunMove();
+    return session_.RunUntilState(SafetyState::kRunning, 2'000 * kMs);
+  }
+
+  void Trouble() {
+    const SafetyState before = session_.state();
+    session_.watch().Restart();
+    session_.BeginFaults();
+    const std::int64_t begin_ns = session_.now_ns();
+    for (const TimedCommand& command : scenario_.commands) {
+      session_.RunUntil(begin_ns + std::max<std::int64_t>(command.at_ns, 0));
+      session_.Send(command.text);
+    }
+    std::int64_t watched_ns = kWatchedNs;
+    if (scenario_.is_clean()) watched_ns += std::llround(1e9 * scenario_.move_s);
+    session_.RunUntil(begin_ns + watched_ns);
+    out_.tip_m = session_.watch().tip_m();
+    const std::int64_t last_ns = session_.watch().last_torque_ns();
+    if (last_ns != INT64_MIN) out_.last_torque_ns = last_ns - begin_ns;
+    out_.peaks = session_.watch().peaks();
+    Judge(before, begin_ns);
+  }
+
+  // What has tripped, whether it had to, and by what name.
+  void Judge(SafetyState before, std::int64_t begin_ns) {
+    SessionWatch& watch = session_.watch();
+    if (const auto& latched = watch.first_cause()) {
+      out_.cause = latched->cause;
+      out_.latched_ns = latched->at_ns - begin_ns;
+      if (scenario_.faults.empty()) {
+        watch.Add(latched->at_ns, "no-false-trip", ToString(latched->cause));
+      }
+      TripCauses names = 0;
+      for (const Fault& fault : scenario_.faults) names |= NamesOf(fault);
+      // A sample that lacks a gauge and one whose frame is lost are two without a reading.
+      if (LosesFrames()) names |= CauseBit(TripCause::kNoCounterReading);
+      if (!scenario_.faults.empty() && (CauseBit(latched->cause) & names) == 0) {
+        watch.Add(latched->at_ns, "named-rightly", ToString(latched->cause));
+      }
+    }
+    if (session_.faults().size() != 1) return;
+    const Fault& fault = session_.faults().front();
+    const std::int64_t within_ns = NamedWithinNs(rig_.config, fault);
+    if (within_ns == INT64_MAX || before == SafetyState::kTripped ||
+        before == SafetyState::kStarting) {
+      return;
+    }
+    const bool is_reading = fault.place <= FaultPlace::kFrame;
+    const std::int64_t seen_ns = is_reading ? session_.stack().seen_ns() : fault.from_ns;
+    if (seen_ns == INT64_MAX) return;
+    const std::int64_t late_ns = scenario_.wake_ups.latest_ns;
+    const std::int64_t by_ns = seen_ns + within_ns + late_ns + kMs;
+    if (fault.to_ns < by_ns) return;
+    out_.observable_ns = seen_ns - begin_ns;
+    const bool in_time = out_.latched_ns != INT64_MAX && begin_ns + out_.latched_ns <= by_ns;
+    if (!in_time) {
+      watch.Add(seen_ns, "named-in-time",
+                Text(fault) + ": " +
+                    (out_.latched_ns == INT64_MAX
+                         ? std::string("no trip")
+                         : "after " + std::to_string((begin_ns + out_.latched_ns - seen_ns) / kMs) +
+                               " ms"));
+    }
+  }
+
+  // From every state there is a way back to Idle.
+  void Recover() {
+    session_.EndFaults();
+    session_.RunFor(100 * kMs);
+    if (session_.state() != SafetyState::kTripped) {
+      session_.Command("stop");
+      session_.RunFor(kRestNs);
+      session_.Command("disarm");
+      session_.RunUntilState(SafetyState::kIdle, 300 * kMs);
+    }
+    if (session_.state() == SafetyState::kTripped) LeaveTripped();
+    // Beyond a limit switch a person must move the arm first.
+    if (session_.state() != SafetyState::kIdle && !BeyondLimit()) {
+      session_.watch().Add(session_.now_ns(), "way-back", ToString(session_.state()));
+    }
+  }
+
+  // docs/safety.md, "After a trip".
+  void LeaveTripped() {
+    session_.Press("emergency-stop", 1);
+    session_.RunFor(kRestNs);
+    session_.Press("reset-button", 1);
+    session_.RunFor(100 * kMs);
+    session_.watch().ButtonPressed();
+    session_.Press("reset-button", 0);
+    session_.RunFor(100 * kMs);
+    constexpr int kTries = 30;  // a link may swing for long
+    for (int i = 0; i < kTries && session_.state() != SafetyState::kIdle; ++i) {
+      session_.Command("reset");
+      session_.RunUntilAnswered(3'000 * kMs);
+      if (session_.state() == SafetyState::kIdle) return;
+      session_.RunFor(1'000 * kMs);
+      if (i % 5 == 1) ZeroWhereItStands();
+    }
+  }
+
+  // Counts that were wrong for a time may have lost turns: a person measures the angles.
+  void ZeroWhereItStands() {
+    const PlantTruth truth = session_.stack().arm().rig().truth();
+    session_.Send(nlohmann::json{
+        {"command", "zero"},
+        {"angle_deg", {truth.hub_angle_rad[0] / kRadPerDeg, truth.hub_angle_rad[1] / kRadPerDeg}}}
+                      .dump());
+    session_.RunUntilAnswered(10'000 * kMs);
+  }
+
+  bool LosesFrames() const {
+    return std::any_of(scenario_.plant.begin(), scenario_.plant.end(), [](const std::string& set) {
+      return set.starts_with("sim.lost_frame_fraction");
+    });
+  }
+
+  bool BeyondLimit() {
+    const PlantTruth truth = session_.stack().arm().rig().truth();
+    const std::array<double, 2> limit_rad = SoftAngleRad(rig_.config.safety);
+    return std::fabs(truth.hub_angle_rad[0]) > limit_rad[0] ||
+           std::fabs(truth.hub_angle_rad[1]) > limit_rad[1];
+  }
+
+  void End() {
+    const bool stuck =
+        HasFaultOf(scenario_, FaultPlace::kOperator) || HasFaultOf(scenario_, FaultPlace::kSafety);
+    const bool answered = session_.RunUntilAnswered(20'000 * kMs);
+    if (!stuck && !answered) {
+      session_.watch().Add(session_.now_ns(), "each-command-is-answered",
+                           std::to_string(session_.sent()) + " sent, " +
+                               std::to_string(session_.answered()) + " answered");
+    }
+    const bool done = session_.ShutDown(kShutDownNs);
+    if (!done && !stuck) session_.watch().Add(session_.now_ns(), "ends", "not within 4.5 s");
+    if (!stuck && session_.stack().Sample().told.relay_closed) {
+      session_.watch().Add(session_.now_ns(), "ends", "the relay is closed at the end");
+    }
+    session_.Finish();
+    CheckLogs();
+  }
+
+  void CheckLogs() {
+    if (session_.log_errors() != 0) {
+      session_.watch().Add(session_.now_ns(), "log-complete",
+                           std::to_string(session_.log_errors()) + " errors");
+    }
+    for (const RunContents& run : session_.runs()) CheckReplay(run);
+  }
+
+  void CheckReplay(const RunContents& run) {
+    ControlStep step(rig_.config, rig_.design);
+    Replay replay([&step](const StepInput& input) { return step.Step(input); }, false);
+    for (const TickRecord& tick : run.tick) replay.Tick(tick);
+    for (const SafetyRecord& record : run.safety) replay.Safety(record);
+    const ReplayResult result = replay.Result();
+    out_.records += result.ticks;
+    const bool loop_stands = HasFaultOf(scenario_, FaultPlace::kControl);
+    if (!result.bit_exact.value_or(true) || !result.safety_exact.value_or(true)) {
+      session_.watch().Add(session_.now_ns(), "replay-is-exact",
+                           "tick " + std::to_string(result.first_different_tick.value_or(-1)));
+    }
+    if (result.first_gap_tick && !loop_stands) {
+      session_.watch().Add(session_.now_ns(), "log-complete",
+                           "tick " + std::to_string(*result.first_gap_tick) + " is missing");
+    }
+  }
+
+  const TorturedRig& rig_;
+  const TortureScenario& scenario_;
+  TortureSession session_;
+  TortureOutcome out_;
+};
+
+bool Breaks(const TorturedRigs& rigs, const TortureScenario& scenario, const std::string& rule,
+            const Peaks& envelope) {
+  const TortureOutcome outcome = RunScenario(rigs, scenario, envelope);
+  return std::any_of(outcome.violations.begin(), outcome.violations.end(),
+                     [&rule](const Violation& one) { return one.rule == rule; });
+}
+
+}  // namespace
+
+TorturedRigs::TorturedRigs(const std::function<RigConfig(const std::string& law)>& with_law,
+                           const std::vector<std::string>& laws) {
+  for (const std::string& law : laws) rigs_.try_emplace(law, with_law(law));
+}
+
+TortureOutcome RunScenario(const TorturedRigs& rigs, const TortureScenario& scenario,
+                           const Peaks& envelope) {
+  return Scenario(rigs.Of(scenario.law), scenario, envelope).Run();
+}
+
+TortureScenario Minimised(const TorturedRigs& rigs, const TortureScenario& scenario,
+                          const std::string& rule, const Peaks& envelope) {
+  TortureScenario best = scenario;
+  const auto attempt = [&](const TortureScenario& smaller) {
+    if (!Breaks(rigs, smaller, rule, envelope)) return false;
+    best = smaller;
+    return true;
+  };
+  const auto without = [&](auto member) {
+    for (std::size_t i = 0; i < (best.*member).size();) {
+      TortureScenario smaller = best;
+      (smaller.*member).erase((smaller.*member).begin() + static_cast<std::ptrdiff_t>(i));
+      if (!attempt(smaller)) ++i;
+    }
+  };
+  without(&TortureScenario::faults);
+  without(&TortureScenario::commands);
+  without(&TortureScenario::plant);
+  TortureScenario calm = best;
+  calm.wake_ups = {};
+  attempt(calm);
+  TortureScenario shorter = best;
+  shorter.recovers = false;
+  attempt(shorter);
+  return best;
+}
+
+}  // namespace flexarm

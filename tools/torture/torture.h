@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controller/types/trip_cause.h"
+#include "tools/torture/scenario.h"
+#include "tools/torture/session_watch.h"
+#include "tools/torture/torture_session.h"
+
+namespace flexarm {
+
+/// What became of a scenario.
+struct TortureOutcome {
+  std::vector<Violation> violations;
+  bool reached = false;                 ///< the situation came about
+  TripCause cause = TripCause::kNone;   ///< the first that latched after the faults had begun
+  std::int64_t latched_ns = INT64_MAX;  ///< that instant, after the begin of the faults
+  std::int64_t observable_ns =
+      INT64_MAX;  ///< from then on a fault had to be seen; INT64_MAX: never
+  Peaks peaks;    ///< from the begin of the faults until the end of the session
+  std::vector<std::array<double, 2>> tip_m;  ///< of each millisecond after the faults began
+  std::int64_t last_torque_ns = INT64_MIN;   ///< after the begin of the faults; INT64_MIN: none
+  std::int64_t simulated_ns = 0;
+  std::int64_t records = 0;  ///< steps that were replayed
+};
+
+/// Rigs by law, designed at their first use. Threads: any.
+class TorturedRigs {
+ public:
+  /// @param with_law  the config with another law
+  TorturedRigs(const std::function<RigConfig(const std::string& law)>& with_law,
+               const std::vector<std::string>& laws);
+
+  const TorturedRig& Of(const std::string& law) const { return rigs_.at(law); }
+
+ private:
+  std::map<std::string, TorturedRig> rigs_;
+};
+
+/// The envelopes: shares of the limits that the true arm may reach while a torque acts. What the
+/// worst of the campaigns reached, and a margin of a fifth (docs/torture.md).
+inline constexpr Peaks kEnvelope{
+    .torque_share = 1.0, .angle_share = 1.3, .rate_share = 3.0, .strain_share = 1.3};
+
+/// Runs one scenario and checks every rule (docs/torture.md).
+TortureOutcome RunScenario(const TorturedRigs& rigs, const TortureScenario& scenario,
+                           const Peaks& envelope = kEnvelope);
+
+/// The longest time that a session is watched after its faults have begun.
+inline constexpr std::int64_t kWatchedNs = 700 * kMs;
+
+/// The smallest scenario found that breaks the same rule: fewer faults and commands, no disturbed
+/// threads, the nominal arm.
+TortureScenario Minimised(const TorturedRigs& rigs, const TortureScenario& scenario,
+                          const std::string& rule, const Peaks& envelope = kEnvelope);
+
+}  // namespace flexarm
