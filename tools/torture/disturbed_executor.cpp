@@ -87,9 +87,12 @@ void DisturbedExecutor::RunSlot(Slot* slot) {
   const std::int64_t behind = (woke_ns - slot->due_ns) / slot->traits.period_ns;
   slot->due_ns += behind * slot->traits.period_ns;
   slot->missed_in_a_row += static_cast<int>(behind);
+  const bool guarded = guard_ != nullptr && slot->traits.priority > 0;
+  if (guarded) guard_->Enter();
   slot->task->Run({.due_ns = slot->due_ns,
                    .missed_in_a_row = slot->missed_in_a_row,
                    .late_ns = woke_ns - slot->due_ns});
+  if (guarded) guard_->Leave();
   const bool is_missed = woke_ns > slot->due_ns + slot->traits.deadline_ns;
   slot->missed_in_a_row = is_missed ? slot->missed_in_a_row + 1 : 0;
   slot->due_ns += slot->traits.period_ns;

@@ -17,6 +17,14 @@ struct WakeUps {
   int order_changes = 0;            ///< how often the order of tasks that wake together changes
 };
 
+/// Is told when a real-time task begins and ends an activation: a test may forbid the heap between.
+class ActivationGuard {
+ public:
+  virtual ~ActivationGuard() = default;
+  virtual void Enter() noexcept = 0;
+  virtual void Leave() noexcept = 0;
+};
+
 /// Runs tasks on a simulated clock as RealtimeExecutor does on threads, woken late and in any
 /// order.
 ///
@@ -33,6 +41,9 @@ class DisturbedExecutor {
 
   /// @param place  of its faults; another place: none
   void Add(Task& task, FaultPlace place = FaultPlace::kFrame);
+
+  /// `guard` outlives the executor; null: none. It sees the tasks that have a priority.
+  void Watch(ActivationGuard* guard) noexcept { guard_ = guard; }
 
   /// Threads that hang go on at `now_ns`, as after a restart of what held them.
   void Release(std::int64_t now_ns);
@@ -61,6 +72,7 @@ class DisturbedExecutor {
   std::mt19937_64 random_;
   std::vector<std::int64_t> changes_;  // instants, the last first
   std::vector<Slot> slots_;
+  ActivationGuard* guard_ = nullptr;
 };
 
 }  // namespace flexarm

@@ -19,13 +19,8 @@ constexpr std::int64_t kAfterRunningNs = 420 * kMs, kAfterNs = 40 * kMs;
 
 TortureScenario Healthy(const TortureSpace& space, const RigConfig& config, const std::string& law,
                         Situation situation) {
-  TortureScenario scenario = ScenarioOf(kSeed,
-                                        {.laws = {law},
-                                         .payload_kg = space.payload_kg,
-                                         .fixed_payload_kg = space.fixed_payload_kg,
-                                         .gauges = space.gauges,
-                                         .within_deg = space.within_deg},
-                                        config);
+  TortureScenario scenario = ScenarioOf(kSeed, space, config);
+  scenario.law = law;
   scenario.plant.clear();
   scenario.faults.clear();
   scenario.commands.clear();
@@ -33,7 +28,7 @@ TortureScenario Healthy(const TortureSpace& space, const RigConfig& config, cons
   scenario.wake_ups = {};
   scenario.move_to_deg = kMoveToDeg;
   scenario.payload_kg = config.arm.payload_mass_kg;
-  scenario.move_s = MoveTime_s(config, kMoveToDeg, space.payload_kg[1], 1.2);
+  scenario.move_s = MoveTime_s(space, kMoveToDeg, space.payload_kg[1], 1.2);
   scenario.situation = situation;
   scenario.after_ns = situation == Situation::kRunning ? kAfterRunningNs : kAfterNs;
   return scenario;
@@ -84,28 +79,6 @@ void AddOutcome(const TortureOutcome& outcome, const TortureOutcome& healthy, Ma
   }
 }
 
-struct Job {
-  std::size_t row, cell;
-};
-
-std::vector<MatrixRow> EmptyRows(const TortureSpace& space) {
-  std::vector<MatrixRow> rows;
-  for (const std::string& law : space.laws) {
-    for (int place = 0; place < kFaultPlaces; ++place) {
-      for (int kind = 0; kind < kFaultKinds; ++kind) {
-        const auto at = static_cast<FaultPlace>(place);
-        const auto of = static_cast<FaultKind>(kind);
-        if (!Exists(at, of)) continue;
-        rows.push_back({.place = at,
-                        .kind = of,
-                        .law = law,
-                        .cells = std::vector<MatrixCell>(kMatrixSituations.size())});
-      }
-    }
-  }
-  return rows;
-}
-
 std::string CellText(const MatrixCell& cell, const RigConfig& config) {
   if (cell.causes.empty()) return "-";
   std::string text;
@@ -144,8 +117,41 @@ std::string RowText(const MatrixRow& row, const RigConfig& config) {
 
 }  // namespace
 
+std::vector<MatrixRow> EmptyMatrix(const TortureSpace& space) {
+  std::vector<MatrixRow> rows;
+  for (const std::string& law : space.laws) {
+    for (int place = 0; place < kFaultPlaces; ++place) {
+      for (int kind = 0; kind < kFaultKinds; ++kind) {
+        const auto at = static_cast<FaultPlace>(place);
+        const auto of = static_cast<FaultKind>(kind);
+        if (!Exists(at, of)) continue;
+        rows.push_back({.place = at,
+                        .kind = of,
+                        .law = law,
+                        .cells = std::vector<MatrixCell>(kMatrixSituations.size())});
+      }
+    }
+  }
+  return rows;
+}
+
+std::vector<TortureScenario> MatrixScenarios(const TortureSpace& space, const RigConfig& config,
+                                             const MatrixRow& row, Situation situation) {
+  std::vector<TortureScenario> scenarios;
+  for (const int index : IndicesOf(row.place, space.gauges)) {
+    scenarios.push_back(Healthy(space, config, row.law, situation));
+    scenarios.back().faults = {{.place = row.place,
+                                .index = index,
+                                .kind = row.kind,
+                                .from_ns = 0,
+                                .to_ns = INT64_MAX,
+                                .seed = kSeed}};
+  }
+  return scenarios;
+}
+
 std::size_t MatrixCells(const TortureSpace& space) {
-  return EmptyRows(space).size() * kMatrixSituations.size();
+  return EmptyMatrix(space).size() * kMatrixSituations.size();
 }
 
 std::vector<MatrixRow> FaultMatrix(const TorturedRigs& rigs, const TortureSpace& space,
@@ -157,21 +163,14 @@ std::vector<MatrixRow> FaultMatrix(const TorturedRigs& rigs, const TortureSpace&
       healthy[{law, situation}] = RunScenario(rigs, Healthy(space, config, law, situation));
     }
   }
-  std::vector<MatrixRow> rows = EmptyRows(space);
+  std::vector<MatrixRow> rows = EmptyMatrix(space);
   const std::size_t cells = kMatrixSituations.size();
   ParallelFor(
       rows.size() * cells,
       [&](std::size_t i) {
         MatrixRow& row = rows[i / cells];
         const Situation situation = kMatrixSituations.at(i % cells);
-        for (const int index : IndicesOf(row.place, space.gauges)) {
-          TortureScenario scenario = Healthy(space, config, row.law, situation);
-          scenario.faults = {{.place = row.place,
-                              .index = index,
-                              .kind = row.kind,
-                              .from_ns = 0,
-                              .to_ns = INT64_MAX,
-                              .seed = kSeed}};
+        for (const TortureScenario& scenario : MatrixScenarios(space, config, row, situation)) {
           AddOutcome(RunScenario(rigs, scenario), healthy.at({row.law, situation}),
                      &row.cells[i % cells]);
         }

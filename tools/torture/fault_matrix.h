@@ -44,6 +44,13 @@ std::vector<MatrixRow> FaultMatrix(const TorturedRigs& rigs, const TortureSpace&
                                    const RigConfig& config, std::size_t jobs,
                                    const std::function<void(std::size_t)>& progress = {});
 
+/// The sessions of a cell: one for each index of the place that is tried.
+std::vector<TortureScenario> MatrixScenarios(const TortureSpace& space, const RigConfig& config,
+                                             const MatrixRow& row, Situation situation);
+
+/// The rows of a matrix without results.
+std::vector<MatrixRow> EmptyMatrix(const TortureSpace& space);
+
 /// How many cells FaultMatrix has.
 std::size_t MatrixCells(const TortureSpace& space);
 

@@ -5,10 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/types/law_table.h"
-#include "model/rigid_joint/rigid_joint_arm.h"
 #include "model/units.h"
 #include "tools/sweep/plant_variant.h"
-#include "tools/sweep/random_moves.h"
 
 namespace flexarm {
 namespace {
@@ -112,14 +110,12 @@ const char* ToString(Situation situation) noexcept {
   return kNames.at(static_cast<std::size_t>(situation));
 }
 
-double MoveTime_s(const RigConfig& config, const std::array<double, 2>& to_deg, double heaviest_kg,
-                  double share) {
-  const RigidJointArm arm(config.arm);
+double MoveTime_s(const TortureSpace& space, const std::array<double, 2>& to_deg,
+                  double heaviest_kg, double share) {
   const Eigen::Vector2d to_rad = Eigen::Vector2d(to_deg[0], to_deg[1]) * kRadPerDeg;
-  const MoveRecipe recipe = RecipeFor(config);
-  return OnMoveGrid(
-      share * RuleDuration_s(arm, heaviest_kg, Eigen::Vector2d::Zero(), to_rad, recipe.ability),
-      recipe.grid_s);
+  const double rule_s =
+      RuleDuration_s(space.arm, heaviest_kg, Eigen::Vector2d::Zero(), to_rad, space.recipe.ability);
+  return OnMoveGrid(share * rule_s, space.recipe.grid_s);
 }
 
 TortureSpace SpaceOf(const RigConfig& config, std::vector<std::string> laws) {
@@ -129,7 +125,9 @@ TortureSpace SpaceOf(const RigConfig& config, std::vector<std::string> laws) {
           .payload_kg = range_kg,
           .fixed_payload_kg = {0.5 * nominal_kg, 1.5 * nominal_kg},
           .gauges = static_cast<int>(config.sensors.strain.size()),
-          .within_deg = {40.0, 50.0}};
+          .within_deg = {40.0, 50.0},
+          .arm = RigidJointArm(config.arm),
+          .recipe = RecipeFor(config)};
 }
 
 TortureScenario ScenarioOf(std::uint64_t seed, const TortureSpace& space, const RigConfig& config) {
@@ -142,7 +140,7 @@ TortureScenario ScenarioOf(std::uint64_t seed, const TortureSpace& space, const 
   for (std::size_t i = 0; i < 2; ++i) {
     scenario.move_to_deg[i] = draw.Between(-space.within_deg[i], space.within_deg[i]);
   }
-  scenario.move_s = MoveTime_s(config, scenario.move_to_deg, payload_kg[1], draw.Between(1.0, 1.5));
+  scenario.move_s = MoveTime_s(space, scenario.move_to_deg, payload_kg[1], draw.Between(1.0, 1.5));
   // Half of all in mid-move, where a fault does most.
   scenario.situation =
       draw.With(0.5) ? Situation::kRunning : static_cast<Situation>(draw.Below(kSituations));

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "config/config.h"
+#include "model/rigid_joint/rigid_joint_arm.h"
+#include "tools/sweep/random_moves.h"
 #include "tools/torture/disturbed_executor.h"
 #include "tools/torture/fault.h"
 
@@ -60,6 +62,8 @@ struct TortureSpace {
   std::array<double, 2> fixed_payload_kg;  ///< of the others
   int gauges;
   std::array<double, 2> within_deg;  ///< of the moves
+  RigidJointArm arm;                 ///< of the design
+  MoveRecipe recipe;                 ///< of the benchmark's moves for this rig
 };
 
 /// The space of a rig.
@@ -70,8 +74,8 @@ TortureScenario ScenarioOf(std::uint64_t seed, const TortureSpace& space, const 
 
 /// Duration of a move from the straight arm, s: `share` of that by the rule of the benchmark's
 /// moves for this payload.
-double MoveTime_s(const RigConfig& config, const std::array<double, 2>& to_deg, double heaviest_kg,
-                  double share);
+double MoveTime_s(const TortureSpace& space, const std::array<double, 2>& to_deg,
+                  double heaviest_kg, double share);
 
 /// For people: what happens, in one line.
 std::string Text(const TortureScenario& scenario);

@@ -24,8 +24,11 @@ bool HasFaultOf(const TortureScenario& scenario, FaultPlace place) {
 
 class Scenario {
  public:
-  Scenario(const TorturedRig& rig, const TortureScenario& scenario, const Peaks& envelope)
-      : rig_(rig), scenario_(scenario), session_(rig, scenario, RulesOf(rig, scenario, envelope)) {}
+  Scenario(const TorturedRig& rig, const TortureScenario& scenario, const Peaks& envelope,
+           ActivationGuard* guard)
+      : rig_(rig), scenario_(scenario), session_(rig, scenario, RulesOf(rig, scenario, envelope)) {
+    session_.Watch(guard);
+  }
 
   TortureOutcome Run() {
     out_.reached = Reach();
@@ -287,8 +290,8 @@ TorturedRigs::TorturedRigs(const std::function<RigConfig(const std::string& law)
 }
 
 TortureOutcome RunScenario(const TorturedRigs& rigs, const TortureScenario& scenario,
-                           const Peaks& envelope) {
-  return Scenario(rigs.Of(scenario.law), scenario, envelope).Run();
+                           const Peaks& envelope, ActivationGuard* guard) {
+  return Scenario(rigs.Of(scenario.law), scenario, envelope, guard).Run();
 }
 
 TortureScenario Minimised(const TorturedRigs& rigs, const TortureScenario& scenario,

@@ -49,8 +49,9 @@ inline constexpr Peaks kEnvelope{
     .torque_share = 1.0, .angle_share = 1.3, .rate_share = 3.0, .strain_share = 1.3};
 
 /// Runs one scenario and checks every rule (docs/torture.md).
+/// @param guard  of the real-time tasks; null: none
 TortureOutcome RunScenario(const TorturedRigs& rigs, const TortureScenario& scenario,
-                           const Peaks& envelope = kEnvelope);
+                           const Peaks& envelope = kEnvelope, ActivationGuard* guard = nullptr);
 
 /// The longest time that a session is watched after its faults have begun.
 inline constexpr std::int64_t kWatchedNs = 700 * kMs;

@@ -56,6 +56,8 @@ class TortureSession {
   /// @throws ConfigError  the scenario's plant
   TortureSession(const TorturedRig& rig, const TortureScenario& scenario, const WatchRules& rules);
 
+  void Watch(ActivationGuard* guard) noexcept { executor_.Watch(guard); }
+
   /// Runs until `until_ns`, millisecond by millisecond.
   void RunUntil(std::int64_t until_ns);
   void RunFor(std::int64_t ns) { RunUntil(now_ns_ + ns); }

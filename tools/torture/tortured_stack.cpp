@@ -36,7 +36,6 @@ void TorturedPlant::PassFrames() noexcept {
   const std::int64_t until_ns = sampled.Newest().from_ns;
   if (until_ns == frame_ns_) return;
   // A plant that was late has sampled several frames at once.
-  std::vector<std::int64_t> instants;
   for (std::int64_t at_ns = frame_ns_ == INT64_MIN ? until_ns : frame_ns_ + period_ns_;
        at_ns <= until_ns; at_ns += period_ns_) {
     const FrameHistory::Entry& entry = sampled.At(at_ns);

@@ -29,7 +29,10 @@ const TortureSpace& Space() {
   return space;
 }
 
-TortureScenario Drawn(std::uint64_t seed) { return ScenarioOf(seed, Space(), ShippedRig()); }
+TortureScenario Drawn(std::uint64_t seed) {
+  static const RigConfig config = ShippedRig();
+  return ScenarioOf(seed, Space(), config);
+}
 
 TEST(Torture, CampaignBreaksNoRule) {
   std::vector<std::uint64_t> seeds(static_cast<std::size_t>(CampaignCases(1'000, 20'000)));
