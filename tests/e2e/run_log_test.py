@@ -72,6 +72,7 @@ class RunLog(DaemonRuns):
             self.assertIs(replay["bit_exact"], True, run)
             self.assertIs(replay["safety_exact"], True, run)
             self.assertEqual(replay["ticks_before_reset"], 0)
+            self.flexarm("check", run)
             names = [name for name, in rows(run, "SELECT name FROM event ORDER BY number")]
             self.assertIn("arm", names, "who armed belongs to each run")
             self.assertEqual(rows(run, "SELECT count(*) FROM tick WHERE state = 'Running'"), [(60,)])
