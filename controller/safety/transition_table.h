@@ -16,14 +16,16 @@ struct TableRow {
 };
 
 /// The specification of the safety state machine, row by row. NextSafetyState does not use it.
-inline constexpr std::size_t kTransitions =
-#define TRANSITION(from, when, to, cause) +1
+inline constexpr std::size_t kTransitions = std::to_array({
+#define TRANSITION(from, when, to, cause) 0,
 #include "controller/safety/transition_table.def"
-    ;
-inline constexpr std::size_t kRefusals =
-#define REFUSAL(in, when, why) +1
+                                                          })
+                                                .size();
+inline constexpr std::size_t kRefusals = std::to_array({
+#define REFUSAL(in, when, why) 0,
 #include "controller/safety/transition_table.def"
-    ;
+                                                       })
+                                             .size();
 
 extern const std::array<TableRow, kTransitions> kTransitionRows;
 extern const std::array<TableRow, kRefusals> kRefusalRows;

@@ -11,7 +11,7 @@
 namespace {
 
 // The numbers of the model are those of the product.
-#define IS_STATE(name) static_assert(name == static_cast<int>(flexarm::SafetyState::k##name))
+#define IS_STATE(name) static_assert((name) == static_cast<int>(flexarm::SafetyState::k##name))
 IS_STATE(Starting);
 IS_STATE(Idle);
 IS_STATE(Armed);
@@ -33,7 +33,7 @@ IS_REQUEST(Stop);
 IS_REQUEST(Disarm);
 IS_REQUEST(Reset);
 
-#define IS_REFUSAL(name) static_assert(name == static_cast<int>(flexarm::Refusal::k##name))
+#define IS_REFUSAL(name) static_assert((name) == static_cast<int>(flexarm::Refusal::k##name))
 IS_REFUSAL(None);
 IS_REFUSAL(WrongState);
 IS_REFUSAL(NotAtRest);
@@ -44,7 +44,7 @@ IS_REFUSAL(ShuttingDown);
 IS_REFUSAL(DrivesOff);
 IS_REFUSAL(RelayClosed);
 
-#define IS_CAUSE(name) static_assert(name == static_cast<int>(flexarm::TripCause::k##name))
+#define IS_CAUSE(name) static_assert((name) == static_cast<int>(flexarm::TripCause::k##name))
 IS_CAUSE(None);
 IS_CAUSE(EmergencyStop);
 IS_CAUSE(SoftLimit1);

@@ -2,6 +2,7 @@
 
 #include "tools/runs/conformance.h"
 
+#include <cmath>
 #include <functional>
 
 #include "tests/controller/runlog/runlog_fixture.h"
@@ -78,7 +79,7 @@ TEST(Conformance, EachRuleDetectsItsOwnViolation) {
             Names{"begins-with-reset"});
   EXPECT_EQ(Broken([&](LoadedRun* run) { tick(run, 5).output.tick = 4; }),
             Names{"output-belongs-to-input"});
-  EXPECT_EQ(Broken([&](LoadedRun* run) { tick(run, 5).output.torque_nm[1] = NAN; }),
+  EXPECT_EQ(Broken([&](LoadedRun* run) { tick(run, 5).output.torque_nm[1] = std::nan(""); }),
             Names{"torque-finite"});
   EXPECT_EQ(Broken([&](LoadedRun* run) { run->config.safety.torque_limit_nm[0] = 4.9; }),
             Names{"torque-limit"});
