@@ -49,6 +49,7 @@ class Daemon(ProgramTest):
         replay = self.flexarm_json("replay", run)
         self.assertIs(replay["bit_exact"], True)
         self.assertIs(replay["safety_exact"], True)
+        self.flexarm("check", run)
         self.assertEqual(replay["max_torque_difference_nm"], [0, 0])
 
     @in_real_time

@@ -162,6 +162,7 @@ class ProgramTest(unittest.TestCase):
         run = self.folder / name
         result = self.flexarm_json("simulate", "-c", HIL, "--experiment", experiment, "-o", run,
                                    *arguments)
+        self.flexarm("check", run)  # every log obeys the rules
         return run, result
 
     def assert_refused(self, result, *said):

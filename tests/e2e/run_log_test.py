@@ -72,6 +72,7 @@ class RunLog(DaemonRuns):
             self.assertIs(replay["bit_exact"], True, run)
             self.assertIs(replay["safety_exact"], True, run)
             self.assertEqual(replay["ticks_before_reset"], 0)
+            self.flexarm("check", run)
             names = [name for name, in rows(run, "SELECT name FROM event ORDER BY number")]
             self.assertIn("arm", names, "who armed belongs to each run")
             self.assertEqual(rows(run, "SELECT count(*) FROM tick WHERE state = 'Running'"), [(60,)])
@@ -95,6 +96,9 @@ class RunLog(DaemonRuns):
         self.assertLess(replay["ticks_before_reset"], replay["ticks"])
         self.assertIs(replay["bit_exact"], True)
         self.assertIs(replay["safety_exact"], True)
+        checks = self.flexarm_json("check", run, expect=1)["checks"]
+        self.assertEqual([check["name"] for check in checks if not check["passed"]],
+                         ["begins-with-reset"], "what precedes a reset cannot be replayed")
         self.flexarm("plot", run, "-o", self.folder / "trip.png")
         self.flexarm("export", run, "-o", self.folder / "trip.csv")
 

@@ -144,6 +144,20 @@ BROKEN = {
     "a name of a symbol":
         ("model/symbols.md", "| eta | `e`, `eta_*` | |",
          "symbol: the code has no e", "symbol: the code has no eta_*"),
+    "the number of a requirement":
+        ("docs/safety.md", "| R2 | It shall stop. | `Arm.Moves` | |",
+         "requirement: R2 stands in place 1"),
+    "the sentence of a requirement":
+        ("docs/safety.md", "| R1 | It stops. | `Arm.Moves` | |",
+         "requirement: R1 is not one sentence with 'shall'"),
+    "two sentences of a requirement":
+        ("docs/safety.md", "| R1 | It shall stop. It moves. | `Arm.Moves` | |",
+         "requirement: R1 is not one sentence with 'shall'"),
+    "the test of a requirement":
+        ("docs/safety.md", "| R1 | It shall stop. | `Arm` | |", "requirement: R1 names no test"),
+    "a test of a requirement that is not there":
+        ("docs/safety.md", "| R1 | It shall stop. | `Arm.Flies` | |",
+         "test: there is no test Arm.Flies"),
     "a symbol of an equation":
         ("docs/theory/plant.md", "\n    gamma = beta", "symbol: model/symbols.md has no gamma"),
 }

@@ -23,8 +23,12 @@ void PrintJson(const std::vector<ConformanceCheck>& checks, bool passed) {
   json["passed"] = passed;
   json["checks"] = nlohmann::ordered_json::array();
   for (const ConformanceCheck& check : checks) {
-    json["checks"].push_back(
-        {{"name", check.name}, {"passed", check.passed}, {"detail", check.detail}});
+    nlohmann::ordered_json& shown = json["checks"].emplace_back();
+    shown = {{"name", check.name}, {"passed", check.passed}, {"detail", check.detail}};
+    shown["time_s"] = nullptr;
+    if (check.time_s) shown["time_s"] = *check.time_s;
+    shown["record"] = nullptr;
+    if (check.record) shown["record"] = *check.record;
   }
   std::cout << PrintedJson(json) << '\n';
 }
@@ -38,7 +42,9 @@ int Check(const CheckOptions& options) {
   } else {
     for (const ConformanceCheck& check : checks) {
       std::cout << (check.passed ? "ok      " : "FAILED  ") << std::left << std::setw(28)
-                << check.name << check.detail << '\n';
+                << check.name;
+      if (check.time_s) std::cout << "at " << *check.time_s << " s, ";
+      std::cout << check.detail << '\n';
     }
   }
   return passed ? Exit::kDone : Exit::kFailed;
@@ -55,9 +61,10 @@ void RegisterCheck(CLI::App& app, Exit& exit) {
   RefuseConfig(verb, kLogHasItsConfig);
   verb->footer(
       "Rules: no missing tick, increasing time, torque and slew limits, torque only in states\n"
-      "that allow it, safety transitions as the state machine prescribes, values as they were\n"
-      "written (digest), run ended in order. Prints ok or FAILED for each rule. Exit code 1 if a\n"
-      "rule is broken.\n"
+      "that allow it, every safety record as the table of transitions requires, trips latched,\n"
+      "Running only if it was granted, values as they were written (digest), run ended in order.\n"
+      "Prints ok or FAILED for each rule, and of the first violation its time, its record\n"
+      "and what the rule requires. Exit code 1 if a rule is broken.\n"
       "Example: flexarm check runs/today.flexarm");
   verb->callback([options, &exit] { exit.code = Check(*options); });
 }

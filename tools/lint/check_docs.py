@@ -14,6 +14,8 @@ key       `table.key` is read by config/ or stands in one of its TOML files
 block     every block of commands has its tag (command_blocks.py), also on other pages
 lane      docs/testing.md has a row for each lane of tools/lanes.sh, with the sets that it runs in
 coverage  docs/thesis-coverage.md numbers its rows from 1 on, and its text counts them by state
+requirement  docs/safety.md numbers its requirements R1, R2, ..; each is one sentence with "shall" and
+          names a test
 symbol    model/symbols.md: no symbol twice but with another meaning in brackets; the code has the
           names of the columns "in equations", "across files" and "in the code"; and what a display
           line of docs/theory sets (four spaces, then `NAME = ..`) is there, by symbol or name
@@ -65,7 +67,8 @@ NAME_IN_FILE = re.compile(r"`([A-Z]\w+(?:::\w+)*)`(?:\s+in\s+|\s+\()`(\w+\.(?:h|
 BARE_FOLDER = re.compile(r"\w+/")
 PLACEHOLDER = re.compile(r"\b[A-Z]{2,}\b")
 FILE_KINDS = {"h", "cpp", "py", "sh", "md", "json", "csv", "toml", "svg", "png", "sqlite", "txt",
-              "flexarm", "service", "in", "log", "html", "passed", "network", "cmake"}
+              "flexarm", "service", "in", "log", "html", "passed", "network", "cmake",
+              "def", "pml"}
 
 VERB = re.compile(r"(\w+)(?:\.|->)add_subcommand\(\s*\"([\w-]+)\""
                   r"|\bAdd(?:Verb|Command)\(\s*(app),(?: exit,)?\s*\"([\w-]+)\"")
@@ -81,6 +84,9 @@ COVERAGE = Path("docs/thesis-coverage.md")
 COVERAGE_STATES = ("works", "differs", "cannot be done")
 COVERAGE_ROW = re.compile(r"^\| (\d+) \|(?:[^|]*\|){2} ([^|:;]*)", re.M)
 COVERAGE_COUNT = re.compile(r"(\d+) rows: (\d+) works, (\d+) differs, (\d+) cannot be done")
+
+REQUIREMENTS = Path("docs/safety.md")
+REQUIREMENT_ROW = re.compile(r"^\| R(\d+) \| ([^|]*) \| ([^|]*) \|", re.M)
 
 LAWS = Path("controller/types/law_table.h")
 LAWS_PAGE = Path("docs/theory/README.md")
@@ -503,6 +509,25 @@ def check_coverage(root):
                       "{} cannot be done".format(*counts))
 
 
+def check_requirements(root):
+    """Yields where the requirements of the safety page have no number, "shall" or test."""
+    page = root / REQUIREMENTS
+    if not page.exists():
+        return
+    text = page.read_text(encoding="utf-8")
+    for place, row in enumerate(REQUIREMENT_ROW.finditer(text), 1):
+        number, sentence, tests = row.groups()
+        line = prose.line_of(text, row.start())
+        if int(number) != place:
+            yield Finding(REQUIREMENTS, line, "requirement", f"R{number} stands in place {place}")
+        if sentence.count(" shall ") != 1 or sentence.rstrip(".").count(". "):
+            yield Finding(REQUIREMENTS, line, "requirement",
+                          f"R{number} is not one sentence with 'shall'")
+        if not (NAMED_TEST.search(tests) or
+                any(said for _, said in NAMED_SCRIPT.findall(tests))):
+            yield Finding(REQUIREMENTS, line, "requirement", f"R{number} names no test")
+
+
 def check_laws(root):
     """Yields where the table of laws and the page about it differ."""
     table, page = root / LAWS, root / LAWS_PAGE
@@ -543,7 +568,7 @@ def check_tree(root):
     """All findings in the tree under `root`, as FILE:LINE: text."""
     tree = Tree(root.resolve())
     findings = [*check_lanes(root), *check_laws(root), *check_coverage(root), *check_blocks(root),
-                *check_symbols(tree)]
+                *check_requirements(root), *check_symbols(tree)]
     for path in (*tree.pages, *tree.files):
         for position, rule, message in sorted(set(check_file(tree, path))):
             line = prose.line_of(tree.texts[path], position)

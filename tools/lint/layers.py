@@ -58,7 +58,7 @@ LAYERS = {
     "config/new_rig": "config config/derivation model",
     "config/plausibility": "model model/arm model/parameters hal estimator controller/types",
     "tools/support": "",
-    "tools/runs": "controller/runlog config",
+    "tools/runs": "controller/runlog controller/safety config",
     "tools/plot": "model model/beam hal controller/files controller/runlog controller/safety tools/runs",
     "tools/mat": "controller/runlog",
     "tools/csv": "model model/math model/beam estimator controller/files controller/types "

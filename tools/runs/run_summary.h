@@ -25,6 +25,10 @@ struct LoadedRun {
 
   bool closed() const { return state == RunState::kClosed; }
   double period_s() const { return config.loop.period_s(); }
+  /// An instant of the loop's clock in the time of the log.
+  double TimeOf(std::int64_t time_ns) const {
+    return static_cast<double>(time_ns - contents.info.start_ns) * 1e-9;
+  }
 };
 
 /// @throws InputError, ConfigError
