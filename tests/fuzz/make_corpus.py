@@ -161,7 +161,7 @@ def make_can():
     put("can", "from-the-beginning", b"\0" + b"\0" * 400)
     put("can", "emergency", b"\1\1" + frame(1, 1, bytes([0x10, 0x23, 1, 0, 0, 0, 0, 0])) + good + b"\0" + good)
     put("can", "feedback", b"\1\1" + frame(2, 1, bytes([0x37, 2, 1, 2, 3, 4, 5, 6])) + good + b"\0" + good)
-    put("can", "booted", b"\1\1" + frame(5, 3, b"\0") + good + b"\x20" + good)
+    put("can", "booted", b"\1\1" + frame(5, 4, b"\0") + good + b"\x20" + good)
     put("can", "changed", b"\1" + bytes([0, 0xA0, 9, 0xB1, 0xC0, 0xD5, 0xE5, 0xF1]) + good + b"\x10" + good)
     put("can", "off-and-recover", b"\1\x08" + good + b"\x40" + good + b"\x20" + good)
 
