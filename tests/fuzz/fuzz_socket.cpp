@@ -3,16 +3,20 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
 #include "controller/operator/command_dispatch.h"
 #include "controller/operator/operator_connection.h"
-#include "tests/controller/operator/operator_parts.h"
+#include "tests/controller/latch/latch_folder.h"
+#include "tests/controller/operator/operator_records.h"
 #include "tests/controller/operator/peers.h"
+#include "tests/controller/operator/still_stack.h"
 #include "tests/fuzz/fuzz_reader.h"
 #include "tests/fuzz/fuzz_targets.h"
+#include "tests/support/loop_time.h"
 
 namespace flexarm {
 namespace {
@@ -21,12 +25,29 @@ using Json = nlohmann::json;
 
 constexpr int kClient = 7;
 
-// The operator's side, with a connection on which a client has sent `bytes` and gone.
-class OneClient final : public OperatorParts {
- public:
-  explicit OneClient(SafetyState state) : OperatorParts(NewRig()) { now_.permit.state = state; }
+// A folder in which there is no calibration, and none can be written.
+const RigConfig& Rig() {
+  static const RigConfig config = ShippedRig({"log.directory='/proc/flexarm-fuzz'"});
+  return config;
+}
 
-  void TestBody() override {}
+// The loop does not run, and an input leaves nothing in its queues: one for all inputs.
+StillStack& Stack() {
+  static StillStack stack(Rig());
+  stack.TakeRequests();
+  static_cast<void>(stack.stop().Take());
+  static_cast<void>(stack.disarm().Take());
+  return stack;
+}
+
+// The operator's side, with a connection on which a client has sent `bytes` and gone.
+class OneClient {
+ public:
+  explicit OneClient(SafetyState state) {
+    now_.now_ns = 60 * kMs;
+    now_.permit.state = state;
+    latch_.Open();
+  }
 
   void Hear(FuzzBytes bytes) {
     std::array<int, 2> ends{};
@@ -46,12 +67,6 @@ class OneClient final : public OperatorParts {
   }
 
  private:
-  // A folder in which there is no calibration, and none can be written.
-  static RigConfig NewRig() {
-    static const RigConfig config = ShippedRig({"log.directory='/proc/flexarm-fuzz'"});
-    return config;
-  }
-
   void Poll(OperatorConnection* client) {
     client->Read();
     while (const std::optional<std::string> line = client->NextLine()) {
@@ -59,7 +74,7 @@ class OneClient final : public OperatorParts {
       if (const auto planned = run_.Follow(now_, [](int) { return true; })) {
         Reply(client, planned->json);
       }
-      stack_.TakeRequests();
+      stack_.TakeRequests();  // the safety task would
       client->Read();
     }
   }
@@ -71,6 +86,32 @@ class OneClient final : public OperatorParts {
     client->Reply(answer.dump());
   }
 
+  StillStack& stack_ = Stack();
+  EventQueue events_{64};
+  RecordedJournal journal_;
+  LatchFolder folder_;
+  TripLatch latch_{folder_.path(), "/runs", [](bool, const std::string&) {}};
+  RequestTracker requests_{&stack_, &latch_};
+  ExperimentLoader experiments_{&stack_,          &requests_,           &events_,
+                                &ShippedDesign(), LoopGrid(Rig().loop), ShippedLimits()};
+  CommissioningCommands commissioning_{Rig(),
+                                       {.stack = &stack_,
+                                        .experiments = &experiments_,
+                                        .requests = &requests_,
+                                        .report = journal_.Report()}};
+  ProveSwitches switches_{Rig(), &latch_, journal_.Report(),
+                          [] { return std::int64_t{1'700'000'000}; }};
+  OverrideRecord overrides_{&events_, journal_.Report()};
+  ArmCommand arm_{ArmChecks{.design = {.result = ArmVerdict::Result::kPassed}, .simulated = true},
+                  {.requests = &requests_, .overrides = &overrides_, .report = journal_.Report()}};
+  RunCommand run_{{.experiments = &experiments_,
+                   .commissioning = &commissioning_,
+                   .switches = &switches_,
+                   .overrides = &overrides_,
+                   .parse_experiment = ParseExperiment,
+                   .plan_wait = std::chrono::seconds(1)}};
+  Lease lease_{&events_, journal_.Report()};
+  OperatorSnapshot now_;
   CommandRecord record_{&events_, journal_.Report()};
   CommandDispatch dispatch_{{.stack = &stack_,
                              .requests = &requests_,
