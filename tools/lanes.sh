@@ -190,7 +190,7 @@ lane_mutation() {  # 20,000 changed inputs of every kind to the programs (part o
 
 fuzz() {  # fuzz TARGET DICTIONARY: for a minute, from the stored inputs and those of earlier runs
   local own=build/fuzz/inputs/$1 log=$logs/$lane-$1.log folders
-  mkdir -p "$own"
+  mkdir -p "$own" "$logs"
   mapfile -t folders < <(find "tests/fuzz/corpus/$1" "tests/fuzz/found/$1" -maxdepth 0 2>/dev/null)
   # The limit of an input is a second; sanitizers and a busy machine take ten times as long.
   nice "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="${FLEXARM_FUZZ_S:-60}" -timeout=10 \
