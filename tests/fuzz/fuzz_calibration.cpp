@@ -6,7 +6,7 @@
 
 namespace flexarm {
 
-void FuzzCalibration(FuzzBytes input) noexcept {
+void FuzzCalibration(FuzzBytes input) {
   static const FuzzFile file("calibration.json");
   static const SensorConfig sensors = ShippedRig().sensors;
   file.Write(TextOf(input));

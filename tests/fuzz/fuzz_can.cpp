@@ -75,7 +75,7 @@ void Period(FuzzReader* from, MemoryBus* stranger, CanopenBench* bench) {
 }  // namespace
 
 // The first byte: the nodes' frames are changed from the beginning, or once the drives are on.
-void FuzzCan(FuzzBytes input) noexcept {
+void FuzzCan(FuzzBytes input) {
   FuzzReader from(input);
   static const CanopenConfig config = ThreeNodes();
   CanopenBench bench(config, CanopenBench::Wired(config));

@@ -127,7 +127,7 @@ void Drive(FuzzReader* from, HostileBoard* board, ComediDevice* device) {
 }  // namespace
 
 // The first byte: a board that scans by itself, or one that is read channel by channel.
-void FuzzComedi(FuzzBytes input) noexcept {
+void FuzzComedi(FuzzBytes input) {
   FuzzReader from(input);
   const ComediBoardConfig config = from.Byte() % 2 == 0 ? BenchBoard() : SingleReads();
   auto hostile = std::make_unique<HostileBoard>(&from);

@@ -50,7 +50,7 @@ void Refusable(const Read& read) {
 }  // namespace
 
 // As a run of our own, as one of another recorder, and as the trajectory of an experiment.
-void FuzzCsv(FuzzBytes input) noexcept {
+void FuzzCsv(FuzzBytes input) {
   static const FuzzFile file("input.csv");
   static const SensorConfig own = ShippedRig().sensors;
   static const SensorConfig two = TwoGauges();

@@ -8,7 +8,7 @@
 namespace flexarm {
 
 // As the daemon takes one that a client sends: read, then planned.
-void FuzzExperiment(FuzzBytes input) noexcept {
+void FuzzExperiment(FuzzBytes input) {
   static const Design& design = ShippedDesign();
   try {
     const Experiment experiment = ParseExperiment(TextOf(input), "input");

@@ -23,7 +23,7 @@ std::string GainsOf(const std::string& input, const nlohmann::json& good) {
 
 }  // namespace
 
-void FuzzGains(FuzzBytes input) noexcept {
+void FuzzGains(FuzzBytes input) {
   static const RigConfig config = ShippedRig();
   static const nlohmann::json good =
       nlohmann::json::parse(DesignToJson(ShippedDesign(), DesignHash(config)));

@@ -41,7 +41,7 @@ void ReadBlocks(std::string_view bytes) {
 }  // namespace
 
 // As a run log, which is read and recovered, and as the block of a log's table.
-void FuzzLog(FuzzBytes input) noexcept {
+void FuzzLog(FuzzBytes input) {
   static const FuzzFile file("input.flexarm");
   const std::string bytes = WithChecksums(TextOf(input));
   ReadBlocks(bytes);

@@ -127,7 +127,7 @@ void Drive(FuzzReader* from, Peer* peer, ModbusDevice* device) {
 
 }  // namespace
 
-void FuzzModbus(FuzzBytes input) noexcept {
+void FuzzModbus(FuzzBytes input) {
   static const Listener listener;
   FuzzReader from(input);
   Peer peer(listener, &from);

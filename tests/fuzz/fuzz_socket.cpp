@@ -128,7 +128,7 @@ class OneClient {
 }  // namespace
 
 // Lines of a client, in the state that the first byte names.
-void FuzzSocket(FuzzBytes input) noexcept {
+void FuzzSocket(FuzzBytes input) {
   constexpr std::array kStates = {SafetyState::kIdle, SafetyState::kArmed, SafetyState::kRunning,
                                   SafetyState::kTripped};
   FuzzReader from(input);

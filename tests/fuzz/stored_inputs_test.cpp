@@ -17,7 +17,7 @@ namespace {
 
 struct Target {
   const char* name;
-  void (*run)(FuzzBytes) noexcept;
+  void (*run)(FuzzBytes);
 };
 
 std::ostream& operator<<(std::ostream& out, const Target& target) { return out << target.name; }
