@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit campaigns mutation docs-all build-cost headers-all separate clang-tidy-all
+  only_all_lanes=(guards unit campaigns mutation fuzz docs-all build-cost headers-all separate clang-tidy-all
                   asan-all debian13 arm64)
 }
 
@@ -191,6 +191,30 @@ lane_mutation() {  # 20,000 changed inputs of every kind to the programs (part o
   tests/mutation/mutation_test.py --inputs 20000 --seed "${FLEXARM_SEED:-1}" --note "$logs/$lane.note"
 }
 
+fuzz() {  # fuzz TARGET DICTIONARY: for a minute, from the stored inputs and those of earlier runs
+  local own=build/fuzz/inputs/$1 log=$logs/$lane-$1.log folders
+  mkdir -p "$own" "$logs"
+  mapfile -t folders < <(find "tests/fuzz/corpus/$1" "tests/fuzz/found/$1" -maxdepth 0 2>/dev/null)
+  # The limit of an input is a second; sanitizers and a busy machine take ten times as long.
+  nice "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="${FLEXARM_FUZZ_S:-60}" -timeout=10 \
+    -max_len=32768 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1 \
+    -artifact_prefix="$logs/$lane-$1-" ${2:+-dict="tests/fuzz/dictionaries/$2.dict"} \
+    "$own" "${folders[@]}" >"$log" 2>&1 || { tail -n 60 "$log" && return 1; }
+  grep -E '^#[0-9]+.DONE' "$log"
+}
+
+lane_fuzz() {  # libFuzzer on every reader of outside input, a minute each (FLEXARM_FUZZ_S=N)
+  build fuzz fuzz_programs
+  export ASAN_SYMBOLIZER_PATH=${ASAN_SYMBOLIZER_PATH:-/usr/lib/llvm-19/bin/llvm-symbolizer}
+  local targets=(calibration:json can: comedi: config:toml csv:csv experiment:toml gains:json
+                 log:log modbus: socket:json) target
+  for target in "${targets[@]}"; do
+    part "${target%:*}" fuzz "${target%:*}" "${target#*:}"
+  done
+  note "$(cat "$logs/$lane"-*.log |
+          awk '/^stat::number_of_executed_units/ { sum += $2 } END { print sum " inputs" }')"
+}
+
 lane_hil() {  # tools/run-hil, in real time where that is permitted
   if ! chrt -f 90 true 2>/dev/null; then
     note "SCHED_FIFO is not permitted here: ran without it"
@@ -229,7 +253,7 @@ lane_build-cost() {  # the compile time of the product is within the committed f
 }
 
 # Code that parses input or drives a bus.
-exposed_tests=(tests/hal tests/config tests/controller/{exchange,operator,runlog,wired})
+exposed_tests=(tests/hal tests/config tests/fuzz tests/controller/{exchange,operator,runlog,wired})
 asan_labels='^(unit|loop|hostile)$'
 
 lane_asan() {  # address, undefined behaviour: code that parses input or drives a bus

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "controller/design/design_matrices.h"
+#include "controller/files/external_file.h"
 #include "controller/types/control_config.h"
 #include "controller/types/rejected_error.h"
 #include "model/rigid_joint/rigid_joint_step.h"
@@ -322,6 +323,10 @@ std::string DesignToJson(const Design& design, const std::string& config_hash) {
 }
 
 Design DesignFromJson(const std::string& text, const ControlConfig& config) {
+  // The text of a log was not checked when it was read, and copying JSON is recursive.
+  if (const std::optional<FileProblem> problem = ProblemOfText(text, kGainsFile)) {
+    throw RejectedError(problem->Text("gains file"));
+  }
   const nlohmann::ordered_json in = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!in.is_object() || TextAt(in, "format", "") != kFormat) {
     throw RejectedError(std::string("not a gains file: expected JSON with \"format\": \"") +

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "controller/runlog/wrapping.h"
+
 namespace flexarm {
 
 void RecoveredResult::Add(const RunRecord& record) {
@@ -29,8 +31,9 @@ std::string RecoveredResult::Json(std::uint64_t left_out_bytes) const {
   result["left_out_bytes"] = left_out_bytes;
   result["trip"] = tripped ? nlohmann::json(ToString(trip_)) : nlohmann::json(nullptr);
   result["ticks"] = ticks_;
-  result["missing_ticks"] = first_tick_ ? last_tick_ - *first_tick_ + 1 - ticks_ : 0;
-  result["duration_s"] = static_cast<double>(last_ns_ - first_ns_) * 1e-9;
+  const std::int64_t after_first = WrappedDifference(last_tick_, first_tick_.value_or(last_tick_));
+  result["missing_ticks"] = first_tick_ ? WrappedDifference(after_first, ticks_ - 1) : 0;
+  result["duration_s"] = static_cast<double>(WrappedDifference(last_ns_, first_ns_)) * 1e-9;
   result["final_state"] = ToString(state_);
   return result.dump();
 }

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "controller/runlog/tick_columns.h"
+#include "controller/runlog/wrapping.h"
 #include "controller/types/safety_state.h"
 
 namespace flexarm {
@@ -22,17 +23,6 @@ CREATE TABLE activation (
 )sql";
 
 constexpr std::int64_t kTickGrid = 1, kActivationGrid = 2;  // numbers of table `grid`
-
-// Records of a file can have any values: a sum that does not fit wraps around.
-std::int64_t Sum(std::int64_t a, std::int64_t b) {
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
-}
-std::int64_t Difference(std::int64_t a, std::int64_t b) {
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
-}
-std::int64_t Product(std::int64_t a, std::int64_t b) {
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b));
-}
 
 // "hub_1_deg_x10000"; a whole number of units has the plain name.
 std::string StoredName(const TickColumn& column) {
@@ -102,15 +92,15 @@ SampleTable::SampleTable(SqliteDb* db)
       insert_activation_(db->Prepare("INSERT INTO activation VALUES (?,?,?,?,?)")) {}
 
 std::int64_t SampleTable::Grid::TimeOf(std::int64_t number) const {
-  return Sum(first_ns, Product(Difference(number, first), period_ns));
+  return WrappedSum(first_ns, WrappedProduct(WrappedDifference(number, first), period_ns));
 }
 
 SampleTable::Grid SampleTable::MakeGrid(std::int64_t number, Point first,
                                         std::optional<Point> second) {
   Grid grid{.first = first.number, .first_ns = first.time_ns, .period_ns = 0};
   if (second && second->number > first.number) {
-    const std::int64_t steps = Difference(second->number, first.number);
-    if (steps > 0) grid.period_ns = Difference(second->time_ns, first.time_ns) / steps;
+    const std::int64_t steps = WrappedDifference(second->number, first.number);
+    if (steps > 0) grid.period_ns = WrappedDifference(second->time_ns, first.time_ns) / steps;
   }
   insert_grid_.Bind(1, number);
   insert_grid_.Bind(2, grid.first);
@@ -123,7 +113,8 @@ SampleTable::Grid SampleTable::MakeGrid(std::int64_t number, Point first,
 void SampleTable::Add(std::span<const TickRecord> records, std::int64_t start_ns) {
   const auto point = [&](std::size_t n) {
     const StepInput& input = records[n].input;
-    return Point{.number = input.tick, .time_ns = Difference(input.sampling_instant_ns, start_ns)};
+    return Point{.number = input.tick,
+                 .time_ns = WrappedDifference(input.sampling_instant_ns, start_ns)};
   };
   if (!ticks_ && !records.empty()) {
     ticks_ =
@@ -133,7 +124,7 @@ void SampleTable::Add(std::span<const TickRecord> records, std::int64_t start_ns
     const Point at = point(n);
     int next = 1;
     insert_sample_.Bind(next++, at.number);
-    insert_sample_.Bind(next++, Difference(at.time_ns, ticks_->TimeOf(at.number)));
+    insert_sample_.Bind(next++, WrappedDifference(at.time_ns, ticks_->TimeOf(at.number)));
     insert_sample_.Bind(next++, std::int64_t{static_cast<int>(records[n].input.safety_state)});
     for (const TickColumn& column : TickColumns()) {
       if (column.steps_per_unit == 0) continue;
@@ -148,16 +139,18 @@ void SampleTable::Add(std::span<const TimingRecord> records) {
   if (!activations_ && !records.empty()) {
     const Point first{.number = records[0].tick, .time_ns = records[0].due_ns};
     std::optional<Point> second;
-    if (records.size() > 1) second = {.number = Sum(first.number, 1), .time_ns = records[1].due_ns};
+    if (records.size() > 1) {
+      second = {.number = WrappedSum(first.number, 1), .time_ns = records[1].due_ns};
+    }
     activations_ = MakeGrid(kActivationGrid, first, second);
   }
   for (const TimingRecord& record : records) {
-    const std::int64_t tick = Sum(activations_->first, activation_++);
+    const std::int64_t tick = WrappedSum(activations_->first, activation_++);
     insert_activation_.Bind(1, activation_);
-    insert_activation_.Bind(2, Difference(record.tick, tick));
-    insert_activation_.Bind(3, Difference(record.due_ns, activations_->TimeOf(tick)));
-    insert_activation_.Bind(4, Difference(record.woke_ns, record.due_ns));
-    insert_activation_.Bind(5, Difference(record.finished_ns, record.woke_ns));
+    insert_activation_.Bind(2, WrappedDifference(record.tick, tick));
+    insert_activation_.Bind(3, WrappedDifference(record.due_ns, activations_->TimeOf(tick)));
+    insert_activation_.Bind(4, WrappedDifference(record.woke_ns, record.due_ns));
+    insert_activation_.Bind(5, WrappedDifference(record.finished_ns, record.woke_ns));
     insert_activation_.Execute();
   }
 }

@@ -79,6 +79,10 @@ void ComediDevice::Fail(ComediFault fault, std::size_t channel) noexcept {
   fault_channel_ = channel;
 }
 
+void ComediDevice::BeyondRange(std::size_t input) noexcept {
+  Fail(ComediFault::kBeyondRange, channels_.drive.size() + input);
+}
+
 bool ComediDevice::Went(DaqResult result, ComediFault refused, std::size_t channel) noexcept {
   if (result != DaqResult::kOk) {
     const bool gone = result == DaqResult::kGone;
@@ -150,6 +154,7 @@ void ComediDevice::ReadStream(SensorFrame* fresh) noexcept {
   std::int64_t offset_ns = scan_clock_.newest_end_ns() - plan_.scan_ns - fresh->sampled_at_ns;
   for (std::size_t i = 0; i < in.channel.size(); ++i) {
     const auto row = static_cast<std::size_t>(in.channel[i].strain);
+    if (!IsCode(newest_[i], in.bits)) return BeyondRange(i);
     fresh->strain[row] = CountsFromCode(newest_[i], in.bits);
     fresh->strain_offset_ns[row] = static_cast<std::int32_t>(offset_ns);
     fresh->strain_valid |= Bit(in.channel[i].strain);
@@ -202,6 +207,7 @@ void ComediDevice::ReadSingles(SensorFrame* fresh) noexcept {
                  &fresh->strain_offset_ns[row])) {
       return;
     }
+    if (!IsCode(code, config_.input->bits)) return BeyondRange(i);
     fresh->strain[row] = CountsFromCode(code, config_.input->bits);
     fresh->strain_valid |= Bit(strain);
   }

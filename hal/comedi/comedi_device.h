@@ -85,6 +85,7 @@ class ComediDevice final : public BusDevice {
 
   bool streams() const noexcept { return plan_.oldest_ns > 0; }
   void Fail(ComediFault fault, std::size_t channel = kNoChannel) noexcept;
+  void BeyondRange(std::size_t input) noexcept;
   bool Went(DaqResult result, ComediFault refused, std::size_t channel) noexcept;
   void Drive(const BusCommand& command) noexcept;
   void ReadAll(SensorFrame* fresh) noexcept;

@@ -26,6 +26,8 @@ const char* ToString(ComediFault fault) noexcept {
       return "writing an output is refused";
     case ComediFault::kGone:
       return "the board is gone";
+    case ComediFault::kBeyondRange:
+      return "reads a number beyond the bits of the converter";
   }
   return "?";
 }
@@ -43,6 +45,7 @@ BusStatus StatusOf(ComediFault fault) noexcept {
     case ComediFault::kEarlyScan:
     case ComediFault::kReadRefused:
     case ComediFault::kOverrun:
+    case ComediFault::kBeyondRange:
       return BusStatus::kMalformed;
     case ComediFault::kScanStopped:
     case ComediFault::kStartRefused:

@@ -19,6 +19,7 @@ enum class ComediFault : std::uint8_t {
   kStartRefused,   ///< latched: the board does not start the scan
   kOutputRefused,  ///< latched: an output cannot be written
   kGone,           ///< latched until the daemon restarts: the board is gone
+  kBeyondRange,    ///< latched: an input reads more than its converter can
 };
 
 /// Text of a fault for the log: "scan late".

@@ -10,7 +10,10 @@ namespace flexarm {
 /// V is 2^(bits-1), a step is 2 range / 2^bits, as in StrainInputConfig. Real-time: safe.
 constexpr std::uint32_t ZeroCode(int bits) noexcept { return std::uint32_t{1} << (bits - 1); }
 
-/// Converter code as a signed count.
+/// Whether a converter with `bits` bits has this code: a driver may return any number.
+constexpr bool IsCode(std::uint32_t code, int bits) noexcept { return code >> bits == 0; }
+
+/// Converter code as a signed count. @param code  IsCode
 constexpr std::int32_t CountsFromCode(std::uint32_t code, int bits) noexcept {
   return static_cast<std::int32_t>(code) - static_cast<std::int32_t>(ZeroCode(bits));
 }

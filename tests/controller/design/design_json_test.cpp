@@ -216,6 +216,18 @@ TEST(DesignJson, AFileThatIsNotAGainsFileIsRefused) {
   }
 }
 
+// A log made to hurt: copying brackets within brackets takes stack for each.
+TEST(DesignJson, DeepBracketsInAnyMemberAreRefused) {
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  for (const char* member : {"payload", "checks", "config_hash", "unknown"}) {
+    nlohmann::json json = ShippedJson();
+    json[member] = "here";
+    std::string text = json.dump();
+    text.replace(text.find("\"here\""), 6, deep);
+    EXPECT_THAT(RefusalOf(text), HasSubstr("gains file:1: is nested more than 32")) << member;
+  }
+}
+
 TEST(DesignJson, FieldsOfTheWrongTypeAreRefused) {
   nlohmann::json json = ShippedJson();
   json["config_hash"] = 12;

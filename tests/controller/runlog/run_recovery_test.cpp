@@ -67,6 +67,30 @@ TEST_F(RunRecoveryTest, ARunThatWasKilledBecomesAClosedRunThatSaysSo) {
   EXPECT_TRUE(notes_.empty()) << "it is recovered once";
 }
 
+// Found by fuzzing: a record file with right checksums can have any times and ticks.
+TEST_F(RunRecoveryTest, TimesAndTicksOfAnySizeAreRecovered) {
+  std::string left;
+  {
+    RunWriter writer(File("whole"), MakeInfo());
+    for (const std::int64_t end : {INT64_MIN, INT64_MAX}) {
+      TickRecord tick = MakeTick(1);
+      tick.input.tick = end;
+      tick.input.now_ns = end;
+      writer.Tick(tick);
+      writer.Commit();
+    }
+    left = Bytes(File("whole"));
+  }
+  WriteText(File(), left);
+  Recover();
+  EXPECT_TRUE(errors_.empty());
+  const RunContents run = RunReader(File()).ReadAll();
+  ASSERT_EQ(run.tick.size(), 2U);
+  EXPECT_EQ(run.tick[0].input.now_ns, INT64_MIN);
+  EXPECT_EQ(run.tick[1].input.now_ns, INT64_MAX);
+  EXPECT_EQ(nlohmann::json::parse(run.info.result_json)["ticks"], 2);
+}
+
 TEST_F(RunRecoveryTest, ARunThatIsBeingWrittenIsLeftToItsWriter) {
   RunWriter writer(File(), MakeInfo());
   writer.Tick(MakeTick(1));

@@ -238,6 +238,10 @@ INSTANTIATE_TEST_SUITE_P(
                             [](auto* b) { b->instruction_takes_ns = 1'000 * kMillisecond; },
                             [](auto* b) { b->instruction_takes_ns = 15'000; }, ComediFault::kSlow,
                             BusStatus::kTimeout},
+                    Trouble{"AnInputReadsMoreThanItsBits",
+                            [](auto* b) { b->stray_bits = 1U << 31U; },
+                            [](auto* b) { b->stray_bits = 0; }, ComediFault::kBeyondRange,
+                            BusStatus::kMalformed},
                     Trouble{"TheBoardIsGone",
                             [](auto* b) { b->gone = true; },
                             {},
@@ -265,8 +269,19 @@ TEST(ComediFault, TextNamesTheBoardAndTheChannel) {
             "/dev/comedi0: the board has stopped scanning");
 }
 
+TEST(ComediFault, AnInputThatIsReadByItselfMayNotReadMoreThanItsBits) {
+  ComediBench bench(SingleReads());
+  bench.device->Open();
+  bench.board->stray_bits = 1U << 12U;  // of 12 bits, 0 to 11
+  const BusStatus status = bench.Exchange(kTorque);
+  EXPECT_EQ(status, BusStatus::kMalformed);
+  EXPECT_EQ(bench.device->FaultText(bench.device->FaultOf(status)),
+            "/dev/comedi0: strain[0]: reads a number beyond the bits of the converter");
+  EXPECT_EQ(bench.frame.strain_valid, 0U);
+}
+
 TEST(ComediFault, EveryFaultHasAName) {
-  for (int i = 0; i <= static_cast<int>(ComediFault::kGone); ++i) {
+  for (int i = 0; i <= static_cast<int>(ComediFault::kBeyondRange); ++i) {
     EXPECT_STRNE(ToString(static_cast<ComediFault>(i)), "?") << i;
   }
 }

@@ -98,7 +98,7 @@ std::uint32_t SimulatedDaqBoard::CodeOf(const DaqChannel& channel,
   const double volts = voltage_(channel.channel, at_ns);
   const double code =
       std::floor((volts - range.lowest_v) / (range.highest_v - range.lowest_v) * steps + 0.5);
-  return static_cast<std::uint32_t>(std::clamp(code, 0.0, steps - 1.0));
+  return static_cast<std::uint32_t>(std::clamp(code, 0.0, steps - 1.0)) | stray_bits;
 }
 
 DaqResult SimulatedDaqBoard::ReadScan(std::span<std::uint32_t> samples,

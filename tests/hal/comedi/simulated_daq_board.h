@@ -70,6 +70,7 @@ class SimulatedDaqBoard final : public DaqBoard {
 
   // Injected faults.
   bool gone = false;
+  std::uint32_t stray_bits = 0;  ///< set in every code of an input
   bool refuse_reads = false;
   bool refuse_writes = false;
   bool refuse_start = false;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+// The targets of fuzzing: each gives bytes that may be anything to the code of the product that
+// reads such bytes. The exception that this code documents is a right answer, and is caught there.
+// Another exception leaves the function, and is a finding.
+//
+// libFuzzer calls them in programs of their own (libfuzzer_entry.cpp), stored_inputs_test.cpp with
+// the stored inputs.
+
+namespace flexarm {
+
+using FuzzBytes = std::span<const std::uint8_t>;
+
+void FuzzConfig(FuzzBytes input);
+void FuzzExperiment(FuzzBytes input);
+void FuzzCsv(FuzzBytes input);
+void FuzzGains(FuzzBytes input);
+void FuzzCalibration(FuzzBytes input);
+void FuzzLog(FuzzBytes input);
+void FuzzSocket(FuzzBytes input);
+void FuzzModbus(FuzzBytes input);
+void FuzzCan(FuzzBytes input);
+void FuzzComedi(FuzzBytes input);
+
+inline std::string TextOf(FuzzBytes input) { return {input.begin(), input.end()}; }
+
+}  // namespace flexarm
