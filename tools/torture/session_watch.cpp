@@ -78,6 +78,9 @@ void SessionWatch::Over(std::int64_t now_ns, const char* what, double share, dou
 void SessionWatch::LookAtArm(std::int64_t now_ns, const WatchSample& sample) {
   const PlantTruth& truth = sample.truth;
   tip_m_.push_back(truth.tip_m);
+  // An arm whose thread catches up moves many milliseconds in one.
+  if (sample.arm_ns != arm_ns_ + kMs) hub_rad_.clear();
+  arm_ns_ = sample.arm_ns;
   const auto period = static_cast<std::size_t>(config_.loop.period_ns() / kMs);
   hub_rad_.push_back(truth.hub_angle_rad);
   if (hub_rad_.size() > period + 1) hub_rad_.pop_front();

@@ -105,6 +105,7 @@ class SessionWatch {
   Peaks peaks_;
   std::vector<std::array<double, 2>> tip_m_;
   std::deque<std::array<double, 2>> hub_rad_;  // of the last period, by millisecond
+  std::int64_t arm_ns_ = 0;                    // WatchSample::arm_ns, the millisecond before
   std::int64_t last_torque_ns_ = INT64_MIN;
 };
 
