@@ -224,7 +224,7 @@ lane_hil() {  # tools/run-hil, in real time where that is permitted
 
 lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
   build release flexarm flexarmd guest_daq_test guest_gpio_test hal_canopen_socketcan_test \
-    wired_threads_test
+    wired_threads_test rtguard
   tests/guest/run_all.sh build/release --note "$logs/$lane.note"
 }
 
@@ -258,10 +258,9 @@ asan_labels='^(unit|loop|hostile)$'
 
 lane_asan() {  # address, undefined behaviour: code that parses input or drives a bus
   local folder
-  build asan flexarm flexarm-study flexarmd "${exposed_tests[@]/%//all}"
+  build asan "${exposed_tests[@]/%//all}"
   use_environment_of asan
   for folder in "${exposed_tests[@]}"; do test_folder asan "$folder" "$asan_labels"; done
-  test_folder asan tests/e2e '^hostile$'
 }
 
 lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop or hostile

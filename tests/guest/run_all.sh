@@ -23,7 +23,8 @@ DESTDIR=$work/share/machine cmake --install "$build" >/dev/null
 cp -r "$here"/{check.sh,interfaces.sh,daq.sh,gpio.sh,threads.sh,docs.sh,daemon_in_guest} "$work/share/guest"
 cp "$build"/tests/{guest/guest_daq_test,guest/guest_gpio_test,hal/canopen/hal_canopen_socketcan_test} \
   "$work/share"
-cp "$build/tests/controller/wired_threads/wired_threads_test" "$work/share"
+cp "$build/tests/controller/wired_threads/wired_threads_test" "$build/tests/rtguard/librtguard.so" \
+  "$work/share"
 cp -r "$root/config" "$work/share"
 "$root/tests/docs/run_blocks.py" guest --build "$build" --share "$work/share/docs"
 echo "$root" >"$work/share/source_folder"  # in which wired_threads_test looks for its config
@@ -80,7 +81,7 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 
 # A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
 # first. `threads` has two processors and real time; it asserts no time.
-names=(service wire hardened commission load hostile experiment docs refusal threads interfaces daq gpio)
+names=(service wire hardened guarded commission load hostile experiment docs refusal threads interfaces daq gpio)
 running=0
 for name in "${names[@]}"; do
   if ((running == 2)); then
