@@ -19,6 +19,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   AddStudy(app, "sweep");
   AddStudy(app, "benchmark");
   AddStudy(app, "report");
+  AddStudy(app, "torture");
   RegisterReplay(app, exit);
   AddStudy(app, "gauges");
   AddStudy(app, "identify");

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kMostViolations = 8;  // kept of a session: the first tell enough
 constexpr double kRounding = 1e-9;
+constexpr std::size_t kKept = 4096;  // milliseconds: a thread of the arm may hang for as long
 
 }  // namespace
 
@@ -28,6 +29,7 @@ void SessionWatch::Look(std::int64_t now_ns, const WatchSample& sample) {
   const bool before = forbidden_since_ns_.empty() || forbidden_since_ns_.back() == INT64_MAX;
   const std::int64_t tick_ns = now_ns - kMs;  // the tick of the safety task that is seen
   const std::int64_t since_ns = before ? tick_ns : forbidden_since_ns_.back();
+  if (forbidden_since_ns_.size() == kKept) forbidden_since_ns_.pop_front();
   forbidden_since_ns_.push_back(TorqueAllowed(sample.status.state) ? INT64_MAX : since_ns);
   LookAtTorque(now_ns, sample);
   LookAtArm(now_ns, sample);
@@ -36,10 +38,12 @@ void SessionWatch::Look(std::int64_t now_ns, const WatchSample& sample) {
 
 void SessionWatch::LookAtTorque(std::int64_t now_ns, const WatchSample& sample) {
   const std::array<double, 2>& torque_nm = sample.torque_nm;
-  // The torque of a slice acts from its begin on.
+  // The torque of a slice acts from its begin on; the newest look is at the millisecond before now.
   const std::int64_t slice_ns = sample.arm_ns - kMs;
-  const auto look = static_cast<std::size_t>(std::max<std::int64_t>(slice_ns / kMs, 0));
-  const std::int64_t since_ns = forbidden_since_ns_[std::min(look, forbidden_since_ns_.size() - 1)];
+  const auto back =
+      static_cast<std::size_t>((now_ns - kMs - std::max<std::int64_t>(slice_ns, 0)) / kMs);
+  const std::size_t newest = forbidden_since_ns_.size() - 1;
+  const std::int64_t since_ns = forbidden_since_ns_[newest - std::min(back, newest)];
   const bool allowed = since_ns == INT64_MAX || slice_ns - since_ns <= rules_.torque_after_ns;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string joint = "joint " + std::to_string(i + 1) + ": ";

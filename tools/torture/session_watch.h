@@ -98,8 +98,9 @@ class SessionWatch {
   std::vector<std::string> sent_;
   SafetyStatus status_{SafetyState::kStarting, TripCause::kNone};
   std::optional<Latched> first_cause_;
-  // Since when torque has not been allowed, by millisecond; INT64_MAX: it is.
-  std::vector<std::int64_t> forbidden_since_ns_;
+  // Since when torque has not been allowed, of the last milliseconds, the newest last; INT64_MAX:
+  // it is.
+  std::deque<std::int64_t> forbidden_since_ns_;
   std::array<double, 2> torque_nm_{};  // in the millisecond before
   bool button_ = false;
   Peaks peaks_;

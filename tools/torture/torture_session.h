@@ -90,6 +90,10 @@ class TortureSession {
   long sent() const { return sent_; }
   long answered() const { return answered_; }
   const std::deque<RunContents>& runs() const { return runs_; }
+  /// Forgets the recorded runs but the newest.
+  void DropRuns() {
+    while (runs_.size() > 1) runs_.pop_front();
+  }
   std::int64_t log_errors() const { return recording_.errors(); }
   const LoopGrid& grid() const { return grid_; }
   const std::vector<Fault>& faults() const { return faults_; }

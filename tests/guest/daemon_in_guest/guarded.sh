@@ -135,4 +135,5 @@ trips "a drive that is silent" bus-lost "node drive2 silent" "node drive2 well"
 trips "a drive in fault" drive-fault "node drive1 emcy 0x2310" "node drive1 well"
 ends 0 safety control vcan0 strain-amplifier-1 strain-amplifier-2
 stop_rig
+if ((failures > 0)) && [[ -e $report ]]; then cat "$report"; fi
 conclude
