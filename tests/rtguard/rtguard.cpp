@@ -85,10 +85,11 @@ constexpr std::array kAlways = {SYS_clock_nanosleep, SYS_clock_gettime,  SYS_get
                                 SYS_munmap,          SYS_madvise,        SYS_tgkill,
                                 SYS_gettid,          SYS_getpid,         SYS_rt_sigaction};
 constexpr std::array kDevices = {
-    SYS_read,       SYS_write,      SYS_readv,    SYS_writev, SYS_ioctl,    SYS_poll,
-    SYS_ppoll,      SYS_select,     SYS_pselect6, SYS_sendto, SYS_recvfrom, SYS_sendmsg,
-    SYS_recvmsg,    SYS_recvmmsg,   SYS_sendmmsg, SYS_socket, SYS_connect,  SYS_close,
-    SYS_setsockopt, SYS_getsockopt, SYS_bind,     SYS_fcntl,  SYS_openat,   SYS_getsockname};
+    SYS_read,     SYS_write,   SYS_readv,   SYS_writev,      SYS_ioctl,
+    SYS_poll,     SYS_ppoll,   SYS_select,  SYS_pselect6,    SYS_sendto,
+    SYS_recvfrom, SYS_sendmsg, SYS_recvmsg, SYS_recvmmsg,    SYS_sendmmsg,
+    SYS_socket,   SYS_connect, SYS_close,   SYS_setsockopt,  SYS_getsockopt,
+    SYS_bind,     SYS_fcntl,   SYS_openat,  SYS_getsockname, SYS_shutdown};
 
 // A futex is a lock, except a wake that waits for nothing and the sleep of a thread that is woken.
 void Filter(bool devices) {
