@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -56,9 +57,11 @@ class Soak : public testing::Test {
     ASSERT_TRUE(session_.RunUntilState(SafetyState::kArmed, 10 * kSecond));
     session_.RunFor(2 * kSecond);  // the recorder closes the run
     const PlantTruth truth = session_.stack().arm().rig().truth();
-    // At rest on the target: friction and the gauges' zero leave less than half a degree.
-    EXPECT_NEAR(truth.hub_angle_rad[0], deg * kRadPerDeg, 0.5 * kRadPerDeg);
-    EXPECT_NEAR(truth.hub_angle_rad[1], -deg * kRadPerDeg, 0.5 * kRadPerDeg);
+    // At rest within 15 mm of the target, as the benchmark calls it settled: an error of hub 1
+    // moves the tip of the stretched arm by 1.7 m a rad, one of hub 2 by 0.9 m.
+    const double away_m = 1.7 * std::fabs(truth.hub_angle_rad[0] - deg * kRadPerDeg) +
+                          0.9 * std::fabs(truth.hub_angle_rad[1] + deg * kRadPerDeg);
+    EXPECT_LT(away_m, 0.015);
   }
 
   void Arm() {
