@@ -169,7 +169,7 @@ lane_step-cost() {  # instructions of one control step and of each phase are wit
 
 lane_slowest() {  # searches the slowest control step, safety tick and plan (FLEXARM_SEED=N)
   build release slowest_step
-  python3 tests/bench/slowest.py --program build/release/tests/bench/slowest_step --search 600 \
+  python3 tests/bench/slowest.py --program build/release/tests/bench/slowest_step --search 300 \
     --seed "${FLEXARM_SEED:-1}" --jobs "$jobs" --names safety plan step-sobel step-l step-pd \
     step-gain step-receding step-difference step-polynomial step-T16 step-ekf \
     --note "$logs/$lane.note"
