@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit campaigns mutation fuzz docs-all build-cost headers-all separate clang-tidy-all
+  only_all_lanes=(guards unit campaigns slowest mutation fuzz docs-all build-cost headers-all separate clang-tidy-all
                   asan-all debian13 arm64)
 }
 
@@ -160,9 +160,18 @@ lane_campaigns() {  # random campaigns at their whole size; `release` runs a sam
   FLEXARM_CAMPAIGN=whole build/tsan/tests/controller/wired_threads/wired_threads_test
 }
 
-lane_step-cost() {  # instructions of one control step are within their limits
-  build release step_instructions
+lane_step-cost() {  # instructions of one control step and of each phase are within their limits
+  build release step_instructions slowest_step
   python3 tests/bench/step_cost.py --program build/release/tests/bench/step_instructions \
+    --note "$logs/$lane.note"
+  python3 tests/bench/slowest.py --program build/release/tests/bench/slowest_step
+}
+
+lane_slowest() {  # searches the slowest control step, safety tick and plan (FLEXARM_SEED=N)
+  build release slowest_step
+  python3 tests/bench/slowest.py --program build/release/tests/bench/slowest_step --search 300 \
+    --seed "${FLEXARM_SEED:-1}" --jobs "$jobs" --names safety plan step-sobel step-l step-pd \
+    step-gain step-receding step-difference step-polynomial step-T16 step-ekf \
     --note "$logs/$lane.note"
 }
 

@@ -1,0 +1,7 @@
+#include "tests/bench/counted.h"
+
+namespace flexarm {
+
+void Counted(const CountedWork& work) { work(); }
+
+}  // namespace flexarm
