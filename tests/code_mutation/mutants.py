@@ -118,11 +118,12 @@ class Workshop:
         words[out] = f"{Path(source).stem}_alone"
         return own, words, words[out]
 
-    def passes(self, command, name):
+    def passes(self, command, name, chosen="*"):
         """Whether the tests of a program pass; the first run, without a mutant, sets the limit."""
         limit = 20 + 10 * self.reference_s[name] if name in self.reference_s else 1200
         begin = time.monotonic()
-        status, output = run([command, "--gtest_brief=1", "--gtest_fail_fast"], self.build, limit)
+        status, output = run([command, "--gtest_brief=1", "--gtest_fail_fast",
+                              f"--gtest_filter={chosen}"], self.build, limit)
         self.reference_s.setdefault(name, time.monotonic() - begin)
         return status == 0, output
 
@@ -147,12 +148,12 @@ def first_stage(shop, source, entry):
     return stage
 
 
-def program_stage(shop, program):
+def program_stage(shop, program, chosen):
     def stage():
         status, output = shop.make(program)
         if status != 0:
             return None, output
-        return shop.passes(str(shop.program(program)), program)
+        return shop.passes(str(shop.program(program)), program, chosen)
     return stage
 
 
@@ -251,7 +252,8 @@ class Session:
         entry = self.map[source]
         shop.make_original(*entry["programs"])
         stages = [first_stage(shop, source, entry)] if entry["first"] else []
-        stages += [program_stage(shop, program) for program in entry["programs"]]
+        stages += [program_stage(shop, program, entry.get("filter", "*"))
+                   for program in entry["programs"]]
         if judge(stages)[0] != "survived":
             sys.exit(f"mutants: the tests of {source} fail without a mutant")
         return stages
