@@ -136,6 +136,18 @@ TEST(Gate, LimitsTorqueAndNamesTheJoint) {
   EXPECT_EQ(result.why, kGateTorque1 | kGateTorque2);
 }
 
+TEST(Gate, NamesOnlyTheJointThatItLimits) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    GateInput in = FineInput();
+    in.asked_nm[joint] = in.previous_nm[joint] = 1.5 * kGateLimits.torque_nm[joint];  // beyond it
+    EXPECT_EQ(Gate(in, kGateLimits).why & (kGateTorque1 | kGateTorque2),
+              joint == 0 ? kGateTorque1 : kGateTorque2);
+    in = FineInput();
+    in.asked_nm[joint] = 0.0;  // 1.9 and 0.9 N m in 1 ms: more than 0.5 and 0.15
+    EXPECT_EQ(Gate(in, kGateLimits).why, joint == 0 ? kGateSlew1 : kGateSlew2);
+  }
+}
+
 TEST(Gate, LimitsSlewInBothDirectionsAndNamesTheJoint) {
   GateInput in = FineInput();
   in.asked_nm = {10.0, -5.0};
