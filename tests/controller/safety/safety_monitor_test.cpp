@@ -412,6 +412,18 @@ TEST_F(HomingContact, TheSwitchSearchedForDoesNotTripAtOnce) {
   EXPECT_EQ(monitor_.Judge(OnSwitch(500)).present, 0u);
 }
 
+TEST_F(HomingContact, EachLimitSwitchMayBeTheOneSearchedFor) {
+  for (const Line line :
+       {Line::kLimit1Low, Line::kLimit1High, Line::kLimit2Low, Line::kLimit2High}) {
+    SafetyMonitor monitor(kLimits);
+    monitor.Judge(OffSwitch());
+    SafetyInputs in = OnSwitch(1);
+    in.may_open = LineBit(line);
+    in.levels = kHealthyLevels & ~LineBit(line);
+    EXPECT_EQ(monitor.Judge(in).present, 0u) << static_cast<int>(line);
+  }
+}
+
 TEST_F(HomingContact, StayingOnItForTooLongTrips) {
   monitor_.Judge(OffSwitch());
   EXPECT_EQ(monitor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
@@ -540,6 +552,12 @@ TEST(SafetyMonitor, EachTaskIsWaitedForAndOnceIsEnough) {
     EXPECT_EQ(monitor.Judge(Fine()).all_reported, 1);
     EXPECT_EQ(monitor.Judge(in).all_reported, 1);
   }
+}
+
+TEST(SafetyMonitor, TheFirstTickOfTheLoopIsAReport) {
+  SafetyInputs in = Fine();
+  in.control.tick = 0;
+  EXPECT_EQ(SafetyMonitor(kLimits).Judge(in).all_reported, 1);
 }
 
 // The three witnesses of the safety lines; a failed call is named before the others.
