@@ -9,8 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit campaigns slowest mutation fuzz docs-all build-cost headers-all separate clang-tidy-all
-                  asan-all debian13 arm64)
+  only_all_lanes=(guards unit campaigns slowest mutation mutants fuzz docs-all build-cost headers-all
+                  separate clang-tidy-all asan-all debian13 arm64)
 }
 
 logs=build/logs
@@ -198,6 +198,12 @@ lane_docs-all() {  # command blocks `all` of the pages, which take minutes
 lane_mutation() {  # 20,000 changed inputs of every kind to the programs (part of e2e: 1,000)
   build release flexarm flexarm-study flexarmd
   tests/mutation/mutation_test.py --inputs 20000 --seed "${FLEXARM_SEED:-1}" --note "$logs/$lane.note"
+}
+
+lane_mutants() {  # changes of safety code that changed recently: a test notices each
+  # Ends before run-tests would stop it; it fails if mutants are left, and goes on where it was.
+  nice python3 tests/code_mutation/mutants.py --changed --within "${FLEXARM_MUTANTS_S:-3000}" \
+    --jobs "$jobs" --note "$logs/$lane.note"
 }
 
 fuzz() {  # fuzz TARGET DICTIONARY: for a minute, from the stored inputs and those of earlier runs

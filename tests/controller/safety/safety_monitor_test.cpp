@@ -4,6 +4,7 @@
 
 #include "controller/types/runtime_config.h"
 #include "controller/types/safety_config.h"
+#include "tests/controller/safety/monitored_arm.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
@@ -11,50 +12,9 @@ namespace {
 
 using enum SafetyState;
 
-constexpr MonitorLimits kLimits{.heartbeat_timeout_ns = 40 * kMs,
-                                .stop_timeout_ns = 3000 * kMs,
-                                .fault_stop_ns = 500 * kMs,
-                                .missed_deadlines_to_trip = 3,
-                                .homing_contact_ns = 500 * kMs,
-                                .lines_stall_ns = 5 * kMs,
-                                .overrun_ns = 5 * kMs,
-                                .missed_in_window = 16,
-                                .failed_in_window = 17,
-                                .slow_in_window = 18};
-
-// Running for a second, without a fault.
-SafetyInputs Fine() {
-  const std::int64_t due_ns = 10'000 * kMs;
-  ControlReport control = kNoControlReport;
-  control.tick = 499;
-  control.due_ns = due_ns - 20 * kMs;
-  control.may_damp = true;
-  DriveReport drive{
-      .due_ns = due_ns - 1 * kMs, .bus_ok = true, .drive_ok = true, .power = DrivePower::kOn};
-  return {.due_ns = due_ns,
-          .levels = kHealthyLevels,
-          .control = control,
-          .control_alive_ns = control.due_ns,
-          .drive = drive,
-          .drive_alive_ns = drive.due_ns,
-          .request = RequestKind::kNone,
-          .state = kRunning,
-          .state_since_ns = due_ns - 1000 * kMs,
-          .running_since_ns = due_ns - 1000 * kMs,
-          .may_open = 0};
-}
-
 TripCauses PresentIn(const SafetyInputs& in) {
   SafetyMonitor supervisor(kLimits);
   return supervisor.Judge(in).present;
-}
-
-void ExpectEvidence(TripCause cause, const SafetyInputs& in, double value, double limit,
-                    std::uint32_t channel) {
-  const Evidence evidence = SafetyMonitor(kLimits).EvidenceOf(cause, in);
-  EXPECT_DOUBLE_EQ(evidence.value, value);
-  EXPECT_DOUBLE_EQ(evidence.limit, limit);
-  EXPECT_EQ(evidence.channel, channel);
 }
 
 TEST(SafetyMonitor, FindsNoCauseWithoutAFault) {
@@ -349,6 +309,9 @@ TEST(SafetyMonitor, AButtonThatIsStuckFromTheStartNeverCounts) {
 TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   SafetyConfig safety{};
   safety.stop_timeout_s = 3.0;
+  safety.fault_stop_s = 0.375;
+  safety.homing_contact_s = 0.625;
+  safety.permit_timeout_ms = 5.25;
   safety.missed_deadlines_to_trip = 5;
   safety.overrun_to_trip_ms = 4.5;
   safety.missed_deadlines_in_window = 6;
@@ -363,6 +326,9 @@ TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   const MonitorLimits limits = MakeMonitorLimits(safety, loop, true);
   EXPECT_EQ(limits.heartbeat_timeout_ns, 40 * kMs);
   EXPECT_EQ(limits.stop_timeout_ns, 3000 * kMs);
+  EXPECT_EQ(limits.fault_stop_ns, 375 * kMs);
+  EXPECT_EQ(limits.homing_contact_ns, 625 * kMs);
+  EXPECT_EQ(limits.lines_stall_ns, 5'250'000) << "the permit's timeout, 5.25 ms";
   EXPECT_EQ(limits.missed_deadlines_to_trip, 5);
   EXPECT_EQ(limits.overrun_ns, 4'500'000);
   EXPECT_EQ(limits.missed_in_window, 6);
@@ -403,6 +369,18 @@ TEST_F(HomingContact, TheSwitchSearchedForDoesNotTripAtOnce) {
   monitor_.Judge(OffSwitch());
   EXPECT_EQ(monitor_.Judge(OnSwitch(1)).present, 0u);
   EXPECT_EQ(monitor_.Judge(OnSwitch(500)).present, 0u);
+}
+
+TEST_F(HomingContact, EachLimitSwitchMayBeTheOneSearchedFor) {
+  for (const Line line :
+       {Line::kLimit1Low, Line::kLimit1High, Line::kLimit2Low, Line::kLimit2High}) {
+    SafetyMonitor monitor(kLimits);
+    monitor.Judge(OffSwitch());
+    SafetyInputs in = OnSwitch(1);
+    in.may_open = LineBit(line);
+    in.levels = kHealthyLevels & ~LineBit(line);
+    EXPECT_EQ(monitor.Judge(in).present, 0u) << static_cast<int>(line);
+  }
 }
 
 TEST_F(HomingContact, StayingOnItForTooLongTrips) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <set>
+#include <string>
 
 #include "tests/support/loop_time.h"
 
@@ -67,6 +69,22 @@ TEST(Gate, AnOldPermitIsZeroAtOnce) {
   ExpectZeroed(in, kGatePermitOld);
 }
 
+TEST(Gate, WhatBeganInThisInstantIsYoung) {
+  GateInput in = FineInput();
+  in.asked_age_ns = 0;
+  in.permit_age_ns = 0;
+  EXPECT_EQ(Gate(in, kGateLimits).why, 0u);
+}
+
+TEST(Gate, EveryReasonIsNamedBesideTheOthers) {
+  GateInput in = FineInput();
+  in.asked_age_ns = -1;
+  in.permit_age_ns = -1;
+  in.permit = SafetyState::kArmed;
+  in.dt_s = kNan;
+  ExpectZeroed(in, kGateCommandOld | kGatePermitOld | kGateNotAllowed | kGateNotFinite);
+}
+
 // By docs/safety.md, "States".
 bool HasTorque(SafetyState state) {
   return state == SafetyState::kRunning || state == SafetyState::kStopping ||
@@ -118,6 +136,18 @@ TEST(Gate, LimitsTorqueAndNamesTheJoint) {
   EXPECT_EQ(result.why, kGateTorque1 | kGateTorque2);
 }
 
+TEST(Gate, NamesOnlyTheJointThatItLimits) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    GateInput in = FineInput();
+    in.asked_nm[joint] = in.previous_nm[joint] = 1.5 * kGateLimits.torque_nm[joint];  // beyond it
+    EXPECT_EQ(Gate(in, kGateLimits).why & (kGateTorque1 | kGateTorque2),
+              joint == 0 ? kGateTorque1 : kGateTorque2);
+    in = FineInput();
+    in.asked_nm[joint] = 0.0;  // 1.9 and 0.9 N m in 1 ms: more than 0.5 and 0.15
+    EXPECT_EQ(Gate(in, kGateLimits).why, joint == 0 ? kGateSlew1 : kGateSlew2);
+  }
+}
+
 TEST(Gate, LimitsSlewInBothDirectionsAndNamesTheJoint) {
   GateInput in = FineInput();
   in.asked_nm = {10.0, -5.0};
@@ -139,6 +169,50 @@ TEST(Gate, TorqueLimitHasPriorityOverSlewLimit) {
   in.previous_nm = {40.0, 0.0};
   EXPECT_EQ(Gate(in, kGateLimits).torque_nm[0], 30.0);
 }
+
+// A config has positive limits; a limit that is wrong all the same must not turn torque around.
+TEST(Gate, ALimitOfZeroOrBelowPassesNoTorque) {
+  GateLimits limits = kGateLimits;
+  limits.torque_nm = {0.0, -6.0};
+  EXPECT_EQ(Gate(FineInput(), limits).torque_nm, (std::array<double, 2>{0.0, 0.0}));
+  limits = kGateLimits;
+  limits.slew_nm_per_s = {0.0, -150.0};
+  EXPECT_EQ(Gate(FineInput(), limits).torque_nm, FineInput().previous_nm);
+}
+
+TEST(Gate, TheLimitsOfARigComeFromItsConfig) {
+  SafetyConfig safety{};
+  safety.torque_limit_nm = {31.0, 7.0};
+  safety.slew_limit_nm_per_s = {501.0, 151.0};
+  safety.permit_timeout_ms = 5.25;
+  safety.homing_torque_fraction = 0.375;
+  LoopConfig loop{};
+  loop.period_ms = 20.0;
+  const GateLimits limits = MakeGateLimits(safety, LoopGrid(loop));
+  EXPECT_EQ(limits.torque_nm, safety.torque_limit_nm);
+  EXPECT_EQ(limits.slew_nm_per_s, safety.slew_limit_nm_per_s);
+  EXPECT_EQ(limits.command_timeout_ns, 40 * kMs);  // two periods
+  EXPECT_EQ(limits.permit_timeout_ns, 5'250'000);  // 5.25 ms
+  EXPECT_EQ(limits.homing_fraction, 0.375);
+}
+
+// Logs and status name the bits: each once, and those that zero the torque are the first four.
+TEST(Gate, EachReasonHasABitAndANameOfItsOwn) {
+  std::uint32_t bits = 0;
+  std::set<std::string> names;
+  for (const GateReason& reason : kGateReasons) {
+    EXPECT_EQ(static_cast<std::uint32_t>(reason.bit), bits + 1) << reason.name;
+    bits |= reason.bit;
+    names.insert(reason.name);
+  }
+  EXPECT_EQ(bits, 0xFFu);
+  EXPECT_EQ(names.size(), kGateReasons.size());
+  EXPECT_EQ(kGateZeroed, 0x0Fu);
+}
+
+static_assert(AgeNs(7, 5) == 2);
+static_assert(AgeNs(5, 7) == -2);
+static_assert(AgeNs(0, INT64_MIN) == INT64_MAX);
 
 TEST(Gate, HomingHasAShareOfTheTorqueLimit) {
   GateLimits limits = kGateLimits;
