@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -32,12 +33,21 @@ struct TortureOptions {
   bool json = false;
 };
 
+std::uint64_t SeedOf(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw InputError("--seeds: found \"" + text + "\", expected whole numbers such as 1..1000");
+  }
+  return seed;
+}
+
 std::vector<std::uint64_t> SeedsOf(const TortureOptions& options) {
   const Shard shard = ParseShard(options.grid.shard);
   std::vector<std::uint64_t> seeds;
   std::size_t number = 0;
   for (const std::string& value : ParseValues(options.seeds)) {
-    if (shard.Has(number++)) seeds.push_back(std::stoull(value));
+    if (shard.Has(number++)) seeds.push_back(SeedOf(value));
   }
   return seeds;
 }
