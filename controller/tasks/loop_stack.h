@@ -46,7 +46,7 @@ class LoopStack {
 
   /// All tasks, for an executor: safety, control, those of the backend, the planner.
   std::vector<Task*> tasks();
-  Task& safety() { return safety_; }
+  SafetyTask& safety() { return safety_; }
   /// Tasks of the backend, in order of priority.
   virtual std::vector<Task*> drive_tasks() = 0;
   /// The task whose timing is logged: one activation a sample.

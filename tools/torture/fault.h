@@ -53,8 +53,6 @@ struct Fault {
   std::int64_t from_ns;  ///< in the clock of the loop
   std::int64_t to_ns;    ///< from here on it is well again
   std::uint64_t seed;    ///< of its random values
-
-  bool operator==(const Fault&) const = default;
 };
 
 /// Whether it is there at an instant.
@@ -70,9 +68,6 @@ int CountOf(FaultPlace place, int gauges) noexcept;
 
 /// Whether this kind makes sense there: a thread sends no wrong scale.
 bool Exists(FaultPlace place, FaultKind kind) noexcept;
-
-/// Whether the place is a thread.
-constexpr bool IsThread(FaultPlace place) noexcept { return place >= FaultPlace::kSafety; }
 
 /// "gauge 7 stuck", with 1-based index.
 std::string Text(const Fault& fault);

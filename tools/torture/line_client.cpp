@@ -35,7 +35,7 @@ std::optional<std::string> LineClient::Line() {
   }
   const std::size_t end = received_.find('\n');
   if (end == std::string::npos) return std::nullopt;
-  const std::string line = received_.substr(0, end);
+  std::string line = received_.substr(0, end);
   received_.erase(0, end + 1);
   return line;
 }

@@ -30,10 +30,8 @@ const char* ToString(Situation situation) noexcept;
 
 /// A command of the operator, beyond those that lead to the situation.
 struct TimedCommand {
-  std::int64_t at_ns;  ///< after the begin of the faults; may be negative
+  std::int64_t at_ns;  ///< after the begin of the faults; negative: at once
   std::string text;    ///< one line of the protocol
-
-  bool operator==(const TimedCommand&) const = default;
 };
 
 /// One session of the whole daemon, from its start to its end: all that is random in it.

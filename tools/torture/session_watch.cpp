@@ -21,10 +21,6 @@ void SessionWatch::Add(std::int64_t at_ns, const char* rule, const std::string& 
   }
 }
 
-bool SessionWatch::WasSent(const char* command) const {
-  return std::find(sent_.begin(), sent_.end(), command) != sent_.end();
-}
-
 void SessionWatch::Look(std::int64_t now_ns, const WatchSample& sample) {
   const bool before = forbidden_since_ns_.empty() || forbidden_since_ns_.back() == INT64_MAX;
   const std::int64_t tick_ns = now_ns - kMs;  // the tick of the safety task that is seen
@@ -116,17 +112,17 @@ void SessionWatch::LookAtState(std::int64_t now_ns, const WatchSample& sample) {
     Add(now_ns, "trip-opens-the-relay", "Tripped with the relay told to be closed");
   }
   if (changed && before == kTripped) {
-    const bool may = status.state == kIdle && button_ && WasSent("reset");
+    const bool may = status.state == kIdle && button_ && TakeSent("reset");
     if (!may) Add(now_ns, "latched", std::string("left Tripped to ") + ToString(status.state));
     button_ = false;
   }
   if (changed && before == kFaultStopping && status.state != kTripped) {
     Add(now_ns, "latched", std::string("left FaultStopping to ") + ToString(status.state));
   }
-  if (changed && before == kIdle && DrivesEnabled(status.state) && !WasSent("arm")) {
+  if (changed && before == kIdle && DrivesEnabled(status.state) && !TakeSent("arm")) {
     Add(now_ns, "arms-by-itself", "no arm was sent");
   }
-  if (changed && status.state == kRunning && !(before == kArmed && WasSent("run"))) {
+  if (changed && status.state == kRunning && !(before == kArmed && TakeSent("run"))) {
     Add(now_ns, "runs-by-itself", std::string("from ") + ToString(before));
   }
   if (status.state == kTripped && before != kTripped) button_ = false;

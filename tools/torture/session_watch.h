@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,8 +56,9 @@ class SessionWatch {
  public:
   SessionWatch(const RigConfig& config, const WatchRules& rules) : config_(config), rules_(rules) {}
 
-  /// What the operator has sent: without it, these changes of state are violations.
-  void Allow(const std::string& command) { sent_.push_back(command); }
+  /// What the operator has sent: without it, these changes of state are violations. One change uses
+  /// up all of its command that have been sent before.
+  void Allow(const std::string& command) { sent_.insert(command); }
   /// The button has been pressed for long enough.
   void ButtonPressed() { button_ = true; }
 
@@ -89,13 +91,13 @@ class SessionWatch {
   void LookAtTorque(std::int64_t now_ns, const WatchSample& sample);
   void LookAtArm(std::int64_t now_ns, const WatchSample& sample);
   void LookAtState(std::int64_t now_ns, const WatchSample& sample);
-  bool WasSent(const char* command) const;
+  bool TakeSent(const char* command) { return sent_.erase(command) > 0; }
   void Over(std::int64_t now_ns, const char* what, double share, double most, double* peak);
 
   const RigConfig& config_;
   WatchRules rules_;
   std::vector<Violation> violations_;
-  std::vector<std::string> sent_;
+  std::set<std::string> sent_;  // and not used up
   SafetyStatus status_{SafetyState::kStarting, TripCause::kNone};
   std::optional<Latched> first_cause_;
   // Since when torque has not been allowed, of the last milliseconds, the newest last; INT64_MAX:

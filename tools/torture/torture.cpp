@@ -237,9 +237,10 @@ class Scenario {
     }
     const std::int64_t limit_ns = std::llround(1e9 * rig_.config.safety.stop_timeout_s) + kEndNs;
     const bool done = session_.ShutDown(limit_ns);
-    if (!done && !stuck)
+    if (!done && !stuck) {
       session_.watch().Add(session_.now_ns(), "ends",
                            "not within " + std::to_string(limit_ns / kMs) + " ms");
+    }
     if (!stuck && session_.stack().Sample().told.relay_closed) {
       session_.watch().Add(session_.now_ns(), "ends", "the relay is closed at the end");
     }

@@ -95,7 +95,6 @@ class TortureSession {
     while (runs_.size() > 1) runs_.pop_front();
   }
   std::int64_t log_errors() const { return recording_.errors(); }
-  const LoopGrid& grid() const { return grid_; }
   const std::vector<Fault>& faults() const { return faults_; }
   /// Texts of the journal that are errors.
   const std::vector<std::string>& errors() const { return errors_; }

@@ -88,7 +88,7 @@ class TorturedStack final : private TorturedWires, public LoopStack {
   std::uint32_t released_experiments() const noexcept override;
 
   const PlantTask& arm() const noexcept { return plant_; }
-  SafetyStatus status() noexcept { return static_cast<SafetyTask&>(safety()).status(); }
+  SafetyStatus status() noexcept { return safety().status(); }
   WatchSample Sample() noexcept;
   std::int64_t seen_ns() const noexcept { return side_.seen_ns(); }
 

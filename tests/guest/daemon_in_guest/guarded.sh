@@ -15,6 +15,7 @@ flexarmd() {
   exec env RTGUARD_REPORT="$report" LD_PRELOAD=/mnt/share/librtguard.so /usr/local/bin/flexarmd "$@"
 }
 came_to() { within "$1" grep -q -- "$2" daemon.log; }
+# grep fails where it counts 0.
 count() { grep -c -- "$1" daemon.log || true; }
 again() { (($(count "$2") > $1)); }
 

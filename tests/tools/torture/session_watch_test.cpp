@@ -165,6 +165,16 @@ TEST_F(SessionWatchTest, NothingArmsOrRunsByItself) {
   ExpectBroken("arms-by-itself");
 }
 
+// A command that has had its effect permits no second one.
+TEST_F(SessionWatchTest, OneCommandPermitsOneChange) {
+  RunWithTorque();
+  sample.torque_nm = {};
+  Become(kIdle);
+  EXPECT_TRUE(watch.violations().empty());
+  Become(kArmed);
+  ExpectBroken("arms-by-itself");
+}
+
 TEST_F(SessionWatchTest, ARunNeedsACommand) {
   Look(5);
   watch.Allow("arm");
