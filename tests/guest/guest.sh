@@ -238,9 +238,29 @@ build() {
   rm -rf --one-file-system "$cache/work"
 }
 
+# Sets `alone`, the command in front of QEMU: both of its threads on one core that no other guest has,
+# as long as there is one, and the thread of the devices first, where the host permits that. On
+# virtual time this thread takes an expired timer off its list and then interrupts the guest's
+# processor. If the host stops it in between and the processor runs on, all timers of the guest are
+# late by what is executed meanwhile.
+keep_in_step() {
+  local core
+  for core in $(taskset -c -p $$ | sed 's/.*: //' | tr ',' '\n' |
+    awk -F- '{ for (i = $1; i <= $NF; i++) print i }'); do
+    exec {core_lock}>"$cache/core$core.lock"
+    if flock -n "$core_lock"; then
+      alone=(taskset -c "$core")
+      break
+    fi
+    exec {core_lock}>&-
+  done
+  if chrt -R -f 1 true 2>/dev/null; then alone+=(chrt -R -f 1); fi
+}
+
 run() {
   local share='' out='' init=/usr/local/sbin/guest-run append='' limit_s=120 temporary='' qemu=0
   local cpu=(-accel "tcg,thread=multi" -smp 2)
+  local alone=()
   while (($#)); do
     case $1 in
       --share) share=$2; shift 2 ;;
@@ -250,7 +270,11 @@ run() {
         append="systemd.unit=guest.target systemd.show_status=0"
         shift
         ;;
-      --det) cpu=(-accel "tcg,thread=single" -icount "shift=1,sleep=off" -smp 1); shift ;;
+      --det)
+        cpu=(-accel "tcg,thread=single" -icount "shift=1,sleep=off" -smp 1)
+        keep_in_step
+        shift
+        ;;
       --timeout) limit_s=$2; shift 2 ;;
       --) shift; break ;;
       *) usage ;;
@@ -263,8 +287,9 @@ run() {
   rm -f "$out/status"
   printf '%q ' "$@" >"$out/command"
   # snapshot=on: the guest's writes to its root are discarded.
-  timeout -k 3 "$limit_s" qemu-system-x86_64 -M q35 -cpu max "${cpu[@]}" -m 1024 -nodefaults \
-    -display none -no-reboot -serial stdio -kernel "$cache/vmlinux" -initrd "$cache/initrd.cpio" \
+  timeout -k 3 "$limit_s" "${alone[@]}" qemu-system-x86_64 -M q35 -cpu max "${cpu[@]}" \
+    -m 1024 -nodefaults -display none -no-reboot -serial stdio \
+    -kernel "$cache/vmlinux" -initrd "$cache/initrd.cpio" \
     -drive "file=$cache/root.ext4,format=raw,if=virtio,snapshot=on" \
     -fsdev "local,id=s,path=${share:-$out},security_model=none,readonly=on" \
     -device virtio-9p-pci,fsdev=s,mount_tag=share \

@@ -66,8 +66,8 @@ for line in limit-1-low limit-1-high limit-2-low limit-2-high emergency-stop; do
   flexarm sim $line 1 >/dev/null
   check "reset after $line" reset_sim
 done
-check "tare" flexarm tare
-check "zero" flexarm zero
+check "tare" within 20 flexarm tare  # refused while the links still vibrate
+check "zero" within 20 flexarm zero
 ends 0 safety control plant
 
 echo "== simulated: a fault stop, by a payload that bends the links too far"
