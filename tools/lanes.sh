@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
   only_all_lanes=(guards unit campaigns slowest mutation mutants fuzz docs-all build-cost headers-all
-                  separate clang-tidy-all asan-all debian13 arm64)
+                  separate clang-tidy-all asan-all guest-long debian13 arm64)
 }
 
 logs=build/logs
@@ -237,10 +237,19 @@ lane_hil() {  # tools/run-hil, in real time where that is permitted
   python3 tests/e2e/hil_check.py
 }
 
-lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
+build_for_guest() {
   build release flexarm flexarmd guest_daq_test guest_gpio_test hal_canopen_socketcan_test \
     wired_threads_test rtguard
+}
+
+lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
+  build_for_guest
   tests/guest/run_all.sh build/release --note "$logs/$lane.note"
+}
+
+lane_guest-long() {  # the same kernel: 10,000 wake-ups beside cyclictest, and a loop of 1 kHz
+  build_for_guest
+  tests/guest/run_all.sh build/release --note "$logs/$lane.note" wakeup fast_loop
 }
 
 lane_bench() {  # benchmarks; the default experiment runs 100 times faster than real time

@@ -1,13 +1,22 @@
 #include "controller/tasks/loop_stack.h"
 
+#include <algorithm>
+
 namespace flexarm {
 namespace {
 
-// At least 60 s of records: no loss if the recorder is blocked for that long.
+// 60 s of records: no loss if the recorder is blocked for that long. Of steps, 80 s at 50 Hz, and
+// 10 s at rates from 400 Hz: a record has 2 KiB, all of it locked in memory.
 constexpr std::size_t kTickDepth = 4'000;
 constexpr std::size_t kSafetyDepth = 60'000;
 constexpr std::size_t kOperatorDepth = 64;
-constexpr std::size_t kOperatorTickDepth = 500;  // 10 s of steps, so that commissioning gets all
+constexpr std::size_t kOperatorTickDepth = 500;
+
+// Of steps: 10 s, so that commissioning gets all and the recorder survives that; `least` or more.
+std::size_t Depth(const RigConfig& config, std::size_t least) {
+  constexpr std::int64_t kKeptNs = 10'000'000'000;
+  return std::max(least, static_cast<std::size_t>(kKeptNs / config.loop.period_ns()));
+}
 
 std::vector<PermitChannel*> Joined(std::vector<PermitChannel*> first,
                                    const std::vector<PermitChannel*>& then) {
@@ -38,8 +47,8 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
       late_threads_trip_(wiring.metal_moves),
       requests_(kOperatorDepth),
       answers_(kOperatorDepth),
-      tick_records_(kTickDepth),
-      operator_ticks_(kOperatorTickDepth),
+      tick_records_(Depth(config, kTickDepth)),
+      operator_ticks_(Depth(config, kOperatorTickDepth)),
       safety_records_(kSafetyDepth),
       step_(config, design),
       planner_(PlannerOf(config, design)),
@@ -57,7 +66,8 @@ LoopStack::LoopStack(const RigConfig& config, const Design& design, const LoopWi
                .answers = &answers_,
                .records = &safety_records_,
                .timing = &timing_,
-               .present = &present_}),
+               .present = &present_},
+              SafetyTask::PhaseNs(LoopGrid(config.loop))),
       control_(config.loop, config.safety.window_periods, &step_,
                {.frames = wiring.frames,
                 .permits = &control_permits_,

@@ -24,13 +24,13 @@ bool RaisesEnergy(RequestKind kind) noexcept {
 
 }  // namespace
 
-SafetyTask::SafetyTask(const MonitorLimits& limits, SafetyChannels channels)
-    : channels_(std::move(channels)), monitor_(limits) {}
+SafetyTask::SafetyTask(const MonitorLimits& limits, SafetyChannels channels, std::int64_t phase_ns)
+    : channels_(std::move(channels)), phase_ns_(phase_ns), monitor_(limits) {}
 
 Task::Traits SafetyTask::traits() const noexcept {
   return {.name = "safety",
           .period_ns = kPeriodNs,
-          .phase_ns = 0,
+          .phase_ns = phase_ns_,
           .deadline_ns = kPeriodNs,
           .priority = kPriority};
 }

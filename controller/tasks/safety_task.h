@@ -14,6 +14,7 @@
 #include "controller/safety/safety_machine.h"
 #include "controller/safety/safety_monitor.h"
 #include "controller/safety/safety_record.h"
+#include "controller/types/loop_grid.h"
 #include "controller/types/messages.h"
 #include "controller/types/present_causes.h"
 #include "hal/safety_lines.h"
@@ -65,7 +66,16 @@ class SafetyTask final : public Task {
   /// then.
   static constexpr std::int64_t kAcknowledgeNs = 2'000'000'000;
 
-  SafetyTask(const MonitorLimits& limits, SafetyChannels channels);
+  /// A tick comes so long before each step, and before each exchange of the buses where
+  /// `loop.acquire_before_ms` is a whole number: the thread of neither waits for this one when it
+  /// wakes, and an exchange carries what the tick has decided.
+  static constexpr std::int64_t kLeadNs = 100'000;
+  static constexpr std::int64_t PhaseNs(const LoopGrid& grid) {
+    return (grid.phase_ns + kPeriodNs - kLeadNs) % kPeriodNs;
+  }
+
+  /// @param phase_ns  of its ticks, below a period
+  SafetyTask(const MonitorLimits& limits, SafetyChannels channels, std::int64_t phase_ns = 0);
 
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
@@ -109,6 +119,7 @@ class SafetyTask final : public Task {
   void PublishPresent(TripCauses causes, const SafetyInputs& in) noexcept;
 
   SafetyChannels channels_;
+  std::int64_t phase_ns_;
   SafetyMonitor monitor_;
   SafetyStatus status_{SafetyState::kStarting, TripCause::kNone};
   SafetyFacts last_facts_{};

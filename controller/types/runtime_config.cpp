@@ -8,7 +8,7 @@ namespace flexarm {
 
 std::vector<Problem> LoopConfig::Problems() const {
   ProblemList list("loop.");
-  list.Within("period_ms", period_ms, 2.0, 100.0,
+  list.Within("period_ms", period_ms, 1.0, 100.0,
               "a slower grid undersamples the bending, safety acts every millisecond");
   list.Within("acquire_before_ms", acquire_before_ms, 0.0, 100.0,
               "the time that the buses need to deliver a frame");

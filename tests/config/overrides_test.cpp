@@ -61,7 +61,7 @@ TEST(Overrides, AreTheSourceOfTheirProblems) {
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].file, "--set");
   EXPECT_EQ(problems[0].line, 0);
-  EXPECT_THAT(problems[0].Text(), HasSubstr("--set: loop.period_ms = 0: must lie in 2 .. 100"));
+  EXPECT_THAT(problems[0].Text(), HasSubstr("--set: loop.period_ms = 0: must lie in 1 .. 100"));
 }
 
 TEST(Overrides, OfAnElementKeepTheSourceOfTheOtherElements) {

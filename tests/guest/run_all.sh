@@ -2,13 +2,15 @@
 # Runs every test of this folder in a guest of its own, and compares the logs of the guests with
 # runs on this machine. Installs nothing; builds the guest's image where it is out of date.
 #
-# usage: run_all.sh BUILD_FOLDER [--note FILE]     e.g. build/release, with all of it built
+# usage: run_all.sh BUILD_FOLDER [--note FILE [SCRIPT..]]
+#   BUILD_FOLDER  e.g. build/release, with all of it built
+#   SCRIPT        instead of all but the longest: name of one of daemon_in_guest, as wakeup
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 
-if (($# != 1 && $# != 3)) || [[ ${2:---note} != --note ]]; then
-  sed -n '/^# usage: /s/^# //p' "${BASH_SOURCE[0]}" >&2
+if (($# < 1 || $# == 2)) || [[ ${2:---note} != --note ]]; then
+  sed -n '/^# usage: /,/^set /s/^# //p' "${BASH_SOURCE[0]}" >&2
   exit 2
 fi
 build=$1
@@ -81,7 +83,9 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 
 # A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
 # first. `threads` has two processors and real time; it asserts no time.
-names=(service wire hardened guarded commission load hostile experiment docs refusal threads interfaces daq gpio)
+names=(service wire hardened guarded commission load hostile experiment docs refusal threads
+  interfaces daq gpio)
+if (($# > 3)); then names=("${@:4}"); fi
 running=0
 for name in "${names[@]}"; do
   if ((running == 2)); then
@@ -99,6 +103,18 @@ done
 wait
 for name in "${names[@]}"; do report_guest "$name"; done
 
+finish() {  # finish NOTE
+  echo "$passed passed$1" | tee "$note"
+  if ((${#failed[@]})); then
+    printf 'FAILED: %s\n' "${failed[@]}"
+    exit 1
+  fi
+}
+if (($# > 3)); then
+  finish "$(cat "$work"/*/note 2>/dev/null | sed 's/^/; /' | tr -d '\n')"
+  exit 0
+fi
+
 # The guest's real-time run must equal a lock-step run with the same seed on this machine, bit for
 # bit.
 "$bin/flexarm" simulate -c "$root/config/hil.toml" --json -o "$work/lockstep.flexarm" \
@@ -114,8 +130,4 @@ for name in stop term hung killed; do
 done
 
 ratio=$(cat "$work/load/note" 2>/dev/null || true)
-echo "$passed passed; ${ratio#*: }" | tee "$note"
-if ((${#failed[@]})); then
-  printf 'FAILED: %s\n' "${failed[@]}"
-  exit 1
-fi
+finish "; ${ratio#*: }"

@@ -23,7 +23,8 @@ void SessionWatch::Add(std::int64_t at_ns, const char* rule, const std::string& 
 
 void SessionWatch::Look(std::int64_t now_ns, const WatchSample& sample) {
   const bool before = forbidden_since_ns_.empty() || forbidden_since_ns_.back() == INT64_MAX;
-  const std::int64_t tick_ns = now_ns - kMs;  // the tick of the safety task that is seen
+  const std::int64_t tick_ns =
+      now_ns - kMs + phase_ns_;  // the tick of the safety task that is seen
   const std::int64_t since_ns = before ? tick_ns : forbidden_since_ns_.back();
   if (forbidden_since_ns_.size() == kKept) forbidden_since_ns_.pop_front();
   forbidden_since_ns_.push_back(TorqueAllowed(sample.status.state) ? INT64_MAX : since_ns);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "controller/safety/safety_machine.h"
+#include "controller/tasks/safety_task.h"
+#include "controller/types/loop_grid.h"
 #include "controller/types/rig_config.h"
 #include "hal/safety_lines.h"
 #include "hal/sim/plant_truth.h"
@@ -45,7 +47,7 @@ struct Peaks {
 /// Which rules hold in a session, by its faults.
 struct WatchRules {
   /// Torque may stay for so long after the tick in which the state stopped allowing it, in the time
-  /// of the arm's thread; -1: the slice that begins with that tick has none.
+  /// of the arm's thread; -1: a slice that begins then or later has none.
   std::int64_t torque_after_ns;
   Peaks most;  ///< torque_share is always 1
 };
@@ -54,7 +56,8 @@ struct WatchRules {
 /// torque and slew, envelopes of the true arm, relay, latch, and that nothing starts by itself.
 class SessionWatch {
  public:
-  SessionWatch(const RigConfig& config, const WatchRules& rules) : config_(config), rules_(rules) {}
+  SessionWatch(const RigConfig& config, const WatchRules& rules)
+      : config_(config), rules_(rules), phase_ns_(SafetyTask::PhaseNs(LoopGrid(config.loop))) {}
 
   /// What the operator has sent: without it, these changes of state are violations. One change uses
   /// up all of its command that have been sent before.
@@ -96,6 +99,7 @@ class SessionWatch {
 
   const RigConfig& config_;
   WatchRules rules_;
+  std::int64_t phase_ns_;  // of the safety task
   std::vector<Violation> violations_;
   std::set<std::string> sent_;  // and not used up
   SafetyStatus status_{SafetyState::kStarting, TripCause::kNone};

@@ -47,9 +47,8 @@ class Scenario {
  private:
   static WatchRules RulesOf(const TorturedRig& rig, const TortureScenario& scenario,
                             const Peaks& envelope) {
-    // Within a millisecond the drive has the permit of the tick in which the state changed: the
-    // slice that begins with the tick has no torque. With a fault of the safety thread, the permit
-    // must be too old.
+    // Within a millisecond the drive has the permit of the tick that changed the state: the next
+    // slice has no torque. With a fault of the safety thread, the permit must be too old.
     const auto permit_ns = std::llround(rig.config.safety.permit_timeout_ms * 1e6);
     return {.torque_after_ns = HasFaultOf(scenario, FaultPlace::kSafety) ? permit_ns + 2 * kMs : -1,
             .most = envelope};

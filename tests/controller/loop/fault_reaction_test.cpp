@@ -93,7 +93,8 @@ class SwitchReaction : public testing::TestWithParam<SwitchCase> {};
 TEST_P(SwitchReaction, OpensTheRelayAtTheSecondTickAndRemovesTheTorqueWithinThreeMilliseconds) {
   EventRun run(ShippedRig(), LineEvent(0.317, GetParam().line));
   ExpectLatched(&run, GetParam().cause);
-  EXPECT_EQ(Trip(run).due_ns, run.event_ns() + 2 * kMs);
+  // The second tick that sees the level.
+  EXPECT_EQ(Trip(run).due_ns, run.event_ns() + 2 * kMs - SafetyTask::kLeadNs);
   EXPECT_EQ(Trip(run).evidence.value, 0.0);
   EXPECT_EQ(Trip(run).evidence.limit, 1.0);
   EXPECT_EQ(Trip(run).evidence.channel, GetParam().channel);
@@ -145,9 +146,9 @@ TEST_P(FreezePhase, OfTheControlTaskTripsWithinTwoPeriodsAndTwoMilliseconds) {
   const SafetyRecord& trip = Trip(run);
   EXPECT_LE(trip.due_ns - run.event_ns(), 42 * kMs);
   EXPECT_GT(trip.due_ns - run.event_ns(), 20 * kMs);
-  // Evidence: the age of the heartbeat, just over its limit of two periods.
+  // Evidence: the age of the heartbeat at the first tick that is over its limit of two periods.
   EXPECT_DOUBLE_EQ(trip.evidence.limit, 0.040);
-  EXPECT_NEAR(trip.evidence.value, 0.041, 1e-9);
+  EXPECT_NEAR(trip.evidence.value, 0.0409, 1e-9);
   EXPECT_LT(run.tick.back().input.now_ns, run.event_ns());
 }
 
@@ -186,7 +187,7 @@ class OutputTimingReaction : public testing::TestWithParam<std::vector<std::stri
 TEST_P(OutputTimingReaction, ASwitchRemovesTheTorqueWithinThreeMilliseconds) {
   EventRun run(ShippedRig(GetParam()), LineEvent(0.317, Line::kEmergencyStop));
   ExpectLatched(&run, TripCause::kEmergencyStop);
-  EXPECT_EQ(Trip(run).due_ns, run.event_ns() + 2 * kMs);
+  EXPECT_EQ(Trip(run).due_ns, run.event_ns() + 2 * kMs - SafetyTask::kLeadNs);
   // The mean over the period of the event includes the milliseconds until three after the event;
   // later means are zero.
   const std::int64_t period_ns = run.grid().period_ns;

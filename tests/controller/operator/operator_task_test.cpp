@@ -300,10 +300,10 @@ TEST_F(OperatorTaskTest, AnUnattendedRunArmsRunsAndDisarmsByItself) {
   EXPECT_EQ(operator_->trip(), TripCause::kNone);
   EXPECT_FALSE(operator_->refused());
   EXPECT_THAT(JournalTexts(),
-              ElementsAre("Starting -> Idle", "arm: accepted", "Idle -> Armed", "run: accepted",
-                          "Armed -> Running", "Running -> Stopping", "Stopping -> Armed",
+              ElementsAre("Starting -> Idle", "Idle -> Armed", "arm: accepted", "Armed -> Running",
+                          "run: accepted", "Running -> Stopping", "Stopping -> Armed",
                           "Armed -> Idle", "disarm: accepted"))
-      << "a disarm is answered when the relay is open";
+      << "a request is answered when it has had its effect";
   const std::vector<RunEvent> logged = TakeEvents(&events_);
   ASSERT_EQ(logged.size(), 1u);
   EXPECT_EQ(logged[0].name, "one-move");

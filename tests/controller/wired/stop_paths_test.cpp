@@ -32,17 +32,17 @@ void StallAll(Rig& rig) {
 }
 
 const std::array<StopPath, 6> kPaths = {{
-    {"limit switch", [](Rig& rig) { Open(rig, Line::kLimit1High); }, {2, 3, 2}},
-    {"emergency stop", [](Rig& rig) { Open(rig, Line::kEmergencyStop); }, {2, 3, 2}},
+    {"limit switch", [](Rig& rig) { Open(rig, Line::kLimit1High); }, {2, 4, 2}},
+    {"emergency stop", [](Rig& rig) { Open(rig, Line::kEmergencyStop); }, {2, 4, 2}},
     {"safety thread stands still",
      [](Rig& rig) { rig.executor.Stall(rig.stack->safety()); },
      {5, 5, 25}},
     {"control thread stands still",
      [](Rig& rig) { rig.executor.Stall(rig.stack->control()); },
-     {41, 42, 41}},
+     {40, 42, 40}},
     {"nothing passes on the drives' bus",
      [](Rig& rig) { rig.world->wire.SetStalled(true); },
-     {41, 46, 41}},
+     {40, 44, 40}},
     {"daemon killed", [](Rig& rig) { StallAll(rig); }, {5, 5, 102}},
 }};
 

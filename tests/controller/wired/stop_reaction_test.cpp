@@ -5,9 +5,11 @@
 namespace flexarm {
 namespace {
 
-// Reaction at the simulated drives, over the phase of the event in the period of the buses. Two
-// ticks of safety, whose samples must agree, and the frames on the wire: two controlwords and a
-// SYNC at 1 Mbit/s take 0.3 ms. With the torque of the last exchange until the next, 20 ms.
+// Reaction at the simulated drives, over the phase of the event in the period of the buses, in
+// steps of a millisecond: 0.9 ms until the next tick of safety, one more tick, whose sample must
+// agree, and the frames on the wire: two controlwords and a SYNC at 1 Mbit/s take 0.3 ms. The
+// simulated drives and this test look every millisecond. With the torque of the last exchange until
+// the next, it would be 20 ms.
 class StopReaction : public HostileBus, public testing::WithParamInterface<int> {
  protected:
   // In a period of the buses, `GetParam` ms after its begin, with torque at both drives.
@@ -29,10 +31,10 @@ class StopReaction : public HostileBus, public testing::WithParamInterface<int> 
   }
 };
 
-TEST_P(StopReaction, ALimitSwitchEndsTheTorqueAtTheDrivesWithinThreeMilliseconds) {
+TEST_P(StopReaction, ALimitSwitchEndsTheTorqueAtTheDrivesWithinFourMilliseconds) {
   StartInPhase();
   rig_->world->lines.levels &= ~LineBit(Line::kLimit2High);
-  EXPECT_LE(TorqueLasts_ms(), 3.0);
+  EXPECT_LE(TorqueLasts_ms(), 4.0);
   EXPECT_EQ(rig_->permit().cause, TripCause::kLimitSwitch2High);
   rig_->RunFor(200 * kMs);
   EXPECT_EQ(rig_->Failed(), 0U) << "the buses go on";
@@ -46,7 +48,7 @@ TEST_P(StopReactionOf, AnEmergencyStopOnAWeldedRelayIsTheSame) {
   StartInPhase();
   rig_->world->lines.welded = true;
   rig_->world->lines.levels &= ~LineBit(Line::kEmergencyStop);
-  EXPECT_LE(TorqueLasts_ms(), 3.0);
+  EXPECT_LE(TorqueLasts_ms(), 4.0);
 }
 
 // The write of a tick is judged in the next. The relay keeps its level; the pump stands still, and
@@ -54,7 +56,7 @@ TEST_P(StopReactionOf, AnEmergencyStopOnAWeldedRelayIsTheSame) {
 TEST_P(StopReactionOf, AWriteThatFailsIsNamedAndTheDrivesAreOffThoughTheRelayIsStuck) {
   StartInPhase();
   rig_->world->lines.write.ok = false;
-  ASSERT_TRUE(rig_->RunUntil(3 * kMs, [this] { return !rig_->world->drives_make_torque(); }));
+  ASSERT_TRUE(rig_->RunUntil(4 * kMs, [this] { return !rig_->world->drives_make_torque(); }));
   EXPECT_TRUE(rig_->tripped());
   EXPECT_EQ(rig_->permit().cause, TripCause::kSafetyLines);
   EXPECT_EQ(rig_->permit().evidence.channel, static_cast<std::uint32_t>(LineTrouble::kWriteFailed));
@@ -70,7 +72,7 @@ TEST_P(StopReactionOf, AWeldedRelayWithAMirrorContactIsNotArmedAgain) {
   rig_->world->lines.has_contact = true;
   rig_->world->lines.welded = true;
   rig_->world->lines.levels &= ~LineBit(Line::kEmergencyStop);
-  EXPECT_LE(TorqueLasts_ms(), 3.0);
+  EXPECT_LE(TorqueLasts_ms(), 4.0);
   rig_->world->lines.levels = kHealthyLevels | LineBit(Line::kResetButton);
   rig_->RunFor(3000 * kMs);
   EXPECT_EQ(rig_->Ask(RequestKind::kReset), Refusal::kCauseRemains);

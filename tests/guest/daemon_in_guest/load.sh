@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # Inside the guest, on virtual time: the default experiment while the processor is busy. The
 # lateness of the control thread is compared with that of cyclictest at the same priority and period
-# under the same load: the times are those of the emulation, but their ratio is meaningful. Control
-# is due at the same instant as safety and waits for it, so the ratio is above 1. Leaves the log as
-# /mnt/out/loaded.flexarm.
+# under the same load: the times are those of the emulation, but their ratio is meaningful
+# (gated in wakeup.sh). Leaves the log as /mnt/out/loaded.flexarm.
 # shellcheck source=tests/guest/check.sh
 . "$(dirname "$0")/../check.sh"
 
