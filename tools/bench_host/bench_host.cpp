@@ -5,10 +5,11 @@
 #include <utility>
 
 #include "tools/bench_host/control_rows.h"
-#include "tools/bench_host/core_rows.h"
 #include "tools/bench_host/log_rows.h"
 #include "tools/bench_host/plant_rows.h"
 #include "tools/bench_host/solver_rows.h"
+#include "tools/bench_host/two_cores_row.h"
+#include "tools/bench_host/wake_up_row.h"
 
 namespace flexarm {
 namespace {

@@ -44,7 +44,8 @@ volatile double computed = 0.0;
 
 FloatBound Measure(const char* name, const char* what, double (*chains)(), std::size_t bytes,
                    const Repetitions& repetitions) {
-  const double flops = 2.0 * kRounds * static_cast<double>(kChains * bytes / sizeof(double));
+  const std::size_t lanes = bytes / sizeof(double);
+  const double flops = 2.0 * kRounds * static_cast<double>(kChains * lanes);
   const Timing timing = TimeWork([chains] { computed = chains(); }, repetitions);
   return {.name = name, .what = what, .flops_per_s = flops / timing.least_s};
 }
@@ -55,11 +56,11 @@ std::vector<FloatBound> MeasureFloatBounds(const Repetitions& repetitions) {
   std::vector<FloatBound> bounds;
 #ifdef __x86_64__
   bounds.push_back(Measure("sse2", "2 doubles a register (SSE2)", Chains16, 16, repetitions));
-  if (__builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0) {
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
     bounds.push_back(
         Measure("avx2", "4 doubles a register, fused (AVX2, FMA)", Chains32, 32, repetitions));
   }
-  if (__builtin_cpu_supports("avx512f") != 0) {
+  if (__builtin_cpu_supports("avx512f")) {
     bounds.push_back(
         Measure("avx512", "8 doubles a register, fused (AVX-512)", Chains64, 64, repetitions));
   }

@@ -8,13 +8,9 @@
 
 namespace flexarm {
 
-/// A sweep over seeds with one run at a time, and with two: how much faster the second core makes
-/// it.
-BenchRow TwoCoresRow(const BenchSetting& setting, const std::filesystem::path& scratch);
-
-/// Wake-up of the daemon's control thread on the simulated arm in real time, and of cyclictest with
-/// the same priority and period after it. Nothing where real time is not permitted, or with a
-/// config of real hardware, which this never starts.
+/// Wake-up of the daemon's control thread on the simulated arm in real time, and after it of
+/// cyclictest with the same priority and period. Not measured where real time is not permitted, or
+/// with a config of real hardware, which this never touches.
 BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scratch);
 
 /// What cyclictest says of its thread.

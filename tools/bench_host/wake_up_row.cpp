@@ -1,6 +1,7 @@
+#include "tools/bench_host/wake_up_row.h"
+
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <stdexcept>
@@ -8,7 +9,6 @@
 #include "controller/files/write_file.h"
 #include "controller/runlog/run_reader.h"
 #include "tools/bench_host/child_program.h"
-#include "tools/bench_host/core_rows.h"
 
 namespace flexarm {
 namespace {
@@ -69,7 +69,7 @@ BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scr
                .what = "Daemon: wake-up of the control thread after its instant"};
   if (setting.config.backend != "sim") {
     return NotMeasured(row.name, row.what,
-                       "the config is of real hardware: name one of the simulated arm with -c");
+                       "the config is not of the simulated arm: add --set hal.backend=sim");
   }
   if (!IsInPath("cyclictest")) {
     return NotMeasured(row.name, row.what,

@@ -1,8 +1,9 @@
-#include <algorithm>
+#include "tools/bench_host/two_cores_row.h"
+
+#include <array>
 #include <cstdio>
 #include <thread>
 
-#include "tools/bench_host/core_rows.h"
 #include "tools/sweep/sweep.h"
 
 namespace flexarm {
