@@ -17,7 +17,7 @@ constexpr void* SUN_COMM_NULL = nullptr;
 #endif
 
 int Rate(sunrealtype, N_Vector y, N_Vector y_dot, void* user) {
-  (*static_cast<const PlantRate*>(user))(N_VGetArrayPointer(y), N_VGetArrayPointer(y_dot));
+  (*static_cast<PlantRate*>(user))(N_VGetArrayPointer(y), N_VGetArrayPointer(y_dot));
   return 0;
 }
 

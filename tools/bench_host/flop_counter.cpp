@@ -3,7 +3,6 @@
 #ifdef __x86_64__
 #include <sys/ptrace.h>
 #include <sys/types.h>
-#include <sys/uio.h>
 #include <sys/user.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -76,10 +75,12 @@ class Child {
   int FlopsAt(Address address) {
     const auto found = flops_.find(address);
     if (found != flops_.end()) return found->second;
-    std::array<std::uint8_t, kLongestInstruction> code{};
-    const iovec here{.iov_base = code.data(), .iov_len = code.size()};
-    const iovec there{.iov_base = reinterpret_cast<void*>(address), .iov_len = code.size()};
-    process_vm_readv(pid_, &here, 1, &there, 1, 0);  // less near the end of a mapping
+    std::array<std::uint8_t, 2 * sizeof(long)> code{};  // an instruction and what follows it
+    static_assert(code.size() >= kLongestInstruction);
+    for (std::size_t at = 0; at < code.size(); at += sizeof(long)) {
+      const long word = ptrace(PTRACE_PEEKTEXT, pid_, address + at, nullptr);
+      std::memcpy(code.data() + at, &word, sizeof word);
+    }
     return flops_[address] = FlopsOf(code);
   }
 

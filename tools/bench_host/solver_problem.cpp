@@ -26,13 +26,13 @@ State Moved(const State& y, double h, const State& rate) noexcept {
   return out;
 }
 
-State RateAt(const PlantRate& rate, const State& y) noexcept {
+State RateAt(PlantRate& rate, const State& y) noexcept {
   State out;
   rate(y.data(), out.data());
   return out;
 }
 
-State RungeKuttaStep(const PlantRate& rate, const State& y, double h) noexcept {
+State RungeKuttaStep(PlantRate& rate, const State& y, double h) noexcept {
   const State k1 = RateAt(rate, y), k2 = RateAt(rate, Moved(y, 0.5 * h, k1));
   const State k3 = RateAt(rate, Moved(y, 0.5 * h, k2)), k4 = RateAt(rate, Moved(y, h, k3));
   State out;

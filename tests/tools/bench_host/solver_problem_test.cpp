@@ -31,6 +31,20 @@ TEST(PlantRate, IsTheAccelerationOfTheModel) {
   }
 }
 
+// CVODE tries states far away, and goes back.
+TEST(PlantRate, OneStateDoesNotChangeTheNext) {
+  const SolverProblem problem = Problem();
+  PlantRate rate(problem.model());
+  const SolverProblem::State y = problem.ByPlant(5e-4)[3];
+  SolverProblem::State broken = y, first{}, between{}, second{};
+  broken[kPhi1] = std::nan("");
+  rate(y.data(), first.data());
+  rate(broken.data(), between.data());
+  rate(y.data(), second.data());
+  EXPECT_TRUE(std::isnan(between.back()));
+  EXPECT_EQ(first, second);
+}
+
 TEST(PlantRate, RefusesOtherNumbersOfModes) {
   EXPECT_THROW(PlantRate(ArmModel(SmoothArm(ThesisRig()), {4, 3})), std::invalid_argument);
 }
