@@ -73,7 +73,7 @@ void RegisterBenchHost(CLI::App& app, Exit& exit) {
   AddJson(verb, &options->json);
   verb->footer(
       "Times are medians; in brackets the quartiles and the number of repetitions. Calculations\n"
-      "are timed in processor time, sweep, experiment and wake-up in wall time. Floating-point\n"
+      "are timed in processor time, sweep and wake-up in wall time. Floating-point\n"
       "operations are counted in a child process that executes the same code one instruction at a\n"
       "time; the bound is measured in the same run. docs/performance.md explains each row.\n"
       "Takes some minutes on a quiet machine; no row needs root. A row that cannot be measured "
