@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kAnyGauge_hz = 1.0;  // no effect: the prediction has no gauges
 
+}  // namespace
+
 HorizonPlannerConfig PlannerConfigOf(const RigConfig& config) {
   const PlanAheadConfig& plan = *config.controller.plan;
   const std::array<double, 2>& limit_nm = config.safety.torque_limit_nm;
@@ -24,8 +26,6 @@ HorizonPlannerConfig PlannerConfigOf(const RigConfig& config) {
           .payload_change_kg = plan.payload_change_kg,
           .payload_change_share = plan.payload_change_share};
 }
-
-}  // namespace
 
 PlanSchedule PlanScheduleOf(const RigConfig& config) {
   const PlanAheadConfig& plan = *config.controller.plan;

@@ -19,6 +19,9 @@ namespace flexarm {
 /// The schedule of plan requests by [controller.plan].
 PlanSchedule PlanScheduleOf(const RigConfig& config);
 
+/// The settings of the planner by [controller.plan], [controller.payload] and the torque limits.
+HorizonPlannerConfig PlannerConfigOf(const RigConfig& config);
+
 /// The planner task: on request of the control task it plans the rest of a move, for the payload
 /// estimate of the request and from the state predicted for the instant at which the plan becomes
 /// valid.

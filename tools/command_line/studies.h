@@ -32,6 +32,8 @@ inline constexpr std::array kStudies = {
     Study{
         "report",
         "Describe the arm and compare its laws in one HTML page; recompute the thesis for its arm"},
+    Study{"bench-host",
+          "Measure how fast this machine runs step, plan, plant, replay and sweeps, in one table"},
     Study{"torture", "Run the whole daemon under injected faults, and check every safety rule"},
     Study{"identify", "Identify parameters of the rig from a measured run"},
 };

@@ -26,6 +26,7 @@ void RegisterAnalyzeLinearize(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeParametric(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeReduce(CLI::App& analyze, Exit& exit);
 void RegisterAnalyzeTorsion(CLI::App& analyze, Exit& exit);
+void RegisterBenchHost(CLI::App& app, Exit& exit);
 void RegisterBenchmark(CLI::App& app, Exit& exit);
 void RegisterBound(CLI::App& app, Exit& exit);
 void RegisterCheck(CLI::App& app, Exit& exit);

@@ -20,6 +20,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   AddStudy(app, "benchmark");
   AddStudy(app, "report");
   AddStudy(app, "torture");
+  AddStudy(app, "bench-host");
   RegisterReplay(app, exit);
   AddStudy(app, "gauges");
   AddStudy(app, "identify");

@@ -12,6 +12,7 @@ void RegisterStudies(CLI::App& app, Exit& exit) {
   RegisterTorture(app, exit);
   RegisterBenchmark(app, exit);
   RegisterReport(app, exit);
+  RegisterBenchHost(app, exit);
   RegisterGauges(app, exit);
   RegisterIdentify(app, exit);
 }

@@ -74,6 +74,9 @@ LAYERS = {
     "tools/torture": "model model/rigid_joint hal hal/sim controller/realtime controller/types "
                      "controller/safety controller/law controller/step controller/runlog controller/tasks controller/latch "
                      "controller/operator controller/design controller/host config tools/support tools/sweep",
+    "tools/bench_host": "model/arm model/simulation controller/files controller/types "
+                        "controller/law controller/planner controller/design controller/step "
+                        "controller/runlog controller/tasks controller/host config tools/sweep",
     "tools/tuning": "model model/beam estimator controller/types controller/design controller/host config config/new_rig tools/sweep",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "
@@ -96,7 +99,7 @@ LAYERS = {
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot "
-                           "controller/types tools/bound tools/torture",
+                           "controller/types tools/bound tools/torture tools/bench_host",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
                       "config controller/files tools/command_line",
 }

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace flexarm {
+
+/// What a program did.
+struct ProgramResult {
+  int exit_code;       ///< 128 + the signal if one ended it
+  std::string output;  ///< standard output
+  std::string errors;  ///< standard error
+};
+
+/// Whether `name` is an executable file of a folder in PATH.
+bool IsInPath(const std::string& name);
+
+/// Runs a program to its end, in `folder`, with nothing to read.
+/// @param words  the program, by its path or to be found in PATH, and its arguments
+/// @throws std::runtime_error if it cannot be started
+ProgramResult RunChild(const std::vector<std::string>& words, const std::filesystem::path& folder);
+
+/// The last line of what it said on standard error that is not empty, or its exit code: for why it
+/// failed.
+std::string ReasonOf(const ProgramResult& result);
+
+}  // namespace flexarm
