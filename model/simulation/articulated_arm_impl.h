@@ -97,7 +97,7 @@ void ArticulatedArm<M>::EliminateLink2(const Coordinates& q, const Coordinates& 
   m_y_ = c_.m - Xkk;
   Sx_ = c_.Sx - Xka - u_ * Xks;
   Sy_ = tip[0];
-  I_ = c_.I2 + N2f2.dot(q.f2) + c_.Ip - Xaa - 2.0 * u_ * Xas - u_ * u_ * Xss;
+  I_ = c_.I2 + N2f2.Dot(q.f2) + c_.Ip - Xaa - 2.0 * u_ * Xas - u_ * u_ * Xss;
   tip2_ = u_ * kappa2;
   free2_ = bent2_ + gg * (k_.link2.turned * q.f2);
   const ModeVector<3> z = reaction2_ + gg * (k_.link2.centrifugal * q.f2);
@@ -106,7 +106,7 @@ void ArticulatedArm<M>::EliminateLink2(const Coordinates& q, const Coordinates& 
   const double za = z[1] - tip2_ * X(1, 2) - phi_ * X(1, 2) * z_s2_;
   B_x_ = c_.m * X_ - Sy_ * kappa_ - gg * c_.Sx - 2.0 * g * tip_dot[0];
   B_y_ = m_y_ * Y_ + Sx_ * kappa_ - gg * Sy_ + zk;
-  B_g_ = -Sy_ * X_ + Sx_ * Y_ + I_ * kappa_ + 2.0 * g * N2f2.dot(v.f2) + c_.Ip * kappa2 + za +
+  B_g_ = -Sy_ * X_ + Sx_ * Y_ + I_ * kappa_ + 2.0 * g * N2f2.Dot(v.f2) + c_.Ip * kappa2 + za +
          u_ * (z_s2_ * shrink);
 }
 
@@ -125,7 +125,7 @@ void ArticulatedArm<M>::AssembleHub(const Coordinates& q, const Coordinates& v,
   const double spring = r.K2h * over4_ * (c_.J2 + r.drag4);  // left of K2h on th2
   const double motor = c_.Ir2 + rotor;
   const double along = -Sy_ * tx_ + Sx_ * ty_, nu = -Sy_ * sb_ + Sx_ * cb_;
-  S11_ = c_.m * tx_ * tx_ + m_y_ * ty_ * ty_ + 2.0 * along + I_ + motor + c_.I1 + N1f1.dot(q.f1) +
+  S11_ = c_.m * tx_ * tx_ + m_y_ * ty_ * ty_ + 2.0 * along + I_ + motor + c_.I1 + N1f1.Dot(q.f1) +
          k_.b1h + k_.K1h * (1.0 - k_.rotor1);
   S12_ = along + I_ + coupled, S22_ = I_ + spring + k_.b2h;
   S1w_ = c_.m * tx_ * sb_ + m_y_ * ty_ * cb_ + nu, S2w_ = nu;
@@ -133,7 +133,7 @@ void ArticulatedArm<M>::AssembleHub(const Coordinates& q, const Coordinates& v,
   S1s_ = e_ * (along + I_ + motor), S2s_ = e_ * (I_ + coupled);
   Sws_ = e_ * nu, Sss_ = e_ * e_ * (I_ + motor);
   const double torque4 = share * r.th4, turning = B_g_ + motor * kappa_ + torque4;
-  g1_ = r.th1 - (tx_ * B_x_ + ty_ * B_y_ + turning + 2.0 * w1 * N1f1.dot(v.f1));
+  g1_ = r.th1 - (tx_ * B_x_ + ty_ * B_y_ + turning + 2.0 * w1 * N1f1.Dot(v.f1));
   g2_ = r.th2 + r.K2h * over4_ * r.th4 - (B_g_ + coupled * kappa_);
   g4_ = r.th4 - c_.J2 * kappa_;
   gw_ = -(sb_ * B_x_ + cb_ * B_y_);

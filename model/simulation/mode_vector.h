@@ -35,7 +35,7 @@ class ModeVector {
   }
 
   /// Scalar product.
-  double dot(const ModeVector& y) const noexcept {
+  double Dot(const ModeVector& y) const noexcept {
     Lanes sum = group_[0] * y.group_[0];
     for (std::size_t i = 1; i < kGroups; ++i) sum += group_[i] * y.group_[i];
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
