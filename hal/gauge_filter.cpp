@@ -43,15 +43,17 @@ void GaugeFilter::Step(const Signals& input) noexcept {
     output_ = input;
     return;
   }
-  const Signals middle = 0.5 * (before_ + input);
-  before_ = input;
-  if (order_ == Order::kFirst) {
-    output_ += blend_ * (middle - output_);
-    return;
+  for (Eigen::Index i = 0; i < input.size(); ++i) {
+    const double middle = 0.5 * (before_[i] + input[i]);
+    before_[i] = input[i];
+    if (order_ == Order::kFirst) {
+      output_[i] += blend_ * (middle - output_[i]);
+      continue;
+    }
+    const double away = output_[i] - middle, rate = rate_[i];
+    output_[i] = middle + decay_(0, 0) * away + decay_(0, 1) * rate;
+    rate_[i] = decay_(1, 0) * away + decay_(1, 1) * rate;
   }
-  const Signals away = output_ - middle;
-  output_ = middle + decay_(0, 0) * away + decay_(0, 1) * rate_;
-  rate_ = decay_(1, 0) * away + decay_(1, 1) * rate_;
 }
 
 }  // namespace flexarm

@@ -27,17 +27,36 @@ class History {
 
   /// Instants must not decrease.
   void Push(std::int64_t from_ns, const T& value) noexcept {
-    newest_ = (newest_ + 1) % N;
-    entries_[static_cast<std::size_t>(newest_)] = Entry{.from_ns = from_ns, .value = value};
+    newest_ = After(newest_);
+    ++pushed_;
+    Entry& entry = entries_[static_cast<std::size_t>(newest_)];
+    entry.from_ns = from_ns;
+    entry.value = value;
+  }
+
+  /// Becomes equal to `newer`, of which this is an earlier state, or which began with the same
+  /// initial value: copies only what was pushed since.
+  void Follow(const History& newer) noexcept {
+    if (newer.pushed_ - pushed_ >= std::uint64_t{N}) {
+      *this = newer;
+      return;
+    }
+    for (; pushed_ != newer.pushed_; ++pushed_) {
+      newest_ = After(newest_);
+      const auto at = static_cast<std::size_t>(newest_);
+      entries_[at] = newer.entries_[at];
+    }
   }
 
   /// The value that holds at `now_ns`; the oldest stored one if all are newer.
   const Entry& At(std::int64_t now_ns) const noexcept {
+    std::int32_t at = newest_;
     for (int back = 0; back < N - 1; ++back) {
-      const Entry& entry = entries_[static_cast<std::size_t>((newest_ + N - back) % N)];
+      const Entry& entry = entries_[static_cast<std::size_t>(at)];
       if (entry.from_ns <= now_ns) return entry;
+      at = at == 0 ? N - 1 : at - 1;
     }
-    return entries_[static_cast<std::size_t>((newest_ + 1) % N)];
+    return entries_[static_cast<std::size_t>(After(newest_))];
   }
 
   /// Calls `look` with each stored value that began to hold after `after_ns` and until `until_ns`.
@@ -51,8 +70,11 @@ class History {
   const Entry& Newest() const noexcept { return entries_[static_cast<std::size_t>(newest_)]; }
 
  private:
+  static std::int32_t After(std::int32_t at) noexcept { return at == N - 1 ? 0 : at + 1; }
+
   std::array<Entry, static_cast<std::size_t>(N)> entries_;
   std::int32_t newest_ = 0;
+  std::uint64_t pushed_ = 0;  // since the construction
 };
 
 }  // namespace flexarm

@@ -26,8 +26,15 @@ class LatestValue {
   /// Writer thread only.
   void Publish(const T& value) noexcept {
     buffers_[write_] = value;
-    const std::uint8_t fresh = static_cast<std::uint8_t>(write_ | kFresh);
-    write_ = shared_.exchange(fresh, std::memory_order_acq_rel) & kIndex;
+    PassOn();
+  }
+
+  /// Writer thread only. The same for a value that has grown out of those published before, and out
+  /// of the initial one: the buffer, which holds one of them, follows it (T::Follow). For a history
+  /// that is published every millisecond, of which only the newest entries differ.
+  void PublishGrown(const T& value) noexcept {
+    buffers_[write_].Follow(value);
+    PassOn();
   }
 
   /// Reader thread only. The newest published value, or the previous one if none is newer. The
@@ -42,6 +49,11 @@ class LatestValue {
  private:
   static constexpr std::uint8_t kIndex = 0b011;
   static constexpr std::uint8_t kFresh = 0b100;
+
+  void PassOn() noexcept {
+    const std::uint8_t fresh = static_cast<std::uint8_t>(write_ | kFresh);
+    write_ = shared_.exchange(fresh, std::memory_order_acq_rel) & kIndex;
+  }
 
   std::array<T, 3> buffers_;
   alignas(64) std::uint8_t write_ = 0;                // owned by the writer

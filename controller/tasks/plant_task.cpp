@@ -43,7 +43,7 @@ void PlantTask::Run(const Activation& activation) noexcept {
     now_ns_ += kPeriodNs;
     HandleEvents(now_ns_);
     levels_.Push(now_ns_, rig_.levels());
-    channels_.levels->Publish(levels_);
+    channels_.levels->PublishGrown(levels_);
     if (now_ns_ % grid_.period_ns == 0) StartFrame(now_ns_);
     PublishFrame();
   }
@@ -53,13 +53,15 @@ void PlantTask::Run(const Activation& activation) noexcept {
                  .bus_ok = true,
                  .drive_ok = true,
                  .power = enabled_ ? DrivePower::kOn : DrivePower::kOff});
-  channels_.reports->Publish(reports_);
+  channels_.reports->PublishGrown(reports_);
 }
 
 void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
-  enabled_ = Enabled(start_ns);
-  gate_reasons_ |= ApplyGate(start_ns, &drive_);
-  ApplyGate(start_ns, &reported_);
+  const Permit& permit = channels_.permits->Read().At(start_ns).value;
+  const CommandHistory& commands = channels_.commands->Read();
+  enabled_ = Enabled(start_ns, permit);
+  gate_reasons_ |= ApplyGate(start_ns, permit, commands, &drive_);
+  ApplyGate(start_ns, permit, commands, &reported_);
   rig_.SetTorque(drive_.torque_nm);
   for (std::int64_t t = 0; t < kPeriodNs; t += rig_.step_ns()) rig_.Step();
   for (std::size_t i = 0; i < 2; ++i) applied_sum_nm_[i] += reported_.torque_nm[i];
@@ -68,10 +70,10 @@ void PlantTask::AdvanceSlice(std::int64_t start_ns) noexcept {
 
 // The slew limit applies from command to command: between two commands the drive holds its
 // set-point.
-std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, Drive* drive) noexcept {
+std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, const Permit& permit,
+                                   const CommandHistory& commands, Drive* drive) noexcept {
   const std::int64_t acting_ns = start_ns - drive->delay_ns;
-  const CommandHistory::Entry& command = channels_.commands->Read().At(acting_ns);
-  const Permit& permit = channels_.permits->Read().At(start_ns).value;
+  const CommandHistory::Entry& command = commands.At(acting_ns);
   const bool fresh = command.from_ns != drive->command_acts_ns;
   drive->command_acts_ns = command.from_ns;
   const GateResult gated = Gate({.asked_nm = command.value.torque_nm,
@@ -86,13 +88,12 @@ std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, Drive* drive) noexcept
   return gated.why;
 }
 
-bool PlantTask::Enabled(std::int64_t start_ns) noexcept {
+bool PlantTask::Enabled(std::int64_t start_ns, const Permit& permit) noexcept {
   const SafetyLines::Outputs& outputs = channels_.outputs->Read().At(start_ns).value;
   if (outputs.pump_level != pump_level_) {
     pump_level_ = outputs.pump_level;
     pump_toggled_ns_ = start_ns;
   }
-  const Permit& permit = channels_.permits->Read().At(start_ns).value;
   return DrivesEnabled(permit.state) && outputs.relay_closed &&
          AgeNs(start_ns, pump_toggled_ns_) <= SafetyLines::kPumpTimeoutNs;
 }
@@ -160,7 +161,7 @@ void PlantTask::PublishFrame() noexcept {
     packet_.frame.sampled_at_ns = packet_ns_;
   }
   frames_.Push(packet_ns_, packet_);
-  channels_.frames->Publish(frames_);
+  channels_.frames->PublishGrown(frames_);
 }
 
 }  // namespace flexarm

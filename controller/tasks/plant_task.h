@@ -82,9 +82,10 @@ class PlantTask final : public Task {
 
   void AdvanceSlice(std::int64_t start_ns) noexcept;
   /// @returns GateBits
-  std::uint32_t ApplyGate(std::int64_t start_ns, Drive* drive) noexcept;
+  std::uint32_t ApplyGate(std::int64_t start_ns, const Permit& permit,
+                          const CommandHistory& commands, Drive* drive) noexcept;
   /// The drives are enabled, and have power: relay and charge pump.
-  bool Enabled(std::int64_t start_ns) noexcept;
+  bool Enabled(std::int64_t start_ns, const Permit& permit) noexcept;
   void HandleEvents(std::int64_t now_ns) noexcept;
   void FreezeControlTask() noexcept;
   void StartFrame(std::int64_t now_ns) noexcept;

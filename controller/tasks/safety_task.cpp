@@ -275,7 +275,7 @@ void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {
                          .run_number = run_number_,
                          .run = run_,
                          .acknowledge = acknowledge_});
-  for (PermitChannel* channel : channels_.permits) channel->Publish(permits_);
+  for (PermitChannel* channel : channels_.permits) channel->PublishGrown(permits_);
   if (timing_ == monitor_.timing()) return;
   timing_ = monitor_.timing();
   channels_.timing->Publish(timing_);

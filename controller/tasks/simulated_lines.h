@@ -29,7 +29,7 @@ class SimulatedLines final : public SafetyLines {
   Call Write(std::int64_t now_ns, const Outputs& outputs) noexcept override {
     constexpr Outputs kOff{.relay_closed = false, .pump_level = false};
     history_.Push(now_ns, held_off_.load() ? kOff : outputs);
-    channel_->Publish(history_);
+    channel_->PublishGrown(history_);
     return {};
   }
 

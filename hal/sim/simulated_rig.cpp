@@ -44,12 +44,21 @@ void SimulatedRig::Step() noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     torque(static_cast<Eigen::Index>(i)) = motor_[i].Step(set_point_nm_[i]);
   }
+  const double h = static_cast<double>(step_ns_) * 1e-9;
+  if (accelerometer_) {
+    const ArmState start = state_;
+    simulator_.Step(state_, torque, h);
+    SampleAccelerometer(start);
+  } else {
+    simulator_.Step(state_, torque, h);
+  }
+  const auto modes = state_.q.tail(filter_.output().size());
+  if (!frame_) {
+    filter_.Step(modes);
+    return;
+  }
   const ArmVector before(filter_.output());
-  const ArmState start = state_;
-  simulator_.Step(state_, torque, static_cast<double>(step_ns_) * 1e-9);
-  if (accelerometer_) SampleAccelerometer(start);
-  filter_.Step(state_.q.tail(filter_.output().size()));
-  if (!frame_) return;
+  filter_.Step(modes);
   SampleChannels(frame_age_ns_ + step_ns_, before);
   frame_age_ns_ += step_ns_;
 }

@@ -22,6 +22,9 @@ struct Lanes {
   /// The same number in all lanes; implicit, so that constants stay doubles.
   Lanes(double x) noexcept : all_{x, x, x, x} {}  // NOLINT(google-explicit-constructor)
 
+  /// One number in each lane.
+  Lanes(double x0, double x1, double x2, double x3) noexcept : all_{x0, x1, x2, x3} {}
+
   double operator[](std::size_t lane) const noexcept { return all_[lane]; }
   void Set(std::size_t lane, double x) noexcept { all_[lane] = x; }
 

@@ -14,13 +14,22 @@ ArmVector RestingVector(int dof) {
   return ArmVector::Zero(dof);
 }
 
+// What 3 passes from the last acceleration left of the tip's error was 30 times as much; the step's
+// own error is 20 to 500 times as much (docs/theory/plant.md 7.1).
+constexpr Passes kUntilTheyAgree{.least = 2, .most = 4, .agreement_rad_s = 1e-5};
+
+Passes PassesOf(const SimulatorOptions& options) {
+  if (!options.passes) return kUntilTheyAgree;
+  return {.least = *options.passes, .most = *options.passes, .agreement_rad_s = 0.0};
+}
+
 }  // namespace
 
-ArmState::ArmState(int dof) : q(RestingVector(dof)), v(q), a(q) {}
+ArmState::ArmState(int dof) : q(RestingVector(dof)), v(q), a(q), a_before(q) {}
 
 ArmSimulator::ArmSimulator(const ArmModel& model, const SimulatorOptions& options)
     : dof_(model.dof()), options_(options) {
-  if (options.passes < 1 || options.substeps < 1) {
+  if (options.passes.value_or(1) < 1 || options.substeps < 1) {
     throw std::invalid_argument("SimulatorOptions: passes and substeps must be at least 1");
   }
   kernel_ = MakeStepKernel(model.constants(), options.coulomb_friction);
@@ -32,8 +41,9 @@ ArmSimulator& ArmSimulator::operator=(ArmSimulator&&) noexcept = default;
 
 void ArmSimulator::Step(ArmState& state, const Eigen::Vector2d& torque_nm, double h_s) noexcept {
   const double h = h_s / options_.substeps;
+  const Passes passes = PassesOf(options_);
   for (int i = 0; i < options_.substeps; ++i) {
-    kernel_->Step(&state, torque_nm, h, options_.passes);
+    kernel_->Step(&state, torque_nm, h, passes);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 #include "model/arm/arm_model.h"
 
@@ -20,13 +21,15 @@ struct ArmState {
 
   ArmVector q;  ///< rad and m
   ArmVector v;  ///< rad/s and m/s
-  ArmVector a;  ///< accelerations of the last step, rad/s^2 and m/s^2: only the start value of
-                ///< the next step's iteration; zero is always allowed
+  /// Accelerations of the last step, and of the one before it, rad/s^2 and m/s^2: only the start
+  /// value of the next step's iteration, which is extrapolated from them; zero is always allowed.
+  ArmVector a, a_before;
 };
 
 /// Number of passes and steps of ArmSimulator.
 struct SimulatorOptions {
-  int passes = 3;    ///< fixed-point passes a step, >= 1
+  /// Fixed-point passes a step, >= 1; without: 2 to 4, until two of them agree.
+  std::optional<int> passes = std::nullopt;
   int substeps = 1;  ///< equal midpoint steps per Step, >= 1
   bool coulomb_friction = true;
 };
@@ -34,10 +37,12 @@ struct SimulatorOptions {
 /// Time integrator of the arm: implicit midpoint with exact Coulomb stiction. The default one.
 ///
 /// Solves M(q_m) a + bias(q_m, v_m) + D v_m + K q_m = force + friction at the middle of the step,
-/// with (M + h/2 D + h^2/4 K) on the left, by fixed-point passes; friction torques on th1 and th2
-/// (hub against its base) make a linear complementarity problem of two contacts that is solved
-/// exactly in each pass (coulomb_friction_lcp.h). A hub that stops within a step ends it with
-/// exactly zero velocity, by an impulse that only dissipates. Second order in h, stable for any h.
+/// with (M + h/2 D + h^2/4 K) on the left, by fixed-point passes; they end when the rates at the
+/// middle of the step agree to 1e-5 rad/s with those of the pass before. Friction torques on th1
+/// and th2 (hub against its base) make a linear complementarity problem of two contacts that is
+/// solved exactly in each pass (coulomb_friction_lcp.h). A hub that stops within a step ends it
+/// with exactly zero velocity, by an impulse that only dissipates. Second order in h, stable for
+/// any h.
 ///
 /// The linear system is solved by structure (articulated bodies), not by a factorisation of M:
 /// each link is coupled to the rest through three constant vectors only, so that a pass costs two

@@ -39,8 +39,8 @@ class CoulombFrictionLcp {
   FrictionSolution Solve(const std::array<double, 2>& v, const std::array<double, 2>& F,
                          double h) const noexcept {
     FrictionSolution best = Try({Sign(v[0]), Sign(v[1])}, v, F, h);
+    if (Holds(best, v, F, h)) return best;
     double least = Violation(best, v, F, h);
-    if (least <= 0.0) return best;
     for (const Contact c1 : {Contact::kStuck, Contact::kForward, Contact::kBackward}) {
       for (const Contact c2 : {Contact::kStuck, Contact::kForward, Contact::kBackward}) {
         const FrictionSolution trial = Try({c1, c2}, v, F, h);
@@ -75,6 +75,18 @@ class CoulombFrictionLcp {
     if (stuck1) return {{stop1, (r2_ + lambda2 - z12_ * stop1) / z22_}, c};
     if (stuck2) return {{(r1_ + lambda1 - z12_ * stop2) / z11_, stop2}, c};
     return {Slide(lambda1, lambda2), c};
+  }
+
+  // True if Violation is at most zero, without its divisions: nearly always of the first trial.
+  bool Holds(const FrictionSolution& s, const std::array<double, 2>& v,
+             const std::array<double, 2>& F, double h) const noexcept {
+    const double a1 = s.acceleration[0], a2 = s.acceleration[1];
+    const auto holds = [h](Contact contact, double rate, double a, double lambda, double most) {
+      if (contact == Contact::kStuck) return std::fabs(lambda) <= most;
+      return static_cast<double>(contact) * (rate + 0.5 * h * a) >= 0.0;
+    };
+    return holds(s.contact[0], v[0], a1, z11_ * a1 + z12_ * a2 - r1_, F[0]) &&
+           holds(s.contact[1], v[1], a2, z12_ * a1 + z22_ * a2 - r2_, F[1]);
   }
 
   // Largest violation of a trial's own assumption, N m; <= 0 if there is none.

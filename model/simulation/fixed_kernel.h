@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 
 #include "model/arm/backlash.h"
-#include "model/math/dense_kernels.h"
-#include "model/simulation/articulated_arm.h"
+#include "model/math/wide_instructions.h"
+#include "model/simulation/coulomb_friction_lcp.h"
+#include "model/simulation/fixed_constants.h"
 #include "model/simulation/step_kernel.h"
 
 namespace flexarm {
@@ -30,42 +33,70 @@ class FixedKernel final : public StepKernel {
         k_(c_, ArmSimulator::kDefaultStep_s) {}
 
   void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h,
-            int passes) noexcept override {
-    if (h != k_.h) k_ = StepConstants<kModes>(c_, h);
+            const Passes& passes) noexcept override {
+    if (h != k_.h) k_ = StepConstantsOfArm(c_, h);
+    if constexpr (Arm::kWide) {
+      AdvanceWide(state, torque_nm, passes);
+    } else {
+      Advance(state, torque_nm, passes);
+    }
+  }
+
+  void CarryPayload(const ArmConstants& c) noexcept override {
+    backlash_ = c.backlash;
+    c_ = typename Arm::Constants(c);
+    mass_ = StepConstantsOfArm(c_, 0.0);
+    k_ = StepConstantsOfArm(c_, k_.h);
+  }
+
+ private:
+  using Coordinates = ArmCoordinates<typename Arm::Vec>;
+  using Forces = AppliedForces<typename Arm::Vec>;
+  using StepConstantsOfArm = typename Arm::Step;
+
+  FLEXARM_WIDE_INSTRUCTIONS
+  void AdvanceWide(ArmState* state, const Eigen::Vector2d& torque_nm,
+                   const Passes& passes) const noexcept {
+    Advance(state, torque_nm, passes);
+  }
+
+  void Advance(ArmState* state, const Eigen::Vector2d& torque_nm,
+               const Passes& passes) const noexcept {
+    const double h = k_.h;
     const Coordinates q = Load(state->q), v = Load(state->v);
-    Coordinates a = Load(state->a);
+    const Coordinates last = Load(state->a);
+    Coordinates a = Advanced(last, Difference(last, Load(state->a_before)), 1.0);
     const double spring1 = c_.K1 * (q.th[2] - q.th[0] + 0.5 * h * (v.th[2] - v.th[0]));
-    AppliedForces<kModes> r = Applied(q, v, torque_nm, spring1);
-    Arm arm(c_, k_);
+    Forces r = Applied(q, v, torque_nm, spring1);
+    Arm arm(c_, k_, r, q.th[1] + 0.5 * h * (v.th[1] + 0.5 * h * a.th[1]));
     FrictionSolution hubs{};
-    for (int pass = 0; pass < passes; ++pass) {
+    double s_ddot = 0.0;
+    for (int pass = 1;; ++pass) {
       const Coordinates v_m = Advanced(v, a, 0.5 * h);
       const Coordinates q_m = Advanced(q, v_m, 0.5 * h);
       if (backlash_.active()) ApplyJoint2(q_m, v_m, a, torque_nm[1], &r);
       arm.Reduce(q_m, v_m, r);
       hubs = has_friction_ ? arm.hubs().Solve({v.th[0], v.th[1]}, friction_, h)
                            : arm.hubs().SolveFree();
-      arm.Expand(hubs.acceleration, &a);
-      a.th[2] = (torque_nm[0] - spring1 + k_.K1h * a.th[0]) / (c_.J1 + k_.K1h);
+      const double th1_before = a.th[0], th2_before = a.th[1], s_before = s_ddot;
+      s_ddot = arm.Expand(hubs.acceleration, &a);
+      if (pass >= passes.most) break;
+      if (pass < passes.least) continue;
+      const double change =
+          std::fmax(std::fmax(std::fabs(a.th[0] - th1_before), std::fabs(a.th[1] - th2_before)),
+                    std::fabs(s_ddot - s_before));
+      if (0.5 * h * change < passes.agreement_rad_s) break;
     }
+    a.th[2] = (torque_nm[0] - spring1 + k_.K1h * a.th[0]) / (c_.J1 + k_.K1h);
     const Coordinates v_m = Advanced(v, a, 0.5 * h);
     const Coordinates q_end = Advanced(q, v_m, h);
     Coordinates v_end = Advanced(v, a, h);
     Settle(hubs, q_end, &v_end);
     Store(q_end, &state->q);
     Store(v_end, &state->v);
+    state->a_before = state->a;
     Store(a, &state->a);
   }
-
-  void CarryPayload(const ArmConstants& c) noexcept override {
-    backlash_ = c.backlash;
-    c_ = typename Arm::Constants(c);
-    mass_ = StepConstants<kModes>(c_, 0.0);
-    k_ = StepConstants<kModes>(c_, k_.h);
-  }
-
- private:
-  using Coordinates = ArmCoordinates<kModes>;
 
   static Coordinates Advanced(const Coordinates& x, const Coordinates& rate, double t) noexcept {
     Coordinates y;
@@ -75,34 +106,49 @@ class FixedKernel final : public StepKernel {
     return y;
   }
 
+  static Coordinates Difference(const Coordinates& x, const Coordinates& y) noexcept {
+    return Advanced(x, y, -1.0);
+  }
+
   Coordinates Load(const ArmVector& x) const noexcept {
     Coordinates y;
-    for (int i = 0; i < 4; ++i) y.th[static_cast<std::size_t>(i)] = x[i];
-    for (int i = 0; i < kModes; ++i) y.f1[i] = i < m1_ ? x[kPhi1 + i] : 0.0;
-    for (int i = 0; i < kModes; ++i) y.f2[i] = i < m2_ ? x[kPhi1 + m1_ + i] : 0.0;
+    for (std::size_t i = 0; i < 4; ++i) y.th[i] = x.data()[i];
+    y.f1 = Modes(x.data() + kPhi1, m1_);
+    y.f2 = Modes(x.data() + kPhi1 + m1_, m2_);
     return y;
   }
 
   void Store(const Coordinates& y, ArmVector* x) const noexcept {
-    for (int i = 0; i < 4; ++i) (*x)[i] = y.th[static_cast<std::size_t>(i)];
-    for (int i = 0; i < m1_; ++i) (*x)[kPhi1 + i] = y.f1[i];
-    for (int i = 0; i < m2_; ++i) (*x)[kPhi1 + m1_ + i] = y.f2[i];
+    for (std::size_t i = 0; i < 4; ++i) x->data()[i] = y.th[i];
+    StoreModes(y.f1, m1_, x->data() + kPhi1);
+    StoreModes(y.f2, m2_, x->data() + kPhi1 + m1_);
+  }
+
+  // Without a test of each entry if the link is not padded.
+  static typename Arm::Vec Modes(const double* x, int count) noexcept {
+    if (count == kModes) return Arm::MakeVec([x](int i) { return x[i]; });
+    return Arm::MakeVec([x, count](int i) { return i < count ? x[i] : 0.0; });
+  }
+
+  static void StoreModes(const typename Arm::Vec& f, int count, double* x) noexcept {
+    if (count == kModes) {
+      for (int i = 0; i < kModes; ++i) x[i] = f[i];
+    } else {
+      for (int i = 0; i < count; ++i) x[i] = f[i];
+    }
   }
 
   // Forces that do not change between passes: torques, springs at q + h/2 v, damping at v. th3 is
   // eliminated: J1 th3'' + K1h (th3'' - th1'') = tau1 - spring1.
-  AppliedForces<kModes> Applied(const Coordinates& q, const Coordinates& v,
-                                const Eigen::Vector2d& torque, double spring1) const noexcept {
+  Forces Applied(const Coordinates& q, const Coordinates& v, const Eigen::Vector2d& torque,
+                 double spring1) const noexcept {
     const double h = k_.h;
     const double spring2 = c_.K2 * (q.th[3] - q.th[1] + 0.5 * h * (v.th[3] - v.th[1]));
-    AppliedForces<kModes> r;
+    Forces r;
     r.th1 = spring1 + k_.rotor1 * (torque[0] - spring1) - c_.b1 * v.th[0];
     r.th2 = spring2 - c_.b2 * v.th[1];
     r.th4 = torque[1] - spring2;
-    r.f1.noalias() = -(c_.G1 * q.f1);
-    r.f1.noalias() -= k_.DhG1 * v.f1;
-    r.f2.noalias() = -(c_.G2 * q.f2);
-    r.f2.noalias() -= k_.DhG2 * v.f2;
+    Arm::Bend(c_, k_, q, v, &r);
     r.K2h = k_.K2h;
     r.drag4 = 0.0;
     return r;
@@ -111,7 +157,7 @@ class FixedKernel final : public StepKernel {
   // Backlash of joint 2, linearised (Newton) about the middle of the step that accelerations `a`
   // give: its slopes go to the left side. A drag that falls with speed stays on the right.
   void ApplyJoint2(const Coordinates& q_m, const Coordinates& v_m, const Coordinates& a,
-                   double torque2, AppliedForces<kModes>* r) const noexcept {
+                   double torque2, Forces* r) const noexcept {
     const double h = k_.h;
     const Joint2Torque joint =
         backlash_.At(q_m.th[3] - q_m.th[1], v_m.th[3] - v_m.th[1], v_m.th[3]);
@@ -127,16 +173,17 @@ class FixedKernel final : public StepKernel {
   void Settle(const FrictionSolution& hubs, const Coordinates& q, Coordinates* v) const noexcept {
     const bool stop1 = has_friction_ && hubs.contact[0] == Contact::kStuck;
     const bool stop2 = has_friction_ && hubs.contact[1] == Contact::kStuck;
-    if (!(stop1 && v->th[0] != 0.0) && !(stop2 && v->th[1] != 0.0)) return;
-    AppliedForces<kModes> none;
-    none.th1 = none.th2 = none.th4 = none.K2h = none.drag4 = 0.0;
-    none.f1.setZero();
-    none.f2.setZero();
-    Coordinates rest;
-    rest.th.fill(0.0);
-    rest.f1.setZero();
-    rest.f2.setZero();
-    Arm arm(c_, mass_);
+    if ((stop1 && v->th[0] != 0.0) || (stop2 && v->th[1] != 0.0)) Stop(stop1, stop2, q, v);
+  }
+
+  // Rare: apart from the step, which is compiled for speed.
+  [[gnu::noinline]] void Stop(bool stop1, bool stop2, const Coordinates& q,
+                              Coordinates* v) const noexcept {
+    const typename Arm::Vec zero = Arm::MakeVec([](int /*i*/) { return 0.0; });
+    const Forces none{
+        .th1 = 0.0, .th2 = 0.0, .th4 = 0.0, .f1 = zero, .f2 = zero, .K2h = 0.0, .drag4 = 0.0};
+    const Coordinates rest{.th = {}, .f1 = zero, .f2 = zero};
+    Arm arm(c_, mass_, none, q.th[1]);
     arm.Reduce(q, rest, none);
     double jump1 = stop1 ? -v->th[0] : 0.0, jump2 = stop2 ? -v->th[1] : 0.0;
     if (!stop1) jump1 = -arm.z12() * jump2 / arm.z11();
@@ -153,8 +200,8 @@ class FixedKernel final : public StepKernel {
   bool has_friction_;
   Backlash backlash_;
   typename Arm::Constants c_;
-  StepConstants<kModes> mass_;
-  StepConstants<kModes> k_;
+  StepConstantsOfArm mass_;
+  StepConstantsOfArm k_;
 };
 
 }  // namespace flexarm

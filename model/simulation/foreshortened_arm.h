@@ -5,7 +5,8 @@
 
 #include "model/arm/shortened_link.h"
 #include "model/math/small_cholesky.h"
-#include "model/simulation/articulated_arm.h"
+#include "model/simulation/coulomb_friction_lcp.h"
+#include "model/simulation/fixed_constants.h"
 
 namespace flexarm {
 
@@ -27,18 +28,30 @@ template <int M>
 class ForeshortenedArm {
  public:
   static constexpr int kModes = M;
+  static constexpr bool kWide = false;  ///< compiled for AVX2 as well
   using Constants = ForeshortenedConstants<M>;
+  using Step = StepConstants<M>;
   using Vec = Eigen::Matrix<double, M, 1>;
+  using Coordinates = ArmCoordinates<Vec>;
+  using Forces = AppliedForces<Vec>;
 
-  ForeshortenedArm(const Constants& c, const StepConstants<M>& k) noexcept : c_(c), k_(k) {}
+  ForeshortenedArm(const Constants& c, const Step& k, const Forces& /*r*/,
+                   double /*th2_m*/) noexcept
+      : c_(c), k_(k) {}
 
-  void Reduce(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v,
-              const AppliedForces<M>& r) noexcept;
+  template <typename Entry>
+  static Vec MakeVec(Entry entry) noexcept {
+    return Vec::NullaryExpr([&](Eigen::Index i) { return entry(static_cast<int>(i)); });
+  }
+  static void Bend(const Constants& c, const Step& k, const Coordinates& q, const Coordinates& v,
+                   Forces* r) noexcept;
+
+  void Reduce(const Coordinates& q, const Coordinates& v, const Forces& r) noexcept;
   CoulombFrictionLcp hubs() const noexcept { return {Z_(0, 0), Z_(1, 0), Z_(1, 1), y_[0], y_[1]}; }
   double z11() const noexcept { return Z_(0, 0); }
   double z12() const noexcept { return Z_(1, 0); }
   double z22() const noexcept { return Z_(1, 1); }
-  void Expand(const std::array<double, 2>& hub, ArmCoordinates<M>* a) const noexcept;
+  double Expand(const std::array<double, 2>& hub, Coordinates* a) const noexcept;
 
  private:
   static constexpr int kInner = 1 + 2 * M;  // th4, phi1, phi2
@@ -46,12 +59,12 @@ class ForeshortenedArm {
   using Outer = Eigen::Matrix<double, 2 + M, 1>;  // rates of phi1, th1, th2
   using Mat = Eigen::Matrix<double, M, M>;
 
-  void Turn(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v, const Link& link1) noexcept;
-  void AssembleOuter(const ArmCoordinates<M>& q, const Link& link1, const Link& link2) noexcept;
-  void AssembleInner(const ArmCoordinates<M>& q, const Link& link2) noexcept;
-  void AddBias(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v, const Link& link1,
+  void Turn(const Coordinates& q, const Coordinates& v, const Link& link1) noexcept;
+  void AssembleOuter(const Coordinates& q, const Link& link1, const Link& link2) noexcept;
+  void AssembleInner(const Coordinates& q, const Link& link2) noexcept;
+  void AddBias(const Coordinates& q, const Coordinates& v, const Link& link1,
                const Link& link2) noexcept;
-  void Factorise(const AppliedForces<M>& r) noexcept;
+  void Factorise(const Forces& r) noexcept;
 
   const Constants& c_;
   const StepConstants<M>& k_;

@@ -31,7 +31,7 @@ ForeshortenedConstants<M>::ForeshortenedConstants(const ArmConstants& c) : Fixed
 }
 
 template <int M>
-void ForeshortenedArm<M>::Turn(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v,
+void ForeshortenedArm<M>::Turn(const Coordinates& q, const Coordinates& v,
                                const Link& link1) noexcept {
   const double w = c_.p1.dot(q.f1), w_dot = c_.p1.dot(v.f1), s = c_.s1.dot(q.f1);
   e_ = 1.0 / (1.0 + s * s);
@@ -52,7 +52,7 @@ void ForeshortenedArm<M>::Turn(const ArmCoordinates<M>& q, const ArmCoordinates<
 }
 
 template <int M>
-void ForeshortenedArm<M>::AssembleOuter(const ArmCoordinates<M>& q, const Link& link1,
+void ForeshortenedArm<M>::AssembleOuter(const Coordinates& q, const Link& link1,
                                         const Link& link2) noexcept {
   const Outer F_x = c_.m * x_ - Sy_ * gamma_, F_y = c_.m * y_row_ + Sx_ * gamma_;
   const Outer T_g = I_ * gamma_ - Sy_ * x_ + Sx_ * y_row_;
@@ -73,8 +73,8 @@ void ForeshortenedArm<M>::AssembleOuter(const ArmCoordinates<M>& q, const Link& 
 }
 
 template <int M>
-void ForeshortenedArm<M>::AddBias(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v,
-                                  const Link& link1, const Link& link2) noexcept {
+void ForeshortenedArm<M>::AddBias(const Coordinates& q, const Coordinates& v, const Link& link1,
+                                  const Link& link2) noexcept {
   const Vec N1f1 = c_.N1 * q.f1, N2f2 = c_.N2 * q.f2;
   const double g = gamma_dot_, w1 = v.th[0];
   const double s2 = c_.s2.dot(q.f2), alpha2_dot = e2_ * c_.s2.dot(v.f2);
@@ -93,7 +93,7 @@ void ForeshortenedArm<M>::AddBias(const ArmCoordinates<M>& q, const ArmCoordinat
 }
 
 template <int M>
-void ForeshortenedArm<M>::AssembleInner(const ArmCoordinates<M>& q, const Link& link2) noexcept {
+void ForeshortenedArm<M>::AssembleInner(const Coordinates& q, const Link& link2) noexcept {
   const double s2 = c_.s2.dot(q.f2);
   e2_ = 1.0 / (1.0 + s2 * s2);
   Sx_ = c_.Sx - link2.k;
@@ -104,9 +104,18 @@ void ForeshortenedArm<M>::AssembleInner(const ArmCoordinates<M>& q, const Link& 
   A2_.noalias() += ((c_.Ip * e2_ * e2_) * c_.s2) * c_.s2.transpose();
 }
 
+template <int M>
+void ForeshortenedArm<M>::Bend(const Constants& c, const Step& k, const Coordinates& q,
+                               const Coordinates& v, Forces* r) noexcept {
+  r->f1.noalias() = -(c.G1 * q.f1);
+  r->f1.noalias() -= k.DhG1 * v.f1;
+  r->f2.noalias() = -(c.G2 * q.f2);
+  r->f2.noalias() -= k.DhG2 * v.f2;
+}
+
 // Inner block first, so that the Schur complement is the 2x2 system that friction acts on.
 template <int M>
-void ForeshortenedArm<M>::Factorise(const AppliedForces<M>& r) noexcept {
+void ForeshortenedArm<M>::Factorise(const Forces& r) noexcept {
   Eigen::Matrix<double, kInner, kInner> A = Eigen::Matrix<double, kInner, kInner>::Zero();
   A(0, 0) = c_.J2 + r.K2h + r.drag4;
   A.template block<M, 1>(1, 0) = (c_.J2 * e_) * c_.s1;
@@ -126,8 +135,8 @@ void ForeshortenedArm<M>::Factorise(const AppliedForces<M>& r) noexcept {
 }
 
 template <int M>
-void ForeshortenedArm<M>::Reduce(const ArmCoordinates<M>& q, const ArmCoordinates<M>& v,
-                                 const AppliedForces<M>& r) noexcept {
+void ForeshortenedArm<M>::Reduce(const Coordinates& q, const Coordinates& v,
+                                 const Forces& r) noexcept {
   const Vec none = Vec::Zero();
   const Link link1(c_.shortening1, q.f1, v.f1, none), link2(c_.shortening2, q.f2, v.f2, none);
   Turn(q, v, link1);
@@ -138,13 +147,14 @@ void ForeshortenedArm<M>::Reduce(const ArmCoordinates<M>& q, const ArmCoordinate
 }
 
 template <int M>
-void ForeshortenedArm<M>::Expand(const std::array<double, 2>& hub,
-                                 ArmCoordinates<M>* a) const noexcept {
+double ForeshortenedArm<M>::Expand(const std::array<double, 2>& hub,
+                                   Coordinates* a) const noexcept {
   Eigen::Matrix<double, kInner, 1> inner = V_.col(2) - hub[0] * V_.col(0) - hub[1] * V_.col(1);
   factor_.L().transpose().template triangularView<Eigen::Upper>().solveInPlace(inner);
   a->th[0] = hub[0], a->th[1] = hub[1], a->th[3] = inner[0];
   a->f1 = inner.template segment<M>(1);
   a->f2 = inner.template tail<M>();
+  return c_.s1.dot(a->f1);
 }
 
 }  // namespace flexarm

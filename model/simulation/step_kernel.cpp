@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "model/simulation/articulated_arm.h"
 #include "model/simulation/fixed_kernel.h"
 
 namespace flexarm {

@@ -8,12 +8,18 @@
 
 namespace flexarm {
 
+/// Fixed-point passes of a step: until two of them agree.
+struct Passes {
+  int least, most;         ///< 1 <= least <= most
+  double agreement_rad_s;  ///< between the middle rates of th1, th2 and of link 1's tip slope
+};
+
 /// One implicit midpoint step for a fixed number of modes. Internal to ArmSimulator.
 class StepKernel {
  public:
   virtual ~StepKernel() = default;
   virtual void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h_s,
-                    int passes) noexcept = 0;
+                    const Passes& passes) noexcept = 0;
   /// Replaces the constants by those of the same arm with another payload.
   virtual void CarryPayload(const ArmConstants& constants) noexcept = 0;
 };

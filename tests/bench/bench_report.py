@@ -50,15 +50,16 @@ def main():
     thesis = next(b for b in steps if b["label"] == "sobel-thesis")
     planned = next(b for b in steps if b["label"] == "receding-horizon")
     per_sample = planned["p50_us"] + 1e3 * plan["Plan/warm:1"]["real_time"] / PLAN_EVERY
-    factor = next(b for name, b in control.items()
-                  if name.startswith("SimulatedRun/modes:4"))["realtime_factor"]
+    factor, two_modes = (next(b for name, b in control.items() if name.startswith(
+        f"SimulatedRun/modes:{modes}"))["realtime_factor"] for modes in (4, 2))
     text = (f"Step of {len(steps)} laws and estimators: p99.9 {slowest['p99.9_us']:.1f} us at most"
             f" ({slowest['label']}), with payload filter {with_payload['p99.9_us']:.0f} us"
             f" ({with_payload['p50_us'] / thesis['p50_us']:.0f} times sobel-thesis, medians);"
             f" a sample of receding-horizon {per_sample:.0f} us with its share of a plan"
             f" ({per_sample / thesis['p50_us']:.0f} times sobel-thesis), a first plan"
             f" {plan['Plan/warm:0']['real_time']:.1f} ms;"
-            f" default experiment {factor:.0f} times real time")
+            f" default experiment {factor:.0f} times real time"
+            f" ({two_modes:.0f} with two modes a link)")
     print("\n" + text)
     if arguments.note:
         arguments.note.write_text(text + "\n", encoding="utf-8")

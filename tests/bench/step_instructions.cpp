@@ -21,6 +21,7 @@
 #include "controller/safety/torque_gate.h"
 #include "controller/step/control_step.h"
 #include "tests/bench/counted.h"
+#include "tests/controller/loop/stack_run.h"
 #include "tests/support/recorded_inputs.h"
 #include "tests/support/step_variants.h"
 #include "tests/support/study_planner.h"
@@ -99,11 +100,27 @@ void RunPlans() {
   }
 }
 
-void Run() {
+// Two seconds of the lock-step run of the default experiment, in the midst of its motion, with the
+// plant of the shipped rig and with one of two modes a link.
+void RunLockstep() {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000, kWarm_ns = 2 * kSecond_ns;
+  for (const char* modes : {"sim.plant_modes=4", "sim.plant_modes=2"}) {
+    StackRun run(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml", {modes}),
+                 LoadExperiment(FLEXARM_SOURCE_DIR "/config/experiments/square-30deg.toml"));
+    run.Run(kWarm_ns);
+    for (int second = 1; second <= 2; ++second) {
+      Counted([&] { run.Run(kWarm_ns + second * kSecond_ns); });
+    }
+    if (run.permit().state != SafetyState::kRunning) throw std::runtime_error("no run");
+  }
+}
+
+void CountAll() {
   const std::vector<StepInput> inputs =
       RecordedInputs(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"));
   RunGate(LoadConfig(FLEXARM_SOURCE_DIR "/config/hil.toml"));
   RunPlans();
+  RunLockstep();
   std::int64_t last = 0;
   const std::vector<StepVariant> variants = StepVariants();
   for (const StepVariant& variant : variants) {
@@ -128,7 +145,7 @@ void Run() {
 
 int main() {
   try {
-    flexarm::Run();
+    flexarm::CountAll();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "step_instructions: %s\n", error.what());
     return 1;

@@ -43,6 +43,26 @@ TEST(History, TheLaterOfTwoValuesOfOneInstantHolds) {
   EXPECT_EQ(history.At(100).value, 2);
 }
 
+// Whatever number of values the follower lacks: none, some, as many as are kept, more.
+TEST(History, FollowsALaterStateOfItself) {
+  for (int lacks = 0; lacks <= 9; ++lacks) {
+    History<int, 4> newer(-1);
+    for (int i = 1; i <= 3; ++i) newer.Push(i * 100, i);
+    History<int, 4> follower = newer;
+    for (int i = 4; i < 4 + lacks; ++i) newer.Push(i * 100, i);
+    follower.Follow(newer);
+    for (int instant = 0; instant <= 1300; instant += 50) {
+      EXPECT_EQ(follower.At(instant).value, newer.At(instant).value) << lacks << ", " << instant;
+      EXPECT_EQ(follower.At(instant).from_ns, newer.At(instant).from_ns) << lacks;
+    }
+    EXPECT_EQ(follower.Newest().value, newer.Newest().value);
+    newer.Push(1300, 99);  // the count of what it has followed is right, too
+    follower.Follow(newer);
+    EXPECT_EQ(follower.Newest().value, 99);
+    EXPECT_EQ(follower.At(1299).value, newer.At(1299).value);
+  }
+}
+
 TEST(LatestValue, GivesTheInitialValueUntilOneIsPublishedAndThenTheNewest) {
   LatestValue<int> channel(7);
   EXPECT_EQ(channel.Read(), 7);
@@ -81,15 +101,17 @@ TEST(LatestValue, TwoThreadsNeverSeeATornOrAnOlderValue) {
   EXPECT_EQ(older, 0u);
 }
 
-TEST(LatestValue, TwoThreadsNeverSeeATornHistory) {
-  using Squares = History<std::int64_t, 8>;
+using Squares = History<std::int64_t, 8>;
+
+// Publishes the squares of 1, 2, .. and looks at all that is in the history that is read.
+void ExpectNoTornHistory(void (*publish)(LatestValue<Squares>&, const Squares&)) {
   constexpr std::int64_t kLast = 20'000;
   LatestValue<Squares> channel{Squares(0)};
-  std::thread writer([&channel] {
+  std::thread writer([&channel, publish] {
     Squares history(0);
     for (std::int64_t i = 1; i <= kLast; ++i) {
       history.Push(i, i * i);
-      channel.Publish(history);
+      publish(channel, history);
     }
   });
   std::int64_t newest = 0;
@@ -105,6 +127,17 @@ TEST(LatestValue, TwoThreadsNeverSeeATornHistory) {
   }
   writer.join();
   EXPECT_EQ(wrong, 0);
+}
+
+TEST(LatestValue, TwoThreadsNeverSeeATornHistory) {
+  ExpectNoTornHistory(
+      [](LatestValue<Squares>& channel, const Squares& history) { channel.Publish(history); });
+}
+
+// Each of the three buffers lacks another number of values, which depends on the reader.
+TEST(LatestValue, TwoThreadsNeverSeeATornHistoryThatGrows) {
+  ExpectNoTornHistory(
+      [](LatestValue<Squares>& channel, const Squares& history) { channel.PublishGrown(history); });
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST_P(AnyArm, StepSolvesTheMidpointEquationsForAnyModeCount) {
 }
 
 // docs/theory/plant.md 7.5: E0 = 1.2124174220779 J. Midpoint conserves energy to 1.5e-6 with two
-// modes and to 2.5e-4 with four, whose undamped 570 Hz has 3.5 steps a period (measured; second
+// modes and to 9e-5 with four, whose undamped 570 Hz has 3.5 steps a period (measured; second
 // order in h). The bound for the default integrator is 2e-5 with two modes. A missing Coriolis term
 // gives 1e-2.
 TEST(ArmSimulator, ConservesEnergyForTenSecondsWithoutDissipation) {
