@@ -14,8 +14,8 @@ ArmVector RestingVector(int dof) {
   return ArmVector::Zero(dof);
 }
 
-// What 3 passes from the last acceleration left of the tip's error was 30 times as much; the step's
-// own error is 20 to 500 times as much (docs/theory/plant.md 7.1).
+// What 3 passes from the last acceleration left of the tip's error was 6 to 68 times as much; the
+// step's own error is 20 to 800 times as much (docs/theory/plant.md 7.1).
 constexpr Passes kUntilTheyAgree{.least = 2, .most = 4, .agreement_rad_s = 1e-5};
 
 Passes PassesOf(const SimulatorOptions& options) {

@@ -13,12 +13,13 @@
 namespace flexarm {
 namespace {
 
+constexpr int kSeedsAtTheBorder = 12;
 constexpr int kFewSeeds = 3;  // the differences here are far larger than those between seeds
 
 Runs RunsWith(const std::string& nominal, double payload_kg,
-              std::vector<std::string> overrides = {}) {
+              std::vector<std::string> overrides = {}, int seeds = kFewSeeds) {
   overrides.push_back("controller.nominal=" + nominal);
-  Runs runs = RunSeeds(payload_kg, overrides, kFewSeeds);
+  Runs runs = RunSeeds(payload_kg, overrides, seeds);
   std::printf("%s %.2f kg: %d tripped, rms %.2f %.2f deg, residual %.1f mm\n", nominal.c_str(),
               payload_kg, runs.tripped, Median(runs.rms1_deg), Median(runs.rms2_deg),
               Median(runs.residual_mm));
@@ -62,9 +63,11 @@ TEST(T12WithSearchedWeights, NeedsAFilterWithLittleProcessNoise) {
   const std::vector<std::string> searched = {
       "controller.torque_weight=4.5",
       "controller.state_weight=[28.5, 22, 0, 0, 0, 0.12, 0.28, 0.16, 0, 0, 14.8, 0]"};
-  // All three trip if the filter has followed the arm at rest for a second before the run; reset
-  // when the run begins, one of them just bears it.
-  EXPECT_GE(RunsWith("T12", 0.01, searched).tripped, kFewSeeds - 1);
+  // Of 40 runs 17 trip, and the others swing on: residual 70 mm. Chance decides whether a run of a
+  // loop at the border of stability trips: 2 of 12 or more do but once in 70 sets of seeds.
+  const Runs fragile = RunsWith("T12", 0.01, searched, kSeedsAtTheBorder);
+  EXPECT_GE(fragile.tripped, 2);
+  EXPECT_GT(Median(fragile.residual_mm), 30.0);
   std::vector<std::string> trusting = searched;
   trusting.push_back("estimator.process_force=[0.1, 0.015, 0.05, 0.05, 0.015, 0.015]");
   const Runs runs = RunsWith("T12", 0.01, trusting);
@@ -74,9 +77,16 @@ TEST(T12WithSearchedWeights, NeedsAFilterWithLittleProcessNoise) {
 }
 
 // One mode a link without joint springs: fewer states, and worse with other payloads than designed.
-TEST(R8, CarriesEveryPayloadWithoutATrip) {
-  for (const double payload_kg : {0.0, 0.1, 1.0}) {
+// Without payload 9 of 40 runs trip by the rate of the elbow, which the jumps of the command reach:
+// fewer than half of 12 but once in 40 sets of seeds.
+TEST(R8, CarriesEveryPayloadAndMostlyNone) {
+  for (const double payload_kg : {0.1, 1.0}) {
     EXPECT_EQ(RunsWith("R8", payload_kg).tripped, 0) << payload_kg;
+  }
+  const Runs empty = RunsWith("R8", 0.0, {}, kSeedsAtTheBorder);
+  EXPECT_LT(empty.tripped, kSeedsAtTheBorder / 2);
+  for (const TripCause cause : empty.trip) {
+    EXPECT_TRUE(cause == TripCause::kNone || cause == TripCause::kHubRate2) << ToString(cause);
   }
 }
 
