@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """The Python client, tools/python, with the real daemon and with one that answers anything."""
 
+import contextlib
 import csv
 import json
 import math
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -19,6 +21,7 @@ from program import BIN, ROOT, ProgramTest, realtime_permitted
 
 sys.path.insert(0, str(ROOT / "tools/python"))
 import flexarm  # noqa: E402
+from flexarm.connection import Connection  # noqa: E402
 
 MOVE = """
 name = "there"
@@ -87,6 +90,7 @@ class Client(ClientTest):
                           refused.exception.state), ("wrong-state", "run", "Idle"))
         self.assertIn("flexarm arm", refused.exception.text)
         self.assert_statuses_come_while_a_command_waits()
+        self.assertIs(self.daemon.tare()["ok"], True)
         self.assertIs(self.daemon.zero((0.0, 0.0))["ok"], True)
         self.daemon.wait_for(lambda status: status.at_rest, within_s=10)
         self.daemon.arm()
@@ -120,19 +124,15 @@ class Client(ClientTest):
         self.assertEqual((status.run, status.trip, status.log_file), (None, None, None))
         with self.assertRaises(ValueError):
             self.daemon.statuses(every_s=0.0)
-        # Tare takes a second or so: the statuses on their own connection do not wait for it.
-        tare = threading.Thread(target=self.daemon.tare)
-        tare.start()
-        times_s, during = [], 0
-        for status in self.daemon.statuses(every_s=0.05):
-            self.assertIs(status.values["ok"], True)
-            times_s.append(status.time_s)
-            during += tare.is_alive()
-            if not tare.is_alive() and len(times_s) >= 5:
-                break
-        tare.join()
-        self.assertGreater(during, 2)
-        self.assertEqual(times_s, sorted(times_s))
+        times_s = []
+        with self.daemon._connection._turn:  # as while a command waits for its answer
+            for status in self.daemon.statuses(every_s=0.05):
+                times_s.append(status.time_s)
+                if len(times_s) == 5:
+                    break
+            with self.assertRaises(flexarm.Refused):
+                self.daemon.stop()
+        self.assertEqual(times_s, sorted(set(times_s)), "each is newer")
 
     def assert_equals_export(self, file):
         table = self.folder / "export.csv"
@@ -238,7 +238,7 @@ class Client(ClientTest):
 class Example(ClientTest):
     def test_the_example_runs_its_series(self):
         told = self.python(ROOT / "tools/python/examples/series.py", "--steps-deg", "1", "2",
-                           "--duration-s", "1.6")  # shorter: it trips
+                           "--duration-s", "1.6")  # 0.8 trips
         self.assertIn("2 deg: overshoot", told)
         with open(self.folder / "series.csv", encoding="utf-8", newline="") as table:
             header, *rows = csv.reader(table)
@@ -290,12 +290,53 @@ class StrangeDaemon(ProgramTest):
                 getattr(status, name)
 
     def test_no_answer_within_the_time_closes_the_connection(self):
-        listener = FalseDaemon(self.folder / "socket", [])
-        silent = threading.Event()
-        listener.serve = silent.wait
-        with listener, unittest.mock.patch("flexarm.status_stream.STATUS_S", 0.05):
-            with self.assertRaises((flexarm.TimedOut, flexarm.ConnectionLost)):
-                flexarm.connect(self.folder / "socket")
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(str(self.folder / "socket"))
+            listener.listen()
+            connection = Connection(str(self.folder / "socket"))
+            self.addCleanup(connection.close)
+            with self.assertRaises(flexarm.TimedOut):
+                connection.ask({"command": "status"}, within_s=0.05)
+            with self.assertRaises(flexarm.ConnectionLost):
+                connection.ask({"command": "status"}, within_s=0.05)
+
+    def test_an_answer_may_come_in_pieces_but_within_its_time(self):
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(str(self.folder / "socket"))
+            listener.listen()
+            connection = Connection(str(self.folder / "socket"))
+            self.addCleanup(connection.close)
+            peer, _ = listener.accept()
+            with peer:
+                self.send_in_pieces(peer, STATUS[:20], STATUS[20:] + b"\n")
+                self.assertEqual(connection.ask({"command": "status"}, 30)["state"], "Idle")
+                self.send_in_pieces(peer, *[b"x"] * 20)
+                with self.assertRaises(flexarm.TimedOut):  # each piece comes earlier
+                    connection.ask({"command": "status"}, within_s=0.2)
+
+    def send_in_pieces(self, peer, *pieces):
+        def send():
+            with contextlib.suppress(OSError):  # the client has given up
+                for piece in pieces:
+                    peer.sendall(piece)
+                    time.sleep(0.05)
+
+        sender = threading.Thread(target=send)
+        sender.start()
+        self.addCleanup(sender.join)
+
+    def test_a_stop_is_asked_again_if_a_crowd_has_displaced_it(self):
+        crowd = b'{"ok":false,"refusal":"too-many-clients","error":"e"}'
+        stopped = b'{"ok":true,"command":"stop","state":"Stopping"}'
+        path = self.folder / "socket"
+        with FalseDaemon(path, [STATUS, crowd, crowd, stopped, crowd]):
+            daemon = flexarm.connect(path)
+            self.addCleanup(daemon.close)
+            self.assertEqual(daemon.stop()["state"], "Stopping")
+            with unittest.mock.patch("flexarm.daemon.STOP_TRIES", 1):
+                with self.assertRaises(flexarm.Refused) as refused:
+                    daemon.stop()
+        self.assertEqual(refused.exception.code, "too-many-clients")
 
     def test_a_missing_program_or_log_is_told(self):
         with self.assertRaises(flexarm.ExportFailed) as caught:

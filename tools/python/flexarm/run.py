@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Protocol
 
 from .connection import Answer
-from .errors import FlexarmError, RunNotCompleted, TimedOut
+from .errors import ExportFailed, FlexarmError, RunNotCompleted, TimedOut
 from .run_data import RunData, read_run
 from .status import RunState, Status
 
@@ -86,7 +86,8 @@ class Run:
 
     def log_file(self, within_s: float = LOG_S) -> Path:
         """The log of the run. The daemon tells it from 0.2 s after the begin of the run until 1 s
-        after its end: `follow`, `wait` or this must have been called in that time.
+        after its end: `follow`, `wait` or this must have been called in that time. It is relative to the
+        daemon's folder if the daemon was started with such a --log-dir.
 
         @raises TimedOut: it does not tell it
         """
@@ -114,6 +115,10 @@ class Run:
                 break
             if time.monotonic() > end_s:
                 raise TimedOut(f"{file} is not closed within {within_s} s", "wait for the run")
+        if not file.exists():
+            raise ExportFailed(f"{file} is not here",
+                               "a path that is not absolute is relative to the daemon's folder: give "
+                               "it an absolute --log-dir, or start this program there")
         return read_run(file, with_raw=with_raw, program=program)
 
     def _state(self, status: Status) -> RunState:

@@ -54,9 +54,9 @@ def _run(command: list[str], within_s: float) -> None:
     try:
         result = subprocess.run(command, capture_output=True, text=True, errors="replace",
                                 timeout=within_s, check=False)
-    except FileNotFoundError:
-        raise ExportFailed(f"there is no program {command[0]}",
-                           "put the folder of flexarm on PATH, or name it as `program`") from None
+    except OSError as error:
+        raise ExportFailed(f"{command[0]} cannot be started ({error.strerror})",
+                           "put the folder of flexarm on PATH, or name it as `program`") from error
     except subprocess.TimeoutExpired:
         raise ExportFailed(f"the export took longer than {within_s} s") from None
     if result.returncode != 0:
