@@ -310,7 +310,7 @@ class StrangeDaemon(ProgramTest):
             with peer:
                 self.send_in_pieces(peer, STATUS[:20], STATUS[20:] + b"\n")
                 self.assertEqual(connection.ask({"command": "status"}, 30)["state"], "Idle")
-                self.send_in_pieces(peer, *[b"x"] * 20)
+                self.send_in_pieces(peer, *(STATUS[i:i + 2] for i in range(0, len(STATUS), 2)), b"\n")
                 with self.assertRaises(flexarm.TimedOut):  # each piece comes earlier
                     connection.ask({"command": "status"}, within_s=0.2)
 
