@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
   only_all_lanes=(guards unit campaigns slowest mutation mutants fuzz docs-all build-cost headers-all
-                  separate clang-tidy-all asan-all guest-long debian13 arm64)
+                  python-types separate clang-tidy-all asan-all guest-long debian13 arm64)
 }
 
 logs=build/logs
@@ -309,6 +309,10 @@ lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
   test_folder tsan tests/e2e '^threads$'
   local folder
   for folder in "${threaded_tests[@]}"; do test_folder tsan "$folder" .; done
+}
+
+lane_python-types() {  # mypy --strict of the Python client and its example
+  mypy --cache-dir build/mypy --strict --config-file tools/python/mypy.ini tools/python
 }
 
 lane_separate() {  # every source compiles by itself, without batches
