@@ -22,7 +22,14 @@ within() {  # within SECONDS COMMAND..
 }
 # dpkg's default answer for a config that both sides changed: the file stays.
 apt() { apt-get --quiet --yes -o Dpkg::Options::=--force-confdef --no-install-recommends "$@"; }
-daemons() { find /proc/[0-9]*/exe -lname '*/flexarmd*' 2>/dev/null | wc -l; }
+# Processes outside this root are seen, too.
+daemon_runs() {
+  local program
+  for program in /proc/[0-9]*/exe; do
+    if [[ $program -ef /usr/bin/flexarmd ]]; then return 0; fi
+  done
+  return 1
+}
 
 rig=/etc/flexarm/rig.toml
 state=/var/lib/flexarm
@@ -47,7 +54,7 @@ check "bash completes verbs" grep -q simulate <(bash -c '
   COMP_WORDS=(flexarm sim) COMP_CWORD=1; _flexarm; printf "%s\n" "${COMPREPLY[@]}"')
 check "systemd accepts the unit" systemd-analyze verify --man=no flexarmd.service
 check "the service is not enabled" equal "$(systemctl is-enabled flexarmd || true)" disabled
-check "the daemon does not run" equal "$(daemons)" 0
+check "the daemon does not run" refused daemon_runs
 check "there is the group of observers" getent group flexarm-view
 check "the state folder is the daemon's alone" equal "$(stat -c '%U %G %a' $state)" \
   "flexarm flexarm 750"
@@ -61,16 +68,20 @@ check "enabled" equal "$(systemctl is-enabled flexarmd)" enabled
 echo "== the daemon, as the unit starts it, makes a calibration and a log"
 install -d -o flexarm -g flexarm /run/flexarm
 read -ra command < <(sed -n 's/^ExecStart=//p' /usr/lib/systemd/system/flexarmd.service)
-as_flexarm() { setpriv --reuid=flexarm --regid=flexarm --init-groups --inh-caps=-all "$@"; }
-as_flexarm "${command[@]}" --without-realtime </dev/null &
+as_user=(setpriv --reuid=flexarm --regid=flexarm --init-groups --inh-caps=-all)
+as_flexarm() { "${as_user[@]}" "$@"; }
+"${as_user[@]}" "${command[@]}" --without-realtime </dev/null &
 daemon=$!
+trap 'kill $daemon 2>/dev/null || true' EXIT
 check "it answers" within 20 as_flexarm flexarm status
+check "it is found among the processes" daemon_runs
 check "tare" within 10 as_flexarm flexarm tare
 check "arm" within 10 as_flexarm flexarm arm
 check "run" as_flexarm flexarm run --wait /usr/share/flexarm/config/experiments/square-20deg.toml
 check "tag" as_flexarm flexarm runs --folder $state
 kill $daemon
 wait $daemon || fail "the daemon ended with $?"
+trap - EXIT
 log=$(find $state -name '[!.]*.flexarm' | head -n 1)
 check "there is a log" test -s "$log"
 as_flexarm flexarm runs tag "$log" keep
@@ -82,12 +93,12 @@ before=$(sha256sum "${kept[@]}")
 # As if systemd ran, with the daemon active: what do the scripts of the package ask it to do?
 asked=/tmp/asked
 mkdir -p /run/systemd/system
-cat >/usr/local/bin/systemctl <<'STUB'
+rm /usr/bin/systemctl
+cat >/usr/bin/systemctl <<'STUB'
 #!/bin/sh
 echo "$*" >>/tmp/asked
 STUB
-chmod 755 /usr/local/bin/systemctl
-export PATH=/usr/local/sbin:/usr/local/bin:$PATH
+chmod 755 /usr/bin/systemctl
 
 echo "== upgraded"
 : >$asked
