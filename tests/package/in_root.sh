@@ -93,6 +93,7 @@ before=$(sha256sum "${kept[@]}")
 # As if systemd ran, with the daemon active: what do the scripts of the package ask it to do?
 asked=/tmp/asked
 mkdir -p /run/systemd/system
+rm -f /usr/sbin/policy-rc.d  # by mmdebstrap: no service is to be started or stopped
 rm /usr/bin/systemctl
 cat >/usr/bin/systemctl <<'STUB'
 #!/bin/sh
