@@ -60,7 +60,7 @@ OWN_SECTIONS = re.compile(r"\bsections?\s+" + NUMBERS)
 HEADING = re.compile(r"^#+ +(.*?) *$", re.M)
 OUTSIDE = re.compile(r"(?<![\w.$}/])/home/[\w./-]*")
 
-TOP_FOLDERS = (*prose.CODE_FOLDERS, "systemd", "docs")
+TOP_FOLDERS = (*prose.CODE_FOLDERS, "systemd", "package", "docs")
 PATH = re.compile(r"(?<![\w/.{}-])(?:" + "|".join(TOP_FOLDERS) + r")/[\w./{},*+-]*")
 BARE_FILE = re.compile(r"\w+\.(?:h|cpp|py|sh)")
 NAME_IN_FILE = re.compile(r"`([A-Z]\w+(?:::\w+)*)`(?:\s+in\s+|\s+\()`(\w+\.(?:h|cpp))`")

@@ -297,7 +297,7 @@ CPP_CHECKS = (check_layers, check_realtime, check_file_size, check_function_size
 
 
 def sources(root):
-    for folder in (*CODE_FOLDERS, "systemd", ".ci"):
+    for folder in (*CODE_FOLDERS, "systemd", "package", ".ci"):
         for path in sorted((root / folder).rglob("*")):
             if path.is_file() and "__pycache__" not in path.parts:
                 yield path

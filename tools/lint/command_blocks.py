@@ -154,6 +154,6 @@ def problems(text):
 
 def pages(root):
     """All pages of the tree, the changelog and those beside code too."""
-    folders = ("docs", "systemd", ".ci", *prose.CODE_FOLDERS)
+    folders = ("docs", "systemd", "package", ".ci", *prose.CODE_FOLDERS)
     return sorted([*root.glob("*.md"),
                    *(page for folder in folders for page in (root / folder).rglob("*.md"))])

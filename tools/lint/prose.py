@@ -97,7 +97,7 @@ def files(root):
     for path in sorted(root.glob("*")):
         if path.is_file() and path.name in ("CMakeLists.txt", "CMakePresets.json"):
             yield path
-    for folder in (*CODE_FOLDERS, "systemd", ".ci"):
+    for folder in (*CODE_FOLDERS, "systemd", "package", ".ci"):
         for path in sorted((root / folder).rglob("*")):
             if path.is_file() and "__pycache__" not in path.parts and path.suffix != ".md":
                 yield path
