@@ -112,7 +112,8 @@ void RunRecording::BeginRun(const SafetyRecord& granted) {
   info_.experiment_name = experiment.name;
   info_.experiment_text = experiment.text;
   info_.label = LabelOfAnnouncement(experiment);
-  Open(granted.due_ns);
+  // Frames are on whole milliseconds, and ticks of the safety task just before them.
+  Open(granted.due_ns - granted.due_ns % 1'000'000);
   has_run_ = true;
   for (const RunEvent& event : context_.events()) sink_->Event(event);
   if (Announces(experiment)) sink_->Event(experiment);

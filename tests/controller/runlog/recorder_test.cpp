@@ -90,7 +90,7 @@ TEST_F(RecorderTest, ARunIsFromTheResetAfterItsGrantUntilASecondAfterItsEnd) {
   EXPECT_EQ(run.tick.back().input.tick, 100);  // kAfterRunNs after the return to Armed
   EXPECT_EQ(run.tick.size(), 89U);
   EXPECT_EQ(run.safety.front().before.state, SafetyState::kArmed);
-  EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs + 1);
+  EXPECT_EQ(run.info.start_ns, 10 * kTestPeriodNs) << "the millisecond in which it was granted";
   EXPECT_NE(run.info.result_json.find("\"completed\":true"), std::string::npos);
   EXPECT_TRUE(errors_.empty());
 }
