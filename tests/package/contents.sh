@@ -37,6 +37,7 @@ done
 [[ -z $(find . -path './etc/*' -type f ! -name rig.toml) ]] || fail "more in /etc than rig.toml"
 [[ -z $(find . -type d -empty) ]] || fail "empty folders: $(find . -type d -empty)"
 for other in usr/local "$work" "$build" "$(cd "$here/../.." && pwd)"; do
+  # grep fails where it finds nothing, which is what is hoped for.
   named=$(grep -rlF -- "$other" usr/lib usr/bin etc usr/share/flexarm DEBIAN || true)
   [[ -z $named ]] || fail "$other is named in $named"
 done

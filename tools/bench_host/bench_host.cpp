@@ -10,6 +10,7 @@
 #include "tools/bench_host/solver_rows.h"
 #include "tools/bench_host/two_cores_row.h"
 #include "tools/bench_host/wake_up_row.h"
+#include "tools/support/scratch_folder.h"
 
 namespace flexarm {
 namespace {

@@ -9,20 +9,6 @@
 
 namespace flexarm {
 
-/// A folder that is gone when this object is.
-class ScratchFolder {
- public:
-  /// @throws std::runtime_error if none can be made
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const noexcept { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// What the rows are measured with.
 struct BenchSetting {
   std::filesystem::path config_file;

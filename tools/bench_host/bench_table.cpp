@@ -1,20 +1,14 @@
 #include "tools/bench_host/bench_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace flexarm {
 namespace {
-
-template <typename... Numbers>
-std::string Formatted(const char* format, Numbers... numbers) {
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), format, numbers...);  // NOLINT(*-nonliteral)
-  return text.data();
-}
 
 std::string TimeText(const std::optional<Timing>& time) {
   if (!time) return "";
@@ -33,11 +27,12 @@ std::string GroupedText(std::int64_t number) {
 
 std::string RatioText(const std::optional<BenchRatio>& ratio) {
   if (!ratio) return "";
-  const char* format = ratio->value < 100.0 ? "%.3g" : "%.0f";
-  std::string text = "**" + Formatted(format, ratio->value) + "** " + ratio->unit;
+  const std::string value = ratio->value < 100.0 ? fmt::format("{:.3g}", ratio->value)
+                                                 : fmt::format("{:.0f}", ratio->value);
+  const std::string text = "**" + value + "** " + ratio->unit;
   if (!ratio->bar) return text;
   const bool reached = ratio->value >= *ratio->bar;
-  return text + Formatted(" (bar %g: ", *ratio->bar) + (reached ? "reached)" : "MISSED)");
+  return text + fmt::format(" (bar {:g}: {})", *ratio->bar, reached ? "reached" : "MISSED");
 }
 
 // What a cell of Markdown cannot hold.
@@ -65,11 +60,11 @@ void AddMachine(std::ostringstream& page, const BenchReport& report) {
        << "| kernel, governor | " << m.kernel << ", "
        << (m.governor.empty() ? "none" : CellText(m.governor)) << " |\n"
        << "| load before, share of a core | "
-       << Formatted("%.1f, %.0f %%", m.load, 100.0 * m.processor_share) << " |\n| build | "
+       << fmt::format("{:.1f}, {:.0f} %", m.load, 100.0 * m.processor_share) << " |\n| build | "
        << m.build << ", " << m.build_type << " |\n"
        << "| config | " << CellText(report.config) << " |\n";
   for (const FloatBound& bound : report.bounds) {
-    page << "| one core, " << bound.what << " | " << Formatted("%.1f", 1e-9 * bound.flops_per_s)
+    page << "| one core, " << bound.what << " | " << fmt::format("{:.1f}", 1e-9 * bound.flops_per_s)
          << " Gflop/s |\n";
   }
 }
@@ -135,7 +130,7 @@ std::string DurationText(double seconds) {
   std::size_t unit = 0;
   double value = seconds;
   for (; value < 0.9995 && unit + 1 < kUnits.size(); ++unit) value *= 1e3;  // 3 digits: not 1000
-  return Formatted("%.3g ", value) + kUnits[unit];
+  return fmt::format("{:.3g} {}", value, kUnits[unit]);
 }
 
 std::string BenchMarkdown(const BenchReport& report) {
@@ -153,8 +148,8 @@ std::string BenchMarkdown(const BenchReport& report) {
     const std::optional<double> share = BoundShare(row, bound);
     page << "| " << CellText(row.what) << " | " << TimeText(row.time) << " | "
          << (row.work ? GroupedText(row.work->flops) : "") << " | "
-         << (share ? Formatted("%.2f", 1e-9 * *share * bound) : "") << " | "
-         << (share ? Formatted("%.1f %%", 100.0 * *share) : "") << " | "
+         << (share ? fmt::format("{:.2f}", 1e-9 * *share * bound) : "") << " | "
+         << (share ? fmt::format("{:.1f} %", 100.0 * *share) : "") << " | "
          << CellText(ResultText(row)) << " |\n";
   }
   page << "\nThe operations are those of the machine code that was timed, executed one instruction "

@@ -1,7 +1,8 @@
 #include "tools/bench_host/log_rows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <sstream>
 
 #include "controller/design/run_design.h"
@@ -16,10 +17,7 @@ namespace {
 
 // Samples a second, in words.
 std::string RateText(std::int64_t samples, const Timing& time) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.0f samples a second",
-                static_cast<double>(samples) / time.median_s);
-  return text.data();
+  return fmt::format("{:.0f} samples a second", static_cast<double>(samples) / time.median_s);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "tools/bench_host/machine_notes.h"
 
+#include <fmt/format.h>
 #include <sched.h>
 #include <sys/utsname.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <sstream>
 
@@ -69,13 +68,11 @@ MachineNotes ReadMachine(const HostFiles& files) {
 
 std::vector<std::string> WarningsOf(const MachineNotes& machine) {
   std::vector<std::string> warnings;
-  std::array<char, 200> text{};
   if (machine.load > kBusyLoad || machine.processor_share < kWholeShare) {
-    std::snprintf(text.data(), text.size(),
-                  "the machine is busy: load %.1f, a busy thread got %.0f %% of a core; trust the "
-                  "ratios, and stop what else runs before you compare times",
-                  machine.load, 100.0 * machine.processor_share);
-    warnings.emplace_back(text.data());
+    warnings.push_back(
+        fmt::format("the machine is busy: load {:.1f}, a busy thread got {:.0f} % of a core; trust "
+                    "the ratios, and stop what else runs before you compare times",
+                    machine.load, 100.0 * machine.processor_share));
   }
   if (!machine.governor.empty() && machine.governor != "performance") {
     warnings.push_back("the frequency governor is " + machine.governor +

@@ -1,8 +1,8 @@
 #include "tools/bench_host/octave_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 
@@ -11,11 +11,7 @@
 namespace flexarm {
 namespace {
 
-std::string Exact(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return text.data();
-}
+std::string Exact(double value) { return fmt::format("{:.17g}", value); }
 
 // A matrix as Octave reads it.
 std::string MatrixText(const Eigen::MatrixXd& matrix) {

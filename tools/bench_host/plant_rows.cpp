@@ -1,7 +1,8 @@
 #include "tools/bench_host/plant_rows.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "controller/host/simulation.h"
@@ -14,12 +15,6 @@ namespace {
 
 // Bent links that turn: no term is zero.
 constexpr double kMovingFor_s = 0.3;
-
-std::string RoundedText(const char* format, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, value);  // NOLINT(*-nonliteral)
-  return text.data();
-}
 
 // Processor time of a simulation without its design: between the first and the last call of its
 // progress, which come from the thread that simulates.
@@ -61,8 +56,8 @@ BenchRow RateRow(const BenchSetting& setting) {
 BenchRow IntegratorRow(const BenchSetting& setting) {
   const SimConfig& sim = setting.config.sim;
   BenchRow row{.name = "integrator-step",
-               .what = "Integrator step of the plant, " + RoundedText("%g ms, ", sim.step_ms) +
-                       std::to_string(sim.plant_modes) + " modes a link"};
+               .what = fmt::format("Integrator step of the plant, {:g} ms, {} modes a link",
+                                   sim.step_ms, sim.plant_modes)};
   const ArmModel model(setting.config.arm, {sim.plant_modes, sim.plant_modes});
   ArmSimulator simulator(model);
   ArmState arm(model.dof());
@@ -95,8 +90,8 @@ BenchRow ExperimentRow(const BenchSetting& setting, const BenchRow& integrator,
     taken_s.push_back(simulated_s * watch.ProcessorTimeShare());
   }
   BenchRow row{.name = "experiment",
-               .what = RoundedText("%g s of an experiment", simulated_s) +
-                       " in lock step: loop, safety and plant"};
+               .what = fmt::format("{:g} s of an experiment in lock step: loop, safety and plant",
+                                   simulated_s)};
   row.time = TimingOf(taken_s);
   row.ratio = {.name = "realtime_factor",
                .unit = "times real time",

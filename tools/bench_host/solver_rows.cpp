@@ -1,8 +1,9 @@
 #include "tools/bench_host/solver_rows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "controller/files/external_json.h"
@@ -25,13 +26,6 @@ Timing TimingFrom(const nlohmann::ordered_json& json, std::size_t repetitions) {
           .lower_quartile_s = JsonNumber(json, "lower_quartile_s", "flexarm-cvode-race"),
           .upper_quartile_s = JsonNumber(json, "upper_quartile_s", "flexarm-cvode-race"),
           .repetitions = repetitions};
-}
-
-template <typename... Numbers>
-std::string Printed(const char* format, Numbers... numbers) {
-  std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(), format, numbers...);  // NOLINT(*-nonliteral)
-  return text.data();
 }
 
 // Largest difference of a rate, as a share of the largest rate of that state.
@@ -91,10 +85,10 @@ BenchRow CvodeRow(const BenchSetting& setting, const std::filesystem::path& scra
                .unit = "times CVODE's speed",
                .value = JsonNumber(json, "ratio", name),
                .bar = kCvodeBar};
-  row.result = Printed(
-      "CVODE %s takes %.2f ms with tolerances %.1e and %.1e; errors of the tip %.1f um (plant), "
-      "%.1f um (CVODE), %.1e um (reference)",
-      JsonText(cvode, "method", name).c_str(), 1e3 * JsonNumber(cvode, "median_s", name),
+  row.result = fmt::format(
+      "CVODE {} takes {:.2f} ms with tolerances {:.1e} and {:.1e}; errors of the tip {:.1f} um "
+      "(plant), {:.1f} um (CVODE), {:.1e} um (reference)",
+      JsonText(cvode, "method", name), 1e3 * JsonNumber(cvode, "median_s", name),
       JsonNumber(cvode, "relative_tolerance", name), JsonNumber(cvode, "absolute_tolerance", name),
       1e6 * JsonNumber(plant, "error_m", name), 1e6 * JsonNumber(cvode, "error_m", name),
       1e6 * JsonNumber(json, "reference_error_m", name));
@@ -119,7 +113,7 @@ BenchRow OctaveRow(const BenchSetting& setting, const std::filesystem::path& scr
   const double apart = RateDifference(problem, states, race.rates);
   row.check_failed = !(apart <= kSameRates);
   if (row.check_failed) {
-    row.not_measured = Printed("arm_rate.m differs from the C++ by %.1e of a rate", apart);
+    row.not_measured = fmt::format("arm_rate.m differs from the C++ by {:.1e} of a rate", apart);
     return row;
   }
   const double error_m = problem.TipError_m(own, reference.motion);
@@ -131,9 +125,10 @@ BenchRow OctaveRow(const BenchSetting& setting, const std::filesystem::path& scr
                  .unit = "times ode45's speed",
                  .value = entry.time_s / row.time->median_s,
                  .bar = {}};
-    row.result = Printed(
-        "ode45 takes %.1f s and %ld evaluations with tolerance %.0e; errors of the tip %.1f um "
-        "(plant), %.1f um (ode45); arm_rate.m differs by %.0e of a rate",
+    row.result = fmt::format(
+        "ode45 takes {:.1f} s and {} evaluations with tolerance {:.0e}; errors of the tip {:.1f} "
+        "um "
+        "(plant), {:.1f} um (ode45); arm_rate.m differs by {:.0e} of a rate",
         entry.time_s, entry.calls, entry.tolerance, 1e6 * error_m, 1e6 * found_m, apart);
     return row;
   }

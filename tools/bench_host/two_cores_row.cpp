@@ -1,7 +1,7 @@
 #include "tools/bench_host/two_cores_row.h"
 
-#include <array>
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <thread>
 
 #include "tools/sweep/sweep.h"
@@ -45,9 +45,7 @@ BenchRow TwoCoresRow(const BenchSetting& setting, const std::filesystem::path& s
                .unit = "times the speed of one core",
                .value = Quantile(ratio, 0.5),
                .bar = kTwoCoresBar};
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.2f s on one core", Quantile(one_s, 0.5));
-  row.result = text.data();
+  row.result = fmt::format("{:.2f} s on one core", Quantile(one_s, 0.5));
   return row;
 }
 

@@ -1,19 +1,19 @@
 #include "tools/bench_host/wake_up_row.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 
 #include "controller/files/write_file.h"
 #include "controller/runlog/run_reader.h"
+#include "controller/tasks/control_task.h"
 #include "tools/bench_host/child_program.h"
 
 namespace flexarm {
 namespace {
-
-constexpr int kControlPriority = 80;
 
 // A move that any arm may make.
 std::string ExperimentText(int duration_s) {
@@ -40,10 +40,11 @@ std::vector<double> DaemonLateness_s(const BenchSetting& setting, int duration_s
   WriteFile(config, setting.config.text, ReplaceAny("a config"));
   WriteFile(move, ExperimentText(duration_s), ReplaceAny("an experiment"));
   const std::filesystem::path logs = scratch / "runs";
-  const ProgramResult daemon = RunChild(
-      {(setting.programs / "flexarmd").string(), "--config", config.string(), "--experiment",
-       move.string(), "--log-dir", logs.string(), "--socket", (scratch / "socket").string()},
-      scratch);
+  const ProgramResult daemon =
+      RunChild({(setting.programs / "flexarmd").string(), "--config", config.string(),
+                "--experiment", move.string(), "--log-dir", logs.string(), "--state-dir",
+                (scratch / "state").string(), "--socket", (scratch / "socket").string()},
+               scratch);
   if (daemon.exit_code != 0) throw std::runtime_error("flexarmd: " + ReasonOf(daemon));
   std::vector<double> late_s = Lateness_s(logs);
   if (late_s.empty()) throw std::runtime_error("flexarmd logged no wake-up");
@@ -54,7 +55,7 @@ CyclictestResult RunCyclictest(const RigConfig& config, std::size_t wake_ups,
                                const std::filesystem::path& scratch) {
   const ProgramResult result =
       RunChild({"cyclictest", "--quiet", "--mlockall", "--threads=1",
-                "--priority=" + std::to_string(kControlPriority),
+                "--priority=" + std::to_string(ControlTask::kPriority),
                 "--interval=" + std::to_string(config.loop.period_ns() / 1000),
                 "--loops=" + std::to_string(wake_ups)},
                scratch);
@@ -86,12 +87,9 @@ BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scr
                  .unit = "times cyclictest's mean",
                  .value = mean_us / other.mean_us,
                  .bar = {}};
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "mean %.0f us, worst %.0f us; cyclictest mean %.0f us, worst %.0f us", mean_us,
-                  1e6 * *std::max_element(late_s.begin(), late_s.end()), other.mean_us,
-                  other.worst_us);
-    row.result = text.data();
+    row.result = fmt::format(
+        "mean {:.0f} us, worst {:.0f} us; cyclictest mean {:.0f} us, worst {:.0f} us", mean_us,
+        1e6 * *std::max_element(late_s.begin(), late_s.end()), other.mean_us, other.worst_us);
     return row;
   } catch (const std::runtime_error& error) {
     return NotMeasured(
@@ -104,11 +102,9 @@ BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scr
 CyclictestResult ParseCyclictest(const std::string& output) {
   const auto number_after = [&output](const std::string& name) {
     const std::size_t at = output.find(name);
+    std::istringstream rest(at == std::string::npos ? "" : output.substr(at + name.size()));
     double value = 0.0;
-    if (at == std::string::npos ||
-        std::sscanf(output.c_str() + at + name.size(), "%lf", &value) != 1) {  // NOLINT
-      throw std::runtime_error("cyclictest printed no " + name);
-    }
+    if (!(rest >> value)) throw std::runtime_error("cyclictest printed no " + name);
     return value;
   };
   return {.mean_us = number_after("Avg:"), .worst_us = number_after("Max:")};

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "controller/design/design_verdict.h"
 #include "controller/design/run_design.h"
@@ -23,6 +24,7 @@
 #include "tools/flexarm/like_run.h"
 #include "tools/flexarm/run_pictures.h"
 #include "tools/runs/run_summary.h"
+#include "tools/support/scratch_folder.h"
 
 namespace flexarm {
 namespace {
@@ -91,31 +93,6 @@ SimulationRequest RequestLike(const SimulateOptions& options, const std::filesys
                         : " (" + like.payload_estimate + " by its own estimate)") +
                    ": give it with --payload-kg");
 }
-
-/// The log that a picture needs, removed at the end unless the user asked for it.
-class ScratchLog {
- public:
-  explicit ScratchLog(bool wanted) {
-    if (!wanted) return;
-    std::string folder = (std::filesystem::temp_directory_path() / "flexarm-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) {
-      throw InputError(folder + ": cannot be made; give the log a place with -o RUN");
-    }
-    folder_ = folder;
-  }
-  ~ScratchLog() {
-    std::error_code ignored;
-    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
-  }
-  ScratchLog(const ScratchLog&) = delete;
-  ScratchLog& operator=(const ScratchLog&) = delete;
-
-  /// @param law  names the file, which names the run in the picture
-  std::filesystem::path File(const std::string& law) const { return folder_ / (law + ".flexarm"); }
-
- private:
-  std::filesystem::path folder_;
-};
 
 RunPictures PicturesOf(const SimulateOptions& options) {
   RunPictures pictures;
@@ -209,10 +186,14 @@ void CheckConditions(const SimulationRequest& request) {
 int Run(const SimulateOptions& options) {
   const std::filesystem::path like = options.like.given() ? options.like.File() : "";
   SimulationRequest request = like.empty() ? RequestOfConfig(options) : RequestLike(options, like);
-  const ScratchLog scratch(!options.plot.empty() && options.output.empty());
+  std::optional<ScratchFolder> scratch;  // for the log of a picture
   if (!options.output.empty()) request.log = options.output;
   if (!options.plot.empty()) {
-    if (!request.log) request.log = scratch.File(LawOf(request.config.controller.kind).name);
+    if (!request.log) {
+      // The file's name names the run in the picture.
+      request.log = scratch.emplace().path() /
+                    (std::string(LawOf(request.config.controller.kind).name) + ".flexarm");
+    }
     PicturesOf(options).Check({*request.log, like});
   }
   request.label = options.label.Label();

@@ -76,7 +76,7 @@ LAYERS = {
                      "controller/operator controller/design controller/host config tools/support tools/sweep",
     "tools/bench_host": "model/arm model/simulation controller/files controller/types "
                         "controller/law controller/planner controller/design controller/step "
-                        "controller/runlog controller/tasks controller/host config tools/sweep",
+                        "controller/runlog controller/tasks controller/host config tools/support tools/sweep",
     "tools/tuning": "model model/beam estimator controller/types controller/design controller/host config config/new_rig tools/sweep",
     "tools/benchmark": "controller/types controller/runlog config tools/runs tools/plot tools/sweep",
     "tools/identification": "model model/math model/arm model/simulation hal estimator "
@@ -94,7 +94,7 @@ LAYERS = {
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
+                     "tools/support tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "

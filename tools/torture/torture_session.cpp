@@ -31,6 +31,13 @@ RigConfig PlantOf(const RigConfig& config, const TortureScenario& scenario) {
   return PlantWith(config, plant);
 }
 
+// In memory where the machine has a folder for that, because each write is synced.
+std::filesystem::path ParentOfFolders() {
+  const std::filesystem::path in_memory = "/dev/shm";
+  return std::filesystem::is_directory(in_memory) ? in_memory
+                                                  : std::filesystem::temp_directory_path();
+}
+
 }  // namespace
 
 TorturedRig::TorturedRig(RigConfig with_law)
@@ -39,24 +46,13 @@ TorturedRig::TorturedRig(RigConfig with_law)
       delay_margin_s(JudgeDesign(config, design).delay_margin_s()),
       limits(MotionLimitsOf(config)) {}
 
-SessionFolder::SessionFolder() {
-  const bool in_memory = std::filesystem::is_directory("/dev/shm");
-  std::string name = in_memory ? "/dev/shm/flexarm-torture-XXXXXX" : "/tmp/flexarm-torture-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) throw RejectedError(name + ": cannot make a folder");
-  path_ = name;
-}
-
-SessionFolder::~SessionFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 TortureSession::TortureSession(const TorturedRig& rig, const TortureScenario& scenario,
                                const WatchRules& rules)
     : rig_(rig),
       scenario_(scenario),
       faults_(NotYet(scenario.faults)),
       grid_(rig.config.loop),
+      folder_(ParentOfFolders()),
       plant_(PlantOf(rig.config, scenario)),
       stack_(rig.config, plant_, rig.design, scenario.payload_kg, faults_),
       events_(kEventDepth),

@@ -15,6 +15,7 @@
 #include "controller/operator/operator_task.h"
 #include "controller/runlog/recorder_task.h"
 #include "controller/types/loop_grid.h"
+#include "tools/support/scratch_folder.h"
 #include "tools/torture/disturbed_executor.h"
 #include "tools/torture/line_client.h"
 #include "tools/torture/scenario.h"
@@ -31,21 +32,6 @@ struct TorturedRig {
   MotionLimits limits;
 
   explicit TorturedRig(RigConfig with_law);
-};
-
-/// A folder of its own for the files of a session, in memory where the machine has a folder for
-/// that, because each write is synced; removed with it.
-class SessionFolder {
- public:
-  SessionFolder();
-  ~SessionFolder();
-  SessionFolder(const SessionFolder&) = delete;
-  SessionFolder& operator=(const SessionFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// The whole daemon from its start to its end on a simulated clock: operator task with its socket,
@@ -108,7 +94,7 @@ class TortureSession {
   TortureScenario scenario_;
   std::vector<Fault> faults_;  // in the clock of the loop
   LoopGrid grid_;
-  SessionFolder folder_;
+  ScratchFolder folder_;
   std::vector<std::string> errors_;
   RigConfig plant_;
   TorturedStack stack_;

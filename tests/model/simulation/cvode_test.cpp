@@ -1,19 +1,13 @@
 // Whole trajectories against CVODE (SUNDIALS), an independent variable-order solver.
 
-#include <cvode/cvode.h>
 #include <gtest/gtest.h>
 #include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 #include <cmath>
-#include <memory>
-#include <stdexcept>
-#include <vector>
 
 #include "model/simulation/arm_simulator.h"
 #include "tests/model/simulation/reference_integrator.h"
+#include "tests/support/cvode_session.h"
 #include "tests/support/thesis_rig.h"
 
 namespace flexarm {
@@ -21,10 +15,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::VectorXd;
-
-#ifndef SUN_COMM_NULL  // before SUNDIALS 7 (Debian 13)
-constexpr void* SUN_COMM_NULL = nullptr;
-#endif
 
 struct Problem {
   const ArmModel* model;
@@ -41,55 +31,29 @@ int Rate(sunrealtype, N_Vector y, N_Vector y_dot, void* user) {
   return 0;
 }
 
-void Require(int flag) {
-  if (flag < 0) throw std::runtime_error("CVODE failed");
-}
-
 // Stiff solver (BDF, dense Newton) restarted at every edge of the torque.
 class Cvode {
  public:
   Cvode(const ArmModel& model, double relative)
-      : problem_{&model, VectorXd::Zero(model.dof())}, n_(model.dof()) {
-    Require(SUNContext_Create(SUN_COMM_NULL, &context_));
-    const auto states = static_cast<sunindextype>(2 * n_);
-    y_ = N_VNew_Serial(states, context_);
-    N_VConst(0.0, y_);
-    matrix_ = SUNDenseMatrix(states, states, context_);
-    solver_ = SUNLinSol_Dense(y_, matrix_, context_);
-    memory_ = CVodeCreate(CV_BDF, context_);
-    Require(CVodeInit(memory_, Rate, 0.0, y_));
-    Require(CVodeSStolerances(memory_, relative, 1e-3 * relative));
-    Require(CVodeSetUserData(memory_, &problem_));
-    Require(CVodeSetLinearSolver(memory_, solver_, matrix_));
-    Require(CVodeSetMaxNumSteps(memory_, 10'000'000));
-  }
-  ~Cvode() {
-    CVodeFree(&memory_);
-    SUNLinSolFree(solver_);
-    SUNMatDestroy(matrix_);
-    N_VDestroy(y_);
-    SUNContext_Free(&context_);
-  }
-  Cvode(const Cvode&) = delete;
-  Cvode& operator=(const Cvode&) = delete;
+      : problem_{&model, VectorXd::Zero(model.dof())},
+        session_(2 * static_cast<std::size_t>(model.dof()), Rate, &problem_,
+                 {.stiff = true,
+                  .relative = relative,
+                  .absolute = 1e-3 * relative,
+                  .most_steps = 10'000'000}) {}
 
   void Run(double until_s, const Vector2d& torque_nm) {
     problem_.force = problem_.model->InputMatrix() * torque_nm;
-    Require(CVodeReInit(memory_, time_, y_));
-    Require(CVodeSetStopTime(memory_, until_s));
-    Require(CVode(memory_, until_s, y_, &time_, CV_NORMAL));
+    session_.Restart(time_s_);
+    session_.Advance(until_s);
+    time_s_ = until_s;
   }
-  VectorXd q() const { return Eigen::Map<const VectorXd>(N_VGetArrayPointer(y_), n_); }
+  VectorXd q() { return Eigen::Map<const VectorXd>(session_.y().data(), problem_.model->dof()); }
 
  private:
   Problem problem_;
-  Eigen::Index n_;
-  SUNContext context_ = nullptr;
-  N_Vector y_ = nullptr;
-  SUNMatrix matrix_ = nullptr;
-  SUNLinearSolver solver_ = nullptr;
-  void* memory_ = nullptr;
-  sunrealtype time_ = 0.0;
+  CvodeSession session_;
+  double time_s_ = 0.0;
 };
 
 ArmParameters Frictionless(DampingReading damping) {

@@ -8,6 +8,8 @@
 namespace flexarm {
 namespace {
 
+// Two tests are skipped where nothing can be counted, as the table says then: on another processor,
+// or where ptrace is forbidden.
 volatile int written = 0;  // so that a loop is not left out
 
 // The number stands in the source: a product and a sum an element, whatever the compiler makes of

@@ -53,6 +53,7 @@ TEST(Torture, CampaignBreaksNoRule) {
 
 TEST(Torture, ASeedGivesTheSameSessionAgain) {
   for (const std::uint64_t seed : {4U, 19U, 25U}) {
+    SCOPED_TRACE(seed);
     const TortureOutcome a = RunScenario(Rigs(), Drawn(seed)), b = RunScenario(Rigs(), Drawn(seed));
     EXPECT_EQ(a.cause, b.cause);
     EXPECT_EQ(a.latched_ns, b.latched_ns);
