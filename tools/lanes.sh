@@ -176,7 +176,7 @@ lane_slowest() {  # searches the slowest control step, safety tick and plan (FLE
 }
 
 lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, wrong input
-  build release flexarm flexarm-study flexarmd
+  build release flexarm flexarm-study flexarmd unfit_program
   ctest --preset e2e
 }
 
