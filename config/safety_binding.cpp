@@ -12,8 +12,9 @@ void ReadLimits(TableReader limits, SafetyConfig* out) {
   limits.Read(
       "soft_angle_deg", &out->soft_angle_deg,
       "hub angle of joint 1, 2, in both directions, beyond which the arm trips: soft-limit");
-  limits.Read("hub_rate_rad_s", &out->hub_rate_rad_s,
-              "estimated rate of hub 1, 2 beyond which the arm trips: hub-rate");
+  limits.Read(
+      "hub_rate_rad_s", &out->hub_rate_rad_s,
+      "rate of hub 1, 2, estimated or measured over 20 ms, beyond which the arm trips: hub-rate");
   limits.Read(
       "strain_limit", &out->strain_limit,
       {"strain at the root of link 1, 2 beyond which the arm trips: bending-strain", "strain"});

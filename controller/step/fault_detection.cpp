@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "model/units.h"
 
@@ -19,6 +20,9 @@ constexpr double kStalePeriods = 2.0;
 constexpr double kHubRestWindow_s = 0.1;
 constexpr double kStrainRestWindow_s = 0.02;
 
+// A hub that springs back for a moment is no arm out of control.
+constexpr double kHubRateWindow_s = 0.02;
+
 std::size_t SamplesIn(double window_s, double period_s, std::size_t most) noexcept {
   const auto samples = static_cast<std::size_t>(std::lround(window_s / period_s));
   return std::clamp<std::size_t>(samples, 1, most);
@@ -32,20 +36,32 @@ constexpr TripCause PerJoint(TripCause joint1, std::size_t i) noexcept {
   return static_cast<TripCause>(static_cast<std::size_t>(joint1) + i);
 }
 
+std::array<double, 2> HubCountsRad(const SensorConfig& sensors) noexcept {
+  std::array<double, 2> count_rad{};
+  for (const EncoderConfig& encoder : sensors.encoder) {
+    if (encoder.counter > 1) continue;
+    count_rad[static_cast<std::size_t>(encoder.counter)] =
+        2.0 * std::numbers::pi / encoder.counts_per_turn;
+  }
+  return count_rad;
+}
+
 }  // namespace
 
 FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator,
-                               double period_s, std::uint32_t counters_present,
+                               double period_s, const SensorConfig& sensors,
                                const std::array<int, 2>& gauges_needed,
                                const std::array<double, 2>& joint_stiffness_nm_per_rad)
     : safety_(safety),
       estimator_(estimator),
       period_s_(period_s),
-      counters_present_(counters_present),
+      counters_present_(sensors.counters_present()),
       gauges_needed_(gauges_needed),
       joint_stiffness_(joint_stiffness_nm_per_rad),
+      hub_count_rad_(HubCountsRad(sensors)),
       hub_window_(SamplesIn(kHubRestWindow_s, period_s, kMostRestWindow)),
       strain_window_(SamplesIn(kStrainRestWindow_s, period_s, kMostRestWindow)),
+      rate_window_(SamplesIn(kHubRateWindow_s, period_s, kMostRestWindow)),
       // Not before the window is full.
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
                                   static_cast<int>(hub_window_) + 1)) {}
@@ -92,7 +108,7 @@ FaultDetection::Verdict FaultDetection::Judge(const LoopFacts& facts) noexcept {
   JudgeJoints(facts, monitored);
   JudgeEstimate(facts);
   verdict_.at_rest = JudgeRest(facts);
-  verdict_.may_damp = MayDamp(facts);
+  verdict_.may_damp = MayDamp(facts, monitored);
   return verdict_;
 }
 
@@ -113,6 +129,7 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
   for (std::size_t i = 0; i < 2; ++i) {
     monitored.hub_rad[i] = Bridged((counters.good >> i & 1U) != 0, counters.angle_rad[i],
                                    facts.estimate->x(static_cast<Eigen::Index>(i)));
+    monitored.hub_rate_rad_s[i] = HubRate(facts, i);
     monitored.root_strain[i] =
         Bridged(modes.valid[i], modes.root_strain[i], facts.model_root_strain[i]);
   }
@@ -121,16 +138,14 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
 
 void FaultDetection::JudgeJoints(const LoopFacts& facts, const Monitored& monitored) noexcept {
   using enum TripCause;
-  const Eigen::Index dof = facts.estimate->x.size() / 2;
   for (std::size_t i = 0; i < 2; ++i) {
     if (facts.mode != LoopMode::kRegulate) {
       RaiseUnlessWithin(PerJoint(kSoftLimit1, i), kNoCounterReading, 1,
                         std::fabs(monitored.hub_rad[i]), safety_.soft_angle_deg[i] * kRadPerDeg,
                         i + 1);
     }
-    const double rate = std::fabs(facts.estimate->x(dof + static_cast<Eigen::Index>(i)));
-    RaiseUnlessWithin(PerJoint(kHubRate1, i), kStateNotFinite, kRateTicks, rate,
-                      safety_.hub_rate_rad_s[i], i + 1);
+    RaiseUnlessWithin(PerJoint(kHubRate1, i), kStateNotFinite, kRateTicks,
+                      monitored.hub_rate_rad_s[i], safety_.hub_rate_rad_s[i], i + 1);
     RaiseUnlessWithin(PerJoint(kBendingStrain1, i), PerJoint(kNoStrainReading1, i), 1,
                       std::fabs(monitored.root_strain[i]), safety_.strain_limit[i], i + 1);
   }
@@ -197,12 +212,26 @@ void FaultDetection::JudgeEstimate(const LoopFacts& facts) noexcept {
         estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2);
 }
 
-// Each comparison is false for NaN. The pluck test (kOpenLoop) has no torque but its own.
-bool FaultDetection::MayDamp(const LoopFacts& facts) const noexcept {
-  if (facts.mode == LoopMode::kOpenLoop || !facts.estimate->x.allFinite()) return false;
+// What the encoder has turned at least: a count less than it says, since the begin of the window
+// or, soon after a reset, since that.
+double FaultDetection::HubRate(const LoopFacts& facts, std::size_t i) const noexcept {
   const Eigen::Index dof = facts.estimate->x.size() / 2;
+  const double estimated = std::fabs(facts.estimate->x(dof + static_cast<Eigen::Index>(i)));
+  if (!started_ || (facts.counters->good >> i & 1U) == 0) return estimated;
+  const Posture& before = Before(rate_window_);
+  const std::int64_t samples =
+      std::max(ticks_ + 1 - before.tick, static_cast<std::int64_t>(rate_window_));
+  const double turned_rad = std::fabs(facts.counters->angle_rad[i] - before.hub_rad[i]);
+  const double measured =
+      (turned_rad - hub_count_rad_[i]) / (static_cast<double>(samples) * period_s_);
+  return measured > estimated ? measured : estimated;  // an estimate that is NaN is returned
+}
+
+// Each comparison is false for NaN. The pluck test (kOpenLoop) has no torque but its own.
+bool FaultDetection::MayDamp(const LoopFacts& facts, const Monitored& monitored) const noexcept {
+  if (facts.mode == LoopMode::kOpenLoop || !facts.estimate->x.allFinite()) return false;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double rate = std::fabs(facts.estimate->x(dof + static_cast<Eigen::Index>(i)));
+    const double rate = monitored.hub_rate_rad_s[i];
     const double strain = std::fabs(facts.modes->root_strain[i]);
     const bool measured = facts.modes->valid[i] && (facts.counters->good >> i & 1U) != 0;
     if (!measured || !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||

@@ -10,6 +10,7 @@
 #include "estimator/estimator_config.h"
 #include "estimator/state_estimator.h"
 #include "estimator/strain_fit.h"
+#include "hal/sensor_config.h"
 
 namespace flexarm {
 
@@ -33,11 +34,12 @@ struct LoopFacts {
 /// fault in that sample, under the name of the sensor that is missing.
 ///
 /// Violations of angle and strain limits and encoder jumps are faults in the sample in which they
-/// occur; hub rates after two samples; faults of single sensors and of the estimator after
-/// `fault_ticks` samples in a row. Homing (LoopMode::kRegulate) has no soft limits: they lie inside
-/// the switches, and the angle is not calibrated yet. The pluck test (kOpenLoop) does not compare
-/// sensors with each other: it measures their agreement, and its torque does not depend on them.
-/// Real-time: safe.
+/// occur; hub rates after two samples, estimated or measured by the encoder alone: gauges that lead
+/// the estimate astray do not hide how fast a hub turns. Faults of single sensors and of the
+/// estimator are raised after `fault_ticks` samples in a row. Homing (LoopMode::kRegulate) has no
+/// soft limits: they lie inside the switches, and the angle is not calibrated yet. The pluck test
+/// (kOpenLoop) does not compare sensors with each other: it measures their agreement, and its
+/// torque does not depend on them. Real-time: safe.
 class FaultDetection {
  public:
   struct Verdict {
@@ -53,7 +55,7 @@ class FaultDetection {
   static constexpr double kDampedTo = 1.5;
 
   FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
-                 std::uint32_t counters_present, const std::array<int, 2>& gauges_needed,
+                 const SensorConfig& sensors, const std::array<int, 2>& gauges_needed,
                  const std::array<double, 2>& joint_stiffness_nm_per_rad);
 
   /// Resets all state: the results depend on later samples only, so that a log, which begins at a
@@ -69,6 +71,7 @@ class FaultDetection {
   /// What the limits are compared with.
   struct Monitored {
     std::array<double, 2> hub_rad, root_strain;
+    std::array<double, 2> hub_rate_rad_s;  ///< at least 0; NaN if the estimate is
   };
   /// A complete sample, for the rates of the samples after it.
   struct Posture {
@@ -88,7 +91,9 @@ class FaultDetection {
   const Posture& Before(std::size_t samples) const noexcept {
     return before_[(ring_ + kMostRestWindow - samples) % kMostRestWindow];
   }
-  bool MayDamp(const LoopFacts& facts) const noexcept;
+  /// The greater one of the estimated and the measured rate of a hub.
+  double HubRate(const LoopFacts& facts, std::size_t i) const noexcept;
+  bool MayDamp(const LoopFacts& facts, const Monitored& monitored) const noexcept;
   /// Counts the samples in a row with `present`, and raises `cause` from the `ticks`-th on.
   void Raise(TripCause cause, bool present, int ticks, double value, double limit,
              std::size_t channel) noexcept;
@@ -102,7 +107,9 @@ class FaultDetection {
   std::uint32_t counters_present_;
   std::array<int, 2> gauges_needed_;
   std::array<double, 2> joint_stiffness_;
+  std::array<double, 2> hub_count_rad_;     // one count of the hub encoders
   std::size_t hub_window_, strain_window_;  // samples over which the rates at rest are taken
+  std::size_t rate_window_;                 // samples over which a hub rate is measured
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
   int incomplete_ticks_ = 0;  // samples in a row that lacked a reading, up to kMissingTicks

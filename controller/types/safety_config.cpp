@@ -16,7 +16,7 @@ void CheckLimits(const SafetyConfig& c, ProblemList* list) {
   list->EachPositive("limits.soft_angle_deg", c.soft_angle_deg, 360.0,
                      "a hub angle beyond +-this trips");
   list->EachPositive("limits.hub_rate_rad_s", c.hub_rate_rad_s, 100.0,
-                     "an estimated hub rate beyond this trips");
+                     "a hub rate beyond this trips");
   list->EachPositive("limits.strain_limit", c.strain_limit, 0.01,
                      "unit strain; a metal link fails below 1 %");
   list->Positive("limits.plan_fraction", c.plan_fraction, 1.0,

@@ -16,7 +16,7 @@ struct SafetyConfig {
   std::array<double, 2> torque_limit_nm;  ///< at the gearbox output
   std::array<double, 2> slew_limit_nm_per_s;
   std::array<double, 2> soft_angle_deg;  ///< |hub angle| beyond this trips
-  std::array<double, 2> hub_rate_rad_s;  ///< |estimated hub rate| beyond this on two ticks trips
+  std::array<double, 2> hub_rate_rad_s;  ///< a hub rate beyond this on two ticks trips
   std::array<double, 2> strain_limit;    ///< |fitted surface strain at the root| beyond this trips
   double plan_fraction;  ///< share of each limit for a move without duration_s, 0 to 1
   // [safety]

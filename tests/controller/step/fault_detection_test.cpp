@@ -84,8 +84,8 @@ class FaultDetectionTest : public testing::Test {
   }
 
   const RigConfig config_ = ShippedRig();
-  FaultDetection monitor_{config_.safety, config_.estimator, kPeriod_s,
-                          0b1111,         kGaugesNeeded,     {761.59, 497.96}};
+  FaultDetection monitor_{config_.safety,  config_.estimator, kPeriod_s,
+                          config_.sensors, kGaugesNeeded,     {761.59, 497.96}};
 };
 
 TEST_F(FaultDetectionTest, AHealthyArmRaisesNoFault) {
@@ -129,6 +129,7 @@ TEST_F(FaultDetectionTest, SoftLimitsTripInTheSameSample) {
     Expect(TripCause::kSoftLimit2, 1, facts, 90.1 * kRadPerDeg, 90.0 * kRadPerDeg, 2);
     facts.counters.angle_rad = {sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg,
                                 sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg};
+    monitor_.Reset();  // an arm that is there, not one that jumps there
     EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   }
 }
@@ -148,6 +149,55 @@ TEST_F(FaultDetectionTest, AHubRateInEverySecondSampleDoesNotTrip) {
   for (int k = 0; k < 20; ++k) {
     EXPECT_EQ(monitor_.Judge(fast.Now()).faults, 0u);
     EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
+  }
+}
+
+// A hub that turns at rate_rad_s while the estimate says that it stands, as lagging gauges may make
+// it: the number of samples until it trips, 0 if it does not within 50.
+int SamplesUntilTrip(FaultDetection* detection, TripCause cause, std::size_t joint,
+                     double rate_rad_s, double period_s) {
+  Facts facts;
+  for (int k = 0; k < 50; ++k) {
+    facts.counters.angle_rad[joint] = facts.counters.angle_rad[joint + 2] =
+        rate_rad_s * period_s * k;
+    if ((detection->Judge(facts.Now()).faults & CauseBit(cause)) != 0) return k;
+  }
+  return 0;
+}
+
+// One count less than the encoder says: 2 pi / 2540 a period, 0.124 rad/s.
+TEST_F(FaultDetectionTest, AHubThatTurnsTooFastTripsWhateverTheEstimateSays) {
+  const double count_rad_s = 2.0 * std::numbers::pi / 2540.0 / kPeriod_s;
+  for (const double sign : {1.0, -1.0}) {
+    monitor_.Reset();
+    EXPECT_EQ(SamplesUntilTrip(&monitor_, TripCause::kHubRate1, 0, sign * (8.01 + count_rad_s),
+                               kPeriod_s),
+              2);
+    monitor_.Reset();
+    EXPECT_EQ(SamplesUntilTrip(&monitor_, TripCause::kHubRate2, 1, sign * (10.01 + count_rad_s),
+                               kPeriod_s),
+              2);
+    monitor_.Reset();
+    EXPECT_EQ(SamplesUntilTrip(&monitor_, TripCause::kHubRate1, 0, sign * (7.99 + count_rad_s),
+                               kPeriod_s),
+              0);
+  }
+}
+
+// A count in 1 ms is 2.5 rad/s: the rate is taken over 20 ms, and twice the limit exceeds it after
+// half of that and a count, (0.16 + 0.0025) / 16 s: in sample 11, and for the second time in 12.
+TEST_F(FaultDetectionTest, AMeasuredRateIsAMeanOver20Ms) {
+  constexpr double kFast_s = 0.001;
+  FaultDetection fast(config_.safety, config_.estimator, kFast_s, config_.sensors, kGaugesNeeded,
+                      {761.59, 497.96});
+  EXPECT_EQ(SamplesUntilTrip(&fast, TripCause::kHubRate1, 0, 2.0 * 8.0, kFast_s), 12);
+}
+
+TEST_F(FaultDetectionTest, ASingleJumpOfAnEncoderIsNoRate) {
+  Facts facts;
+  for (int k = 0; k < 20; ++k) {
+    facts.counters.angle_rad[0] = facts.counters.angle_rad[2] = k < 10 ? 0.0 : 0.2;
+    EXPECT_EQ(monitor_.Judge(facts.Now()).faults & CauseBit(TripCause::kHubRate1), 0u) << k;
   }
 }
 
@@ -256,8 +306,10 @@ TEST_F(FaultDetectionTest, AnArmThatIsNotMeasuredIsNotAtRest) {
 }
 
 TEST_F(FaultDetectionTest, AnEncoderThatTheRigLacksDoesNotTrip) {
-  FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, 0b0011, kGaugesNeeded,
-                           {761.59, 497.96});
+  SensorConfig without_rotors = config_.sensors;
+  std::erase_if(without_rotors.encoder, [](const EncoderConfig& e) { return e.counter > 1; });
+  FaultDetection hubs_only(config_.safety, config_.estimator, kPeriod_s, without_rotors,
+                           kGaugesNeeded, {761.59, 497.96});
   Facts facts;
   facts.counters.good = 0b0011;
   facts.counters.missing_ticks = {0, 0, 500, 500};
@@ -384,7 +436,7 @@ TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
   Facts elsewhere;
   elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
   elsewhere.modes.root_strain = {2e-4, 1e-4};
-  FaultDetection fresh(config_.safety, config_.estimator, kPeriod_s, 0b1111, kGaugesNeeded,
+  FaultDetection fresh(config_.safety, config_.estimator, kPeriod_s, config_.sensors, kGaugesNeeded,
                        {761.59, 497.96});
   for (int k = 0; k < 38; ++k) monitor_.Judge(elsewhere.Now());  // 38: not a full ring
   monitor_.Reset();
@@ -403,7 +455,7 @@ TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
 TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestWithAShortRestTime) {
   SafetyConfig safety = config_.safety;
   safety.rest_time_s = 0.05;
-  FaultDetection hasty(safety, config_.estimator, kPeriod_s, 0b1111, kGaugesNeeded,
+  FaultDetection hasty(safety, config_.estimator, kPeriod_s, config_.sensors, kGaugesNeeded,
                        {761.59, 497.96});
   Facts moving;
   for (int k = 0; k < 20; ++k) {
@@ -438,7 +490,7 @@ TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestButAFlickeringCountIs) {
 // 1/s: over 0.1 s and 20 ms they are what they are at 50 Hz.
 TEST_F(FaultDetectionTest, AFlickeringCountIsAtRestAtAHighRateToo) {
   constexpr double kFast_s = 0.002;
-  FaultDetection fast(config_.safety, config_.estimator, kFast_s, 0b1111, kGaugesNeeded,
+  FaultDetection fast(config_.safety, config_.estimator, kFast_s, config_.sensors, kGaugesNeeded,
                       {761.59, 497.96});
   Facts flicker;
   bool at_rest = false;
