@@ -31,6 +31,11 @@ RigConfig PlantOf(const RigConfig& config, const TortureScenario& scenario) {
   return PlantWith(config, plant);
 }
 
+RigConfig LoggingTo(const std::filesystem::path& folder, RigConfig config) {
+  config.daemon.log_directory = folder.string();
+  return config;
+}
+
 // In memory where the machine has a folder for that, because each write is synced.
 std::filesystem::path ParentOfFolders() {
   const std::filesystem::path in_memory = "/dev/shm";
@@ -53,6 +58,7 @@ TortureSession::TortureSession(const TorturedRig& rig, const TortureScenario& sc
       faults_(NotYet(scenario.faults)),
       grid_(rig.config.loop),
       folder_(ParentOfFolders()),
+      operator_config_(LoggingTo(folder_.path(), rig.config)),
       plant_(PlantOf(rig.config, scenario)),
       stack_(rig.config, plant_, rig.design, scenario.payload_kg, faults_),
       events_(kEventDepth),
@@ -98,7 +104,7 @@ OperatorContext TortureSession::Context() {
           .latch = &latch_,
           .events = &events_,
           .design = &rig_.design,
-          .config = &rig_.config,
+          .config = &operator_config_,
           .grid = grid_,
           .delay_margin_s = rig_.delay_margin_s,
           .limits = rig_.limits,

@@ -95,6 +95,7 @@ class TortureSession {
   std::vector<Fault> faults_;  // in the clock of the loop
   LoopGrid grid_;
   ScratchFolder folder_;
+  RigConfig operator_config_;  // its calibration is a file of this session
   std::vector<std::string> errors_;
   RigConfig plant_;
   TorturedStack stack_;

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/support/campaign.h"
+#include "tools/support/scratch_folder.h"
 #include "tools/torture/campaign.h"
 #include "tools/torture/fault_matrix.h"
 
@@ -60,6 +62,22 @@ TEST(Torture, ASeedGivesTheSameSessionAgain) {
     EXPECT_EQ(a.tip_m, b.tip_m) << "to the bit";
     EXPECT_EQ(a.simulated_ns, b.simulated_ns);
   }
+}
+
+// `zero` stores a calibration, and a daemon loads the one that it finds: a session does not write
+// the user's, and the next does not begin with that of the last.
+TEST(Torture, ASessionLeavesNoCalibrationBehind) {
+  TortureScenario scenario = Drawn(1);
+  scenario.situation = Situation::kIdle;
+  scenario.faults.clear();
+  scenario.commands = {{.at_ns = 0, .text = R"({"command":"zero"})"}};
+  const ScratchFolder folder(std::filesystem::temp_directory_path());
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const TortureOutcome outcome = RunScenario(Rigs(), scenario);
+  std::filesystem::current_path(before);
+  EXPECT_TRUE(outcome.violations.empty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 // A rule that the arm breaks by moving at all: what is left is the move.
