@@ -31,7 +31,7 @@ guest_packages=(
   can-utils gpiod jq libstdc++6 rt-tests sqlite3 stress-ng
 )
 dev_packages=(
-  libcomedi-dev libfmt-dev libgpiod-dev libmatio-dev libmodbus-dev libnlopt-dev libspdlog-dev libsqlite3-dev
+  libcomedi-dev libfmt-dev libgpiod-dev libmodbus-dev libnlopt-dev libspdlog-dev libsqlite3-dev
   libsystemd-dev libtomlplusplus-dev libzstd-dev
 )
 # Modules in addition to gpio-sim, for the root image and for the initial RAM disk.

@@ -9,8 +9,9 @@ class App;
 
 namespace flexarm {
 
-/// Verbs that analyse the model and compare the laws. They need neither daemon nor rig, and
-/// compiling them takes as long as all other verbs together. Therefore they are in a program of
+/// Verbs that analyse the model, compare the laws, and write files for other programs. They need
+/// neither daemon nor rig; compiling them takes as long as all other verbs together, and libmatio
+/// brings 30 libraries that would delay every start of flexarm. Therefore they are in a program of
 /// their own, flexarm-study, which `flexarm VERB ..` executes.
 struct Study {
   std::string_view verb;
@@ -36,6 +37,10 @@ inline constexpr std::array kStudies = {
           "Measure how fast this machine runs step, plan, plant, replay and sweeps, in one table"},
     Study{"torture", "Run the whole daemon under injected faults, and check every safety rule"},
     Study{"identify", "Identify parameters of the rig from a measured run"},
+    Study{
+        "export",
+        "Export the samples of a run log as a CSV file, raw for `flexarm replay` or decoded, or as "
+        "a MAT file"},
 };
 
 bool IsStudy(std::string_view verb) noexcept;

@@ -26,7 +26,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   AddStudy(app, "identify");
   RegisterInfo(app, exit);
   RegisterPlot(app, exit);
-  RegisterExport(app, exit);
+  AddStudy(app, "export");
   RegisterCheck(app, exit);
   RegisterCheckHost(app, exit);
   RegisterDiff(app, exit);

@@ -15,6 +15,7 @@ void RegisterStudies(CLI::App& app, Exit& exit) {
   RegisterBenchHost(app, exit);
   RegisterGauges(app, exit);
   RegisterIdentify(app, exit);
+  RegisterExport(app, exit);
 }
 
 }  // namespace

@@ -92,14 +92,15 @@ LAYERS = {
                     "tools/sweep tools/thesis controller/files",
     "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
-                     "controller/step controller/runlog controller/commissioning "
+                     "controller/step controller/runlog "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/support tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
+                     "tools/support tools/runs tools/plot tools/csv tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot "
-                           "controller/types tools/bound tools/torture tools/bench_host",
+                           "controller/types controller/commissioning tools/bound tools/torture tools/bench_host "
+                           "tools/mat",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
                       "config controller/files tools/command_line",
 }

@@ -14,6 +14,7 @@
 #include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
+#include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
 #include "tools/mat/decoded_mat.h"
 #include "tools/runs/run_summary.h"
@@ -107,10 +108,7 @@ void ExportDecoded(const ExportOptions& options) {
 
 void RegisterExport(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "export",
-      "Export the samples of a run log as a CSV file, raw for `flexarm replay` or decoded, or as a "
-      "MAT file");
+  CLI::App* verb = AddStudy(app, "export");
   options->choice.AddTo(verb);
   RefuseConfig(verb, kLogHasItsConfig);
   options->output.AddTo(verb, "CSV file to write; with --decoded also NAME.mat", true);
