@@ -4,7 +4,7 @@
 #
 # usage: run_all.sh BUILD_FOLDER [--note FILE [SCRIPT..]]
 #   BUILD_FOLDER  e.g. build/release, with all of it built
-#   SCRIPT        instead of all but the longest: name of one of daemon_in_guest, as wakeup
+#   SCRIPT        instead of those of lane guest: name of one of daemon_in_guest, as wakeup
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -83,8 +83,7 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 
 # A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
 # first. `threads` has two processors and real time; it asserts no time.
-names=(service wire hardened guarded commission load hostile experiment docs refusal threads
-  interfaces daq gpio)
+names=(wire guarded service commission docs load hostile experiment threads interfaces daq gpio)
 if (($# > 3)); then names=("${@:4}"); fi
 running=0
 for name in "${names[@]}"; do
