@@ -172,6 +172,18 @@ std::optional<ControllerKind> LawByName(const std::string& name, TableReader* ro
   return std::nullopt;
 }
 
+void ReadDuration(TableReader root, Experiment* out) {
+  out->duration_s = kLongestRun_s;
+  root.ReadIfGiven(
+      "duration_s", &out->duration_s,
+      "length of the run, like all times a multiple of the period; without it: until a "
+      "second after the last row");
+  out->ends_after_rows = !root.Has("duration_s");
+  if (!root.Has("planned")) return;
+  root.Table("planned", "what was chosen, as the log of a run holds it")
+      .Read("duration_s", &out->duration_s, "length of the run");
+}
+
 void ReadLaws(TableReader root, Experiment* out) {
   if (!root.Has("laws")) return;
   std::vector<std::string> names;
@@ -185,8 +197,7 @@ void ReadLaws(TableReader root, Experiment* out) {
 
 void ReadExperiment(TableReader root, Experiment* out) {
   root.Read("name", &out->name, "name of the experiment, for logs");
-  root.Read("duration_s", &out->duration_s,
-            "length of the run; like all times a multiple of the period");
+  ReadDuration(root, out);
   ReadLaws(root, out);
   root.ReadIfGiven("payload_kg", &out->payload_kg,
                    "least and greatest payload that it is for: the run is predicted with these and "

@@ -82,7 +82,12 @@ bool KeepsLoad(const Experiment& experiment, std::size_t row) {
       [&](const LoadChange& change) { return change.at_s >= since_s && change.at_s <= until_s; });
 }
 
-[[noreturn]] void RefuseForLimits(const PlannedMove& planned, const std::string& share) {
+[[noreturn]] void RefuseForLimits(const PlannedMove& planned, const std::string& share,
+                                  const MotionLimits& limits) {
+  if (!Within(planned.to_rad, limits)) {
+    throw RejectedError(RowOf(planned) + ": its end at " + DegText(planned.to_rad) +
+                        " is beyond limits.soft_angle_deg, " + DegText(limits.soft_angle_rad));
+  }
   throw RejectedError(RowOf(planned) + ".duration_s: no duration up to " +
                       NumberText(kLongestChosen_s) + " s keeps " + share +
                       " of the limits: " + BeginText(planned) + " to " + DegText(planned.to_rad));
@@ -100,7 +105,7 @@ int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Des
                         NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
   }
   const auto periods = ShortestPeriods(moves, design, period_s, limits, limits.plan_fraction);
-  if (!periods) RefuseForLimits(planned, "limits.plan_fraction");
+  if (!periods) RefuseForLimits(planned, "limits.plan_fraction", limits);
   return *periods;
 }
 
@@ -110,7 +115,7 @@ int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Des
 void Shorten(const Move& move, const Design& design, double period_s, const MotionLimits& limits,
              PlannedMove* planned) {
   std::optional<DurationTable> table = ShortestByPayload(*planned, design, period_s, limits);
-  if (!table) RefuseForLimits(*planned, "controller.payload.fast_fraction");
+  if (!table) RefuseForLimits(*planned, "controller.payload.fast_fraction", limits);
   planned->periods = move.duration_s
                          ? OnGrid(*move.duration_s, period_s, RowOf(*planned) + ".duration_s")
                          : table->Longest();
@@ -216,6 +221,15 @@ Experiment WithChosenDurations(const Experiment& experiment, const std::vector<P
     move.duration_s = InSeconds(planned.periods, period_s);
     chosen.text += "\n[[planned_move]]\nrow = " + NumberText(planned.row) +
                    "\nduration_s = " + NumberText(*move.duration_s) + "\n";
+  }
+  if (chosen.ends_after_rows && chosen.duration_s == kLongestRun_s) {
+    double rows_end_s = 0.0;
+    for (const Motion& motion : chosen.Motions()) {
+      rows_end_s = std::max(rows_end_s, motion.start_s + motion.duration_s);
+    }
+    const double end_s = std::min(rows_end_s + kRestAfterRows_s, kLongestRun_s);
+    chosen.duration_s = InSeconds(static_cast<int>(std::ceil(end_s / period_s - 1e-6)), period_s);
+    chosen.text += "\n[planned]\nduration_s = " + NumberText(chosen.duration_s) + "\n";
   }
   const std::vector<Problem> problems = chosen.Problems();
   if (problems.empty()) return chosen;

@@ -159,7 +159,7 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
       moves_(PlanMoves(experiment, design, period_s, start_rad, limits, stop)),
       segments_(MotionSegmentsOf(moves_)) {
   const Experiment planned = WithChosenDurations(experiment, moves_, period_s);
-  const int periods = OnGrid(experiment.duration_s, period_s, "duration_s");
+  const int periods = OnGrid(planned.duration_s, period_s, "duration_s");
   samples_.resize(static_cast<std::size_t>(periods) + 1);
   // A law that follows a path needs one at rest as well.
   if (design.scheduled || !moves_.empty()) path_.emplace(moves_, start_rad, periods, period_s);

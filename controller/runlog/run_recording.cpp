@@ -190,12 +190,11 @@ void RunRecording::SetEnd(const SafetyRecord& record) {
 void RunRecording::Safety(const SafetyRecord& record) noexcept {
   Guarded([&] {
     const SafetyState before = record.before.state;
-    state_ = record.after.state;
-    if (state_ == SafetyState::kRunning && before != SafetyState::kRunning) {
-      BeginRun(record);
-    } else if (Trips(record) && sink_ == nullptr) {
-      BeginTrip(record);
+    if (record.after.state == SafetyState::kRunning && before != SafetyState::kRunning) {
+      BeginRun(record);  // it may close the log of the run before, whose end is in state_
     }
+    state_ = record.after.state;
+    if (Trips(record) && sink_ == nullptr) BeginTrip(record);
     recent_.Add(record);
     if (state_ == SafetyState::kIdle && before != state_ && before != SafetyState::kStarting) {
       context_.Clear();

@@ -161,7 +161,9 @@ std::vector<Problem> Experiment::Problems() const {
                                      [](char c) { return static_cast<unsigned char>(c) >= 32; });
   list.Require(!name.empty() && name.size() <= 64 && printable, "name", name,
                "must be 1 to 64 printable characters: it names the run in the log");
-  list.Positive("duration_s", duration_s, 3600.0, "the duration of the run");
+  list.Positive("duration_s", duration_s, kLongestRun_s, "the duration of the run");
+  list.Require(!ends_after_rows || !Motions().empty(), "duration_s", "",
+               "must be given where no row says when the run is over");
   if (payload_kg) {
     list.EachWithin("payload_kg", *payload_kg, 0.0, 100.0, "the payloads that it is for");
     list.Require(!((*payload_kg)[0] > (*payload_kg)[1]), "payload_kg",

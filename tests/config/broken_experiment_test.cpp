@@ -274,6 +274,19 @@ TEST(ExperimentFile, MayHaveNoRows) {
   EXPECT_NO_THROW(ParseExperiment("name = \"hold\"\nduration_s = 2\n", "e.toml"));
 }
 
+// The log of a run holds the duration that was chosen.
+TEST(ExperimentFile, WithoutDurationItEndsAfterItsRows) {
+  std::string text = kMoves;
+  text.erase(text.find("duration_s = 6.0"), 16);
+  const Experiment open = ParseExperiment(text, "e.toml");
+  EXPECT_TRUE(open.ends_after_rows);
+  EXPECT_EQ(open.duration_s, kLongestRun_s);
+  EXPECT_EQ(ParseExperiment(text + "[planned]\nduration_s = 5.0\n", "e.toml").duration_s, 5.0);
+  EXPECT_FALSE(ParseExperiment(kMoves, "e.toml").ends_after_rows);
+  EXPECT_THAT(MessageOf<ConfigError>([] { ParseExperiment("name = \"hold\"\n", "e.toml"); }),
+              HasSubstr("duration_s: must be given where no row says when the run is over"));
+}
+
 class BrokenExperiment : public ::testing::TestWithParam<BrokenText> {};
 
 TEST_P(BrokenExperiment, IsReportedOnceWithLineKeyAndRule) {
@@ -285,7 +298,6 @@ TEST_P(BrokenExperiment, IsReportedOnceWithLineKeyAndRule) {
 const BrokenText kBroken[] = {
     {"NoName", "name = \"switch\"", "", "name", "missing", "no line"},
     {"EmptyName", "name = \"switch\"", "name = \"\"", "name", "1 to 64 printable"},
-    {"NoDuration", "duration_s = 6.0", "", "duration_s", "missing", "no line"},
     {"UnknownKey", "name = \"switch\"", "name = \"switch\"\nextends = \"a.toml\"", "extends",
      "unknown key"},
     {"UnknownKeyInARow", "start_s = 3.0", "start_s = 3.0\nmove = 1", "doublet[1].move",

@@ -2,6 +2,7 @@
 """`flexarm run --wait`: progress, exit code, Ctrl-C."""
 
 import json
+import math
 import os
 import pty
 import signal
@@ -55,6 +56,46 @@ class RunWait(ProgramTest):
         status = json.loads(self.verb("status", "--json").stdout)
         self.assertEqual(status["state"], "Armed", "it is at rest")
         self.assertEqual(status["run"]["outcome"], "done")
+
+    def test_move_goes_to_angles_and_to_a_place_and_each_is_a_run_of_its_own(self):
+        result = self.verb("move", "--to", "12", "-8", "--wait", "--name", "first")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assert_angles([12.0, -8.0])
+        # A quarter turn would need the tip at (0, 1.7): two straight links of 0.8 and 0.9 m.
+        result = self.verb("move", "--to-tip", "1.55", "-0.1", "--elbow", "left", "--duration", "2",
+                           "--wait")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        first, second = self.angles()
+        tip = (0.8 * math.cos(first) + 0.9 * math.cos(first + second),
+               0.8 * math.sin(first) + 0.9 * math.sin(first + second))
+        self.assertLess(math.dist(tip, (1.55, -0.1)), 0.005)  # friction: a few mm, "at rest"
+        logs = sorted((self.folder / "runs").glob("*.flexarm"))
+        self.assertEqual(len(logs), 2)
+        for log in logs:
+            self.assertEqual(self.run_program("flexarm", "replay", log).returncode, 0)
+        first = json.loads(self.run_program("flexarm", "info", logs[0], "--json").stdout)
+        self.assertIs(first["result"]["completed"], True, "although the next run followed at once")
+        self.assertEqual(first["result"]["final_state"], "Armed")
+
+    def test_a_move_that_cannot_be_made_is_refused_before_it_begins(self):
+        for options, said in ((["--to", "20", "100"], "is beyond limits.soft_angle_deg"),
+                              (["--to-tip", "3", "0"], "is out of reach"),
+                              (["--to", "20", "0", "--duration", "0.2"], "beyond limits."),
+                              ([], "--to or --to-tip is required"),
+                              (["--to", "1", "2", "--to-tip", "1", "1"], "excludes")):
+            result = self.verb("move", *options)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn(said, result.stderr)
+        self.assertEqual(json.loads(self.verb("status", "--json").stdout)["state"], "Armed")
+
+    def angles(self):
+        status = json.loads(self.verb("status", "--json").stdout)
+        return [math.radians(angle) for angle in status["joint_angle_deg"][:2]]
+
+    def assert_angles(self, expected_deg):
+        for angle, expected in zip(self.angles(), expected_deg):
+            # What friction holds: the reference run of docs/benchmark.md ends within 0.1 deg.
+            self.assertAlmostEqual(math.degrees(angle), expected, delta=0.3)
 
     def test_on_a_terminal_there_is_a_bar(self):
         ours, its = pty.openpty()

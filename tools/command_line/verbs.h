@@ -46,12 +46,14 @@ void RegisterInfo(CLI::App& app, Exit& exit);
 void RegisterLinesOff(CLI::App& app, Exit& exit);
 void RegisterLog(CLI::App& app, Exit& exit);  ///< recover
 void RegisterModes(CLI::App& app, Exit& exit);
-void RegisterOperate(CLI::App& app, Exit& exit);  ///< status, arm, run, stop, disarm, reset, sim
+void RegisterOperate(CLI::App& app,
+                     Exit& exit);  ///< status, arm, run, move, stop, disarm, reset, sim
 void RegisterPlot(CLI::App& app, Exit& exit);
 void RegisterProveSwitches(CLI::App& app, Exit& exit);
 void RegisterReplay(CLI::App& app, Exit& exit);
 void RegisterReport(CLI::App& app, Exit& exit);
 void RegisterRig(CLI::App& app, Exit& exit);
+void RegisterRun(CLI::App& app, Exit& exit);   ///< with move
 void RegisterRuns(CLI::App& app, Exit& exit);  ///< with tag, untag and note
 void RegisterSimulate(CLI::App& app, Exit& exit);
 void RegisterSweep(CLI::App& app, Exit& exit);  ///< with merge and show

@@ -8,16 +8,10 @@
 #include <thread>
 
 #include "controller/operator/arm_verdict.h"
-#include "controller/operator/prove_switches.h"
-#include "controller/operator/run_command.h"
-#include "controller/runlog/errors.h"
-#include "controller/runlog/run_label.h"
-#include "tools/command_line/label_options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
 #include "tools/flexarm/override_options.h"
 #include "tools/flexarm/reply.h"
-#include "tools/flexarm/run_wait.h"
 #include "tools/flexarm/status_text.h"
 
 namespace flexarm {
@@ -27,18 +21,13 @@ using Json = nlohmann::ordered_json;
 
 // The check of the host takes 3 s at most, the tests of the power path as long again.
 constexpr double kLongestArm_s = 10.0;
-// Moves without duration_s take 2 ms each to plan, and an experiment has some thousands at most.
-constexpr double kLongestPlan_s = 60.0;
 
 struct OperateOptions {
   DaemonClient daemon;
-  std::filesystem::path experiment;
   std::string line;
   int level = 0;
   bool watch = false;
-  bool wait = false;
   OverrideOptions overrides;
-  LabelOptions label;
 };
 
 int Status(const OperateOptions& options) {
@@ -55,19 +44,6 @@ int Status(const OperateOptions& options) {
     if (!options.watch) return Exit::kDone;
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
   }
-}
-
-int RunExperiment(const OperateOptions& options) {
-  const Experiment experiment = LoadExperiment(options.experiment);  // throws with file and line
-  Json command{{"command", "run"},
-               {"name", options.experiment.filename().string()},
-               {"experiment", experiment.text}};
-  options.overrides.PutInto(&command);
-  if (const RunLabel label = options.label.Label(); label != RunLabel{}) {
-    command["label"] = LabelToJson(label);
-  }
-  if (options.wait) return RunAndWait(options.daemon, command, kLongestPlan_s);
-  return options.daemon.Conclude(options.daemon.Ask(command, kLongestPlan_s));
 }
 
 void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
@@ -115,29 +91,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
 
   RegisterArm(app, exit);
 
-  const auto run = std::make_shared<OperateOptions>();
-  verb = run->daemon.AddVerb(app, "run", "Run an experiment on the armed arm");
-  verb->add_option("experiment", run->experiment, "Experiment, a TOML file")
-      ->required()
-      ->type_name("EXPERIMENT");
-  run->daemon.AddTakeOver(verb);
-  verb->add_flag("--wait", run->wait, "Wait for the end of the run; Ctrl-C stops it");
-  run->label.AddTo(verb);
-  run->overrides.AddTo(verb, "--override-switches", kSwitchesCondition,
-                       "Run a wired rig although its switches have not been proved");
-  run->overrides.AddTo(verb, "--override-experiment", kExperimentCondition,
-                       "Run although the experiment is not for this law, or is predicted to trip");
-  verb->footer(
-      "Only from Armed. The daemon first compares the reference with the limits of the rig: a\n"
-      "refusal names the row, the joint, the value and the limit (docs/experiments.md).\n"
-      "An experiment that states laws or payload_kg is also simulated before it runs, with the\n"
-      "least, the middle and the greatest payload: a refusal names a law that works. A wired rig\n"
-      "needs the proof of its switches (flexarm prove-switches). With --wait the exit code is the\n"
-      "run's: 0 if it ended as planned, 1 if it was stopped or tripped.\n"
-      "Name, note and tags go into the log: `flexarm runs` finds it by them.\n"
-      "Examples: flexarm run --wait config/experiments/square-30deg.toml\n"
-      "          flexarm run square-30deg.toml --name \"new gauge\" --tag bench --tag gauge-7");
-  verb->callback([run, &exit] { exit.code = RunExperiment(*run); });
+  RegisterRun(app, exit);
 
   AddCommand(app, exit, "stop", "End the experiment: the controller brings the arm to rest",
              "The controller damps the arm for at most 3 s, then the state is Armed. Example: "

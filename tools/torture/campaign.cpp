@@ -46,6 +46,7 @@ TortureSummary RunTorture(const TorturedRigs& rigs, const TortureSpace& space,
       [&](std::size_t i) {
         scenarios[i] = ScenarioOf(seeds[i], space, config);
         outcomes[i] = RunScenario(rigs, scenarios[i]);
+        outcomes[i].tip_m = {};  // 10 kB of each session, of which there may be a million
       },
       progress, jobs);
   TortureSummary summary{.first_seed = seeds.front(), .last_seed = seeds.back()};

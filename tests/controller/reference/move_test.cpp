@@ -223,6 +223,27 @@ TEST(Move, AChosenDurationIsWrittenIntoTheExperimentAndItsText) {
       << "overlaps the move whose duration was chosen";
 }
 
+// Its moves last 1.6 s and some chosen time from 2.0 s on; a second of rest follows.
+TEST(Move, ARunWithoutDurationEndsASecondAfterItsLastMove) {
+  Experiment experiment = Moves({{.start_s = 0.0, .duration_s = 1.6, .to_deg = {10, 10}},
+                                 {.start_s = 2.0, .to_deg = {-10, 10}}});
+  experiment.ends_after_rows = true;
+  experiment.duration_s = kLongestRun_s;
+  const ReferenceTable table = MoveTable(experiment);
+  EXPECT_EQ(table.periods(), 100 + table.moves()[1].periods + 50);
+  const Experiment chosen = WithChosenDurations(experiment, table.moves(), kPeriod_s);
+  EXPECT_NEAR(chosen.duration_s, table.periods() * kPeriod_s, 1e-12);
+  EXPECT_THAT(chosen.text, HasSubstr("[planned]\nduration_s = "));
+  EXPECT_EQ(WithChosenDurations(chosen, table.moves(), kPeriod_s).text, chosen.text) << "once";
+}
+
+TEST(Move, AGoalBeyondASoftLimitIsRefusedByItsName) {
+  EXPECT_THAT(
+      MessageOf<RejectedError>([] { MoveTable(Moves({{.start_s = 0.0, .to_deg = {20, 100}}})); }),
+      HasSubstr("move[0]: its end at [20.0, 100.0] deg is beyond limits.soft_angle_deg, "
+                "[90.0, 90.0] deg"));
+}
+
 // The tip of two straight links of 0.8 and 0.9 m at th1 = 60, th2 = 60 deg: L1 at 60, L2 at 120.
 TEST(Move, GoesToAPositionOfTheTip) {
   const std::array<double, 2> tip = {

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "controller/runlog/blob.h"
 #include "controller/runlog/recorder_task.h"
@@ -124,6 +125,23 @@ TEST_F(RecorderTest, EachGrantIsAFile) {
     ticks.push_back(RunReader(entry.path()).ReadAll().tick.size());
   }
   EXPECT_EQ(ticks, (std::vector<std::size_t>{3, 3}));
+}
+
+// The next run may be granted before a second after the end of the last one is over.
+TEST_F(RecorderTest, ARunThatTheNextOneFollowsAtOnceHasCompleted) {
+  std::vector<RunContents> runs(2);
+  std::size_t opened = 0;
+  Start([&](const RunInfo& info) { return RunInMemory(&runs.at(opened++))(info); });
+  Ticks(0, 60, 12);
+  Grant(10 * kTestPeriodNs + 1);
+  const SafetyRecord stopping = Change(30 * kTestPeriodNs, kRunningStatus,
+                                       [](SafetyFacts* facts) { facts->experiment_done = 1; });
+  Change(40 * kTestPeriodNs, stopping.after, [](SafetyFacts*) {});
+  Grant(45 * kTestPeriodNs + 1, 2);
+  RunUntil(2 * kSecond);
+  const auto first = nlohmann::json::parse(runs[0].info.result_json);
+  EXPECT_EQ(first.at("completed"), true);
+  EXPECT_EQ(first.at("final_state"), "Armed");
 }
 
 // Who armed, and what was overridden then, belongs to each run of the arming and to no other.
