@@ -1,5 +1,6 @@
 #include "model/simulation/arm_simulator.h"
 
+#include <limits>
 #include <stdexcept>
 
 #include "model/simulation/step_kernel.h"
@@ -16,11 +17,20 @@ ArmVector RestingVector(int dof) {
 
 // What 3 passes from the last acceleration left of the tip's error was 6 to 68 times as much; the
 // step's own error is 20 to 800 times as much (docs/theory/plant.md 7.1).
-constexpr Passes kUntilTheyAgree{.least = 2, .most = 4, .agreement_rad_s = 1e-5};
+constexpr Passes kUntilTheyAgree{.least = 2,
+                                 .most = 4,
+                                 .agreement_rad_s = 1e-5,
+                                 .tolerated_rad_s = 1e-3,
+                                 .longest = 12,
+                                 .halvings = 6};
 
 Passes PassesOf(const SimulatorOptions& options) {
   if (!options.passes) return kUntilTheyAgree;
-  return {.least = *options.passes, .most = *options.passes, .agreement_rad_s = 0.0};
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  return {.least = *options.passes,
+          .most = *options.passes,
+          .agreement_rad_s = 0.0,
+          .tolerated_rad_s = kAny};
 }
 
 }  // namespace

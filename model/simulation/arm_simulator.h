@@ -28,7 +28,7 @@ struct ArmState {
 
 /// Number of passes and steps of ArmSimulator.
 struct SimulatorOptions {
-  /// Fixed-point passes a step, >= 1; without: 2 to 4, until two of them agree.
+  /// Fixed-point passes a step, >= 1; without: 2 or more, until two of them agree.
   std::optional<int> passes = std::nullopt;
   int substeps = 1;  ///< equal midpoint steps per Step, >= 1
   bool coulomb_friction = true;
@@ -38,7 +38,8 @@ struct SimulatorOptions {
 ///
 /// Solves M(q_m) a + bias(q_m, v_m) + D v_m + K q_m = force + friction at the middle of the step,
 /// with (M + h/2 D + h^2/4 K) on the left, by fixed-point passes; they end when the rates at the
-/// middle of the step agree to 1e-5 rad/s with those of the pass before. Friction torques on th1
+/// middle of the step agree to 1e-5 rad/s with those of the pass before; a step whose passes do not
+/// converge is made as two of half the length. Friction torques on th1
 /// and th2 (hub against its base) make a linear complementarity problem of two contacts that is
 /// solved exactly in each pass (coulomb_friction_lcp.h). A hub that stops within a step ends it
 /// with exactly zero velocity, by an impulse that only dissipates. Second order in h, stable for

@@ -34,12 +34,7 @@ class FixedKernel final : public StepKernel {
 
   void Step(ArmState* state, const Eigen::Vector2d& torque_nm, double h,
             const Passes& passes) noexcept override {
-    if (h != k_.h) k_ = StepConstantsOfArm(c_, h);
-    if constexpr (Arm::kWide) {
-      AdvanceWide(state, torque_nm, passes);
-    } else {
-      Advance(state, torque_nm, passes);
-    }
+    StepOrHalves(state, torque_nm, h, passes, passes.halvings);
   }
 
   void CarryPayload(const ArmConstants& c) noexcept override {
@@ -54,14 +49,30 @@ class FixedKernel final : public StepKernel {
   using Forces = AppliedForces<typename Arm::Vec>;
   using StepConstantsOfArm = typename Arm::Step;
 
-  FLEXARM_WIDE_INSTRUCTIONS
-  void AdvanceWide(ArmState* state, const Eigen::Vector2d& torque_nm,
-                   const Passes& passes) const noexcept {
-    Advance(state, torque_nm, passes);
+  void StepOrHalves(ArmState* state, const Eigen::Vector2d& torque_nm, double h,
+                    const Passes& passes, int halvings) noexcept {
+    if (h != k_.h) k_ = StepConstantsOfArm(c_, h);
+    bool advanced = false;
+    if constexpr (Arm::kWide) {
+      advanced = AdvanceWide(state, torque_nm, passes, halvings == 0);
+    } else {
+      advanced = Advance(state, torque_nm, passes, halvings == 0);
+    }
+    if (advanced) return;
+    for (int half = 0; half < 2; ++half) {
+      StepOrHalves(state, torque_nm, 0.5 * h, passes, halvings - 1);
+    }
   }
 
-  void Advance(ArmState* state, const Eigen::Vector2d& torque_nm,
-               const Passes& passes) const noexcept {
+  FLEXARM_WIDE_INSTRUCTIONS
+  bool AdvanceWide(ArmState* state, const Eigen::Vector2d& torque_nm, const Passes& passes,
+                   bool in_any_case) const noexcept {
+    return Advance(state, torque_nm, passes, in_any_case);
+  }
+
+  // False, with the state unchanged, if the passes do not converge.
+  bool Advance(ArmState* state, const Eigen::Vector2d& torque_nm, const Passes& passes,
+               bool in_any_case) const noexcept {
     const double h = k_.h;
     const Coordinates q = Load(state->q), v = Load(state->v);
     const Coordinates last = Load(state->a);
@@ -80,12 +91,17 @@ class FixedKernel final : public StepKernel {
                            : arm.hubs().SolveFree();
       const double th1_before = a.th[0], th2_before = a.th[1], s_before = s_ddot;
       s_ddot = arm.Expand(hubs.acceleration, &a);
-      if (pass >= passes.most) break;
       if (pass < passes.least) continue;
-      const double change =
+      const double change_rad_s =
+          0.5 * h *
           std::fmax(std::fmax(std::fabs(a.th[0] - th1_before), std::fabs(a.th[1] - th2_before)),
                     std::fabs(s_ddot - s_before));
-      if (0.5 * h * change < passes.agreement_rad_s) break;
+      if (change_rad_s < passes.agreement_rad_s) break;
+      if (pass < passes.most) continue;
+      if (change_rad_s <= passes.tolerated_rad_s) break;
+      if (pass < passes.longest) continue;
+      if (in_any_case) break;
+      return false;
     }
     a.th[2] = (torque_nm[0] - spring1 + k_.K1h * a.th[0]) / (c_.J1 + k_.K1h);
     const Coordinates v_m = Advanced(v, a, 0.5 * h);
@@ -96,6 +112,7 @@ class FixedKernel final : public StepKernel {
     Store(v_end, &state->v);
     state->a_before = state->a;
     Store(a, &state->a);
+    return true;
   }
 
   static Coordinates Advanced(const Coordinates& x, const Coordinates& rate, double t) noexcept {

@@ -8,13 +8,17 @@
 
 namespace flexarm {
 
-/// Fixed-point passes of a step: until two of them agree.
+/// Fixed-point passes of a step: until two of them agree in the middle rates of th1, th2 and of
+/// link 1's tip slope. Of an arm that swings violently they converge slowly, or not at all: then
+/// the step is made as two of half the length.
 struct Passes {
-  int least, most;         ///< 1 <= least <= most
-  double agreement_rad_s;  ///< between the middle rates of th1, th2 and of link 1's tip slope
+  int least, most;                ///< 1 <= least <= most
+  double agreement_rad_s;         ///< no more passes below this difference
+  double tolerated_rad_s;         ///< after `most` passes; above it up to `longest`
+  int longest = 0, halvings = 0;  ///< the step is halved so often at most; then it stays as it is
 };
 
-/// One implicit midpoint step for a fixed number of modes. Internal to ArmSimulator.
+/// Implicit midpoint steps for a fixed number of modes. Internal to ArmSimulator.
 class StepKernel {
  public:
   virtual ~StepKernel() = default;

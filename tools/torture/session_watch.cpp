@@ -79,20 +79,24 @@ void SessionWatch::Over(std::int64_t now_ns, const char* what, double share, dou
 void SessionWatch::LookAtArm(std::int64_t now_ns, const WatchSample& sample) {
   const PlantTruth& truth = sample.truth;
   tip_m_.push_back(truth.tip_m);
+  if (!std::isfinite(truth.hub_angle_rad[0] + truth.hub_angle_rad[1])) {
+    Add(now_ns, "finite-arm", "the simulated arm is not a number");
+  }
   // An arm whose thread catches up moves many milliseconds in one.
   if (sample.arm_ns != arm_ns_ + kMs) hub_rad_.clear();
   arm_ns_ = sample.arm_ns;
   const auto period = static_cast<std::size_t>(config_.loop.period_ns() / kMs);
   hub_rad_.push_back(truth.hub_angle_rad);
   if (hub_rad_.size() > period + 1) hub_rad_.pop_front();
-  if (hub_rad_.size() < 2) return;
   const std::int64_t acts_ns = config_.loop.period_ns();
   if (last_torque_ns_ == INT64_MIN || now_ns - last_torque_ns_ > acts_ns) return;  // it coasts
   for (std::size_t i = 0; i < 2; ++i) {
     const double limit_rad = config_.safety.soft_angle_deg[i] * kRadPerDeg;
     Over(now_ns, "hub angle", std::fabs(truth.hub_angle_rad[i]) / limit_rad,
          rules_.most.angle_share, &peaks_.angle_share);
-    // Over a period, as the loop sees it: a joint that springs back swings faster for a moment.
+    // Over a whole period, as the loop sees it: a joint that springs back swings faster for a
+    // moment.
+    if (hub_rad_.size() <= period) continue;
     const double turned_rad = truth.hub_angle_rad[i] - hub_rad_.front()[i];
     const double rate_rad_s = turned_rad / (static_cast<double>(hub_rad_.size() - 1) * 1e-3);
     Over(now_ns, "hub rate", std::fabs(rate_rad_s) / config_.safety.hub_rate_rad_s[i],
