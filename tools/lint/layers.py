@@ -58,6 +58,9 @@ LAYERS = {
     "config/new_rig": "config config/derivation model",
     "config/plausibility": "model model/arm model/parameters hal estimator controller/types",
     "tools/support": "",
+    "tools/html": "",
+    "tools/replay": "estimator controller/types controller/law controller/design controller/step "
+                    "controller/runlog",
     "tools/runs": "controller/runlog controller/safety config",
     "tools/plot": "model model/beam hal controller/files controller/runlog controller/safety tools/runs",
     "tools/mat": "controller/runlog",
@@ -88,13 +91,13 @@ LAYERS = {
                     "tools/sweep",
     "tools/report": "model model/beam model/arm model/simulation model/perturbation estimator "
                     "controller/types controller/runlog controller/host config "
-                    "tools/support tools/plot tools/analysis tools/benchmark "
+                    "tools/support tools/html tools/plot tools/analysis tools/benchmark "
                     "tools/sweep tools/thesis controller/files",
     "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
-                     "controller/step controller/runlog controller/commissioning "
+                     "controller/runlog controller/commissioning "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/support tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
+                     "tools/support tools/replay tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
