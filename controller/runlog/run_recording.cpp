@@ -10,10 +10,6 @@
 namespace flexarm {
 namespace {
 
-bool Trips(const SafetyRecord& record) {
-  return CauseLatched(record.after.state) && !CauseLatched(record.before.state);
-}
-
 // By a command, before the end of the experiment.
 bool Stops(const SafetyRecord& record) {
   return record.facts.request == RequestKind::kStop && record.refusal == Refusal::kNone &&
