@@ -121,6 +121,9 @@ void RunRecording::BeginTrip(const SafetyRecord& trip) {
   info_.experiment_text.clear();
   info_.label = {};
   Open(recent_.empty() ? trip.due_ns : recent_.oldest_ns());
+  for (const RunEvent& event : context_.events()) {  // who armed it, if that is longer ago
+    if (event.time_ns < info_.start_ns) sink_->Event(event);
+  }
   struct Write {
     RunRecording* recording;
     void operator()(const TickRecord& record) const { recording->WriteTick(record); }
