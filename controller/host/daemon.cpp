@@ -100,8 +100,12 @@ class Daemon {
         latch_(options.config.daemon.state_directory,
                std::filesystem::absolute(options.config.daemon.log_directory).string(),
                [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
-        finisher_(
+        trip_reports_(
+            options.trip_page,
             [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
+        finisher_(
+            [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
+            &trip_reports_),
         files_(options.config.daemon.log_directory, options.config.daemon.log, &finisher_,
                [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         recording_(
@@ -141,6 +145,7 @@ class Daemon {
   EventQueue events_;
   SpscQueue<TimingRecord> timing_;
   TripLatch latch_;
+  TripReports trip_reports_;
   RunFinisher finisher_;
   RunFiles files_;
   RunRecording recording_;
@@ -149,6 +154,7 @@ class Daemon {
   RealtimeExecutor executor_;
   RunJudge judge_;  // used by the operator's planner, one run at a time
   OperatorTask operator_;
+  TripCause restored_trip_ = TripCause::kNone;  // of the daemon before, still latched at the start
   std::jthread recovery_;  // of the logs that killed daemons left; ends within one log
 };
 
@@ -178,7 +184,8 @@ OperatorContext Daemon::Context() {
       .report = [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
       .identity = DaemonIdentity(options_.config, options_.config_file),
       .thread_status = [this] { return ThreadStatus(executor_); },
-      .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); }};
+      .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); },
+      .newest_trip_report = [this] { return trip_reports_.newest(); }};
 }
 
 void Daemon::ReportDesign() {
@@ -205,6 +212,7 @@ void Daemon::PrepareHost() {
 void Daemon::RestoreTrip() {
   if (const std::optional<HeldTrip> trip = latch_.Open()) {
     stack().StartTripped(trip->cause, trip->evidence);
+    restored_trip_ = trip->cause;
   }
 }
 
@@ -215,6 +223,9 @@ void Daemon::RecoverLogs() {
     RecoverRuns(
         options_.config.daemon.log_directory,
         [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }, stop);
+    if (restored_trip_ != TripCause::kNone && !stop.stop_requested()) {
+      trip_reports_.Recall(options_.config.daemon.log_directory, ToString(restored_trip_));
+    }
   });
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "controller/host/run_judge.h"
+#include "controller/runlog/trip_reports.h"
 #include "controller/types/experiment.h"
 #include "controller/types/records.h"
 #include "controller/types/rig_config.h"
@@ -21,6 +22,7 @@ struct DaemonOptions {
                                          ///< runs in lock step then, behind the clock
   std::function<Experiment(const std::string& text, const std::string& name)> parse_experiment;
   RunJudge::WithLaw with_law = {};  ///< RunJudge's
+  MakeTripPage trip_page = {};      ///< empty: no reports of trips are written
 };
 
 /// Result of the daemon.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/operator/trip_channel.h"
+#include "controller/types/trip_advice.h"
 
 namespace flexarm {
 
@@ -12,12 +13,14 @@ nlohmann::json CauseJson(TripCause cause, const Evidence& evidence, const Sensor
                       {"number", static_cast<int>(cause)},
                       {"value", nullptr},
                       {"limit", nullptr},
+                      {"unit", nullptr},
                       {"channel", evidence.channel},
                       {"channel_name", TripChannelName(cause, evidence.channel, sensors)},
                       {"bus", nullptr}};
   if (evidence.value != 0.0 || evidence.limit != 0.0) {
     json["value"] = evidence.value;
     json["limit"] = evidence.limit;
+    if (const std::string unit = EvidenceUnit(cause); !unit.empty()) json["unit"] = unit;
   }
   if (std::string bus = bus_text(cause, evidence); !bus.empty()) json["bus"] = std::move(bus);
   return json;

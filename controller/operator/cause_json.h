@@ -12,9 +12,9 @@ namespace flexarm {
 /// LoopStack::BusText.
 using BusTextOf = std::function<std::string(TripCause cause, const Evidence& evidence)>;
 
-/// A cause with what breaks its limit: {"name", "number", "value", "limit", "channel",
-/// "channel_name", "bus"}. Value and limit are null if they are not known, the bus if it is of
-/// none.
+/// A cause with what breaks its limit: {"name", "number", "value", "limit", "unit", "channel",
+/// "channel_name", "bus"}. Value, limit and unit are null if they are not known, the bus if it is
+/// of none.
 nlohmann::json CauseJson(TripCause cause, const Evidence& evidence, const SensorConfig& sensors,
                          const BusTextOf& bus_text);
 

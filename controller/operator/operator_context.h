@@ -13,6 +13,7 @@
 #include "controller/operator/run_command.h"
 #include "controller/runlog/event_queue.h"
 #include "controller/runlog/run_files.h"
+#include "controller/runlog/trip_reports.h"
 #include "controller/tasks/loop_stack.h"
 
 namespace flexarm {
@@ -42,6 +43,8 @@ struct OperatorContext {
   std::function<nlohmann::json()> thread_status;
   /// Called once a period while safety and control are alive: the service manager's watchdog.
   std::function<void(std::int64_t now_ns, const std::string& status)> alive;
+  /// The newest report of a trip (TripReports::newest); empty: reports are not written.
+  std::function<TripReport()> newest_trip_report = {};
   /// RunCommand::Targets::plan_wait.
   std::chrono::milliseconds plan_wait{0};
 };

@@ -27,6 +27,9 @@ std::optional<ExperimentLoader::Order> OrderOf(const OperatorContext& context,
   return loader.Plan(*context.unattended, kStart_rad);
 }
 
+// Within it the recorder takes the reserved file for the log of a trip: it is 0.15 s late at most.
+constexpr std::int64_t kTripLogNs = 1'000'000'000;
+
 // Of this thread.
 double ProcessorTime_us() {
   timespec spent{};
@@ -64,6 +67,13 @@ OperatorTask::OperatorTask(OperatorContext context)
       warnings_(context_.grid.period_ns, context_.delay_margin_s,
                 StrainColumns(context_.config->sensors), context_.events, context_.report),
       state_journal_(context_.stack, &context_.config->sensors, context_.events, context_.report),
+      circumstances_({.sensors = &context_.config->sensors,
+                      .bus_text =
+                          [this](TripCause cause, const Evidence& evidence) {
+                            return context_.stack->BusText(cause, evidence);
+                          },
+                      .thread_status = context_.thread_status},
+                     context_.events),
       bus_counters_(context_.events),
       timing_warnings_(context_.events, context_.report),
       record_(context_.events, context_.report),
@@ -156,6 +166,7 @@ void OperatorTask::FollowBuses() {
   const std::vector<BusHealth> buses = context_.stack->buses();
   bus_journal_.Follow(now_.now_ns, buses, context_.report);
   bus_counters_.Follow(now_.now_ns, now_.permit.state, buses);
+  circumstances_.Follow(now_.now_ns, now_.permit, context_.stack->present_causes(), buses);
 }
 
 void OperatorTask::TakeTicks() {
@@ -202,11 +213,14 @@ void OperatorTask::FollowLatch() {
   context_.latch->Follow(now_.now_ns, newest, requests_.busy());
 }
 
-// The reserved file is for an arm that is armed, or about to be. Of the newest permit, as above.
+// The reserved file is for an arm that is armed, or about to be; and for the log of a trip, which
+// the recorder begins a moment after it. Of the newest permit, as above.
 void OperatorTask::FollowLog() {
   if (context_.files == nullptr || requests_.busy() || arm_.waits()) return;
   const SafetyState state = context_.stack->operator_permits().Read().Newest().value.state;
-  const bool disarmed = state == SafetyState::kIdle || CauseLatched(state);
+  if (!CauseLatched(state)) trip_log_until_ns_ = now_.now_ns + kTripLogNs;
+  const bool disarmed =
+      state == SafetyState::kIdle || (CauseLatched(state) && now_.now_ns >= trip_log_until_ns_);
   const bool is_planned = context_.unattended && !unattended_.over();
   if (disarmed && !is_planned) context_.files->Release();
 }
@@ -278,6 +292,13 @@ void OperatorTask::FollowShutdown() {
   if (shutdown_.over()) done_.store(true, std::memory_order_release);
 }
 
+// Of the trip that is latched: a report takes seconds, and until then the newest is of another.
+std::string OperatorTask::TripReportFile() const {
+  if (!context_.newest_trip_report) return {};
+  const TripReport report = context_.newest_trip_report();
+  return circumstances_.IsOfLatched(report.trip_ns) ? report.file.string() : std::string();
+}
+
 // Once a look, however many ask.
 const nlohmann::json& OperatorTask::Status() {
   if (status_ns_ == now_.now_ns) return status_;
@@ -295,6 +316,7 @@ const nlohmann::json& OperatorTask::Status() {
                             },
                         .present = &context_.stack->present_causes(),
                         .latch = context_.latch,
+                        .trip_report = TripReportFile(),
                         .threads = context_.thread_status(),
                         .host = arm_.HostStatus(),
                         .design = arm_.DesignStatus(),

@@ -27,6 +27,7 @@
 #include "controller/operator/shutdown.h"
 #include "controller/operator/state_journal.h"
 #include "controller/operator/timing_warnings.h"
+#include "controller/operator/trip_circumstances.h"
 #include "controller/operator/unattended_run.h"
 #include "controller/realtime/task.h"
 #include "controller/tasks/bus_health.h"
@@ -86,6 +87,7 @@ class OperatorTask final : public Task {
   void BeginShutdown();
   void FollowShutdown();
   const nlohmann::json& Status();
+  std::string TripReportFile() const;
   void Reply(int client, nlohmann::json answer);
   void Reply(std::optional<ClientAnswer> answer);
 
@@ -102,6 +104,7 @@ class OperatorTask final : public Task {
   RunWatch run_watch_;
   RunWarnings warnings_;
   StateJournal state_journal_;
+  TripCircumstances circumstances_;
   LoopWatch loop_watch_;
   BusJournal bus_journal_;
   BusCounterRecord bus_counters_;
@@ -117,9 +120,10 @@ class OperatorTask final : public Task {
   std::atomic<bool> done_{false};
   std::atomic<bool> refused_{false};
   std::atomic<TripCause> trip_{TripCause::kNone};
-  bool log_ready_ = false;      // of the unattended run
-  double look_began_us_ = 0.0;  // processor time of the thread
-  nlohmann::json status_;       // of the look at
+  bool log_ready_ = false;                      // of the unattended run
+  std::int64_t trip_log_until_ns_ = INT64_MIN;  // the reserved file stays until then
+  double look_began_us_ = 0.0;                  // processor time of the thread
+  nlohmann::json status_;                       // of the look at
   std::int64_t status_ns_ = INT64_MIN;
   std::int64_t followed_ns_ = INT64_MIN;  // the last period
 };

@@ -17,6 +17,31 @@ nlohmann::json AnglesJson(const AngleKnowledge& angles, const StepOutput& out) {
   return all;
 }
 
+nlohmann::json TripJson(const StatusSources& sources) {
+  const Permit& permit = sources.now->permit;
+  if (!CauseLatched(permit.state)) return nullptr;
+  const std::optional<HeldTrip>& held = sources.latch->trip();
+  nlohmann::json json =
+      CauseJson(permit.cause, permit.evidence, *sources.sensors, sources.bus_text);
+  json["text"] = OperatorText(permit.cause);
+  json["time_utc"] = TextOrNull(held ? held->time_utc : std::string());
+  json["before_start"] = held && held->before_start;
+  json["record_problem"] = TextOrNull(held ? held->record_problem : std::string());
+  json["report"] = TextOrNull(sources.trip_report);
+  return json;
+}
+
+nlohmann::json InputsJson(LineLevels levels) {
+  nlohmann::json all = nlohmann::json::object();
+  for (int i = 0; i < kLines; ++i) {
+    const auto line = static_cast<Line>(i);
+    all[ToString(line)] = (levels & LineBit(line)) != 0 ? 1 : 0;
+  }
+  return all;
+}
+
+}  // namespace
+
 nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
   nlohmann::json all = nlohmann::json::array();
   for (const BusHealth& bus : buses) {
@@ -35,30 +60,6 @@ nlohmann::json BusesJson(const std::vector<BusHealth>& buses) {
   }
   return all;
 }
-
-nlohmann::json TripJson(const StatusSources& sources) {
-  const Permit& permit = sources.now->permit;
-  if (!CauseLatched(permit.state)) return nullptr;
-  const std::optional<HeldTrip>& held = sources.latch->trip();
-  nlohmann::json json =
-      CauseJson(permit.cause, permit.evidence, *sources.sensors, sources.bus_text);
-  json["text"] = OperatorText(permit.cause);
-  json["time_utc"] = TextOrNull(held ? held->time_utc : std::string());
-  json["before_start"] = held && held->before_start;
-  json["record_problem"] = TextOrNull(held ? held->record_problem : std::string());
-  return json;
-}
-
-nlohmann::json InputsJson(LineLevels levels) {
-  nlohmann::json all = nlohmann::json::object();
-  for (int i = 0; i < kLines; ++i) {
-    const auto line = static_cast<Line>(i);
-    all[ToString(line)] = (levels & LineBit(line)) != 0 ? 1 : 0;
-  }
-  return all;
-}
-
-}  // namespace
 
 nlohmann::json CountersJson(const std::vector<BusCounter>& counters) {
   nlohmann::json all = nlohmann::json::object();

@@ -26,6 +26,7 @@ struct StatusSources {
   BusTextOf bus_text;                         ///< LoopStack::BusText
   const PresentCauses* present;               ///< LoopStack::present_causes
   const TripLatch* latch;                     ///< when the trip was, and whether it is kept
+  std::string trip_report{};                  ///< file of the latched trip's report; empty: none
   nlohmann::json threads;                     ///< OperatorContext::thread_status
   nlohmann::json host;                        ///< ArmCommand::HostStatus
   nlohmann::json design;                      ///< ArmCommand::DesignStatus
@@ -43,6 +44,9 @@ struct StatusSources {
 
 /// Of the operator socket: docs/protocol.md. A change that old clients do not understand raises it.
 inline constexpr int kProtocolVersion = 1;
+
+/// Part "buses" of the status.
+nlohmann::json BusesJson(const std::vector<BusHealth>& buses);
 
 /// Part "counters" of a bus: {name: count}.
 nlohmann::json CountersJson(const std::vector<BusCounter>& counters);

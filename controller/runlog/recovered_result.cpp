@@ -18,7 +18,7 @@ void RecoveredResult::Add(const RunRecord& record) {
   }
   if (const auto* safety = std::get_if<SafetyRecord>(&record)) {
     state_ = safety->after.state;
-    const bool trips = CauseLatched(safety->after.state) && !CauseLatched(safety->before.state);
+    const bool trips = Trips(*safety);
     if (trips) trip_ = safety->after.cause;
   }
 }

@@ -13,6 +13,7 @@
 #include "controller/runlog/run_file_lock.h"
 #include "controller/runlog/run_list.h"
 #include "controller/runlog/schema.h"
+#include "controller/runlog/trip_reports.h"
 
 namespace flexarm {
 namespace {
@@ -22,7 +23,7 @@ using Clock = std::filesystem::file_time_type::clock;
 struct Run {
   std::filesystem::path file;
   std::filesystem::file_time_type written;
-  double bytes;
+  double bytes;  // with its trip reports
 };
 
 // By its first bytes: a SQLite file with the application id of a run log, which is at byte 68, big
@@ -50,7 +51,12 @@ std::vector<Run> Runs(const std::filesystem::path& directory) {
     if (!IsRunLog(file) || RunFileIsLocked(file)) continue;
     const auto written = entry.last_write_time(error);
     if (error) continue;
-    const auto bytes = static_cast<double>(entry.file_size(error));
+    auto bytes = static_cast<double>(entry.file_size(error));
+    for (const std::filesystem::path& page : TripPagesOf(file)) {
+      std::error_code ignored;
+      const auto size = std::filesystem::file_size(page, ignored);
+      if (!ignored) bytes += static_cast<double>(size);
+    }
     if (!error) runs.push_back({.file = file, .written = written, .bytes = bytes});
   }
   std::ranges::sort(runs, {}, &Run::written);
@@ -84,7 +90,11 @@ void RemoveOldRuns(const std::filesystem::path& directory, const LogConfig& conf
     if (!is_old && !is_much) return;  // the later ones are younger
     if (MustStay(run.file, config)) continue;
     std::error_code error;
-    std::filesystem::remove(run.file, error);
+    // Its pages first: one that remained would belong to the next log of that name.
+    for (const std::filesystem::path& page : TripPagesOf(run.file)) {
+      if (!error) std::filesystem::remove(page, error);
+    }
+    if (!error) std::filesystem::remove(run.file, error);
     if (!error) total_mb -= run.bytes * 1e-6;
     if (!report) continue;
     const std::string key = is_old ? "log.keep_days" : "log.keep_total_mb";

@@ -63,12 +63,14 @@ bool RunFinisher::Try() {
     const bool changed = std::exchange(waiting.error, error) != error;
     if (error.empty()) {
       report_(false, "run closed: " + waiting.run.path().string());
+      if (reports_ != nullptr) reports_->Closed(waiting.run.path());
     } else if (changed) {
       report_(true, error + "; its records are kept, and this is tried again");
     }
     return error.empty();
   });
-  return runs_.empty();
+  const bool reported = reports_ == nullptr || reports_->Try();
+  return runs_.empty() && reported;
 }
 
 }  // namespace flexarm

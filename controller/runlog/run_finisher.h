@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "controller/runlog/run_writer.h"
+#include "controller/runlog/trip_reports.h"
 
 namespace flexarm {
 
@@ -22,7 +23,10 @@ class RunFinisher {
   /// For the journal. Called on the finisher's thread.
   using Report = std::function<void(bool is_error, const std::string& text)>;
 
-  explicit RunFinisher(Report report) : report_(std::move(report)) {}
+  /// @param reports  of the trips of these runs, written after them on the same thread; outlives
+  ///                 this; null: none
+  explicit RunFinisher(Report report, TripReports* reports = nullptr)
+      : report_(std::move(report)), reports_(reports) {}
   ~RunFinisher() { Stop(); }
   RunFinisher(const RunFinisher&) = delete;
   RunFinisher& operator=(const RunFinisher&) = delete;
@@ -48,10 +52,11 @@ class RunFinisher {
 
   void Work();
   void TakeAdded();
-  /// Tries each run once. @returns true if all are finished
+  /// Tries each run once. @returns true if all are finished, and no report waits for the disk
   bool Try();
 
   Report report_;
+  TripReports* reports_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<EndedRun> added_;

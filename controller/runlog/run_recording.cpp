@@ -10,10 +10,6 @@
 namespace flexarm {
 namespace {
 
-bool Trips(const SafetyRecord& record) {
-  return CauseLatched(record.after.state) && !CauseLatched(record.before.state);
-}
-
 // By a command, before the end of the experiment.
 bool Stops(const SafetyRecord& record) {
   return record.facts.request == RequestKind::kStop && record.refusal == Refusal::kNone &&
@@ -125,6 +121,9 @@ void RunRecording::BeginTrip(const SafetyRecord& trip) {
   info_.experiment_text.clear();
   info_.label = {};
   Open(recent_.empty() ? trip.due_ns : recent_.oldest_ns());
+  for (const RunEvent& event : context_.events()) {  // who armed it, if that is longer ago
+    if (event.time_ns < info_.start_ns) sink_->Event(event);
+  }
   struct Write {
     RunRecording* recording;
     void operator()(const TickRecord& record) const { recording->WriteTick(record); }

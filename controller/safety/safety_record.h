@@ -26,4 +26,9 @@ struct SafetyRecord {
 static_assert(std::is_trivially_copyable_v<SafetyRecord>);
 static_assert(sizeof(SafetyRecord) == 72, "no padding: the bytes are logged");
 
+/// Whether a trip latches in it.
+constexpr bool Trips(const SafetyRecord& record) noexcept {
+  return CauseLatched(record.after.state) && !CauseLatched(record.before.state);
+}
+
 }  // namespace flexarm

@@ -289,6 +289,58 @@ const char* OperatorText(TripCause cause) noexcept {
              : "The number of the trip cause is corrupted. Restart the daemon and report the log.";
 }
 
+const char* EvidenceUnit(TripCause cause) noexcept {
+  switch (cause) {
+    case kLimitSwitch1Low:
+    case kLimitSwitch1High:
+    case kLimitSwitch2Low:
+    case kLimitSwitch2High:
+    case kEmergencyStop:
+      return "level";
+    case kSoftLimit1:
+    case kSoftLimit2:
+    case kHubAgainstRotor:
+    case kEstimatorResidual:
+      return "rad";
+    case kHubRate1:
+    case kHubRate2:
+    case kEncoderJump:
+      return "rad/s";
+    case kBendingStrain1:
+    case kBendingStrain2:
+    case kStrainStuck:
+    case kStrainOutOfFamily:
+      return "strain";
+    case kNoCounterReading:
+      return "samples";
+    case kStaleFrame:
+    case kControlHeartbeatLost:
+    case kStopTimeout:
+    case kSafetyLines:
+    case kSafetyOverrun:
+    case kShutdownTimeout:
+      return "s";
+    case kMissedDeadlines:
+    case kDeadlinesOftenMissed:
+      return "deadlines";
+    case kBusUnreliable:
+    case kBusTooSlow:
+      return "exchanges";
+    case kNoStrainReading1:
+    case kNoStrainReading2:
+      return "gauges";
+    case TripCause::kNone:
+    case kStrainSaturated:
+    case kBusLost:
+    case kDriveFault:
+    case kStateNotFinite:
+    case kEndedWhileArmed:
+    case kTripRecordUnreadable:
+      return "";
+  }
+  return "";
+}
+
 TripAdvice AdviceOf(TripCause cause) noexcept {
   const auto index = static_cast<std::size_t>(cause);
   return index < kRows.size() ? kRows[index].advice : TripAdvice{"", "", ""};

@@ -23,7 +23,7 @@ GOOD = {
     "delay_ms": 1.0, "delay_max_ms": 1.0, "delay_margin_ms": 1.0,
     "trip": {"name": "hub-rate-1", "text": "t", "value": 1.0, "limit": 0.5, "bus": None,
              "channel_name": "joint 1", "time_utc": None, "before_start": False,
-             "record_problem": None},
+             "record_problem": None, "unit": "rad/s", "report": "/runs/a.trip.html"},
     "latch_problem": None,
     "timing": {"trips": True, "safety_overruns": 0, "safety_worst_ms": 0.1,
                "deadlines_missed_in_a_row": 0, "deadlines_often_missed": 0},

@@ -58,5 +58,6 @@ void RegisterRuns(CLI::App& app, Exit& exit);  ///< with tag, untag and note
 void RegisterSimulate(CLI::App& app, Exit& exit);
 void RegisterSweep(CLI::App& app, Exit& exit);  ///< with merge and show
 void RegisterTorture(CLI::App& app, Exit& exit);
+void RegisterTripReport(CLI::App& app, Exit& exit);
 
 }  // namespace flexarm

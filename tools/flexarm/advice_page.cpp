@@ -137,9 +137,7 @@ std::string AdviceText(const Advice& advice) {
   text += "  what:     " + advice.happened + "\n  check:    " + advice.check +
           "\n  remedy:   " + advice.remedy + "\n";
   if (is_trip) {
-    return text +
-           "  then:     press the reset button for 50 ms, `flexarm reset`, `flexarm arm`\n"
-           "  override: not possible\n";
+    return text + "  then:     " + kAfterEveryTrip + "\n  override: not possible\n";
   }
   return text + "  override: " +
          (advice.override_option.empty() ? "not possible" : advice.override_option) + "\n";

@@ -36,6 +36,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterCommission(app, exit);
   RegisterProveSwitches(app, exit);
   RegisterExplain(app, exit);
+  RegisterTripReport(app, exit);
   RegisterRig(app, exit);
   RegisterLinesOff(app, exit);
 }

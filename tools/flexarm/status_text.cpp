@@ -33,7 +33,9 @@ std::string EvidenceText(const Reply& cause) {
   if (const std::string bus = TextIn(cause, "bus"); !bus.empty()) return bus;
   std::string text;
   if (In(cause, "value").is_number()) {
-    text = "value " + FigureIn(cause, "value", 4) + ", limit " + FigureIn(cause, "limit", 4);
+    const std::string unit = TextIn(cause, "unit");
+    text = "value " + FigureIn(cause, "value", 4) + ", limit " + FigureIn(cause, "limit", 4) +
+           (unit.empty() ? "" : " " + unit);
   }
   const std::string channel = TextIn(cause, "channel_name");
   return channel.empty() ? text : text + (text.empty() ? "" : ", ") + channel;
@@ -75,6 +77,8 @@ void AddTrip(const Reply& s, Lines* lines) {
       lines->Below(time + (FlagIn(trip, "before_start") ? ", before the daemon's start" : ""));
     }
     lines->Below(TextIn(trip, "record_problem"));
+    const std::string report = TextIn(trip, "report");
+    lines->Below(report.empty() ? "" : "report: " + report);
   }
   for (const Reply& cause : ListIn(s, "present")) {
     const std::string evidence = EvidenceText(cause);

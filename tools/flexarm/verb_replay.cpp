@@ -4,21 +4,19 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "controller/design/design_json.h"
 #include "controller/design/run_design.h"
 #include "controller/files/external_json.h"
 #include "controller/law/design.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
 #include "controller/runlog/replay.h"
-#include "controller/step/control_step.h"
-#include "estimator/ideal_observer.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/run_choice.h"
 #include "tools/command_line/verbs.h"
 #include "tools/csv/csv_replay.h"
 #include "tools/csv/csv_report.h"
 #include "tools/csv/scale_warnings.h"
+#include "tools/replay/log_replay.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -57,42 +55,7 @@ struct Outcome {
   }
 };
 
-/// ControlStep with the observer `ideal`, which is told the state that each record has.
-class IdealReplay {
- public:
-  IdealReplay(const RigConfig& config, const Design& design)
-      : states_(design.layout.states()),
-        observer_(new IdealObserver(states_)),
-        step_(config, design, std::unique_ptr<Observer>(observer_)) {}
-
-  void Know(const StepOutput& recorded) {
-    StateVector x(states_);
-    for (int i = 0; i < states_; ++i) x(i) = recorded.x_hat[static_cast<std::size_t>(i)];
-    observer_->Know(x);
-  }
-  StepOutput Step(const StepInput& input) { return step_.Step(input); }
-
- private:
-  int states_;
-  IdealObserver* observer_;  // owned by step_
-  ControlStep step_;
-};
-
 bool IsIdeal(const RigConfig& config) { return config.estimator.kind == EstimatorKind::kIdeal; }
-
-StepFunction Fresh(const RigConfig& config, const Design& design) {
-  const auto step = std::make_shared<ControlStep>(config, design);
-  return [step](const StepInput& input) { return step->Step(input); };
-}
-
-Design GainsOf(const RunReader& reader, const RigConfig& config) {
-  try {
-    return DesignFromJson(reader.info().gains_json, config);
-  } catch (const std::runtime_error& error) {
-    throw InputError(reader.file().string() +
-                     ": the gains in this log cannot be used: " + error.what());
-  }
-}
 
 // The config of the replay: --set without -c changes that of the log.
 RigConfig OtherConfig(const ConfigOptions& options, const RigConfig& own) {
@@ -116,17 +79,9 @@ Outcome ReplayRun(const ReplayOptions& options) {
     throw InputError(reader.file().string() +
                      ": the true state is not in this log, which estimator.name = \"ideal\" needs");
   }
-  const auto ideal = IsIdeal(config) ? std::make_shared<IdealReplay>(config, design) : nullptr;
-  Replay replay(ideal ? [ideal](const StepInput& input) { return ideal->Step(input); }
-                      : Fresh(config, design),
-                other_config);
-  reader.ForEachTick([&](const TickRecord& record) {
-    if (ideal) ideal->Know(record.output);
-    replay.Tick(record);
-  });
-  reader.ForEachSafety([&](const SafetyRecord& record) { replay.Safety(record); });
+  const ReplayResult result = ReplayLog(&reader, config, design, other_config);
   const std::string& build = reader.info().build_id;
-  return {.result = replay.Result(),
+  return {.result = result,
           .other_build = build == BuildId() ? "" : build,
           .digest_holds = reader.DigestHolds()};
 }

@@ -14,6 +14,7 @@
 #include "hal/bus_device.h"
 #include "tools/command_line/guess.h"
 #include "tools/command_line/self_description.h"
+#include "tools/trip_report/trip_page.h"
 
 namespace flexarm {
 namespace {
@@ -90,7 +91,8 @@ int Serve(const Options& options) {
                        .run_for_s = options.run_for_s,
                        .realtime = !options.without_realtime,
                        .parse_experiment = ParseExperiment,
-                       .with_law = WithLaw};
+                       .with_law = WithLaw,
+                       .trip_page = TripPage};
   if (!options.experiment.empty()) daemon.experiment = LoadExperiment(options.experiment);
   const DaemonResult result = RunDaemon(daemon);
   return result.tripped || result.refused || result.log_errors > 0 ? kFailed : kDone;

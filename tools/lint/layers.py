@@ -58,8 +58,15 @@ LAYERS = {
     "config/new_rig": "config config/derivation model",
     "config/plausibility": "model model/arm model/parameters hal estimator controller/types",
     "tools/support": "",
+    "tools/html": "",
+    "tools/replay": "estimator controller/types controller/law controller/design controller/step "
+                    "controller/runlog",
     "tools/runs": "controller/runlog controller/safety config",
-    "tools/plot": "model model/beam hal controller/files controller/runlog controller/safety tools/runs",
+    "tools/plot": "model model/beam hal controller/types controller/files controller/runlog "
+                  "controller/safety tools/html tools/runs",
+    "tools/trip_report": "model hal controller/realtime controller/types controller/files "
+                         "controller/runlog controller/operator controller/host config "
+                         "tools/html tools/replay tools/runs tools/plot",
     "tools/mat": "controller/runlog",
     "tools/csv": "model model/math model/beam estimator controller/files controller/types "
                  "controller/design controller/step controller/runlog controller/commissioning "
@@ -88,13 +95,13 @@ LAYERS = {
                     "tools/sweep",
     "tools/report": "model model/beam model/arm model/simulation model/perturbation estimator "
                     "controller/types controller/runlog controller/host config "
-                    "tools/support tools/plot tools/analysis tools/benchmark "
+                    "tools/support tools/html tools/plot tools/analysis tools/benchmark "
                     "tools/sweep tools/thesis controller/files",
     "tools/flexarm": "model model/math model/arm estimator hal/gpiod hal/wired hal/emulation controller/realtime "
                      "controller/types controller/safety controller/law controller/design "
-                     "controller/step controller/runlog "
+                     "controller/runlog "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/support tools/runs tools/plot tools/csv tools/command_line controller/files",
+                     "tools/support tools/replay tools/runs tools/plot tools/trip_report tools/csv tools/command_line controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
@@ -102,7 +109,7 @@ LAYERS = {
                            "controller/types controller/commissioning tools/bound tools/torture tools/bench_host "
                            "tools/mat",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
-                      "config controller/files tools/command_line",
+                      "config controller/files tools/command_line tools/trip_report",
 }
 LAYERS = {folder: uses.split() for folder, uses in LAYERS.items()}
 

@@ -28,6 +28,11 @@ std::string ReferenceStyle();
 /// The same for a limit.
 std::string LimitStyle();
 
+// The same styles as attributes of an SVG line.
+std::string SvgCurveStyle(std::size_t i, double width = 2.0);
+std::string SvgReferenceStyle();
+std::string SvgLimitStyle();
+
 /// Colours of increasing values, dark to light, for gnuplot: legible on white up to the last one.
 std::string PaletteStyle();
 

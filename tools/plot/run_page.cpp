@@ -7,6 +7,7 @@
 
 #include "controller/runlog/build_info.h"
 #include "run_page_generated.h"
+#include "tools/html/html_page.h"
 #include "tools/plot/plot_rows.h"
 #include "tools/plot/run_marks.h"
 
@@ -80,18 +81,6 @@ Json RunJson(const LoadedRun& loaded, const PlotRun& run) {
 }
 
 // Texts come from a log: none may end the element that holds them, or begin another.
-std::string HarmlessText(const std::string& text) {
-  std::string harmless;
-  for (const char c : text) {
-    if (c == '<' || c == '>' || c == '&') {
-      harmless += c == '<' ? "&lt;" : c == '>' ? "&gt;" : "&amp;";
-    } else {
-      harmless += c;
-    }
-  }
-  return harmless;
-}
-
 std::string HarmlessJson(const Json& json) {
   std::string harmless;
   for (const char c : json.dump(-1, ' ', true, Json::error_handler_t::replace)) {
@@ -118,8 +107,8 @@ std::string RunPage(const std::vector<LoadedRun>& runs) {
     data["runs"].push_back(RunJson(loaded, run));
   }
   std::string page = kRunPageTemplate;
-  Fill("@TITLE@", HarmlessText(title), &page);
-  Fill("@BUILD@", HarmlessText("flexarm " + ThisBuild().version + ", " + BuildId()), &page);
+  Fill("@TITLE@", EscapedHtml(title), &page);
+  Fill("@BUILD@", EscapedHtml("flexarm " + ThisBuild().version + ", " + BuildId()), &page);
   Fill("@DATA@", HarmlessJson(data), &page);
   return page;
 }

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "config/config.h"
-#include "tools/report/html_page.h"
+#include "tools/analysis/statement.h"
+#include "tools/html/html_page.h"
 
 namespace flexarm {
 
@@ -25,6 +26,9 @@ struct ReportContext {
     return folder / "figures" / (name + ".png");
   }
 };
+
+/// Adds a table: statement of the thesis, result of the model, verdict; and keeps the statements.
+void Say(const std::vector<Statement>& statements, ReportContext* context, HtmlPage* page);
 
 // One function per chapter: computes the chapter, draws into `folder` and adds to the page.
 void Chapter3(ReportContext* context, HtmlPage* page);  ///< beams, damping, friction

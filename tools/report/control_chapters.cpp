@@ -219,9 +219,7 @@ void Chapter7(ReportContext* context, HtmlPage* page) {
   AlphaAndVartheta(study, *context, page);
   PayloadFigures(*context, page);
   PayloadTable(study, page);
-  const std::vector<Statement> statements = Chapter7Statements(study);
-  page->Statements(statements);
-  context->statements.insert(context->statements.end(), statements.begin(), statements.end());
+  Say(Chapter7Statements(study), context, page);
 }
 
 }  // namespace flexarm

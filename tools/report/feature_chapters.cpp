@@ -4,18 +4,9 @@
 #include "tools/thesis/control_features.h"
 
 namespace flexarm {
-namespace {
-
-void SayAll(const std::vector<Statement>& statements, ReportContext* context, HtmlPage* page) {
-  page->Statements(statements);
-  context->statements.insert(context->statements.end(), statements.begin(), statements.end());
-}
-
-}  // namespace
-
 void ControlFeatures(ReportContext* context, HtmlPage* page) {
   page->Section("Section 7.2: what makes the arm hard to control");
-  SayAll(ControlFeatureStatements(context->config), context, page);
+  Say(ControlFeatureStatements(context->config), context, page);
 }
 
 void AppendixB(ReportContext* context, HtmlPage* page) {
@@ -27,7 +18,7 @@ void AppendixB(ReportContext* context, HtmlPage* page) {
                 "square wave, 0.4 and 0.1 N m; polynomial (B.1) from five half bridges a link at "
                 "local maxima of strain, modal fit to the config's gauges; noise and quantisation "
                 "of the config, without its analogue filter.");
-  SayAll(AppendixStatements(context->config), context, page);
+  Say(AppendixStatements(context->config), context, page);
 }
 
 }  // namespace flexarm

@@ -12,11 +12,6 @@
 namespace flexarm {
 namespace {
 
-void Say(const std::vector<Statement>& statements, ReportContext* context, HtmlPage* page) {
-  page->Statements(statements);
-  context->statements.insert(context->statements.end(), statements.begin(), statements.end());
-}
-
 // Table 2 of the thesis beside the parameters of the rig.
 void ParameterTable(const ArmParameters& arm, HtmlPage* page) {
   const BeamSection &first = arm.link[0].section.front(), &second = arm.link[1].section.front();

@@ -89,8 +89,7 @@ std::string SettlingText(const RunMetrics& metrics) {
 
 std::optional<SafetyRecord> TripOf(const std::vector<SafetyRecord>& records) {
   for (const SafetyRecord& record : records) {
-    const bool trips = CauseLatched(record.after.state) && !CauseLatched(record.before.state);
-    if (trips) return record;
+    if (Trips(record)) return record;
   }
   return std::nullopt;
 }

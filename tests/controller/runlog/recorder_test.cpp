@@ -199,9 +199,10 @@ TEST_F(RecorderTest, ATripOutsideARunIsALogOfTheLastTenSeconds) {
   EXPECT_EQ(run.tick.back().input.now_ns, 25 * kSecond);
   EXPECT_EQ(run.tick.size(), 752U);
   EXPECT_EQ(run.safety.size(), 1U);
-  ASSERT_EQ(run.event.size(), 2U);
-  EXPECT_EQ(run.event[0].name, "delay");
-  EXPECT_EQ(run.event[1].kind, "trip");
+  ASSERT_EQ(run.event.size(), 3U);
+  EXPECT_EQ(run.event[0].name, "arm") << "who armed it, though that is older";
+  EXPECT_EQ(run.event[1].name, "delay");
+  EXPECT_EQ(run.event[2].kind, "trip");
   EXPECT_NE(run.info.result_json.find("\"completed\":false"), std::string::npos);
 }
 

@@ -215,6 +215,23 @@ TEST_F(RetentionTest, TheOldestAreRemovedUntilTheRestIsWithinTheSize) {
   EXPECT_TRUE(std::filesystem::exists(third));
 }
 
+TEST_F(RetentionTest, TheReportsOfALogCountWithItAndGoWithIt) {
+  const auto first = Run("a.flexarm", 3.0, R"({"trip": "emergency-stop"})");
+  const auto page = File("a.trip.html"), second_page = File("a.trip-2.html");
+  const double log_mb = static_cast<double>(std::filesystem::file_size(first)) * 1e-6;
+  WriteText(page, std::string(static_cast<std::size_t>(2e6 * log_mb), 'x'));
+  WriteText(second_page, "x");
+  Run("b.flexarm", 1.0);
+  LogConfig config{.keep_total_mb = 2.5 * log_mb};  // two logs fit, a page of two does not beside
+  Remove(config);
+  EXPECT_TRUE(std::filesystem::exists(page)) << "of a trip";
+  config.keep_trips = false;
+  Remove(config);
+  for (const auto& file : {first, page, second_page}) {
+    EXPECT_FALSE(std::filesystem::exists(file)) << file;
+  }
+}
+
 TEST_F(RetentionTest, TheLogOfATripStaysUnlessTheConfigSaysOtherwise) {
   const auto trip = Run("a.flexarm", 30.0, R"({"trip": "emergency-stop"})"),
              old = Run("b.flexarm", 20.0, R"({"trip": null})");

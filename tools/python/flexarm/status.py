@@ -65,6 +65,7 @@ class Trip:
     value: float | None  #: None: not known, as of a trip before the daemon's start
     limit: float | None
     channel_name: str  #: joint, gauge or counter; "" if there is none
+    report: Path | None  #: its page (docs/trip-report.md); None: not written yet
 
 
 @dataclass(frozen=True)
@@ -132,9 +133,11 @@ class Status:
         if trip is None:
             return None
         trip = _value(self.values, "trip", dict)
+        report = _text_or_none(trip, "report")
         return Trip(name=str(_value(trip, "name", str)), text=str(_value(trip, "text", str)),
                     value=_number_or_none(trip, "value"), limit=_number_or_none(trip, "limit"),
-                    channel_name=_text_or_none(trip, "channel_name") or "")
+                    channel_name=_text_or_none(trip, "channel_name") or "",
+                    report=None if report is None else Path(report))
 
     @property
     def log_file(self) -> Path | None:

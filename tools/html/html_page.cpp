@@ -1,4 +1,4 @@
-#include "tools/report/html_page.h"
+#include "tools/html/html_page.h"
 
 #include <array>
 #include <cstdint>
@@ -23,6 +23,9 @@ constexpr const char* kStyle =
     "td{min-width:3rem}td:nth-child(n+2):nth-last-child(n+2){min-width:5rem}"
     "th{background:var(--head)}figure{margin:1.5rem 0}"
     "img{max-width:100%;border:1px solid var(--line);background:#fff;cursor:zoom-in}"
+    "svg.chart{width:100%;min-width:40rem;height:auto;box-sizing:border-box;"
+    "display:block;border:1px solid var(--line)}"
+    "@media print{svg.chart{min-width:0}figure,tr{break-inside:avoid}}"
     "input:checked+img{max-width:none;cursor:zoom-out}"
     "figcaption{font-size:.9rem;color:var(--muted)}nav a{display:block}"
     "@media(min-width:100rem){nav{position:fixed;top:2rem;left:calc(50% + 38rem);"
@@ -30,7 +33,36 @@ constexpr const char* kStyle =
     ".v{white-space:nowrap;font-weight:600}.holds{color:var(--good)}.does-not{color:var(--bad)}"
     ".part,.depends{color:var(--part)}.not{color:var(--muted)}";
 
-std::string Escaped(const std::string& text) {
+// RFC 4648.
+std::string Base64(const std::string& bytes) {
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      group = group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      text += i + j > bytes.size() ? '=' : kDigits[group >> (18 - 6 * j) & 63U];
+    }
+  }
+  return text;
+}
+
+std::string TableRow(const std::vector<std::string>& cells, bool is_head) {
+  std::string row = "<tr>";
+  for (const std::string& cell : cells) {
+    row += (is_head ? "<th scope=\"col\">" : "<td>") + EscapedHtml(cell) +
+           (is_head ? "</th>" : "</td>");
+  }
+  return row + "</tr>\n";
+}
+
+}  // namespace
+
+std::string EscapedHtml(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
     switch (c) {
@@ -53,67 +85,25 @@ std::string Escaped(const std::string& text) {
   return escaped;
 }
 
-// RFC 4648.
-std::string Base64(const std::string& bytes) {
-  constexpr const char* kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      group = group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
-    }
-    for (std::size_t j = 0; j < 4; ++j) {
-      text += i + j > bytes.size() ? '=' : kDigits[group >> (18 - 6 * j) & 63U];
-    }
-  }
-  return text;
-}
-
-std::string TableRow(const std::vector<std::string>& cells, const char* tag) {
-  std::string row = "<tr>";
-  for (const std::string& cell : cells) {
-    row += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
-  }
-  return row + "</tr>\n";
-}
-
-const char* ClassOf(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kHolds:
-      return "v holds";
-    case Verdict::kInPart:
-      return "v part";
-    case Verdict::kDepends:
-      return "v depends";
-    case Verdict::kDoesNot:
-      return "v does-not";
-    case Verdict::kNotTested:
-      return "v not";
-  }
-  return "v";
-}
-
-}  // namespace
-
 HtmlPage::HtmlPage(std::string title) : title_(std::move(title)) {}
 
 void HtmlPage::Section(const std::string& title) {
   std::string id = "section-";
   id += std::to_string(++sections_);
-  contents_ += "<a href=\"#" + id + "\">" + Escaped(title) + "</a>\n";
-  body_ += "<h2 id=\"" + id + "\">" + Escaped(title) + "</h2>\n";
+  contents_ += "<a href=\"#" + id + "\">" + EscapedHtml(title) + "</a>\n";
+  body_ += "<h2 id=\"" + id + "\">" + EscapedHtml(title) + "</h2>\n";
 }
 
-void HtmlPage::Heading(const std::string& title) { body_ += "<h2>" + Escaped(title) + "</h2>\n"; }
+void HtmlPage::Heading(const std::string& title) {
+  body_ += "<h2>" + EscapedHtml(title) + "</h2>\n";
+}
 
-void HtmlPage::Paragraph(const std::string& text) { body_ += "<p>" + Escaped(text) + "</p>\n"; }
+void HtmlPage::Paragraph(const std::string& text) { body_ += "<p>" + EscapedHtml(text) + "</p>\n"; }
 
 void HtmlPage::Table(const std::vector<std::string>& head,
                      const std::vector<std::vector<std::string>>& rows) {
-  body_ += "<div class=\"box\"><table>\n" + TableRow(head, "th");
-  for (const auto& row : rows) body_ += TableRow(row, "td");
+  body_ += "<div class=\"box\"><table>\n" + TableRow(head, true);
+  for (const auto& row : rows) body_ += TableRow(row, false);
   body_ += "</table></div>\n";
 }
 
@@ -122,26 +112,20 @@ void HtmlPage::Picture(const std::filesystem::path& png, const std::string& capt
   if (!file) throw std::runtime_error(png.string() + ": cannot be read");
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   body_ += "<figure><div class=\"box\"><label><input type=\"checkbox\" hidden><img alt=\"" +
-           Escaped(caption) + "\" src=\"data:image/png;base64," + Base64(bytes) +
-           "\"></label></div><figcaption>" + Escaped(caption) + "</figcaption></figure>\n";
+           EscapedHtml(caption) + "\" src=\"data:image/png;base64," + Base64(bytes) +
+           "\"></label></div><figcaption>" + EscapedHtml(caption) + "</figcaption></figure>\n";
 }
 
-void HtmlPage::Statements(const std::vector<Statement>& statements) {
-  body_ += "<div class=\"box\"><table>\n" +
-           TableRow({"section", "the thesis says", "the model says", "verdict"}, "th");
-  for (const Statement& s : statements) {
-    body_ += "<tr><td>" + Escaped(s.section) + "</td><td>" + Escaped(s.thesis) + "</td><td>" +
-             Escaped(s.model) + "</td><td class=\"" + ClassOf(s.verdict) + "\">" +
-             ToString(s.verdict) + "</td></tr>\n";
-  }
-  body_ += "</table></div>\n";
+void HtmlPage::Svg(const std::string& svg, const std::string& caption) {
+  body_ += "<figure><div class=\"box\">" + svg + "</div><figcaption>" + EscapedHtml(caption) +
+           "</figcaption></figure>\n";
 }
 
 std::string HtmlPage::Text() const {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta "
          "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         Escaped(title_) + "</title>\n<style>" + kStyle + "</style></head>\n<body>\n<h1>" +
-         Escaped(title_) + "</h1>\n<p>" + Escaped(lead_) + "</p>\n" + first_ +
+         EscapedHtml(title_) + "</title>\n<style>" + kStyle + "</style></head>\n<body>\n<h1>" +
+         EscapedHtml(title_) + "</h1>\n<p>" + EscapedHtml(lead_) + "</p>\n" + first_ +
          "<h2>Contents</h2>\n<nav>\n" + contents_ + "</nav>\n" + body_ + "</body></html>\n";
 }
 

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/analysis/statement.h"
-
 namespace flexarm {
+
+/// A text as it may stand in HTML, also in an attribute.
+std::string EscapedHtml(const std::string& text);
 
 /// One HTML page that needs no other file and no network: style and pictures are embedded. Every
 /// text is escaped.
@@ -29,8 +30,10 @@ class HtmlPage {
   /// Embeds a .png file, which may be deleted afterwards. A click shows it in full size.
   /// @throws std::runtime_error if it cannot be read
   void Picture(const std::filesystem::path& png, const std::string& caption);
-  /// Adds a table: statement of the thesis, result of the model, verdict.
-  void Statements(const std::vector<Statement>& statements);
+  /// Embeds a picture that is text: an svg element with its title and description.
+  void Svg(const std::string& svg, const std::string& caption);
+  /// Adds what is HTML already.
+  void Markup(const std::string& html) { body_ += html; }
 
   /// The whole page.
   std::string Text() const;
