@@ -286,6 +286,7 @@ const nlohmann::json& OperatorTask::Status() {
                         .delay = &warnings_.delay(),
                         .sensors = &context_.config->sensors,
                         .angles = &commissioning_.angles(),
+                        .layout = context_.config->controller.nominal,
                         .missing_gauges = warnings_.missing_gauges(),
                         .experiment = experiments_.name(),
                         .buses = context_.stack->buses(),

@@ -65,6 +65,7 @@ LAYERS = {
                  "controller/design controller/step controller/runlog controller/commissioning "
                  "controller/host config tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
+    "tools/status": "model",
     "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
                       "model/simulation model/perturbation model/reduction controller/files config tools/support "
                       "tools/runs tools/plot",
@@ -94,7 +95,7 @@ LAYERS = {
                      "controller/types controller/safety controller/law controller/design "
                      "controller/step controller/runlog controller/commissioning "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/support tools/runs tools/plot tools/mat tools/csv tools/command_line controller/files",
+                     "tools/support tools/runs tools/plot tools/mat tools/csv tools/command_line tools/status controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "

@@ -1,4 +1,4 @@
-#include "tools/flexarm/status_text.h"
+#include "tools/status/status_text.h"
 
 #include <algorithm>
 #include <utility>
@@ -26,17 +26,6 @@ class Lines {
 
 std::string Pair(const Reply& list, int decimals) {
   return FigureOf(Element(list, 0), decimals) + ", " + FigureOf(Element(list, 1), decimals);
-}
-
-// "value 0.531, limit 0.524, joint 1"; the bus says more than its numbers.
-std::string EvidenceText(const Reply& cause) {
-  if (const std::string bus = TextIn(cause, "bus"); !bus.empty()) return bus;
-  std::string text;
-  if (In(cause, "value").is_number()) {
-    text = "value " + FigureIn(cause, "value", 4) + ", limit " + FigureIn(cause, "limit", 4);
-  }
-  const std::string channel = TextIn(cause, "channel_name");
-  return channel.empty() ? text : text + (text.empty() ? "" : ", ") + channel;
 }
 
 void AddIdentity(const Reply& s, Lines* lines) {
@@ -200,6 +189,17 @@ void AddThreads(const Reply& s, Lines* lines) {
 }
 
 }  // namespace
+
+// The bus says more than its numbers.
+std::string EvidenceText(const Reply& cause) {
+  if (const std::string bus = TextIn(cause, "bus"); !bus.empty()) return bus;
+  std::string text;
+  if (In(cause, "value").is_number()) {
+    text = "value " + FigureIn(cause, "value", 4) + ", limit " + FigureIn(cause, "limit", 4);
+  }
+  const std::string channel = TextIn(cause, "channel_name");
+  return channel.empty() ? text : text + (text.empty() ? "" : ", ") + channel;
+}
 
 std::string ProgressText(const Reply& run) {
   const bool timed = In(run, "duration_s").is_number();
