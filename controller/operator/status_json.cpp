@@ -147,7 +147,8 @@ nlohmann::json StatusJson(const StatusSources& sources) {
       {"design", sources.design},
       {"overrides", sources.overrides},
       {"switches", sources.switches},
-      {"log", sources.log}};
+      {"log", sources.log},
+      {"telemetry", sources.telemetry}};
   json.update(sources.identity);
   return json;
 }

@@ -43,6 +43,8 @@ LAYERS = {
                         "controller/safety controller/law controller/reference "
                         "controller/planner controller/step",
     "controller/latch": "controller/files controller/types controller/runlog",
+    "controller/telemetry": "model hal estimator controller/exchange controller/realtime "
+                            "controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks controller/files",
     "controller/operator": "model hal hal/gpiod estimator controller/files controller/realtime "
@@ -51,7 +53,7 @@ LAYERS = {
                            "controller/commissioning",
     "controller/host": "model hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
-                       "controller/latch controller/operator",
+                       "controller/latch controller/telemetry controller/operator",
     "config/derivation": "model model/beam model/parameters hal estimator",
     "config": "model model/parameters hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
               "controller/types controller/runlog config/derivation",

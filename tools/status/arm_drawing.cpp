@@ -48,7 +48,7 @@ class Canvas {
     for (int row = 0; row < rows_; ++row) {
       std::string text;
       for (int column = 0; column < columns_; ++column) {
-        text += SignOf(cells_[static_cast<std::size_t>(row * columns_ + column)]);
+        text += SignOf(cells_[Index(column, row)]);
       }
       rows.emplace_back(text);
     }
@@ -61,11 +61,14 @@ class Canvas {
     char sign = 0;
   };
 
+  std::size_t Index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
   Cell* At(double column, double row) {
     const bool within = column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_;
     if (!within) return nullptr;  // also what is no number
-    return &cells_[static_cast<std::size_t>(static_cast<int>(row) * columns_ +
-                                            static_cast<int>(column))];
+    return &cells_[Index(static_cast<int>(column), static_cast<int>(row))];
   }
   std::string SignOf(const Cell& cell) const {
     if (cell.sign != 0) return {cell.sign};

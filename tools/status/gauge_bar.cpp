@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace flexarm {
@@ -15,17 +16,17 @@ constexpr int kLeastColumns = 5;  // brackets, zero, and a cell on each side
 StyledRow GaugeBar(double value, double limit, int columns) {
   if (columns < kLeastColumns) return {};
   const int half = (columns - 3) / 2;
-  std::string cells(static_cast<std::size_t>(2 * half + 1), ' ');
-  const auto cell = [&](int i) -> char& { return cells[static_cast<std::size_t>(half + i)]; };
-  cell(0) = '|';
+  std::string cells(2 * static_cast<std::size_t>(half) + 1, ' ');
+  const auto cell = [&](int i) { return std::next(cells.begin(), half + i); };
+  *cell(0) = '|';
   const bool known = std::isfinite(value) && limit > 0.0;
   const double share = known ? value / limit : 0.0;
   const int side = share < 0.0 ? -1 : 1;
   const auto filled =
       static_cast<int>(std::lround(std::min(std::abs(share), 1.0) * static_cast<double>(half)));
-  for (int i = 1; i <= filled; ++i) cell(side * i) = '=';
+  for (int i = 1; i <= filled; ++i) *cell(side * i) = '=';
   const bool beyond = std::abs(share) > 1.0;
-  if (beyond) cell(side * half) = side < 0 ? '<' : '>';
+  if (beyond) *cell(side * half) = side < 0 ? '<' : '>';
   const Look look = beyond                             ? Look::kBad
                     : std::abs(share) >= kCautionShare ? Look::kCaution
                                                        : Look::kGood;

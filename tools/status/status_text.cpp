@@ -174,6 +174,11 @@ void AddBuses(const Reply& s, Lines* lines) {
   }
 }
 
+void AddTelemetry(const Reply& s, Lines* lines) {
+  const Reply& telemetry = In(s, "telemetry");
+  if (telemetry.is_object()) lines->Add("telemetry", TelemetryText(telemetry));
+}
+
 void AddThreads(const Reply& s, Lines* lines) {
   if (const double dropped = NumberIn(s, "log_records_dropped"); dropped != 0.0) {
     lines->Add("log", FigureIn(s, "log_records_dropped", 0) +
@@ -199,6 +204,13 @@ std::string EvidenceText(const Reply& cause) {
   }
   const std::string channel = TextIn(cause, "channel_name");
   return channel.empty() ? text : text + (text.empty() ? "" : ", ") + channel;
+}
+
+std::string TelemetryText(const Reply& telemetry) {
+  const std::string error = TextIn(telemetry, "error");
+  return "to " + TextIn(telemetry, "address", "-") + " port " + FigureIn(telemetry, "port", 0) +
+         ", " + FigureIn(telemetry, "sent", 0) + " sent, " + FigureIn(telemetry, "lost", 0) +
+         " lost" + (error.empty() ? "" : "; " + error);
 }
 
 std::string ProgressText(const Reply& run) {
@@ -228,6 +240,7 @@ std::string StatusText(const Reply& status) {
   AddPayload(status, &lines);
   AddTiming(status, &lines);
   AddBuses(status, &lines);
+  AddTelemetry(status, &lines);
   AddThreads(status, &lines);
   return lines.Take();
 }

@@ -3,6 +3,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -24,10 +25,10 @@ bool Utf8Terminal() {
   for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     const std::string_view locale = Environment(name);
     if (locale.empty()) continue;
-    for (const std::string_view utf8 : {"UTF-8", "utf-8", "utf8", "UTF8"}) {
-      if (locale.find(utf8) != std::string_view::npos) return true;
-    }
-    return false;
+    constexpr std::array<std::string_view, 4> kNames = {"UTF-8", "utf-8", "utf8", "UTF8"};
+    return std::any_of(kNames.begin(), kNames.end(), [locale](std::string_view utf8) {
+      return locale.find(utf8) != std::string_view::npos;
+    });
   }
   return false;
 }

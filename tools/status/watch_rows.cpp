@@ -208,6 +208,14 @@ Rows PayloadRows(const Reply& status) {
   return {row};
 }
 
+Rows TelemetryRows(const Reply& status) {
+  const Reply& telemetry = In(status, "telemetry");
+  if (!telemetry.is_object()) return {};
+  const bool lost = NumberIn(telemetry, "lost") > 0.0 || In(telemetry, "error").is_string();
+  StyledRow row("telemetry ");
+  return {row.Add(TelemetryText(telemetry), lost ? Look::kCaution : Look::kPlain)};
+}
+
 Rows BusRows(const Reply& status, int columns) {
   Rows rows;
   for (const Reply& bus : ListIn(status, "buses")) {

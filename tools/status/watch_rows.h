@@ -39,6 +39,8 @@ Rows JointRows(const Reply& status, int columns);
 Rows EncoderRows(const Reply& status, int columns);
 /// The estimate with its standard deviation and warnings; empty: there is none.
 Rows PayloadRows(const Reply& status);
+/// Receiver and counts of the datagrams; empty: telemetry is off.
+Rows TelemetryRows(const Reply& status);
 /// Health of each bus.
 Rows BusRows(const Reply& status, int columns);
 /// Of each thread its greatest lateness, and how often it was late.

@@ -37,6 +37,7 @@ std::vector<Part> PartsOf(const WatchedStatus& watched, int columns) {
           {.rank = 1, .above = true, .rows = JointRows(s, columns)},
           {.rank = 3, .above = false, .rows = EncoderRows(s, columns)},
           {.rank = 6, .above = false, .rows = PayloadRows(s)},
+          {.rank = 6, .above = false, .rows = TelemetryRows(s)},
           {.rank = 4, .above = false, .rows = BusRows(s, columns)},
           {.rank = 5, .above = false, .rows = ThreadRows(s, columns)}};
 }

@@ -47,6 +47,7 @@ struct StatusJsonTest : testing::Test {
                        .overrides = Json::array({"host"}),
                        .switches = {{"proved", true}},
                        .log = nullptr,
+                       .telemetry = {{"sent", 7}},
                        .identity = {{"rig", "thesis"}, {"version", "1.2"}},
                        .lease = nullptr,
                        .run = nullptr,
@@ -92,6 +93,7 @@ TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
   EXPECT_EQ(status["design"]["verdict"], "forced");
   EXPECT_EQ(status["overrides"], Json({"host"}));
   EXPECT_EQ(status["switches"]["proved"], true);
+  EXPECT_EQ(status["telemetry"]["sent"], 7);
 }
 
 TEST_F(StatusJsonTest, GaugesThatAreMissingAreNamedAndUnknownStrainIsNull) {

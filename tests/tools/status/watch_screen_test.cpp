@@ -151,6 +151,19 @@ TEST(WatchScreen, WhatIsOldIsMarkedWithItsAge) {
   EXPECT_THAT(screen, HasSubstr("100 ms old")) << screen;
 }
 
+TEST(WatchScreen, TelemetryIsShownWhereItIsOn) {
+  const ScreenSize size{.columns = 80, .rows = 40};
+  EXPECT_THAT(Screen(Watched(RunningStatus()), size), Not(HasSubstr("telemetry")));
+  Reply status = RunningStatus();
+  status["telemetry"] = {{"address", "::1"},
+                         {"port", 9870},
+                         {"sent", 12},
+                         {"lost", 3},
+                         {"error", "Network is unreachable"}};
+  EXPECT_THAT(Screen(Watched(status), size),
+              HasSubstr("telemetry to ::1 port 9870, 12 sent, 3 lost; Network is unreachable"));
+}
+
 TEST(WatchScreen, WhatTheFitDoesWithoutIsMarked) {
   Reply status = RunningStatus();
   status["gauges"][4]["used"] = false;
