@@ -77,6 +77,7 @@ std::vector<std::vector<Problem>> RulesOfRest(const RigConfig& config,
           config.commissioning.Problems(),
           config.loop.Problems(),
           config.daemon.Problems(),
+          config.telemetry.Problems(),
           config.hal.Problems({.sensors = config.sensors,
                                .available_ns = std::llround(config.loop.acquire_before_ms * 1e6),
                                .torque_limit_nm = config.safety.torque_limit_nm})};

@@ -76,6 +76,14 @@ void ReadLog(TableReader log, DaemonConfig* out) {
                   "true: the log of a trip is not removed by the two keys above");
 }
 
+void ReadTelemetry(TableReader telemetry, TelemetryConfig* out) {
+  telemetry.ReadIfGiven("address", &out->address,
+                        "of the receiver, IPv4 or IPv6 in figures; \"\": no telemetry is sent");
+  telemetry.ReadIfGiven("port", &out->port, {"UDP port of the receiver", "1"});
+  telemetry.ReadIfGiven("every", &out->every,
+                        {"one sample of so many is sent; the others are not", "samples"});
+}
+
 void ReadTiming(TableReader root, RigConfig* config) {
   TableReader loop = root.Table("loop", "timing of the control loop; docs/timing.md");
   loop.Read("period_ms", &config->loop.period_ms, "the loop samples and acts every so often");
@@ -97,6 +105,10 @@ void ReadTiming(TableReader root, RigConfig* config) {
       "state_directory", &config->daemon.state_directory,
       "folder that keeps a trip and the proof of the switches over a restart; one for each daemon");
   ReadLog(root.Table("log", "run logs"), &config->daemon);
+  if (root.Has("telemetry")) {
+    ReadTelemetry(root.Table("telemetry", "samples as UDP datagrams; docs/telemetry.md"),
+                  &config->telemetry);
+  }
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ class TableReader {
   bool Surveyed(std::string_view key, std::string_view wanted, const Meaning& meaning);
   void SurveyDefault(std::string_view key, const std::string& without);
   static std::string DefaultText(double value);
+  static std::string DefaultText(int value) { return std::to_string(value); }
   static std::string DefaultText(bool value);
   static std::string DefaultText(const std::string& value);
   static std::string DefaultText(const std::vector<double>& value);

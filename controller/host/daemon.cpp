@@ -30,6 +30,7 @@
 #include "controller/runlog/run_recovery.h"
 #include "controller/tasks/simulated_stack.h"
 #include "controller/tasks/wired_stack.h"
+#include "controller/telemetry/telemetry.h"
 #include "controller/types/rejected_error.h"
 #include "hal/wired/hardware_rig.h"
 
@@ -86,6 +87,14 @@ Backend MakeBackend(const DaemonOptions& options, const Design& design) {
 
 void HoldLinesOff(void* stack) noexcept { static_cast<LoopStack*>(stack)->HoldLinesOff(); }
 
+std::unique_ptr<Telemetry> MakeTelemetry(const RigConfig& config) {
+  if (config.telemetry.address.empty()) return nullptr;
+  return std::make_unique<Telemetry>(
+      config.telemetry,
+      TelemetrySource{
+          .rig = config.rig_name, .sensors = config.sensors, .layout = config.controller.nominal});
+}
+
 /// The daemon's parts, in order of construction.
 class Daemon {
  public:
@@ -119,6 +128,7 @@ class Daemon {
                    .truth = stack().truth_records()},
                   &recording_, &files_),
         executor_(options.realtime),
+        telemetry_(MakeTelemetry(options.config)),
         judge_(options.config, options.with_law),
         operator_(Context()) {}
 
@@ -152,14 +162,15 @@ class Daemon {
   RecorderTask recorder_;
   std::unique_ptr<LockstepTask> behind_clock_;  // the loop, if it runs without real time
   RealtimeExecutor executor_;
-  RunJudge judge_;  // used by the operator's planner, one run at a time
+  std::unique_ptr<Telemetry> telemetry_;  // null: none is wanted
+  RunJudge judge_;                        // used by the operator's planner, one run at a time
   OperatorTask operator_;
   TripCause restored_trip_ = TripCause::kNone;  // of the daemon before, still latched at the start
   std::jthread recovery_;  // of the logs that killed daemons left; ends within one log
 };
 
 OperatorContext Daemon::Context() {
-  return {
+  OperatorContext context{
       .stack = &stack(),
       .latch = &latch_,
       .events = &events_,
@@ -186,6 +197,11 @@ OperatorContext Daemon::Context() {
       .thread_status = [this] { return ThreadStatus(executor_); },
       .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); },
       .newest_trip_report = [this] { return trip_reports_.newest(); }};
+  if (telemetry_) {
+    context.take_tick = [this](const TickRecord& tick) { telemetry_->Take(tick); };
+    context.telemetry_status = [this] { return telemetry_->Status(); };
+  }
+  return context;
 }
 
 void Daemon::ReportDesign() {
@@ -245,6 +261,7 @@ DaemonResult Daemon::Run() {
   const std::int64_t epoch_ns = MonotonicNow() + kEpochLeadNs;
   stack().SetEpoch(epoch_ns);
   executor_.Start(epoch_ns);
+  if (telemetry_) telemetry_->Start(epoch_ns);
   service_.Ready();
   Wait(signals);
   service_.Stopping();

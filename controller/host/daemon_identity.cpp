@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/runlog/build_info.h"
+#include "controller/types/law_table.h"
 
 namespace flexarm {
 
@@ -23,6 +24,15 @@ nlohmann::json DaemonIdentity(const RigConfig& config, const std::string& config
           {"config",
            {{"file", std::filesystem::absolute(config_file).string()},
             {"hash", ConfigHash(config.text)}}},
+          {"backend", config.backend},
+          {"law", LawOf(config.controller.kind).name},
+          {"period_ms", config.loop.period_ms},
+          {"link_length_m", {config.arm.link[0].length_m(), config.arm.link[1].length_m()}},
+          {"limits",
+           {{"torque_nm", config.safety.torque_limit_nm},
+            {"angle_deg", config.safety.soft_angle_deg},
+            {"hub_rate_rad_s", config.safety.hub_rate_rad_s},
+            {"root_strain", config.safety.strain_limit}}},
           {"version", ThisBuild().version},
           {"build", BuildId()}};
 }

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -45,6 +46,14 @@ bool Readable(int fd, double within_s) {
   }
 }
 
+// A daemon that stands still accepts no connection: when those that wait are too many, a further
+// one would wait for ever.
+void LimitConnect(int fd, double timeout_s) {
+  const std::int64_t us = std::llround(timeout_s * 1e6);
+  const timeval limit{.tv_sec = us / 1'000'000, .tv_usec = us % 1'000'000};
+  setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+}
+
 }  // namespace
 
 std::string AskDaemon(const std::string& path, const std::string& line, double timeout_s) {
@@ -54,12 +63,14 @@ std::string AskDaemon(const std::string& path, const std::string& line, double t
     close(fd);
     throw RejectedError(path + ": " + what);
   };
+  LimitConnect(fd, timeout_s);
   if (connect(fd, address.get(), address.size()) != 0) {
     if (errno == EACCES) {
       fail(
           "this user may not operate the arm (Permission denied): be a member of the group flexarm "
           "(adduser USER flexarm, and log in again)");
     }
+    if (errno == EAGAIN) fail("the daemon does not answer");
     fail("no daemon answers (" + std::string(std::strerror(errno)) +
          "); start flexarmd, or name its socket with --socket or -c FILE");
   }

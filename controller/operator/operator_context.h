@@ -41,6 +41,10 @@ struct OperatorContext {
       nlohmann::json::object();  ///< keys of the status: which rig and program
   /// Makes "threads" of the status: lateness and run time of every task.
   std::function<nlohmann::json()> thread_status;
+  /// Told of every sample that this task reads; never waits. Empty: they go nowhere.
+  std::function<void(const TickRecord&)> take_tick = {};
+  /// Makes "telemetry" of the status. Empty: null.
+  std::function<nlohmann::json()> telemetry_status = {};
   /// Called once a period while safety and control are alive: the service manager's watchdog.
   std::function<void(std::int64_t now_ns, const std::string& status)> alive;
   /// The newest report of a trip (TripReports::newest); empty: reports are not written.

@@ -174,6 +174,7 @@ void OperatorTask::TakeTicks() {
     commissioning_.Take(now_.tick);
     switches_.Take(now_.tick);
     warnings_.Take(now_.now_ns, now_.tick);
+    if (context_.take_tick) context_.take_tick(now_.tick);
   }
   Reply(commissioning_.TakeAnswer(now_));
   Reply(switches_.TakeAnswer(now_.permit));
@@ -307,6 +308,7 @@ const nlohmann::json& OperatorTask::Status() {
                         .delay = &warnings_.delay(),
                         .sensors = &context_.config->sensors,
                         .angles = &commissioning_.angles(),
+                        .layout = context_.config->controller.nominal,
                         .missing_gauges = warnings_.missing_gauges(),
                         .experiment = experiments_.name(),
                         .buses = context_.stack->buses(),
@@ -323,6 +325,8 @@ const nlohmann::json& OperatorTask::Status() {
                         .overrides = overrides_.Json(),
                         .switches = switches_.Json(),
                         .log = LogJson(context_.files),
+                        .telemetry = context_.telemetry_status ? context_.telemetry_status()
+                                                               : nlohmann::json(nullptr),
                         .identity = context_.identity,
                         .lease = lease_.Json(now_.now_ns),
                         .run = run_watch_.Json(),

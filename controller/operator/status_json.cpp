@@ -2,6 +2,7 @@
 
 #include "controller/operator/json_values.h"
 #include "controller/operator/payload_json.h"
+#include "controller/operator/sensor_json.h"
 #include "hal/line_names.h"
 #include "model/units.h"
 
@@ -15,6 +16,30 @@ nlohmann::json AnglesJson(const AngleKnowledge& angles, const StepOutput& out) {
                                       : nlohmann::json(nullptr));
   }
   return all;
+}
+
+// Of the reference model at the sample; null: no run asks for torque.
+nlohmann::json ReferenceJson(const StepInput& in) {
+  if (!TorqueAllowed(in.safety_state)) return nullptr;
+  const auto& x_m = in.mode == LoopMode::kFollow ? in.reference_now.x_m : in.reference_next.x_m;
+  return {x_m[0] * kDegPerRad, x_m[1] * kDegPerRad};
+}
+
+// As the estimator has them; of an angle that is unknown, too.
+nlohmann::json HubRatesJson(const StateLayout& layout, const StepOutput& out) {
+  nlohmann::json rates = nlohmann::json::array();
+  for (int joint = 0; joint < 2; ++joint) {
+    rates.push_back(out.x_hat[static_cast<std::size_t>(layout.rate(layout.hub(joint)))]);
+  }
+  return rates;
+}
+
+// What makes the torque of a sample; null: no torque is allowed.
+nlohmann::json TorqueSourceJson(const StepInput& in) {
+  if (!TorqueAllowed(in.safety_state)) return nullptr;
+  if (in.mode == LoopMode::kOpenLoop) return "open-loop";
+  if (in.mode == LoopMode::kRegulate) return "regulator";
+  return in.safety_state == SafetyState::kRunning ? "law" : "stop-controller";
 }
 
 nlohmann::json TripJson(const StatusSources& sources) {
@@ -89,10 +114,17 @@ nlohmann::json StatusJson(const StatusSources& sources) {
       {"joint_angle_deg", AnglesJson(*sources.angles, out)},
       {"joint_angle_unknown",
        {TextOrNull(sources.angles->Text(0)), TextOrNull(sources.angles->Text(1))}},
+      {"reference_deg", ReferenceJson(in)},
+      {"hub_rate_rad_s", HubRatesJson(sources.layout, out)},
+      {"torque_source", TorqueSourceJson(in)},
       {"torque_nm", out.torque_nm},
       {"modal_m", out.modal_m},
       {"root_strain", out.root_strain},
+      {"gauges", GaugesJson(now, *sources.sensors)},
       {"gauges_missing", sources.missing_gauges},
+      {"encoders", EncodersJson(now, *sources.sensors)},
+      {"tick_age_ms", TickAgeJson(now)},
+      {"permit_age_ms", PermitAgeJson(now)},
       {"at_rest", out.at_rest != 0},
       {"payload", PayloadJson(in, out)},
       {"delay_ms", sources.delay->delay_ms()},
@@ -100,6 +132,7 @@ nlohmann::json StatusJson(const StatusSources& sources) {
       {"delay_margin_ms", sources.delay->margin_ms()},
       {"levels", in.frame.levels},
       {"inputs", InputsJson(now.permit.levels)},
+      {"relay_closed", RelayClosed(now.permit.state)},
       {"trip", TripJson(sources)},
       {"present", PresentJson(*sources.present, *sources.sensors, sources.bus_text)},
       {"lease", sources.lease},
@@ -115,7 +148,8 @@ nlohmann::json StatusJson(const StatusSources& sources) {
       {"design", sources.design},
       {"overrides", sources.overrides},
       {"switches", sources.switches},
-      {"log", sources.log}};
+      {"log", sources.log},
+      {"telemetry", sources.telemetry}};
   json.update(sources.identity);
   return json;
 }

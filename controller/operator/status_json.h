@@ -10,6 +10,7 @@
 #include "controller/operator/delay_monitor.h"
 #include "controller/operator/operator_snapshot.h"
 #include "controller/tasks/bus_health.h"
+#include "estimator/state_layout.h"
 #include "hal/sensor_config.h"
 
 namespace flexarm {
@@ -20,6 +21,7 @@ struct StatusSources {
   const DelayMonitor* delay;
   const SensorConfig* sensors;
   const AngleKnowledge* angles;
+  StateLayout layout = kR8;                   ///< of the state that the loop estimates
   std::vector<std::string> missing_gauges{};  ///< RunWarnings
   std::string experiment;                     ///< name of the one that is loaded; empty: none
   std::vector<BusHealth> buses;               ///< empty: the backend has none
@@ -33,6 +35,7 @@ struct StatusSources {
   nlohmann::json overrides;                   ///< OverrideRecord::Json
   nlohmann::json switches;                    ///< ProveSwitches::Json
   nlohmann::json log;                         ///< LogJson
+  nlohmann::json telemetry;                   ///< OperatorContext::telemetry_status
   nlohmann::json identity;                    ///< OperatorContext::identity
   nlohmann::json lease;                       ///< Lease::Json
   nlohmann::json run;                         ///< RunWatch::Json

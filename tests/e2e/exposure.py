@@ -15,7 +15,8 @@ from pathlib import Path
 
 MOST = 2.1
 RIGS = {"as shipped": [], "a rig with CAN": ["can.conf"],
-        "a rig with CAN and Modbus/TCP": ["can.conf", "modbus-tcp.conf"]}
+        "a rig with CAN and Modbus/TCP": ["can.conf", "modbus-tcp.conf"],
+        "a rig with telemetry": ["telemetry.conf"]}
 
 
 def exposure(unit, drop_ins):

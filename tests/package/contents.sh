@@ -28,7 +28,7 @@ for file in usr/bin/{flexarm,flexarmd,flexarm-study} etc/flexarm/rig.toml \
   usr/share/bash-completion/completions/{flexarm,flexarmd,flexarm-study} \
   usr/share/doc/flexarm/{README.md,CHANGELOG.md,copyright,changelog.gz,docs/commissioning.md} \
   usr/share/flexarm/config/{hil.toml,thesis-rig.toml,experiments/square-30deg.toml} \
-  usr/share/flexarm/systemd/{can.conf,can0.network,modbus-tcp.conf} \
+  usr/share/flexarm/systemd/{can.conf,can0.network,modbus-tcp.conf,telemetry.conf} \
   usr/lib/systemd/system/flexarm{d,-awake}.service usr/lib/sysusers.d/flexarm.conf \
   usr/lib/tmpfiles.d/flexarm.conf usr/lib/udev/rules.d/60-flexarm.rules; do
   [[ -s $file ]] || fail "$file is not in the package"

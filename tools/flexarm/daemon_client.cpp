@@ -10,7 +10,7 @@
 #include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/reply.h"
+#include "tools/status/reply.h"
 
 namespace flexarm {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "controller/types/rejected_error.h"
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/reply.h"
-#include "tools/flexarm/status_text.h"
+#include "tools/status/reply.h"
+#include "tools/status/status_text.h"
 
 namespace flexarm {
 namespace {

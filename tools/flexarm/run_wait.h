@@ -1,7 +1,7 @@
 #pragma once
 
 #include "tools/flexarm/daemon_client.h"
-#include "tools/flexarm/reply.h"
+#include "tools/status/reply.h"
 
 namespace flexarm {
 

@@ -9,7 +9,7 @@
 
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
-#include "tools/flexarm/reply.h"
+#include "tools/status/reply.h"
 
 namespace flexarm {
 namespace {

@@ -1,18 +1,18 @@
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdint>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <thread>
 
 #include "controller/operator/arm_verdict.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
 #include "tools/flexarm/override_options.h"
-#include "tools/flexarm/reply.h"
-#include "tools/flexarm/status_text.h"
+#include "tools/flexarm/status_watch.h"
+#include "tools/status/reply.h"
+#include "tools/status/status_text.h"
 
 namespace flexarm {
 namespace {
@@ -27,23 +27,16 @@ struct OperateOptions {
   std::string line;
   int level = 0;
   bool watch = false;
+  double period_s = 0.5;
   OverrideOptions overrides;
 };
 
 int Status(const OperateOptions& options) {
-  for (;;) {
-    const Json answer = options.daemon.Ask({{"command", "status"}});
-    if (!FlagIn(answer, "ok")) return options.daemon.Conclude(answer);
-    if (options.daemon.json) {
-      std::cout << answer.dump(2) << '\n';
-    } else {
-      if (options.watch) std::cout << "\033[H\033[2J";
-      std::cout << StatusText(answer);
-    }
-    std::cout.flush();
-    if (!options.watch) return Exit::kDone;
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  }
+  if (options.watch) return WatchStatus(options.daemon, options.period_s);
+  const Json answer = options.daemon.Ask({{"command", "status"}});
+  if (!FlagIn(answer, "ok")) return options.daemon.Conclude(answer);
+  std::cout << (options.daemon.json ? answer.dump(2) + "\n" : StatusText(answer));
+  return Exit::kDone;
 }
 
 void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, const char* footer) {
@@ -54,6 +47,33 @@ void AddCommand(CLI::App& app, Exit& exit, const char* name, const char* what, c
   verb->callback([options, &exit, name] {
     exit.code = options->daemon.Conclude(options->daemon.Ask({{"command", name}}));
   });
+}
+
+void RegisterStatus(CLI::App& app, Exit& exit) {
+  const auto status = std::make_shared<OperateOptions>();
+  CLI::App* verb = status->daemon.AddVerb(
+      app, "status",
+      "Show the state of the running daemon: safety, angles, torques, delay, buses, threads");
+  CLI::Option* watch = verb->add_flag(
+      "--watch", status->watch,
+      "Show it as a screen that follows the daemon, until q or Ctrl-C; with --json, or where the "
+      "output is no terminal, once a period");
+  verb->add_option("--period", status->period_s, "Seconds between two looks of --watch, 0.05 to 60")
+      ->check(NumberWithin(0.05, 60.0))
+      ->needs(watch)
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  verb->footer(
+      "The screen has gauges and torques with their limits, switches, encoders (also disarmed, to\n"
+      "check wires by hand), the arm, the run, the buses and the threads (docs/watching.md). It\n"
+      "fits the terminal, says when the daemon does not answer, and goes on when it is back.\n"
+      "NO_COLOR=1 shows it without colours. --watch --json prints one JSON object a line a "
+      "period,\n"
+      "the one exception to one object on stdout; {\"ok\":false,\"error\":..} while there is no\n"
+      "answer.\n"
+      "Examples: flexarm status --watch\n"
+      "          flexarm status --watch --json --period 1 > status.jsonl");
+  verb->callback([status, &exit] { exit.code = Status(*status); });
 }
 
 void RegisterArm(CLI::App& app, Exit& exit) {
@@ -81,14 +101,7 @@ void RegisterArm(CLI::App& app, Exit& exit) {
 }  // namespace
 
 void RegisterOperate(CLI::App& app, Exit& exit) {
-  const auto status = std::make_shared<OperateOptions>();
-  CLI::App* verb = status->daemon.AddVerb(
-      app, "status",
-      "Show the state of the running daemon: safety, angles, torques, delay, buses, threads");
-  verb->add_flag("--watch", status->watch, "Repeat every half second until interrupted");
-  verb->footer("Example: flexarm status --watch");
-  verb->callback([status, &exit] { exit.code = Status(*status); });
-
+  RegisterStatus(app, exit);
   RegisterArm(app, exit);
 
   RegisterRun(app, exit);
@@ -103,7 +116,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
              "Example: flexarm reset");
 
   const auto sim = std::make_shared<OperateOptions>();
-  verb = sim->daemon.AddVerb(
+  CLI::App* verb = sim->daemon.AddVerb(
       app, "sim", "Set a digital line of the simulated rig: a switch or the reset button");
   verb->add_option(
           "line", sim->line,

@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "controller/operator/operator_socket.h"
+#include "controller/operator/unix_address.h"
+#include "controller/runlog/file_descriptor.h"
 #include "controller/types/rejected_error.h"
 #include "tests/controller/operator/socket_peer.h"
 #include "tests/support/message_of.h"
@@ -72,6 +74,18 @@ TEST_F(OperatorClientTest, GivesUpOnADaemonThatDoesNotAnswer) {
   const OperatorSocket silent(path_);
   const auto ask = [&] { AskDaemon(path_, "{}", 0.02); };
   EXPECT_THAT(MessageOf<RejectedError>(ask), HasSubstr("does not answer"));
+}
+
+// It accepts nothing: clients that have given up fill its queue, and the next cannot connect.
+TEST_F(OperatorClientTest, GivesUpOnADaemonThatStandsStillHoweverOftenItIsAsked) {
+  const FileDescriptor still(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const UnixAddress address(path_);
+  ASSERT_EQ(bind(still.get(), address.get(), address.size()), 0);
+  ASSERT_EQ(listen(still.get(), 1), 0);
+  for (int i = 0; i < 4; ++i) {
+    const auto ask = [&] { AskDaemon(path_, "{}", 0.02); };
+    EXPECT_THAT(MessageOf<RejectedError>(ask), HasSubstr("the daemon does not answer")) << i;
+  }
 }
 
 }  // namespace

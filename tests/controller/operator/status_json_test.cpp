@@ -47,6 +47,7 @@ struct StatusJsonTest : testing::Test {
                        .overrides = Json::array({"host"}),
                        .switches = {{"proved", true}},
                        .log = nullptr,
+                       .telemetry = {{"sent", 7}},
                        .identity = {{"rig", "thesis"}, {"version", "1.2"}},
                        .lease = nullptr,
                        .run = nullptr,
@@ -92,6 +93,7 @@ TEST_F(StatusJsonTest, AnglesAreInDegreesAndTimesInTheirUnit) {
   EXPECT_EQ(status["design"]["verdict"], "forced");
   EXPECT_EQ(status["overrides"], Json({"host"}));
   EXPECT_EQ(status["switches"]["proved"], true);
+  EXPECT_EQ(status["telemetry"]["sent"], 7);
 }
 
 TEST_F(StatusJsonTest, GaugesThatAreMissingAreNamedAndUnknownStrainIsNull) {
@@ -102,6 +104,93 @@ TEST_F(StatusJsonTest, GaugesThatAreMissingAreNamedAndUnknownStrainIsNull) {
   EXPECT_EQ(status["gauges_missing"], Json({"strain_1_03"}));
   EXPECT_DOUBLE_EQ(status["root_strain"][0], 1e-4);
   EXPECT_TRUE(status["root_strain"][1].is_null());
+}
+
+TEST_F(StatusJsonTest, EachGaugeHasItsCountsItsStrainAndItsAge) {
+  EXPECT_EQ(Status()["gauges"], Json::array()) << "before the first sample";
+  sensors.strain_input.converter_bits = 12;
+  sensors.strain_input.range_v = 5.0;
+  sensors.strain[1].face = -1;
+  now.tick.input.now_ns = 1'490 * kMs;
+  now.tick.input.frame.sampled_at_ns = 1'480 * kMs;
+  now.tick.input.frame.strain = {100, 100, -50};
+  now.tick.input.frame.strain_offset_ns = {0, 2'000'000, -700 * 1'000'000};
+  now.tick.input.calibration.strain_zero_counts = {0.0F, 20.0F, 0.0F};
+  now.tick.output.strain_used = 0b011;
+  const Json gauges = Status()["gauges"];
+  ASSERT_EQ(gauges.size(), 3u);
+  // 10 V on 4096 counts, 1 V a unit of strain.
+  EXPECT_EQ(gauges[0], Json({{"name", "strain_1_01"},
+                             {"link", 1},
+                             {"counts", 100},
+                             {"counts_limit", 2047},
+                             {"strain", 1000.0 / 4096.0},
+                             {"used", true},
+                             {"age_ms", 20.0}}));
+  EXPECT_DOUBLE_EQ(gauges[1]["strain"], -800.0 / 4096.0) << "its zero, and the other face";
+  EXPECT_EQ(gauges[1]["age_ms"], 18.0) << "read 2 ms after the instant";
+  EXPECT_EQ(gauges[2]["age_ms"], 720.0) << "the last good reading of a bus that is lost";
+  EXPECT_EQ(gauges[2]["used"], false);
+}
+
+TEST_F(StatusJsonTest, EncodersAreShownWhetherOrNotTheAngleIsKnown) {
+  sensors.encoder = {{.counter = 0, .counts_per_turn = 3600.0, .counter_bits = 16, .sign = 1},
+                     {.counter = 3, .counts_per_turn = 3600.0, .counter_bits = 16, .sign = 1}};
+  EXPECT_EQ(Status()["encoders"], Json::array()) << "before the first sample";
+  angles = AngleKnowledge(AnglesAtStart::kLost, sensors);
+  now.tick.input.now_ns = 1'490 * kMs;
+  now.tick.input.frame.sampled_at_ns = 1'480 * kMs;
+  now.tick.output.counts = {900, 1, 1, -7};
+  now.tick.output.angle_rad = {M_PI / 2.0, 0.0, 0.0, 0.0};
+  now.tick.output.counters_used = 0b0001;
+  const Json status = Status();
+  EXPECT_TRUE(status["joint_angle_deg"][0].is_null());
+  ASSERT_EQ(status["encoders"].size(), 2u) << "the rig has no others";
+  EXPECT_EQ(status["encoders"][0], Json({{"name", "hub1"},
+                                         {"counts", 900},
+                                         {"angle_deg", 90.0},
+                                         {"used", true},
+                                         {"age_ms", 20.0}}));
+  EXPECT_EQ(status["encoders"][1]["name"], "rotor2");
+  EXPECT_EQ(status["encoders"][1]["counts"], -7);
+  EXPECT_EQ(status["encoders"][1]["used"], false);
+}
+
+TEST_F(StatusJsonTest, SampleAndPermitHaveTheirAge) {
+  now.permit.renewed_ns = INT64_MIN;
+  EXPECT_TRUE(Status()["tick_age_ms"].is_null()) << "there is none yet";
+  EXPECT_TRUE(Status()["permit_age_ms"].is_null());
+  now.tick.input.now_ns = 1'490 * kMs;
+  now.permit.renewed_ns = 1'499 * kMs;
+  EXPECT_EQ(Status()["tick_age_ms"], 10.0);
+  EXPECT_EQ(Status()["permit_age_ms"], 1.0);
+}
+
+TEST_F(StatusJsonTest, ReferenceAndSourceOfTheTorqueAreThoseOfTheSample) {
+  now.tick.input.reference_now.x_m = {M_PI / 6.0, -M_PI / 3.0};
+  now.tick.input.reference_next.x_m = {M_PI / 2.0, 0.0};
+  now.tick.output.x_hat = {0.0, 0.0, 0.0, 0.0, 1.5, -2.5};  // R8: four coordinates, four rates
+  now.tick.input.safety_state = SafetyState::kArmed;
+  EXPECT_TRUE(Status()["reference_deg"].is_null()) << "no torque";
+  EXPECT_TRUE(Status()["torque_source"].is_null());
+  EXPECT_EQ(Status()["hub_rate_rad_s"], Json({1.5, -2.5}));
+  now.tick.input.safety_state = SafetyState::kRunning;
+  EXPECT_NEAR(Status()["reference_deg"][0], 30.0, 1e-12);
+  EXPECT_NEAR(Status()["reference_deg"][1], -60.0, 1e-12);
+  EXPECT_EQ(Status()["torque_source"], "law");
+  now.tick.input.safety_state = SafetyState::kFaultStopping;
+  EXPECT_EQ(Status()["torque_source"], "stop-controller");
+  now.tick.input.mode = LoopMode::kOpenLoop;
+  EXPECT_EQ(Status()["torque_source"], "open-loop");
+  now.tick.input.mode = LoopMode::kRegulate;
+  EXPECT_EQ(Status()["torque_source"], "regulator");
+  EXPECT_NEAR(Status()["reference_deg"][0], 90.0, 1e-12) << "its goal";
+}
+
+TEST_F(StatusJsonTest, TheRelayIsClosedWhereTheSafetyMachineClosesIt) {
+  EXPECT_EQ(Status()["relay_closed"], true) << "Armed";
+  now.permit.state = SafetyState::kIdle;
+  EXPECT_EQ(Status()["relay_closed"], false);
 }
 
 TEST_F(StatusJsonTest, EveryCauseThatIsPresentHasItsValues) {

@@ -28,6 +28,9 @@ bool FlagIn(const Reply& reply, const char* key, bool otherwise = false);
 /// `otherwise` if it is no number that is finite.
 double NumberIn(const Reply& reply, const char* key, double otherwise = 0.0);
 
+/// The same of a value itself, whatever number it is; NaN: it is none.
+double NumberOrNan(const Reply& value);
+
 /// A number with so many decimals; "-" if it is no number.
 std::string FigureIn(const Reply& reply, const char* key, int decimals);
 std::string FigureOf(const Reply& value, int decimals);

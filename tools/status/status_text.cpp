@@ -1,4 +1,4 @@
-#include "tools/flexarm/status_text.h"
+#include "tools/status/status_text.h"
 
 #include <algorithm>
 #include <utility>
@@ -26,19 +26,6 @@ class Lines {
 
 std::string Pair(const Reply& list, int decimals) {
   return FigureOf(Element(list, 0), decimals) + ", " + FigureOf(Element(list, 1), decimals);
-}
-
-// "value 0.531, limit 0.524, joint 1"; the bus says more than its numbers.
-std::string EvidenceText(const Reply& cause) {
-  if (const std::string bus = TextIn(cause, "bus"); !bus.empty()) return bus;
-  std::string text;
-  if (In(cause, "value").is_number()) {
-    const std::string unit = TextIn(cause, "unit");
-    text = "value " + FigureIn(cause, "value", 4) + ", limit " + FigureIn(cause, "limit", 4) +
-           (unit.empty() ? "" : " " + unit);
-  }
-  const std::string channel = TextIn(cause, "channel_name");
-  return channel.empty() ? text : text + (text.empty() ? "" : ", ") + channel;
 }
 
 void AddIdentity(const Reply& s, Lines* lines) {
@@ -189,6 +176,11 @@ void AddBuses(const Reply& s, Lines* lines) {
   }
 }
 
+void AddTelemetry(const Reply& s, Lines* lines) {
+  const Reply& telemetry = In(s, "telemetry");
+  if (telemetry.is_object()) lines->Add("telemetry", TelemetryText(telemetry));
+}
+
 void AddThreads(const Reply& s, Lines* lines) {
   if (const double dropped = NumberIn(s, "log_records_dropped"); dropped != 0.0) {
     lines->Add("log", FigureIn(s, "log_records_dropped", 0) +
@@ -204,6 +196,26 @@ void AddThreads(const Reply& s, Lines* lines) {
 }
 
 }  // namespace
+
+// The bus says more than its numbers.
+std::string EvidenceText(const Reply& cause) {
+  if (const std::string bus = TextIn(cause, "bus"); !bus.empty()) return bus;
+  std::string text;
+  if (In(cause, "value").is_number()) {
+    const std::string unit = TextIn(cause, "unit");
+    text = "value " + FigureIn(cause, "value", 4) + ", limit " + FigureIn(cause, "limit", 4) +
+           (unit.empty() ? "" : " " + unit);
+  }
+  const std::string channel = TextIn(cause, "channel_name");
+  return channel.empty() ? text : text + (text.empty() ? "" : ", ") + channel;
+}
+
+std::string TelemetryText(const Reply& telemetry) {
+  const std::string error = TextIn(telemetry, "error");
+  return "to " + TextIn(telemetry, "address", "-") + " port " + FigureIn(telemetry, "port", 0) +
+         ", " + FigureIn(telemetry, "sent", 0) + " sent, " + FigureIn(telemetry, "lost", 0) +
+         " lost" + (error.empty() ? "" : "; " + error);
+}
 
 std::string ProgressText(const Reply& run) {
   const bool timed = In(run, "duration_s").is_number();
@@ -232,6 +244,7 @@ std::string StatusText(const Reply& status) {
   AddPayload(status, &lines);
   AddTiming(status, &lines);
   AddBuses(status, &lines);
+  AddTelemetry(status, &lines);
   AddThreads(status, &lines);
   return lines.Take();
 }

@@ -1,8 +1,9 @@
-#include "tools/flexarm/reply.h"
+#include "tools/status/reply.h"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace flexarm {
 namespace {
@@ -54,6 +55,10 @@ double NumberIn(const Reply& reply, const char* key, double otherwise) {
   const Reply& found = In(reply, key);
   const double value = found.is_number() ? found.get<double>() : otherwise;
   return std::isfinite(value) ? value : otherwise;
+}
+
+double NumberOrNan(const Reply& value) {
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::string FigureOf(const Reply& value, int decimals) {
