@@ -29,7 +29,7 @@ std::string RatioText(const std::optional<BenchRatio>& ratio) {
   if (!ratio) return "";
   const std::string value = ratio->value < 100.0 ? fmt::format("{:.3g}", ratio->value)
                                                  : fmt::format("{:.0f}", ratio->value);
-  const std::string text = "**" + value + "** " + ratio->unit;
+  std::string text = "**" + value + "** " + ratio->unit;
   if (!ratio->bar) return text;
   const bool reached = ratio->value >= *ratio->bar;
   return text + fmt::format(" (bar {:g}: {})", *ratio->bar, reached ? "reached" : "MISSED");

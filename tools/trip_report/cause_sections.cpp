@@ -22,7 +22,7 @@ std::string Quantity(double value, std::string_view unit) {
   const std::string text = RoundedText(value, 4);
   if (unit == "level") return text + (value != 0.0 ? " (closed)" : " (open)");
   if (unit == "strain") return text + " (" + RoundedText(1e6 * value, 4) + " microstrain)";
-  const std::string with_unit = text + " " + std::string(unit);
+  std::string with_unit = text + " " + std::string(unit);
   if (unit == "rad") return with_unit + " (" + RoundedText(kDegPerRad * value, 4) + " deg)";
   if (unit == "rad/s") return with_unit + " (" + RoundedText(kDegPerRad * value, 4) + " deg/s)";
   return with_unit;
