@@ -145,7 +145,8 @@ class Telemetry(ProgramTest):
         self.assertNotRegex(unit, r"(?m)^RestrictAddressFamilies=.*AF_INET")
         settings = [line for line in DROP_IN.read_text(encoding="utf-8").splitlines()
                     if line and not line.startswith("#")]
-        self.assertEqual(settings, ["[Service]", "RestrictAddressFamilies=AF_INET",
+        self.assertEqual(settings, ["[Service]", "RestrictAddressFamilies=",
+                                    "RestrictAddressFamilies=AF_UNIX AF_INET",
                                     "IPAddressAllow=127.0.0.1"])
 
 
