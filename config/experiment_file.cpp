@@ -178,10 +178,13 @@ void ReadDuration(TableReader root, Experiment* out) {
       "duration_s", &out->duration_s,
       "length of the run, like all times a multiple of the period; without it: until a "
       "second after the last row");
-  out->ends_after_rows = !root.Has("duration_s");
+  out->ends_after_rows = !root.Has("duration_s") && !root.Has("planned");
   if (!root.Has("planned")) return;
   root.Table("planned", "what was chosen, as the log of a run holds it")
       .Read("duration_s", &out->duration_s, "length of the run");
+  if (root.Has("duration_s")) {
+    root.Refuse("planned", "must not be given beside duration_s: a run has one length");
+  }
 }
 
 void ReadLaws(TableReader root, Experiment* out) {

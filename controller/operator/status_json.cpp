@@ -3,6 +3,7 @@
 #include "controller/operator/json_values.h"
 #include "controller/operator/payload_json.h"
 #include "controller/operator/sensor_json.h"
+#include "controller/types/shown_reference.h"
 #include "hal/line_names.h"
 #include "model/units.h"
 
@@ -18,11 +19,10 @@ nlohmann::json AnglesJson(const AngleKnowledge& angles, const StepOutput& out) {
   return all;
 }
 
-// Of the reference model at the sample; null: no run asks for torque.
 nlohmann::json ReferenceJson(const StepInput& in) {
-  if (!TorqueAllowed(in.safety_state)) return nullptr;
-  const auto& x_m = in.mode == LoopMode::kFollow ? in.reference_now.x_m : in.reference_next.x_m;
-  return {x_m[0] * kDegPerRad, x_m[1] * kDegPerRad};
+  const auto reference_rad = ShownReference(in);
+  if (!reference_rad) return nullptr;
+  return {(*reference_rad)[0] * kDegPerRad, (*reference_rad)[1] * kDegPerRad};
 }
 
 // As the estimator has them; of an angle that is unknown, too.

@@ -222,7 +222,8 @@ Experiment WithChosenDurations(const Experiment& experiment, const std::vector<P
     chosen.text += "\n[[planned_move]]\nrow = " + NumberText(planned.row) +
                    "\nduration_s = " + NumberText(*move.duration_s) + "\n";
   }
-  if (chosen.ends_after_rows && chosen.duration_s == kLongestRun_s) {
+  if (chosen.ends_after_rows) {
+    chosen.ends_after_rows = false;
     double rows_end_s = 0.0;
     for (const Motion& motion : chosen.Motions()) {
       rows_end_s = std::max(rows_end_s, motion.start_s + motion.duration_s);

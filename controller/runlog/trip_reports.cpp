@@ -40,9 +40,10 @@ TripReport TripReports::newest() const {
 }
 
 void TripReports::SetNewest(const std::filesystem::path& file, std::int64_t trip_ns) {
+  TripReport report{.file = std::filesystem::absolute(file), .trip_ns = trip_ns};
   const std::lock_guard lock(newest_mutex_);
   if (trip_ns == INT64_MIN && !newest_.file.empty()) return;  // one of this daemon is newer
-  newest_ = {.file = std::filesystem::absolute(file), .trip_ns = trip_ns};
+  newest_ = std::move(report);
 }
 
 void TripReports::Make(const std::filesystem::path& log, std::size_t number, std::int64_t trip_ns) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "controller/types/shown_reference.h"
 #include "estimator/strain_scale.h"
 #include "model/units.h"
 
@@ -42,9 +43,8 @@ Json Angles(const TelemetrySource& source, const StepOutput& out, std::size_t fi
 }
 
 Json Reference(const StepInput& in) {
-  if (!TorqueAllowed(in.safety_state)) return {nullptr, nullptr};
-  const auto& x_m = in.mode == LoopMode::kFollow ? in.reference_now.x_m : in.reference_next.x_m;
-  return {Short(x_m[0] * kDegPerRad), Short(x_m[1] * kDegPerRad)};
+  const auto reference_rad = ShownReference(in);
+  return reference_rad ? List(*reference_rad, kDegPerRad) : Json{nullptr, nullptr};
 }
 
 void PutMotion(const TelemetrySource& source, const TickRecord& tick, Json* line) {

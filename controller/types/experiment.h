@@ -108,8 +108,8 @@ inline constexpr double kRestAfterRows_s = 1.0;
 /// An experiment: what one run does, config/experiments/*.toml.
 struct Experiment {
   std::string name;
-  std::string text;   ///< the file as read, with appended text: for the log
-  double duration_s;  ///< kLongestRun_s if the file has none, until the moves are planned
+  std::string text;              ///< the file as read, with appended text: for the log
+  double duration_s;             ///< kLongestRun_s while ends_after_rows
   std::vector<Doublet> doublet;  ///< the rows of a kind in order of time; only moves overlap
   std::vector<SimEvent> sim_event;
   std::vector<Move> move{};
@@ -119,7 +119,7 @@ struct Experiment {
   std::optional<CsvTrajectory> csv{};
   std::vector<ControllerKind> laws{};                 ///< that may run it; empty: any
   std::optional<std::array<double, 2>> payload_kg{};  ///< least, greatest; empty: not predicted
-  bool ends_after_rows = false;                       ///< the file has no duration_s
+  bool ends_after_rows = false;  ///< its end is not known until its moves are planned
 
   std::vector<Problem> Problems() const;
   std::vector<Motion> Motions() const;  ///< all rows but sim_event, in order of time

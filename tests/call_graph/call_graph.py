@@ -98,7 +98,7 @@ class VirtualTables:
             if len(parts) == 4:
                 self._at.setdefault(int(parts[0], 16), parts[3])
                 sizes[parts[3]] = (int(parts[0], 16), int(parts[1], 16))
-        self._word = {}  # address that a word of the program holds
+        self._word = {}  # by place in the program: the address that is stored there
         for line in _output('readelf', '-rW', program).splitlines():
             parts = line.split()
             if len(parts) == 4 and parts[2] == 'R_X86_64_RELATIVE':

@@ -283,6 +283,10 @@ TEST(ExperimentFile, WithoutDurationItEndsAfterItsRows) {
   EXPECT_EQ(open.duration_s, kLongestRun_s);
   EXPECT_EQ(ParseExperiment(text + "[planned]\nduration_s = 5.0\n", "e.toml").duration_s, 5.0);
   EXPECT_FALSE(ParseExperiment(kMoves, "e.toml").ends_after_rows);
+  EXPECT_THAT(MessageOf<ConfigError>([] {
+                ParseExperiment(std::string(kMoves) + "[planned]\nduration_s = 5.0\n", "e.toml");
+              }),
+              HasSubstr("must not be given beside duration_s: a run has one length"));
   EXPECT_THAT(MessageOf<ConfigError>([] { ParseExperiment("name = \"hold\"\n", "e.toml"); }),
               HasSubstr("duration_s: must be given where no row says when the run is over"));
 }

@@ -192,6 +192,14 @@ class ProgramTest(unittest.TestCase):
         self.daemons.append(daemon)
         return daemon
 
+    def wait_for_line(self, text, within_s=20):
+        """Until the daemon's journal has it."""
+        end = time.monotonic() + within_s
+        while text not in self.daemon_log():
+            if time.monotonic() > end:
+                self.fail(f"no line with '{text}'\n{self.daemon_log()}")
+            time.sleep(0.05)
+
     def wait_for_state(self, *states, within_s=20):
         """Waits until the daemon is in one of the states and returns its status."""
         end = time.monotonic() + within_s

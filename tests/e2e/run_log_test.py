@@ -150,13 +150,6 @@ class RunLog(DaemonRuns):
             time.sleep(0.05)
         self.fail(f"log.ok is not {ok}: {log}\n{self.daemon_log()}")
 
-    def wait_for_line(self, text, within_s=20):
-        end = time.monotonic() + within_s
-        while text not in self.daemon_log():
-            if time.monotonic() > end:
-                self.fail(f"no line with '{text}'\n{self.daemon_log()}")
-            time.sleep(0.05)
-
     @in_real_time
     def test_a_disk_that_fills_in_mid_run_is_told_and_loses_nothing(self):
         runs = self.small_disk(24)

@@ -19,7 +19,7 @@ WITHIN_S = 60.0
 
 
 def schema():
-    """{key: kind} of the page's table. A kind is the first word of its second column."""
+    """{key: kind} of the page's table. Its second column begins with the kind."""
     rows = re.findall(r"^\| `(\w+)`((?:, `\w+`)*) \| (\w+(?:\[\w+\])?)",
                       PAGE.read_text(encoding="utf-8").split("\n## Lines\n")[1], re.MULTILINE)
     return {key: kind for first, more, kind in rows

@@ -73,13 +73,6 @@ class TripReport(ProgramTest):
             time.sleep(0.1)
         self.fail(f"no report\n{self.daemon_log()}")
 
-    def wait_for_line(self, text, within_s=20):
-        end = time.monotonic() + within_s
-        while text not in self.daemon_log():
-            if time.monotonic() > end:
-                self.fail(f"no line with '{text}'\n{self.daemon_log()}")
-            time.sleep(0.05)
-
     def reset(self, line):
         self.operate("sim", line, "1")
         time.sleep(0.8)

@@ -33,6 +33,13 @@ class SessionWatchTest : public testing::Test {
       watch.Look(now_ns_, sample);
     }
   }
+  // Turns a hub for some milliseconds: hub 2 of the shipped rig has a limit of 10 rad/s.
+  void Turn(std::size_t joint, double rate_rad_s, int ms) {
+    for (int i = 0; i < ms; ++i) {
+      sample.truth.hub_angle_rad[joint] += rate_rad_s * 1e-3;
+      Look();
+    }
+  }
   void Become(SafetyState state, TripCause cause = TripCause::kNone) {
     sample.status = {state, cause};
     sample.told.relay_closed = DrivesEnabled(state);
@@ -116,48 +123,63 @@ void Trip(SessionWatchTest* test) {
 // The shipped rig: 30 and 6 N m, slew 10 and 3 N m in a period of 20 ms, soft limits at 90 degrees.
 INSTANTIATE_TEST_SUITE_P(
     Rules, EachRule,
-    testing::Values(Breach{"torque-limit",
-                           [](SessionWatchTest* session) { session->sample.torque_nm[1] = 6.1; }},
-                    Breach{"slew-limit",
-                           [](SessionWatchTest* session) { session->sample.torque_nm[1] = -2.1; }},
-                    Breach{"finite-torque",
-                           [](SessionWatchTest* session) {
-                             session->sample.torque_nm[0] =
-                                 std::numeric_limits<double>::quiet_NaN();
-                           }},
-                    Breach{"envelope",
-                           [](SessionWatchTest* session) { session->sample.strain_share = 1.4; }},
-                    Breach{"envelope",
-                           [](SessionWatchTest* session) {
-                             session->sample.truth.hub_angle_rad[1] = 118.0 * kRadPerDeg;
-                           }},
-                    Breach{"trip-opens-the-relay",
-                           [](SessionWatchTest* session) {
-                             Trip(session);
-                             session->sample.told.relay_closed = true;
-                           }},
-                    Breach{"latched",
-                           [](SessionWatchTest* session) {
-                             session->Become(kFaultStopping, TripCause::kHubRate1);
-                             session->Become(kArmed);
-                           }},
-                    Breach{"latched",
-                           [](SessionWatchTest* session) {
-                             Trip(session);
-                             session->watch.Allow("reset");
-                             session->Become(kIdle);
-                           }},
-                    Breach{"latched",
-                           [](SessionWatchTest* session) {
-                             Trip(session);
-                             session->watch.ButtonPressed();
-                             session->Become(kIdle);
-                           }}),
+    testing::Values(
+        Breach{"torque-limit",
+               [](SessionWatchTest* session) { session->sample.torque_nm[1] = 6.1; }},
+        Breach{"slew-limit",
+               [](SessionWatchTest* session) { session->sample.torque_nm[1] = -2.1; }},
+        Breach{"finite-torque",
+               [](SessionWatchTest* session) {
+                 session->sample.torque_nm[0] = std::numeric_limits<double>::quiet_NaN();
+               }},
+        Breach{"envelope", [](SessionWatchTest* session) { session->sample.strain_share = 1.4; }},
+        Breach{"envelope",
+               [](SessionWatchTest* session) {
+                 session->sample.truth.hub_angle_rad[1] = 118.0 * kRadPerDeg;
+               }},
+        Breach{"finite-arm",
+               [](SessionWatchTest* session) {
+                 session->sample.truth.hub_angle_rad[0] = std::numeric_limits<double>::quiet_NaN();
+               }},
+        Breach{"envelope", [](SessionWatchTest* session) { session->Turn(1, 2.1 * 10.0, 21); }},
+        Breach{"trip-opens-the-relay",
+               [](SessionWatchTest* session) {
+                 Trip(session);
+                 session->sample.told.relay_closed = true;
+               }},
+        Breach{"latched",
+               [](SessionWatchTest* session) {
+                 session->Become(kFaultStopping, TripCause::kHubRate1);
+                 session->Become(kArmed);
+               }},
+        Breach{"latched",
+               [](SessionWatchTest* session) {
+                 Trip(session);
+                 session->watch.Allow("reset");
+                 session->Become(kIdle);
+               }},
+        Breach{"latched",
+               [](SessionWatchTest* session) {
+                 Trip(session);
+                 session->watch.ButtonPressed();
+                 session->Become(kIdle);
+               }}),
     [](const auto& shown) {
       std::string name = shown.param.rule + std::to_string(shown.index);
       std::erase(name, '-');
       return name;
     });
+
+// As the loop sees it: a hub springs back faster than its limit for a moment, also just after the
+// arm's thread was late.
+TEST_F(SessionWatchTest, ARateIsTakenOverAWholePeriod) {
+  RunWithTorque();
+  Turn(1, 3.0 * 10.0, 10);
+  Look(20, true);
+  sample.arm_ns += 20 * kMs;
+  Turn(1, 3.0 * 10.0, 10);
+  EXPECT_TRUE(watch.violations().empty()) << watch.violations().front().what;
+}
 
 TEST_F(SessionWatchTest, NothingArmsOrRunsByItself) {
   Look(5);
