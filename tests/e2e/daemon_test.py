@@ -281,18 +281,6 @@ class Daemon(ProgramTest):
             replay = self.flexarm_json("replay", run)
             self.assertIs(replay["bit_exact"], True)
             self.assertIs(replay["safety_exact"], True)
-        self.assert_export_brings_the_calibration(run)
-
-    def assert_export_brings_the_calibration(self, run):
-        table = self.folder / "run.csv"
-        self.assertIn("--calibration", self.flexarm("export", run, "-o", table).stderr)
-        brought = self.folder / "run.calibration.json"
-        replay = self.flexarm_json("replay", table, "-c", HIL, "--calibration", brought)
-        self.assertEqual(replay["faulty_ticks"], 0)
-        self.assert_refused(self.run_program("flexarm", "replay", table, "-c", HIL,
-                                             "--calibration", self.folder / "none.json"), "none.json")
-        self.assert_refused(self.run_program("flexarm", "replay", run, "--calibration", brought),
-                            "--calibration")
 
     def operate_until_the_end(self, daemon):
         """Whatever became of stderr, the operator can see, move and stop the arm, and end it all."""

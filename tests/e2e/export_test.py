@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Decoded CSV files of a run, and the first plots that docs/run-logs.md shows."""
+"""Files of `flexarm export`, and the first plots that docs/run-logs.md shows."""
 
 import csv
 import math
@@ -7,9 +7,10 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 
-from program import HIL, ROOT, ProgramTest, rows
+from program import HIL, ROOT, ProgramTest, in_real_time, rows
 
 # As a log has it: keys in the order of the alphabet.
 HUB_ENCODER = re.compile(
@@ -149,6 +150,32 @@ class Decoded(ProgramTest):
                               "printf('%d %.17g', numel(angle), angle(end))").split()
         self.assertEqual(int(told[0]), len(values))
         self.assertEqual(float(told[1]), float(values[-1]["hub_1_deg"]))
+
+
+class Calibrated(ProgramTest):
+    """A run of a rig that was calibrated: raw counts mean nothing without its calibration."""
+
+    @in_real_time
+    def test_the_calibration_comes_with_the_raw_file_and_replay_needs_it(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        self.operate("tare")
+        time.sleep(0.8)  # at rest means half a second of rest
+        self.operate("arm")
+        self.operate("move", "--to", "5", "-5", "--duration", "1", "--wait")
+        self.operate("disarm")
+        self.wait_for_state("Idle")
+        time.sleep(0.5)
+        run, = (self.folder / "runs").glob("*.flexarm")
+        table = self.folder / "run.csv"
+        self.assertIn("--calibration", self.flexarm("export", run, "-o", table).stderr)
+        brought = self.folder / "run.calibration.json"
+        replay = self.flexarm_json("replay", table, "-c", HIL, "--calibration", brought)
+        self.assertEqual(replay["faulty_ticks"], 0)
+        self.assert_refused(self.run_program("flexarm", "replay", table, "-c", HIL,
+                                             "--calibration", self.folder / "none.json"), "none.json")
+        self.assert_refused(self.run_program("flexarm", "replay", run, "--calibration", brought),
+                            "--calibration")
 
 
 if __name__ == "__main__":
