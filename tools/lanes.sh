@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
   only_all_lanes=(guards unit campaigns slowest mutation mutants fuzz docs-all build-cost headers-all
-                  python-types separate clang-tidy-all asan-all guest-long package debian13 arm64)
+                  python-types separate clang-tidy-all asan-all guest-long package cluster debian13 arm64)
 }
 
 logs=build/logs
@@ -111,7 +111,7 @@ lane_layers() {  # includes, documents, words and other rules of tools/lint; she
   python3 tools/lint/check_layers.py
   python3 tools/lint/check_docs.py
   python3 tools/lint/check_words.py
-  git ls-files -z -- tools/install-deps tools/run-hil tools/run-tests .ci/run package/p{ostinst,rerm,ostrm} '*.sh' |
+  git ls-files -z -- tools/install-deps tools/run-hil tools/run-tests .ci/run package/p{ostinst,rerm,ostrm} '*.sh' '*.sbatch' |
     xargs -0 shellcheck --severity=warning
 }
 
@@ -339,6 +339,11 @@ lane_clang-tidy-all() {  # .clang-tidy on product and tests; unchanged files are
 lane_package() {  # the Debian package: same bytes twice, lintian, and dpkg in a bare Debian
   build release flexarm flexarm-study flexarmd
   tests/package/package_check.sh build/release
+}
+
+lane_cluster() {  # a campaign under Slurm, of which a task is killed
+  build release flexarm flexarm-study flexarmd
+  tests/cluster/slurm_test.sh build/release
 }
 
 lane_debian13() {  # both commands of the README in a bare Debian 13; not the slowest lanes

@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
 """A killed sweep can be continued; merged shards equal the whole sweep; wrong input is refused."""
 
+import json
+import os
 import sqlite3
 import subprocess
 import time
 import unittest
 
-from program import BIN, HIL, SQUARE, ProgramTest, rows
+from program import BIN, HIL, ROOT, SQUARE, ProgramTest, rows
 
 GRID = ("-c", HIL, "--over", "controller.alpha=1.0,2.0,3.0", "--payload-kg", "0,0.1",
         "--seeds", "1..3")
 POINTS = 18
+SCRIPT = ROOT / "tools/cluster/flexarm-shards.sbatch"
 
 
 def results(file):
@@ -173,6 +176,40 @@ class Sweep(ProgramTest):
         result = subprocess.run(["bash", "-c", "trap '' XFSZ; " + limited], cwd=self.folder,
                                 capture_output=True, text=True, check=False, timeout=120)
         self.assert_refused(result, "f.sqlite")
+
+
+class Cluster(ProgramTest):
+    """The tasks of a Slurm array, without Slurm: tests/cluster/slurm_test.sh has it."""
+
+    def task(self, number, of, *arguments, first=1, expect=0, **more):
+        environment = {**os.environ, "FLEXARM": str(BIN / "flexarm"),
+                       "SLURM_ARRAY_TASK_ID": str(number), "SLURM_ARRAY_TASK_COUNT": str(of),
+                       "SLURM_ARRAY_TASK_MIN": str(first), "SLURM_ARRAY_TASK_MAX": str(of), **more}
+        result = subprocess.run([SCRIPT, *map(str, arguments)], env=environment, cwd=self.folder,
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, expect, result.stdout + result.stderr)
+        return result.stdout + result.stderr
+
+    def test_each_task_has_its_part_and_a_repeated_one_continues_it(self):
+        parts = self.folder / "parts of it"
+        for number in (1, 2):
+            self.task(number, 2, parts, "sweep", *GRID)
+        self.assertIn(f"{POINTS // 2} were in the file", self.task(2, 2, parts, "sweep", *GRID))
+        told = self.flexarm_json("sweep", "merge", *sorted(parts.glob("*.sqlite")), "-o",
+                                 self.folder / "all.sqlite")
+        self.assertEqual(told["missing"], 0)
+
+    def test_the_summary_of_a_torture_is_whole_or_not_there(self):
+        self.task(1, 2, "out", "torture", "-c", HIL, "--seeds", "1..8")
+        summary = json.loads((self.folder / "out/part-1.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["scenarios"], 4)
+        self.task(2, 2, "out", "torture", "-c", HIL, "--seeds", "none", expect=2)
+        self.assertFalse((self.folder / "out/part-2.json").exists())
+
+    def test_an_array_that_is_not_1_to_n_is_refused(self):
+        for number, of, more in ((3, 3, {"first": 2}), (9, 8, {"FLEXARM_SHARDS": "8"})):
+            self.assertIn("flexarm-shards:", self.task(number, of, "out", "sweep", expect=2, **more))
+        self.assertIn("no shards", self.task(1, 1, "out", "simulate", expect=2))
 
 
 if __name__ == "__main__":
