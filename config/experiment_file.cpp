@@ -201,6 +201,10 @@ void ReadLaws(TableReader root, Experiment* out) {
 void ReadExperiment(TableReader root, Experiment* out) {
   root.Read("name", &out->name, "name of the experiment, for logs");
   ReadDuration(root, out);
+  double speed_percent = 100.0;
+  root.ReadIfGiven("speed_percent", &speed_percent,
+                   {"share of the planned speed, 10 to 100: all of it takes longer", "%"});
+  out->speed = speed_percent / 100.0;
   ReadLaws(root, out);
   root.ReadIfGiven("payload_kg", &out->payload_kg,
                    "least and greatest payload that it is for: the run is predicted with these and "

@@ -85,6 +85,15 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
               "a wired rig runs for so long after `flexarm prove-switches`");
   safety.ReadIfGiven("disarm_after_s", &out->disarm_after_s,
                      "an arm that is armed without a run for so long is disarmed; 0: never");
+  safety.ReadIfGiven("reduced", &out->reduced,
+                     "true: the daemon starts with reduced limits, for first motions, until "
+                     "`flexarm limits full`");
+  safety.ReadIfGiven("reduced_torque", &out->reduced_torque,
+                     {"share of limits.torque_limit_nm while the limits are reduced", "1"});
+  safety.ReadIfGiven("reduced_rate", &out->reduced_rate,
+                     {"the same of limits.hub_rate_rad_s", "1"});
+  safety.ReadIfGiven("reduced_angle", &out->reduced_angle,
+                     {"the same of limits.soft_angle_deg", "1"});
 }
 
 void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {

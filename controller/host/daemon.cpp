@@ -180,6 +180,7 @@ OperatorContext Daemon::Context() {
       .grid = LoopGrid(options_.config.loop),
       .delay_margin_s = verdict_.delay_margin_s(),
       .limits = MotionLimitsOf(options_.config),
+      .reduced_limits = MotionLimitsOf(options_.config, true),
       .arm_checks = {.design = DesignVerdictOf(verdict_),
                      .simulated = stack().simulated(),
                      .check_host =

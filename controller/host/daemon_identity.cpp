@@ -28,11 +28,6 @@ nlohmann::json DaemonIdentity(const RigConfig& config, const std::string& config
           {"law", LawOf(config.controller.kind).name},
           {"period_ms", config.loop.period_ms},
           {"link_length_m", {config.arm.link[0].length_m(), config.arm.link[1].length_m()}},
-          {"limits",
-           {{"torque_nm", config.safety.torque_limit_nm},
-            {"angle_deg", config.safety.soft_angle_deg},
-            {"hub_rate_rad_s", config.safety.hub_rate_rad_s},
-            {"root_strain", config.safety.strain_limit}}},
           {"version", ThisBuild().version},
           {"build", BuildId()}};
 }

@@ -112,7 +112,7 @@ std::optional<SimulatedTrip> TripFound(const std::vector<SafetyRecord>& records,
 PlannedExperiment PlanOf(const SimulationRequest& request, const Design& design) {
   try {
     return {request.experiment, design, request.config.loop.period_s(), request.start_rad,
-            MotionLimitsOf(request.config)};
+            MotionLimitsOf(request.config, request.config.safety.reduced)};
   } catch (const RejectedError& error) {
     if (request.experiment_file.empty()) throw;
     throw RejectedError(request.experiment_file.string() + ": " + error.what());

@@ -36,7 +36,8 @@ std::optional<RequestKind> RequestByName(const std::string& name) {
 
 // Commands after which the arm may move, at once or later.
 bool AddsEnergy(const std::string& name) {
-  return name == "arm" || name == "run" || name == "pluck" || name == "home";
+  return name == "arm" || name == "run" || name == "pluck" || name == "home" ||
+         ChangeCommand::Knows(name);
 }
 
 }  // namespace
@@ -88,6 +89,7 @@ nlohmann::json CommandDispatch::Dispatch(int client, const Peer& by, const nlohm
 std::string CommandDispatch::JobUnderWay() const {
   if (targets_.arm->waits()) return "an arm";
   if (targets_.run->planning()) return "the planning of a run";
+  if (targets_.change->planning()) return "a change of the path";
   if (targets_.requests->busy()) return "an arm, run or reset";
   return targets_.commissioning->busy() ? "a command of commissioning" : "";
 }
@@ -95,8 +97,10 @@ std::string CommandDispatch::JobUnderWay() const {
 nlohmann::json CommandDispatch::Start(const std::string& name, int client,
                                       const nlohmann::json& command, const OperatorSnapshot& now) {
   if (name == "sim") return SetLine(command);
+  if (name == "limits") return SetLimits(command, now);
   if (name == "arm") return targets_.arm->Start(command, client, now);
   if (name == "run") return targets_.run->Start(command, client, now);
+  if (ChangeCommand::Knows(name)) return targets_.change->Start(name, command, client, now);
   if (name == "prove-switches") {
     targets_.switches->Start(client, now.permit.state);
     return nullptr;
@@ -118,14 +122,35 @@ nlohmann::json CommandDispatch::Start(const std::string& name, int client,
     if (*kind != RequestKind::kReset) {
       targets_.arm->Cancel();
       targets_.run->Cancel();
+      targets_.change->Cancel();
     }
     const RequestTracker::Asked asked = targets_.requests->Ask(*kind, now.now_ns, client);
     if (asked.number != 0) return nullptr;
     return RefusalJson(*kind, asked.refusal, now.permit.state);
   }
   return BadRequest("no such command: '" + Shown(name) + "'",
-                    "one of status, arm, run, stop, disarm, reset, tare, zero, calibrate, pluck, "
-                    "home, prove-switches, sim");
+                    "one of status, arm, run, pause, resume, speed, retarget, stop, disarm, reset, "
+                    "tare, zero, calibrate, pluck, home, prove-switches, limits, sim");
+}
+
+// The safety task takes other limits only while the relay is open, so they are those of the next
+// arming: an arm that is under way has been judged by the old ones.
+nlohmann::json CommandDispatch::SetLimits(const nlohmann::json& command,
+                                          const OperatorSnapshot& now) {
+  const std::string wanted = TextOf(command, "limits", "");
+  if (wanted != "full" && wanted != "reduced") {
+    return BadRequest("limits: \"full\" or \"reduced\" is expected");
+  }
+  if (RelayClosed(now.permit.state) || !JobUnderWay().empty()) {
+    return {{"ok", false},
+            {"refusal", ToString(Refusal::kWrongState)},
+            {"error", "The limits change only while the arm is disarmed."},
+            {"remedy", "`flexarm disarm`, then repeat the command"}};
+  }
+  const bool reduced = wanted == "reduced";
+  targets_.stack->SetReduced(reduced);
+  targets_.report(false, reduced ? "limits: reduced" : "limits: full, as in the config");
+  return {{"ok", true}, {"limits", wanted}};
 }
 
 nlohmann::json CommandDispatch::SetLine(const nlohmann::json& command) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "controller/operator/arm_command.h"
+#include "controller/operator/change_command.h"
 #include "controller/operator/command_record.h"
 #include "controller/operator/commissioning_commands.h"
 #include "controller/operator/journal_report.h"
@@ -31,6 +32,7 @@ class CommandDispatch {
     ProveSwitches* switches;
     ArmCommand* arm;
     RunCommand* run;
+    ChangeCommand* change;
     Lease* lease;
     CommandRecord* record;
     const RunFiles* files = nullptr;  ///< of the logs; null: runs need none
@@ -51,6 +53,7 @@ class CommandDispatch {
   nlohmann::json Dispatch(int client, const Peer& by, const nlohmann::json& command,
                           const OperatorSnapshot& now);
   nlohmann::json SetLine(const nlohmann::json& command);
+  nlohmann::json SetLimits(const nlohmann::json& command, const OperatorSnapshot& now);
   /// The job under way besides which no command may add energy; empty: none is.
   std::string JobUnderWay() const;
   /// Passes a command on that the role and the lease permit.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "controller/runlog/run_label.h"
+#include "controller/types/rejected_error.h"
 
 namespace flexarm {
 
@@ -10,13 +11,44 @@ ExperimentLoader::Order ExperimentLoader::Plan(const Experiment& experiment,
                                                const std::array<double, 2>& start_rad,
                                                const std::stop_token& stop) const {
   if (!stack_->simulated()) RefuseSimEvents(experiment);
-  Order order{.planned = std::make_unique<PlannedExperiment>(experiment, *design_, grid_.period_s(),
-                                                             start_rad, limits_, stop),
+  Order order{.planned = std::make_shared<const PlannedExperiment>(
+                  experiment, *design_, grid_.period_s(), start_rad, limits(), stop),
               .name = {},
               .text = {}};
   order.name = order.planned->accepted.name;
   order.text = order.planned->accepted.text;
   return order;
+}
+
+ExperimentLoader::Order ExperimentLoader::PlanChange(const PlannedExperiment& planned, int from,
+                                                     const NewPath& path) const {
+  if (!planned.load_change.empty()) {
+    throw RejectedError(
+        "the experiment announces changes of the payload at fixed times ([[load_change]]): its "
+        "path cannot be slowed or changed");
+  }
+  ReferenceTable changed = path(planned.reference, from, *design_, limits());
+  return {.planned = std::make_shared<const PlannedExperiment>(planned, std::move(changed), from),
+          .name = planned.accepted.name,
+          .text = planned.accepted.text};
+}
+
+std::shared_ptr<const PlannedExperiment> ExperimentLoader::Find(std::uint32_t number) const {
+  for (const Asked& asked : asked_) {
+    if (asked.number == number) return asked.order.planned;
+  }
+  return nullptr;
+}
+
+std::uint32_t ExperimentLoader::AskForChange(std::int64_t now_ns, int client, Order order,
+                                             const Change& change) {
+  if (requests_->busy()) return 0;
+  const RunOrder run{.experiment = order.planned.get()};
+  asked_.push_back({.number = 0, .order = std::move(order)});
+  const std::uint32_t number =
+      requests_->AskForChange(now_ns, client, run, change.run, change.not_after_ns).number;
+  asked_.back().number = number;
+  return number;
 }
 
 std::uint32_t ExperimentLoader::AskForRun(std::int64_t now_ns, int client, Order order) {
@@ -40,6 +72,13 @@ void ExperimentLoader::Answered(const RequestAnswer& answer) {
 
 void ExperimentLoader::Announce(std::int64_t now_ns, const Order& order, std::uint32_t number) {
   if (number == 0) name_ = order.name;
+  if (stack_->reduced()) {
+    events_->Push({.time_ns = now_ns,
+                   .kind = "limits",
+                   .name = "reduced",
+                   .text = "the limits are reduced (safety.reduced)",
+                   .value_json = {}});
+  }
   events_->Push({.time_ns = now_ns,
                  .kind = "experiment",
                  .name = order.name,

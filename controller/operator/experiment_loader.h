@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -24,7 +25,7 @@ class ExperimentLoader {
  public:
   /// A planned experiment for which a run is asked.
   struct Order {
-    std::unique_ptr<PlannedExperiment> planned;
+    std::shared_ptr<const PlannedExperiment> planned;
     std::string name;
     std::string text;  ///< for the log: the experiment's file, or the command that it comes from
     LineLevels may_open = 0;                   ///< RunOrder::may_open
@@ -35,19 +36,42 @@ class ExperimentLoader {
   /// All pointers outlive the loader.
   /// @param events  to the recorder: one "experiment" for every run that is asked for
   ExperimentLoader(LoopStack* stack, RequestTracker* requests, EventQueue* events,
-                   const Design* design, const LoopGrid& grid, const MotionLimits& limits)
+                   const Design* design, const LoopGrid& grid, const MotionLimits& limits,
+                   const MotionLimits& reduced_limits)
       : stack_(stack),
         requests_(requests),
         events_(events),
         design_(design),
         grid_(grid),
-        limits_(limits) {}
+        limits_(limits),
+        reduced_limits_(reduced_limits) {}
 
   /// Plans `experiment` from these hub angles, rad. Any thread.
   /// @throws RejectedError if it is impossible, has simulated events and the rig is real, or a stop
   ///         is requested meanwhile
   Order Plan(const Experiment& experiment, const std::array<double, 2>& start_rad,
              const std::stop_token& stop = {}) const;
+
+  /// Another path for a run, computed by motion_change.h.
+  using NewPath = std::function<ReferenceTable(const ReferenceTable& table, int from,
+                                               const Design& design, const MotionLimits& limits)>;
+
+  /// The run of `planned` with another path from sample `from` on. Any thread.
+  /// @throws RejectedError as NewPath
+  Order PlanChange(const PlannedExperiment& planned, int from, const NewPath& path) const;
+
+  /// The experiment of a run or change that was asked for; nullptr: the loop no longer uses it, or
+  /// others asked for it.
+  std::shared_ptr<const PlannedExperiment> Find(std::uint32_t number) const;
+
+  /// A change of a path, as it is asked for.
+  struct Change {
+    std::uint32_t run;          ///< number of the run that is changed
+    std::int64_t not_after_ns;  ///< last instant at which it may be granted
+  };
+  /// Asks the safety task for a change; `client` waits for the answer.
+  /// @returns the number of the request; 0: the tracker is busy
+  std::uint32_t AskForChange(std::int64_t now_ns, int client, Order order, const Change& change);
 
   /// AskForRun would be refused: another request is not answered yet.
   bool busy() const { return requests_->busy(); }
@@ -82,7 +106,9 @@ class ExperimentLoader {
   EventQueue* events_;
   const Design* design_;
   LoopGrid grid_;
-  MotionLimits limits_;
+  const MotionLimits& limits() const { return stack_->reduced() ? reduced_limits_ : limits_; }
+
+  MotionLimits limits_, reduced_limits_;
   std::deque<Asked> asked_;  // in order of number
   std::string name_;
 };

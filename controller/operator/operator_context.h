@@ -29,6 +29,7 @@ struct OperatorContext {
   LoopGrid grid;
   double delay_margin_s;  ///< of the design (controller/design/robustness_analysis.h)
   MotionLimits limits;
+  MotionLimits reduced_limits{};  ///< while the limits are reduced
   ArmChecks arm_checks;
   std::string socket;                    ///< path; empty: no socket
   std::optional<Experiment> unattended;  ///< run once without a person

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "controller/operator/limits_json.h"
 #include "controller/operator/log_condition.h"
 #include "controller/operator/request_answers.h"
 #include "controller/operator/status_json.h"
@@ -43,7 +44,7 @@ OperatorTask::OperatorTask(OperatorContext context)
     : context_(std::move(context)),
       requests_(context_.stack, context_.latch),
       experiments_(context_.stack, &requests_, context_.events, context_.design, context_.grid,
-                   context_.limits),
+                   context_.limits, context_.reduced_limits),
       unattended_order_(OrderOf(context_, experiments_)),
       commissioning_(*context_.config, {.stack = context_.stack,
                                         .experiments = &experiments_,
@@ -63,6 +64,10 @@ OperatorTask::OperatorTask(OperatorContext context)
             .parse_experiment = context_.parse_experiment,
             .judge_experiment = context_.judge_experiment,
             .plan_wait = context_.plan_wait}),
+      change_({.experiments = &experiments_,
+               .events = context_.events,
+               .period_s = context_.grid.period_s(),
+               .plan_wait = context_.plan_wait}),
       run_watch_(context_.grid.period_s()),
       warnings_(context_.grid.period_ns, context_.delay_margin_s,
                 StrainColumns(context_.config->sensors), context_.events, context_.report),
@@ -84,6 +89,7 @@ OperatorTask::OperatorTask(OperatorContext context)
                  .switches = &switches_,
                  .arm = &arm_,
                  .run = &run_,
+                 .change = &change_,
                  .lease = &lease_,
                  .record = &record_,
                  .files = context_.files,
@@ -185,7 +191,7 @@ void OperatorTask::TakeAnswers() {
   const Permit newest = context_.stack->operator_permits().Read().Newest().value;
   RequestAnswer answer{};
   while (context_.stack->answers().Pop(&answer)) Take(answer);
-  run_watch_.Follow(now_.now_ns, newest, now_.shutting_down);
+  run_watch_.Follow(now_.now_ns, newest, now_.tick, now_.shutting_down);
 }
 
 void OperatorTask::Take(const RequestAnswer& answer) {
@@ -195,6 +201,7 @@ void OperatorTask::Take(const RequestAnswer& answer) {
   experiments_.Answered(answer);
   run_watch_.Answered(answer, experiments_.name());
   overrides_.Answered(now_.now_ns, answer);
+  const std::optional<std::string> change = change_.Answered(now_.now_ns, answer);
   Reply(commissioning_.Answered(answer, now_));
   // The safety task publishes the permit of a tick before the answers of that tick.
   const SafetyState state = context_.stack->operator_permits().Read().Newest().value.state;
@@ -204,7 +211,9 @@ void OperatorTask::Take(const RequestAnswer& answer) {
         lease_.Armed(now_.now_ns, *by);
       }
     }
-    Reply(client, AnswerJson(answer, state));
+    nlohmann::json json = AnswerJson(answer, state);
+    if (change) json["command"] = *change;
+    Reply(client, std::move(json));
   }
 }
 
@@ -241,7 +250,9 @@ void OperatorTask::Serve() {
     nlohmann::json answer = dispatch_.Answer(message.client, message.by, message.line, now_);
     if (!answer.is_null()) Reply(message.client, std::move(answer));
   }
-  Reply(run_.Follow(now_, [this](int client) { return socket_->IsThere(client); }));
+  const auto is_there = [this](int client) { return socket_->IsThere(client); };
+  Reply(run_.Follow(now_, is_there));
+  Reply(change_.Follow(now_, is_there));
   for (const Peer& peer : socket_->turned_away()) record_.TurnedAway(now_.now_ns, peer);
 }
 
@@ -336,6 +347,7 @@ const nlohmann::json& OperatorTask::Status() {
                         .log_records_dropped = context_.stack->tick_records().dropped() +
                                                context_.stack->safety_records().dropped() +
                                                context_.events->dropped()});
+  status_["limits"] = LimitsJson(context_.config->safety, now_.permit.reduced);
   return status_;
 }
 

@@ -9,6 +9,7 @@
 #include "controller/operator/arm_command.h"
 #include "controller/operator/auto_disarm.h"
 #include "controller/operator/bus_counter_record.h"
+#include "controller/operator/change_command.h"
 #include "controller/operator/command_dispatch.h"
 #include "controller/operator/command_record.h"
 #include "controller/operator/commissioning_commands.h"
@@ -101,6 +102,7 @@ class OperatorTask final : public Task {
   OverrideRecord overrides_;
   ArmCommand arm_;
   RunCommand run_;
+  ChangeCommand change_;
   RunWatch run_watch_;
   RunWarnings warnings_;
   StateJournal state_journal_;

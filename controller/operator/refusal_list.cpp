@@ -5,7 +5,8 @@
 namespace flexarm {
 namespace {
 
-constexpr const char* kMoving = "arm, run, pluck, home";
+constexpr const char* kMoving = "arm, run, pluck, home, pause, resume, speed, retarget";
+constexpr const char* kChanges = "pause, resume, speed, retarget";
 constexpr const char* kAll = "all but status";
 
 // tests/e2e/explain_test.py compares the names with those that the code answers.
@@ -38,10 +39,11 @@ constexpr std::array kRefusals = {
                   "`flexarm status` shows it.",
                   "Repeat the command after its end, or end it with `flexarm stop`.", ""},
     RefusalAdvice{"wrong-state",
-                  "arm, run, pluck, home, tare, zero, calibrate, prove-switches, stop, disarm, "
-                  "reset",
-                  "The state does not allow the command: run, pluck and home need Armed; tare, "
-                  "zero and prove-switches Idle or Tripped; arm and calibrate Idle; reset Tripped.",
+                  "arm, run, pluck, home, pause, resume, speed, retarget, tare, zero, calibrate, "
+                  "prove-switches, limits, stop, disarm, reset",
+                  "The state does not allow the command: run, pluck and home need Armed; "
+                  "pause, resume, speed and retarget Running; tare, zero, prove-switches and "
+                  "limits Idle or Tripped; arm and calibrate Idle; reset Tripped.",
                   "`flexarm status` shows the state.",
                   "Run what leads to that state: `flexarm arm`, `flexarm stop`, `flexarm disarm` "
                   "or `flexarm reset`.",
@@ -119,6 +121,25 @@ constexpr std::array kRefusals = {
                   "The arm was moved while its run was planned, so the plan does not begin where "
                   "it stands.",
                   "Look whether something moves it.", "Repeat the command.", ""},
+    RefusalAdvice{"no-path", kChanges,
+                  "The motion that goes on follows no path, or one whose durations are chosen "
+                  "while it runs.",
+                  "`flexarm status` shows the law; docs/experiments.md, \"While it runs\".",
+                  "Let it end, or end it with `flexarm stop`.", ""},
+    RefusalAdvice{"paused", "pause, speed", "The run is paused.", "`flexarm status` shows it.",
+                  "`flexarm resume`.", ""},
+    RefusalAdvice{"not-paused", "resume", "The run is not paused.", "`flexarm status` shows it.",
+                  "Nothing is to be done.", ""},
+    RefusalAdvice{"change-refused", kChanges,
+                  "The changed path would leave a limit, or cannot be planned. The text says which "
+                  "limit and where. The run goes on as it was.",
+                  "`flexarm status` shows where the arm is.",
+                  "Ask for another goal, speed or instant.", ""},
+    RefusalAdvice{"too-late", kChanges,
+                  "The change was ready after the sample from which it should hold, or its run had "
+                  "ended.",
+                  "`flexarm status` shows the run, and how late the threads are.",
+                  "Repeat the command.", ""},
     RefusalAdvice{"cancelled", kMoving,
                   "A stop, a disarm or a trip came while the command was waiting.",
                   "`flexarm status` shows whether it was a trip.", "Repeat the command.", ""},

@@ -39,6 +39,23 @@ RequestTracker::Asked RequestTracker::Ask(RequestKind kind, std::int64_t now_ns,
   return {.number = number};
 }
 
+RequestTracker::Asked RequestTracker::AskForChange(std::int64_t now_ns, int client,
+                                                   const RunOrder& run, std::uint32_t changes,
+                                                   std::int64_t not_after_ns) {
+  if (busy()) return {.number = 0, .refusal = Refusal::kBusy};
+  judged_ = next_number_++;
+  if (client != kNoClient) {
+    waiting_.push_back({.number = judged_, .kind = RequestKind::kChange, .client = client});
+  }
+  stack_->requests().Push({.kind = RequestKind::kChange,
+                           .number = judged_,
+                           .not_before_ns = now_ns,
+                           .run = run,
+                           .changes = changes,
+                           .not_after_ns = not_after_ns});
+  return {.number = judged_};
+}
+
 RequestTracker::Asked RequestTracker::AskPlanned(const OperatorRequest& request) {
   if (Asked refused = Prepare(request.kind); refused.refusal != Refusal::kNone) return refused;
   if (!Latched(request.kind)) judged_ = request.number;

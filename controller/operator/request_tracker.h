@@ -11,10 +11,10 @@ namespace flexarm {
 
 /// Numbers the requests to the safety task, and records which clients wait for each answer.
 ///
-/// One arm, run or reset at a time: while it is not answered, another is not made. An arm is made
-/// only once the latch file says armed, on disk. Stop and disarm are always made, and wait behind
-/// nothing; several that are not answered yet share one answer. Each request is answered once.
-/// Not real-time safe: allocates, and an arm waits for the disk. Thread: operator.
+/// One arm, run, change or reset at a time: while it is not answered, another is not made. An arm
+/// is made only once the latch file says armed, on disk. Stop and disarm are always made, and wait
+/// behind nothing; several that are not answered yet share one answer. Each request is answered
+/// once. Not real-time safe: allocates, and an arm waits for the disk. Thread: operator.
 class RequestTracker {
  public:
   /// Requests of an unattended run have the numbers 1, 2, ..: these come after them.
@@ -31,12 +31,16 @@ class RequestTracker {
   /// Both outlive the tracker.
   RequestTracker(LoopStack* stack, TripLatch* latch) : stack_(stack), latch_(latch) {}
 
-  /// True while an arm, run or reset is not answered yet.
+  /// True while an arm, run, change or reset is not answered yet.
   bool busy() const { return judged_ != 0; }
 
   /// Makes a request; `client` waits for its answer.
   Asked Ask(RequestKind kind, std::int64_t now_ns, int client = kNoClient,
             const RunOrder& run = {});
+
+  /// Asks for a change of the path of run `changes`, which may be granted until `not_after_ns`.
+  Asked AskForChange(std::int64_t now_ns, int client, const RunOrder& run, std::uint32_t changes,
+                     std::int64_t not_after_ns);
 
   /// Makes a request of an unattended run, with its own number.
   Asked AskPlanned(const OperatorRequest& request);

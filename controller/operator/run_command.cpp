@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controller/operator/change_command.h"
 #include "controller/operator/command_text.h"
 #include "controller/operator/log_condition.h"
 #include "controller/operator/request_answers.h"
@@ -84,9 +85,10 @@ nlohmann::json RunCommand::Start(const nlohmann::json& command, int client,
     return refused;
   }
   const std::array<double, 2> start_rad = HubsOf(now);
-  planner_.Begin([this, start_rad, overrides, text = TextOf(command, "experiment", ""),
+  const double speed = SpeedOf(command);
+  planner_.Begin([this, start_rad, overrides, speed, text = TextOf(command, "experiment", ""),
                   name = TextOf(command, "name", "experiment")](const std::stop_token& stop) {
-    return Plan(targets_.parse_experiment(text, name), start_rad, overrides, stop);
+    return Plan(AtSpeed(targets_.parse_experiment(text, name), speed), start_rad, overrides, stop);
   });
   waits_ = Waiting{.client = client,
                    .overrides = std::move(overrides),

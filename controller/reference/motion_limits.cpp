@@ -5,9 +5,9 @@
 
 namespace flexarm {
 
-MotionLimits MotionLimitsOf(const ControlConfig& config) {
+MotionLimits MotionLimitsOf(const ControlConfig& config, bool reduced) {
   const ArmParameters& arm = config.arm;
-  const SafetyConfig& safety = config.safety;
+  const SafetyConfig safety = reduced ? WithReducedLimits(config.safety) : config.safety;
   const int modes = config.controller.nominal.modes_per_link;
   const std::optional<PayloadLawConfig>& payload = config.controller.payload;
   return {

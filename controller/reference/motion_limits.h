@@ -25,6 +25,7 @@ struct MotionLimits {
 };
 
 /// The limits of [limits] with the data of the arm. Start-up only: computes mode shapes.
-MotionLimits MotionLimitsOf(const ControlConfig& config);
+/// @param reduced  those of WithReducedLimits
+MotionLimits MotionLimitsOf(const ControlConfig& config, bool reduced = false);
 
 }  // namespace flexarm

@@ -58,13 +58,6 @@ std::array<double, 2> AnglesOfTip(const Move& move, const std::string& row,
   return left_fits ? *left : *right;
 }
 
-std::array<double, 2> GoalOf(const Move& move, const std::string& row, const MotionLimits& limits) {
-  if (move.to_tip_m) return AnglesOfTip(move, row, limits);
-  const Eigen::Vector2d goal =
-      Eigen::Vector2d(RadFromDeg(move.to_deg[0]), RadFromDeg(move.to_deg[1]));
-  return {goal(0), goal(1)};
-}
-
 // Start of a move, for a message that continues with "to".
 std::string BeginText(const PlannedMove& move) {
   if (!move.retargets) return "the move goes from " + DegText(move.from.angle_rad);
@@ -143,6 +136,13 @@ bool Retargets(const std::vector<PlannedMove>& moves, int first) {
 }
 
 }  // namespace
+
+std::array<double, 2> GoalOf(const Move& move, const std::string& row, const MotionLimits& limits) {
+  if (move.to_tip_m) return AnglesOfTip(move, row, limits);
+  const Eigen::Vector2d goal =
+      Eigen::Vector2d(RadFromDeg(move.to_deg[0]), RadFromDeg(move.to_deg[1]));
+  return {goal(0), goal(1)};
+}
 
 std::array<double, 2> PlaceBefore(const Experiment& experiment,
                                   const std::vector<PlannedMove>& moves,

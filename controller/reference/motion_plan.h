@@ -2,6 +2,7 @@
 
 #include <array>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "controller/law/design.h"
@@ -31,6 +32,12 @@ std::vector<MotionSegment> MotionSegmentsOf(const std::vector<PlannedMove>& move
 std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& design,
                                    double period_s, const std::array<double, 2>& start_rad,
                                    const MotionLimits& limits, const std::stop_token& stop = {});
+
+/// Joint angles at the end of a move, rad: its to_deg, or those of the straight arm with the tip at
+/// to_tip_m.
+/// @param row  name of the move in messages
+/// @throws RejectedError if they are out of reach, or two poses are possible
+std::array<double, 2> GoalOf(const Move& move, const std::string& row, const MotionLimits& limits);
 
 /// Joint angles of the reference at rest just before `start_s`, with the `moves` planned so far.
 std::array<double, 2> PlaceBefore(const Experiment& experiment,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "controller/reference/planned_move.h"
@@ -20,6 +21,8 @@ class RigidPath {
   /// @param periods    of the experiment
   RigidPath(std::span<const PlannedMove> moves, const std::array<double, 2>& start_rad, int periods,
             double period_s);
+  /// A path sample by sample; not empty.
+  explicit RigidPath(std::vector<RigidPoint> point) : point_(std::move(point)) {}
 
   /// Y, k periods after the start; before the start and after the end the path is at rest.
   /// Real-time: safe.

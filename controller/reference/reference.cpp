@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "controller/reference/identification_torques.h"
 #include "controller/reference/motion_check.h"
@@ -164,6 +165,10 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
   // A law that follows a path needs one at rest as well.
   if (design.scheduled || !moves_.empty()) path_.emplace(moves_, start_rad, periods, period_s);
   if (design.scheduled) {
+    plan_ = {.moves = moves_,
+             .start_rad = start_rad,
+             .end = static_cast<double>(periods),
+             .time = PathTime(1.0)};
     FollowPath(planned, design, period_s);
   } else {
     FollowModel(planned, design, period_s, start_rad);
@@ -171,6 +176,41 @@ ReferenceTable::ReferenceTable(const Experiment& experiment, const Design& desig
   rest_.x_m = samples_.front().x_m;
   if (design.shaper.size() > 1) Shape(design.shaper, period_s);
   CheckLimits(planned, design, period_s, limits);
+}
+
+ReferenceTable::ReferenceTable(const ReferenceTable& before, int from, PathPlan plan,
+                               const Design& design, const MotionLimits& limits)
+    : period_s_(before.period_s_),
+      arm_(before.arm_),
+      reference_kg_(before.reference_kg_),
+      rest_(before.rest_),
+      plan_(std::move(plan)) {
+  int end = 0;
+  if (plan_->time.speed() == 0.0) {
+    holds_at_ = std::max(plan_->time.settled(), from);
+    end = holds_at_ + kChangeLead;
+  } else {
+    end = plan_->FirstSampleAt(plan_->end, from);
+  }
+  if (end * period_s_ > kLongestRun_s) {
+    throw RejectedError("the run would take longer than " + NumberText(kLongestRun_s) + " s");
+  }
+  std::vector<RigidPoint> points;
+  for (int k = 0; k <= end; ++k) {
+    points.push_back(k < from ? before.path_->At(k) : plan_->At(k, period_s_));
+  }
+  path_.emplace(std::move(points));
+  for (const PlannedMove& move : before.moves_) {
+    if (move.first < from) moves_.push_back(move);
+  }
+  const double behind = plan_->time.At(from).periods;
+  for (PlannedMove move : plan_->moves) {
+    if (move.first < behind) continue;
+    move.first = plan_->FirstSampleAt(move.first, from);
+    if (move.first <= end) moves_.push_back(move);
+  }
+  samples_ = QuasiStaticReference(*path_, *arm_, reference_kg_, period_s_, 0, end);
+  CheckPath(design, limits);
 }
 
 void ReferenceTable::FollowModel(const Experiment& planned, const Design& design, double period_s,
@@ -201,6 +241,12 @@ void ReferenceTable::FollowPath(const Experiment& planned, const Design& design,
 
 ReferenceSample ReferenceTable::Along(const std::array<RigidPoint, 3>& path) const noexcept {
   return QuasiStaticSample(*arm_, reference_kg_, path, period_s_);
+}
+
+void ReferenceTable::CheckPath(const Design& design, const MotionLimits& limits) const {
+  const auto broken =
+      PathCheck(design, limits, LimitShares::Of(1.0), period_s_).First(*path_, 0, periods());
+  if (broken) throw RejectedError("the changed path: " + broken->text);
 }
 
 void ReferenceTable::CheckLimits(const Experiment& planned, const Design& design, double period_s,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -8,11 +9,16 @@
 #include "controller/law/design.h"
 #include "controller/reference/motion_limits.h"
 #include "controller/reference/motion_plan.h"
+#include "controller/reference/path_plan.h"
 #include "controller/reference/path_reference.h"
 #include "controller/types/experiment.h"
 #include "controller/types/step_types.h"
 
 namespace flexarm {
+
+/// A path that is changed while it is followed stays as it is for this many samples: the torque is
+/// computed for an instant some samples ahead.
+inline constexpr int kChangeLead = 10;
 
 /// The reference of one experiment, computed when it is accepted, then constant.
 ///
@@ -40,6 +46,14 @@ class ReferenceTable {
                  const std::array<double, 2>& start_rad, const MotionLimits& limits,
                  const std::stop_token& stop = {});
 
+  /// A reference whose path changes while it is followed: that of `before` until sample `from`,
+  /// and along `plan` afterwards. It ends where the plan does; at rest on the path (speed 0) it
+  /// holds and has a few samples more.
+  /// @pre before.path_plan() is there; plan.time is as it was until `from`
+  /// @throws RejectedError as above, or for a run longer than kLongestRun_s
+  ReferenceTable(const ReferenceTable& before, int from, PathPlan plan, const Design& design,
+                 const MotionLimits& limits);
+
   /// Open-loop torques without a reference model, for LoopMode::kOpenLoop.
   /// @param torque_nm  sample by sample, not empty; zero follows
   explicit ReferenceTable(const std::vector<std::array<double, 2>>& torque_nm);
@@ -59,6 +73,13 @@ class ReferenceTable {
 
   double period_s() const noexcept { return period_s_; }
 
+  /// The path of a law that follows one, and the progress along it; else nothing.
+  const std::optional<PathPlan>& path_plan() const noexcept { return plan_; }
+
+  /// Sample at which a run stays until its path is changed: it is paused. INT_MAX: none. Real-time:
+  /// safe.
+  int holds_at() const noexcept { return holds_at_; }
+
   /// Sample k; before 0 the state of rest at the start, after the end the last sample. Real-time:
   /// safe.
   const ReferenceSample& At(int k) const noexcept;
@@ -75,6 +96,8 @@ class ReferenceTable {
   void CheckLimits(const Experiment& planned, const Design& design, double period_s,
                    const MotionLimits& limits) const;
 
+  void CheckPath(const Design& design, const MotionLimits& limits) const;
+
   void FollowModel(const Experiment& planned, const Design& design, double period_s,
                    const std::array<double, 2>& start_rad);
   void FollowPath(const Experiment& planned, const Design& design, double period_s);
@@ -84,6 +107,8 @@ class ReferenceTable {
   double reference_kg_ = 0.0;
   ReferenceSample rest_{};
   std::optional<RigidPath> path_;
+  std::optional<PathPlan> plan_;
+  int holds_at_ = std::numeric_limits<int>::max();
   std::vector<PlannedMove> moves_;
   std::vector<MotionSegment> segments_;
   std::vector<ReferenceSample> samples_;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "controller/reference/motion_check.h"
 #include "controller/reference/path_check.h"
+#include "controller/reference/path_plan.h"
 #include "controller/reference/reference_model.h"
 
 namespace flexarm {
@@ -50,19 +52,20 @@ std::optional<int> ShortestByHalving(int most, const Fits& fits) {
 // Tests durations of a move that retargets.
 class RetargetSearch {
  public:
-  RetargetSearch(std::span<const PlannedMove> moves, const PathCheck& check, double period_s)
-      : moves_(moves.begin(), moves.end()), check_(check), period_s_(period_s) {
-    // Two samples of the previous path are enough.
-    const int earlier = moves_.back().first - kFirst;
-    for (PlannedMove& move : moves_) move.first -= earlier;
+  RetargetSearch(const std::array<RigidPoint, 2>& before, const PlannedMove& move,
+                 const PathCheck& check, double period_s)
+      : before_(before), move_(move), check_(check), period_s_(period_s) {
+    move_.first = kFirst;
   }
 
   // A limit that one duration breaks is mostly broken by the next one too, a little later: that
   // part of the path is checked first.
   bool Fits(int periods) {
-    moves_.back().periods = periods;
+    move_.periods = periods;
     const int last = kFirst + periods + 1;
-    const RigidPath path(moves_, moves_.front().from.angle_rad, last, period_s_);
+    std::vector<RigidPoint> points(before_.begin(), before_.end());
+    for (int k = kFirst; k <= last; ++k) points.push_back(move_.At(k, period_s_));
+    const RigidPath path(std::move(points));
     auto broken =
         check_.First(path, std::max(broken_ - kNear, kFirst), std::min(broken_ + kNear, last));
     if (!broken) broken = check_.First(path, kFirst, last);
@@ -73,7 +76,8 @@ class RetargetSearch {
  private:
   static constexpr int kFirst = 2, kNear = 2;
 
-  std::vector<PlannedMove> moves_;
+  std::array<RigidPoint, 2> before_;
+  PlannedMove move_;
   const PathCheck& check_;
   double period_s_;
   int broken_ = kFirst;
@@ -163,10 +167,23 @@ std::optional<int> ShortestPeriods(std::span<const PlannedMove> moves, const Des
       return FitsFromRest(moves.back(), periods, design, period_s, limits, share);
     });
   }
+  const PlannedMove& last = moves.back();
+  const PathPlan path{.moves = {moves.begin(), moves.end() - 1},
+                      .start_rad = moves.front().from.angle_rad,
+                      .end = static_cast<double>(last.first),
+                      .time = PathTime(1.0)};
+  return ShortestRetarget(
+      {path.AtPathTime(last.first - 2, period_s), path.AtPathTime(last.first - 1, period_s)}, last,
+      design, period_s, limits, share);
+}
+
+std::optional<int> ShortestRetarget(const std::array<RigidPoint, 2>& before,
+                                    const PlannedMove& move, const Design& design, double period_s,
+                                    const MotionLimits& limits, double share) {
   const PathCheck check(design, limits, LimitShares::Of(share), period_s);
-  RetargetSearch move(moves, check, period_s);
-  for (int periods = kFewestPeriods; periods <= most; ++periods) {
-    if (move.Fits(periods)) return periods;
+  RetargetSearch search(before, move, check, period_s);
+  for (int periods = kFewestPeriods; periods <= MostPeriods(period_s); ++periods) {
+    if (search.Fits(periods)) return periods;
   }
   return std::nullopt;
 }

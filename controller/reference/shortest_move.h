@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -21,6 +22,13 @@ inline constexpr double kLongestChosen_s = 60.0;  ///< end of the search
 /// @param moves  in order of time, not empty; those before the last define what it replaces
 std::optional<int> ShortestPeriods(std::span<const PlannedMove> moves, const Design& design,
                                    double period_s, const MotionLimits& limits, double share);
+
+/// The same of a move that retargets, by the path before it alone.
+/// @param before  the path two samples and one before it begins
+/// @param move    its `first` and `periods` are ignored
+std::optional<int> ShortestRetarget(const std::array<RigidPoint, 2>& before,
+                                    const PlannedMove& move, const Design& design, double period_s,
+                                    const MotionLimits& limits, double share);
 
 /// The fewest periods of a move from rest with each payload, for a law that follows a path: with
 /// limits.fast_fraction of the torque and strain limits, 0.8 / 0.72 of that of the rate limits, and

@@ -24,6 +24,14 @@ class TimedReference {
   /// @param load_change  samples at which the payload changes, ascending; likewise
   void Start(const ReferenceTable* table, const std::vector<int>* load_change) noexcept;
 
+  /// Goes on with another table, which is the same up to the next sample; no move in it has a
+  /// choice, and no change of the payload is announced.
+  void Continue(const ReferenceTable* table) noexcept {
+    table_ = table;
+    load_change_ = nullptr;
+    has_chosen_ = false;
+  }
+
   /// Chooses the duration of a move that begins at or before `sample` + 1, once.
   void Choose(int sample, const PayloadKnowledge& known) noexcept;
 

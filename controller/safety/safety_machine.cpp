@@ -30,6 +30,8 @@ const char* WrongStateText(RequestKind request, SafetyState state) noexcept {
                  : "An experiment is running. Run `flexarm stop` first and wait for Armed.";
     case RequestKind::kReset:
       return "There is no trip to reset.";
+    case RequestKind::kChange:
+      return "No experiment is running.";
   }
   return "Unknown request.";
 }
@@ -50,6 +52,8 @@ const char* ToString(RequestKind request) noexcept {
       return "disarm";
     case RequestKind::kReset:
       return "reset";
+    case RequestKind::kChange:
+      return "change";
   }
   return "corrupted";
 }
@@ -78,6 +82,8 @@ const char* ToString(Refusal refusal) noexcept {
       return "drives-off";
     case Refusal::kNotKept:
       return "not-kept";
+    case Refusal::kTooLate:
+      return "too-late";
     case Refusal::kRelayClosed:
       return "relay-closed";
   }
@@ -107,6 +113,9 @@ const char* RefusalText(RequestKind request, Refusal refusal, SafetyState state)
       return "Another arm, run or reset has not been answered yet. Repeat the request.";
     case Refusal::kShuttingDown:
       return "The daemon is shutting down. Start it again first.";
+    case Refusal::kTooLate:
+      return "The change was planned too late for this run, or the run has ended. Repeat the "
+             "command.";
     case Refusal::kRelayClosed:
       return "Relay and charge pump are off, but the relay's mirror contact or the drives' voltage "
              "does not say that the power is off. A relay needs 0.1 s, the voltage "

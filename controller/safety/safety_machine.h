@@ -100,7 +100,8 @@ constexpr bool FaultStopEnds(const SafetyFacts& facts) noexcept {
 /// towards Idle, by the operator's reset after the physical reset button, at rest, with no cause
 /// present. With a witness of the power path, arming goes through a test of the charge pump, of the
 /// relay, and of both, with the drives off; a stop, a disarm or a moving arm ends it. Torque
-/// becomes possible only by `run` from Armed, with the drives on. Armed is left through Disarming,
+/// becomes possible only by `run` from Armed, with the drives on. While it runs its path may be
+/// changed. Armed is left through Disarming,
 /// in which the drives are switched off before the relay opens. While the daemon shuts down nothing
 /// starts, and the arm is stopped and disarmed. At most one transition per tick. Real-time: safe.
 constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts& facts) noexcept {
@@ -165,6 +166,9 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       return facts.drives_on != 0 ? go(kRunning, Refusal::kNone) : go(kArmed, Refusal::kDrivesOff);
     case kRunning:
       if (request == RequestKind::kStop) return go(kStopping, Refusal::kNone);
+      if (request == RequestKind::kChange && facts.experiment_done == 0 && !shutting_down) {
+        return go(kRunning, Refusal::kNone);
+      }
       return go(facts.experiment_done != 0 || shutting_down ? kStopping : kRunning, not_here);
     case kStopping: {
       const Refusal refusal = request == RequestKind::kStop ? Refusal::kNone : not_here;

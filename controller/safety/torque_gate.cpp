@@ -21,7 +21,8 @@ GateLimits MakeGateLimits(const SafetyConfig& safety, const LoopGrid& grid) noex
           .slew_nm_per_s = safety.slew_limit_nm_per_s,
           .command_timeout_ns = 2 * grid.period_ns,
           .permit_timeout_ns = std::llround(safety.permit_timeout_ms * 1e6),
-          .homing_fraction = safety.homing_torque_fraction};
+          .homing_fraction = safety.homing_torque_fraction,
+          .reduced_fraction = safety.reduced_torque};
 }
 
 GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
@@ -31,13 +32,15 @@ GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
   if (!TorqueAllowed(in.permit)) why |= kGateNotAllowed;
   const bool finite = Finite(in.asked_nm) && Finite(in.previous_nm) && std::isfinite(in.dt_s) &&
                       Finite(limits.torque_nm) && Finite(limits.slew_nm_per_s) &&
-                      std::isfinite(limits.homing_fraction);
+                      std::isfinite(limits.homing_fraction) &&
+                      std::isfinite(limits.reduced_fraction);
   if (!finite) why |= kGateNotFinite;
   if (why != 0) return {.torque_nm = {0.0, 0.0}, .why = why};
 
   GateResult result{.torque_nm = {0.0, 0.0}, .why = 0};
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    const double share = in.homing ? limits.homing_fraction : 1.0;
+    const double share = std::min(in.homing ? limits.homing_fraction : 1.0,
+                                  in.reduced ? limits.reduced_fraction : 1.0);
     const double limit = std::max(share * limits.torque_nm[joint], 0.0);
     const double step = std::max(limits.slew_nm_per_s[joint] * in.dt_s, 0.0);
     const double within = std::clamp(in.asked_nm[joint], -limit, limit);

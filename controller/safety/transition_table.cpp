@@ -56,6 +56,7 @@ Held RowsThatHold(const SafetyStatus& status, const SafetyFacts& facts) noexcept
   const bool asks_stop = facts.request == RequestKind::kStop;
   const bool asks_disarm = facts.request == RequestKind::kDisarm;
   const bool asks_reset = facts.request == RequestKind::kReset;
+  const bool asks_change = facts.request == RequestKind::kChange;
   return {.transitions =
               {
 #define TRANSITION(from, when, to, cause) state == k##from && (when),

@@ -72,6 +72,7 @@ ControlStep::ControlStep(const ControlConfig& config, const Design& design,
       max_reading_age_ns_(std::llround(config.loop.period_ms * 0.5e6)),
       prediction_(config.controller.prediction),
       torque_limit_nm_(config.safety.torque_limit_nm),
+      reduced_torque_nm_(WithReducedLimits(config.safety).torque_limit_nm),
       layout_(design.layout),
       tip_accelerometer_(config.sensors.tip_accelerometer),
       decoder_(config.sensors, period_s_, config.estimator.max_joint_rate_rad_s),
@@ -193,6 +194,17 @@ LawOutput ControlStep::OpenLoop(const StepInput& input) const noexcept {
   return SaturateWithoutAdaptation(u, torque_limit_nm_);
 }
 
+// As the gate will, so that the prediction is of the torque that acts.
+void ControlStep::Reduce(LawOutput* decision) const noexcept {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double limit = reduced_torque_nm_[i];
+    double& torque_nm = decision->torque_nm[i];
+    if (std::fabs(torque_nm) <= limit) continue;
+    torque_nm = torque_nm > 0.0 ? limit : -limit;
+    decision->limits |= i == 0 ? kLimitTorque1 : kLimitTorque2;
+  }
+}
+
 void ControlStep::CountSaturation(std::uint32_t limits) noexcept {
   if ((limits & kLimitTorque1) != 0) saturated_s_[0] += period_s_;
   if ((limits & kLimitTorque2) != 0) saturated_s_[1] += period_s_;
@@ -223,7 +235,8 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
            RootStrain(estimate.innovation.data() + layout_.output(layout_.mode(0, 0))),
        .applied_torque_nm = input.applied_torque_nm,
        .frame_age_s = frame_age_s,
-       .mode = input.mode});
+       .mode = input.mode,
+       .reduced = input.reduced != 0});
   const StateVector x_next =
       prediction_ ? observer_->Predict(estimate.x, delay_.Pending(input, observer_->delay_found()))
                   : estimate.x;
@@ -239,7 +252,8 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
   const bool damps = Damped(verdict.faults, verdict.may_damp);
   if (TorqueAllowed(input.safety_state) && (verdict.faults == 0 || damps)) {
     const bool sensors_good = modes.valid[0] && modes.valid[1] && (counters.good & 3u) == 3u;
-    const LawOutput decision = damps ? Stop(input, x_next) : Decide(input, x_next, sensors_good);
+    LawOutput decision = damps ? Stop(input, x_next) : Decide(input, x_next, sensors_good);
+    if (input.reduced != 0) Reduce(&decision);
     out.torque_nm = decision.torque_nm;
     out.limits = decision.limits;
     out.lyapunov_nm2 = decision.lyapunov_nm2;

@@ -61,12 +61,13 @@ class ControlStep {
   LawOutput Follow(const StepInput& input, const StateVector& x, bool sensors_good) noexcept;
   LawOutput Stop(const StepInput& input, const StateVector& x) noexcept;
   LawOutput OpenLoop(const StepInput& input) const noexcept;
+  void Reduce(LawOutput* decision) const noexcept;
   void CountSaturation(std::uint32_t limits) noexcept;
 
   double period_s_;
   std::int64_t max_reading_age_ns_;  // half a period: beyond it another sample is nearer
   bool prediction_;
-  std::array<double, 2> torque_limit_nm_;
+  std::array<double, 2> torque_limit_nm_, reduced_torque_nm_;
   StateLayout layout_;
   std::optional<TipAccelerometerConfig> tip_accelerometer_;
   CounterDecoder decoder_;

@@ -53,6 +53,7 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
                                const std::array<int, 2>& gauges_needed,
                                const std::array<double, 2>& joint_stiffness_nm_per_rad)
     : safety_(safety),
+      reduced_(WithReducedLimits(safety)),
       estimator_(estimator),
       period_s_(period_s),
       counters_present_(sensors.counters_present()),
@@ -138,14 +139,15 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
 
 void FaultDetection::JudgeJoints(const LoopFacts& facts, const Monitored& monitored) noexcept {
   using enum TripCause;
+  const SafetyConfig& limits = facts.reduced ? reduced_ : safety_;
   for (std::size_t i = 0; i < 2; ++i) {
     if (facts.mode != LoopMode::kRegulate) {
       RaiseUnlessWithin(PerJoint(kSoftLimit1, i), kNoCounterReading, 1,
-                        std::fabs(monitored.hub_rad[i]), safety_.soft_angle_deg[i] * kRadPerDeg,
+                        std::fabs(monitored.hub_rad[i]), limits.soft_angle_deg[i] * kRadPerDeg,
                         i + 1);
     }
     RaiseUnlessWithin(PerJoint(kHubRate1, i), kStateNotFinite, kRateTicks,
-                      monitored.hub_rate_rad_s[i], safety_.hub_rate_rad_s[i], i + 1);
+                      monitored.hub_rate_rad_s[i], limits.hub_rate_rad_s[i], i + 1);
     RaiseUnlessWithin(PerJoint(kBendingStrain1, i), PerJoint(kNoStrainReading1, i), 1,
                       std::fabs(monitored.root_strain[i]), safety_.strain_limit[i], i + 1);
   }

@@ -24,6 +24,7 @@ struct LoopFacts {
   std::array<double, 2> applied_torque_nm;
   double frame_age_s;  ///< age of the newest frame at the sampling instant
   LoopMode mode;
+  bool reduced = false;  ///< StepInput::reduced
 };
 
 /// Checks of the control step: soft limits, rates, strain, sensors, estimator.
@@ -101,7 +102,7 @@ class FaultDetection {
   void RaiseUnlessWithin(TripCause beyond, TripCause unknown, int ticks, double value, double limit,
                          std::size_t joint) noexcept;
 
-  SafetyConfig safety_;
+  SafetyConfig safety_, reduced_;  // with the full limits, and with the reduced ones
   EstimatorConfig estimator_;
   double period_s_;
   std::uint32_t counters_present_;

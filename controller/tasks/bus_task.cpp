@@ -93,6 +93,7 @@ BusCommand BusTask::Command(std::int64_t due_ns) noexcept {
             .asked_age_ns = AgeNs(due_ns, command.from_ns),
             .permit = permit.state,
             .homing = Homes(permit.run),
+            .reduced = permit.reduced,
             .permit_age_ns = std::max<std::int64_t>(AgeNs(due_ns, permit.renewed_ns), 0),
             .previous_nm = applied_nm_,
             .dt_s = grid_.period_s()},

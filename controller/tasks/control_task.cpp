@@ -49,6 +49,8 @@ void ControlTask::Run(const Activation& activation) noexcept {
   record.output = step_->Step(record.input);
   record.gate_reasons = packet.gate_reasons;
   record.run_number = run_number_;
+  record.change_number = change_number_;
+  record.sample = sample_;
   counts_ = record.output.counts;
   delay_found_ = int{record.output.delay_found};
   known_ = KnownPayload(record.output);
@@ -73,12 +75,30 @@ FramePacket ControlTask::ReadFrames(std::int64_t sampled_ns) noexcept {
 void ControlTask::FollowState(const Permit& permit) noexcept {
   reset_ = reset_ || (DrivesEnabled(permit.state) && !DrivesEnabled(state_));
   if (permit.state == SafetyState::kRunning) {
-    if (permit.run_number != run_number_) StartRun(permit);
-    ++sample_;
+    FollowRun(permit);
   }
   state_ = permit.state;
   levels_ = permit.levels;
+  reduced_ = permit.reduced;
   if (!TorqueAllowed(state_)) TakeCalibration();
+}
+
+void ControlTask::FollowRun(const Permit& permit) noexcept {
+  if (permit.run_number != run_number_) StartRun(permit);
+  if (permit.change.number != change_seen_) TakeChange(permit.change);
+  if (experiment_ == nullptr || sample_ < experiment_->reference.holds_at()) ++sample_;
+}
+
+// Until its first sample the new path is the old one, so a change that comes in time is no step.
+// The safety task grants no other.
+void ControlTask::TakeChange(const RunChange& change) noexcept {
+  change_seen_ = change.number;
+  if (change.experiment == nullptr) return;
+  if (sample_ + kChangeLead / 2 >= change.experiment->changes_at) return;
+  experiment_ = change.experiment;
+  change_number_ = change.number;
+  reference_.Continue(&experiment_->reference);
+  released_.store(change.number, std::memory_order_release);
 }
 
 void ControlTask::TakeCalibration() noexcept {
@@ -92,6 +112,7 @@ void ControlTask::StartRun(const Permit& permit) noexcept {
   experiment_ = permit.run.experiment;
   run_number_ = permit.run_number;
   released_.store(run_number_, std::memory_order_release);
+  change_number_ = change_seen_ = 0;
   sample_ = -1;
   reset_ = true;
   if (experiment_ != nullptr) {
@@ -122,6 +143,7 @@ StepInput ControlTask::Gather(const Activation& activation, const FramePacket& p
   input.calibration = calibration_;
   input.safety_state = state;
   input.reset = reset_ ? 1 : 0;
+  input.reduced = reduced_ ? 1 : 0;
   if (reset_) delay_found_ = 0;
   reset_ = false;
   if (TorqueAllowed(state)) Follow(state, &input);
@@ -151,7 +173,7 @@ void ControlTask::Follow(SafetyState state, StepInput* input) noexcept {
 }
 
 bool ControlTask::PlansAhead(const StepInput& input) const noexcept {
-  return channels_.planner != nullptr && experiment_ != nullptr &&
+  return channels_.planner != nullptr && experiment_ != nullptr && !experiment_->keeps_own_time &&
          input.safety_state == SafetyState::kRunning && input.mode == LoopMode::kFollow;
 }
 

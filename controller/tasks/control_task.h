@@ -63,6 +63,8 @@ class ControlTask final : public Task {
   FramePacket ReadFrames(std::int64_t sampled_ns) noexcept;
   void FollowState(const Permit& permit) noexcept;
   void StartRun(const Permit& permit) noexcept;
+  void FollowRun(const Permit& permit) noexcept;
+  void TakeChange(const RunChange& change) noexcept;
   void TakeCalibration() noexcept;
   void Follow(SafetyState state, StepInput* input) noexcept;
   void FollowPlan(StepInput* input) noexcept;
@@ -77,11 +79,14 @@ class ControlTask final : public Task {
   ControlChannels channels_;
   const PlannedExperiment* experiment_ = nullptr;  // of the present run, or of the last
   std::uint32_t run_number_ = 0;                   // its number; 0: none yet
+  std::uint32_t change_number_ = 0;                // of the change that it follows; 0: none
+  std::uint32_t change_seen_ = 0;                  // of the last one permitted
   std::atomic<std::uint32_t> released_{0};
   TimedReference reference_;  // of the experiment
   HomingReference homing_;
   Calibration calibration_{};
   SafetyState state_ = SafetyState::kStarting;
+  bool reduced_ = false;                          // by the permit
   LineLevels levels_ = kHealthyLevels;            // as last read by the safety task
   int sample_ = -1;                               // of the experiment, at the measured delay
   int delay_found_ = 0;                           // additional samples, by the last step

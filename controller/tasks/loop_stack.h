@@ -100,6 +100,11 @@ class LoopStack {
   /// Any thread, at once: the safety task stops the arm, disarms it and starts nothing more.
   void RequestShutdown() noexcept { shutting_down_.store(true, std::memory_order_release); }
 
+  /// Any thread: limits from the next arming on; the safety task takes no others while the relay is
+  /// closed.
+  void SetReduced(bool reduced) noexcept { reduced_.store(reduced, std::memory_order_release); }
+  bool reduced() const noexcept { return reduced_.load(std::memory_order_acquire); }
+
   /// Relay and charge pump off for good, for a process that is about to end: SafetyLines::HoldOff.
   /// Any thread, also in a signal handler.
   void HoldLinesOff() noexcept { lines_->HoldOff(); }
@@ -120,6 +125,7 @@ class LoopStack {
   SpscQueue<OperatorRequest> requests_;
   LatchedRequest stop_, disarm_;
   std::atomic<bool> shutting_down_{false};
+  std::atomic<bool> reduced_;
   SpscQueue<RequestAnswer> answers_;
   SpscQueue<TickRecord> tick_records_;
   SpscQueue<TickRecord> operator_ticks_;

@@ -80,6 +80,7 @@ std::uint32_t PlantTask::ApplyGate(std::int64_t start_ns, const Permit& permit,
                                  .asked_age_ns = AgeNs(acting_ns, command.from_ns),
                                  .permit = permit.state,
                                  .homing = Homes(permit.run),
+                                 .reduced = permit.reduced,
                                  .permit_age_ns = AgeNs(start_ns, permit.renewed_ns),
                                  .previous_nm = drive->torque_nm,
                                  .dt_s = fresh ? grid_.period_s() : 0.0},
@@ -107,9 +108,17 @@ void PlantTask::HandleEvents(std::int64_t now_ns) noexcept {
   if (permit.running_since_ns != run_since_ns_) {
     run_since_ns_ = permit.running_since_ns;
     next_event_ = 0;
+    change_number_ = 0;
     experiment_ = permit.run.experiment;
     released_.store(permit.run_number, std::memory_order_release);
     FreezeControlTask();
+  }
+  if (permit.change.number != change_number_) {
+    change_number_ = permit.change.number;
+    if (permit.change.experiment != nullptr) {  // the same events
+      experiment_ = permit.change.experiment;
+      released_.store(change_number_, std::memory_order_release);
+    }
   }
   if (experiment_ == nullptr) return;
   const std::vector<SimEvent>& events = experiment_->sim_events;

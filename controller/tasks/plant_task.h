@@ -99,6 +99,7 @@ class PlantTask final : public Task {
   Drive reported_;                                 // the same with the declared delay, for reports
   const PlannedExperiment* experiment_ = nullptr;  // of the run that began at run_since_ns_
   std::int64_t run_since_ns_ = INT64_MIN;
+  std::uint32_t change_number_ = 0;  // of the change of the present run; 0: none
   std::size_t next_event_ = 0;
   std::atomic<std::uint32_t> released_{0};
   PlantChannels channels_;

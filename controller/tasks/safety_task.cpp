@@ -19,7 +19,7 @@ bool SameFacts(const SafetyFacts& a, const SafetyFacts& b) noexcept {
 }
 
 bool RaisesEnergy(RequestKind kind) noexcept {
-  return kind == RequestKind::kArm || kind == RequestKind::kRun;
+  return kind == RequestKind::kArm || kind == RequestKind::kRun || kind == RequestKind::kChange;
 }
 
 }  // namespace
@@ -41,7 +41,13 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const DriveSide drive = ReadDrives(due_ns);
   const SafetyLines::Reading read = channels_.lines->Read(due_ns);
   const LineLevels levels = filter_.Next(MergeRedundantLevels(read.levels, drive.report.levels));
-  const OperatorRequest request = TakeRequest(due_ns, drive.report);
+  // Before the request is taken: an arm that was asked for after a change of the limits finds it.
+  if (!RelayClosed(status_.state)) reduced_ = channels_.reduced->load(std::memory_order_acquire);
+  OperatorRequest request = TakeRequest(due_ns, drive.report);
+  if (request.kind == RequestKind::kChange && TooLate(request, due_ns)) {
+    Answer(request, Refusal::kTooLate, status_.state, last_facts_.present);
+    request = {.kind = RequestKind::kNone, .number = 0, .not_before_ns = due_ns};
+  }
   const bool requested = request.kind != RequestKind::kNone;
 
   const SafetyInputs in{.due_ns = due_ns,
@@ -65,6 +71,9 @@ void SafetyTask::Run(const Activation& activation) noexcept {
   const SafetyStatus before = status_;
   const SafetyDecision decision = NextSafetyState(before, facts);
   Enter(decision.status, in, request);
+  if (request.kind == RequestKind::kChange && decision.refusal == Refusal::kNone) {
+    change_ = {.number = request.number, .experiment = request.run.experiment};
+  }
   Drive(due_ns);
   Publish(due_ns, levels);
   PublishPresent(facts.present, in);
@@ -228,6 +237,7 @@ void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in,
       running_since_ns_ = in.due_ns;
       run_number_ = request.number;
       run_ = request.run;
+      change_ = {};
     }
   }
   if (!CauseLatched(next.state)) {
@@ -274,6 +284,8 @@ void SafetyTask::Publish(std::int64_t due_ns, LineLevels levels) noexcept {
                          .levels = levels,
                          .run_number = run_number_,
                          .run = run_,
+                         .change = change_,
+                         .reduced = reduced_,
                          .acknowledge = acknowledge_});
   for (PermitChannel* channel : channels_.permits) channel->PublishGrown(permits_);
   if (timing_ == monitor_.timing()) return;

@@ -30,6 +30,7 @@ struct SafetyChannels {
   LatchedRequest* stop;                     ///< read: before every queued request
   LatchedRequest* disarm;                   ///< read: the same
   const std::atomic<bool>* shutting_down;   ///< read: stop and disarm the arm, start nothing
+  const std::atomic<bool>* reduced;         ///< read while the drives are off: reduced limits
   std::vector<Wakeup*> wakeups;             ///< woken when the power goes: the drives' buses
   std::vector<PermitChannel*> permits;      ///< written: one a reader (drive, control, operator)
   SpscQueue<RequestAnswer>* answers;        ///< written
@@ -102,10 +103,15 @@ class SafetyTask final : public Task {
   DriveSide ReadDrives(std::int64_t due_ns) noexcept;
   /// Kind kNone: there is none in this tick.
   OperatorRequest TakeRequest(std::int64_t due_ns, const DriveReport& drives) noexcept;
+  /// A change of a path that is no longer followed, or that should have changed before.
+  bool TooLate(const OperatorRequest& change, std::int64_t due_ns) const noexcept {
+    return status_.state == SafetyState::kRunning &&
+           (change.changes != run_number_ || due_ns > change.not_after_ns);
+  }
   /// True while `reset`, which is due, waits for the drives.
   bool Acknowledges(const OperatorRequest& reset, std::int64_t due_ns,
                     const DriveReport& drives) noexcept;
-  /// Refuses the waiting arms and runs whose number is below `number`.
+  /// Refuses the waiting arms, runs and changes whose number is below `number`.
   void CancelBelow(std::uint32_t number, TripCauses present) noexcept;
   void Enter(const SafetyStatus& next, const SafetyInputs& in,
              const OperatorRequest& request) noexcept;
@@ -128,6 +134,8 @@ class SafetyTask final : public Task {
   std::int64_t running_since_ns_ = INT64_MIN;
   std::uint32_t run_number_ = 0;  // of the present run, or of the last
   RunOrder run_{};
+  RunChange change_{};   // of that run
+  bool reduced_ = true;  // the limits, since the relay was last open
   LineFilter filter_;
   SafetyLines::Call written_{};      // the write of the last tick: this tick judges it
   std::uint32_t acknowledging_ = 0;  // number of the reset that waits for the drives; 0: none

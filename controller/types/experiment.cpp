@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "controller/types/rejected_error.h"
 #include "model/problem_list.h"
 
 namespace flexarm {
@@ -162,6 +163,8 @@ std::vector<Problem> Experiment::Problems() const {
   list.Require(!name.empty() && name.size() <= 64 && printable, "name", name,
                "must be 1 to 64 printable characters: it names the run in the log");
   list.Positive("duration_s", duration_s, kLongestRun_s, "the duration of the run");
+  list.Within("speed_percent", 100.0 * speed, 100.0 * kLeastSpeed, 100.0,
+              "the share of the planned speed");
   list.Require(!ends_after_rows || !Motions().empty(), "duration_s", "",
                "must be given where no row says when the run is over");
   if (payload_kg) {
@@ -193,6 +196,16 @@ std::vector<Motion> Experiment::Motions() const {
   std::stable_sort(motions.begin(), motions.end(),
                    [](const Motion& a, const Motion& b) { return a.start_s < b.start_s; });
   return motions;
+}
+
+Experiment AtSpeed(Experiment experiment, double speed) {
+  if (speed == 1.0) return experiment;
+  if (experiment.speed != 1.0) {
+    throw RejectedError("speed_percent: the experiment states its own: leave out the option");
+  }
+  experiment.speed = speed;
+  experiment.text = "speed_percent = " + NumberText(100.0 * speed) + "\n" + experiment.text;
+  return experiment;
 }
 
 }  // namespace flexarm

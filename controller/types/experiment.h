@@ -100,6 +100,8 @@ struct Motion {
   double duration_s;  ///< 0 for a move whose duration is not chosen yet
 };
 
+/// The least speed of an experiment, as a share of the planned one.
+inline constexpr double kLeastSpeed = 0.1;
 /// The longest run.
 inline constexpr double kLongestRun_s = 3600.0;
 /// An experiment without duration_s ends so long after its last row: the arm comes to rest.
@@ -119,10 +121,15 @@ struct Experiment {
   std::optional<CsvTrajectory> csv{};
   std::vector<ControllerKind> laws{};                 ///< that may run it; empty: any
   std::optional<std::array<double, 2>> payload_kg{};  ///< least, greatest; empty: not predicted
+  double speed = 1.0;                                 ///< share of the planned speed, above 0 to 1
   bool ends_after_rows = false;  ///< its end is not known until its moves are planned
 
   std::vector<Problem> Problems() const;
   std::vector<Motion> Motions() const;  ///< all rows but sim_event, in order of time
 };
+
+/// The experiment at another speed, in its text as well; at 1 as it is.
+/// @throws RejectedError if it states a speed itself
+Experiment AtSpeed(Experiment experiment, double speed);
 
 }  // namespace flexarm

@@ -28,6 +28,13 @@ struct RunOrder {
   LineLevels may_open = 0;  ///< of a homing run: the limit switch that it searches for
 };
 
+/// A change of the path of the present run: asked for and granted as a run is. Its experiment is
+/// that run's until some sample, and goes on differently from there (motion_change.h).
+struct RunChange {
+  std::uint32_t number = 0;  ///< of the granted request, ascending; 0: none in this run
+  const PlannedExperiment* experiment = nullptr;  ///< lives as RunOrder's
+};
+
 /// Homing moves onto a limit switch: its torque limit is reduced.
 constexpr bool Homes(const RunOrder& run) noexcept { return run.may_open != 0; }
 
@@ -55,6 +62,8 @@ struct Permit {
   LineLevels levels;              ///< digital inputs as read in that tick
   std::uint32_t run_number = 0;   ///< of the granted request, ascending; 0: none yet
   RunOrder run{};                 ///< that run: the present one, or the last
+  RunChange change{};             ///< of that run: the last that was granted
+  bool reduced = false;           ///< the limits are reduced (WithReducedLimits)
   bool acknowledge = false;       ///< the operator resets: drives acknowledge their faults
 };
 
@@ -115,14 +124,16 @@ struct DriveReport {
   DriveVoltage voltage{};                ///< as reported in its last run
 };
 
-enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset };
+enum class RequestKind : std::uint8_t { kNone, kArm, kRun, kStop, kDisarm, kReset, kChange };
 
 /// Operator -> safety. `not_before_ns` lets an unattended run schedule its requests on the grid.
 struct OperatorRequest {
   RequestKind kind;
   std::uint32_t number;  ///< ascending; echoed in the answer, and in the permit of its run
   std::int64_t not_before_ns;
-  RunOrder run{};  ///< of kRun
+  RunOrder run{};                         ///< of kRun; of kChange the run as it goes on
+  std::uint32_t changes = 0;              ///< kChange: the number of the run that it changes,
+  std::int64_t not_after_ns = INT64_MAX;  ///< and the last instant at which it may be granted
 };
 
 enum class Refusal : std::uint8_t {
@@ -138,6 +149,7 @@ enum class Refusal : std::uint8_t {
   kDrivesOff,     ///< a drive has not confirmed that it is on
   kNotKept,       ///< the latch file could not be written, so a trip would not survive a restart
   kRelayClosed,   ///< relay and pump are off, and a witness does not say that the power is off
+  kTooLate,       ///< the path was to change earlier, or the run has ended
 };
 
 /// Safety -> operator: answer to a request.

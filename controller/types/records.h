@@ -22,8 +22,10 @@ struct TickRecord {
   StepOutput output;
   /// GateBits (torque_gate.h) of the torque that acted in the period before the sample.
   std::uint32_t gate_reasons;
-  std::uint32_t run_number;  ///< of the present run, or of the last (Permit); 0: none yet
-  PlantTruth truth;          ///< of the simulated stack: the recorder adds it
+  std::uint32_t run_number;         ///< of the present run, or of the last (Permit); 0: none yet
+  std::uint32_t change_number = 0;  ///< of the change that it follows (RunChange); 0: none
+  std::int32_t sample = -1;         ///< of its experiment; it stays while the run is paused
+  PlantTruth truth;                 ///< of the simulated stack: the recorder adds it
   /// Of a record that was read from a log, which has not all of the output (record_blocks.h): of
   /// all its bytes. 0: the output is whole.
   std::uint64_t output_checksum;

@@ -51,6 +51,12 @@ void CheckSafety(const SafetyConfig& c, ProblemList* list) {
                "how long a proof of the switches permits runs");
   list->Within("safety.disarm_after_s", c.disarm_after_s, 0.0, 86400.0,
                "how long the arm may be armed without a run; 0: for ever");
+  list->Positive("safety.reduced_torque", c.reduced_torque, 1.0,
+                 "the share of limits.torque_limit_nm while the limits are reduced");
+  list->Positive("safety.reduced_rate", c.reduced_rate, 1.0,
+                 "the share of limits.hub_rate_rad_s while the limits are reduced");
+  list->Positive("safety.reduced_angle", c.reduced_angle, 1.0,
+                 "the share of limits.soft_angle_deg while the limits are reduced");
 }
 
 }  // namespace
@@ -66,6 +72,11 @@ std::vector<Problem> SafetyConfig::Problems() const {
                  NumberText(rest_hub_rate_rad_s),
                  "must be below limits.hub_rate_rad_s[" + NumberText(i) +
                      "] = " + NumberText(hub_rate_rad_s[i]) + ", or an arm at rest could trip");
+    if (!(rest_hub_rate_rad_s < hub_rate_rad_s[i])) continue;
+    list.Require(rest_hub_rate_rad_s < reduced_rate * hub_rate_rad_s[i], "safety.reduced_rate",
+                 NumberText(reduced_rate),
+                 "times limits.hub_rate_rad_s[" + NumberText(i) + "] = " +
+                     NumberText(hub_rate_rad_s[i]) + " must be above safety.rest_hub_rate_rad_s");
   }
   const auto within_window = [&](const char* key, int limit) {
     list.Within(key, limit, 1, window_periods,
@@ -79,6 +90,15 @@ std::vector<Problem> SafetyConfig::Problems() const {
       stop_timeout_s > rest_time_s, "safety.stop_timeout_s", NumberText(stop_timeout_s),
       "must be above safety.rest_time_s = " + NumberText(rest_time_s) + ", or every stop trips");
   return list.Take();
+}
+
+SafetyConfig WithReducedLimits(SafetyConfig safety) noexcept {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    safety.torque_limit_nm[joint] *= safety.reduced_torque;
+    safety.hub_rate_rad_s[joint] *= safety.reduced_rate;
+    safety.soft_angle_deg[joint] *= safety.reduced_angle;
+  }
+  return safety;
 }
 
 std::array<double, 2> SoftAngleRad(const SafetyConfig& safety) noexcept {

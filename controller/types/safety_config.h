@@ -36,9 +36,16 @@ struct SafetyConfig {
   double homing_torque_fraction;   ///< share of limits.torque_limit_nm while homing, 0 to 1
   double prove_days;               ///< how long a proof of the switches permits runs; a wired rig
   double disarm_after_s = 600.0;   ///< Armed without a run for this long disarms; 0: never
+  bool reduced = false;            ///< the daemon starts with reduced limits (WithReducedLimits)
+  double reduced_torque = 0.5;     ///< shares of the limits then, 0 to 1: of the torque,
+  double reduced_rate = 0.25;      ///< of the hub rate,
+  double reduced_angle = 0.5;      ///< and of the soft angle
 
   std::vector<Problem> Problems() const;
 };
+
+/// The reduced limits in place of the full ones, for first motions of a rig.
+SafetyConfig WithReducedLimits(SafetyConfig safety) noexcept;
 
 /// The soft limits in rad.
 std::array<double, 2> SoftAngleRad(const SafetyConfig& safety) noexcept;

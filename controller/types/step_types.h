@@ -53,7 +53,7 @@ struct StepInput {
   std::uint8_t planned;       ///< 1: `plan` is valid; 0: the law uses its closed form
   std::uint8_t same_load;     ///< 1: the move has the payload of the one before it
   std::uint8_t load_changes;  ///< 1: a change of the payload is announced for now
-  std::uint8_t reserved;
+  std::uint8_t reduced;       ///< 1: the limits are reduced (WithReducedLimits)
 };
 static_assert(std::is_trivially_copyable_v<StepInput>);
 static_assert(sizeof(StepInput) == 24 + sizeof(SensorFrame) + 32 + 2 * sizeof(ReferenceSample) +

@@ -89,7 +89,7 @@ class Rig {
     if (Happens(words, kRequests)) {
       for (std::uint32_t i = 0; i < words[6] % 32; ++i) {
         const bool later = (words[7] >> i & 1u) != 0;
-        Ask(static_cast<RequestKind>(1 + (words[6] + i) % 5), later ? INT64_MAX : INT64_MIN);
+        Ask(static_cast<RequestKind>(1 + (words[6] + i) % 6), later ? INT64_MAX : INT64_MIN);
       }
     }
     if (Happens(words, kStop)) stop_.Set(++number_);
@@ -141,6 +141,7 @@ class Rig {
             .stop = &stop_,
             .disarm = &disarm_,
             .shutting_down = &shutting_down_,
+            .reduced = &reduced_,
             .wakeups = {&wakeup_},
             .permits = {&permits_[0], &permits_[1], &permits_[2], &permits_[3]},
             .answers = &answers_,
@@ -162,6 +163,7 @@ class Rig {
       PermitChannel{PermitHistory(kNoPermit)}, PermitChannel{PermitHistory(kNoPermit)}};
   SpscQueue<OperatorRequest> requests_{1000};
   LatchedRequest stop_, disarm_;
+  std::atomic<bool> reduced_{false};
   std::atomic<bool> shutting_down_{false};
   Wakeup wakeup_;
   SpscQueue<RequestAnswer> answers_{1000};

@@ -53,6 +53,8 @@ const BrokenText kContradiction[] = {
      "limits.hub_rate_rad_s[1]", "impossible jump"},
     {"RestAboveTheRateLimit", "hub_rate_rad_s = [8.0, 10.0]", "hub_rate_rad_s = [0.05, 10.0]",
      "safety.rest_hub_rate_rad_s", "limits.hub_rate_rad_s[0]", "rest_hub_rate_rad_s"},
+    {"RestAboveTheReducedRate", "[safety]", "[safety]\nreduced_rate = 0.0055", "safety.reduced_rate",
+     "must be above safety.rest_hub_rate_rad_s"},
     {"StopShorterThanRest", "stop_timeout_s = 4.0", "stop_timeout_s = 0.5", "safety.stop_timeout_s",
      "safety.rest_time_s = 0.5"},
     {"StopLongerThanTheServiceMayTake", "stop_timeout_s = 4.0", "stop_timeout_s = 12.0",

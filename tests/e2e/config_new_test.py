@@ -32,6 +32,14 @@ class ConfigNew(ProgramTest):
         run = json.loads(self.flexarm("simulate", "-c", self.rig, "--json").stdout)
         self.assertTrue(run["completed"])
         self.assertEqual(len(run["move_duration_s"]), 4, "the default of a law that follows moves")
+        first = self.folder / "first-motion.toml"
+        self.assertEqual(told["first_motion"], str(first))
+        for payload_kg in ("0", "0.3"):
+            for reduced in ("true", "false"):
+                run = json.loads(self.flexarm("simulate", "-c", self.rig, "--experiment", first,
+                                              "--payload-kg", payload_kg, "--set",
+                                              f"safety.reduced={reduced}", "--json").stdout)
+                self.assertTrue(run["completed"], (payload_kg, reduced))
 
     def test_a_removed_line_follows_the_arm(self):
         self.flexarm("config", "new", "--from", self.arm, "-o", self.rig)

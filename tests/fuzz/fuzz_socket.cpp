@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "controller/operator/change_command.h"
 #include "controller/operator/command_dispatch.h"
 #include "controller/operator/operator_connection.h"
 #include "tests/controller/latch/latch_folder.h"
@@ -92,8 +93,13 @@ class OneClient {
   LatchFolder folder_;
   TripLatch latch_{folder_.path(), "/runs", [](bool, const std::string&) {}};
   RequestTracker requests_{&stack_, &latch_};
-  ExperimentLoader experiments_{&stack_,          &requests_,           &events_,
-                                &ShippedDesign(), LoopGrid(Rig().loop), ShippedLimits()};
+  ExperimentLoader experiments_{&stack_,
+                                &requests_,
+                                &events_,
+                                &ShippedDesign(),
+                                LoopGrid(Rig().loop),
+                                ShippedLimits(),
+                                MotionLimitsOf(Rig(), true)};
   CommissioningCommands commissioning_{Rig(),
                                        {.stack = &stack_,
                                         .experiments = &experiments_,
@@ -110,6 +116,10 @@ class OneClient {
                    .overrides = &overrides_,
                    .parse_experiment = ParseExperiment,
                    .plan_wait = std::chrono::seconds(1)}};
+  ChangeCommand change_{{.experiments = &experiments_,
+                         .events = &events_,
+                         .period_s = Rig().loop.period_s(),
+                         .plan_wait = std::chrono::seconds(1)}};
   Lease lease_{&events_, journal_.Report()};
   OperatorSnapshot now_;
   CommandRecord record_{&events_, journal_.Report()};
@@ -119,6 +129,7 @@ class OneClient {
                              .switches = &switches_,
                              .arm = &arm_,
                              .run = &run_,
+                             .change = &change_,
                              .lease = &lease_,
                              .record = &record_,
                              .status = [] { return Json{{"ok", true}}; },

@@ -156,6 +156,7 @@ inline draw_facts() {
   :: request = AsksStop
   :: request = AsksDisarm
   :: request = AsksReset
+  :: state == Running -> request = AsksChange
   :: arm_waits -> request = AsksArm; arm_waits = false
   fi
 }

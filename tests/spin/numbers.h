@@ -20,6 +20,7 @@
 #define AsksStop 3
 #define AsksDisarm 4
 #define AsksReset 5
+#define AsksChange 6
 
 /* Refusals, and None of the causes. */
 #define None 0

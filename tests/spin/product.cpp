@@ -32,6 +32,7 @@ IS_REQUEST(Run);
 IS_REQUEST(Stop);
 IS_REQUEST(Disarm);
 IS_REQUEST(Reset);
+IS_REQUEST(Change);
 
 #define IS_REFUSAL(name) static_assert((name) == static_cast<int>(flexarm::Refusal::k##name))
 IS_REFUSAL(None);
@@ -151,5 +152,5 @@ unsigned sequence_flags(unsigned sequence, unsigned tick) {
 }
 
 unsigned sequence_request(unsigned sequence, unsigned tick) {
-  return static_cast<unsigned>(Drawn(sequence, tick, 4) % 7);
+  return static_cast<unsigned>(Drawn(sequence, tick, 4) % 8);
 }

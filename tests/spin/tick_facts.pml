@@ -13,6 +13,7 @@ bool product_agrees;
 #define asks_stop (request == AsksStop)
 #define asks_disarm (request == AsksDisarm)
 #define asks_reset (request == AsksReset)
+#define asks_change (request == AsksChange)
 
 c_decl { \#include "tests/spin/product.h" }
 

@@ -54,6 +54,7 @@ void RegisterReplay(CLI::App& app, Exit& exit);
 void RegisterReport(CLI::App& app, Exit& exit);
 void RegisterRig(CLI::App& app, Exit& exit);
 void RegisterRun(CLI::App& app, Exit& exit);   ///< with move
+void RegisterPath(CLI::App& app, Exit& exit);  ///< pause, resume, speed
 void RegisterRuns(CLI::App& app, Exit& exit);  ///< with tag, untag and note
 void RegisterSimulate(CLI::App& app, Exit& exit);
 void RegisterSweep(CLI::App& app, Exit& exit);  ///< with merge and show

@@ -7,12 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "config/config.h"
 #include "config/new_rig/arm_description.h"
 #include "config/new_rig/rig_text.h"
 #include "controller/files/external_json.h"
 #include "controller/files/external_text.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
+#include "tools/tuning/first_motion.h"
 #include "tools/tuning/new_rig_search.h"
 
 namespace flexarm {
@@ -53,11 +55,18 @@ void Ask(ArmDescriptionReader* reader) {
   }
 }
 
+// Beside the config.
+std::filesystem::path FirstMotionFile(const std::filesystem::path& config) {
+  return config.parent_path() / "first-motion.toml";
+}
+
 nlohmann::ordered_json ToJson(const NewRigResult& result, const std::filesystem::path& file) {
   nlohmann::ordered_json json;
   json["passed"] = result.passed;
   json["config"] =
       result.passed ? nlohmann::ordered_json(file.string()) : nlohmann::ordered_json(nullptr);
+  json["first_motion"] = result.passed ? nlohmann::ordered_json(FirstMotionFile(file).string())
+                                       : nlohmann::ordered_json(nullptr);
   json["design_score"] = result.design_score;
   json["largest_error_mm"] = result.largest_error_mm;
   json["permitted_error_mm"] = result.permitted_mm;
@@ -71,19 +80,26 @@ void PrintText(const NewRigResult& result, const std::filesystem::path& file) {
   for (const std::string& note : result.notes) std::cout << note << '\n';
   if (!result.passed) return;
   const std::string name = Shown(file.string(), kMessageBytes);
+  const std::string first = Shown(FirstMotionFile(file).string(), kMessageBytes);
   std::printf(
       "wrote %s: every check of the design passed, and in simulated moves to random places, with "
       "the\nleast, the usual and the greatest payload, the tip ended within %.1f mm of its target "
       "(%.1f permitted)\n"
+      "wrote %s: a small, slow motion to begin with\n"
       "next: flexarm simulate -c %s\n"
       "      flexarm config show %s    every value with its source\n"
       "      values marked \"assumed\" should be measured: docs/own-arm.md\n",
-      name.c_str(), result.largest_error_mm, result.permitted_mm, name.c_str(), name.c_str());
+      name.c_str(), result.largest_error_mm, result.permitted_mm, first.c_str(), name.c_str(),
+      name.c_str());
 }
 
 int New(const NewOptions& options) {
   const OutputRules rules = options.output.Rules("a new config", kNewRigMark, {options.from});
   CheckOutput(options.output.file, rules);
+  const std::filesystem::path first_motion = FirstMotionFile(options.output.file);
+  const OutputRules first_rules =
+      options.output.Rules("a first motion", kFirstMotionMark, {options.from});
+  CheckOutput(first_motion, first_rules);
   ArmDescriptionReader reader(options.from);
   for (const auto& [key, value] : options.values) reader.Set(key, value);
   Ask(&reader);
@@ -93,7 +109,11 @@ int New(const NewOptions& options) {
     if (show) std::cerr << "\r\033[K" << what << " .." << std::flush;
   });
   if (show) std::cerr << "\r\033[K";
-  if (result.passed) WriteFile(options.output.file, result.text, rules);
+  if (result.passed) {
+    WriteFile(options.output.file, result.text, rules);
+    const RigConfig config = LoadConfig(options.output.file);
+    WriteFile(first_motion, FirstMotion(config), first_rules);
+  }
   if (options.json) {
     std::cout << PrintedJson(ToJson(result, options.output.file)) << '\n';
   } else {
@@ -133,7 +153,9 @@ void RegisterConfigNew(CLI::App& config, Exit& exit) {
       "the command line replace those of the file. Noises, weights, limits and thresholds are\n"
       "derived (docs/theory/derivation.md), the design is checked and tuned if a check fails, and\n"
       "simulated moves must end on their targets; otherwise nothing is written, exit code 1, and\n"
-      "the smallest change that helps is named.\n"
+      "the smallest change that helps is named. Beside the config it writes first-motion.toml, "
+      "small\n"
+      "and slow: no payload trips in simulation, with full and with reduced limits.\n"
       "Example: flexarm config new --from arm.toml -o rig.toml\n"
       "with arm.toml: material = \"steel\"\n"
       "               link1 = {length_m = 0.4, width_mm = 25, thickness_mm = 2}\n"

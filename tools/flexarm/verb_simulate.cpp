@@ -36,6 +36,7 @@ struct SimulateOptions {
   std::filesystem::path experiment;
   std::string controller, estimator;
   std::optional<double> payload_kg;
+  double speed_percent = 100.0;
   std::optional<int> plant_modes;
   std::optional<std::uint64_t> seed;
   bool without_prediction = false;
@@ -186,6 +187,7 @@ void CheckConditions(const SimulationRequest& request) {
 int Run(const SimulateOptions& options) {
   const std::filesystem::path like = options.like.given() ? options.like.File() : "";
   SimulationRequest request = like.empty() ? RequestOfConfig(options) : RequestLike(options, like);
+  request.experiment = AtSpeed(std::move(request.experiment), options.speed_percent / 100.0);
   std::optional<ScratchFolder> scratch;  // for the log of a picture
   if (!options.output.empty()) request.log = options.output;
   if (!options.plot.empty()) {
@@ -249,6 +251,10 @@ void RegisterSimulate(CLI::App& app, Exit& exit) {
   verb->add_option("--payload-kg", options->payload_kg,
                    "Payload of the plant, kg; the controller is designed for the config's")
       ->check(NumberWithin(0.0, 100.0));
+  verb->add_option("--speed", options->speed_percent,
+                   "Share of the planned speed in percent, 10 to 100, as of `flexarm run`")
+      ->check(NumberWithin(100.0 * kLeastSpeed, 100.0))
+      ->type_name("PERCENT");
   verb->add_option("--plant-modes", options->plant_modes, "sim.plant_modes: bending modes a link");
   verb->add_option("--seed", options->seed, "sim.seed: seed of the measurement noise");
   verb->add_flag("--without-prediction", options->without_prediction,

@@ -24,7 +24,7 @@ constexpr double kLongestArm_s = 10.0;
 
 struct OperateOptions {
   DaemonClient daemon;
-  std::string line;
+  std::string line, limits;
   int level = 0;
   bool watch = false;
   double period_s = 0.5;
@@ -98,6 +98,27 @@ void RegisterArm(CLI::App& app, Exit& exit) {
   });
 }
 
+void RegisterLimits(CLI::App& app, Exit& exit) {
+  const auto options = std::make_shared<OperateOptions>();
+  CLI::App* verb = options->daemon.AddVerb(
+      app, "limits", "Reduce the limits of torque, rate and angle, or lift the reduction");
+  options->daemon.AddTakeOver(verb);
+  verb->add_option("limits", options->limits, "full or reduced")
+      ->required()
+      ->check(CLI::IsMember({"full", "reduced"}))
+      ->type_name("WHICH");
+  verb->footer(
+      "Only while the arm is disarmed. Reduced limits are the shares safety.reduced_torque,\n"
+      "reduced_rate and reduced_angle of those of the config: runs are planned within them, the\n"
+      "gate cuts the torque, and the arm trips beyond them. With safety.reduced = true the daemon\n"
+      "starts with them. The journal and each run's log say so.\n"
+      "Example: flexarm limits full");
+  verb->callback([options, &exit] {
+    exit.code = options->daemon.Conclude(
+        options->daemon.Ask({{"command", "limits"}, {"limits", options->limits}}));
+  });
+}
+
 }  // namespace
 
 void RegisterOperate(CLI::App& app, Exit& exit) {
@@ -105,6 +126,7 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
   RegisterArm(app, exit);
 
   RegisterRun(app, exit);
+  RegisterPath(app, exit);
 
   AddCommand(app, exit, "stop", "End the experiment: the controller brings the arm to rest",
              "The controller damps the arm for at most 3 s, then the state is Armed. Example: "
@@ -114,6 +136,8 @@ void RegisterOperate(CLI::App& app, Exit& exit) {
   AddCommand(app, exit, "reset", "Leave Tripped for Idle",
              "Only after the reset button was pressed, at rest, with the cause gone.\n"
              "Example: flexarm reset");
+
+  RegisterLimits(app, exit);
 
   const auto sim = std::make_shared<OperateOptions>();
   CLI::App* verb = sim->daemon.AddVerb(

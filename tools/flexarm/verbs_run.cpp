@@ -13,6 +13,7 @@
 #include "controller/runlog/run_label.h"
 #include "model/problem_list.h"
 #include "tools/command_line/label_options.h"
+#include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
 #include "tools/flexarm/daemon_client.h"
 #include "tools/flexarm/override_options.h"
@@ -30,12 +31,18 @@ constexpr double kLongestPlan_s = 60.0;
 struct RunOptions {
   DaemonClient daemon;
   bool wait = false;
+  double speed_percent = 100.0;
   OverrideOptions overrides;
   LabelOptions label;
 
   void AddTo(CLI::App* verb) {
     daemon.AddTakeOver(verb);
     verb->add_flag("--wait", wait, "Wait for the end of the run; Ctrl-C stops it");
+    verb->add_option("--speed", speed_percent,
+                     "Share of the planned speed in percent, 10 to 100; of a law that follows a "
+                     "path `flexarm speed` changes it while it runs")
+        ->check(NumberWithin(100.0 * kLeastSpeed, 100.0))
+        ->type_name("PERCENT");
     label.AddTo(verb);
     overrides.AddTo(verb, "--override-switches", kSwitchesCondition,
                     "Run a wired rig although its switches have not been proved");
@@ -46,6 +53,7 @@ struct RunOptions {
   /// @param name  of the experiment, for messages  @returns exit code
   int Run(const std::string& name, const std::string& experiment) const {
     Json command{{"command", "run"}, {"name", name}, {"experiment", experiment}};
+    if (speed_percent != 100.0) command["speed_percent"] = speed_percent;
     overrides.PutInto(&command);
     if (const RunLabel given = label.Label(); given != RunLabel{}) {
       command["label"] = LabelToJson(given);
@@ -60,6 +68,15 @@ struct MoveOptions {
   std::array<double, 2> to_deg{}, to_tip_m{};
   std::string elbow;
   double duration_s = 0.0;
+  bool retarget = false;
+
+  Json Goal(bool to_tip) const {
+    Json command{{"command", "retarget"}};
+    command[to_tip ? "to_tip_m" : "to_deg"] = to_tip ? to_tip_m : to_deg;
+    if (!elbow.empty()) command["elbow"] = elbow;
+    if (duration_s > 0.0) command["duration_s"] = duration_s;
+    return command;
+  }
 };
 
 // Each row of the experiment is what the options say, so its messages name them.
@@ -92,15 +109,29 @@ void RegisterMove(CLI::App& app, Exit& exit) {
                    "every limit")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
+  CLI::Option* retarget = verb->add_flag(
+      "--retarget", move->retarget,
+      "Turn the run that goes on towards this place instead, without a stop; what is left of it is "
+      "dropped. Of a law that follows a path");
   move->run.AddTo(verb);
+  for (const char* option : {"--wait", "--speed", "--name", "--note", "--tag"}) {
+    verb->get_option(option)->excludes(retarget);
+  }
   verb->footer(
-      "Only from Armed. It is an experiment of one move that ends a second after it: the daemon\n"
+      "Only from Armed, but with --retarget. It is an experiment of one move that ends a second "
+      "after it: the daemon\n"
       "plans it from where the arm stands, checks it against every limit before anything moves,\n"
       "and logs it as any other run. A negative number follows its option as it is.\n"
       "Examples: flexarm move --to 20 -10 --wait\n"
-      "          flexarm move --to-tip 0.6 0.3 --elbow left --duration 3");
+      "          flexarm move --to-tip 0.6 0.3 --elbow left --duration 3\n"
+      "          flexarm move --to 0 0 --retarget");
   verb->callback([move, to, to_tip, &exit] {
     if (to->count() + to_tip->count() == 0) throw CLI::RequiredError("--to or --to-tip");
+    if (move->retarget) {
+      const DaemonClient& daemon = move->run.daemon;
+      exit.code = daemon.Conclude(daemon.Ask(move->Goal(to_tip->count() > 0), kLongestPlan_s));
+      return;
+    }
     exit.code = move->run.Run("move", MoveText(*move, to_tip->count() > 0));
   });
 }

@@ -47,7 +47,7 @@ LAYERS = {
                             "controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks controller/files",
-    "controller/operator": "model hal hal/gpiod estimator controller/files controller/realtime "
+    "controller/operator": "model hal hal/gpiod estimator controller/files controller/realtime controller/reference "
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",

@@ -217,10 +217,21 @@ std::string TelemetryText(const Reply& telemetry) {
          " lost" + (error.empty() ? "" : "; " + error);
 }
 
+namespace {
+
+// "" at the planned speed, and of a motion without a path.
+std::string SpeedText(const Reply& run) {
+  const double percent = NumberOrNan(In(run, "speed_percent"));
+  if (percent == 0.0) return ", paused";
+  return percent < 100.0 ? ", at " + FigureIn(run, "speed_percent", 0) + " % of the speed" : "";
+}
+
+}  // namespace
+
 std::string ProgressText(const Reply& run) {
   const bool timed = In(run, "duration_s").is_number();
   return TextIn(run, "name", "-") + ": " + FigureIn(run, "elapsed_s", 1) +
-         (timed ? " of " + FigureIn(run, "duration_s", 1) : "") + " s";
+         (timed ? " of " + FigureIn(run, "duration_s", 1) : "") + " s" + SpeedText(run);
 }
 
 std::string StatusText(const Reply& status) {
@@ -234,6 +245,7 @@ std::string StatusText(const Reply& status) {
   AddVerdict(status, "host", &lines);
   AddVerdict(status, "design", &lines);
   AddTrip(status, &lines);
+  if (FlagIn(In(status, "limits"), "reduced")) lines.Add("limits", "reduced");
   AddRun(status, &lines);
   lines.Add("time",
             FigureIn(status, "time_s", 2) + " s (tick " + FigureIn(status, "tick", 0) + ")");

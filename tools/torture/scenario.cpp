@@ -93,6 +93,18 @@ bool FollowsPayload(const std::string& law) {
   return row != kLaws.end() && (row->is_scheduled || row->plans_ahead);
 }
 
+// A change of the path that goes on.
+std::string DrawChange(Draw* draw) {
+  constexpr std::array<const char*, 4> kChanges = {"pause", "resume", "speed", "retarget"};
+  const std::string name = kChanges.at(static_cast<std::size_t>(draw->Below(4)));
+  nlohmann::json change = Command(name.c_str());
+  if (name == "speed") change["speed_percent"] = draw->Between(10.0, 100.0);
+  if (name == "retarget") {
+    change["to_deg"] = {draw->Between(-30.0, 30.0), draw->Between(-40.0, 40.0)};
+  }
+  return change.dump();
+}
+
 void DrawCommands(Draw* draw, TortureScenario* scenario) {
   if (!draw->With(0.3)) return;
   const int count = 1 + draw->Below(4);
@@ -100,8 +112,20 @@ void DrawCommands(Draw* draw, TortureScenario* scenario) {
     const std::int64_t at_ns = draw->Ms(-20.0, 300.0);
     scenario->commands.push_back({.at_ns = at_ns, .text = DrawCommand(draw)});
   }
-  std::sort(scenario->commands.begin(), scenario->commands.end(),
-            [](const TimedCommand& a, const TimedCommand& b) { return a.at_ns < b.at_ns; });
+}
+
+void DrawChanges(Draw* draw, TortureScenario* scenario) {
+  if (!FollowsPayload(scenario->law) || !draw->With(0.5)) return;
+  const int count = 1 + draw->Below(3);
+  for (int i = 0; i < count; ++i) {
+    const std::int64_t at_ns = draw->Ms(-20.0, 600.0);
+    scenario->commands.push_back({.at_ns = at_ns, .text = DrawChange(draw)});
+  }
+}
+
+void InOrderOfTime(TortureScenario* scenario) {
+  std::stable_sort(scenario->commands.begin(), scenario->commands.end(),
+                   [](const TimedCommand& a, const TimedCommand& b) { return a.at_ns < b.at_ns; });
 }
 
 }  // namespace
@@ -155,6 +179,8 @@ TortureScenario ScenarioOf(std::uint64_t seed, const TortureSpace& space, const 
                        .latest_ns = kLatest.at(static_cast<std::size_t>(draw.Below(4))),
                        .latest_slow_ns = draw.Ms(0.0, 15.0),
                        .order_changes = draw.Below(8)};
+  DrawChanges(&draw, &scenario);
+  InOrderOfTime(&scenario);
   return scenario;
 }
 

@@ -52,6 +52,7 @@ class CommandDispatchTest : public OperatorParts {
                              .switches = &switches_,
                              .arm = &arm_,
                              .run = &run_,
+                             .change = &change_,
                              .lease = &lease_,
                              .record = &record_,
                              .status = [] { return Json{{"ok", true}, {"tick", 12}}; },
@@ -99,7 +100,10 @@ TEST_F(CommandDispatchTest, AnUnknownCommandIsAnsweredWithThoseThatThereAre) {
     const Json answer = Answer({{"command", name}});
     EXPECT_EQ(answer["ok"], false) << name;
     EXPECT_THAT(answer.value("error", ""), HasSubstr(std::string("'") + name + "'"));
-    EXPECT_THAT(answer.value("remedy", ""), HasSubstr("arm, run, stop, disarm, reset")) << name;
+    EXPECT_THAT(answer.value("remedy", ""),
+                HasSubstr("arm, run, pause, resume, speed, retarget, stop, "
+                          "disarm, reset"))
+        << name;
   }
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
 }

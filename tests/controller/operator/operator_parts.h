@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controller/operator/arm_command.h"
+#include "controller/operator/change_command.h"
 #include "controller/operator/commissioning_commands.h"
 #include "controller/operator/lease.h"
 #include "controller/operator/prove_switches.h"
@@ -49,8 +50,13 @@ class OperatorParts : public testing::Test {
   LatchFolder folder_;
   TripLatch latch_{folder_.path(), "/runs", [](bool, const std::string&) {}};
   RequestTracker requests_{&stack_, &latch_};
-  ExperimentLoader experiments_{
-      &stack_, &requests_, &events_, &ShippedDesign(), LoopGrid(config_.loop), ShippedLimits()};
+  ExperimentLoader experiments_{&stack_,
+                                &requests_,
+                                &events_,
+                                &ShippedDesign(),
+                                LoopGrid(config_.loop),
+                                ShippedLimits(),
+                                MotionLimitsOf(config_, true)};
   CommissioningCommands commissioning_{config_,
                                        {.stack = &stack_,
                                         .experiments = &experiments_,
@@ -67,6 +73,10 @@ class OperatorParts : public testing::Test {
                    .overrides = &overrides_,
                    .parse_experiment = ParseExperiment,
                    .plan_wait = kPlanWait}};
+  ChangeCommand change_{{.experiments = &experiments_,
+                         .events = &events_,
+                         .period_s = config_.loop.period_s(),
+                         .plan_wait = kPlanWait}};
   Lease lease_{&events_, journal_.Report()};
   OperatorSnapshot now_;
   std::vector<int> clients_;  // of the newest answer

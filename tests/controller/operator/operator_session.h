@@ -25,6 +25,7 @@ namespace flexarm {
 using Json = nlohmann::json;
 
 inline constexpr std::chrono::seconds kSessionPlanWait{60};
+inline constexpr double kPlan_s = 1.0;    // an answer comes once the plan is there
 inline constexpr double kAnswer_s = 0.1;  // five periods of the operator; requests take one
 
 inline std::string TomlOfMove(double duration_s, const std::string& more = "") {
@@ -54,11 +55,12 @@ class OperatorSession : public testing::Test {
     return {.stack = stack_.get(),
             .latch = latch_.get(),
             .events = &events_,
-            .design = &ShippedDesign(),
+            .design = design_,
             .config = &config_,
             .grid = LoopGrid(config_.loop),
             .delay_margin_s = 0.009,
             .limits = ShippedLimits(),
+            .reduced_limits = MotionLimitsOf(config_, true),
             .arm_checks = arm_checks_,
             .socket = path_,
             .unattended = {},
@@ -73,7 +75,7 @@ class OperatorSession : public testing::Test {
   void Start(std::vector<std::string> overrides = {}, const std::string& unattended = "") {
     overrides.push_back("log.directory='" + folder().string() + "'");
     config_ = ShippedRig(overrides);
-    stack_ = std::make_unique<SimulatedStack>(config_, ShippedDesign(), 0.1);
+    stack_ = std::make_unique<SimulatedStack>(config_, *design_, 0.1);
     latch_ = std::make_unique<TripLatch>(state_.path(), folder().string(), journal_.Report());
     if (const std::optional<HeldTrip> trip = latch_->Open()) {
       stack_->StartTripped(trip->cause, trip->evidence);
@@ -166,6 +168,7 @@ class OperatorSession : public testing::Test {
   }
 
   const std::string path_ = SocketPath();
+  const Design* design_ = &ShippedDesign();
   RigConfig config_;
   EventQueue events_{1'000};
   RecordedJournal journal_;

@@ -40,12 +40,13 @@ class RunWatchTest : public testing::Test {
   Json In(SafetyState state, double later_s = 0.5, bool shutting_down = false) {
     now_ns_ += static_cast<std::int64_t>(later_s * 1e9);
     permit_.state = state;
-    watch_.Follow(now_ns_, permit_, shutting_down);
+    watch_.Follow(now_ns_, permit_, tick_, shutting_down);
     return watch_.Json();
   }
 
   PlannedExperiment experiment_{std::vector<std::array<double, 2>>(100)};
   Permit permit_ = kNoPermit;
+  TickRecord tick_{};
   std::int64_t now_ns_ = 60 * kMs;
   RunWatch watch_{kPeriod};
 };
@@ -63,7 +64,8 @@ TEST_F(RunWatchTest, ARunGoesOnUntilTheArmIsAtRest) {
                                 {"outcome", "running"},
                                 {"elapsed_s", 0.5},
                                 {"duration_s", 2.0},
-                                {"trip", nullptr}}));
+                                {"trip", nullptr},
+                                {"speed_percent", nullptr}}));
   EXPECT_EQ(In(kStopping)["outcome"], "running");
   const Json ended = In(kArmed, 1.0);
   EXPECT_EQ(ended["outcome"], "done");

@@ -234,6 +234,8 @@ const char* BrokenRule(const SafetyStatus& from, const SafetyFacts& facts,
         (facts.request == RequestKind::kRun && from.state == kArmed && to.state == kRunning) ||
         (facts.request == RequestKind::kStop && from.state == kRunning && to.state == kStopping) ||
         (facts.request == RequestKind::kStop && from.state == kStopping) ||
+        (facts.request == RequestKind::kChange && from.state == kRunning && to.state == kRunning &&
+         facts.experiment_done == 0 && facts.shutting_down == 0) ||
         (facts.request == RequestKind::kDisarm && from.state == kArmed && to.state == kDisarming) ||
         (facts.request == RequestKind::kDisarm && from.state == kDisarming) ||
         ((facts.request == RequestKind::kStop || facts.request == RequestKind::kDisarm) &&
@@ -273,10 +275,10 @@ std::vector<TripCauses> EverySetOfUpToTwoCauses() {
 }
 
 constexpr RequestKind kEveryRequest[] = {
-    RequestKind::kNone,   RequestKind::kArm,   RequestKind::kRun, RequestKind::kStop,
-    RequestKind::kDisarm, RequestKind::kReset, kCorruptedRequest};
+    RequestKind::kNone,   RequestKind::kArm,   RequestKind::kRun,    RequestKind::kStop,
+    RequestKind::kDisarm, RequestKind::kReset, RequestKind::kChange, kCorruptedRequest};
 
-// 53 statuses x 634 sets of causes x 2048 flags x 7 requests: every case.
+// 53 statuses x 634 sets of causes x 2048 flags x 8 requests: every case.
 TEST(SafetyMachine, EveryTransitionObeysTheRules) {
   long cases = 0;
   for (const SafetyStatus& from : EveryStatus()) {
@@ -305,7 +307,7 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
       }
     }
   }
-  EXPECT_EQ(cases, 53L * 634 * 2048 * 7);
+  EXPECT_EQ(cases, 53L * 634 * 2048 * 8);
 }
 
 TEST(SafetyMachine, AShutdownEndsARunInIdleWithoutARequest) {
@@ -470,7 +472,7 @@ SafetyFacts DecodeFacts(std::uint32_t bits) {
   facts.experiment_done = ((bits >> 14) & 7u) == 0;
   facts.stop_expired = ((bits >> 17) & 7u) == 0;
   facts.reset_pressed = (bits >> 20) & 1u;
-  facts.request = static_cast<RequestKind>((bits >> 21) % 6);
+  facts.request = static_cast<RequestKind>((bits >> 21) % 7);
   facts.may_damp = (bits >> 24) & 1u;
   facts.drives_on = ((bits >> 25) & 3u) != 0;
   facts.drives_off = (bits >> 27) & 1u;

@@ -78,7 +78,7 @@ SafetyFacts FactsOf(TripCauses present, unsigned flags, RequestKind request) {
   return facts;
 }
 
-// 23 statuses x 73 sets of causes x 2048 flags x 7 requests: every case but for sets of three and
+// 23 statuses x 73 sets of causes x 2048 flags x 8 requests: every case but for sets of three and
 // more causes, which only their lowest number and category distinguish.
 TEST(TransitionTable, TheMachineObeysItInEveryCase) {
   std::set<std::size_t> transitions;
@@ -87,7 +87,7 @@ TEST(TransitionTable, TheMachineObeysItInEveryCase) {
   for (const SafetyStatus& status : EveryLatchedStatus()) {
     for (const TripCauses present : CauseSets()) {
       for (unsigned flags = 0; flags < 1u << kFlags; ++flags) {
-        for (const int request : {0, 1, 2, 3, 4, 5, 77}) {
+        for (const int request : {0, 1, 2, 3, 4, 5, 6, 77}) {
           const SafetyFacts facts = FactsOf(present, flags, static_cast<RequestKind>(request));
           const TableVerdict table = ApplyTable(status, facts);
           const bool same = table.decision == NextSafetyState(status, facts) &&
@@ -103,7 +103,7 @@ TEST(TransitionTable, TheMachineObeysItInEveryCase) {
       }
     }
   }
-  EXPECT_EQ(cases, 23L * 73 * 2048 * 7);
+  EXPECT_EQ(cases, 23L * 73 * 2048 * 8);
   EXPECT_EQ(transitions.size(), kTransitions + 1) << "a row that never holds; and none";
   EXPECT_EQ(refusals.size(), kRefusals + 1) << "the same of the answers";
 }
@@ -114,7 +114,7 @@ SafetyFacts RandomFacts(std::mt19937_64* random) {
   const std::uint64_t drawn = (*random)();
   if (drawn % 4 == 0) present = (*random)() & (*random)() & ~TripCauses{1};
   if (drawn % 8 == 1) present = kCategory1Causes & (*random)();
-  const auto request = static_cast<RequestKind>((*random)() % 7);
+  const auto request = static_cast<RequestKind>((*random)() % 8);
   // Half of the facts are those of a healthy arm at rest, so that sequences go far.
   const bool healthy = drawn % 2 == 0;
   const unsigned flags = static_cast<unsigned>((*random)()) | (healthy ? 0b100'1101'0011u : 0u);

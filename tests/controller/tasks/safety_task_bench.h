@@ -257,6 +257,7 @@ class SafetyTaskTest : public testing::Test {
   SpscQueue<OperatorRequest> requests_{100};
   LatchedRequest stop_, disarm_;
   std::atomic<bool> shutting_down_{false};
+  std::atomic<bool> reduced_{false};
   Wakeup wakeup_;
   SpscQueue<RequestAnswer> answers_{100};
   SpscQueue<SafetyRecord> records_{10'000};
@@ -270,6 +271,7 @@ class SafetyTaskTest : public testing::Test {
                       .stop = &stop_,
                       .disarm = &disarm_,
                       .shutting_down = &shutting_down_,
+                      .reduced = &reduced_,
                       .wakeups = {&wakeup_},
                       .permits = {&drive_permits_, &operator_permits_},
                       .answers = &answers_,

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "controller/tasks/planned_experiment.h"
 #include "controller/tasks/safety_task.h"
 #include "tests/controller/tasks/safety_task_bench.h"
 
@@ -50,6 +51,60 @@ TEST_F(SafetyTaskTest, PlannedRequestsAreJudgedAtTheirTickInOrder) {
   ASSERT_TRUE(answers_.Pop(&answer));
   EXPECT_EQ(answer.kind, RequestKind::kRun);
   EXPECT_FALSE(answers_.Pop(&answer));
+}
+
+// Changes of the path of a run: only of the present one, and only in time.
+class SafetyTaskChangeTest : public SafetyTaskTest {
+ protected:
+  Refusal Change(std::uint32_t of_run, std::int64_t not_after_ns) {
+    EXPECT_TRUE(requests_.Push({.kind = RequestKind::kChange,
+                                .number = ++number_,
+                                .not_before_ns = INT64_MIN,
+                                .run = {.experiment = &changed_},
+                                .changes = of_run,
+                                .not_after_ns = not_after_ns}));
+    RunFor(kMs);
+    RequestAnswer answer{};
+    while (answers_.Pop(&answer)) {
+      if (answer.number == number_) return answer.refusal;
+    }
+    ADD_FAILURE() << "no answer";
+    return Refusal::kNone;
+  }
+  PlannedExperiment changed_{std::vector<std::array<double, 2>>(10)};
+};
+
+TEST_F(SafetyTaskChangeTest, IsInThePermitOfTheRunThatGoesOn) {
+  GoTo(kRunning);
+  const std::uint32_t run = permit().run_number;
+  EXPECT_EQ(permit().change.number, 0u);
+  ASSERT_EQ(Change(run, executor_.next_ns()), Refusal::kNone);
+  EXPECT_EQ(permit().change.number, number_);
+  EXPECT_EQ(permit().change.experiment, &changed_);
+  EXPECT_EQ(permit().run_number, run) << "the same run";
+  EXPECT_EQ(safety_.status().state, kRunning);
+  control_.report.experiment_done = control_.report.at_rest = true;
+  RunFor(100 * kMs);
+  ASSERT_EQ(safety_.status().state, kArmed);
+  control_.report.experiment_done = false;
+  ASSERT_EQ(Now(RequestKind::kRun), Refusal::kNone);
+  EXPECT_EQ(permit().change.number, 0u) << "of a new run there is none";
+}
+
+TEST_F(SafetyTaskChangeTest, IsRefusedAfterItsInstantOfAnotherRunAndWithoutOne) {
+  EXPECT_EQ(Change(0, INT64_MAX), Refusal::kWrongState);
+  GoTo(kRunning);
+  const std::uint32_t run = permit().run_number;
+  EXPECT_EQ(Change(run, executor_.next_ns() - 1), Refusal::kTooLate);
+  EXPECT_EQ(Change(run + 1, INT64_MAX), Refusal::kTooLate);
+  EXPECT_EQ(permit().change.number, 0u);
+  for (const SafetyRecord& record : Records()) {
+    EXPECT_FALSE(record.facts.request == RequestKind::kChange && record.before.state == kRunning)
+        << "the machine has not judged it";
+  }
+  control_.report.experiment_done = true;
+  RunFor(40 * kMs);
+  EXPECT_EQ(Change(run, INT64_MAX), Refusal::kWrongState) << "it stops";
 }
 
 TEST_F(SafetyTaskTest, ARunWaitsUntilTheDrivesAreOn) {
