@@ -33,7 +33,7 @@ class DashboardServer {
   static constexpr unsigned kMostConnections = 512;
   /// Connections at a time; more wait until one ends.
   static constexpr unsigned kAllConnections = 600;
-  static constexpr unsigned kIdle_s = 15;              ///< a connection that is idle ends
+  static constexpr unsigned kIdle_s = 5;               ///< a connection that is idle ends
   static constexpr std::size_t kMostBodyBytes = 4096;  ///< of a request
 
   /// Listens and serves until the end of this object.

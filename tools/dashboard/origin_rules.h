@@ -12,9 +12,9 @@ namespace flexarm {
 /// Headers of a request that say which page of which site a browser sends it for. Empty: the
 /// request has no such header.
 struct RequestSource {
-  std::optional<std::string> host;            ///< Host
-  std::optional<std::string> origin;          ///< Origin
-  std::optional<std::string> sec_fetch_site;  ///< Sec-Fetch-Site
+  std::optional<std::string> host{};            ///< Host
+  std::optional<std::string> origin{};          ///< Origin
+  std::optional<std::string> sec_fetch_site{};  ///< Sec-Fetch-Site
 };
 
 /// Refuses requests that a page of another site makes in the user's browser: also one whose name

@@ -45,6 +45,8 @@ void StatusLink::Run(const std::stop_token& stop) {
     try {
       Follow(stop);
     } catch (const std::exception& error) {
+      // One that was lost may be there again: then the page need not know, or else learns more.
+      if (std::exchange(answered_, false)) continue;
       TellGone(error.what());
       Wait(stop, kTryEvery_s);
     }
@@ -60,6 +62,7 @@ void StatusLink::Follow(const std::stop_token& stop) {
       throw InputError(TextIn(answer, "error", "the answer of the daemon is not a status"));
     }
     newest_at_s_ = Now_s();
+    answered_ = true;
     {
       const std::scoped_lock lock(mutex_);
       newest_ = answer.dump(-1, ' ', false, Reply::error_handler_t::replace);

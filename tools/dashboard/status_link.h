@@ -35,6 +35,7 @@ class StatusLink {
   double period_s_;
   NewestMessage& messages_;
   double newest_at_s_ = 0.0;  // of the clock; 0: there was none
+  bool answered_ = false;     // on this connection
   mutable std::mutex mutex_;  // of what follows
   std::string newest_;
   std::jthread thread_;
