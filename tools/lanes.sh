@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
   only_all_lanes=(guards unit campaigns slowest mutation mutants fuzz docs-all build-cost headers-all
-                  python-types separate clang-tidy-all asan-all guest-long package debian13 arm64)
+                  python-types browser separate clang-tidy-all asan-all guest-long package debian13 arm64)
 }
 
 logs=build/logs
@@ -313,6 +313,13 @@ lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
 
 lane_python-types() {  # mypy --strict of the Python client and its example
   mypy --cache-dir build/mypy --strict --config-file tools/python/mypy.ini tools/python
+}
+
+lane_browser() {  # the page of `flexarm dashboard` in headless Chromium; pictures in build/browser
+  build release flexarm flexarm-web flexarmd
+  # Debian's Python, which has Debian's selenium.
+  FLEXARM_BIN="$PWD/build/release/bin" /usr/bin/python3 tests/browser/dashboard_page_test.py
+  note "$(find build/browser -name '*.png' | wc -l) pictures"
 }
 
 lane_separate() {  # every source compiles by itself, without batches

@@ -4,7 +4,7 @@ import {anglesOf, tipOf} from "./arm.js";
 import {byId, make, makeSvg, setText, signed} from "./reading.js";
 
 const SPAN_S = 20;
-const WIDTH = 600, HEIGHT = 170, LEFT = 52, RIGHT = 8, TOP = 8, BOTTOM = 22;
+const WIDTH = 340, HEIGHT = 170, LEFT = 44, RIGHT = 8, TOP = 8, BOTTOM = 20;
 
 const CURVES = [
   {title: "Joint 1", unit: "deg", decimals: 1, least: 4, pick: (s) => s.angle[0], ref: (s) => s.wanted[0]},
@@ -31,7 +31,7 @@ class Plot {
     this.grid = makeSvg("g", {class: "plot-grid"});
     this.reference = makeSvg("path", {class: "plot-reference"});
     this.measured = makeSvg("path", {class: "plot-measured"});
-    this.svg.append(this.grid, this.reference, this.measured);
+    this.svg.append(this.grid, this.measured, this.reference);
     figure.append(this.caption, this.svg);
     parent.append(figure);
   }
@@ -72,7 +72,7 @@ class Plot {
     for (let t = -SPAN_S; t <= 0; t += 5) {
       const at = LEFT + (WIDTH - LEFT - RIGHT) * (1 + t / SPAN_S);
       parts.push(line(at, TOP, at, HEIGHT - BOTTOM),
-        label(t ? `\u2212${-t} s` : "now", at, HEIGHT - 6, t ? "middle" : "end"));
+        label(t ? `\u2212${-t} s` : "now", at, HEIGHT - 5, t ? "middle" : "end"));
     }
     this.grid.replaceChildren(...parts);
   }

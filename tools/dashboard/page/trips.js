@@ -13,11 +13,14 @@ function evidenceOf(cause) {
 }
 
 // @param advice  a row of /api/explain, or undefined
-function linesOf(cause, advice) {
+// @param told  whether the same cause is told above
+function linesOf(cause, advice, told) {
   const lines = [];
   const evidence = evidenceOf(cause);
   if (evidence) lines.push(["measured", evidence]);
-  if (advice) {
+  if (told) {
+    lines.push(["what to do", "as above; it is still there"]);
+  } else if (advice) {
     lines.push(["what happened", advice.happened], ["check", advice.check], ["what to do", advice.remedy]);
   } else if (textOf(cause.text)) {
     lines.push(["what to do", cause.text]);
@@ -38,7 +41,8 @@ export class TripsView {
 
   show(status) {
     const causes = listOf(status.present).map(objectOf).map((cause) => ({cause, kind: "present"}));
-    if (status.trip) causes.unshift({cause: objectOf(status.trip), kind: "trip"});
+    const trip = objectOf(status.trip);
+    if (status.trip) causes.unshift({cause: trip, kind: "trip"});
     byId("trips").hidden = !causes.length;
     setText(byId("trips-title"), status.trip ? "Trip" : "Would trip now");
     fillChildren(byId("trip-list"), causes, () => {
@@ -49,7 +53,8 @@ export class TripsView {
       const name = textOf(cause.name, "-");
       part.dataset.kind = kind;
       setText(part.children[0], `${kind === "trip" ? "TRIP" : "present"}: ${name}`);
-      fillChildren(part.children[1], linesOf(cause, this.advice.get(name)), () => {
+      const told = kind === "present" && name === trip.name;
+      fillChildren(part.children[1], linesOf(cause, this.advice.get(name), told), () => {
         const row = make("div");
         row.append(make("dt"), make("dd"));
         return row;
@@ -58,6 +63,5 @@ export class TripsView {
         setText(row.children[1], text);
       });
     });
-    return causes.map(({cause, kind}) => `${kind} ${textOf(cause.name)}`).join(", ");
   }
 }
