@@ -3,6 +3,7 @@
 started, watched and stopped; a trip is explained; on a phone; with the keyboard alone; without
 motion and colours. The pictures are in build/browser and are looked at here and by people."""
 
+import signal
 import sys
 import time
 import unittest
@@ -95,6 +96,7 @@ class DashboardPage(ProgramTest):
         self.assertGreater(len(strain.colours()), 10)
         self.assertEqual(self.page.run("return document.querySelectorAll('#strain .bar').length"), 22)
         self.page.click("#stop")
+        self.page.wait_for_text("#answers", "stop: ok")
         self.page.wait_for(lambda: self.page.text("#state-name") in ("Stopping", "Armed"), "stops")
         self.page.wait_for_text("#state-name", "Armed")
         self.page.wait_for_text("#run", "stopped")
@@ -237,10 +239,14 @@ class DashboardPage(ProgramTest):
         self.start_idle_daemon()
         self.page.wait_for_text("#freshness", "live")
         self.assertFalse(self.page.shown("#alarm"))
-        self.dashboard.process.send_signal(19)  # SIGSTOP: it says nothing any more
+        self.dashboard.process.send_signal(signal.SIGSTOP)  # it says nothing any more
         self.page.wait_for_text("#freshness", "OLD")
-        self.dashboard.process.send_signal(18)  # SIGCONT
+        self.dashboard.process.send_signal(signal.SIGCONT)
         self.page.wait_for_text("#freshness", "live")
+        self.dashboard.end()
+        self.page.wait_for_text("#alarm", "the server does not answer")
+        self.page.keys(Keys.ESCAPE)
+        self.page.wait_for_text("#stop-answer", "NOT SENT")
 
 
 if __name__ == "__main__":

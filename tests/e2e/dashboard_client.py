@@ -18,6 +18,7 @@ class Dashboard:
     """Runs `flexarm dashboard` for the daemon at FOLDER/socket, on a free port."""
 
     def __init__(self, folder, *arguments):
+        self.address = "127.0.0.1"
         self.errors_file = folder / "dashboard.log"
         with open(self.errors_file, "w", encoding="utf-8") as log:
             self.process = subprocess.Popen(
@@ -45,7 +46,7 @@ class Dashboard:
 
     @contextlib.contextmanager
     def connection(self):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=WITHIN_S)
+        connection = http.client.HTTPConnection(self.address, self.port, timeout=WITHIN_S)
         try:
             yield connection
         finally:
@@ -56,12 +57,12 @@ class Dashboard:
         if receive_bytes is not None:
             client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
         client.settimeout(WITHIN_S)
-        client.connect(("127.0.0.1", self.port))
+        client.connect((self.address, self.port))
         return client
 
     def ask(self, method, path, body=None, **headers):
         """Status and body. A header with the value None is left out."""
-        all_headers = {"Host": f"127.0.0.1:{self.port}", **headers}
+        all_headers = {"Host": f"{self.address}:{self.port}", **headers}
         with self.connection() as connection:
             connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
             for name, value in all_headers.items():
@@ -85,7 +86,7 @@ class Dashboard:
     def post(self, body, **headers):
         """A command as the page sends it; `headers` replace its own."""
         status, text = self.ask("POST", "/api/command", body.encode(), **{
-            "Origin": f"http://127.0.0.1:{self.port}", "Content-Type": "application/json",
+            "Origin": f"http://{self.address}:{self.port}", "Content-Type": "application/json",
             "Authorization": f"Bearer {self.token}", **headers})
         return status, json.loads(text)
 

@@ -7,6 +7,7 @@ import json
 import os
 import resource
 import select
+import signal
 import socket
 import sys
 import time
@@ -172,6 +173,27 @@ class WhoMayDoWhat(DashboardTest):
         self.arm(dashboard)
         self.assertEqual(dashboard.command("disarm")[0], 200)
 
+    def test_what_other_computers_reach_needs_the_token_for_values_too(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.connect(("192.0.2.1", 9))  # sends nothing: asks which address would
+            except OSError:
+                self.skipTest("this computer has no address but its own")
+            address = probe.getsockname()[0]
+        token = self.folder / "token"
+        token.write_text("0123456789abcdefghij\n", encoding="utf-8")
+        token.chmod(0o600)
+        self.start_idle_daemon()
+        dashboard = self.start_dashboard("--allow-control", "--token-file", token, "--bind", address)
+        self.assertIn("not encrypted", dashboard.errors())
+        dashboard.token, dashboard.address = "0123456789abcdefghij", address
+        with_token = {"Authorization": f"Bearer {dashboard.token}"}
+        self.wait_for(lambda: dashboard.get("/api/status", **with_token)[0] == 200, "a status")
+        for path in ("/api/status", "/api/stream", "/api/about", "/api/explain"):
+            self.assertEqual(dashboard.get(path)[0], 401, path)
+        self.assertEqual(dashboard.get("/")[0], 200, "the page, which asks for the token")
+        self.assertEqual(dashboard.get("/api/status", Host=f"localhost:{dashboard.port}", **with_token)[0], 403)
+
 
 class Requests(DashboardTest):
     def test_an_experiment_is_started_watched_and_stopped(self):
@@ -231,7 +253,7 @@ class Requests(DashboardTest):
         dashboard = self.start("--allow-control")
         with Stream(dashboard) as stream, dashboard.socket() as client:
             stream.event()
-            self.daemon.send_signal(19)  # SIGSTOP: it does not answer
+            self.daemon.send_signal(signal.SIGSTOP)  # it does not answer
             body = '{"command":"arm"}'
             client.sendall((f"POST /api/command HTTP/1.1\r\nHost: 127.0.0.1:{dashboard.port}\r\n"
                             f"Origin: http://127.0.0.1:{dashboard.port}\r\n"

@@ -1,7 +1,7 @@
 // What the operator may do: the token, the commands, the keys.
 
 import {anglesOf} from "./arm.js";
-import {byId, make, objectOf, setText, textOf} from "./reading.js";
+import {byId, make, objectOf, setLook, setText, textOf} from "./reading.js";
 
 const MOST_ANSWERS = 6;
 const PRESS_MS = 300;  // of the simulated reset button; the daemon wants 50 ms
@@ -39,6 +39,7 @@ export class Controls {
   constructor(token) {
     this.token = token;
     this.allowed = false;
+    this.needsToken = false;  // to see values, too: others than this computer reach the server
     this.state = "";
     this.status = {};
     byId("token-form").addEventListener("submit", (event) => {
@@ -89,6 +90,7 @@ export class Controls {
   // @param about  of the server
   setAbout(about) {
     this.about = about;
+    this.needsToken = false;
     const select = byId("experiment"), names = about.experiments ?? [];
     if (select.children.length !== names.length) {
       select.replaceChildren(...names.map((name) => make("option", "", name)));
@@ -96,8 +98,14 @@ export class Controls {
     this.showMode();
   }
 
+  askForToken() {
+    this.token.clear();
+    this.needsToken = true;
+    this.showMode();
+  }
+
   showMode() {
-    const control = this.about?.control === true;
+    const control = this.needsToken || this.about?.control === true;
     this.allowed = control && this.token.get() !== "";
     byId("controls").hidden = !control;
     byId("token-form").hidden = this.allowed;
@@ -109,6 +117,7 @@ export class Controls {
   }
 
   show(status) {
+    if (textOf(status.state) !== this.state) setText(byId("stop-answer"), "");
     this.status = status;
     this.state = textOf(status.state);
     byId("sim").hidden = status.backend !== "sim";
@@ -186,6 +195,10 @@ export class Controls {
     const time = new Date().toTimeString().slice(0, 8);
     const line = make("li", "", `${time} ${name}: ${text}`);
     line.dataset.look = look;
+    if (name === "stop") {  // also where the answers are out of view
+      setText(byId("stop-answer"), `stop: ${text}`);
+      setLook(byId("stop-answer"), look);
+    }
     byId("answers").prepend(line);
     while (byId("answers").children.length > MOST_ANSWERS) byId("answers").lastElementChild.remove();
   }

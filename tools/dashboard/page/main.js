@@ -112,7 +112,8 @@ function takeStatus(status) {
     {look: "caution", shape: "question", what: name.startsWith("Testing") ? "the power path is tested" : ""};
   const run = objectOf(status.run);
   const runs = name === "Running" && run.outcome === "running";
-  showState(name, runs ? `${textOf(run.name)}: the arm moves` : known.what, known.look, known.shape);
+  const about = runs ? `${textOf(run.name)}: ` : status.trip ? `${textOf(objectOf(status.trip).name)}: ` : "";
+  showState(name, about + known.what, known.look, known.shape);
   setText(byId("rig"), `${textOf(status.rig, "flexarm")}, ${textOf(status.backend, "-")}`);
   document.title = `${name} \u2013 ${textOf(status.rig, "flexarm")}`;
   trips.show(status);
@@ -133,7 +134,7 @@ function takeEvent(name, data) {
 
 async function ask(path) {
   const response = await fetch(path, {headers: token.headers(), cache: "no-store"});
-  if (response.status === 401) token.clear();
+  if (response.status === 401) controls.askForToken();
   if (!response.ok) throw new Error(`${path}: ${response.status}`);
   return response.json();
 }
