@@ -63,7 +63,7 @@ class DashboardTest(ProgramTest):
 
 
 class WhoMayDoWhat(DashboardTest):
-    def test_without_allow_control_it_is_read_only(self):
+    def test_without_allow_control_it_is_read_only_and_for_this_page_and_programs_here(self):
         dashboard = self.start()
         self.assertNotIn("token", dashboard.url)
         self.assertFalse(dashboard.json("/api/about")["control"])
@@ -73,6 +73,25 @@ class WhoMayDoWhat(DashboardTest):
             self.assertEqual((status, answer["ok"]), (403, False))
             self.assertIn("read only", answer["error"])
         self.assertEqual(dashboard.json("/api/status")["state"], "Idle")
+        for path in ("/", "/main.js", "/api/status", "/api/about", "/api/explain", "/api/stream"):
+            self.assertEqual(dashboard.get(path, Host=f"rig.example:{dashboard.port}")[0], 403, path)
+        for path in ("/api/status", "/api/stream"):
+            self.assertEqual(dashboard.get(path, Origin="http://rig.example")[0], 403, path)
+            self.assertEqual(dashboard.get(path, **{"Sec-Fetch-Site": "cross-site"})[0], 403, path)
+        self.assertEqual(dashboard.get("/api/status", Origin=f"http://127.0.0.1:{dashboard.port}")[0], 200)
+        with dashboard.connection() as connection:
+            connection.request("GET", "/")
+            reply = connection.getresponse()
+            for name, value in (("X-Content-Type-Options", "nosniff"), ("Cache-Control", "no-store"),
+                                ("X-Frame-Options", "DENY")):
+                self.assertEqual(reply.headers[name], value)
+            policy = reply.headers["Content-Security-Policy"]
+            self.assertIn("default-src 'none'", policy)
+            self.assertNotIn("unsafe", policy)
+            self.assertIsNone(reply.headers["Access-Control-Allow-Origin"])
+        self.assertEqual(dashboard.ask("POST", "/api/status")[0], 405)
+        self.assertEqual(dashboard.ask("OPTIONS", "/api/command")[0], 405)
+        self.assertEqual(dashboard.get("/../etc/passwd")[0], 404)
 
     def test_a_command_needs_token_origin_host_and_type(self):
         dashboard = self.start("--allow-control")
@@ -108,28 +127,6 @@ class WhoMayDoWhat(DashboardTest):
             self.assertIn(told, (200, 409), answer)  # 409: the daemon has nothing to stop
             self.assertIn("state", answer)
         self.assertEqual(dashboard.command("disarm", Origin=own)[0], 200)
-
-    def test_values_are_for_this_page_and_for_programs_of_this_computer(self):
-        dashboard = self.start()
-        for path in ("/", "/main.js", "/api/status", "/api/about", "/api/explain", "/api/stream"):
-            self.assertEqual(dashboard.get(path, Host=f"rig.example:{dashboard.port}")[0], 403, path)
-        for path in ("/api/status", "/api/stream"):
-            self.assertEqual(dashboard.get(path, Origin="http://rig.example")[0], 403, path)
-            self.assertEqual(dashboard.get(path, **{"Sec-Fetch-Site": "cross-site"})[0], 403, path)
-        self.assertEqual(dashboard.get("/api/status", Origin=f"http://127.0.0.1:{dashboard.port}")[0], 200)
-        with dashboard.connection() as connection:
-            connection.request("GET", "/")
-            reply = connection.getresponse()
-            for name, value in (("X-Content-Type-Options", "nosniff"), ("Cache-Control", "no-store"),
-                                ("X-Frame-Options", "DENY")):
-                self.assertEqual(reply.headers[name], value)
-            policy = reply.headers["Content-Security-Policy"]
-            self.assertIn("default-src 'none'", policy)
-            self.assertNotIn("unsafe", policy)
-            self.assertIsNone(reply.headers["Access-Control-Allow-Origin"])
-        self.assertEqual(dashboard.ask("POST", "/api/status")[0], 405)
-        self.assertEqual(dashboard.ask("OPTIONS", "/api/command")[0], 405)
-        self.assertEqual(dashboard.get("/../etc/passwd")[0], 404)
 
     def test_wrong_tokens_are_answered_late_and_hold_up_no_stop(self):
         dashboard = self.start("--allow-control")
