@@ -47,7 +47,7 @@ BROKEN_CONFIGS = {
 }
 
 BROKEN_EXPERIMENTS = {
-    "a key missing": ("duration_s = 6.0", "", "duration_s"),
+    "a key missing": ("start_s = 0.0", "", "start_s"),
     "an unknown shape": ('"square"', '"triangle"', "shape"),
     "moves that overlap": ("start_s = 3.0", "start_s = 0.5", "doublet"),
     "an unknown line": ('[[doublet]]', '[[sim_event]]\nat_s = 1.0\nline = "limit-9"\nlevel = 0\n\n'

@@ -178,5 +178,32 @@ class Calibrated(ProgramTest):
                             "--calibration")
 
 
+class OfATrip(ProgramTest):
+    @in_real_time
+    def test_a_trip_outside_a_run_is_a_table_of_the_time_before_it(self):
+        self.start_daemon()
+        self.wait_for_state("Idle")
+        time.sleep(0.8)  # at rest means half a second of rest
+        self.operate("arm")
+        self.operate("sim", "emergency-stop", "0")
+        self.wait_for_state("Tripped")
+        run = self.wait_for_trip_log()
+        table = self.folder / "trip.csv"
+        self.flexarm("export", run, "--decoded", "-o", table)
+        with open(table, encoding="utf-8", newline="") as file:
+            _, *states = [row["state"] for row in csv.DictReader(file)]  # after the units
+        self.assertLessEqual({"Idle", "Armed", "Tripped"}, set(states))
+        self.assertEqual(states[-1], "Tripped")
+
+    def wait_for_trip_log(self, within_s=20):
+        end = time.monotonic() + within_s
+        while time.monotonic() < end:
+            for run in (self.folder / "runs").glob("*-trip-emergency-stop.flexarm"):
+                if self.flexarm_json("info", run)["closed"]:
+                    return run
+            time.sleep(0.1)
+        return self.fail(f"no closed log of the trip\n{self.daemon_log()}")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -100,7 +100,6 @@ class RunLog(DaemonRuns):
         self.assertEqual([check["name"] for check in checks if not check["passed"]],
                          ["begins-with-reset"], "what precedes a reset cannot be replayed")
         self.flexarm("plot", run, "-o", self.folder / "trip.png")
-        self.flexarm("export", run, "-o", self.folder / "trip.csv")
 
     @in_real_time
     def test_without_a_file_nothing_is_armed_unless_the_config_says_so(self):
