@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
   only_all_lanes=(guards unit campaigns slowest mutation mutants fuzz docs-all build-cost headers-all
-                  python-types separate clang-tidy-all asan-all guest-long package cluster debian13 arm64)
+                  python-types browser separate clang-tidy-all asan-all guest-long package cluster debian13 arm64)
 }
 
 logs=build/logs
@@ -131,7 +131,7 @@ lane_unit() {  # tests labelled unit, release build (part of release)
   list=$(ninja -C build/release -t targets all | sed -n 's/^\([a-z_]*_test\): phony$/\1/p' |
          grep -vE '^cmake_|_(loop|long|rt)_test$')
   mapfile -t programs <<<"$list"
-  build release flexarm flexarm-study "${programs[@]}"
+  build release flexarm flexarm-study flexarm-web "${programs[@]}"
   ctest --preset unit
 }
 
@@ -152,7 +152,7 @@ lane_campaigns() {  # random campaigns at their whole size; `release` runs a sam
   FLEXARM_CAMPAIGN=whole build/release/tests/tools/bound/tools_bound_long_test
   build release tools_torture_long_test
   FLEXARM_CAMPAIGN=whole build/release/tests/tools/torture/tools_torture_long_test
-  build release flexarm flexarm-study flexarmd
+  build release flexarm flexarm-study flexarm-web flexarmd
   tests/e2e/fault_matrix_check.sh build/release/bin/flexarm
   FLEXARM_CAMPAIGN=whole FLEXARM_BIN="$PWD/build/release/bin" python3 tests/e2e/killed_run_test.py
   build tsan wired_threads_test
@@ -176,17 +176,17 @@ lane_slowest() {  # searches the slowest control step, safety tick and plan (FLE
 }
 
 lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, wrong input
-  build release flexarm flexarm-study flexarmd unfit_program
+  build release flexarm flexarm-study flexarm-web flexarmd unfit_program
   ctest --preset e2e
 }
 
 lane_docs() {  # command blocks `ci` of the pages, from a clean clone and with the installed programs
-  build release flexarm flexarm-study flexarmd
+  build release flexarm flexarm-study flexarm-web flexarmd
   tests/docs/run_blocks.py ci --build build/release --note "$logs/$lane.note"
 }
 
 lane_docs-all() {  # command blocks `all` of the pages, which take minutes
-  build release flexarm flexarm-study flexarmd
+  build release flexarm flexarm-study flexarm-web flexarmd
   local pages page
   pages=$(tests/docs/run_blocks.py all --build build/release --list)
   for page in $pages; do
@@ -196,7 +196,7 @@ lane_docs-all() {  # command blocks `all` of the pages, which take minutes
 }
 
 lane_mutation() {  # 20,000 changed inputs of every kind to the programs (part of e2e: 1,000)
-  build release flexarm flexarm-study flexarmd
+  build release flexarm flexarm-study flexarm-web flexarmd
   tests/mutation/mutation_test.py --inputs 20000 --seed "${FLEXARM_SEED:-1}" --note "$logs/$lane.note"
 }
 
@@ -267,7 +267,7 @@ lane_headers-all() {  # every public header compiles on its own
 }
 
 lane_install() {  # cmake --install leaves a complete tree, and systemd accepts the unit
-  build release flexarm flexarm-study flexarmd
+  build release flexarm flexarm-study flexarm-web flexarmd
   tests/e2e/install_check.sh build/release
 }
 
@@ -315,6 +315,13 @@ lane_python-types() {  # mypy --strict of the Python client and its example
   mypy --cache-dir build/mypy --strict --config-file tools/python/mypy.ini tools/python
 }
 
+lane_browser() {  # the page of `flexarm dashboard` in headless Chromium; pictures in build/browser
+  build release flexarm flexarm-web flexarmd
+  # Debian's Python, which has Debian's selenium.
+  FLEXARM_BIN="$PWD/build/release/bin" /usr/bin/python3 tests/browser/dashboard_page_test.py
+  note "$(find build/browser -name '*.png' | wc -l) pictures"
+}
+
 lane_separate() {  # every source compiles by itself, without batches
   build separate
 }
@@ -337,7 +344,7 @@ lane_clang-tidy-all() {  # .clang-tidy on product and tests; unchanged files are
 }
 
 lane_package() {  # the Debian package: same bytes twice, lintian, and dpkg in a bare Debian
-  build release flexarm flexarm-study flexarmd
+  build release flexarm flexarm-study flexarm-web flexarmd
   tests/package/package_check.sh build/release
 }
 

@@ -90,68 +90,80 @@ nlohmann::json ChangeCommand::Refused(const std::string& refusal, const std::str
                                       const OperatorSnapshot& now) const {
   nlohmann::json json{{"ok", false}, {"refusal", refusal}, {"error", error}};
   if (!remedy.empty()) json["remedy"] = remedy;
-  if (waits_) json["command"] = waits_->name;
+  if (waits_) json["command"] = waits_->wish.name;
   json["state"] = ToString(now.permit.state);
   return json;
 }
 
-nlohmann::json ChangeCommand::Start(const std::string& name, const nlohmann::json& command,
-                                    int client, const OperatorSnapshot& now) {
-  const Permit& permit = now.permit;
-  const std::uint32_t followed =
-      permit.change.number != 0 ? permit.change.number : permit.run_number;
-  const TickRecord& tick = now.tick;
-  if (permit.state != SafetyState::kRunning || tick.run_number != permit.run_number) {
-    return RefusalJson(RequestKind::kChange, Refusal::kWrongState, permit.state);
-  }
-  if (granted_in_ == permit.run_number && tick.change_number != granted_) {
-    return RefusalJson(RequestKind::kChange, Refusal::kBusy, permit.state);
-  }
-  std::shared_ptr<const PlannedExperiment> planned = targets_.experiments->Find(followed);
-  const std::string why = planned == nullptr || planned->mode != LoopMode::kFollow
-                              ? "this motion follows no path"
-                              : WhyNoChange(planned->reference);
-  if (!why.empty()) {
-    return Refused("no-path", why, "let it end, or `flexarm stop`", now);
-  }
-  const double speed = planned->reference.path_plan()->time.speed();
-  const bool paused = speed == 0.0;
-  Waiting waits{.name = name,
-                .client = client,
-                .run = permit.run_number,
-                .planned = std::move(planned),
-                .path = {},
-                .text = {},
-                .ahead = std::max(kChangeLead + 1,
-                                  static_cast<int>(std::ceil(kAhead_s / targets_.period_s)))};
-  if (name == "pause") {
-    if (paused) return Refused("paused", "the run is paused", "`flexarm resume`", now);
-    resume_speed_ = speed;
-    waits.path = SpeedPath(0.0);
-    waits.text = "paused";
-  } else if (name == "resume") {
-    if (!paused) return Refused("not-paused", "the run is not paused", "", now);
-    waits.path = SpeedPath(resume_speed_);
-    waits.text = "resumed at " + PercentText(resume_speed_) + " of the planned speed";
-  } else if (name == "speed") {
+ChangeCommand::Wish ChangeCommand::WishOf(const std::string& name, const nlohmann::json& command) {
+  Wish wish{.name = name};
+  if (name == "speed") {
     if (command.find("speed_percent") == command.end()) {
       throw RejectedError("speed_percent: a number is expected");
     }
-    const double wanted = SpeedOf(command);
-    if (paused) {
-      return Refused("paused", "the run is paused", "`flexarm resume`, then set the speed", now);
-    }
-    waits.path = SpeedPath(wanted);
-    waits.text = PercentText(wanted) + " of the planned speed";
+    wish.speed = SpeedOf(command);
+  }
+  if (name == "retarget") wish.goal = GoalOf(command);
+  return wish;
+}
+
+nlohmann::json ChangeCommand::Start(const std::string& name, const nlohmann::json& command,
+                                    int client, const OperatorSnapshot& now) {
+  Wish wish = WishOf(name, command);
+  if (now.permit.state != SafetyState::kRunning) {
+    return RefusalJson(RequestKind::kChange, Refusal::kWrongState, now.permit.state);
+  }
+  waits_ = Waiting{.wish = std::move(wish),
+                   .client = client,
+                   .run = now.permit.run_number,
+                   .ahead = std::max(kChangeLead + 1,
+                                     static_cast<int>(std::ceil(kAhead_s / targets_.period_s)))};
+  if (!IsFollowed(now)) return nullptr;
+  nlohmann::json refused = Begin(now);
+  if (!refused.is_null()) waits_.reset();
+  return refused;
+}
+
+// The run, and the change of it that was granted last, are what the loop does.
+bool ChangeCommand::IsFollowed(const OperatorSnapshot& now) const {
+  const std::uint32_t change = granted_in_ == waits_->run ? granted_ : 0;
+  return now.tick.run_number == waits_->run && now.tick.change_number == change;
+}
+
+nlohmann::json ChangeCommand::Begin(const OperatorSnapshot& now) {
+  const Wish& wish = waits_->wish;
+  waits_->planned = targets_.experiments->Find(now.tick.change_number != 0 ? now.tick.change_number
+                                                                           : now.tick.run_number);
+  const PlannedExperiment* planned = waits_->planned.get();
+  const std::string why = planned == nullptr || planned->mode != LoopMode::kFollow
+                              ? "this motion follows no path"
+                              : WhyNoChange(planned->reference);
+  if (!why.empty()) return Refused("no-path", why, "let it end, or `flexarm stop`", now);
+  const double speed = planned->reference.path_plan()->time.speed();
+  const bool paused = speed == 0.0;
+  if (paused && (wish.name == "pause" || wish.name == "speed")) {
+    return Refused("paused", "the run is paused", "`flexarm resume`", now);
+  }
+  if (!paused && wish.name == "resume") {
+    return Refused("not-paused", "the run is not paused", "", now);
+  }
+  if (wish.name == "pause") {
+    resume_speed_ = speed;
+    waits_->path = SpeedPath(0.0);
+    waits_->text = "paused";
+  } else if (wish.name == "resume") {
+    waits_->path = SpeedPath(resume_speed_);
+    waits_->text = "resumed at " + PercentText(resume_speed_) + " of the planned speed";
+  } else if (wish.name == "speed") {
+    waits_->path = SpeedPath(wish.speed);
+    waits_->text = PercentText(wish.speed) + " of the planned speed";
   } else {
-    const Move goal = GoalOf(command);
-    waits.path = [goal](const ReferenceTable& table, int from, const Design& design,
-                        const MotionLimits& limits) {
+    waits_->path = [goal = wish.goal](const ReferenceTable& table, int from, const Design& design,
+                                      const MotionLimits& limits) {
       return Retargeted(table, from, goal, design, limits);
     };
-    waits.text = "new goal " + TextOf(goal);
+    waits_->text = "new goal " + TextOf(wish.goal);
   }
-  waits_ = std::move(waits);
   BeginPlan(now);
   return nullptr;
 }
@@ -186,11 +198,16 @@ std::optional<ClientAnswer> ChangeCommand::Follow(const OperatorSnapshot& now,
   if (cancelled_ || over || now.shutting_down || !is_there(client)) {
     nlohmann::json answer =
         RefusalJson(RequestKind::kChange, Refusal::kCancelled, now.permit.state);
-    answer["command"] = waits_->name;
+    answer["command"] = waits_->wish.name;
     answer["state"] = ToString(now.permit.state);
     return end(std::move(answer));
   }
   if (targets_.experiments->busy()) return std::nullopt;
+  if (waits_->planned == nullptr) {
+    if (!IsFollowed(now)) return std::nullopt;
+    nlohmann::json refused = Begin(now);
+    if (!refused.is_null()) return end(std::move(refused));
+  }
   std::optional<ExperimentPlanner::Outcome> planned = planner_.Take(targets_.plan_wait);
   if (!planned) return std::nullopt;
   if (planned->order && now.now_ns >= waits_->not_after_ns && waits_->tries < kMostTries) {
@@ -213,11 +230,11 @@ nlohmann::json ChangeCommand::Decide(ExperimentPlanner::Outcome planned,
       {.run = waits_->run, .not_after_ns = waits_->not_after_ns});
   if (number == 0) {
     nlohmann::json answer = RefusalJson(RequestKind::kChange, Refusal::kBusy, now.permit.state);
-    answer["command"] = waits_->name;
+    answer["command"] = waits_->wish.name;
     return answer;
   }
   asked_ = number;
-  asked_name_ = waits_->name;
+  asked_name_ = waits_->wish.name;
   asked_text_ = waits_->text;
   asked_in_ = waits_->run;
   return nullptr;

@@ -24,9 +24,10 @@ double SpeedOf(const nlohmann::json& command);
 /// `resume`, `speed` and `retarget`.
 ///
 /// The new path is computed and checked against every limit on a thread of its own, and begins at a
-/// sample ahead of the loop; then the safety task is asked for it. A plan that takes too long is
-/// made again for a later sample. A stop, a disarm, the end of the run or of the daemon, and a
-/// client that has gone cancel it. Not real-time safe. Thread: operator.
+/// sample ahead of the loop; then the safety task is asked for it. A command waits until the loop
+/// follows the change before it; a plan that takes too long is made again for a later sample. A
+/// stop, a disarm, the end of the run or of the daemon, and a client that has gone cancel it. Not
+/// real-time safe. Thread: operator.
 class ChangeCommand {
  public:
   /// All of it outlives the command.
@@ -60,18 +61,28 @@ class ChangeCommand {
   bool planning() const { return waits_.has_value(); }
 
  private:
-  struct Waiting {
+  /// What a client asks for.
+  struct Wish {
     std::string name;
+    double speed = 1.0;         ///< of `speed`
+    Move goal{.start_s = 0.0};  ///< of `retarget`
+  };
+  struct Waiting {
+    Wish wish;
     int client;
-    std::uint32_t run;  ///< number of the run
-    std::shared_ptr<const PlannedExperiment> planned;
-    ExperimentLoader::NewPath path;
-    std::string text;  ///< for the log
-    int ahead;         ///< samples from the command to the change
+    std::uint32_t run;                                   ///< number of the run
+    int ahead;                                           ///< samples from the command to the change
+    std::shared_ptr<const PlannedExperiment> planned{};  ///< null: the loop does not follow it yet
+    ExperimentLoader::NewPath path{};
+    std::string text{};  ///< for the log
     int tries = 1;
     std::int64_t not_after_ns = INT64_MAX;
   };
 
+  static Wish WishOf(const std::string& name, const nlohmann::json& command);
+  bool IsFollowed(const OperatorSnapshot& now) const;
+  /// @returns why it is refused; null: it is being planned
+  nlohmann::json Begin(const OperatorSnapshot& now);
   void BeginPlan(const OperatorSnapshot& now);
   nlohmann::json Decide(ExperimentPlanner::Outcome planned, const OperatorSnapshot& now);
   nlohmann::json Refused(const std::string& refusal, const std::string& error,

@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "controller/operator/unix_address.h"
 #include "controller/types/rejected_error.h"
@@ -56,39 +56,53 @@ void LimitConnect(int fd, double timeout_s) {
 
 }  // namespace
 
-std::string AskDaemon(const std::string& path, const std::string& line, double timeout_s) {
-  const UnixAddress address(path);
-  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const auto fail = [&](const std::string& what) {
-    close(fd);
-    throw RejectedError(path + ": " + what);
-  };
-  LimitConnect(fd, timeout_s);
-  if (connect(fd, address.get(), address.size()) != 0) {
-    if (errno == EACCES) {
-      fail(
-          "this user may not operate the arm (Permission denied): be a member of the group flexarm "
-          "(adduser USER flexarm, and log in again)");
-    }
-    if (errno == EAGAIN) fail("the daemon does not answer");
-    fail("no daemon answers (" + std::string(std::strerror(errno)) +
-         "); start flexarmd, or name its socket with --socket or -c FILE");
+DaemonConnection::DaemonConnection(std::string path, double timeout_s)
+    : path_(std::move(path)), socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  const UnixAddress address(path_);
+  LimitConnect(socket_.get(), timeout_s);
+  if (connect(socket_.get(), address.get(), address.size()) == 0) return;
+  if (errno == EACCES) {
+    Fail(
+        "this user may not operate the arm (Permission denied): be a member of the group flexarm "
+        "(adduser USER flexarm, and log in again)");
   }
+  if (errno == EAGAIN) Fail("the daemon does not answer");
+  Fail("no daemon answers (" + std::string(std::strerror(errno)) +
+       "); start flexarmd, or name its socket with --socket or -c FILE");
+}
+
+void DaemonConnection::Fail(const std::string& what) const {
+  throw RejectedError(path_ + ": " + what);
+}
+
+void DaemonConnection::Interrupt() noexcept { shutdown(socket_.get(), SHUT_RDWR); }
+
+void DaemonConnection::Receive(double timeout_s, const std::string& problem) {
+  if (!Readable(socket_.get(), timeout_s)) Fail("the daemon does not answer");
+  std::array<char, 4096> chunk;
+  const ssize_t count = recv(socket_.get(), chunk.data(), chunk.size(), 0);
+  if (count < 0 && errno == EINTR) return;
+  if (count <= 0 && !problem.empty()) Fail("the daemon did not take the command: " + problem);
+  if (count <= 0) Fail("the daemon closed the connection");
+  received_.append(chunk.data(), static_cast<std::size_t>(count));
+  if (received_.size() > kMaxAnswer) Fail("the answer is too long to be one of a daemon");
+}
+
+std::string DaemonConnection::Ask(const std::string& line, double timeout_s) {
   // Even if the daemon has closed it: then it has said why.
-  const std::string problem = SendAll(fd, line + "\n");
-  std::string reply;
-  while (reply.find('\n') == std::string::npos) {
-    if (!Readable(fd, timeout_s)) fail("the daemon does not answer");
-    std::array<char, 4096> chunk;
-    const ssize_t count = recv(fd, chunk.data(), chunk.size(), 0);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0 && !problem.empty()) fail("the daemon did not take the command: " + problem);
-    if (count <= 0) fail("the daemon closed the connection");
-    reply.append(chunk.data(), static_cast<std::size_t>(count));
-    if (reply.size() > kMaxAnswer) fail("the answer is too long to be one of a daemon");
+  const std::string problem = SendAll(socket_.get(), line + "\n");
+  std::size_t end = received_.find('\n');
+  while (end == std::string::npos) {
+    Receive(timeout_s, problem);
+    end = received_.find('\n');
   }
-  close(fd);
-  return reply.substr(0, reply.find('\n'));
+  std::string answer = received_.substr(0, end);
+  received_.erase(0, end + 1);
+  return answer;
+}
+
+std::string AskDaemon(const std::string& path, const std::string& line, double timeout_s) {
+  return DaemonConnection(path, timeout_s).Ask(line, timeout_s);
 }
 
 }  // namespace flexarm

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "controller/operator/operator_client.h"  // the socket's other end, for its users
 #include "controller/operator/operator_connection.h"
 #include "controller/operator/operator_roles.h"
 

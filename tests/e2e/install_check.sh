@@ -16,7 +16,7 @@ DESTDIR=$machine cmake --install "$build" >/dev/null
 cd "$machine"
 find . -type f | sort
 
-for program in flexarmd flexarm flexarm-study; do
+for program in flexarmd flexarm flexarm-study flexarm-web; do
   file=$(find . -type f -name "$program" -path '*/bin/*')
   [[ -n $file ]] || fail "$program is not installed"
   "$file" --version
@@ -26,10 +26,10 @@ done
 flexarm=$(find . -type f -name flexarm -path '*/bin/*')
 
 # Manual pages and completion.
-for page in man1/flexarm.1 man1/flexarm-simulate.1 man1/flexarm-modes.1 man1/flexarm-study.1 man8/flexarmd.8; do
+for page in man1/flexarm.1 man1/flexarm-simulate.1 man1/flexarm-modes.1 man1/flexarm-study.1 man1/flexarm-web.1 man1/flexarm-dashboard.1 man8/flexarmd.8; do
   [[ -s $(find . -path "*/man/$page") ]] || fail "$page is not installed"
 done
-for program in flexarm flexarmd flexarm-study; do
+for program in flexarm flexarmd flexarm-study flexarm-web; do
   [[ -n $(find . -path "*/bash-completion/completions/$program") ]] || fail "no completion of $program"
 done
 [[ $("$flexarm" --complete modes --js) == --json ]] || fail "the installed flexarm does not complete the verbs of flexarm-study"

@@ -14,7 +14,7 @@ COMPLETION = ROOT / "tools/command_line/completions"
 
 class Manual(ProgramTest):
     def pages(self):
-        for program in ("flexarm", "flexarm-study", "flexarmd"):
+        for program in ("flexarm", "flexarm-study", "flexarm-web", "flexarmd"):
             subprocess.run([BIN / program, "--write-manual", self.folder], check=True, timeout=60)
         return sorted(self.folder.glob("man*/*"))
 
@@ -22,7 +22,7 @@ class Manual(ProgramTest):
         names = {page.name for page in self.pages()}
         verbs = set(re.findall(r"^  ([a-z][a-z-]+)  ", self.flexarm("--help").stdout, re.M))
         self.assertGreater(len(verbs), 30)
-        self.assertEqual({"flexarm.1", "flexarm-study.1", "flexarmd.8"} |
+        self.assertEqual({"flexarm.1", "flexarm-study.1", "flexarm-web.1", "flexarmd.8"} |
                          {f"flexarm-{verb}.1" for verb in verbs}, names)
 
     def test_no_page_has_a_character_that_is_not_printable(self):
@@ -84,7 +84,7 @@ class Complete(ProgramTest):
                          {"new", "show", "check", "reference"})
 
     def test_completes_the_options_of_each_verb(self):
-        for verb in ("simulate", "modes"):  # of both programs
+        for verb in ("simulate", "modes", "dashboard"):  # of each program
             offered = set(self.complete("flexarm", verb, "--"))
             helped = set(re.findall(r"(?<![\w-])--[a-z][\w-]*",
                                     self.flexarm(verb, "--help").stdout))

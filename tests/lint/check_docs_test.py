@@ -29,7 +29,7 @@ void Add(CLI::App& app, Exit& exit) {
 }
 """,
     "tools/flexarm_study/verb_sweep.cpp": 'auto* verb = sweep->add_subcommand("merge", "Joins");\n',
-    "tools/command_line/studies.h": 'Study{"sweep", "Many runs"},\n',
+    "tools/command_line/other_programs.h": 'OtherVerb{"sweep", "Many runs"},\n',
     "config/rig.toml": "[loop]\nperiod_ms = 20  # docs/page.md section 1.2\n",
     "config/loop_binding.cpp": 'reader.Number("gate_sigmas");\n',
     "model/arm/beam.h": "/// Shapes (docs/theory/plant.md 2.1 and 2.2,\n"

@@ -23,9 +23,9 @@ wrong=$(dpkg-deb --contents "$package" | awk '
 
 dpkg-deb --raw-extract "$package" "$work/root"
 cd "$work/root"
-for file in usr/bin/{flexarm,flexarmd,flexarm-study} etc/flexarm/rig.toml \
+for file in usr/bin/{flexarm,flexarmd,flexarm-study,flexarm-web} etc/flexarm/rig.toml \
   usr/share/man/man1/flexarm{,-simulate,-study,-modes}.1.gz usr/share/man/man8/flexarmd.8.gz \
-  usr/share/bash-completion/completions/{flexarm,flexarmd,flexarm-study} \
+  usr/share/bash-completion/completions/{flexarm,flexarmd,flexarm-study,flexarm-web} \
   usr/share/doc/flexarm/{README.md,CHANGELOG.md,copyright,changelog.gz,docs/commissioning.md} \
   usr/share/flexarm/config/{hil.toml,thesis-rig.toml,experiments/square-30deg.toml} \
   usr/share/flexarm/systemd/{can.conf,can0.network,modbus-tcp.conf,telemetry.conf} \

@@ -42,13 +42,14 @@ apt-get --quiet update
 apt install "$packages/first.deb"
 check "dpkg has it" equal "$(installed)" "$(version_of first) installed"
 check "dpkg finds every file as it was packed" equal "$(dpkg --verify flexarm)" ""
-for program in flexarm flexarmd flexarm-study; do
+for program in flexarm flexarmd flexarm-study flexarm-web; do
   check "$program runs" "$program" --version
   check "no library of $program is missing" refused grep "not found" <(ldd "/usr/bin/$program")
 done
 check "the shipped config is accepted" flexarm config check $rig
 check "and simulates" flexarm simulate -c $rig --json -o /tmp/first.flexarm >/dev/null
 check "flexarm finds flexarm-study" flexarm modes -c $rig --json >/dev/null
+check "flexarm finds flexarm-web" flexarm dashboard --help >/dev/null
 check "bash completes verbs" grep -q simulate <(bash -c '
   . /usr/share/bash-completion/completions/flexarm
   COMP_WORDS=(flexarm sim) COMP_CWORD=1; _flexarm; printf "%s\n" "${COMPREPLY[@]}"')

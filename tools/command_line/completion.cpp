@@ -53,7 +53,9 @@ Completion ValueOf(const CLI::Option& option) {
 // The names of the options of a verb, long ones first.
 Words OptionNames(const CLI::App& verb) {
   Words names;
-  const auto options = verb.get_options([](const CLI::Option* o) { return o->nonpositional(); });
+  const auto options = verb.get_options([](const CLI::Option* o) {
+    return o->nonpositional() && !o->get_group().empty();  // those that --help shows
+  });
   for (const CLI::Option* option : options) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/command_line/option_value.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 
 namespace flexarm {
 namespace {
@@ -165,10 +165,8 @@ void WriteManual(const CLI::App& program, const ManualTitle& title,
   const std::filesystem::path pages = folder / ("man" + std::to_string(title.section));
   std::filesystem::create_directories(pages);
   Write(pages / FileOf(title), ManualPage(program, title));
-  const bool has_only_studies = std::ranges::all_of(
-      VerbsOf(program), [](const CLI::App* verb) { return IsStudy(verb->get_name()); });
   for (const CLI::App* verb : VerbsOf(program)) {
-    if (IsStudy(verb->get_name()) && !has_only_studies) continue;
+    if (ProgramOf(verb->get_name()) != title.command) continue;
     ManualTitle of_verb = title;
     of_verb.command = "flexarm " + verb->get_name();
     Write(pages / FileOf(of_verb), ManualPage(*verb, of_verb));

@@ -20,7 +20,7 @@ struct ManualTitle {
 std::string ManualPage(const CLI::App& app, const ManualTitle& title);
 
 /// Writes the page of a program and one of each of its verbs into FOLDER/manN. A verb that another
-/// program has (studies.h) is left to that one.
+/// program has (other_programs.h) is left to that one.
 /// @param name  of the program: "flexarm"
 /// @throws std::exception if a file cannot be written
 void WriteManual(const CLI::App& program, const ManualTitle& title,

@@ -36,6 +36,7 @@ void RegisterConfig(CLI::App& app, Exit& exit);
 void RegisterConfigNew(CLI::App& config, Exit& exit);
 void RegisterConfigReference(CLI::App& config, Exit& exit);
 void RegisterConfigShow(CLI::App& config, Exit& exit);
+void RegisterDashboard(CLI::App& app, Exit& exit);
 void RegisterDesign(CLI::App& app, Exit& exit);
 void RegisterDiff(CLI::App& app, Exit& exit);
 void RegisterExplain(CLI::App& app, Exit& exit);

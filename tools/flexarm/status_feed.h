@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "controller/runlog/file_descriptor.h"
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
 #include "tools/status/watch_rows.h"
 
 namespace flexarm {

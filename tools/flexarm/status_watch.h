@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
 
 namespace flexarm {
 

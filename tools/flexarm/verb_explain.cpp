@@ -11,10 +11,10 @@
 #include "controller/files/external_json.h"
 #include "controller/files/external_text.h"
 #include "controller/files/input_error.h"
+#include "tools/advice/advice_page.h"
 #include "tools/command_line/completion.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/advice_page.h"
 
 namespace flexarm {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
 #include "tools/status/reply.h"
 
 namespace flexarm {

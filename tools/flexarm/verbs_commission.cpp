@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
 #include "tools/status/reply.h"
 
 namespace flexarm {

@@ -8,7 +8,7 @@
 #include "controller/operator/arm_verdict.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
 #include "tools/flexarm/override_options.h"
 #include "tools/flexarm/status_watch.h"
 #include "tools/status/reply.h"

@@ -5,7 +5,7 @@
 #include "controller/types/experiment.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
 
 // Verbs that change the path of a run while it goes on. A new goal: `move --retarget`,
 // verbs_run.cpp.

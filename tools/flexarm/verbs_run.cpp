@@ -11,11 +11,11 @@
 #include "controller/operator/prove_switches.h"
 #include "controller/operator/run_command.h"
 #include "controller/runlog/run_label.h"
-#include "model/problem_list.h"
 #include "tools/command_line/label_options.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/verbs.h"
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
+#include "tools/daemon_client/move_text.h"
 #include "tools/flexarm/override_options.h"
 #include "tools/flexarm/run_wait.h"
 
@@ -79,15 +79,10 @@ struct MoveOptions {
   }
 };
 
-// Each row of the experiment is what the options say, so its messages name them.
-std::string MoveText(const MoveOptions& options, bool to_tip) {
-  const std::array<double, 2>& goal = to_tip ? options.to_tip_m : options.to_deg;
-  std::string text = "name = \"move\"\n[[move]]\nstart_s = 0.0\n";
-  text += std::string(to_tip ? "to_tip_m" : "to_deg") + " = [" + NumberText(goal[0]) + ", " +
-          NumberText(goal[1]) + "]\n";
-  if (!options.elbow.empty()) text += "elbow = \"" + options.elbow + "\"\n";
-  if (options.duration_s > 0.0) text += "duration_s = " + NumberText(options.duration_s) + "\n";
-  return text;
+MoveWish WishOf(const MoveOptions& options, bool to_tip) {
+  MoveWish wish{.elbow = options.elbow, .duration_s = options.duration_s};
+  (to_tip ? wish.to_tip_m : wish.to_deg) = to_tip ? options.to_tip_m : options.to_deg;
+  return wish;
 }
 
 void RegisterMove(CLI::App& app, Exit& exit) {
@@ -132,7 +127,7 @@ void RegisterMove(CLI::App& app, Exit& exit) {
       exit.code = daemon.Conclude(daemon.Ask(move->Goal(to_tip->count() > 0), kLongestPlan_s));
       return;
     }
-    exit.code = move->run.Run("move", MoveText(*move, to_tip->count() > 0));
+    exit.code = move->run.Run("move", MoveText(WishOf(*move, to_tip->count() > 0)));
   });
 }
 

@@ -1,12 +1,12 @@
 #include <CLI/CLI.hpp>
 
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 
 namespace flexarm {
 
 void RegisterAnalyze(CLI::App& app, Exit& exit) {
-  CLI::App* verb = AddStudy(app, "analyze");
+  CLI::App* verb = AddOtherVerb(app, "analyze");
   verb->require_subcommand(1);
   RegisterAnalyzeCheck(*verb, exit);
   RegisterAnalyzeExcite(*verb, exit);

@@ -8,7 +8,7 @@
 #include "tools/bench_host/bench_host.h"
 #include "tools/bench_host/bench_table.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/support/parallel_for.h"
 
@@ -65,7 +65,7 @@ int Run(const BenchHostOptions& options) {
 
 void RegisterBenchHost(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<BenchHostOptions>();
-  CLI::App* verb = AddStudy(app, "bench-host");
+  CLI::App* verb = AddOtherVerb(app, "bench-host");
   options->config.AddTo(verb, false);
   verb->add_flag("--quick", options->quick,
                  "Few repetitions, in some seconds: shows that all runs, not how fast");

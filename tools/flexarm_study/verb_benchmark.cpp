@@ -7,7 +7,7 @@
 #include "controller/files/write_file.h"
 #include "tools/benchmark/benchmark.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/support/parallel_for.h"
 
@@ -57,7 +57,7 @@ void Run(const BenchmarkOptions& options) {
 
 void RegisterBenchmark(CLI::App& app, Exit&) {
   const auto options = std::make_shared<BenchmarkOptions>();
-  CLI::App* verb = AddStudy(app, "benchmark");
+  CLI::App* verb = AddOtherVerb(app, "benchmark");
   options->config.AddTo(verb, true);
   verb->add_option("--table", options->table,
                    "commands (default): the commands of config/experiments\n"

@@ -18,7 +18,7 @@
 #include "tools/bound/rigid_free.h"
 #include "tools/bound/rigid_straight.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/support/parallel_for.h"
 
@@ -165,7 +165,7 @@ void AddMove(CLI::App* verb, BoundOptions* options) {
 
 void RegisterBound(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<BoundOptions>();
-  CLI::App* verb = AddStudy(app, "bound");
+  CLI::App* verb = AddOtherVerb(app, "bound");
   options->config.AddTo(verb, true);
   AddMove(verb, options.get());
   verb->add_flag("--rigid", options->rigid,

@@ -13,8 +13,8 @@
 #include "controller/runlog/decoded_csv.h"
 #include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/run_choice.h"
-#include "tools/command_line/studies.h"
 #include "tools/command_line/verbs.h"
 #include "tools/mat/decoded_mat.h"
 #include "tools/runs/run_summary.h"
@@ -108,7 +108,7 @@ void ExportDecoded(const ExportOptions& options) {
 
 void RegisterExport(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* verb = AddStudy(app, "export");
+  CLI::App* verb = AddOtherVerb(app, "export");
   options->choice.AddTo(verb);
   RefuseConfig(verb, kLogHasItsConfig);
   options->output.AddTo(verb, "CSV file to write; with --decoded also NAME.mat", true);

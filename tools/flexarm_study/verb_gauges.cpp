@@ -10,7 +10,7 @@
 #include "tools/analysis/gauge_placing.h"
 #include "tools/analysis/gauge_verification.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 
 namespace flexarm {
@@ -104,7 +104,7 @@ void RunGauges(const GaugesOptions& options) {
 
 void RegisterGauges(CLI::App& app, Exit&) {
   const auto options = std::make_shared<GaugesOptions>();
-  CLI::App* verb = AddStudy(app, "gauges");
+  CLI::App* verb = AddOtherVerb(app, "gauges");
   options->config.AddTo(verb, true);
   verb->add_option("--modes", options->choice.modes,
                    "Bending modes of a link that are to be known (default: those of the estimator)")

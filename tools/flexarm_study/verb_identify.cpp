@@ -9,7 +9,7 @@
 #include "controller/files/write_file.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/identification/changed_lines.h"
 #include "tools/identification/comparison_picture.h"
@@ -185,7 +185,7 @@ int Run(const IdentifyOptions& options) {
 
 void RegisterIdentify(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<IdentifyOptions>();
-  CLI::App* verb = AddStudy(app, "identify");
+  CLI::App* verb = AddOtherVerb(app, "identify");
   options->config.AddTo(verb, false);
   verb->add_option("--run", options->run, "Run log or CSV file (*.csv) to identify from")
       ->required()

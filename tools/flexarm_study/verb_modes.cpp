@@ -20,7 +20,7 @@
 #include "model/units.h"
 #include "tools/analysis/beam_report.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/plot/gnuplot.h"
 
@@ -228,7 +228,7 @@ void AddFriction(CLI::App* verb, ModesOptions* options) {
 
 void RegisterModes(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ModesOptions>();
-  CLI::App* verb = AddStudy(app, "modes");
+  CLI::App* verb = AddOtherVerb(app, "modes");
   options->config.AddTo(verb, true);
   verb->add_option("--modes", options->modes, "Bending modes a link")
       ->check(CLI::Range(1, 6))

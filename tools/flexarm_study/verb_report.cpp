@@ -5,7 +5,7 @@
 
 #include "controller/files/external_json.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/report/report.h"
 
@@ -42,7 +42,7 @@ void Run(const ReportOptions& options) {
 
 void RegisterReport(CLI::App& app, Exit&) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* verb = AddStudy(app, "report");
+  CLI::App* verb = AddOtherVerb(app, "report");
   options->config.AddTo(verb, true);
   verb->add_option("-o,--output", options->output, "Folder to write, new or empty")
       ->required()

@@ -9,7 +9,7 @@
 #include "controller/runlog/errors.h"
 #include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/plot/gnuplot.h"
 #include "tools/support/parallel_for.h"
@@ -224,7 +224,7 @@ void AddAxisOptions(CLI::App* verb, RunOptions* options) {
 
 void RegisterSweep(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<RunOptions>();
-  CLI::App* verb = AddStudy(app, "sweep");
+  CLI::App* verb = AddOtherVerb(app, "sweep");
   options->config.AddTo(verb, false);
   verb->add_option("--experiment", options->experiment,
                    "Experiment, a TOML file (default: experiments/square-30deg.toml beside the "

@@ -10,7 +10,7 @@
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/options.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
 #include "tools/support/parallel_for.h"
 #include "tools/sweep/sweep_grid.h"
@@ -134,7 +134,7 @@ int Run(const TortureOptions& options) {
 
 void RegisterTorture(CLI::App& app, Exit& exit) {
   const auto options = std::make_shared<TortureOptions>();
-  CLI::App* verb = AddStudy(app, "torture");
+  CLI::App* verb = AddOtherVerb(app, "torture");
   options->config.AddTo(verb, true);
   verb->add_option("--seeds", options->seeds,
                    "Seeds of the scenarios, such as 1..1000 (default) or 4711")

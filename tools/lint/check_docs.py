@@ -72,7 +72,7 @@ FILE_KINDS = {"h", "cpp", "py", "sh", "md", "json", "csv", "toml", "svg", "png",
 
 VERB = re.compile(r"(\w+)(?:\.|->)add_subcommand\(\s*\"([\w-]+)\""
                   r"|\bAdd(?:Verb|Command)\(\s*(app),(?: exit,)?\s*\"([\w-]+)\"")
-STUDY = re.compile(r"\bStudy\{\s*\"([\w-]+)\"")
+OTHER_VERB = re.compile(r"\bOtherVerb\{\s*\"([\w-]+)\"")
 OPTION = re.compile(r"(?<![\w-])--[a-z][\w-]*")
 COMMAND = re.compile(r"(?:^|[;&|(]|\$)\s*(flexarm(?:d|-study)?)((?:\s+[^\s;&|]+)*)")
 SAID_COMMAND = re.compile(r"(?:[\"`]\s*|Examples?:\s+|Next:\s+|&& )"
@@ -172,7 +172,7 @@ class Tree:
         """Of each verb, its own verbs. Files of a verb that has some are called verb_NAME*.cpp."""
         found = {}
         for path, text in self.code("tools/", ".h", ".cpp"):
-            for verb in STUDY.findall(text):
+            for verb in OTHER_VERB.findall(text):
                 found.setdefault(verb, set())
             for parent, verb, top, command in VERB.findall(text):
                 if top or parent == "app":

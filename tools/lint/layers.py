@@ -51,7 +51,7 @@ LAYERS = {
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
-    "controller/host": "model hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
+    "controller/host": "model model/beam hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
                        "controller/latch controller/telemetry controller/operator",
     "config/derivation": "model model/beam model/parameters hal estimator",
@@ -75,6 +75,11 @@ LAYERS = {
                  "controller/host config tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
     "tools/status": "model",
+    "tools/advice": "controller/types controller/operator",
+    "tools/daemon_client": "model controller/runlog controller/operator config "
+                           "tools/command_line tools/status",
+    "tools/dashboard": "controller/files controller/types controller/runlog controller/operator "
+                       "config tools/status tools/advice tools/daemon_client",
     "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
                       "model/simulation model/perturbation model/reduction controller/files config tools/support "
                       "tools/runs tools/plot",
@@ -104,13 +109,14 @@ LAYERS = {
                      "controller/types controller/safety controller/law controller/design "
                      "controller/runlog "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/support tools/replay tools/runs tools/plot tools/trip_report tools/csv tools/command_line tools/status controller/files",
+                     "tools/support tools/replay tools/runs tools/plot tools/trip_report tools/csv tools/command_line tools/status tools/advice tools/daemon_client controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
                            "tools/identification tools/thesis tools/report controller/files tools/plot "
                            "controller/types controller/commissioning tools/bound tools/torture tools/bench_host "
                            "tools/mat",
+    "tools/flexarm_web": "controller/files tools/command_line tools/daemon_client tools/dashboard",
     "tools/flexarmd": "hal controller/realtime controller/types controller/runlog controller/host "
                       "config controller/files tools/command_line tools/trip_report",
 }

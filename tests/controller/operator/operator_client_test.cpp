@@ -5,7 +5,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <thread>
+#include <vector>
 
 #include "controller/operator/operator_socket.h"
 #include "controller/operator/unix_address.h"
@@ -86,6 +88,38 @@ TEST_F(OperatorClientTest, GivesUpOnADaemonThatStandsStillHoweverOftenItIsAsked)
     const auto ask = [&] { AskDaemon(path_, "{}", 0.02); };
     EXPECT_THAT(MessageOf<RejectedError>(ask), HasSubstr("the daemon does not answer")) << i;
   }
+}
+
+TEST_F(OperatorClientTest, AsksOneLineAfterTheOtherOverOneConnection) {
+  OperatorSocket server(path_);
+  std::vector<std::string> answers;
+  std::thread client([&] {
+    DaemonConnection daemon(path_, 60.0);
+    for (const char* line : {"one", "two", "three"}) answers.push_back(daemon.Ask(line, 60.0));
+  });
+  std::set<int> clients;
+  for (int asked = 0; asked < 3;) {
+    for (const auto& message : server.Poll()) {
+      server.Reply(message.client, message.line + " answered");
+      clients.insert(message.client);
+      ++asked;
+    }
+  }
+  client.join();
+  EXPECT_EQ(answers, (std::vector<std::string>{"one answered", "two answered", "three answered"}));
+  EXPECT_EQ(clients.size(), 1U);
+}
+
+TEST_F(OperatorClientTest, AnotherThreadEndsAWait) {
+  OperatorSocket server(path_);
+  DaemonConnection daemon(path_, 60.0);
+  std::string told;
+  std::thread client([&] { told = MessageOf<RejectedError>([&] { daemon.Ask("{}", 600.0); }); });
+  while (server.Poll().empty()) {
+  }
+  daemon.Interrupt();
+  client.join();
+  EXPECT_THAT(told, HasSubstr("closed the connection"));
 }
 
 }  // namespace

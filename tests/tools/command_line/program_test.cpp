@@ -10,7 +10,7 @@
 #include "controller/law/design.h"
 #include "controller/step/control_step.h"
 #include "tests/controller/runlog/runlog_fixture.h"
-#include "tools/command_line/studies.h"
+#include "tools/command_line/other_programs.h"
 #include "tools/runs/run_summary.h"
 
 namespace flexarm {
@@ -50,13 +50,15 @@ class ProgramTest : public RunLogTest {
     EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
   }
 
-  // An emulated program cannot start a second one, so a study's program is started directly then.
+  // An emulated program cannot start a second one, so the program of a verb is started directly
+  // then.
   static std::string ProgramFor(const std::string& arguments) {
     constexpr const char* kEmulator = FLEXARM_EMULATOR;  // empty: this processor runs it
     const std::string emulator = kEmulator;
     if (emulator.empty()) return "'" FLEXARM_PROGRAM "'";
-    const bool is_study = IsStudy(arguments.substr(0, arguments.find(' ')));
-    return emulator + (is_study ? " '" FLEXARM_STUDY_PROGRAM "'" : " '" FLEXARM_PROGRAM "'");
+    const std::string_view program = ProgramOf(arguments.substr(0, arguments.find(' ')));
+    const std::filesystem::path folder = std::filesystem::path(FLEXARM_PROGRAM).parent_path();
+    return emulator + " '" + (folder / program).string() + "'";
   }
 
   // A log of an arm at rest that the loop holds for `ticks` ticks, as the recorder writes it.
@@ -107,13 +109,13 @@ TEST_F(ProgramTest, BadUsageIsExitCodeTwo) {
   ExpectBadInput("modes -c '" + kRig + "' --modes 7", "--modes");
 }
 
-TEST_F(ProgramTest, AStudyRunsUnderItsVerb) {
-  for (const Study& study : kStudies) {
-    const std::string verb(study.verb);
+TEST_F(ProgramTest, AStudyRunsUnderItsVerbAsDoesTheDashboard) {
+  for (const OtherVerb& other : kOtherVerbs) {
+    const std::string verb(other.verb);
     const Answer help = Run(verb + " --help");
     EXPECT_EQ(help.code, 0) << verb;
-    EXPECT_EQ(help.out.find(study.description), 0U) << help.out;
-    EXPECT_NE(Run("--help").out.find(study.description.substr(0, 40)), std::string::npos) << verb;
+    EXPECT_EQ(help.out.find(other.description), 0U) << help.out;
+    EXPECT_NE(Run("--help").out.find(other.description.substr(0, 40)), std::string::npos) << verb;
     EXPECT_EQ(Run(verb + " --no-such-option").code, 2) << verb;
   }
 }

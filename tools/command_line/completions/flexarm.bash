@@ -23,4 +23,4 @@ _flexarm() {
     esac
   done <<<"$answer"
 }
-complete -F _flexarm flexarm flexarmd flexarm-study
+complete -F _flexarm flexarm flexarmd flexarm-study flexarm-web

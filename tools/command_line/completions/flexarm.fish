@@ -12,6 +12,6 @@ function __flexarm_complete
         end
     end
 end
-for program in flexarm flexarmd flexarm-study
+for program in flexarm flexarmd flexarm-study flexarm-web
     complete -c $program -f -a '(__flexarm_complete)'
 end

@@ -1,4 +1,4 @@
-#include "tools/flexarm/advice_page.h"
+#include "tools/advice/advice_page.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,11 +1,11 @@
-#include "tools/flexarm/daemon_client.h"
+#include "tools/daemon_client/daemon_client.h"
 
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "config/config.h"
-#include "controller/operator/operator_socket.h"
+#include "controller/operator/operator_client.h"
 #include "controller/runlog/errors.h"
 #include "tools/command_line/config_refusal.h"
 #include "tools/command_line/options.h"
@@ -17,14 +17,14 @@ namespace {
 
 constexpr int kTries = 50;
 
-std::string SocketOf(const DaemonClient& client) {
-  if (!client.socket.empty()) return client.socket;
-  if (!client.config.empty()) return LoadConfig(client.config).daemon.socket;
+}  // namespace
+
+std::string DaemonClient::SocketPath() const {
+  if (!socket.empty()) return socket;
+  if (!config.empty()) return LoadConfig(config).daemon.socket;
   const char* named = std::getenv("FLEXARM_SOCKET");
   return named != nullptr ? named : "/run/flexarm/flexarmd.sock";
 }
-
-}  // namespace
 
 CLI::App* DaemonClient::AddVerb(CLI::App& app, const char* name, const char* what) {
   CLI::App* verb = app.add_subcommand(name, what);
@@ -53,7 +53,7 @@ nlohmann::ordered_json DaemonClient::Ask(nlohmann::ordered_json command, double 
   // A crowd of clients can close this one before it is heard. Asking twice for these does no harm.
   int tries = name == "stop" || name == "status" ? kTries : 1;
   for (;;) {
-    const std::string reply = AskDaemon(SocketOf(*this), command.dump(), within_s);
+    const std::string reply = AskDaemon(SocketPath(), command.dump(), within_s);
     nlohmann::ordered_json answer = nlohmann::ordered_json::parse(reply, nullptr, false);
     if (!answer.is_object()) throw InputError("the answer of the daemon is not JSON");
     if (--tries == 0 || TextIn(answer, "refusal") != "too-many-clients") return answer;

@@ -21,6 +21,9 @@ struct DaemonClient {
   /// Adds --take-over to a verb that needs the lease.
   void AddTakeOver(CLI::App* verb);
 
+  /// Path of the daemon's socket. @throws ConfigError
+  std::string SocketPath() const;
+
   /// Sends `command` and waits for the answer, which is a JSON object. @throws RejectedError,
   /// InputError
   nlohmann::ordered_json Ask(nlohmann::ordered_json command, double within_s = 5.0) const;
