@@ -16,7 +16,7 @@ LAYERS = {
     "model/reduction": "model/math model/arm",
     "model/rigid_joint": "model/math model/parameters model/arm model/simulation",
     "hal": "model",
-    "hal/sim": "model model/arm model/simulation model/rigid_joint hal",
+    "hal/sim": "model model/parameters model/arm model/simulation model/rigid_joint hal",
     "hal/canopen": "model hal",
     "hal/modbus": "model hal",
     "hal/comedi": "model hal",
@@ -47,6 +47,8 @@ LAYERS = {
                             "controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks controller/files",
+    "controller/health": "model model/math model/parameters model/arm model/simulation hal "
+                         "estimator controller/files controller/types controller/step",
     "controller/operator": "model hal hal/gpiod estimator controller/files controller/realtime "
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
@@ -73,6 +75,7 @@ LAYERS = {
     "tools/csv": "model model/math model/beam estimator controller/files controller/types "
                  "controller/design controller/step controller/runlog controller/commissioning "
                  "controller/host config tools/runs",
+    "tools/health": "controller/health controller/runlog config tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
     "tools/status": "model",
     "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
