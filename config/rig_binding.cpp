@@ -107,6 +107,13 @@ void ReadTelemetry(TableReader telemetry, TelemetryConfig* out) {
                         {"one sample of so many is sent; the others are not", "samples"});
 }
 
+void ReadHealth(TableReader health, HealthConfig* out) {
+  health.ReadIfGiven("enabled", &out->enabled,
+                     "true: flexarmd follows each run with the parallel plant");
+  health.ReadIfGiven("judge_payload", &out->judge_payload,
+                     "false: runs may carry another payload than they state, which is no alarm");
+}
+
 void ReadTiming(TableReader root, RigConfig* config) {
   TableReader loop = root.Table("loop", "timing of the control loop; docs/timing.md");
   loop.Read("period_ms", &config->loop.period_ms, "the loop samples and acts every so often");
@@ -131,6 +138,10 @@ void ReadTiming(TableReader root, RigConfig* config) {
   if (root.Has("telemetry")) {
     ReadTelemetry(root.Table("telemetry", "samples as UDP datagrams; docs/telemetry.md"),
                   &config->telemetry);
+  }
+  if (root.Has("health")) {
+    ReadHealth(root.Table("health", "drifts of the rig from run to run; docs/health.md"),
+               &config->health);
   }
 }
 

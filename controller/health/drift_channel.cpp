@@ -1,6 +1,7 @@
 #include "controller/health/drift_channel.h"
 
 #include <array>
+#include <cstdint>
 
 namespace flexarm {
 namespace {
@@ -50,7 +51,8 @@ std::vector<DriftChannel> DriftChannels(const ArmParameters& arm, const SensorCo
   for (int joint = 1; joint <= 2; ++joint) {
     const JointParameters& parameters = arm.joint[static_cast<std::size_t>(joint) - 1];
     if (parameters.coulomb_friction_nm > 0.0) add(DriftKind::kFriction, joint);
-    add(DriftKind::kJointStiffness, joint);
+    const std::uint32_t both = 5U << (joint - 1);
+    if ((sensors.counters_present() & both) == both) add(DriftKind::kJointStiffness, joint);
   }
   for (int link = 1; link <= 2; ++link) add(DriftKind::kLinkStiffness, link);
   add(DriftKind::kPayload, 0);
@@ -79,6 +81,11 @@ ShownUnit UnitOf(DriftKind kind) {
       return {.scale = 1e3, .unit = "g"};
   }
   return {};
+}
+
+const char* SiUnitOf(DriftKind kind) {
+  if (kind == DriftKind::kFriction) return "N m";
+  return kind == DriftKind::kPayload ? "kg" : "1";
 }
 
 }  // namespace flexarm

@@ -33,7 +33,8 @@ struct DriftChannel {
 };
 
 /// The channels of a rig: gain and zero of every gauge, friction of each joint that has friction in
-/// the config, stiffness of each joint and link, payload.
+/// the config, stiffness of each joint that has encoders on hub and rotor, stiffness of each link,
+/// payload.
 std::vector<DriftChannel> DriftChannels(const ArmParameters& arm, const SensorConfig& sensors);
 
 /// How a figure of a kind is shown: its number times `scale`, then `unit`.
@@ -42,5 +43,7 @@ struct ShownUnit {
   const char* unit;
 };
 ShownUnit UnitOf(DriftKind kind);
+/// The unit of the figures themselves: "1" of relative ones, "N m", "kg".
+const char* SiUnitOf(DriftKind kind);
 
 }  // namespace flexarm

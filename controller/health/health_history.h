@@ -45,6 +45,8 @@ std::uint64_t PlantMark(const ControlConfig& config);
 HealthRecord RecordOf(const ControlConfig& config, const Calibration& calibration,
                       const RunFigures& figures);
 
+/// In daemon.state_directory.
+inline constexpr const char* kHealthFileName = "health.json";
 inline constexpr FileKind kHealthFile{"the health of a rig", 4 * kMiB, FileSyntax::kJson};
 
 /// The file of a history, one JSON object with a line for each run.

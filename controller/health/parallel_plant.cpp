@@ -200,7 +200,9 @@ void ParallelPlant::CompareAngles(const HealthSample& sample) {
     // moves each away from it by the other's weight.
     const std::size_t joint = i % 2;
     const double share = i < 2 ? -nominal_.RotorShare(joint) : 1.0 - nominal_.RotorShare(joint);
-    sensitivity(row, joint_stiffness_[joint]) = -share * damped_.Twist_rad(joint);
+    if (joint_stiffness_[joint]) {
+      sensitivity(row, *joint_stiffness_[joint]) = -share * damped_.Twist_rad(joint);
+    }
     sensitivity(row, Offset(joint)) = share;
     const double away_rad = sample.angle_rad[i] - predict(nominal_);
     Count(i, away_rad);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "controller/health/drift_channel.h"
@@ -89,9 +90,9 @@ class ParallelPlant {
   ParallelArm nominal_;  // predicts
   ParallelArm damped_;   // the same for the derivatives: torsion_decay_s
   std::vector<Twin> twin_;
-  std::array<Eigen::Index, 2> joint_stiffness_{};    // parameters
-  std::array<double, kCounters> count_rad_{};        // 0: no such encoder
-  std::array<double, kCounters> angle_sigma_rad_{};  // of the predictions
+  std::array<std::optional<Eigen::Index>, 2> joint_stiffness_;  // parameters
+  std::array<double, kCounters> count_rad_{};                   // 0: no such encoder
+  std::array<double, kCounters> angle_sigma_rad_{};             // of the predictions
   std::array<Family, 2> family_;
   DriftRegression regression_;
   std::vector<Sum> residual_;

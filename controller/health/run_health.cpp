@@ -60,7 +60,7 @@ RunFigures RunHealth::Figures() const {
   }
   for (std::size_t i = 0; i < figures.drift.size(); ++i) figures.drift[i].value += plant.drift[i];
   if (samples_.gaps()) figures.unused = "samples of the run are missing";
-  if (samples_.load_changes()) figures.unused = "the payload changes during the run";
+  if (samples_.load_changes()) figures.unused = kPayloadChanges;
   return figures;
 }
 

@@ -9,6 +9,8 @@
 
 namespace flexarm {
 
+inline constexpr const char* kPayloadChanges = "the payload changes during the run";
+
 /// What one run tells of the rig's health.
 struct RunFigures {
   std::vector<DriftFigure> drift;        ///< of DriftChannels, in their order

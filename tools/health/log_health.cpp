@@ -37,7 +37,7 @@ LogHealth HealthOfLog(const std::filesystem::path& file) {
     calibration = tick.input.calibration;
   });
   health.figures = run.Figures();
-  if (ChangesPayload(info)) health.figures.unused = "the payload changes during the run";
+  if (ChangesPayload(info)) health.figures.unused = kPayloadChanges;
   health.record = RecordOf(health.config, calibration, health.figures);
   health.record.run = file.string();
   health.record.start_utc = info.start_utc;

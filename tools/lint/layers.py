@@ -48,14 +48,15 @@ LAYERS = {
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks controller/files",
     "controller/health": "model model/math model/parameters model/arm model/simulation hal "
-                         "estimator controller/files controller/types controller/step",
+                         "estimator controller/files controller/exchange controller/types "
+                         "controller/step",
     "controller/operator": "model hal hal/gpiod estimator controller/files controller/realtime "
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
     "controller/host": "model hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
-                       "controller/latch controller/telemetry controller/operator",
+                       "controller/latch controller/telemetry controller/health controller/operator",
     "config/derivation": "model model/beam model/parameters hal estimator",
     "config": "model model/parameters hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
               "controller/types controller/runlog config/derivation",
@@ -75,7 +76,7 @@ LAYERS = {
     "tools/csv": "model model/math model/beam estimator controller/files controller/types "
                  "controller/design controller/step controller/runlog controller/commissioning "
                  "controller/host config tools/runs",
-    "tools/health": "controller/health controller/runlog config tools/runs",
+    "tools/health": "controller/files controller/health controller/runlog config tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
     "tools/status": "model",
     "tools/analysis": "model model/math model/parameters model/beam model/beam_methods model/arm "
@@ -107,7 +108,7 @@ LAYERS = {
                      "controller/types controller/safety controller/law controller/design "
                      "controller/runlog "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/support tools/replay tools/runs tools/plot tools/trip_report tools/csv tools/command_line tools/status controller/files",
+                     "tools/support tools/replay tools/runs tools/plot tools/trip_report tools/health tools/csv tools/command_line tools/status controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "
