@@ -101,6 +101,7 @@ DriftTrend TrendOf(const std::vector<Point>& points, double floor) {
     if (std::fabs(sigmas) > std::fabs(trend.sigmas)) trend.sigmas = sigmas;
     trend.clarity = std::max(trend.clarity, std::fabs(change.value) / change.standard_error);
   }
+  trend.change.standard_error = std::hypot(trend.change.standard_error, floor);
   trend.verdict =
       std::fabs(trend.sigmas) > kAlarmSigmas ? DriftVerdict::kDrifts : DriftVerdict::kSteady;
   return trend;

@@ -29,7 +29,7 @@ struct DriftTrend {
   DriftFigure newest{};       ///< of the newest run
   DriftFigure reference{};    ///< mean of the reference runs
   std::string reference_utc;  ///< start of the last of them
-  DriftFigure change{};       ///< of the newest runs against the reference
+  DriftFigure change{};       ///< of the newest three against the reference, with the floor
   DriftFigure per_run{};      ///< slope over the last runs
   double sigmas = 0.0;        ///< of the clearest of the three tests, with the floor; signed
   double clarity = 0.0;       ///< the same without the floor, unsigned: standard errors
