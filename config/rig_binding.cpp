@@ -10,6 +10,23 @@
 namespace flexarm {
 namespace {
 
+void ReadDrift(TableReader drift, SimDrift* out) {
+  drift.ReadIfGiven("gauge_gain_error", &out->gauge_gain_error,
+                    {"of each strain channel, relative; 0 for those left out", "1"});
+  drift.ReadIfGiven("gauge_zero_share", &out->gauge_zero_share,
+                    {"zero of each strain channel, relative to the full scale of the converter; 0 "
+                     "for those left out",
+                     "1"});
+  drift.ReadIfGiven("friction_error", &out->friction_error,
+                    {"of the Coulomb friction of joint 1, 2, relative", "1"});
+  drift.ReadIfGiven("joint_stiffness_error", &out->joint_stiffness_error,
+                    {"of joint 1, 2, relative", "1"});
+  drift.ReadIfGiven("link_stiffness_error", &out->link_stiffness_error,
+                    {"of the bending stiffness of link 1, 2, relative", "1"});
+  drift.ReadIfGiven("payload_error_kg", &out->payload_error_kg,
+                    "by which the arm carries more than is stated");
+}
+
 void ReadSim(TableReader sim, SimConfig* out) {
   sim.Read("plant_modes", &out->plant_modes, {"bending modes of each simulated link", "modes"});
   sim.Read("step_ms", &out->step_ms, "integration step of the simulated arm; divides 1 ms");
@@ -24,6 +41,12 @@ void ReadSim(TableReader sim, SimConfig* out) {
            "time from one strain channel to the next; 0: all at the same instant");
   sim.Read("switch_angle_deg", &out->switch_angle_deg,
            "hub angle of joint 1, 2, in both directions, at which its limit switch opens");
+  if (sim.Has("drift")) {
+    ReadDrift(sim.Table("drift",
+                        "how the simulated arm and its sensors differ from this config, which the "
+                        "loop does not know: docs/health.md"),
+              &out->drift);
+  }
 }
 
 CsvImport ReadCsvImport(TableReader csv) {
@@ -84,6 +107,13 @@ void ReadTelemetry(TableReader telemetry, TelemetryConfig* out) {
                         {"one sample of so many is sent; the others are not", "samples"});
 }
 
+void ReadHealth(TableReader health, HealthConfig* out) {
+  health.ReadIfGiven("enabled", &out->enabled,
+                     "true: flexarmd follows each run with the parallel plant");
+  health.ReadIfGiven("judge_payload", &out->judge_payload,
+                     "false: runs may carry another payload than they state, which is no alarm");
+}
+
 void ReadTiming(TableReader root, RigConfig* config) {
   TableReader loop = root.Table("loop", "timing of the control loop; docs/timing.md");
   loop.Read("period_ms", &config->loop.period_ms, "the loop samples and acts every so often");
@@ -108,6 +138,10 @@ void ReadTiming(TableReader root, RigConfig* config) {
   if (root.Has("telemetry")) {
     ReadTelemetry(root.Table("telemetry", "samples as UDP datagrams; docs/telemetry.md"),
                   &config->telemetry);
+  }
+  if (root.Has("health")) {
+    ReadHealth(root.Table("health", "drifts of the rig from run to run; docs/health.md"),
+               &config->health);
   }
 }
 

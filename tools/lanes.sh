@@ -152,6 +152,8 @@ lane_campaigns() {  # random campaigns at their whole size; `release` runs a sam
   FLEXARM_CAMPAIGN=whole build/release/tests/tools/bound/tools_bound_long_test
   build release tools_torture_long_test
   FLEXARM_CAMPAIGN=whole build/release/tests/tools/torture/tools_torture_long_test
+  build release tools_health_long_test
+  FLEXARM_CAMPAIGN=whole build/release/tests/tools/health/tools_health_long_test
   build release flexarm flexarm-study flexarm-web flexarmd
   tests/e2e/fault_matrix_check.sh build/release/bin/flexarm
   FLEXARM_CAMPAIGN=whole FLEXARM_BIN="$PWD/build/release/bin" python3 tests/e2e/killed_run_test.py

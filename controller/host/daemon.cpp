@@ -1,5 +1,6 @@
 #include "controller/host/daemon.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "controller/design/design_verdict.h"
 #include "controller/design/run_design.h"
+#include "controller/health/health_monitor.h"
 #include "controller/host/arm_verdicts.h"
 #include "controller/host/check_host.h"
 #include "controller/host/crash_handler.h"
@@ -28,6 +30,7 @@
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/recorder_task.h"
 #include "controller/runlog/run_recovery.h"
+#include "controller/runlog/run_writer.h"
 #include "controller/tasks/simulated_stack.h"
 #include "controller/tasks/wired_stack.h"
 #include "controller/telemetry/telemetry.h"
@@ -95,6 +98,28 @@ std::unique_ptr<Telemetry> MakeTelemetry(const RigConfig& config) {
           .rig = config.rig_name, .sensors = config.sensors, .layout = config.controller.nominal});
 }
 
+// The payload that a run states is that of the config.
+std::unique_ptr<HealthMonitor> MakeHealthMonitor(const RigConfig& config, Journal* journal) {
+  if (!config.health.enabled || config.estimator.kind == EstimatorKind::kIdeal) return nullptr;
+  return std::make_unique<HealthMonitor>(HealthMonitorSettings{
+      .config = config,
+      .health = config.health,
+      .plant = {.payload_kg = config.arm.payload_mass_kg,
+                .motor_lag_s = {1e-3 * config.sim.motor_lag_ms[0],
+                                1e-3 * config.sim.motor_lag_ms[1]},
+                .drift = {}},
+      .file = std::filesystem::path(config.daemon.state_directory) / kHealthFileName,
+      .report = [journal](bool is_error,
+                          const std::string& text) { journal->Report(is_error, text); },
+      .utc_now = UtcNow});
+}
+
+bool ChangesPayload(const PlannedExperiment* run) {
+  return run != nullptr && std::ranges::any_of(run->sim_events, [](const SimEvent& event) {
+           return event.payload_kg.has_value();
+         });
+}
+
 /// The daemon's parts, in order of construction.
 class Daemon {
  public:
@@ -129,6 +154,7 @@ class Daemon {
                   &recording_, &files_),
         executor_(options.realtime),
         telemetry_(MakeTelemetry(options.config)),
+        health_(MakeHealthMonitor(options.config, &journal_)),
         judge_(options.config, options.with_law),
         operator_(Context()) {}
 
@@ -137,6 +163,7 @@ class Daemon {
  private:
   LoopStack& stack() { return *backend_.stack; }
   OperatorContext Context();
+  void TakeTick(const TickRecord& tick);
   void ReportDesign();
   void PrepareHost();
   void RestoreTrip();
@@ -162,8 +189,9 @@ class Daemon {
   RecorderTask recorder_;
   std::unique_ptr<LockstepTask> behind_clock_;  // the loop, if it runs without real time
   RealtimeExecutor executor_;
-  std::unique_ptr<Telemetry> telemetry_;  // null: none is wanted
-  RunJudge judge_;                        // used by the operator's planner, one run at a time
+  std::unique_ptr<Telemetry> telemetry_;   // null: none is wanted
+  std::unique_ptr<HealthMonitor> health_;  // null: it is off
+  RunJudge judge_;                         // used by the operator's planner, one run at a time
   OperatorTask operator_;
   TripCause restored_trip_ = TripCause::kNone;  // of the daemon before, still latched at the start
   std::jthread recovery_;  // of the logs that killed daemons left; ends within one log
@@ -198,11 +226,20 @@ OperatorContext Daemon::Context() {
       .thread_status = [this] { return ThreadStatus(executor_); },
       .alive = [this](std::int64_t now_ns, const std::string& s) { service_.Alive(now_ns, s); },
       .newest_trip_report = [this] { return trip_reports_.newest(); }};
-  if (telemetry_) {
-    context.take_tick = [this](const TickRecord& tick) { telemetry_->Take(tick); };
-    context.telemetry_status = [this] { return telemetry_->Status(); };
-  }
+  context.take_tick = [this](const TickRecord& tick) { TakeTick(tick); };
+  if (telemetry_) context.telemetry_status = [this] { return telemetry_->Status(); };
+  if (health_) context.health_status = [this] { return health_->Status(); };
   return context;
+}
+
+// Operator thread.
+void Daemon::TakeTick(const TickRecord& tick) {
+  if (telemetry_) telemetry_->Take(tick);
+  if (!health_) return;
+  const Permit& permit = stack().operator_permits().Read().Newest().value;
+  // The experiment of a run that has ended may be gone.
+  const bool runs = permit.state == SafetyState::kRunning;
+  health_->Take(tick, runs && ChangesPayload(permit.run.experiment));
 }
 
 void Daemon::ReportDesign() {
@@ -263,12 +300,14 @@ DaemonResult Daemon::Run() {
   stack().SetEpoch(epoch_ns);
   executor_.Start(epoch_ns);
   if (telemetry_) telemetry_->Start(epoch_ns);
+  if (health_) health_->Start();
   service_.Ready();
   Wait(signals);
   service_.Stopping();
   executor_.RequestStop();
   executor_.Join();
   recorder_.Finish();
+  if (health_) health_->Stop();
   finisher_.Stop();
   ReportThreads();
   return {.tripped = operator_.trip() != TripCause::kNone,

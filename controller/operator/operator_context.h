@@ -46,6 +46,8 @@ struct OperatorContext {
   std::function<void(const TickRecord&)> take_tick = {};
   /// Makes "telemetry" of the status. Empty: null.
   std::function<nlohmann::json()> telemetry_status = {};
+  /// Makes "health" of the status. Empty: null.
+  std::function<nlohmann::json()> health_status = {};
   /// Called once a period while safety and control are alive: the service manager's watchdog.
   std::function<void(std::int64_t now_ns, const std::string& status)> alive;
   /// The newest report of a trip (TripReports::newest); empty: reports are not written.

@@ -315,38 +315,40 @@ std::string OperatorTask::TripReportFile() const {
 const nlohmann::json& OperatorTask::Status() {
   if (status_ns_ == now_.now_ns) return status_;
   status_ns_ = now_.now_ns;
-  status_ = StatusJson({.now = &now_,
-                        .delay = &warnings_.delay(),
-                        .sensors = &context_.config->sensors,
-                        .angles = &commissioning_.angles(),
-                        .layout = context_.config->controller.nominal,
-                        .missing_gauges = warnings_.missing_gauges(),
-                        .experiment = experiments_.name(),
-                        .buses = context_.stack->buses(),
-                        .bus_text =
-                            [this](TripCause cause, const Evidence& evidence) {
-                              return context_.stack->BusText(cause, evidence);
-                            },
-                        .present = &context_.stack->present_causes(),
-                        .latch = context_.latch,
-                        .trip_report = TripReportFile(),
-                        .threads = context_.thread_status(),
-                        .host = arm_.HostStatus(),
-                        .design = arm_.DesignStatus(),
-                        .overrides = overrides_.Json(),
-                        .switches = switches_.Json(),
-                        .log = LogJson(context_.files),
-                        .telemetry = context_.telemetry_status ? context_.telemetry_status()
-                                                               : nlohmann::json(nullptr),
-                        .identity = context_.identity,
-                        .lease = lease_.Json(now_.now_ns),
-                        .run = run_watch_.Json(),
-                        .why_no_run = commissioning_.WhyNoRun(),
-                        .timing = context_.stack->timing(),
-                        .late_threads_trip = context_.stack->late_threads_trip(),
-                        .log_records_dropped = context_.stack->tick_records().dropped() +
-                                               context_.stack->safety_records().dropped() +
-                                               context_.events->dropped()});
+  status_ = StatusJson(
+      {.now = &now_,
+       .delay = &warnings_.delay(),
+       .sensors = &context_.config->sensors,
+       .angles = &commissioning_.angles(),
+       .layout = context_.config->controller.nominal,
+       .missing_gauges = warnings_.missing_gauges(),
+       .experiment = experiments_.name(),
+       .buses = context_.stack->buses(),
+       .bus_text =
+           [this](TripCause cause, const Evidence& evidence) {
+             return context_.stack->BusText(cause, evidence);
+           },
+       .present = &context_.stack->present_causes(),
+       .latch = context_.latch,
+       .trip_report = TripReportFile(),
+       .threads = context_.thread_status(),
+       .host = arm_.HostStatus(),
+       .design = arm_.DesignStatus(),
+       .overrides = overrides_.Json(),
+       .switches = switches_.Json(),
+       .log = LogJson(context_.files),
+       .telemetry =
+           context_.telemetry_status ? context_.telemetry_status() : nlohmann::json(nullptr),
+       .health = context_.health_status ? context_.health_status() : nlohmann::json(nullptr),
+       .identity = context_.identity,
+       .lease = lease_.Json(now_.now_ns),
+       .run = run_watch_.Json(),
+       .why_no_run = commissioning_.WhyNoRun(),
+       .timing = context_.stack->timing(),
+       .late_threads_trip = context_.stack->late_threads_trip(),
+       .log_records_dropped = context_.stack->tick_records().dropped() +
+                              context_.stack->safety_records().dropped() +
+                              context_.events->dropped()});
   status_["limits"] = LimitsJson(context_.config->safety, now_.permit.reduced);
   return status_;
 }

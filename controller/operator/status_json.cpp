@@ -149,7 +149,8 @@ nlohmann::json StatusJson(const StatusSources& sources) {
       {"overrides", sources.overrides},
       {"switches", sources.switches},
       {"log", sources.log},
-      {"telemetry", sources.telemetry}};
+      {"telemetry", sources.telemetry},
+      {"health", sources.health}};
   json.update(sources.identity);
   return json;
 }

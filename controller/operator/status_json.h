@@ -36,6 +36,7 @@ struct StatusSources {
   nlohmann::json switches;                    ///< ProveSwitches::Json
   nlohmann::json log;                         ///< LogJson
   nlohmann::json telemetry;                   ///< OperatorContext::telemetry_status
+  nlohmann::json health;                      ///< OperatorContext::health_status
   nlohmann::json identity;                    ///< OperatorContext::identity
   nlohmann::json lease;                       ///< Lease::Json
   nlohmann::json run;                         ///< RunWatch::Json

@@ -6,6 +6,7 @@
 #include "controller/types/commissioning_config.h"
 #include "controller/types/control_config.h"
 #include "controller/types/csv_import_config.h"
+#include "controller/types/health_config.h"
 #include "controller/types/telemetry_config.h"
 #include "hal/sim/sim_config.h"
 #include "hal/wired/hal_config.h"
@@ -20,6 +21,7 @@ struct RigConfig : ControlConfig {
   CommissioningConfig commissioning;
   DaemonConfig daemon;
   TelemetryConfig telemetry;
+  HealthConfig health;
   std::optional<CsvImport> csv;  ///< table [csv]: how to read CSV files of another recorder
   std::string rig_name;          ///< key rig.name
   std::string backend;           ///< key hal.backend: "sim", "wired", or "" when there is no [hal]

@@ -24,7 +24,10 @@ std::vector<Problem> SimConfig::Problems() const {
               "delay of a multiplexer from channel to channel");
   list.EachPositive("switch_angle_deg", switch_angle_deg, 360.0,
                     "the limit switches open beyond this hub angle");
-  return list.Take();
+  std::vector<Problem> problems = list.Take();
+  const std::vector<Problem> of_drift = drift.Problems();
+  problems.insert(problems.end(), of_drift.begin(), of_drift.end());
+  return problems;
 }
 
 }  // namespace flexarm

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hal/sim/sim_drift.h"
 #include "model/problem.h"
 
 namespace flexarm {
@@ -18,6 +19,7 @@ struct SimConfig {
   double lost_frame_fraction;  ///< fraction of frames without a reading, never two in a row; 0..0.5
   double channel_skew_us;  ///< strain channel i is sampled i times this after k Ts; 0: all at k Ts
   std::array<double, 2> switch_angle_deg;  ///< limit switches open beyond +-this hub angle
+  SimDrift drift{};                        ///< of the plant and its sensors, unknown to the loop
 
   std::vector<Problem> Problems() const;
 };

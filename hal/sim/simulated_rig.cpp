@@ -1,5 +1,6 @@
 #include "hal/sim/simulated_rig.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -23,12 +24,13 @@ ArmState RestAt(int dof, const std::array<double, 2>& hub_rad) {
 
 SimulatedRig::SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors,
                            const SimConfig& sim, const std::array<double, 2>& start_rad)
-    : arm_(arm, ModeCount{.link1 = sim.plant_modes, .link2 = sim.plant_modes}),
+    : arm_(Drifted(arm, sim.drift), ModeCount{.link1 = sim.plant_modes, .link2 = sim.plant_modes}),
       simulator_(arm_),
       state_(RestAt(arm_.dof(), start_rad)),
-      sensors_(arm_, sensors, sim.seed, state_.q),
+      sensors_(arm_, Drifted(sensors, sim.drift), sim.seed, state_.q),
       filter_(sensors.strain_input, sim.step_ms * 1e-3, arm_.dof() - kRigidCoordinates),
       step_ns_(std::llround(sim.step_ms * 1e6)),
+      payload_error_kg_(sim.drift.payload_error_kg),
       skew_ns_(std::llround(sim.channel_skew_us * 1e3)) {
   for (std::size_t i = 0; i < 2; ++i) {
     motor_[i] = DcMotor(sim.step_ms * 1e-3, sim.motor_lag_ms[i] * 1e-3);
@@ -123,7 +125,7 @@ void SimulatedRig::Press(Line line, int level) noexcept {
 }
 
 void SimulatedRig::CarryPayload(double payload_kg) noexcept {
-  arm_.CarryPayload(payload_kg);
+  arm_.CarryPayload(std::max(0.0, payload_kg + payload_error_kg_));
   simulator_.CarryPayloadOf(arm_);
 }
 

@@ -26,7 +26,8 @@ namespace flexarm {
 /// Real-time: all but the constructor are safe.
 class SimulatedRig {
  public:
-  /// @param arm        the plant's parameters, with its actual payload
+  /// @param arm        the plant's parameters, with the payload that is stated; sim.drift changes
+  ///                   them and the sensors
   /// @param start_rad  hub angles at the start; the counters read 0 there
   SimulatedRig(const ArmParameters& arm, const SensorConfig& sensors, const SimConfig& sim,
                const std::array<double, 2>& start_rad = {});
@@ -55,7 +56,7 @@ class SimulatedRig {
   /// still opens at the switch angle.
   void Press(Line line, int level) noexcept;
 
-  /// Changes the payload; position and rates of the arm stay.
+  /// Changes the stated payload; position and rates of the arm stay.
   /// ArmModel::CarryPayload defines the momentum.
   void CarryPayload(double payload_kg) noexcept;
 
@@ -76,6 +77,7 @@ class SimulatedRig {
   GaugeFilter filter_;  // filters the modal coordinates
   std::optional<SimulatedAccelerometer> accelerometer_;
   std::int64_t step_ns_;
+  double payload_error_kg_;
   std::array<DcMotor, 2> motor_;
   std::array<double, 2> switch_angle_rad_;
   std::array<double, 2> set_point_nm_{};

@@ -42,6 +42,7 @@ void RegisterDiff(CLI::App& app, Exit& exit);
 void RegisterExplain(CLI::App& app, Exit& exit);
 void RegisterExport(CLI::App& app, Exit& exit);
 void RegisterGauges(CLI::App& app, Exit& exit);
+void RegisterHealth(CLI::App& app, Exit& exit);
 void RegisterIdentify(CLI::App& app, Exit& exit);
 void RegisterInfo(CLI::App& app, Exit& exit);
 void RegisterLinesOff(CLI::App& app, Exit& exit);

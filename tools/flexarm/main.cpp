@@ -32,6 +32,7 @@ void RegisterOwnVerbs(CLI::App& app, Exit& exit) {
   RegisterDiff(app, exit);
   RegisterLog(app, exit);
   RegisterRuns(app, exit);
+  RegisterHealth(app, exit);
   RegisterOperate(app, exit);
   AddOtherVerb(app, "dashboard");
   RegisterCommission(app, exit);

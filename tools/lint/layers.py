@@ -16,7 +16,7 @@ LAYERS = {
     "model/reduction": "model/math model/arm",
     "model/rigid_joint": "model/math model/parameters model/arm model/simulation",
     "hal": "model",
-    "hal/sim": "model model/arm model/simulation model/rigid_joint hal",
+    "hal/sim": "model model/parameters model/arm model/simulation model/rigid_joint hal",
     "hal/canopen": "model hal",
     "hal/modbus": "model hal",
     "hal/comedi": "model hal",
@@ -47,13 +47,16 @@ LAYERS = {
                             "controller/types controller/runlog",
     "controller/commissioning": "model model/parameters model/arm model/simulation hal estimator "
                                 "controller/types controller/runlog controller/tasks controller/files",
+    "controller/health": "model model/math model/parameters model/arm model/simulation hal "
+                         "estimator controller/files controller/exchange controller/types "
+                         "controller/step",
     "controller/operator": "model hal hal/gpiod estimator controller/files controller/realtime controller/reference "
                            "controller/types "
                            "controller/runlog controller/tasks controller/latch "
                            "controller/commissioning",
     "controller/host": "model model/beam hal/sim estimator controller/step controller/files hal/canopen hal/modbus hal/comedi hal/wired controller/realtime controller/types "
                        "controller/law controller/design controller/runlog controller/tasks "
-                       "controller/latch controller/telemetry controller/operator",
+                       "controller/latch controller/telemetry controller/health controller/operator",
     "config/derivation": "model model/beam model/parameters hal estimator",
     "config": "model model/parameters hal hal/canopen hal/modbus hal/comedi hal/wired estimator controller/files "
               "controller/types controller/runlog config/derivation",
@@ -73,6 +76,7 @@ LAYERS = {
     "tools/csv": "model model/math model/beam estimator controller/files controller/types "
                  "controller/design controller/step controller/runlog controller/commissioning "
                  "controller/host config tools/runs",
+    "tools/health": "controller/files controller/health controller/runlog config tools/runs",
     "tools/command_line": "controller/files controller/types controller/runlog config",
     "tools/status": "model",
     "tools/advice": "controller/types controller/operator",
@@ -109,7 +113,7 @@ LAYERS = {
                      "controller/types controller/safety controller/law controller/design "
                      "controller/runlog "
                      "controller/operator controller/host config config/new_rig config/plausibility tools/tuning "
-                     "tools/support tools/replay tools/runs tools/plot tools/trip_report tools/csv tools/command_line tools/status tools/advice tools/daemon_client controller/files",
+                     "tools/support tools/replay tools/runs tools/plot tools/trip_report tools/health tools/csv tools/command_line tools/status tools/advice tools/daemon_client controller/files",
     "tools/flexarm_study": "model model/math model/beam model/beam_methods model/arm "
                            "model/simulation model/perturbation controller/runlog config tools/support tools/runs "
                            "tools/command_line tools/analysis tools/sweep tools/benchmark "

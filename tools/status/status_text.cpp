@@ -181,6 +181,12 @@ void AddTelemetry(const Reply& s, Lines* lines) {
   if (telemetry.is_object()) lines->Add("telemetry", TelemetryText(telemetry));
 }
 
+void AddHealth(const Reply& s, Lines* lines) {
+  for (const Reply& alarm : ListIn(In(s, "health"), "alarms")) {
+    lines->Add("health", TextIn(alarm, "text", "-"));
+  }
+}
+
 void AddThreads(const Reply& s, Lines* lines) {
   if (const double dropped = NumberIn(s, "log_records_dropped"); dropped != 0.0) {
     lines->Add("log", FigureIn(s, "log_records_dropped", 0) +
@@ -257,6 +263,7 @@ std::string StatusText(const Reply& status) {
   AddTiming(status, &lines);
   AddBuses(status, &lines);
   AddTelemetry(status, &lines);
+  AddHealth(status, &lines);
   AddThreads(status, &lines);
   return lines.Take();
 }

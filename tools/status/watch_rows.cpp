@@ -216,6 +216,14 @@ Rows TelemetryRows(const Reply& status) {
   return {row.Add(TelemetryText(telemetry), lost ? Look::kCaution : Look::kPlain)};
 }
 
+Rows HealthRows(const Reply& status) {
+  Rows rows;
+  for (const Reply& alarm : ListIn(In(status, "health"), "alarms")) {
+    rows.push_back(StyledRow("health ").Add(TextIn(alarm, "text", "-"), Look::kCaution));
+  }
+  return rows;
+}
+
 Rows BusRows(const Reply& status, int columns) {
   Rows rows;
   for (const Reply& bus : ListIn(status, "buses")) {

@@ -41,6 +41,8 @@ Rows EncoderRows(const Reply& status, int columns);
 Rows PayloadRows(const Reply& status);
 /// Receiver and counts of the datagrams; empty: telemetry is off.
 Rows TelemetryRows(const Reply& status);
+/// A row for each channel that drifts; empty: none does.
+Rows HealthRows(const Reply& status);
 /// Health of each bus.
 Rows BusRows(const Reply& status, int columns);
 /// Of each thread its greatest lateness, and how often it was late.

@@ -38,6 +38,7 @@ std::vector<Part> PartsOf(const WatchedStatus& watched, int columns) {
           {.rank = 3, .above = false, .rows = EncoderRows(s, columns)},
           {.rank = 6, .above = false, .rows = PayloadRows(s)},
           {.rank = 6, .above = false, .rows = TelemetryRows(s)},
+          {.rank = 6, .above = false, .rows = HealthRows(s)},
           {.rank = 4, .above = false, .rows = BusRows(s, columns)},
           {.rank = 5, .above = false, .rows = ThreadRows(s, columns)}};
 }

@@ -48,6 +48,7 @@ struct StatusJsonTest : testing::Test {
                        .switches = {{"proved", true}},
                        .log = nullptr,
                        .telemetry = {{"sent", 7}},
+                       .health = nullptr,
                        .identity = {{"rig", "thesis"}, {"version", "1.2"}},
                        .lease = nullptr,
                        .run = nullptr,

@@ -151,6 +151,16 @@ TEST(WatchScreen, WhatIsOldIsMarkedWithItsAge) {
   EXPECT_THAT(screen, HasSubstr("100 ms old")) << screen;
 }
 
+TEST(WatchScreen, AChannelThatDriftsIsShown) {
+  Reply status = RunningStatus();
+  const ScreenSize size{.columns = 100, .rows = 50};
+  status["health"] = {{"alarms", Reply::array()}};
+  EXPECT_THAT(Screen(Watched(status), size), Not(HasSubstr("health")));
+  status["health"]["alarms"].push_back(
+      {{"channel", "link1.gauge7.gain"}, {"text", "gauge 7 of link 1: gain 4.1 %"}});
+  EXPECT_THAT(Screen(Watched(status), size), HasSubstr("health gauge 7 of link 1: gain 4.1 %"));
+}
+
 TEST(WatchScreen, TelemetryIsShownWhereItIsOn) {
   const ScreenSize size{.columns = 80, .rows = 40};
   EXPECT_THAT(Screen(Watched(RunningStatus()), size), Not(HasSubstr("telemetry")));
