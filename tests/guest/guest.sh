@@ -215,8 +215,8 @@ make_debian_root() {
   rm -rf "$tree"/var/lib/apt/lists/* "$tree"/etc/apt/sources.list.d/*
   echo 'deb [trusted=yes] file:/mnt/share/packages ./' >"$tree/etc/apt/sources.list"
   furnish "$tree"
-  mkdir -p "$tree/usr/lib/modules"
   debugfs -R "rdump /usr/lib/modules $tree/usr/lib" "$cache/root.ext4" 2>/dev/null
+  compgen -G "$tree/usr/lib/modules/*/modules.dep" >/dev/null || fail "root.ext4 has no modules"
   make_image "$tree" debian.ext4
   cp "$tree/var/lib/dpkg/status" debian.dpkg-status
 }
