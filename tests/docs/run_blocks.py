@@ -14,11 +14,12 @@ unbuilt    a fresh clone without a build folder, for blocks that say so: they bu
 `all` also runs the `ci` blocks of the pages that have an `all` block: those come later on the page
 and use what the others have made. `rig` blocks never run. `guest` writes the pages as scripts for
 tests/guest/docs.sh, which runs them inside the guest; its clone is without what only git, a
-compiler or the tests read.
+compiler or the tests read. `newcomer` writes the pages for tests/guest/newcomer.sh, which runs them
+after the guest has nothing but the package.
 
 usage: run_blocks.py ci|all --build FOLDER [--page PAGE]... [--place PLACE]... [--note FILE]
        run_blocks.py ci|all --build FOLDER --list
-       run_blocks.py guest --build FOLDER --share FOLDER
+       run_blocks.py guest|newcomer --build FOLDER --share FOLDER
 """
 
 import argparse
@@ -288,29 +289,41 @@ def write_guest_pages(places, pages, share):
     (clone / "build/release/bin").mkdir(parents=True)
     for program in ("flexarm", "flexarmd"):
         shutil.copy2(places.build / "bin" / program, clone / "build/release/bin")
+    return sum(write_pages(pages, "guest", place, share / "pages" / place)
+               for place in ("clone", "installed"))
+
+
+def write_newcomer_pages(pages, share):
+    """Writes what tests/guest/newcomer.sh needs."""
+    share.mkdir(parents=True, exist_ok=True)
+    shutil.copy2(PAGE_SHELL, share)
+    return write_pages(pages, "newcomer", "installed", share / "pages")
+
+
+def write_pages(pages, lane, place, folder):
+    """Writes each page that has blocks there as a script; returns the number of blocks."""
+    folder.mkdir(parents=True)
     count = 0
-    for place in ("clone", "installed"):
-        (share / "pages" / place).mkdir(parents=True)
-        for page in pages:
-            text = page.read_text(encoding="utf-8")
-            blocks = selected(text, "guest", place)
-            if blocks:
-                name = page.relative_to(ROOT).as_posix().replace("/", "-")
-                (share / "pages" / place / name).write_text(script(text, blocks), encoding="utf-8")
-                count += len(blocks)
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        blocks = selected(text, lane, place)
+        if blocks:
+            name = page.relative_to(ROOT).as_posix().replace("/", "-")
+            (folder / name).write_text(script(text, blocks), encoding="utf-8")
+            count += len(blocks)
     return count
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("lane", choices=("ci", "all", "guest"))
+    parser.add_argument("lane", choices=("ci", "all", "guest", "newcomer"))
     parser.add_argument("--build", type=Path, required=True, help="the release build")
     parser.add_argument("--page", type=Path, action="append", help="only this page; repeatable")
     parser.add_argument("--place", choices=command_blocks.PLACES, action="append",
                         help="only there; repeatable")
     parser.add_argument("--list", action="store_true", help="print the pages that have such blocks")
     parser.add_argument("--note", type=Path, help="file for a line of summary")
-    parser.add_argument("--share", type=Path, help="guest: folder to write")
+    parser.add_argument("--share", type=Path, help="guest and newcomer: folder to write")
     return parser.parse_args()
 
 
@@ -326,6 +339,10 @@ def main():
             if any(block.lane == options.lane for block in command_blocks.commands(text)):
                 print(page.relative_to(ROOT).as_posix())
         return 0
+    if options.lane == "newcomer":
+        count = write_newcomer_pages(pages, options.share)
+        print(f"{count} blocks for the newcomer")
+        return 0 if count else 1
     with tempfile.TemporaryDirectory(prefix="flexarm-docs-") as work:
         places = Places(options.build.resolve(), Path(work))
         if options.lane == "guest":

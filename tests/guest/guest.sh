@@ -4,11 +4,13 @@
 #
 #   guest.sh setup                  install the packages, and the newest real-time kernel's headers
 #   guest.sh build                  make kernel, modules and root image, unless they are up to date
+#   guest.sh build --debian         and a second root image: a bare Debian in which apt works
 #   guest.sh run [options] -- CMD.. boot, run CMD in the guest's /tmp, end with CMD's status
 #     --share DIR   folder of the host, read-only in the guest as /mnt/share
 #     --out DIR     folder of the host, writable in the guest as /mnt/out; also gets log, status,
 #                   console.log, dmesg.log, journal.log (default: a temporary one, log to stdout)
 #     --systemd     systemd is process 1 (default: a shell script)
+#     --debian      the second root image; packages come from /mnt/share/packages, a flat repository
 #     --det         one processor on virtual time, 2 ns an instruction: a slow host does not show
 #     --timeout S   the host's limit (default 120)
 #
@@ -34,6 +36,8 @@ dev_packages=(
   libcomedi-dev libfmt-dev libgpiod-dev libmodbus-dev libnlopt-dev libspdlog-dev libsqlite3-dev
   libsystemd-dev libtomlplusplus-dev libzstd-dev
 )
+# The bare Debian: what a small server has, so that the package's own dependencies are told apart.
+debian_packages=(dbus iproute2 kmod procps systemd systemd-sysv)
 # Modules in addition to gpio-sim, for the root image and for the initial RAM disk.
 root_modules=(autofs4 can can-raw comedi comedi_parport comedi_test configfs vcan)
 boot_modules=(9p 9pnet_virtio crc32c_generic ext4 virtio_blk virtio_pci virtio_rng)
@@ -154,6 +158,22 @@ mask_services() {
   done
 }
 
+# What the guest's command needs in both root images, but for the kernel's modules.
+furnish() {  # furnish TREE
+  echo flexarm-guest >"$1/etc/hostname"
+  echo '127.0.0.1 localhost flexarm-guest' >"$1/etc/hosts"
+  echo 0123456789abcdef0123456789abcdef >"$1/etc/machine-id"
+  mkdir -p "$1"/mnt/{share,out}
+  install -Dm755 "$here/image/guest_run.sh" "$1/usr/local/sbin/guest-run"
+  install -m644 "$here"/image/guest.{service,target} "$1/etc/systemd/system/"
+  mask_services "$1"
+}
+
+make_image() {  # make_image TREE FILE
+  mke2fs -q -t ext4 -O ^has_journal,^metadata_csum -E lazy_itable_init=1 -m0 -d "$1" "$2" \
+    "$(($(du -sm "$1" | cut -f1) * 5 / 4 + 512))M"  # free: what the log of a run needs
+}
+
 # Packages are unpacked without running their scripts, which takes a fifth of the time. The steps of
 # the scripts that the guest needs follow.
 make_root() {
@@ -171,16 +191,10 @@ make_root() {
   : >"$tree/etc/shadow"
   : >"$tree/etc/fstab"
   printf 'passwd: files\ngroup: files\nhosts: files\n' >"$tree/etc/nsswitch.conf"
-  echo flexarm-guest >"$tree/etc/hostname"
-  echo '127.0.0.1 localhost flexarm-guest' >"$tree/etc/hosts"
-  echo 0123456789abcdef0123456789abcdef >"$tree/etc/machine-id"
+  furnish "$tree"
   chroot "$tree" /sbin/ldconfig
   chroot "$tree" systemd-sysusers
   ln -sf mawk "$tree/usr/bin/awk"
-  mkdir -p "$tree"/mnt/{share,out}
-  install -Dm755 "$here/image/guest_run.sh" "$tree/usr/local/sbin/guest-run"
-  install -m644 "$here"/image/guest.{service,target} "$tree/etc/systemd/system/"
-  mask_services "$tree"
   module_files gpio-sim "${root_modules[@]}" "${boot_modules[@]}" |
     while read -r file; do
       copy_module "$file" "$tree/usr/lib/modules/${file#*/lib/modules/}"
@@ -188,8 +202,23 @@ make_root() {
   cp "kernel/lib/modules/$release"/modules.{builtin,builtin.modinfo,order} \
     "$tree/usr/lib/modules/$release/"
   /sbin/depmod -b "$tree" "$release"
-  mke2fs -q -t ext4 -O ^has_journal,^metadata_csum -E lazy_itable_init=1 -m0 -d "$tree" root.ext4 \
-    "$(($(du -sm "$tree" | cut -f1) * 5 / 4 + 512))M"  # free: what the log of a run needs
+  make_image "$tree" root.ext4
+}
+
+# Installed by dpkg, so that apt goes on from there. What is installed is left beside the image.
+make_debian_root() {
+  local tree=$PWD/tree
+  # shellcheck source=/dev/null
+  mmdebstrap -q --variant=apt --mode=root --format=directory \
+    --include="$(IFS=,; echo "${debian_packages[*]}")" \
+    "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$tree" "$(apt_sources)" >&2
+  rm -rf "$tree"/var/lib/apt/lists/* "$tree"/etc/apt/sources.list.d/*
+  echo 'deb [trusted=yes] file:/mnt/share/packages ./' >"$tree/etc/apt/sources.list"
+  furnish "$tree"
+  debugfs -R "rdump /usr/lib/modules $tree/usr/lib" "$cache/root.ext4" 2>/dev/null
+  compgen -G "$tree/usr/lib/modules/*/modules.dep" >/dev/null || fail "root.ext4 has no modules"
+  make_image "$tree" debian.ext4
+  cp "$tree/var/lib/dpkg/status" debian.dpkg-status
 }
 
 make_initrd() {
@@ -210,32 +239,56 @@ timed() {
   echo "guest: $1: $((SECONDS - since)) s" >&2
 }
 
+# As root, since the image's files belong to root, and alone.
+begin_build() {
+  rm -rf --one-file-system "$cache/work"
+  mkdir "$cache/work"
+  cd "$cache/work"
+}
+
+end_build() {  # end_build FILE..: keeps these
+  mv "$@" "$cache"
+  cd "$root"
+  rm -rf --one-file-system "$cache/work"
+}
+
 build() {
   [[ -n $(kernel_release) ]] || fail "$headers is not installed: run tests/guest/guest.sh setup"
   mkdir -p "$cache"
   exec 8>"$cache/lock"
   flock 8
-  if [[ $(stamp) == "$(cat "$cache/stamp" 2>/dev/null)" ]]; then return; fi
-  if ((EUID != 0)); then  # the image's files belong to root
-    exec sudo --preserve-env=XDG_CACHE_HOME "$here/guest.sh" build
+  local told
+  told=$(stamp)
+  if [[ $told == "$(cat "$cache/stamp" 2>/dev/null)" ]] &&
+    [[ ${1:-} != --debian || $told == "$(cat "$cache/debian.stamp" 2>/dev/null)" ]]; then
+    return
   fi
+  if ((EUID != 0)); then
+    exec sudo --preserve-env=XDG_CACHE_HOME "$here/guest.sh" build "$@"
+  fi
+  if [[ $told != "$(cat "$cache/stamp" 2>/dev/null)" ]]; then build_guest; fi
+  if [[ ${1:-} == --debian ]]; then
+    begin_build
+    timed make_debian_root
+    end_build debian.ext4 debian.dpkg-status
+    stamp >"$cache/debian.stamp"
+  fi
+}
+
+build_guest() {
   # An archive keeps no old kernels: if the current one is newer, its headers are installed first.
   if ! apt-cache show "linux-image-$(kernel_release)=$(package_version)" >/dev/null 2>&1; then
     setup
   fi
   release=$(kernel_release) version=$(package_version)
   echo "guest: building an image with $release ($version)" >&2
-  rm -rf --one-file-system "$cache/work"
-  mkdir "$cache/work"
-  cd "$cache/work"
+  begin_build
   timed make_kernel
   timed make_gpio_sim
   timed make_root
   timed make_initrd
-  mv vmlinux root.ext4 initrd.cpio "$cache"
+  end_build vmlinux root.ext4 initrd.cpio
   stamp >"$cache/stamp"
-  cd "$root"
-  rm -rf --one-file-system "$cache/work"
 }
 
 # Sets `alone`, the command in front of QEMU: both of its threads on one core that no other guest has,
@@ -259,6 +312,7 @@ keep_in_step() {
 
 run() {
   local share='' out='' init=/usr/local/sbin/guest-run append='' limit_s=120 temporary='' qemu=0
+  local image=root.ext4 needed=stamp
   local cpu=(-accel "tcg,thread=multi" -smp 2)
   local alone=()
   while (($#)); do
@@ -270,6 +324,7 @@ run() {
         append="systemd.unit=guest.target systemd.show_status=0"
         shift
         ;;
+      --debian) image=debian.ext4 needed=debian.stamp; shift ;;
       --det)
         cpu=(-accel "tcg,thread=single" -icount "shift=1,sleep=off" -smp 1)
         keep_in_step
@@ -281,7 +336,7 @@ run() {
     esac
   done
   (($#)) || usage
-  [[ -s $cache/stamp ]] || fail "nothing to boot: run tests/guest/guest.sh build"
+  [[ -s $cache/$needed ]] || fail "nothing to boot: run tests/guest/guest.sh build"
   if [[ -z $out ]]; then out=$(mktemp -d); temporary=$out; fi
   mkdir -p "$out"
   rm -f "$out/status"
@@ -290,7 +345,7 @@ run() {
   timeout -k 3 "$limit_s" "${alone[@]}" qemu-system-x86_64 -M q35 -cpu max "${cpu[@]}" \
     -m 1024 -nodefaults -display none -no-reboot -serial stdio \
     -kernel "$cache/vmlinux" -initrd "$cache/initrd.cpio" \
-    -drive "file=$cache/root.ext4,format=raw,if=virtio,snapshot=on" \
+    -drive "file=$cache/$image,format=raw,if=virtio,snapshot=on" \
     -fsdev "local,id=s,path=${share:-$out},security_model=none,readonly=on" \
     -device virtio-9p-pci,fsdev=s,mount_tag=share \
     -fsdev "local,id=o,path=$out,security_model=none" -device virtio-9p-pci,fsdev=o,mount_tag=out \
@@ -316,7 +371,8 @@ run() {
 }
 
 case ${1:-} in
-  setup | build) [[ $# == 1 ]] || usage; "$1" ;;
+  setup) [[ $# == 1 ]] || usage; setup ;;
+  build) [[ $# == 1 || $* == "build --debian" ]] || usage; "$@" ;;
   run) "$@" ;;
   *) usage ;;
 esac

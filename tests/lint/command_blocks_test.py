@@ -23,7 +23,8 @@ def fence(info, *body):
 
 TAKEN = (
     fence("sh ci"), fence("sh ci clone"), fence("sh all installed"), fence("sh all unbuilt"),
-    fence("sh guest"), fence("sh guest clone"), fence("sh rig: needs a real arm"),
+    fence("sh guest"), fence("sh guest clone"), fence("sh newcomer"),
+    fence("sh rig: needs a real arm"),
     fence("sh rig: needs a real arm", "a && b"), fence("sh ci", "a  # b && c"),
     fence("text", "counts -> flexarmd"), fence("toml", "flexarm = 1"),
     fence("python", "# cd to where flexarm is", "import flexarm"),
@@ -42,6 +43,7 @@ REFUSED = {
     "rig in a place": (fence("sh rig clone: needs a real arm"), 1, "says why"),
     "a reason of a lane": (fence("sh ci: needs a real arm"), 1, "only rig has a reason"),
     "a guest that builds": (fence("sh guest unbuilt"), 1, "nothing is built in the guest"),
+    "a newcomer with a clone": (fence("sh newcomer clone"), 1, "has the package alone"),
     "no command": (fence("sh ci", "# later"), 1, "has no command"),
     "another shell": (fence("bash ci"), 1, "found the language bash"),
     "a console": (fence("console"), 1, "found the language console"),
@@ -100,6 +102,7 @@ class Selection(unittest.TestCase):
         self.assertEqual(self.bodies("ci", "installed"), ["one"])
         self.assertEqual(self.bodies("ci", "unbuilt"), [])
         self.assertEqual(self.bodies("guest", "installed"), ["four"])
+        self.assertEqual(self.bodies("newcomer", "installed"), [])
 
     def test_what_takes_long_runs_after_the_quick_blocks_before_it(self):
         self.assertEqual(self.bodies("all", "clone"), ["one", "two", "three"])

@@ -10,7 +10,8 @@ A block of commands is a fence of language `sh` with a tag:
     ```sh rig: needs the drives  does not run; the reason says why
 
 `all` is for what takes minutes (lane docs-all), `guest` for what needs the emulated real-time
-kernel (lane guest). Every other fence says its language, and holds no commands.
+kernel (lane guest), `newcomer` for what needs the installed package there (lane guest-long). Each
+block of text after a `newcomer` block is what it prints. Every other fence says its language, and holds no commands.
 """
 
 import dataclasses
@@ -18,9 +19,9 @@ import re
 
 import prose
 
-LANES = ("ci", "all", "guest", "rig")
+LANES = ("ci", "all", "guest", "newcomer", "rig")
 PLACES = ("clone", "installed", "unbuilt")
-TAGS = "ci, all, guest or rig: REASON"
+TAGS = "ci, all, guest, newcomer or rig: REASON"
 SHELLS = ("bash", "bat", "cmd", "console", "dash", "fish", "ksh", "powershell", "pwsh",
           "shell", "shell-session", "shellsession", "sh-session", "terminal", "zsh")
 OTHERS = ("c", "cpp", "csv", "html", "ini", "json", "matlab", "octave", "python", "sql", "text",
@@ -103,6 +104,8 @@ def tag_problem(block):
         return f"only rig has a reason, and '{lane}' runs"
     if place not in (None, *PLACES):
         return f"found '{place}' after {lane}, expected nothing, {', '.join(PLACES)}"
+    if place and lane == "newcomer":
+        return "a newcomer has the package alone: no newcomer block has a place"
     if place == "unbuilt" and lane == "guest":
         return "nothing is built in the guest: no guest block is unbuilt"
     return None
