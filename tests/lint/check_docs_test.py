@@ -134,10 +134,10 @@ BROKEN = {
     "a key of a command": ("docs/page.md", "`flexarm stop --set loop.rate=1`",
                            "key: loop.rate: config/ does not know rate"),
     "the tag of a block": ("docs/page.md", "```sh\nls\n```", "block: a block of commands has no tag: "
-                           "write ```sh and ci, all, guest or rig: REASON"),
+                           "write ```sh and ci, all, guest, newcomer or rig: REASON"),
     "the tag of a block beside code":
         ("model/arm/notes.md", "```sh\nls\n```",
-         "block: a block of commands has no tag: write ```sh and ci, all, guest or rig: REASON"),
+         "block: a block of commands has no tag: write ```sh and ci, all, guest, newcomer or rig: REASON"),
     "a symbol for two things":
         ("model/symbols.md", "| beta | | |",
          "symbol: beta is in line 3 too: say in brackets which one is meant"),
