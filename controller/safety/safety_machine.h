@@ -87,6 +87,16 @@ constexpr SafetyState NextInTest(SafetyState test, const SafetyFacts& facts) noe
   return facts.power_follows != 0 ? AfterTest(test) : test;
 }
 
+/// What a tick of Running without a cause leads to.
+constexpr SafetyDecision NextInRun(const SafetyFacts& facts) noexcept {
+  const bool stops = facts.request == RequestKind::kStop;
+  const bool ends = facts.experiment_done != 0 || facts.shutting_down != 0;
+  const bool changes = facts.request == RequestKind::kChange && !ends;
+  const bool granted = stops || changes || facts.request == RequestKind::kNone;
+  return {{stops || ends ? SafetyState::kStopping : SafetyState::kRunning, TripCause::kNone},
+          granted ? Refusal::kNone : Refusal::kWrongState};
+}
+
 /// FaultStopping is over: a further cause, at rest, too long, or no longer able to damp.
 constexpr bool FaultStopEnds(const SafetyFacts& facts) noexcept {
   const bool further = (facts.present & ~kCategory1Causes) != 0;
@@ -165,11 +175,7 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
       if (request != RequestKind::kRun) return go(kArmed, not_here);
       return facts.drives_on != 0 ? go(kRunning, Refusal::kNone) : go(kArmed, Refusal::kDrivesOff);
     case kRunning:
-      if (request == RequestKind::kStop) return go(kStopping, Refusal::kNone);
-      if (request == RequestKind::kChange && facts.experiment_done == 0 && !shutting_down) {
-        return go(kRunning, Refusal::kNone);
-      }
-      return go(facts.experiment_done != 0 || shutting_down ? kStopping : kRunning, not_here);
+      return NextInRun(facts);
     case kStopping: {
       const Refusal refusal = request == RequestKind::kStop ? Refusal::kNone : not_here;
       if (facts.at_rest != 0) return go(kArmed, refusal);

@@ -81,7 +81,6 @@ void SafetyTask::Run(const Activation& activation) noexcept {
     for (Wakeup* wakeup : channels_.wakeups) wakeup->Wake();
   }
 
-  const bool tripped = CauseLatched(status_.state) && !CauseLatched(before.state);
   if (requested || !recorded_ || status_ != before || !SameFacts(facts, last_facts_)) {
     channels_.records->Push({.due_ns = due_ns,
                              .facts = facts,
@@ -94,22 +93,30 @@ void SafetyTask::Run(const Activation& activation) noexcept {
     last_facts_ = facts;
     recorded_ = true;
   }
+  AnswerRequests(request, decision.refusal, before.state, facts);
+}
+
+// Each request is answered once: a disarm when the relay is open, an arm after its tests.
+void SafetyTask::AnswerRequests(const OperatorRequest& request, Refusal refusal, SafetyState before,
+                                const SafetyFacts& facts) noexcept {
+  const bool requested = request.kind != RequestKind::kNone;
+  const bool tripped = CauseLatched(status_.state) && !CauseLatched(before);
   const bool disarms =
       request.kind == RequestKind::kDisarm && status_.state == SafetyState::kDisarming;
   if (disarms) {
     disarm_ = request;
   } else if (request.kind == RequestKind::kArm && TestsPower(status_.state) &&
-             !TestsPower(before.state)) {
+             !TestsPower(before)) {
     arm_ = request;
   } else if (requested) {
-    Answer(request, decision.refusal, before.state, facts.present);
+    Answer(request, refusal, before, facts.present);
   }
   if (disarm_.number != 0 && status_.state != SafetyState::kDisarming) {  // the relay is open
-    Answer(disarm_, Refusal::kNone, before.state, facts.present);
+    Answer(disarm_, Refusal::kNone, before, facts.present);
     disarm_ = {};
   }
   if (arm_.number != 0 && !TestsPower(status_.state)) {
-    Answer(arm_, RefusalOfArm(facts), before.state, facts.present);
+    Answer(arm_, RefusalOfArm(facts), before, facts.present);
     arm_ = {};
   }
   if (tripped) {

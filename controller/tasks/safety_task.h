@@ -117,6 +117,8 @@ class SafetyTask final : public Task {
              const OperatorRequest& request) noexcept;
   void Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
               TripCauses present) noexcept;
+  void AnswerRequests(const OperatorRequest& request, Refusal refusal, SafetyState before,
+                      const SafetyFacts& facts) noexcept;
   Refusal RefusalOfArm(const SafetyFacts& facts) const noexcept;
   void Drive(std::int64_t due_ns) noexcept;
   /// Age of the permit that this tick renews; 0: it is the first.
