@@ -34,13 +34,11 @@ std::array<double, 2> TorqueAt(const PiecewiseTorque& torque, std::int64_t at) n
 
 ParallelArm::ParallelArm(const ArmParameters& arm, const SensorConfig& sensors,
                          const ParallelArmSettings& settings)
-    : step_s_(0.0),
-      steps_(static_cast<int>(std::ceil(settings.period_s / ArmSimulator::kDefaultStep_s - 1e-9))),
+    : steps_(static_cast<int>(std::ceil(settings.period_s / ArmSimulator::kDefaultStep_s - 1e-9))),
       model_(arm, ModeCount{.link1 = settings.modes, .link2 = settings.modes}),
       simulator_(model_),
       state_(model_.dof()),
       motor_lag_s_(settings.motor_lag_s),
-      torsion_share_(1.0),
       input_(sensors.strain_input),
       filter_(input_, settings.period_s / steps_, model_.dof() - kRigidCoordinates),
       before_(filter_.output()),
@@ -79,7 +77,7 @@ void ParallelArm::StartAtRest(const HealthSample& sample) noexcept {
 void ParallelArm::Advance(const PiecewiseTorque& torque) noexcept {
   for (int i = 0; i < steps_; ++i) {
     const std::array<double, 2> set_point_nm =
-        TorqueAt(torque, (2 * i + 1) * kPeriodTicks / (2 * steps_));
+        TorqueAt(torque, (2 * i + 1) * kPeriodTicks / (std::int64_t{2} * steps_));
     const Eigen::Vector2d torque_nm(motor_[0].Step(set_point_nm[0]),
                                     motor_[1].Step(set_point_nm[1]));
     simulator_.Step(state_, torque_nm, step_s_);

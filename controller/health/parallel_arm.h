@@ -61,7 +61,7 @@ class ParallelArm {
   const Eigen::MatrixXd& strain_shape() const noexcept { return strain_shape_; }
 
  private:
-  double step_s_;
+  double step_s_ = 0.0;
   int steps_;  // a period
   double position_gain_, rate_gain_per_s_;
   std::array<double, kCounters> encoder_weight_{};  // 1 / resolution^2; 0: no such encoder
@@ -69,7 +69,7 @@ class ParallelArm {
   ArmSimulator simulator_;
   ArmState state_;
   std::array<double, 2> motor_lag_s_;
-  double torsion_share_;  // of the rate of torsion that a step keeps
+  double torsion_share_ = 1.0;  // of the rate of torsion that a step keeps
   std::array<DcMotor, 2> motor_;
   StrainInputConfig input_;
   GaugeFilter filter_;
