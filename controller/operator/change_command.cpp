@@ -135,9 +135,14 @@ nlohmann::json ChangeCommand::Begin(const OperatorSnapshot& now) {
   waits_->planned = targets_.experiments->Find(now.tick.change_number != 0 ? now.tick.change_number
                                                                            : now.tick.run_number);
   const PlannedExperiment* planned = waits_->planned.get();
-  const std::string why = planned == nullptr || planned->mode != LoopMode::kFollow
-                              ? "this motion follows no path"
-                              : WhyNoChange(planned->reference);
+  std::string why;
+  if (planned == nullptr) {
+    why = "the daemon's own experiment is run as it was planned when it started";
+  } else if (planned->mode != LoopMode::kFollow) {
+    why = "this motion follows no path";
+  } else {
+    why = WhyNoChange(planned->reference);
+  }
   if (!why.empty()) return Refused("no-path", why, "let it end, or `flexarm stop`", now);
   const double speed = planned->reference.path_plan()->time.speed();
   const bool paused = speed == 0.0;

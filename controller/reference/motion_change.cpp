@@ -9,7 +9,6 @@
 
 #include "controller/reference/motion_plan.h"
 #include "controller/reference/path_check.h"
-#include "controller/reference/sampling_grid.h"
 #include "controller/reference/shortest_move.h"
 #include "controller/types/rejected_error.h"
 #include "model/problem_list.h"
@@ -101,11 +100,7 @@ ReferenceTable Retargeted(const ReferenceTable& table, int from, const Move& goa
                    .profile = goal.profile,
                    .same_load = true};
   if (goal.duration_s) {
-    move.periods = OnGrid(*goal.duration_s, period_s, "retarget.duration_s");
-    if (move.periods < kFewestPeriods) {
-      throw RejectedError("retarget.duration_s must be at least " + NumberText(kFewestPeriods) +
-                          " periods of " + NumberText(period_s) + " s");
-    }
+    move.periods = GivenPeriods(*goal.duration_s, period_s, "retarget.duration_s");
   } else {
     const std::optional<int> shortest =
         ShortestRetarget({old.AtPathTime(now - 2.0, period_s), old.AtPathTime(now - 1.0, period_s)},

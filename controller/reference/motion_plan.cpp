@@ -92,10 +92,7 @@ int PeriodsOf(const Move& move, const std::vector<PlannedMove>& moves, const Des
   const PlannedMove& planned = moves.back();
   const std::string key = RowOf(planned) + ".duration_s";
   if (move.duration_s) {
-    const int periods = OnGrid(*move.duration_s, period_s, key);
-    if (periods >= kFewestPeriods) return periods;
-    throw RejectedError(key + " = " + NumberText(*move.duration_s) + " s must be at least " +
-                        NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
+    return GivenPeriods(*move.duration_s, period_s, key);
   }
   const auto periods = ShortestPeriods(moves, design, period_s, limits, limits.plan_fraction);
   if (!periods) RefuseForLimits(planned, "limits.plan_fraction", limits);
@@ -136,6 +133,13 @@ bool Retargets(const std::vector<PlannedMove>& moves, int first) {
 }
 
 }  // namespace
+
+int GivenPeriods(double duration_s, double period_s, const std::string& key) {
+  const int periods = OnGrid(duration_s, period_s, key);
+  if (periods >= kFewestPeriods) return periods;
+  throw RejectedError(key + " = " + NumberText(duration_s) + " s must be at least " +
+                      NumberText(kFewestPeriods) + " periods of " + NumberText(period_s) + " s");
+}
 
 std::array<double, 2> GoalOf(const Move& move, const std::string& row, const MotionLimits& limits) {
   if (move.to_tip_m) return AnglesOfTip(move, row, limits);

@@ -33,6 +33,11 @@ std::vector<PlannedMove> PlanMoves(const Experiment& experiment, const Design& d
                                    double period_s, const std::array<double, 2>& start_rad,
                                    const MotionLimits& limits, const std::stop_token& stop = {});
 
+/// Periods of a move whose duration is given.
+/// @param key  its name in messages
+/// @throws RejectedError if it is not on the grid, or too short
+int GivenPeriods(double duration_s, double period_s, const std::string& key);
+
 /// Joint angles at the end of a move, rad: its to_deg, or those of the straight arm with the tip at
 /// to_tip_m.
 /// @param row  name of the move in messages

@@ -15,6 +15,7 @@ daemons=()
 
 finish() {
   local code=$?
+  # One that has ended already is no failure of the test.
   for pid in "${daemons[@]}"; do kill "$pid" 2>/dev/null || true; done
   wait
   if ((code != 0)); then

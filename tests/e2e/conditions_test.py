@@ -4,10 +4,9 @@
 import json
 import re
 import subprocess
-import time
 import unittest
 
-from program import BIN, HIL, ROOT, ProgramTest, realtime_permitted, rows
+from program import BIN, HIL, ROOT, ProgramTest, rows
 
 # `sobel` trips in this one with 0 and with 1 kg; `gain-scheduled` completes it with each payload.
 TIP_POSITIONS = (ROOT / "config/experiments/tip-positions.toml").read_text(encoding="utf-8")
@@ -67,15 +66,7 @@ class Simulate(ProgramTest):
 class Daemon(ProgramTest):
     def setUp(self):
         super().setUp()
-        ordinary = ["--without-realtime"] if realtime_permitted() else []  # else it is given anyway
-        self.daemon = self.start_daemon(*ordinary)
-        self.wait_for_state("Idle")
-        end = time.monotonic() + 20
-        while self.verb("arm").returncode != 0:
-            self.assertLess(time.monotonic(), end, self.daemon_log())  # it is not at rest yet
-
-    def verb(self, *command):
-        return self.run_program("flexarm", *command, "--socket", self.folder / "socket")
+        self.daemon = self.start_armed_daemon()
 
     def test_refuses_names_a_law_and_goes_on_answering(self):
         experiment = self.experiment(tip_positions("payload_kg = [0, 1]"))

@@ -187,22 +187,13 @@ class OfATrip(ProgramTest):
         self.operate("arm")
         self.operate("sim", "emergency-stop", "0")
         self.wait_for_state("Tripped")
-        run = self.wait_for_trip_log()
+        run, = self.wait_for_closed_runs(1)
         table = self.folder / "trip.csv"
         self.flexarm("export", run, "--decoded", "-o", table)
         with open(table, encoding="utf-8", newline="") as file:
             _, *states = [row["state"] for row in csv.DictReader(file)]  # after the units
         self.assertLessEqual({"Idle", "Armed", "Tripped"}, set(states))
         self.assertEqual(states[-1], "Tripped")
-
-    def wait_for_trip_log(self, within_s=20):
-        end = time.monotonic() + within_s
-        while time.monotonic() < end:
-            for run in (self.folder / "runs").glob("*-trip-emergency-stop.flexarm"):
-                if self.flexarm_json("info", run)["closed"]:
-                    return run
-            time.sleep(0.1)
-        return self.fail(f"no closed log of the trip\n{self.daemon_log()}")
 
 
 if __name__ == "__main__":

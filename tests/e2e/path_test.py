@@ -6,7 +6,7 @@ import json
 import time
 import unittest
 
-from program import ProgramTest, realtime_permitted, rows
+from program import ProgramTest, rows
 
 MOVES = """
 name = "there-and-back"
@@ -26,34 +26,21 @@ to_deg = [0.0, 0.0]
 class Path(ProgramTest):
     def setUp(self):
         super().setUp()
-        ordinary = ["--without-realtime"] if realtime_permitted() else []  # else it is given anyway
-        self.start_daemon(*ordinary, "--set", "controller.name=gain-scheduled",
-                          "--set", "safety.reduced=true")
-        self.wait_for_state("Idle")
-        end = time.monotonic() + 20
-        while self.verb("arm").returncode != 0:
-            self.assertLess(time.monotonic(), end, self.daemon_log())  # it is not at rest yet
-
-    def verb(self, *command):
-        return self.run_program("flexarm", *command, "--socket", self.folder / "socket")
-
-    def done(self, *command):
-        result = self.verb(*command)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        return result.stdout
+        self.start_armed_daemon("--set", "controller.name=gain-scheduled",
+                                "--set", "safety.reduced=true")
 
     def status(self):
-        return json.loads(self.done("status", "--json"))
+        return json.loads(self.operate("status", "--json").stdout)
 
     def test_a_run_that_is_paused_slowed_and_sent_elsewhere_replays(self):
         refused = self.verb("run", self.experiment(MOVES.replace("20.0", "50.0")))
         self.assertEqual(refused.returncode, 1)
         self.assertIn("45", refused.stderr, "half of the soft angle: the limits are reduced")
-        self.assertIn("limits", self.done("status"))
-        self.done("run", self.experiment(MOVES), "--speed", "80")
+        self.assertIn("limits", self.operate("status").stdout)
+        self.operate("run", self.experiment(MOVES), "--speed", "80")
         time.sleep(1.5)
-        self.done("pause")
-        self.assertIn("paused", self.done("status"))
+        self.operate("pause")
+        self.assertIn("paused", self.operate("status").stdout)
         time.sleep(1.5)
         paused = self.status()["joint_angle_deg"]
         time.sleep(0.5)
@@ -61,9 +48,9 @@ class Path(ProgramTest):
         for before, after in zip(paused, still, strict=True):
             self.assertAlmostEqual(before, after, delta=0.2)
         self.assertEqual(self.verb("pause").returncode, 1)
-        self.done("resume")
-        self.done("speed", "100")
-        self.done("move", "--to", "-5", "5", "--retarget")
+        self.operate("resume")
+        self.operate("speed", "100")
+        self.operate("move", "--to", "-5", "5", "--retarget")
         end = time.monotonic() + 30
         while self.status()["run"]["outcome"] == "running":
             self.assertLess(time.monotonic(), end, self.daemon_log())
@@ -71,9 +58,9 @@ class Path(ProgramTest):
         for angle, goal in zip(self.status()["joint_angle_deg"], (-5.0, 5.0), strict=False):
             self.assertAlmostEqual(angle, goal, delta=0.4)  # friction
         self.assertEqual(self.verb("limits", "full").returncode, 1, "it is armed")
-        self.done("disarm")
+        self.operate("disarm")
         self.wait_for_state("Idle")
-        self.done("limits", "full")
+        self.operate("limits", "full")
         self.assertFalse(self.status()["limits"]["reduced"])
         run, = (self.folder / "runs").glob("*.flexarm")
         replay = self.flexarm_json("replay", run)

@@ -213,8 +213,34 @@ class ProgramTest(unittest.TestCase):
             time.sleep(0.05)
         self.fail(f"not {states} within {within_s} s: {status}\n{self.daemon_log()}")
 
+    def runs(self):
+        return sorted((self.folder / "runs").glob("*.flexarm"))
+
+    def wait_for_closed_runs(self, count, within_s=20):
+        end = time.monotonic() + within_s
+        while time.monotonic() < end:
+            closed = [run for run in self.runs()
+                      if self.flexarm_json("info", run)["closed"]]
+            if len(closed) == count:
+                return closed
+            time.sleep(0.1)
+        self.fail(f"not {count} closed runs: {self.runs()}\n{self.daemon_log()}")
+
+    def verb(self, *command):
+        return self.run_program("flexarm", *command, "--socket", self.folder / "socket")
+
+    def start_armed_daemon(self, *arguments):
+        """In lock step behind the clock, armed as soon as the arm has been at rest."""
+        ordinary = ["--without-realtime"] if realtime_permitted() else []  # else it is given anyway
+        daemon = self.start_daemon(*ordinary, *arguments)
+        self.wait_for_state("Idle")
+        end = time.monotonic() + 20
+        while self.verb("arm").returncode != 0:
+            self.assertLess(time.monotonic(), end, self.daemon_log())  # it is not at rest yet
+        return daemon
+
     def operate(self, *command, expect=0):
-        result = self.run_program("flexarm", *command, "--socket", self.folder / "socket")
+        result = self.verb(*command)
         self.assertEqual(result.returncode, expect, f"{command}: {result.stdout}{result.stderr}")
         return result
 

@@ -31,19 +31,6 @@ class DaemonRuns(ProgramTest):
     def status(self):
         return json.loads(self.operate("status", "--json").stdout)
 
-    def runs(self):
-        return sorted((self.folder / "runs").glob("*.flexarm"))
-
-    def wait_for_closed_runs(self, count, within_s=20):
-        end = time.monotonic() + within_s
-        while time.monotonic() < end:
-            closed = [run for run in self.runs()
-                      if self.flexarm_json("info", run)["closed"]]
-            if len(closed) == count:
-                return closed
-            time.sleep(0.1)
-        self.fail(f"not {count} closed runs: {self.runs()}\n{self.daemon_log()}")
-
     def wait_for_samples(self, count, within_s=60):
         """Waits until the loop has had so many. The start of a daemon takes its time first."""
         end = time.monotonic() + within_s

@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from program import BIN, ProgramTest, realtime_permitted
+from program import BIN, ProgramTest
 
 MOVE = """
 name = "there"
@@ -30,15 +30,7 @@ SLOW = "name = \"slow\"\nduration_s = 3600.0\n" + "".join(
 class RunWait(ProgramTest):
     def setUp(self):
         super().setUp()
-        ordinary = ["--without-realtime"] if realtime_permitted() else []  # else it is given anyway
-        self.daemon = self.start_daemon(*ordinary)
-        self.wait_for_state("Idle")
-        end = time.monotonic() + 20
-        while self.verb("arm").returncode != 0:
-            self.assertLess(time.monotonic(), end, self.daemon_log())  # it is not at rest yet
-
-    def verb(self, *command):
-        return self.run_program("flexarm", *command, "--socket", self.folder / "socket")
+        self.daemon = self.start_armed_daemon()
 
     def start(self, *more, experiment=MOVE.format(duration=30.0), **streams):
         return subprocess.Popen(

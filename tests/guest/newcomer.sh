@@ -56,6 +56,7 @@ status=0 since=$SECONDS
   --out "$work/out" -- bash -c "$inside" || status=$?
 took=$((SECONDS - since))
 cp "$work/out/log" "$keep"
+# Without the file the guest died: its status has said so.
 echo "$took s on the host, $(cat "$work/out/end_s" || true) s in the guest"
 if ((status)); then
   tail -n 60 "$work/out/log"

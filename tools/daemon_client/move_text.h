@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -17,5 +18,8 @@ struct MoveWish {
 /// The experiment of that one move, a TOML text for the command `run`. Each row of it is what was
 /// asked for, so the daemon's messages name that.
 std::string MoveText(const MoveWish& wish);
+
+/// The command `retarget` to the same place.
+nlohmann::ordered_json RetargetCommand(const MoveWish& wish);
 
 }  // namespace flexarm

@@ -69,14 +69,6 @@ struct MoveOptions {
   std::string elbow;
   double duration_s = 0.0;
   bool retarget = false;
-
-  Json Goal(bool to_tip) const {
-    Json command{{"command", "retarget"}};
-    command[to_tip ? "to_tip_m" : "to_deg"] = to_tip ? to_tip_m : to_deg;
-    if (!elbow.empty()) command["elbow"] = elbow;
-    if (duration_s > 0.0) command["duration_s"] = duration_s;
-    return command;
-  }
 };
 
 MoveWish WishOf(const MoveOptions& options, bool to_tip) {
@@ -122,12 +114,10 @@ void RegisterMove(CLI::App& app, Exit& exit) {
       "          flexarm move --to 0 0 --retarget");
   verb->callback([move, to, to_tip, &exit] {
     if (to->count() + to_tip->count() == 0) throw CLI::RequiredError("--to or --to-tip");
-    if (move->retarget) {
-      const DaemonClient& daemon = move->run.daemon;
-      exit.code = daemon.Conclude(daemon.Ask(move->Goal(to_tip->count() > 0), kLongestPlan_s));
-      return;
-    }
-    exit.code = move->run.Run("move", MoveText(WishOf(*move, to_tip->count() > 0)));
+    const MoveWish wish = WishOf(*move, to_tip->count() > 0);
+    const DaemonClient& daemon = move->run.daemon;
+    exit.code = move->retarget ? daemon.Conclude(daemon.Ask(RetargetCommand(wish), kLongestPlan_s))
+                               : move->run.Run("move", MoveText(wish));
   });
 }
 

@@ -130,13 +130,20 @@ TEST_F(ChangeCommandTest, AStopEndsAPausedRun) {
   EXPECT_EQ(Change("pause")["ok"], true);
 }
 
-TEST_F(ChangeCommandTest, ManyChangesLeaveNoMoreThanTheExperimentsInUse) {
+// The number of each change is in its event; experiments with lower ones are freed.
+TEST_F(ChangeCommandTest, TheLoopReleasesEachExperimentThatAChangeReplaces) {
   StartRun();
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(Change("pause")["ok"], true) << i;
     Run(2.0);
     EXPECT_EQ(Change("resume")["ok"], true) << i;
     Run(1.4);
+    std::uint32_t newest = 0;
+    for (const RunEvent& event : TakeEvents(&events_)) {
+      if (event.kind == "change") newest = Json::parse(event.value_json)["number"];
+    }
+    EXPECT_GT(newest, 0u);
+    EXPECT_EQ(stack_->released_experiments(), newest) << i;
   }
   EXPECT_TRUE(ComesTo("Armed", 10.0));
   ExpectAt(0.0, 10.0);

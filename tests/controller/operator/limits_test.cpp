@@ -22,6 +22,13 @@ class ReducedLimits : public OperatorSession {
         "\nto_deg = [" + std::to_string(to_deg) + ", 0.0]\n";
     return Ask(Json{{"command", "run"}, {"experiment", toml}}, kPlan_s);
   }
+  void MoveAndDisarm(double to_deg) {
+    ASSERT_EQ(Ask("arm")["ok"], true);
+    ASSERT_EQ(Move(to_deg, 3.0)["ok"], true);
+    ASSERT_TRUE(ComesTo("Armed", 6.0));
+    ASSERT_EQ(Ask("disarm")["ok"], true);
+    ASSERT_TRUE(ComesTo("Idle"));
+  }
 };
 
 // The shipped limits: 90 deg, 30 and 6 N m, 8 and 10 rad/s.
@@ -51,11 +58,7 @@ TEST_F(ReducedLimits, HoldFromTheStartUntilTheyAreLifted) {
 
 TEST_F(ReducedLimits, LeaveAnArmAloneThatIsWithinThem) {
   StartAtRest();
-  ASSERT_EQ(Ask("arm")["ok"], true);
-  ASSERT_EQ(Move(25.0, 3.0)["ok"], true);
-  ASSERT_TRUE(ComesTo("Armed", 6.0));
-  ASSERT_EQ(Ask("disarm")["ok"], true);
-  ASSERT_TRUE(ComesTo("Idle"));
+  MoveAndDisarm(25.0);
   EXPECT_EQ(Set("reduced")["ok"], true);
   Run(0.2);
   EXPECT_EQ(State(), "Idle") << "25 deg are within half of 90";
@@ -64,11 +67,7 @@ TEST_F(ReducedLimits, LeaveAnArmAloneThatIsWithinThem) {
 
 TEST_F(ReducedLimits, OfAnAngleThatTheArmHasPassedTripItAtOnce) {
   StartAtRest({"safety.reduced_angle=0.2"});
-  ASSERT_EQ(Ask("arm")["ok"], true);
-  ASSERT_EQ(Move(25.0, 3.0)["ok"], true);
-  ASSERT_TRUE(ComesTo("Armed", 6.0));
-  ASSERT_EQ(Ask("disarm")["ok"], true);
-  ASSERT_TRUE(ComesTo("Idle"));
+  MoveAndDisarm(25.0);
   EXPECT_EQ(Set("reduced")["ok"], true);
   EXPECT_TRUE(ComesTo("Tripped"));
   const Json status = Ask("status");

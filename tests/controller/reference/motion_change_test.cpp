@@ -77,6 +77,22 @@ void ExpectSmooth(const ReferenceTable& table) {
   }
 }
 
+// Within a change of speed, where no move begins or ends. Its fifth derivative over time is at most
+// 1,500 rad/s^5: 0.6 rad/s times 840 / s^4 of the profile's fourth, and what the move adds.
+void ExpectJerkOfAcceleration(const ReferenceTable& table, int first, int last) {
+  double largest = 0.0;
+  for (int k = first + 1; k < last; ++k) {
+    const auto [before, now, after] = table.PathAround(k);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double difference =
+          (after.acceleration_rad_s2[i] - before.acceleration_rad_s2[i]) / (2 * kPeriod_s);
+      ASSERT_NEAR(difference, now.jerk_rad_s3[i], 1500.0 * kPeriod_s * kPeriod_s / 6.0) << k;
+      largest = std::max(largest, std::fabs(difference));
+    }
+  }
+  EXPECT_GT(largest, 2.0) << "the test is inconclusive";
+}
+
 TEST(PathTime, HasTheDerivativesThatItStates) {
   const PathTime time = PathTime(0.8).WithSpeed(100, 0.2, 40);
   for (int k = 101; k < 180; ++k) {
@@ -117,6 +133,7 @@ TEST(MotionChange, APauseComesToRestOnThePathAndHoldsThere) {
     EXPECT_LT(DistanceFromPath(PointOf(paused, k).angle_rad, table), 1e-3) << k;
   }
   ExpectSmooth(paused);
+  ExpectJerkOfAcceleration(paused, kFrom, paused.holds_at());
 }
 
 TEST(MotionChange, WhatIsResumedEndsWhereThePathDoes) {

@@ -186,6 +186,7 @@ TEST(Gate, TheLimitsOfARigComeFromItsConfig) {
   safety.slew_limit_nm_per_s = {501.0, 151.0};
   safety.permit_timeout_ms = 5.25;
   safety.homing_torque_fraction = 0.375;
+  safety.reduced_torque = 0.625;
   LoopConfig loop{};
   loop.period_ms = 20.0;
   const GateLimits limits = MakeGateLimits(safety, LoopGrid(loop));
@@ -194,6 +195,7 @@ TEST(Gate, TheLimitsOfARigComeFromItsConfig) {
   EXPECT_EQ(limits.command_timeout_ns, 40 * kMs);  // two periods
   EXPECT_EQ(limits.permit_timeout_ns, 5'250'000);  // 5.25 ms
   EXPECT_EQ(limits.homing_fraction, 0.375);
+  EXPECT_EQ(limits.reduced_fraction, 0.625);
 }
 
 // Logs and status name the bits: each once, and those that zero the torque are the first four.
@@ -228,6 +230,23 @@ TEST(Gate, HomingHasAShareOfTheTorqueLimit) {
   EXPECT_DOUBLE_EQ(homing.torque_nm[1], -0.3 * 6.0);
   EXPECT_EQ(homing.why, kGateTorque1 | kGateTorque2);
   limits.homing_fraction = kNan;
+  EXPECT_EQ(Gate(in, limits).torque_nm, (std::array<double, 2>{0.0, 0.0}));
+}
+
+TEST(Gate, ReducedLimitsAreAShareTooAndTheLeastShareHolds) {
+  GateLimits limits = kGateLimits;
+  limits.reduced_fraction = 0.5;
+  limits.homing_fraction = 0.3;
+  GateInput in = FineInput();
+  in.asked_nm = {29.0, -5.0};
+  in.previous_nm = {10.0, -2.0};
+  in.dt_s = 0.1;
+  in.reduced = true;
+  EXPECT_DOUBLE_EQ(Gate(in, limits).torque_nm[0], 0.5 * 30.0);
+  EXPECT_DOUBLE_EQ(Gate(in, limits).torque_nm[1], -0.5 * 6.0);
+  in.homing = true;
+  EXPECT_DOUBLE_EQ(Gate(in, limits).torque_nm[0], 0.3 * 30.0);
+  limits.reduced_fraction = kNan;
   EXPECT_EQ(Gate(in, limits).torque_nm, (std::array<double, 2>{0.0, 0.0}));
 }
 

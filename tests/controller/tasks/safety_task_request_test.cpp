@@ -53,6 +53,36 @@ TEST_F(SafetyTaskTest, PlannedRequestsAreJudgedAtTheirTickInOrder) {
   EXPECT_FALSE(answers_.Pop(&answer));
 }
 
+// What holds when the arm is armed holds until the relay is open again.
+TEST_F(SafetyTaskTest, TakesOtherLimitsOnlyWhileTheRelayIsOpen) {
+  RunFor(10 * kMs);
+  EXPECT_FALSE(permit().reduced);
+  GoTo(kRunning);
+  reduced_ = true;
+  RunFor(200 * kMs);
+  EXPECT_FALSE(permit().reduced);
+  stop_.Set(++number_);
+  control_.report.at_rest = true;
+  RunFor(100 * kMs);
+  ASSERT_EQ(safety_.status().state, kArmed);
+  EXPECT_FALSE(permit().reduced);
+  disarm_.Set(++number_);
+  RunFor(200 * kMs);
+  ASSERT_EQ(safety_.status().state, kIdle);
+  EXPECT_TRUE(permit().reduced);
+  reduced_ = false;
+  RunFor(kMs);
+  EXPECT_FALSE(permit().reduced);
+}
+
+// An arm that is asked for after the limits were reduced finds them reduced.
+TEST_F(SafetyTaskTest, AnArmHasTheLimitsThatWereSetBeforeIt) {
+  RunFor(100 * kMs);
+  reduced_ = true;
+  ASSERT_EQ(Now(RequestKind::kArm), Refusal::kNone);
+  EXPECT_TRUE(permit().reduced);
+}
+
 // Changes of the path of a run: only of the present one, and only in time.
 class SafetyTaskChangeTest : public SafetyTaskTest {
  protected:
