@@ -252,7 +252,7 @@ lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
 lane_guest-long() {  # the same kernel: what takes minutes more, and changes seldom
   build_for_guest
   part scripts tests/guest/run_all.sh build/release --note "$logs/$lane.scripts.note" \
-    wakeup fast_loop hardened refusal
+    guard_pairs guarded wire_more wakeup fast_loop hardened refusal
   build release flexarm-study
   part newcomer tests/guest/newcomer.sh build/release --note "$logs/$lane.newcomer.note"
   note "$(cat "$logs/$lane".{scripts,newcomer}.note | paste -sd';')"
@@ -283,7 +283,7 @@ lane_build-cost() {  # the compile time of the product is within the committed f
 }
 
 # Code that parses input or drives a bus; the stored inputs of tests/fuzz include lines of the socket.
-exposed_tests=(tests/hal tests/config tests/fuzz tests/controller/runlog)
+exposed_tests=(tests/hal tests/fuzz tests/controller/runlog)
 asan_labels='^(unit|loop|hostile)$'
 
 lane_asan() {  # address, undefined behaviour: code that parses input or drives a bus
@@ -307,7 +307,7 @@ lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop
 }
 
 # Queues, executors and the bodies of the threads.
-threaded_tests=(tests/controller/{exchange,realtime,tasks,operator,host,wired_threads})
+threaded_tests=(tests/controller/{exchange,realtime,tasks,host,wired_threads})
 
 lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
   build tsan "${threaded_tests[@]/%//all}" flexarm flexarmd

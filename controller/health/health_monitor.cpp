@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <utility>
 
 #include "controller/files/input_error.h"
@@ -87,7 +88,15 @@ void HealthMonitor::Run(const std::stop_token& stop) {
 
 void HealthMonitor::TakeWaiting() {
   Sample sample{};
-  while (waiting_.Pop(&sample)) Follow(sample);
+  while (waiting_.Pop(&sample)) {
+    // The arm may move: no error of these figures ends the daemon.
+    try {
+      Follow(sample);
+    } catch (const std::exception& error) {
+      run_.reset();
+      settings_.report(true, std::string("health: the run is not judged: ") + error.what());
+    }
+  }
 }
 
 // The loop is reset at the grant of a run, and its log begins there.

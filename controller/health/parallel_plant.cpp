@@ -25,6 +25,8 @@ constexpr double kOffsetPrior_rad = 5e-3;
 constexpr double kTorsionDecay_s = 0.01;
 constexpr double kBlock_s = 1.0;
 
+constexpr double kMostStiffnessDrift = 0.9;  // relative; there the arm is another one, or broken
+
 double NoiseOf(const SensorConfig& sensors, std::size_t strain) {
   const double noise = sensors.strain_input.noise_counts;
   return std::fabs(StrainScaleOf(sensors, strain).unit_per_count) *
@@ -84,6 +86,16 @@ ParallelArmSettings SettingsOf(const ControlConfig& config, const NominalPlant& 
 }
 
 }  // namespace
+
+bool IsPossible(const std::vector<DriftChannel>& channels, const std::vector<double>& drift) {
+  for (std::size_t i = 0; i < drift.size(); ++i) {
+    if (!std::isfinite(drift[i])) return false;
+    const bool of_stiffness = channels[i].kind == DriftKind::kJointStiffness ||
+                              channels[i].kind == DriftKind::kLinkStiffness;
+    if (of_stiffness && std::fabs(drift[i]) > kMostStiffnessDrift) return false;
+  }
+  return true;
+}
 
 ArmParameters WithDrift(ArmParameters arm, const std::vector<DriftChannel>& channels,
                         const std::vector<double>& drift) {

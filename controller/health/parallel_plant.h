@@ -99,7 +99,11 @@ class ParallelPlant {
   bool started_ = false;
 };
 
+/// Whether every number is finite, and leaves every joint and link a stiffness of its order.
+bool IsPossible(const std::vector<DriftChannel>& channels, const std::vector<double>& drift);
+
 /// The arm with its channels' drift, in the units of DriftKind; channels of gauges are left out.
+/// Expects a drift that IsPossible.
 ArmParameters WithDrift(ArmParameters arm, const std::vector<DriftChannel>& channels,
                         const std::vector<double>& drift);
 

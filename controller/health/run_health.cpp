@@ -10,6 +10,20 @@ namespace {
 constexpr int kMostPasses = 5;
 constexpr double kSure = 3.0;  // standard errors: a smaller drift is not followed
 
+constexpr const char* kNoDriftExplains =
+    "no drift explains the run: the arm is not that of the config";
+
+// What a run tells in which the parallel plant is of no use.
+void Forget(const ControlConfig& config, RunFigures* figures) {
+  const std::vector<DriftChannel> channels = DriftChannels(config.arm, config.sensors);
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    figures->drift[i] = {.value = 0.0,
+                         .standard_error = ScaleOf(channels[i], config.arm, config.sensors).prior};
+  }
+  figures->misfit = 0.0;
+  figures->unused = kNoDriftExplains;
+}
+
 // Adds to `total` the drift of the pass. Returns whether it leads out of the linear range.
 bool Follow(const ControlConfig& config, const std::vector<DriftFigure>& found,
             std::vector<double>* total) {
@@ -52,13 +66,20 @@ RunFigures RunHealth::Figures() const {
                      .unused = {}};
   NominalPlant plant = plant_;
   plant.drift.assign(figures.drift.size(), 0.0);
+  const std::vector<DriftChannel> channels = DriftChannels(config_.arm, config_.sensors);
   for (int pass = 1; pass < kMostPasses && Follow(config_, figures.drift, &plant.drift); ++pass) {
+    if (!IsPossible(channels, plant.drift)) break;
     ParallelPlant again(config_, plant);
     for (const HealthSample& sample : kept_) again.Take(sample);
     figures.drift = again.Drift();
     figures.misfit = again.Misfit();
   }
-  for (std::size_t i = 0; i < figures.drift.size(); ++i) figures.drift[i].value += plant.drift[i];
+  std::vector<double> total;
+  for (std::size_t i = 0; i < figures.drift.size(); ++i) {
+    figures.drift[i].value += plant.drift[i];
+    total.push_back(figures.drift[i].value);
+  }
+  if (!IsPossible(channels, total) || !std::isfinite(figures.misfit)) Forget(config_, &figures);
   if (samples_.gaps()) figures.unused = "samples of the run are missing";
   if (samples_.load_changes()) figures.unused = kPayloadChanges;
   return figures;

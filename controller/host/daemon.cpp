@@ -101,8 +101,9 @@ std::unique_ptr<Telemetry> MakeTelemetry(const RigConfig& config) {
 // The payload that a run states is that of the config.
 std::unique_ptr<HealthMonitor> MakeHealthMonitor(const RigConfig& config, Journal* journal) {
   if (!config.health.enabled || config.estimator.kind == EstimatorKind::kIdeal) return nullptr;
+  const ControlConfig& control = config;
   return std::make_unique<HealthMonitor>(HealthMonitorSettings{
-      .config = config,
+      .config = control,
       .health = config.health,
       .plant = {.payload_kg = config.arm.payload_mass_kg,
                 .motor_lag_s = {1e-3 * config.sim.motor_lag_ms[0],

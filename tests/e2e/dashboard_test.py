@@ -365,7 +365,7 @@ class Flood(DashboardTest):
                     self.assertGreater(got, 0, "the stream goes on")
                     read += got
             took = time.monotonic() - begun
-            stalls = sum(int(stall) + 1 for stall in witness.stalls_ms)
+            stalls = sum(int(wait) + 1 for wait in witness.waits_ms)
         shares = [(processor_s(pid) - was) / took for pid, was in zip(pids, used)]
         after = self.counts(dashboard)
         return {name: after[name] - before[name] for name in before}, stalls, shares, read

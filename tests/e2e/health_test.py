@@ -3,12 +3,26 @@
 log; its file, also broken; status and journal."""
 
 import json
+import time
 import unittest
 
 from program import HIL, ProgramTest, doublet, realtime_permitted
 
 SHORT = doublet("short", 3.0)
 WITHIN_S = 60.0
+TOO_HEAVY = """
+name = "too-heavy"
+duration_s = 8.0
+
+[[move]]
+start_s = 0.0
+duration_s = 1.0
+to_deg = [40.0, 0.0]
+
+[[sim_event]]
+at_s = 0.5
+payload_kg = 6.0
+"""
 ORDINARY = ["--without-realtime"] if realtime_permitted() else []  # else it is given anyway
 
 
@@ -79,6 +93,19 @@ class Daemon(ProgramTest):
         self.assertEqual((status["runs"], status["lost"], status["error"]), (2, 0, None))
         self.assertEqual([alarm["channel"] for alarm in status["alarms"]], ["payload"])
         self.assertIn("check what the arm carries", self.operate("status").stdout)
+
+    def test_a_run_that_no_drift_explains_is_left_out(self):
+        """The arm picks up twice what it can carry: its links bend too far, and it trips."""
+        self.start_armed_daemon()
+        self.operate("run", self.experiment(TOO_HEAVY))
+        self.wait_for_state("Tripped")
+        end = time.monotonic() + WITHIN_S
+        while json.loads(self.operate("status", "--json").stdout)["health"]["runs"] == 0:
+            self.assertLess(time.monotonic(), end, self.daemon_log())
+            time.sleep(0.1)
+        kept = self.kept()
+        self.assertIsNotNone(kept["runs"][0]["unused"])
+        self.assertEqual(kept["alarms"], [])
 
     def test_a_broken_file_is_set_aside(self):
         self.run_once()

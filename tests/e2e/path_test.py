@@ -62,7 +62,7 @@ class Path(ProgramTest):
         self.wait_for_state("Idle")
         self.operate("limits", "full")
         self.assertFalse(self.status()["limits"]["reduced"])
-        run, = (self.folder / "runs").glob("*.flexarm")
+        run, = self.wait_for_closed_runs(1)
         replay = self.flexarm_json("replay", run)
         self.assertIs(replay["bit_exact"], True)
         self.assertIs(replay["safety_exact"], True)

@@ -39,6 +39,9 @@ CRASH_SIGNS = ("terminate called", "Sanitizer", "runtime error:", "Assertion", "
 # A longer wait means that the machine withdrew the processor; Linux itself is faster.
 STALL_MS = 2.0
 
+# A wait this long costs a task of 1 ms its deadline, when it needs half of its period itself.
+SHORT_WAIT_MS = 0.5
+
 REPETITIONS_S = 90.0
 
 
@@ -64,16 +67,21 @@ class StallWitness:
         self.process.communicate()
 
     @functools.cached_property
-    def stalls_ms(self):
-        """Every wait of STALL_MS or more on any processor. Ends the recording."""
+    def waits_ms(self):
+        """Every wait of SHORT_WAIT_MS or more on any processor. Ends the recording."""
         self.process.send_signal(signal.SIGINT)
         told, _ = self.process.communicate(timeout=10)
-        stalls = []
+        waits = []
         for late_us, counts in re.findall(r"^(\d+)((?:[ \t]+\d+)+)$", told, re.MULTILINE):
-            stalls += [int(late_us) / 1000] * sum(map(int, counts.split()))
+            waits += [int(late_us) / 1000] * sum(map(int, counts.split()))
         beyond = re.search(r"Histogram Overflows:(.*)", told)
-        stalls += [100.0] * sum(map(int, beyond.group(1).split() if beyond else []))
-        return [stall for stall in stalls if stall >= STALL_MS]
+        waits += [100.0] * sum(map(int, beyond.group(1).split() if beyond else []))
+        return [wait for wait in waits if wait >= SHORT_WAIT_MS]
+
+    @property
+    def stalls_ms(self):
+        """The waits of STALL_MS or more."""
+        return [wait for wait in self.waits_ms if wait >= STALL_MS]
 
 
 def wait_for_calm(within_s=15):

@@ -83,7 +83,7 @@ sys.exit(not all(told[key] is True for key in ("bit_exact", "safety_exact", "sam
 
 # A guest uses one core, and virtual time makes the guests independent: two at a time, the longest
 # first. `threads` has two processors and real time; it asserts no time.
-names=(wire guarded service commission docs load hostile experiment threads interfaces daq gpio)
+names=(wire guard_six_pairs service commission docs load hostile experiment threads interfaces daq gpio)
 if (($# > 3)); then names=("${@:4}"); fi
 running=0
 for name in "${names[@]}"; do

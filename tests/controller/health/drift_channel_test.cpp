@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "controller/health/parallel_plant.h"
 #include "tests/hal/thesis_sensors.h"
 #include "tests/support/thesis_rig.h"
 
@@ -25,6 +28,23 @@ TEST(DriftChannel, TheThesisRigHas47) {
   EXPECT_EQ(channels[13].strain, 6u);
   EXPECT_EQ(channels[46].Key(), "link2.gauge10.zero");
   EXPECT_EQ(channels[46].strain, 19u);
+}
+
+TEST(DriftChannel, AStiffnessOfAnotherArmOrNoNumberIsNoDrift) {
+  const std::vector<DriftChannel> channels = DriftChannels(ThesisRig(), ThesisSensors());
+  std::vector<double> drift(channels.size(), 0.0);
+  EXPECT_TRUE(IsPossible(channels, drift));
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const bool of_stiffness = channels[i].kind == DriftKind::kJointStiffness ||
+                              channels[i].kind == DriftKind::kLinkStiffness;
+    for (const double far : {-2.0, 2.0}) {
+      drift[i] = far;
+      EXPECT_EQ(IsPossible(channels, drift), !of_stiffness) << channels[i].Key();
+    }
+    drift[i] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(IsPossible(channels, drift)) << channels[i].Key();
+    drift[i] = 0.0;
+  }
 }
 
 TEST(DriftChannel, WhatTheSensorsDoNotSeeHasNoFigure) {

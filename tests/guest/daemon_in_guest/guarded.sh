@@ -8,31 +8,11 @@
 . "$(dirname "$0")/../check.sh"
 # shellcheck source=tests/guest/daemon_in_guest/rig.sh
 . "$(dirname "$0")/rig.sh"
+# shellcheck source=tests/guest/daemon_in_guest/guarded_daemon.sh
+. "$(dirname "$0")/guarded_daemon.sh"
 
-report=$PWD/rtguard.txt
-# A function, because rig.sh starts `flexarmd`; exec, so that its number is that of the daemon.
-flexarmd() {
-  exec env RTGUARD_REPORT="$report" LD_PRELOAD=/mnt/share/librtguard.so /usr/local/bin/flexarmd "$@"
-}
 came_to() { within "$1" grep -q -- "$2" daemon.log; }
-# grep fails where it counts 0.
-count() { grep -c -- "$1" daemon.log || true; }
 again() { (($(count "$2") > $1)); }
-
-# ends STATUS THREAD..: the daemon ends in order (1: tripped), and each of its threads was watched.
-ends() {
-  local thread status=$1
-  shift
-  kill -TERM $daemon
-  wait $daemon
-  check "flexarmd ends with $status" equal $? "$status"
-  for thread; do
-    check "$thread was watched" grep -q "^rtguard: $thread: [0-9]* activations$" "$report"
-  done
-  check "no violation" equal "$(grep -cv ' activations$' "$report")" 0
-  cat "$report"
-  rm -f "$report"
-}
 
 echo "== simulated: every state"
 flexarmd --config $configs/hil.toml --log-dir runs --state-dir "$PWD/sim-state" \

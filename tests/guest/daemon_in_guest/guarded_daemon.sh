@@ -1,0 +1,27 @@
+# Sourced inside the guest, after rig.sh: the daemon under rtguard (tests/rtguard), which ends it when
+# a real-time thread does what it must not.
+# shellcheck shell=bash disable=SC2154
+
+report=$PWD/rtguard.txt
+# A function, because rig.sh starts `flexarmd`; exec, so that its number is that of the daemon.
+flexarmd() {
+  exec env RTGUARD_REPORT="$report" LD_PRELOAD=/mnt/share/librtguard.so /usr/local/bin/flexarmd "$@"
+}
+# grep fails where it counts 0.
+count() { grep -c -- "$1" daemon.log || true; }
+
+# ends STATUS THREAD..: the daemon ends in order (1: tripped), and each of its threads was watched.
+ends() {
+  local thread failures_before=$failures status=$1
+  shift
+  kill -TERM $daemon
+  wait $daemon
+  check "flexarmd ends with $status" equal $? "$status"
+  for thread; do
+    check "$thread was watched" grep -q "^rtguard: $thread: [0-9]* activations$" "$report"
+  done
+  check "no violation" equal "$(grep -cv ' activations$' "$report")" 0
+  cat "$report"
+  if ((failures > failures_before)); then tail -n 40 daemon.log; fi
+  rm -f "$report"
+}
