@@ -18,6 +18,9 @@ void ReadLimits(TableReader limits, SafetyConfig* out) {
   limits.Read(
       "strain_limit", &out->strain_limit,
       {"strain at the root of link 1, 2 beyond which the arm trips: bending-strain", "strain"});
+  limits.ReadIfGiven("following_error_deg", &out->following_error_deg,
+                     "distance of hub 1, 2 from its reference in a run beyond which the arm trips: "
+                     "following-error; without the key it is not checked");
   limits.Read("plan_fraction", &out->plan_fraction,
               {"share of every limit that a move without duration_s may use", "1"});
 }
@@ -93,7 +96,7 @@ void ReadSafety(TableReader root, SafetyConfig* out) {
   safety.ReadIfGiven("reduced_rate", &out->reduced_rate,
                      {"the same of limits.hub_rate_rad_s", "1"});
   safety.ReadIfGiven("reduced_angle", &out->reduced_angle,
-                     {"the same of limits.soft_angle_deg", "1"});
+                     {"the same of limits.soft_angle_deg and limits.following_error_deg", "1"});
 }
 
 void ReadCommissioning(TableReader commissioning, CommissioningConfig* out) {

@@ -128,12 +128,13 @@ std::string Commissioner::WhyNoRun() const {
   return {};
 }
 
-CommissioningMotion Commissioner::Start(const Json& command, SafetyState state) {
+CommissioningMotion Commissioner::Start(const Json& command, SafetyState state,
+                                        bool reduced_limits) {
   if (busy())
     throw NamedRejection(
         "busy", "busy with " + job_->command + ": wait until it ends, or run `flexarm stop`");
   const std::string name = command.value("command", "");
-  if (name == "pluck") return StartPluck(state);
+  if (name == "pluck") return StartPluck(state, reduced_limits);
   if (name == "home") return StartHome(command, state);
   if (name == "zero") {
     StartZero(command, state);
@@ -208,14 +209,19 @@ void Commissioner::StartCalibrate(const Json& command, SafetyState state) {
   });
 }
 
-CommissioningMotion Commissioner::StartPluck(SafetyState state) {
+// With reduced limits the pulse has their share of its torque: the full one turns a hub faster than
+// they allow.
+CommissioningMotion Commissioner::StartPluck(SafetyState state, bool reduced_limits) {
   RequireArmed("pluck", state);
   job_ = std::make_unique<Job>();
   job_->command = "pluck";
   job_->from_run = [this](const std::vector<TickRecord>& run) { return Pluck(run); };
-  const double period_s = config_.loop.period_s();
+  CommissioningConfig pulse = config_.commissioning;
+  if (reduced_limits) {
+    for (double& torque_nm : pulse.pluck_torque_nm) torque_nm *= config_.safety.reduced_torque;
+  }
   return {
-      .planned = std::make_unique<PlannedExperiment>(PluckTorques(config_.commissioning, period_s)),
+      .planned = std::make_unique<PlannedExperiment>(PluckTorques(pulse, config_.loop.period_s())),
       .may_open = 0};
 }
 

@@ -57,7 +57,8 @@ class Commissioner {
   /// Begins a command. The caller asks for a run of the motion, if there is one, and tells its
   /// number to Expect.
   /// @throws RejectedError if the command is not possible now, or not valid
-  CommissioningMotion Start(const nlohmann::json& command, SafetyState state);
+  CommissioningMotion Start(const nlohmann::json& command, SafetyState state,
+                            bool reduced_limits = false);
 
   /// The number of the run that is the motion of this command: no other run is judged.
   void Expect(std::uint32_t run_number);
@@ -84,7 +85,7 @@ class Commissioner {
   using FromRun = std::function<nlohmann::json(const std::vector<TickRecord>&)>;
 
   void StartRest(const std::string& command, SafetyState state, FromRest then);
-  CommissioningMotion StartPluck(SafetyState state);
+  CommissioningMotion StartPluck(SafetyState state, bool reduced_limits);
   CommissioningMotion StartHome(const nlohmann::json& command, SafetyState state);
   void StartZero(const nlohmann::json& command, SafetyState state);
   void StartCalibrate(const nlohmann::json& command, SafetyState state);

@@ -64,7 +64,8 @@ std::string ValueText(TripCause cause, const Evidence& evidence) {
   if (cause == TripCause::kBendingStrain1 || cause == TripCause::kBendingStrain2) {
     unit = 1e6;
     name = " microstrain";
-  } else if (cause == TripCause::kSoftLimit1 || cause == TripCause::kSoftLimit2) {
+  } else if (cause == TripCause::kSoftLimit1 || cause == TripCause::kSoftLimit2 ||
+             cause == TripCause::kFollowingError1 || cause == TripCause::kFollowingError2) {
     unit = 1.0 / kRadPerDeg;
     name = " deg";
   } else if (cause == TripCause::kHubRate1 || cause == TripCause::kHubRate2) {

@@ -50,7 +50,7 @@ void CommissioningCommands::Start(const nlohmann::json& command, int client,
   if (targets_.requests->busy()) {
     throw NamedRejection("busy", RefusalText(RequestKind::kRun, Refusal::kBusy, now.permit.state));
   }
-  CommissioningMotion motion = commissioner_.Start(command, now.permit.state);
+  CommissioningMotion motion = commissioner_.Start(command, now.permit.state, now.permit.reduced);
   client_ = client;
   command_ = command["command"];
   heard_ns_ = now.now_ns;

@@ -214,8 +214,12 @@ void JudgeShape(std::span<const Sample> samples, RunMetrics* metrics) {
 void JudgeAllTicks(std::span<const TickRecord> ticks, std::span<const Sample> samples,
                    const StateLayout& layout, RunMetrics* metrics) {
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    double sum = 0;
-    for (const Sample& sample : samples) sum += sample.error_deg[joint] * sample.error_deg[joint];
+    double sum = 0, peak = 0;
+    for (const Sample& sample : samples) {
+      sum += sample.error_deg[joint] * sample.error_deg[joint];
+      peak = std::max(peak, std::abs(sample.error_deg[joint]));
+    }
+    metrics->joint_peak_error_deg[joint] = peak;
     metrics->joint_rms_error_deg[joint] = std::sqrt(sum / static_cast<double>(samples.size()));
     double torque_squared = 0;
     for (const TickRecord& record : ticks) {
@@ -317,6 +321,7 @@ RunMetrics ComputeMetrics(std::span<const TickRecord> ticks, const Experiment& e
   JudgeRests(samples, rests, period_s / 2, geometry.settled_within_m, &metrics);
   if (samples.empty()) {
     metrics.joint_rms_error_deg.fill(std::numeric_limits<double>::quiet_NaN());
+    metrics.joint_peak_error_deg.fill(std::numeric_limits<double>::quiet_NaN());
     metrics.torque_rms_nm.fill(std::numeric_limits<double>::quiet_NaN());
   } else {
     JudgeAllTicks(running, samples, geometry.layout, &metrics);

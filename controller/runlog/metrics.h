@@ -26,6 +26,7 @@ struct Arrival {
 struct RunMetrics {
   std::int64_t ticks = 0;                         ///< in state Running
   std::array<double, 2> joint_rms_error_deg{};    ///< against the reference model, all ticks
+  std::array<double, 2> joint_peak_error_deg{};   ///< largest |error| of them
   std::array<double, 2> joint_final_error_deg{};  ///< largest over the rests of |mean, last 0.3 s|
   /// Settling time, largest over the rests: from the end of the move until the rest is settled: the
   /// tip stays within TipGeometry::settled_within_m of its resting place, its mean over the last

@@ -186,6 +186,16 @@ LawOutput ControlStep::Stop(const StepInput& input, const StateVector& x) noexce
   return SaturateWithoutAdaptation(stop_.Stop(x), torque_limit_nm_);
 }
 
+// Of the next sample; the reference of one period later is hardly elsewhere.
+std::array<double, 2> ControlStep::ReferenceHubs(const StepInput& input) const noexcept {
+  if (input.mode != LoopMode::kFollow || input.safety_state != SafetyState::kRunning) {
+    return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  }
+  const std::array<double, kMaxNominalStates>& x_m = input.reference_next.x_m;
+  return {x_m[static_cast<std::size_t>(layout_.hub(0))],
+          x_m[static_cast<std::size_t>(layout_.hub(1))]};
+}
+
 LawOutput ControlStep::OpenLoop(const StepInput& input) const noexcept {
   Eigen::Vector2d u = Eigen::Vector2d::Zero();
   if (input.safety_state == SafetyState::kRunning) {
@@ -234,6 +244,7 @@ StepOutput ControlStep::Step(const StepInput& input) noexcept {
        .root_innovation =
            RootStrain(estimate.innovation.data() + layout_.output(layout_.mode(0, 0))),
        .applied_torque_nm = input.applied_torque_nm,
+       .reference_hub_rad = ReferenceHubs(input),
        .frame_age_s = frame_age_s,
        .mode = input.mode,
        .reduced = input.reduced != 0});

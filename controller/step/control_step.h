@@ -61,6 +61,7 @@ class ControlStep {
   LawOutput Follow(const StepInput& input, const StateVector& x, bool sensors_good) noexcept;
   LawOutput Stop(const StepInput& input, const StateVector& x) noexcept;
   LawOutput OpenLoop(const StepInput& input) const noexcept;
+  std::array<double, 2> ReferenceHubs(const StepInput& input) const noexcept;
   void Reduce(LawOutput* decision) const noexcept;
   void CountSaturation(std::uint32_t limits) noexcept;
 

@@ -19,6 +19,10 @@ void CheckLimits(const SafetyConfig& c, ProblemList* list) {
                      "a hub rate beyond this trips");
   list->EachPositive("limits.strain_limit", c.strain_limit, 0.01,
                      "unit strain; a metal link fails below 1 %");
+  if (c.following_error_deg) {
+    list->EachPositive("limits.following_error_deg", *c.following_error_deg, 360.0,
+                       "a hub farther than this from its reference trips");
+  }
   list->Positive("limits.plan_fraction", c.plan_fraction, 1.0,
                  "a move without duration_s is planned within this share of every limit");
 }

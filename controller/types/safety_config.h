@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "model/problem.h"
@@ -18,6 +19,8 @@ struct SafetyConfig {
   std::array<double, 2> soft_angle_deg;  ///< |hub angle| beyond this trips
   std::array<double, 2> hub_rate_rad_s;  ///< a hub rate beyond this on two ticks trips
   std::array<double, 2> strain_limit;    ///< |fitted surface strain at the root| beyond this trips
+  /// A hub farther than this from its reference trips; none: it is not checked.
+  std::optional<std::array<double, 2>> following_error_deg;
   double plan_fraction;  ///< share of each limit for a move without duration_s, 0 to 1
   // [safety]
   double rest_hub_rate_rad_s;      ///< at rest: both hub rates below this
@@ -39,7 +42,7 @@ struct SafetyConfig {
   bool reduced = false;            ///< the daemon starts with reduced limits (WithReducedLimits)
   double reduced_torque = 0.5;     ///< shares of the limits then, 0 to 1: of the torque,
   double reduced_rate = 0.25;      ///< of the hub rate,
-  double reduced_angle = 0.5;      ///< and of the soft angle
+  double reduced_angle = 0.5;      ///< and of the soft angle and the following error
 
   std::vector<Problem> Problems() const;
 };

@@ -244,6 +244,22 @@ constexpr std::array<Row, kTripCauses> kRows{{
       "reading, or those that did are too close together.",
       "Check the amplifier of link 2, its cables and its bus.",
       "Repair them; docs/safety.md says how many gauges may be missing."}},
+    {kFollowingError1,
+     "following-error-1",
+     kJoint,
+     {"Joint 1 is farther from its reference than limits.following_error_deg: the torque does not "
+      "act as commanded, or something holds the arm.",
+      "Check for an obstacle, then the drive's supply and enable, its torque scale and the motor's "
+      "cable; check the payload: `flexarm plot` shows when the joint left its reference.",
+      "Remove what holds the arm, or repair the drive."}},
+    {kFollowingError2,
+     "following-error-2",
+     kJoint,
+     {"Joint 2 is farther from its reference than limits.following_error_deg: the torque does not "
+      "act as commanded, or something holds the arm.",
+      "Check for an obstacle, then the drive's supply and enable, its torque scale and the motor's "
+      "cable; check the payload: `flexarm plot` shows when the joint left its reference.",
+      "Remove what holds the arm, or repair the drive."}},
 }};
 
 static_assert(
@@ -301,6 +317,8 @@ const char* EvidenceUnit(TripCause cause) noexcept {
     case kSoftLimit2:
     case kHubAgainstRotor:
     case kEstimatorResidual:
+    case kFollowingError1:
+    case kFollowingError2:
       return "rad";
     case kHubRate1:
     case kHubRate2:

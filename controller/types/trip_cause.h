@@ -42,8 +42,10 @@ enum class TripCause : std::uint8_t {
   kShutdownTimeout = 33,
   kNoStrainReading1 = 34,
   kNoStrainReading2 = 35,
+  kFollowingError1 = 36,
+  kFollowingError2 = 37,
 };
-inline constexpr int kTripCauses = 36;
+inline constexpr int kTripCauses = 38;
 
 /// Set of causes, bit i is cause number i.
 using TripCauses = std::uint64_t;

@@ -294,6 +294,7 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
                                   "limits.hub_rate_rad_s=[7, 8]",
                                   "limits.strain_limit=[1e-4, 2e-4]",
                                   "limits.plan_fraction=0.7",
+                                  "limits.following_error_deg=[9, 10]",
                                   "safety.rest_hub_rate_rad_s=0.1",
                                   "safety.rest_strain_rate_per_s=0.2",
                                   "safety.rest_time_s=0.3",
@@ -315,6 +316,7 @@ TEST(RigBinding, PutsEveryLimitInItsField) {
   EXPECT_EQ(s.hub_rate_rad_s, (std::array{7.0, 8.0}));
   EXPECT_EQ(s.strain_limit, (std::array{1e-4, 2e-4}));
   EXPECT_EQ(s.plan_fraction, 0.7);
+  EXPECT_EQ(s.following_error_deg, (std::optional{std::array{9.0, 10.0}}));
   EXPECT_EQ(s.rest_hub_rate_rad_s, 0.1);
   EXPECT_EQ(s.rest_strain_rate_per_s, 0.2);
   EXPECT_EQ(s.rest_time_s, 0.3);

@@ -192,6 +192,7 @@ void PrintMetrics(const OrderedJson& metrics, const std::string& settling) {
   std::cout << (metrics["truth"].get<bool>() ? "Metrics, from the plant's true motion\n"
                                              : "Metrics, from the estimate\n");
   PrintLine("joint error, rms", metrics["joint_rms_error_deg"], "deg");
+  PrintLine("joint error, largest", metrics["joint_peak_error_deg"], "deg");
   PrintLine("joint error, final", metrics["joint_final_error_deg"], "deg");
   PrintLine("tip settling time", settling);
   PrintLine("tip off its target", metrics["tip_target_error_mm"], "mm");

@@ -138,6 +138,8 @@ void PrintText(const SimulationResult& result, const std::filesystem::path& run)
   std::printf("ticks                     %lld\n", static_cast<long long>(result.ticks));
   std::printf("joint rms error           %.2f, %.2f deg\n", m.joint_rms_error_deg[0],
               m.joint_rms_error_deg[1]);
+  std::printf("joint largest error       %.2f, %.2f deg\n", m.joint_peak_error_deg[0],
+              m.joint_peak_error_deg[1]);
   std::printf("joint final error         %.2f, %.2f deg\n", m.joint_final_error_deg[0],
               m.joint_final_error_deg[1]);
   std::printf("tip settling time         %s\n", SettlingText(m).c_str());

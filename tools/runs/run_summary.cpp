@@ -60,6 +60,7 @@ nlohmann::ordered_json ToJson(const RunMetrics& metrics) {
   nlohmann::ordered_json json;
   json["ticks"] = metrics.ticks;
   json["joint_rms_error_deg"] = Pair(metrics.joint_rms_error_deg);
+  json["joint_peak_error_deg"] = Pair(metrics.joint_peak_error_deg);
   json["joint_final_error_deg"] = Pair(metrics.joint_final_error_deg);
   json["tip_settling_time_s"] =
       metrics.tip_settling_time_s ? NumberOrNull(*metrics.tip_settling_time_s) : nullptr;

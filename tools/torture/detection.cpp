@@ -22,9 +22,9 @@ constexpr TripCauses kSwitchCauses =
 
 // What an arm that is led astray reaches: a limit, a switch, the end of the time for a stop, or a
 // speed at which its encoders no longer agree with each other.
-constexpr TripCauses kLimits =
-    kCategory1Causes | kSwitchCauses |
-    Set({kEstimatorResidual, kStateNotFinite, kStopTimeout, kEncoderJump, kHubAgainstRotor});
+constexpr TripCauses kLimits = kCategory1Causes | kSwitchCauses |
+                               Set({kEstimatorResidual, kStateNotFinite, kStopTimeout, kEncoderJump,
+                                    kHubAgainstRotor, kFollowingError1, kFollowingError2});
 
 }  // namespace
 

@@ -57,7 +57,7 @@ class Bench {
   }
 
   void Begin(const Json& command) {
-    CommissioningMotion motion = commissioner_.Start(command, state());
+    CommissioningMotion motion = commissioner_.Start(command, state(), stack_.reduced());
     if (motion.planned == nullptr) return;
     motions_.push_back(std::move(motion.planned));
     commissioner_.Expect(
@@ -349,6 +349,16 @@ TEST(Commissioner, RefusesASecondCommandWhileBusy) {
   EXPECT_THAT(MessageOf<RejectedError>(
                   [&] { bench.commissioner().Start({{"command", "zero"}}, bench.state()); }),
               HasSubstr("busy with tare"));
+}
+
+// The pulse of the config turns hub 1 at 2.47 rad/s, and 2 are allowed then.
+TEST(Commissioner, WithReducedLimitsThePulseIsSmallerAndProvesTheWiringToo) {
+  Bench bench({"commissioning.prove_before_run=true", "safety.reduced=true"});
+  bench.Arm();
+  const Json answer = bench.Do({{"command", "pluck"}});
+  EXPECT_EQ(answer["ok"], true) << answer.dump();
+  EXPECT_EQ(bench.state(), SafetyState::kArmed);
+  EXPECT_EQ(bench.commissioner().WhyNoRun(), "");
 }
 
 TEST(Commissioner, HomingNeedsAPassedPluckTest) {

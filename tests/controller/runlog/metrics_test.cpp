@@ -67,6 +67,8 @@ TEST(RunMetrics, RmsIsOverAllRunningTicksAgainstTheReference) {
   EXPECT_TRUE(metrics.truth);
   EXPECT_NEAR(metrics.joint_rms_error_deg[0], 2, 1e-12);
   EXPECT_NEAR(metrics.joint_rms_error_deg[1], 4 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(metrics.joint_peak_error_deg[0], 2, 1e-12);
+  EXPECT_NEAR(metrics.joint_peak_error_deg[1], 4, 1e-12);
 }
 
 TEST(RunMetrics, FinalErrorIsTheWorstRestsMeanOverItsLastThreeTenths) {
@@ -289,6 +291,7 @@ TEST(RunMetrics, NoTickAtAllIsNoError) {
   EXPECT_EQ(metrics.ticks, 0);
   EXPECT_FALSE(metrics.truth);
   EXPECT_TRUE(std::isnan(metrics.joint_rms_error_deg[0]));
+  EXPECT_TRUE(std::isnan(metrics.joint_peak_error_deg[0]));
 }
 
 TEST(RunMetrics, WithoutTruthTheEstimateIsUsed) {

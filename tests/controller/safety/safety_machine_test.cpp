@@ -307,7 +307,7 @@ TEST(SafetyMachine, EveryTransitionObeysTheRules) {
       }
     }
   }
-  EXPECT_EQ(cases, 53L * 634 * 2048 * 8);
+  EXPECT_EQ(cases, 55L * 707 * 2048 * 8);
 }
 
 TEST(SafetyMachine, AShutdownEndsARunInIdleWithoutARequest) {

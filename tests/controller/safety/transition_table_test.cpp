@@ -103,7 +103,7 @@ TEST(TransitionTable, TheMachineObeysItInEveryCase) {
       }
     }
   }
-  EXPECT_EQ(cases, 23L * 73 * 2048 * 8);
+  EXPECT_EQ(cases, 23L * 77 * 2048 * 8);
   EXPECT_EQ(transitions.size(), kTransitions + 1) << "a row that never holds; and none";
   EXPECT_EQ(refusals.size(), kRefusals + 1) << "the same of the answers";
 }

@@ -12,6 +12,7 @@
 #include "controller/design/design_controller.h"
 #include "controller/types/trip_cause.h"
 #include "model/math/discretize.h"
+#include "model/units.h"
 #include "tests/controller/law/shipped_rig.h"
 #include "tests/controller/step/step_at_rest.h"
 
@@ -97,6 +98,29 @@ TEST_F(ControlStepTest, TorqueIsZeroInEveryStateButRunningAndTheTwoStops) {
     }
     const bool torque = out.torque_nm[0] != 0.0 || out.torque_nm[1] != 0.0;
     EXPECT_EQ(torque, state == 3 || state == 4 || state == 6) << state;
+  }
+}
+
+// The arm stands still, and the reference is 21 degrees away.
+TEST_F(ControlStepTest, OnlyARunHasAFollowingError) {
+  RigConfig config = config_;
+  config.safety.following_error_deg = {20.0, 20.0};
+  for (const auto& [mode, state] : {std::pair{LoopMode::kFollow, SafetyState::kRunning},
+                                    std::pair{LoopMode::kFollow, SafetyState::kStopping},
+                                    std::pair{LoopMode::kFollow, SafetyState::kArmed},
+                                    std::pair{LoopMode::kRegulate, SafetyState::kRunning},
+                                    std::pair{LoopMode::kOpenLoop, SafetyState::kRunning}}) {
+    ControlStep step(config, ShippedDesign());
+    TripCauses faults = 0;
+    for (int k = 0; k < 3; ++k) {
+      StepInput input = Moving(k, state);
+      input.mode = mode;
+      input.reference_next.x_m = {};
+      input.reference_next.x_m[0] = 21.0 * kRadPerDeg;
+      faults = step.Step(input).faults;
+    }
+    const bool follows = mode == LoopMode::kFollow && state == SafetyState::kRunning;
+    EXPECT_EQ(faults, follows ? CauseBit(TripCause::kFollowingError1) : 0) << ToString(state);
   }
 }
 

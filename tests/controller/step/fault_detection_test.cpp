@@ -54,7 +54,7 @@ class FaultDetectionTest : public testing::Test {
     EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u) << "the inputs are healthy again";
   }
 
-  const RigConfig config_ = ShippedRig();
+  const RigConfig config_ = ShippedRig({"limits.following_error_deg=[20, 35]"});
   FaultDetection monitor_{config_.safety,  config_.estimator, kPeriod_s,
                           config_.sensors, kGaugesNeeded,     {761.59, 497.96}};
 };
@@ -102,6 +102,18 @@ TEST_F(FaultDetectionTest, SoftLimitsTripInTheSameSample) {
                                 sign * 89.9 * kRadPerDeg, sign * 89.9 * kRadPerDeg};
     monitor_.Reset();  // an arm that is there, not one that jumps there
     EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  }
+}
+
+TEST_F(FaultDetectionTest, AHubThatDoesNotFollowTripsOnTheThirdSample) {
+  for (const double sign : {1.0, -1.0}) {
+    Facts facts;
+    facts.reference_hub_rad = {sign * 20.1 * kRadPerDeg, 0.0};
+    Expect(TripCause::kFollowingError1, 3, facts, 20.1 * kRadPerDeg, 20.0 * kRadPerDeg, 1);
+    facts.reference_hub_rad = {0.0, sign * 35.1 * kRadPerDeg};
+    Expect(TripCause::kFollowingError2, 3, facts, 35.1 * kRadPerDeg, 35.0 * kRadPerDeg, 2);
+    facts.reference_hub_rad = {sign * 19.9 * kRadPerDeg, sign * 34.9 * kRadPerDeg};
+    for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "controller/step/fault_detection.h"
 
@@ -15,6 +16,8 @@ struct Facts {
   StateEstimator::Estimate estimate{};
   std::array<double, 2> torque_nm{};
   std::array<double, 2> model_root_strain{}, root_innovation{};
+  std::array<double, 2> reference_hub_rad = {std::numeric_limits<double>::quiet_NaN(),
+                                             std::numeric_limits<double>::quiet_NaN()};
   double frame_age_s = 0.0;
   LoopMode mode = LoopMode::kFollow;
 
@@ -32,6 +35,7 @@ struct Facts {
             .model_root_strain = model_root_strain,
             .root_innovation = root_innovation,
             .applied_torque_nm = torque_nm,
+            .reference_hub_rad = reference_hub_rad,
             .frame_age_s = frame_age_s,
             .mode = mode};
   }
