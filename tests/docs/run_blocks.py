@@ -43,7 +43,7 @@ import command_blocks  # noqa: E402
 
 PAGE_SHELL = Path(__file__).with_name("page.sh")
 # Of a block: much more than any takes, as a busy machine may be thirty times slower.
-LIMIT_S = {"ci": 900, "all": 3000}
+LIMIT_S = {"ci": 300, "all": 3000}
 SHOWN_LINES = 40
 
 SESSIONS = set()  # of the pages that run
