@@ -252,7 +252,7 @@ lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
 lane_guest-long() {  # the same kernel: what takes minutes more, and changes seldom
   build_for_guest
   part scripts tests/guest/run_all.sh build/release --note "$logs/$lane.scripts.note" \
-    guard_pairs guarded wire_more wakeup fast_loop hardened refusal
+    guard_pairs guarded wire_more commission load wakeup fast_loop hardened refusal
   build release flexarm-study
   part newcomer tests/guest/newcomer.sh build/release --note "$logs/$lane.newcomer.note"
   note "$(cat "$logs/$lane".{scripts,newcomer}.note | paste -sd';')"
@@ -282,11 +282,12 @@ lane_build-cost() {  # the compile time of the product is within the committed f
   tools/lint/build_cost.py --jobs "$jobs" --note "$logs/$lane.note"
 }
 
-# Code that parses input or drives a bus; the stored inputs of tests/fuzz include lines of the socket.
-exposed_tests=(tests/hal tests/fuzz tests/controller/runlog)
+# Code that parses input; the stored inputs of tests/fuzz include frames of the buses and lines of
+# the socket.
+exposed_tests=(tests/fuzz tests/controller/runlog)
 asan_labels='^(unit|loop|hostile)$'
 
-lane_asan() {  # address, undefined behaviour: code that parses input or drives a bus
+lane_asan() {  # address, undefined behaviour: code that parses input
   local folder
   build asan "${exposed_tests[@]/%//all}"
   use_environment_of asan
