@@ -308,7 +308,7 @@ lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop
 }
 
 # Queues, executors and the bodies of the threads.
-threaded_tests=(tests/controller/{exchange,realtime,tasks,host,wired_threads})
+threaded_tests=(tests/controller/{exchange,realtime,tasks,operator,host,wired_threads})
 
 lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
   build tsan "${threaded_tests[@]/%//all}" flexarm flexarmd
