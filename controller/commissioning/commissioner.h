@@ -56,6 +56,7 @@ class Commissioner {
 
   /// Begins a command. The caller asks for a run of the motion, if there is one, and tells its
   /// number to Expect.
+  /// @param reduced_limits  they hold now: a pluck takes safety.reduced_torque of its torque
   /// @throws RejectedError if the command is not possible now, or not valid
   CommissioningMotion Start(const nlohmann::json& command, SafetyState state,
                             bool reduced_limits = false);

@@ -36,12 +36,6 @@ constexpr TripCause PerJoint(TripCause joint1, std::size_t i) noexcept {
   return static_cast<TripCause>(static_cast<std::size_t>(joint1) + i);
 }
 
-std::array<double, 2> FollowingErrorRad(const SafetyConfig& safety) noexcept {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
-  const std::array<double, 2> deg = safety.following_error_deg.value_or(std::array{kAny, kAny});
-  return {deg[0] * kRadPerDeg, deg[1] * kRadPerDeg};
-}
-
 std::array<double, 2> HubCountsRad(const SensorConfig& sensors) noexcept {
   std::array<double, 2> count_rad{};
   for (const EncoderConfig& encoder : sensors.encoder) {
@@ -65,7 +59,6 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
       counters_present_(sensors.counters_present()),
       gauges_needed_(gauges_needed),
       joint_stiffness_(joint_stiffness_nm_per_rad),
-      following_error_rad_(FollowingErrorRad(safety)),
       hub_count_rad_(HubCountsRad(sensors)),
       hub_window_(SamplesIn(kHubRestWindow_s, period_s, kMostRestWindow)),
       strain_window_(SamplesIn(kStrainRestWindow_s, period_s, kMostRestWindow)),
@@ -157,9 +150,9 @@ void FaultDetection::JudgeJoints(const LoopFacts& facts, const Monitored& monito
                       monitored.hub_rate_rad_s[i], limits.hub_rate_rad_s[i], i + 1);
     RaiseUnlessWithin(PerJoint(kBendingStrain1, i), PerJoint(kNoStrainReading1, i), 1,
                       std::fabs(monitored.root_strain[i]), safety_.strain_limit[i], i + 1);
+    if (!limits.following_error_deg) continue;
     const double error_rad = std::fabs(monitored.hub_rad[i] - facts.reference_hub_rad[i]);
-    const double limit_rad =
-        (facts.reduced ? safety_.reduced_angle : 1.0) * following_error_rad_[i];
+    const double limit_rad = (*limits.following_error_deg)[i] * kRadPerDeg;
     Raise(PerJoint(kFollowingError1, i), error_rad > limit_rad, estimator_.fault_ticks, error_rad,
           limit_rad, i + 1);
   }

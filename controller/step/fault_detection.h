@@ -109,10 +109,9 @@ class FaultDetection {
   std::uint32_t counters_present_;
   std::array<int, 2> gauges_needed_;
   std::array<double, 2> joint_stiffness_;
-  std::array<double, 2> following_error_rad_;  // infinite: not checked
-  std::array<double, 2> hub_count_rad_;        // one count of the hub encoders
-  std::size_t hub_window_, strain_window_;     // samples over which the rates at rest are taken
-  std::size_t rate_window_;                    // samples over which a hub rate is measured
+  std::array<double, 2> hub_count_rad_;     // one count of the hub encoders
+  std::size_t hub_window_, strain_window_;  // samples over which the rates at rest are taken
+  std::size_t rate_window_;                 // samples over which a hub rate is measured
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
   int incomplete_ticks_ = 0;  // samples in a row that lacked a reading, up to kMissingTicks

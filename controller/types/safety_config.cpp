@@ -101,6 +101,7 @@ SafetyConfig WithReducedLimits(SafetyConfig safety) noexcept {
     safety.torque_limit_nm[joint] *= safety.reduced_torque;
     safety.hub_rate_rad_s[joint] *= safety.reduced_rate;
     safety.soft_angle_deg[joint] *= safety.reduced_angle;
+    if (safety.following_error_deg) (*safety.following_error_deg)[joint] *= safety.reduced_angle;
   }
   return safety;
 }

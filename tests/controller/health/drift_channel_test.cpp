@@ -37,9 +37,11 @@ TEST(DriftChannel, AStiffnessOfAnotherArmOrNoNumberIsNoDrift) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const bool of_stiffness = channels[i].kind == DriftKind::kJointStiffness ||
                               channels[i].kind == DriftKind::kLinkStiffness;
-    for (const double far : {-2.0, 2.0}) {
+    for (const double far : {-0.91, 0.91}) {  // a tenth of the stiffness is left, or twice as much
       drift[i] = far;
       EXPECT_EQ(IsPossible(channels, drift), !of_stiffness) << channels[i].Key();
+      drift[i] = 0.98 * far;
+      EXPECT_TRUE(IsPossible(channels, drift)) << channels[i].Key();
     }
     drift[i] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(IsPossible(channels, drift)) << channels[i].Key();

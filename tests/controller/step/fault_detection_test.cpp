@@ -107,14 +107,25 @@ TEST_F(FaultDetectionTest, SoftLimitsTripInTheSameSample) {
 
 TEST_F(FaultDetectionTest, AHubThatDoesNotFollowTripsOnTheThirdSample) {
   for (const double sign : {1.0, -1.0}) {
+    const double at_rad = sign * 2.0 * kRadPerDeg;  // both hubs
     Facts facts;
-    facts.reference_hub_rad = {sign * 20.1 * kRadPerDeg, 0.0};
+    facts.counters.angle_rad = {at_rad, at_rad, at_rad, at_rad};
+    facts.reference_hub_rad = {sign * 22.1 * kRadPerDeg, at_rad};
     Expect(TripCause::kFollowingError1, 3, facts, 20.1 * kRadPerDeg, 20.0 * kRadPerDeg, 1);
-    facts.reference_hub_rad = {0.0, sign * 35.1 * kRadPerDeg};
+    facts.reference_hub_rad = {at_rad, sign * 37.1 * kRadPerDeg};
     Expect(TripCause::kFollowingError2, 3, facts, 35.1 * kRadPerDeg, 35.0 * kRadPerDeg, 2);
-    facts.reference_hub_rad = {sign * 19.9 * kRadPerDeg, sign * 34.9 * kRadPerDeg};
+    facts.reference_hub_rad = {sign * 21.9 * kRadPerDeg, sign * 36.9 * kRadPerDeg};
     for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   }
+}
+
+TEST_F(FaultDetectionTest, WithReducedLimitsTheFollowingErrorHasTheirShareOfTheAngle) {
+  Facts facts;
+  facts.reference_hub_rad = {10.1 * kRadPerDeg, 17.4 * kRadPerDeg};  // half of 20 and 35
+  LoopFacts reduced = facts.Now();
+  reduced.reduced = true;
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(monitor_.Judge(reduced).faults, 0u);
+  EXPECT_EQ(monitor_.Judge(reduced).faults, CauseBit(TripCause::kFollowingError1));
 }
 
 TEST_F(FaultDetectionTest, HubRatesTripOnTheSecondSample) {

@@ -25,15 +25,6 @@ states=(Idle Armed Running Stopping Tripped)
 commands=(status stop disarm arm reset)
 gaps_s=(0 0.005 0.2)
 
-cat >slow.toml <<'TOML'
-name = "slow"
-duration_s = 30.0
-[[move]]
-start_s = 0.0
-duration_s = 8.0
-to_deg = [4.0, -4.0]
-TOML
-
 start_rig
 start_daemon
 

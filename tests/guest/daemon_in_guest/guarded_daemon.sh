@@ -7,7 +7,7 @@ report=$PWD/rtguard.txt
 flexarmd() {
   exec env RTGUARD_REPORT="$report" LD_PRELOAD=/mnt/share/librtguard.so /usr/local/bin/flexarmd "$@"
 }
-# grep fails where it counts 0.
+# grep fails where it counts 0, which is an answer here.
 count() { grep -c -- "$1" daemon.log || true; }
 
 # ends STATUS THREAD..: the daemon ends in order (1: tripped), and each of its threads was watched.
@@ -25,3 +25,13 @@ ends() {
   if ((failures > failures_before)); then tail -n 40 daemon.log; fi
   rm -f "$report"
 }
+
+# Slow: after a trip the arm coasts a few degrees and reaches no switch.
+cat >slow.toml <<'TOML'
+name = "slow"
+duration_s = 30.0
+[[move]]
+start_s = 0.0
+duration_s = 8.0
+to_deg = [4.0, -4.0]
+TOML

@@ -79,6 +79,7 @@ kill -TERM $daemon
 wait $daemon
 stop_rig
 
+# With the permissions of the service: not root, and only the capability that restarts the bus.
 echo "== the CAN controller leaves the bus during a run"
 chmod 666 "/dev/$chip"
 install -d -m 777 bus-off

@@ -39,7 +39,6 @@ kill -TERM $daemon
 wait $daemon
 stop_rig
 
-# With the permissions of the service: not root, and only the capability that restarts the bus.
 echo "== a drive's fault stays until the operator resets"
 emergency='vcan0: node 1 (drive1): emergency message 0x2310'
 start_rig
