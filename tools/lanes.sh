@@ -9,8 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit campaigns slowest mutation mutants fuzz docs-all build-cost headers-all
-                  python-types browser separate clang-tidy-all asan-all guest-long package cluster debian13 arm64)
+  only_all_lanes=(guards unit campaigns soak slowest mutation mutants fuzz docs-all build-cost headers-all
+                  python-types browser separate clang-tidy-all asan-all tsan-all guest-long package cluster debian13 arm64)
 }
 
 logs=build/logs
@@ -162,6 +162,12 @@ lane_campaigns() {  # random campaigns at their whole size; `release` runs a sam
   FLEXARM_CAMPAIGN=whole build/tsan/tests/controller/wired_threads/wired_threads_test
 }
 
+lane_soak() {  # the daemon in real time on the simulated arm for 50 minutes (FLEXARM_SOAK_S=N)
+  build release flexarm flexarm-study flexarm-web flexarmd
+  FLEXARM_SOAK_S=${FLEXARM_SOAK_S:-3000} FLEXARM_BIN="$PWD/build/release/bin" \
+    python3 tests/soak/real_time.py
+}
+
 lane_step-cost() {  # instructions of one control step and of each phase are within their limits
   build release step_instructions slowest_step
   python3 tests/bench/step_cost.py --program build/release/tests/bench/step_instructions \
@@ -179,7 +185,8 @@ lane_slowest() {  # searches the slowest control step, safety tick and plan (FLE
 
 lane_e2e() {  # whole programs: simulate, replay, determinism, kill -9, wrong input
   build release flexarm flexarm-study flexarm-web flexarmd unfit_program
-  ctest --preset e2e
+  # Twice as many as processors: most of them wait for a daemon.
+  CTEST_PARALLEL_LEVEL=$((2 * jobs)) ctest --preset e2e
 }
 
 lane_docs() {  # command blocks `ci` of the pages, from a clean clone and with the installed programs
@@ -310,12 +317,17 @@ lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop
 # Queues, executors and the bodies of the threads.
 threaded_tests=(tests/controller/{exchange,realtime,tasks,operator,host,wired_threads})
 
-lane_tsan() {  # thread sanitizer: queues, executors, tasks, the whole daemon
-  build tsan "${threaded_tests[@]/%//all}" flexarm flexarmd
+lane_tsan() {  # thread sanitizer: queues, executors, tasks, all threads of a wired rig
+  build tsan "${threaded_tests[@]/%//all}"
   use_environment_of tsan
-  test_folder tsan tests/e2e '^threads$'
   local folder
   for folder in "${threaded_tests[@]}"; do test_folder tsan "$folder" .; done
+}
+
+lane_tsan-all() {  # thread sanitizer: the programs, from outside (its tests: see tsan)
+  build tsan flexarm flexarmd
+  use_environment_of tsan
+  test_folder tsan tests/e2e '^threads$'
 }
 
 lane_python-types() {  # mypy --strict of the Python client and its example

@@ -1,7 +1,9 @@
 #include "controller/runlog/run_finisher.h"
 
 #include <chrono>
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 namespace flexarm {
 
@@ -57,20 +59,23 @@ void RunFinisher::TakeAdded() {
   }
 }
 
+// Reports come last: a run that waits keeps the space that was reserved for it.
 bool RunFinisher::Try() {
-  std::erase_if(runs_, [this](Waiting& waiting) {
+  std::vector<std::filesystem::path> closed;
+  std::erase_if(runs_, [&](Waiting& waiting) {
     const std::string error = waiting.run.Finish();
     const bool changed = std::exchange(waiting.error, error) != error;
     if (error.empty()) {
       report_(false, "run closed: " + waiting.run.path().string());
-      if (reports_ != nullptr) reports_->Closed(waiting.run.path());
+      closed.push_back(waiting.run.path());
     } else if (changed) {
       report_(true, error + "; its records are kept, and this is tried again");
     }
     return error.empty();
   });
-  const bool reported = reports_ == nullptr || reports_->Try();
-  return runs_.empty() && reported;
+  if (reports_ == nullptr) return runs_.empty();
+  for (const std::filesystem::path& log : closed) reports_->Closed(log);
+  return reports_->Try() && runs_.empty();
 }
 
 }  // namespace flexarm

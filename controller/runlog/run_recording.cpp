@@ -194,6 +194,7 @@ void RunRecording::Safety(const SafetyRecord& record) noexcept {
     }
     state_ = record.after.state;
     if (Trips(record) && sink_ == nullptr) BeginTrip(record);
+    if (before == SafetyState::kTripped && state_ != before) recent_ = {};  // another log has them
     recent_.Add(record);
     if (state_ == SafetyState::kIdle && before != state_ && before != SafetyState::kStarting) {
       context_.Clear();

@@ -29,8 +29,8 @@ inline constexpr std::int64_t kAfterTripNs = 5'000'000'000;  ///< recorded after
 /// replays on its own: its first tick is that of the reset. It lasts until the next one is granted,
 /// until the arm is disarmed, until kAfterRunNs after it came to its end, or until kAfterTripNs
 /// after a trip. A trip outside a run is recorded as a run of its own, which begins with the last
-/// kBeforeTripNs. Events since the arm was last disarmed precede those of a run: who armed it, and
-/// with which overrides.
+/// kBeforeTripNs, but not before the last reset: an earlier trip stands in its own log. Events
+/// since the arm was last disarmed precede those of a run: who armed it, and with which overrides.
 /// Records must come in order of time. Errors of the sink end the recording of the run; they are
 /// reported and counted, never thrown.
 class RunRecording {

@@ -206,6 +206,38 @@ TEST_F(RecorderTest, ATripOutsideARunIsALogOfTheLastTenSeconds) {
   EXPECT_NE(run.info.result_json.find("\"completed\":false"), std::string::npos);
 }
 
+// Otherwise the log of a trip soon after another began with that, and so did its report.
+TEST_F(RecorderTest, ATripSoonAfterAResetIsTheOnlyOneOfItsLog) {
+  std::vector<RunContents> runs(2);
+  std::size_t opened = 0;
+  Start([&](const RunInfo& info) { return RunInMemory(&runs.at(opened++))(info); });
+  Ticks(1, 300, 1);
+  Arm(2);
+  const auto trips_at = [&](std::int64_t due_ns, TripCause cause) {
+    safety_.Push(MakeSafety(due_ns, kArmedStatus, RequestKind::kNone, CauseBit(cause)));
+  };
+  trips_at(kSecond, TripCause::kLimitSwitch2High);
+  SafetyRecord reset = MakeSafety(2 * kSecond, kIdleStatus, RequestKind::kReset);
+  reset.before = {SafetyState::kTripped, TripCause::kLimitSwitch2High};
+  reset.after = kIdleStatus;
+  safety_.Push(reset);
+  Arm(2 * kSecond + 2);
+  trips_at(3 * kSecond, TripCause::kEmergencyStop);
+  RunUntil(9 * kSecond);
+  ASSERT_EQ(opened, 2U);
+  const auto trips_of = [](const RunContents& run) {
+    std::vector<std::string> names;
+    for (const RunEvent& event : run.event) {
+      if (event.kind == "trip") names.push_back(event.name);
+    }
+    return names;
+  };
+  EXPECT_EQ(trips_of(runs[0]), std::vector<std::string>{"limit-switch-2-high"});
+  EXPECT_EQ(trips_of(runs[1]), std::vector<std::string>{"emergency-stop"});
+  EXPECT_EQ(runs[1].safety.front().due_ns, 2 * kSecond) << "the reset";
+  EXPECT_EQ(runs[1].tick.front().input.now_ns, 2 * kSecond);
+}
+
 TEST_F(RecorderTest, ATripIsFollowedForFiveSecondsAndNamed) {
   RunContents run;
   Start(RunInMemory(&run));
