@@ -43,7 +43,9 @@ class FilterCovariance {
   void Correct(const Outputs& y, std::uint32_t good, bool complete, State* x) noexcept;
 
  private:
-  Square A_, C_, W_, steady_;
+  // With rows and columns of zeros up to a multiple of four, so that loops take four at a time.
+  Square A_, A_transposed_, W_, steady_;
+  Square C_transposed_;  // a column for each output
   Outputs R_;
   Square P_;  // of the prediction, unless steady()
   int settled_ = kSettledSamples;

@@ -258,11 +258,13 @@ lane_guest() {  # programs and service on an emulated PREEMPT_RT kernel
 
 lane_guest-long() {  # the same kernel: what takes minutes more, and changes seldom
   build_for_guest
+  part pairs tests/guest/run_all.sh build/release --note "$logs/$lane.pairs.note" \
+    guard_pairs.{0..3}
   part scripts tests/guest/run_all.sh build/release --note "$logs/$lane.scripts.note" \
-    guard_pairs guarded wire_more commission load wakeup fast_loop hardened refusal
+    guarded wire_more commission load wakeup fast_loop hardened refusal
   build release flexarm-study
   part newcomer tests/guest/newcomer.sh build/release --note "$logs/$lane.newcomer.note"
-  note "$(cat "$logs/$lane".{scripts,newcomer}.note | paste -sd';')"
+  note "$(cat "$logs/$lane".{pairs,scripts,newcomer}.note | paste -sd';')"
 }
 
 lane_bench() {  # benchmarks; the default experiment runs 100 times faster than real time

@@ -141,7 +141,9 @@ class Daemon {
         finisher_(
             [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); },
             &trip_reports_),
-        files_(options.config.daemon.log_directory, options.config.daemon.log, &finisher_,
+        // Absolute: the names in the status and the journal hold in any folder.
+        files_(std::filesystem::absolute(options.config.daemon.log_directory),
+               options.config.daemon.log, &finisher_,
                [this](bool is_error, const std::string& text) { journal_.Report(is_error, text); }),
         recording_(
             MakeRunInfo(options.config, design_, "monotonic", options.config.backend),

@@ -187,14 +187,15 @@ class ProgramTest(unittest.TestCase):
         file.write_text(text, encoding="utf-8")
         return file
 
-    def start_daemon(self, *arguments, config=HIL, stderr=None, before=()):
+    def start_daemon(self, *arguments, config=HIL, stderr=None, before=(), log_dir=None):
         """Starts the daemon with its own log folder and socket; the end of the test kills it. Its
         stderr is daemon.log unless `stderr` is given; `before` is a command that starts it."""
         options = [] if realtime_permitted() else ["--without-realtime"]
         with open(self.folder / "daemon.log", "w", encoding="utf-8") as log:
             daemon = subprocess.Popen(
-                [*before, BIN / "flexarmd", "--config", config, "--log-dir", self.folder / "runs",
-                 "--socket", self.folder / "socket", *options, *map(str, arguments)],
+                [*before, BIN / "flexarmd", "--config", config, "--log-dir",
+                 log_dir or self.folder / "runs", "--socket", self.folder / "socket", *options,
+                 *map(str, arguments)],
                 cwd=self.folder, stdout=log, stderr=log if stderr is None else stderr)
 
         self.daemons.append(daemon)

@@ -43,11 +43,12 @@ class DaemonRuns(ProgramTest):
 class RunLog(DaemonRuns):
     @in_real_time
     def test_each_run_is_a_file_that_replays_on_its_own(self):
-        self.start_daemon(*SMALL)
+        self.start_daemon(*SMALL, log_dir="runs")  # relative to the daemon's own folder
         self.arm()
         self.assertTrue(self.status()["log"]["ready"])
         self.assertEqual(self.runs(), [], "reserved, under another name")
         self.run_to_the_end("first")
+        self.wait_for_line(f"recording to {self.folder}/runs/")
         self.run_to_the_end("second")
         self.operate("disarm")
         self.wait_for_state("Idle")

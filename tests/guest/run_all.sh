@@ -4,7 +4,8 @@
 #
 # usage: run_all.sh BUILD_FOLDER [--note FILE [SCRIPT..]]
 #   BUILD_FOLDER  e.g. build/release, with all of it built
-#   SCRIPT        instead of those of lane guest: name of one of daemon_in_guest, as wakeup
+#   SCRIPT        instead of those of lane guest: name of one of daemon_in_guest, as wakeup; with
+#                 an argument as guard_pairs.0
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -46,15 +47,15 @@ result() {  # result NAME STATUS
   fi
 }
 
-# in_guest SCRIPT [OPTION..]: leaves its output in $work/NAME. The longest took about a minute on
-# the first machine; a busy machine may be thirty times slower.
+# in_guest FOLDER NAME[.ARGUMENT] [OPTION..]: leaves its output in $work/NAME[.ARGUMENT]. The longest
+# took about a minute on the first machine; a busy machine may be thirty times slower.
 in_guest() {
-  local name status=0 since=$SECONDS
-  name=$(basename "$1" .sh)
-  mkdir "$work/$name"
-  "$here/guest.sh" run --share "$work/share" --out "$work/$name" --timeout 1800 \
-    "${@:2}" -- "/mnt/share/guest/$1" 2>"$work/$name/console.txt" || status=$?
-  echo $status $((SECONDS - since)) >"$work/$name/ended"
+  local name=${2%%.*} out=$work/$2 status=0 since=$SECONDS arguments=()
+  if [[ $2 == *.* ]]; then arguments=("${2#*.}"); fi
+  mkdir "$out"
+  "$here/guest.sh" run --share "$work/share" --out "$out" --timeout 1800 "${@:3}" -- \
+    "/mnt/share/guest/$1/$name.sh" "${arguments[@]}" 2>"$out/console.txt" || status=$?
+  echo $status $((SECONDS - since)) >"$out/ended"
 }
 
 report_guest() {
@@ -92,10 +93,10 @@ for name in "${names[@]}"; do
     running=1
   fi
   case $name in
-    service | hardened | refusal) in_guest "daemon_in_guest/$name.sh" --det --systemd & ;;
-    docs | interfaces | daq | gpio) in_guest "$name.sh" --det & ;;
-    threads) in_guest "$name.sh" & ;;
-    *) in_guest "daemon_in_guest/$name.sh" --det & ;;
+    service | hardened | refusal) in_guest daemon_in_guest "$name" --det --systemd & ;;
+    docs | interfaces | daq | gpio) in_guest . "$name" --det & ;;
+    threads) in_guest . "$name" & ;;
+    *) in_guest daemon_in_guest "$name" --det & ;;
   esac
   running=$((running + 1))
 done

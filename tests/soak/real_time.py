@@ -55,14 +55,20 @@ class Soak(ProgramTest):
 
     def start(self):
         self.daemon = self.start_daemon("--state-dir", self.folder / f"state{len(self.late)}")
-        self.wait_for_state("Idle")
+        self.wait_for_state("Idle", "Tripped")
         self.arm()
 
     def arm(self):
         end = time.monotonic() + 20
         while self.verb("arm").returncode != 0:  # it is not at rest yet
+            if self.status()["state"] == "Tripped":
+                self.was_late()  # it has armed another daemon
+                return
             self.assertLess(time.monotonic(), end, self.daemon_log())
         self.said["arm"] += 1
+
+    def status(self):
+        return json.loads(self.operate("status", "--json").stdout)
 
     def sample(self):
         process = Path(f"/proc/{self.daemon.pid}")
@@ -73,7 +79,7 @@ class Soak(ProgramTest):
 
     def was_late(self):
         """The daemon tripped because a thread was late: counts it, and starts another."""
-        status = json.loads(self.operate("status", "--json").stdout)
+        status = self.status()
         self.assertEqual(status["state"], "Tripped", self.daemon_log())
         self.assertIn(status["trip"]["name"], LATE, self.daemon_log())
         self.late.append(status["trip"]["name"])
@@ -112,7 +118,7 @@ class Soak(ProgramTest):
                     break
             else:
                 self.operate("disarm")
-                self.wait_for_state("Idle")
+                self.wait_for_state("Idle", "Tripped")
                 self.arm()
         self.stop()
         self.judge()

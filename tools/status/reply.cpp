@@ -13,13 +13,14 @@ constexpr std::size_t kMostBytes = 400;
 const Reply kNull;
 const Reply kEmptyList = Reply::array();
 
-// Bytes that a terminal may obey, and those that are no text, become '?'. JSON is UTF-8 already.
+// Bytes that a terminal may obey, and those that are no text, become '?', the end of a line becomes
+// a space. JSON is UTF-8 already.
 std::string OneLine(const std::string& text) {
   std::string line = text.substr(0, kMostBytes);
   for (std::size_t i = 0; i < line.size(); ++i) {
     const auto byte = static_cast<unsigned char>(line[i]);
     const auto next = i + 1 < line.size() ? static_cast<unsigned char>(line[i + 1]) : 0U;
-    if (byte < 0x20 || byte == 0x7F) line[i] = '?';
+    if (byte < 0x20 || byte == 0x7F) line[i] = byte == '\n' ? ' ' : '?';
     if (byte == 0xC2 && next >= 0x80 && next < 0xA0) line[i] = line[i + 1] = '?';
   }
   return line.size() < text.size() ? line + ".." : line;
