@@ -274,7 +274,7 @@ lane_bench() {  # benchmarks; the default experiment runs 100 times faster than 
 
 lane_headers() {  # public headers that changed recently compile on their own
   build release flexarm_build_info
-  tools/lint/headers.py --changed --within 40 --jobs "$jobs" --note "$logs/$lane.note"
+  tools/lint/headers.py --changed --within 25 --jobs "$jobs" --note "$logs/$lane.note"
 }
 
 lane_headers-all() {  # every public header compiles on its own
@@ -291,16 +291,14 @@ lane_build-cost() {  # the compile time of the product is within the committed f
   tools/lint/build_cost.py --jobs "$jobs" --note "$logs/$lane.note"
 }
 
-# Code that parses input; the stored inputs of tests/fuzz include frames of the buses and lines of
-# the socket.
-exposed_tests=(tests/fuzz tests/controller/runlog)
 asan_labels='^(unit|loop|hostile)$'
 
+# The stored inputs of tests/fuzz reach every reader: configs, logs, frames of the buses, lines of
+# the socket.
 lane_asan() {  # address, undefined behaviour: code that parses input
-  local folder
-  build asan "${exposed_tests[@]/%//all}"
+  build asan tests/fuzz/all
   use_environment_of asan
-  for folder in "${exposed_tests[@]}"; do test_folder asan "$folder" "$asan_labels"; done
+  test_folder asan tests/fuzz "$asan_labels"
 }
 
 lane_asan-all() {  # address, undefined behaviour: all tests labelled unit, loop or hostile
@@ -357,7 +355,7 @@ tidy() {  # tidy OPTION.. FOLDER..: a finding is an error (WarningsAsErrors)
 
 # In CI the time is limited; the files left out are named, and clang-tidy-all checks them.
 lane_clang-tidy() {  # .clang-tidy on files of the product that changed recently
-  tidy --changed --within 60 "${product[@]}"
+  tidy --changed --within 40 "${product[@]}"
 }
 
 lane_clang-tidy-all() {  # .clang-tidy on product and tests; unchanged files are skipped
