@@ -52,7 +52,7 @@ done < <(find . -path '*/share/flexarm/*' -name trajectory.toml)
 
 client=$(find . -path '*/share/flexarm/python' -type d)
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$client python3 -c 'import flexarm' || fail "the Python client is not installed"
-[[ -e $client/flexarm/py.typed && -x $client/examples/series.py ]] ||
+[[ -e $client/flexarm/py.typed && -e $client/examples/series.py ]] ||
   fail "the Python client is not complete"
 
 python3 "$here/installed_links.py" "$machine" || fail "a link of an installed page leads nowhere"

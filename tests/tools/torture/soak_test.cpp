@@ -22,6 +22,7 @@ namespace flexarm {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000 * kMs;
+constexpr std::int64_t kHour = 3'600 * kSecond;
 
 double MemoryMb() {
   long pages = 0, resident = 0;
@@ -101,7 +102,6 @@ class Soak : public testing::Test {
 
 TEST_F(Soak, CampaignOfThreeDays) {
   const long hours = CampaignCases(0, 72);
-  const std::int64_t rest_ns = (hours > 0 ? 1'700 : 300) * kSecond;
   double memory_mb = 0.0;
   session_.RunFor(kSecond);
   for (long hour = 0; hour < std::max(hours, 1L) && !HasFatalFailure(); ++hour) {
@@ -113,7 +113,7 @@ TEST_F(Soak, CampaignOfThreeDays) {
     MoveTo(0.0);
     CheckRun();
     Disarm();
-    session_.RunFor(rest_ns);
+    session_.RunFor(hours > 0 ? (hour + 1) * kHour - session_.now_ns() : 300 * kSecond);
     session_.watch().Restart();
     // The first hours fill caches of the allocator.
     if (hour == 2) memory_mb = MemoryMb();

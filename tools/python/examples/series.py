@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Runs an experiment with steps of several sizes, and compares them: how far does joint 1 swing
 beyond its target, in parts of the step?
 
@@ -6,7 +5,7 @@ It arms the arm, moves both joints out and back once for each size, disarms, and
 angle of joint 1 of all runs to series.csv; with Matplotlib also to series.png. An exception or
 Ctrl-C stops the run under way.
 
-    series.py --steps-deg 5 10 15 --duration-s 4
+    python3 series.py --steps-deg 5 10 15 --duration-s 4
 """
 
 from __future__ import annotations
