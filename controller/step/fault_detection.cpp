@@ -77,9 +77,9 @@ void FaultDetection::Reset() noexcept {
 }
 
 void FaultDetection::Raise(TripCause cause, bool present, int ticks, double value, double limit,
-                           std::size_t channel) noexcept {
+                           std::size_t channel, bool known) noexcept {
   int& in_a_row = in_a_row_[static_cast<std::size_t>(cause)];
-  in_a_row = present ? in_a_row + 1 : 0;
+  if (present || known) in_a_row = present ? in_a_row + 1 : 0;
   if (in_a_row < ticks) return;
   if (verdict_.faults == 0 || CauseBit(cause) < (verdict_.faults & (~verdict_.faults + 1))) {
     verdict_.value = value;
@@ -180,7 +180,7 @@ void FaultDetection::JudgeCounters(const LoopFacts& facts) noexcept {
   }
   const bool judged = facts.mode != LoopMode::kOpenLoop;
   Raise(TripCause::kHubAgainstRotor, judged && !(worst <= estimator_.hub_rotor_limit_rad),
-        estimator_.fault_ticks, worst, estimator_.hub_rotor_limit_rad, joint);
+        estimator_.fault_ticks, worst, estimator_.hub_rotor_limit_rad, joint, IsComplete());
 }
 
 void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
@@ -197,11 +197,11 @@ void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
     left = innovation;
   }
   Raise(TripCause::kStrainStuck, judged && stuck != 0, ticks, left, estimator_.strain_stuck_limit,
-        FirstChannel(stuck));
+        FirstChannel(stuck), IsComplete());
   Raise(TripCause::kStrainSaturated, modes.saturated != 0, ticks, 0.0, 0.0,
-        FirstChannel(modes.saturated));
+        FirstChannel(modes.saturated), IsComplete());
   Raise(TripCause::kStrainOutOfFamily, judged && modes.outlier != 0, ticks, modes.worst_outlier,
-        estimator_.strain_family_limit, FirstChannel(modes.outlier));
+        estimator_.strain_family_limit, FirstChannel(modes.outlier), IsComplete());
   for (std::size_t i = 0; i < 2; ++i) {
     Raise(PerJoint(TripCause::kNoStrainReading1, i),
           !modes.valid[i] && incomplete_ticks_ >= kMissingTicks, 1, modes.gauges[i],
@@ -216,7 +216,8 @@ void FaultDetection::JudgeEstimate(const LoopFacts& facts) noexcept {
   const double worst = hub1 > hub2 || std::isnan(hub1) ? hub1 : hub2;  // NaN if one is
   const bool judged = facts.mode != LoopMode::kOpenLoop;
   Raise(TripCause::kEstimatorResidual, judged && !(worst <= estimator_.innovation_limit_rad),
-        estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2);
+        estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2,
+        IsComplete());
 }
 
 // What the encoder has turned at least: a count less than it says, since the begin of the window

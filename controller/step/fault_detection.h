@@ -38,7 +38,8 @@ struct LoopFacts {
 /// Violations of angle and strain limits and encoder jumps are faults in the sample in which they
 /// occur; hub rates after two samples, estimated or measured by the encoder alone: gauges that lead
 /// the estimate astray do not hide how fast a hub turns. Faults of single sensors and of the
-/// estimator are raised after `fault_ticks` samples in a row. Homing (LoopMode::kRegulate) has no
+/// estimator are raised after `fault_ticks` samples in a row; a sample that lacks a reading is no
+/// evidence that they are well again. Homing (LoopMode::kRegulate) has no
 /// soft limits: they lie inside the switches, and the angle is not calibrated yet. The pluck test
 /// (kOpenLoop) does not compare sensors with each other: it measures their agreement, and its
 /// torque does not depend on them. Real-time: safe.
@@ -96,9 +97,12 @@ class FaultDetection {
   /// The greater one of the estimated and the measured rate of a hub.
   double HubRate(const LoopFacts& facts, std::size_t i) const noexcept;
   bool MayDamp(const LoopFacts& facts, const Monitored& monitored) const noexcept;
-  /// Counts the samples in a row with `present`, and raises `cause` from the `ticks`-th on.
+  /// Counts the samples in a row with `present`, and raises `cause` from the `ticks`-th on. A
+  /// sample that cannot tell, known = false, leaves the count, and the cause, as they are.
   void Raise(TripCause cause, bool present, int ticks, double value, double limit,
-             std::size_t channel) noexcept;
+             std::size_t channel, bool known = true) noexcept;
+  /// The sample lacks no reading.
+  bool IsComplete() const noexcept { return incomplete_ticks_ == 0; }
   /// Raises `beyond` unless value <= limit, or `unknown` if the value is NaN.
   void RaiseUnlessWithin(TripCause beyond, TripCause unknown, int ticks, double value, double limit,
                          std::size_t joint) noexcept;

@@ -127,6 +127,7 @@ void SessionWatch::LookAtState(std::int64_t now_ns, const WatchSample& sample) {
   if (changed && before == kIdle && DrivesEnabled(status.state) && !TakeSent("arm")) {
     Add(now_ns, "arms-by-itself", "no arm was sent");
   }
+  if (changed && status.state == kRunning) granted_ns_ = now_ns;
   if (changed && status.state == kRunning && !(before == kArmed && TakeSent("run"))) {
     Add(now_ns, "runs-by-itself", std::string("from ") + ToString(before));
   }

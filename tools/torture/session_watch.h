@@ -85,6 +85,8 @@ class SessionWatch {
   const std::vector<std::array<double, 2>>& tip_m() const { return tip_m_; }
   /// The last millisecond with torque at a joint; INT64_MIN: there was none since Restart.
   std::int64_t last_torque_ns() const { return last_torque_ns_; }
+  /// When the last run was granted: the loop begins from the start with it. INT64_MIN: none.
+  std::int64_t granted_ns() const { return granted_ns_; }
   const std::vector<Violation>& violations() const { return violations_; }
   const Peaks& peaks() const { return peaks_; }
 
@@ -104,6 +106,7 @@ class SessionWatch {
   std::set<std::string> sent_;  // and not used up
   SafetyStatus status_{SafetyState::kStarting, TripCause::kNone};
   std::optional<Latched> first_cause_;
+  std::int64_t granted_ns_ = INT64_MIN;
   // Since when torque has not been allowed, of the last milliseconds, the newest last; INT64_MAX:
   // it is.
   std::deque<std::int64_t> forbidden_since_ns_;

@@ -287,6 +287,29 @@ TEST_F(FaultDetectionTest, HubAgainstRotorIsNotJudgedWithoutBothReadings) {
   }
 }
 
+// With every second frame lost, a fault would never be named; and a lost one would hide a cause
+// that is still present from a reset.
+TEST_F(FaultDetectionTest, ASampleWithoutReadingsIsNoEvidenceThatAFaultHasGone) {
+  Facts apart, outlier, lost = WithoutCounter(0), innovation;
+  apart.counters.angle_rad = {0.0, 0.0, 0.5, 0.0};
+  outlier.modes.outlier = 1;
+  innovation.estimate.innovation[0] = 1.0;
+  using enum TripCause;
+  for (const auto& [cause, facts] : {std::pair{kHubAgainstRotor, apart},
+                                     {kStrainOutOfFamily, outlier},
+                                     {kEstimatorResidual, innovation}}) {
+    SCOPED_TRACE(ToString(cause));
+    monitor_.Reset();
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+      EXPECT_EQ(monitor_.Judge(lost.Now()).faults, 0u);
+    }
+    EXPECT_EQ(monitor_.Judge(facts.Now()).faults, CauseBit(cause)) << "the third that tells";
+    EXPECT_EQ(monitor_.Judge(lost.Now()).faults, CauseBit(cause));
+    EXPECT_EQ(monitor_.Judge(Facts().Now()).faults, 0u);
+  }
+}
+
 TEST_F(FaultDetectionTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
   Facts facts;
   facts.modes.stuck = 1u << 4;
