@@ -27,7 +27,7 @@ SECONDS = float(os.environ.get("FLEXARM_SOAK_S", "3600"))
 # are a trip.
 STALL_MS = 10.0
 
-# The daemon plans and logs the longest of the first runs with more memory than the first of them.
+# The first runs of each kind take memory that later ones use again.
 SETTLED_SHARE = 0.1
 GROWTH_MB = 4.0
 
