@@ -14,12 +14,14 @@ bool RestMeter::Take(const TickRecord& tick) {
     sum_of_squares_[i] += counts * counts;  // exact: 24-bit counts, a few thousand of them
     ++valid_[i];
   }
-  counts_ = tick.output.counts;
   for (std::size_t i = 0; i < kCounters; ++i) {
-    lowest_[i] = started() ? std::min(lowest_[i], counts_[i]) : counts_[i];
-    highest_[i] = started() ? std::max(highest_[i], counts_[i]) : counts_[i];
+    if ((tick.output.counters_used >> i & 1u) == 0) continue;
+    const std::int64_t counts = tick.output.counts[i];
+    const bool first = counter_valid_[i]++ == 0;
+    lowest_[i] = first ? counts : std::min(lowest_[i], counts);
+    highest_[i] = first ? counts : std::max(highest_[i], counts);
+    counts_[i] = counts;
   }
-  counters_good_ &= tick.output.counters_used;
   return ++ticks_ >= wanted_;
 }
 
@@ -35,8 +37,10 @@ RestReadings RestMeter::Result() const {
     out.strain_sigma[i] = std::sqrt(std::max(variance, 0.0));
   }
   out.counts = counts_;
-  for (std::size_t i = 0; i < kCounters; ++i) out.travel_counts[i] = highest_[i] - lowest_[i];
-  out.counters_good = ticks_ > 0 ? counters_good_ : 0;
+  for (std::size_t i = 0; i < kCounters; ++i) {
+    out.travel_counts[i] = highest_[i] - lowest_[i];
+    out.counter_missing[i] = ticks_ - counter_valid_[i];
+  }
   return out;
 }
 

@@ -14,9 +14,9 @@ struct RestReadings {
   std::array<double, kMaxStrainChannels> strain_mean;   ///< raw counts
   std::array<double, kMaxStrainChannels> strain_sigma;  ///< standard deviation
   std::array<int, kMaxStrainChannels> strain_missing;   ///< samples without a valid reading
-  std::array<std::int64_t, kCounters> counts;           ///< unwrapped, of the last sample
+  std::array<std::int64_t, kCounters> counts;           ///< unwrapped, of the last valid reading
   std::array<std::int64_t, kCounters> travel_counts;    ///< largest minus smallest
-  std::uint32_t counters_good;                          ///< bit i: valid in every sample
+  std::array<int, kCounters> counter_missing;           ///< samples without a valid reading
 };
 
 /// Collects RestReadings. Not designed as real-time safe, because no caller needs it.
@@ -40,7 +40,7 @@ class RestMeter {
   std::array<std::int64_t, kCounters> lowest_{};
   std::array<std::int64_t, kCounters> highest_{};
   std::array<std::int64_t, kCounters> counts_{};
-  std::uint32_t counters_good_ = ~std::uint32_t{0};
+  std::array<int, kCounters> counter_valid_{};
 };
 
 }  // namespace flexarm

@@ -55,15 +55,17 @@ TEST_F(CalibrateTest, TareTakesTheMeanOfEveryChannelAsItsZero) {
 
 TEST_F(CalibrateTest, TareNamesExactlyTheImplausibleChannels) {
   RestReadings readings = StillArm(config_.sensors, Flat(0.0));
-  readings.strain_missing[2] = 3;
+  readings.strain_missing[2] = 11;  // a fifth of the 50 may be missing
+  readings.strain_missing[3] = 10;
   readings.strain_sigma[7] = 40.0;    // a loose contact
   readings.strain_mean[15] = 1900.0;  // bytes in the wrong order, or a broken bridge
   const std::string message =
       MessageOf<RejectedError>([&] { Tare(config_.sensors, readings, {}); });
-  EXPECT_THAT(message, HasSubstr("strain_1_03: 3 of 50 readings are missing"));
+  EXPECT_THAT(message, HasSubstr("strain_1_03: 11 of 50 readings are missing, at most 10 may be"));
   EXPECT_THAT(message, HasSubstr("strain_1_08: varies by 40.0"));
   EXPECT_THAT(message, HasSubstr("strain_2_06: is 1900"));
   EXPECT_THAT(message, Not(HasSubstr("strain_1_01")));
+  EXPECT_THAT(message, Not(HasSubstr("strain_1_04")));
 }
 
 TEST_F(CalibrateTest, ZeroPutsHubAndRotorOfAJointAtTheSameAngle) {
@@ -76,10 +78,12 @@ TEST_F(CalibrateTest, ZeroPutsHubAndRotorOfAJointAtTheSameAngle) {
 TEST_F(CalibrateTest, ZeroRefusesAnEncoderThatMovesOrIsNotRead) {
   RestReadings readings = StillArm(config_.sensors, Flat(0.0));
   readings.travel_counts[1] = 4;
-  readings.counters_good = 0b0111;
+  readings.counter_missing[2] = 11;
+  readings.counter_missing[3] = 50;
   const std::string message =
       MessageOf<RejectedError>([&] { Zero(config_.sensors, readings, {}, {}); });
   EXPECT_THAT(message, HasSubstr("hub2: moved by 4 counts"));
+  EXPECT_THAT(message, HasSubstr("rotor1: 11 of 50 readings are missing, at most 10 may be"));
   EXPECT_THAT(message, HasSubstr("rotor2: was not read"));
   EXPECT_THAT(message, Not(HasSubstr("hub1")));
 }
