@@ -1,11 +1,16 @@
 #include "estimator/filter_covariance.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "model/math/column_sum.h"
+#include "model/math/wide_instructions.h"
+
 namespace flexarm {
 namespace {
 
 using FilterSquare = FilterCovariance::Square;
-using FilterState = FilterCovariance::State;
-using Four = Eigen::Array<double, 4, 1>;
 
 FilterSquare Padded(const Eigen::MatrixXd& M, Eigen::Index columns) {
   FilterSquare padded = FilterSquare::Zero((M.rows() + 3) / 4 * 4, columns);
@@ -15,56 +20,61 @@ FilterSquare Padded(const Eigen::MatrixXd& M, Eigen::Index columns) {
 
 FilterSquare Padded(const Eigen::MatrixXd& M) { return Padded(M, (M.cols() + 3) / 4 * 4); }
 
-Eigen::Map<Four> FourOf(double* x) noexcept { return Eigen::Map<Four>(x); }
-Eigen::Map<const Four> FourOf(const double* x) noexcept { return Eigen::Map<const Four>(x); }
-
-// A B, both padded. Sixteen sums stay in registers; Eigen's lazy products take twice the
-// instructions, and its others may use the heap.
-FilterSquare Product(const FilterSquare& A, const FilterSquare& B) noexcept {
-  const Eigen::Index n = A.rows();
-  FilterSquare product(n, n);
-  for (Eigen::Index column = 0; column < n; column += 4) {
-    const double* const b = B.data() + column * n;
-    for (Eigen::Index row = 0; row < n; row += 4) {
-      Four sum0 = Four::Zero(), sum1 = Four::Zero(), sum2 = Four::Zero(), sum3 = Four::Zero();
-      const double* a = A.data() + row;
-      for (Eigen::Index k = 0; k < n; ++k, a += n) {
-        const Four four = FourOf(a);
-        sum0 += four * b[k];
-        sum1 += four * b[k + n];
-        sum2 += four * b[k + 2 * n];
-        sum3 += four * b[k + 3 * n];
-      }
-      double* const to = product.data() + column * n + row;
-      FourOf(to) = sum0;
-      FourOf(to + n) = sum1;
-      FourOf(to + 2 * n) = sum2;
-      FourOf(to + 3 * n) = sum3;
-    }
-  }
-  return product;
+// Column `column` of A B from row kFirst on, both padded.
+template <int kRows, int kFirst>
+void ProductColumn(const FilterSquare& A, const FilterSquare& B, int column,
+                   FilterSquare* product) noexcept {
+  ColumnSum<kRows - kFirst> sum;
+#pragma GCC unroll 4
+  for (int k = 0; k < kRows; ++k) sum.Add(B(k, column), A.col(k).data() + kFirst);
+  sum.WriteTo(product->col(column).data() + kFirst);
 }
 
-// P c, where most of c is zero.
-FilterState ProductWithSparse(const FilterSquare& P, const double* c) noexcept {
-  const Eigen::Index n = P.rows();
-  FilterState product = FilterState::Zero(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
+// A B, where that is symmetric: the half below the diagonal, which the other one mirrors.
+template <int kRows, int kFirst = 0>
+void SymmetricProduct(const FilterSquare& A, const FilterSquare& B,
+                      FilterSquare* product) noexcept {
+  constexpr int kBlock = 4;
+  for (int column = kFirst; column < kFirst + kBlock; ++column) {
+    ProductColumn<kRows, kFirst>(A, B, column, product);
+    for (int row = kFirst + kBlock; row < kRows; ++row) {
+      (*product)(column, row) = (*product)(row, column);
+    }
+  }
+  for (int column = 0; column < kBlock; ++column) {
+    for (int row = column + 1; row < kBlock; ++row) {
+      (*product)(kFirst + column, kFirst + row) = (*product)(kFirst + row, kFirst + column);
+    }
+  }
+  if constexpr (kFirst + kBlock < kRows) {
+    SymmetricProduct<kRows, kFirst + kBlock>(A, B, product);
+  }
+}
+
+// Corrects x and P by one output y = c x, of variance r. Most of c is zero.
+template <int kRows>
+void CorrectBy(double y, const double* c, double r, double* x, FilterSquare* P) noexcept {
+  ColumnSum<kRows> sum;
+  double predicted = 0.0;
+  for (int k = 0; k < kRows; ++k) {
     if (c[k] == 0.0) continue;
-    for (Eigen::Index row = 0; row < n; row += 4) {
-      FourOf(product.data() + row) += FourOf(P.data() + k * n + row) * c[k];
-    }
+    sum.Add(c[k], P->col(k).data());
+    predicted += c[k] * x[k];
   }
-  return product;
-}
-
-// P - x y'
-void Subtract(const FilterState& x, const FilterState& y, FilterSquare* P) noexcept {
-  const Eigen::Index n = P->rows();
-  for (Eigen::Index column = 0; column < n; ++column) {
-    for (Eigen::Index row = 0; row < n; row += 4) {
-      FourOf(P->data() + column * n + row) -= FourOf(x.data() + row) * y(column);
-    }
+  alignas(16) std::array<double, std::size_t{kRows}> Pc, gain;
+  sum.WriteTo(Pc.data());
+  double variance = r;
+  for (std::size_t k = 0; k < kRows; ++k) {
+    if (c[k] != 0.0) variance += c[k] * Pc[k];
+  }
+  for (std::size_t k = 0; k < kRows; ++k) gain[k] = Pc[k] / variance;
+  ColumnSum<kRows> corrected(x);
+  corrected.Add(y - predicted, gain.data());
+  corrected.WriteTo(x);
+  for (int column = 0; column < kRows; ++column) {
+    ColumnSum<kRows> left(P->col(column).data());
+    left.Add(-Pc[static_cast<std::size_t>(column)], gain.data());
+    left.WriteTo(P->col(column).data());
   }
 }
 
@@ -85,19 +95,43 @@ void FilterCovariance::Correct(const Outputs& y, std::uint32_t good, bool comple
                                State* x) noexcept {
   if (steady()) P_ = steady_;
   settled_ = complete ? settled_ + 1 : 0;
+  CorrectPadded(y, good, complete, x);
+}
+
+FLEXARM_WIDE_INSTRUCTIONS
+void FilterCovariance::CorrectPadded(const Outputs& y, std::uint32_t good, bool complete,
+                                     State* x) noexcept {
+  switch (P_.rows() / 4) {
+    case 1:
+      return CorrectRows<4>(y, good, complete, x);
+    case 2:
+      return CorrectRows<8>(y, good, complete, x);
+    case 3:
+      return CorrectRows<12>(y, good, complete, x);
+    case 4:
+      return CorrectRows<16>(y, good, complete, x);
+    case 5:
+      return CorrectRows<20>(y, good, complete, x);
+    default:
+      return CorrectRows<24>(y, good, complete, x);
+  }
+}
+
+template <int kRows>
+void FilterCovariance::CorrectRows(const Outputs& y, std::uint32_t good, bool complete,
+                                   State* x) noexcept {
   const Eigen::Index n = x->size();
+  alignas(16) std::array<double, std::size_t{kRows}> padded{};
+  std::copy_n(x->data(), n, padded.data());
   for (Eigen::Index i = 0; i < y.size(); ++i) {
     if ((good >> i & 1u) == 0) continue;
-    const auto c = C_transposed_.col(i);
-    const State Pc = ProductWithSparse(P_, c.data());
-    const double variance = c.dot(Pc) + R_(i);
-    const State gain = Pc / variance;
-    *x += gain.head(n) * (y(i) - c.head(n).dot(*x));
-    Subtract(gain, Pc, &P_);
+    CorrectBy<kRows>(y(i), C_transposed_.col(i).data(), R_(i), padded.data(), &P_);
   }
-  P_ = Product(Product(A_, P_), A_transposed_);
+  std::copy_n(padded.data(), n, x->data());
+  FilterSquare AP(kRows, kRows);
+  for (int column = 0; column < kRows; ++column) ProductColumn<kRows, 0>(A_, P_, column, &AP);
+  SymmetricProduct<kRows>(AP, A_transposed_, &P_);
   if (complete) P_ += W_;
-  P_ = (0.5 * (P_ + P_.transpose())).eval();  // symmetric in spite of rounding
 }
 
 }  // namespace flexarm

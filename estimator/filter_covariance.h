@@ -43,6 +43,10 @@ class FilterCovariance {
   void Correct(const Outputs& y, std::uint32_t good, bool complete, State* x) noexcept;
 
  private:
+  void CorrectPadded(const Outputs& y, std::uint32_t good, bool complete, State* x) noexcept;
+  template <int kRows>
+  void CorrectRows(const Outputs& y, std::uint32_t good, bool complete, State* x) noexcept;
+
   // With rows and columns of zeros up to a multiple of four, so that loops take four at a time.
   Square A_, A_transposed_, W_, steady_;
   Square C_transposed_;  // a column for each output

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "estimator/piecewise_torque.h"
@@ -17,7 +18,9 @@ namespace flexarm {
 /// Real-time: Advance is safe; the constructor is not.
 class FractionalZeroOrderHold {
  public:
-  /// @param whole_period  the hold of one period, from the design
+  static constexpr int kMostStates = 24;
+
+  /// @param whole_period  the hold of one period, from the design; at most kMostStates
   /// @param A, B  the same system, continuous, n x n and n x 2; 1/s
   FractionalZeroOrderHold(const DiscreteModel& whole_period, const Eigen::MatrixXd& A,
                           const Eigen::MatrixXd& B, double period_s);
@@ -25,28 +28,21 @@ class FractionalZeroOrderHold {
   /// Advances `x` over all pieces.
   template <typename Vector>
   void Advance(const PiecewiseTorque& torque, Vector* x) const noexcept {
-    for (const TorquePiece& piece : torque.all()) {
-      for (std::int64_t period = 0; period < piece.ticks / kPeriodTicks; ++period) {
-        Hold(hold_[0], piece, x);
-      }
-      for (int digit = 1; digit <= kPeriodDigits; ++digit) {
-        if ((piece.ticks >> (kPeriodDigits - digit) & 1) != 0) {
-          Hold(hold_[static_cast<std::size_t>(digit)], piece, x);
-        }
-      }
-    }
+    Padded padded{};
+    Eigen::Map<Eigen::VectorXd> states(padded.data(), x->size());
+    states = *x;
+    AdvancePadded(torque, &padded);
+    *x = states;
   }
 
  private:
-  template <typename Vector>
-  static void Hold(const DiscreteModel& hold, const TorquePiece& piece, Vector* x) noexcept {
-    Vector next = hold.A.lazyProduct(*x);
-    next += hold.B.col(0) * piece.torque_nm[0];
-    next += hold.B.col(1) * piece.torque_nm[1];
-    *x = next;
-  }
+  using Padded = std::array<double, kMostStates>;
 
-  std::vector<DiscreteModel> hold_;  // of Ts / 2^j
+  void AdvancePadded(const PiecewiseTorque& torque, Padded* x) const noexcept;
+
+  // [A B] of Ts / 2^j, with rows of zeros up to a multiple of four, so that loops take four at a
+  // time.
+  std::vector<Eigen::MatrixXd> hold_;
 };
 
 }  // namespace flexarm

@@ -16,7 +16,7 @@ class IdealObserver final : public Observer {
 
   void Reset() noexcept override {}
   void Restart() noexcept override {}
-  std::array<double, 4> ModalRates(const PiecewiseTorque& /*applied*/) const noexcept override {
+  std::array<double, 4> ModalRates(const PiecewiseTorque& /*applied*/) noexcept override {
     return {};
   }
   StateEstimate Update(const Measurement& /*measurement*/) noexcept override {

@@ -16,7 +16,7 @@ class NominalObserver final : public Observer {
 
   void Reset() noexcept override { estimator_.Reset(); }
   void Restart() noexcept override { estimator_.Reset(); }
-  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept override {
+  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) noexcept override {
     return estimator_.ModalRates(applied);
   }
   StateEstimate Update(const Measurement& measurement) noexcept override;

@@ -48,7 +48,7 @@ class Observer {
 
   /// Predicted rates of the modal coordinates as the gauges read them, behind their filters, at the
   /// next Update's sample, m/s: f11 f12 f21 f22.
-  virtual std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept = 0;
+  virtual std::array<double, 4> ModalRates(const PiecewiseTorque& applied) noexcept = 0;
 
   /// To be called before Update, every sample on which the law follows a path.
   virtual void FollowPath(const PathMotion& /*motion*/) noexcept {}

@@ -21,8 +21,7 @@ void PayloadObserver::Reset() noexcept {
   moves_ = false;
 }
 
-std::array<double, 4> PayloadObserver::ModalRates(
-    const PiecewiseTorque& /*applied*/) const noexcept {
+std::array<double, 4> PayloadObserver::ModalRates(const PiecewiseTorque& /*applied*/) noexcept {
   return estimator_.ModalRates();
 }
 

@@ -19,7 +19,7 @@ class PayloadObserver final : public Observer {
 
   void Reset() noexcept override;
   void Restart() noexcept override { estimator_.Reset(); }
-  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept override;
+  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) noexcept override;
   void FollowPath(const PathMotion& motion) noexcept override;
   StateEstimate Update(const Measurement& measurement) noexcept override;
   StateVector Predict(const StateVector& x, const PiecewiseTorque& pending) const noexcept override;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,8 @@ inline constexpr std::int64_t kPeriodTicks = std::int64_t{1} << kPeriodDigits;
 struct TorquePiece {
   std::array<double, 2> torque_nm;
   std::int64_t ticks;  ///< how long, in 2^-16 Ts
+
+  friend bool operator==(const TorquePiece&, const TorquePiece&) = default;
 };
 
 /// The torque over an interval: constant pieces, in order of time. No heap. Real-time: safe.
@@ -38,6 +41,10 @@ class PiecewiseTorque {
 
   std::span<const TorquePiece> all() const& noexcept { return {piece_.data(), size_}; }
   std::span<const TorquePiece> all() && = delete;  // the span would outlive the pieces
+
+  friend bool operator==(const PiecewiseTorque& a, const PiecewiseTorque& b) noexcept {
+    return std::ranges::equal(a.all(), b.all());
+  }
 
   /// Torque at the end of the interval; 0 for an empty one.
   std::array<double, 2> last_nm() const noexcept {

@@ -30,7 +30,7 @@ class SettlingObserver final : public Observer {
 
   void Reset() noexcept override;
   void Restart() noexcept override;
-  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept override {
+  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) noexcept override {
     return nominal_.ModalRates(applied);
   }
   void FollowPath(const PathMotion& motion) noexcept override { payload_.FollowPath(motion); }

@@ -28,6 +28,7 @@ void StateEstimator::Reset() noexcept {
   x_ = FilterVector::Zero(L_.rows());
   y_before_ = OutputVector::Zero(C_.rows());
   covariance_.Reset();
+  predicted_under_ = {};
   missing_ = {};
   started_ = false;
 }
@@ -54,15 +55,13 @@ StateEstimator::OutputVector StateEstimator::Measure(const DecodedCounters& coun
   return y;
 }
 
-std::array<double, 4> StateEstimator::ModalRates(const PiecewiseTorque& applied) const noexcept {
+std::array<double, 4> StateEstimator::ModalRates(const PiecewiseTorque& applied) noexcept {
   const auto modes = static_cast<std::size_t>(layout_.modes_per_link);
   const Eigen::Index flex = Eigen::Index{2} * layout_.modes_per_link;
   OutputVector rate = OutputVector::Zero(flex);
   if (started_ && kind_ == EstimatorKind::kKalman) {
-    FilterVector x = x_;
-    hold_.Advance(applied, &x);
     const std::array<double, 2> torque_nm = applied.last_nm();
-    rate = modal_rate_x_.lazyProduct(x);
+    rate = modal_rate_x_.lazyProduct(Predicted(applied));
     rate += modal_rate_u_.col(0) * torque_nm[0];
     rate += modal_rate_u_.col(1) * torque_nm[1];
   } else if (started_) {
@@ -103,11 +102,22 @@ void StateEstimator::StartAtRest(const OutputVector& y) noexcept {
   y_before_ = y;
 }
 
+// x(k|k-1) = A x(k-1|k-1) + B u(k-1), in as many pieces as u has. ModalRates and Update of a sample
+// both need it.
+const StateEstimator::FilterVector& StateEstimator::Predicted(
+    const PiecewiseTorque& applied) noexcept {
+  if (applied.all().empty() || !(applied == predicted_under_)) {
+    predicted_ = x_;
+    hold_.Advance(applied, &predicted_);
+    predicted_under_ = applied;
+  }
+  return predicted_;
+}
+
 StateEstimator::Estimate StateEstimator::UpdateKalman(const OutputVector& y, std::uint32_t good,
                                                       const PiecewiseTorque& applied) noexcept {
-  // x(k|k-1) = A x(k-1|k-1) + B u(k-1), in as many pieces as u has
-  FilterVector x = x_;
-  hold_.Advance(applied, &x);
+  FilterVector x = Predicted(applied);
+  predicted_under_ = {};
   const OutputVector predicted = C_.lazyProduct(x);
   const bool complete = (good & needed_) == needed_;
   const bool steady = complete && covariance_.steady();

@@ -34,7 +34,7 @@ struct FilterGains {
 /// `difference`: coordinates as measured and backward differences, as in the thesis: the rates lag
 /// by half a sample. A missing coordinate is extrapolated at its last rate; the next reading gives
 /// the mean rate since the last one.
-/// Real-time: Reset and Update are safe.
+/// Real-time: all but the constructor is safe.
 class StateEstimator {
  public:
   using Estimate = StateEstimate;
@@ -49,7 +49,7 @@ class StateEstimator {
 
   /// Predicted rates of the modal coordinates as the gauges read them, behind their filters, at the
   /// next Update's sample, m/s: f11 f12 f21 f22. For `difference` the rates of the last Update.
-  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) const noexcept;
+  std::array<double, 4> ModalRates(const PiecewiseTorque& applied) noexcept;
 
   /// @param applied  the torque over the last period, piecewise constant
   Estimate Update(const DecodedCounters& counters, const FittedModes& modes,
@@ -68,6 +68,7 @@ class StateEstimator {
   OutputVector Measure(const DecodedCounters& counters, const FittedModes& modes,
                        const std::array<double, 2>& torque_nm, std::uint32_t* good) const noexcept;
   void StartAtRest(const OutputVector& y) noexcept;
+  const FilterVector& Predicted(const PiecewiseTorque& applied) noexcept;
   Estimate UpdateKalman(const OutputVector& y, std::uint32_t good,
                         const PiecewiseTorque& applied) noexcept;
   Estimate UpdateDifference(const OutputVector& y, std::uint32_t good) noexcept;
@@ -83,6 +84,8 @@ class StateEstimator {
   FilterCovariance covariance_;
   FilterMatrix modal_rate_x_, modal_rate_u_;  // rates of the last outputs, from state and torque
   FilterVector x_;                            // kalman: x(k|k) with the gauge filter's states
+  FilterVector predicted_;                    // kalman: x(k+1|k) under predicted_under_
+  PiecewiseTorque predicted_under_;           // empty: not predicted yet
   OutputVector y_before_;                     // difference: the last readings
   std::array<int, 8> missing_{};              // difference: samples since then
   bool started_ = false;

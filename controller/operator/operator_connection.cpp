@@ -67,10 +67,10 @@ std::optional<std::string> OperatorConnection::NextLine() {
 }
 
 // Not while whole lines wait: their client is ahead of what is done for it.
-void OperatorConnection::Read() {
+void OperatorConnection::Read(bool arrived) {
   ++quiet_polls_;
   waited_polls_ = HasLine() ? waited_polls_ + 1 : 0;
-  if (fd_ < 0 || ended_ || HasLine()) return;
+  if (!arrived || fd_ < 0 || ended_ || HasLine()) return;
   received_.erase(0, std::exchange(read_, 0));
   const std::size_t searched = received_.size();
   std::array<char, 16384> chunk;

@@ -31,6 +31,7 @@ class OperatorConnection {
   OperatorConnection(const OperatorConnection&) = delete;
   OperatorConnection& operator=(const OperatorConnection&) = delete;
 
+  int fd() const { return fd_; }  ///< -1: closed
   int number() const { return number_; }
   const Peer& peer() const { return peer_; }
   uid_t uid() const { return peer_.uid; }
@@ -53,7 +54,8 @@ class OperatorConnection {
   bool HasLongLine() const { return HasLine() && line_end_ - read_ > kLongLine; }
 
   /// Reads what has arrived. Once a poll, before NextLine.
-  void Read();
+  /// @param arrived  false: nothing has
+  void Read(bool arrived);
 
   /// Hands out the next whole line, without its newline. Lines that a client sent before it closed
   /// its end are handed out like others.

@@ -99,7 +99,7 @@ void OperatorSocket::MakeRoomFor(uid_t user, std::vector<Message>* messages) {
   };
   for (std::size_t k = 0; k < clients_.size() && victim()->unanswered() == 0; ++k) {
     const auto quiet = victim();
-    quiet->Read();
+    quiet->Read(true);
     if (quiet->HasLongLine() || !Take(&*quiet, messages)) break;
   }
   const auto closed = victim();
@@ -119,7 +119,7 @@ void OperatorSocket::Accept(std::vector<Message>* messages) {
       turned_away_.push_back(client.peer());
       continue;
     }
-    client.Read();
+    client.Read(true);
     if (!client.HasLongLine()) Take(&client, messages);
     MakeRoomFor(client.uid(), messages);
     clients_.push_back(std::move(client));
@@ -151,15 +151,27 @@ bool OperatorSocket::Take(OperatorConnection* client, std::vector<Message>* mess
   return line.has_value();
 }
 
+// Most periods bring nothing: one system call tells, instead of one for each client.
+void OperatorSocket::LookWhatArrived() {
+  arrived_.clear();
+  for (const OperatorConnection& client : clients_) {
+    arrived_.push_back({.fd = client.fd(), .events = POLLIN, .revents = 0});
+  }
+  arrived_.push_back({.fd = listener_, .events = POLLIN, .revents = 0});
+  if (poll(arrived_.data(), arrived_.size(), 0) >= 0) return;
+  for (pollfd& source : arrived_) source.revents = POLLIN;
+}
+
 std::vector<OperatorSocket::Message> OperatorSocket::Poll() {
   std::erase_if(clients_, [](const OperatorConnection& client) { return client.over(); });
   turned_away_.clear();
   std::vector<Message> messages;
-  for (OperatorConnection& client : clients_) {
-    client.Read();
-    if (!client.HasLongLine()) Take(&client, &messages);
+  LookWhatArrived();
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    clients_[i].Read(arrived_[i].revents != 0);
+    if (!clients_[i].HasLongLine()) Take(&clients_[i], &messages);
   }
-  Accept(&messages);
+  if (arrived_.back().revents != 0) Accept(&messages);
   TakeLongLine(&messages);
   for (bool more = true; more;) {
     more = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <poll.h>
 #include <sys/types.h>
 
 #include <optional>
@@ -68,6 +69,7 @@ class OperatorSocket {
   void Reply(int client, const std::string& line);
 
  private:
+  void LookWhatArrived();
   void Accept(std::vector<Message>* messages);
   /// The next line of a client; false: it has none.
   static bool Take(OperatorConnection* client, std::vector<Message>* messages);
@@ -85,6 +87,7 @@ class OperatorSocket {
   ino_t inode_ = 0;   // its number
   int next_number_ = 1;
   std::vector<OperatorConnection> clients_;
+  std::vector<pollfd> arrived_;  // of the clients, in their order, and last of the listener
   std::vector<Peer> turned_away_;
   std::optional<uid_t> holder_;
   int long_line_of_ = 0;  // number of the client whose long line was the last

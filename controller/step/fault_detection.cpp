@@ -200,8 +200,10 @@ void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
         FirstChannel(stuck), IsComplete());
   Raise(TripCause::kStrainSaturated, modes.saturated != 0, ticks, 0.0, 0.0,
         FirstChannel(modes.saturated), IsComplete());
-  Raise(TripCause::kStrainOutOfFamily, judged && modes.outlier != 0, ticks, modes.worst_outlier,
-        estimator_.strain_family_limit, FirstChannel(modes.outlier), IsComplete());
+  // A reading at the end of its range is out of family too: garbage is now one, now the other.
+  const std::uint32_t alien = modes.outlier | modes.saturated;
+  Raise(TripCause::kStrainOutOfFamily, judged && alien != 0, ticks, modes.worst_outlier,
+        estimator_.strain_family_limit, FirstChannel(alien), IsComplete());
   for (std::size_t i = 0; i < 2; ++i) {
     Raise(PerJoint(TripCause::kNoStrainReading1, i),
           !modes.valid[i] && incomplete_ticks_ >= kMissingTicks, 1, modes.gauges[i],

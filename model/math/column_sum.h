@@ -11,10 +11,10 @@ namespace flexarm {
 /// instructions, as it loads each entry of the second factor again for every two rows of the first.
 /// Terms are added in the order of the calls. Columns are those of matrices with an even number of
 /// rows, from an even row on, so that they are aligned. Real-time: safe.
-/// @tparam kRows  4, 8, .. 20: more would not fit 16 registers of two
+/// @tparam kRows  4, 8, .. 24: more would not fit 16 registers, of four or, but for 24, of two
 template <int kRows>
 class ColumnSum {
-  static_assert(kRows % 4 == 0 && kRows <= 20);
+  static_assert(kRows % 4 == 0 && kRows <= 24);
 
  public:
   ColumnSum() noexcept {

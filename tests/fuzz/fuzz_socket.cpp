@@ -69,14 +69,14 @@ class OneClient {
 
  private:
   void Poll(OperatorConnection* client) {
-    client->Read();
+    client->Read(true);
     while (const std::optional<std::string> line = client->NextLine()) {
       Reply(client, dispatch_.Answer(kClient, client->peer(), *line, now_));
       if (const auto planned = run_.Follow(now_, [](int) { return true; })) {
         Reply(client, planned->json);
       }
       stack_.TakeRequests();  // the safety task would
-      client->Read();
+      client->Read(true);
     }
   }
 

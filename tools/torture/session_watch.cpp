@@ -89,11 +89,14 @@ void SessionWatch::LookAtArm(std::int64_t now_ns, const WatchSample& sample) {
   hub_rad_.push_back(truth.hub_angle_rad);
   if (hub_rad_.size() > period + 1) hub_rad_.pop_front();
   const std::int64_t acts_ns = config_.loop.period_ns();
+  const bool torque_acts = last_torque_ns_ == now_ns;
   if (last_torque_ns_ == INT64_MIN || now_ns - last_torque_ns_ > acts_ns) return;  // it coasts
   for (std::size_t i = 0; i < 2; ++i) {
     const double limit_rad = config_.safety.soft_angle_deg[i] * kRadPerDeg;
-    Over(now_ns, "hub angle", std::fabs(truth.hub_angle_rad[i]) / limit_rad,
-         rules_.most.angle_share, &peaks_.angle_share);
+    if (torque_acts) {
+      Over(now_ns, "hub angle", std::fabs(truth.hub_angle_rad[i]) / limit_rad,
+           rules_.most.angle_share, &peaks_.angle_share);
+    }
     // Over a whole period, as the loop sees it: a joint that springs back swings faster for a
     // moment.
     if (hub_rad_.size() <= period) continue;

@@ -315,12 +315,24 @@ TEST_F(FaultDetectionTest, StrainChannelsTripAfterThreeSamplesAndAreNamed) {
   facts.modes.stuck = 1u << 4;
   Expect(TripCause::kStrainStuck, 3, facts, 0.0, 1e-4, 5);
   facts = {};
-  facts.modes.saturated = 1u << 19;
-  Expect(TripCause::kStrainSaturated, 3, facts, 0.0, 0.0, 20);
-  facts = {};
   facts.modes.outlier = 1u << 0;
   facts.modes.worst_outlier = 7e-4;
   Expect(TripCause::kStrainOutOfFamily, 3, facts, 7e-4, 4e-4, 1);
+}
+
+// Garbage is now within the range, now at its end: no three samples in a row need be the same
+// fault.
+TEST_F(FaultDetectionTest, ASaturatedChannelIsOutOfFamilyToo) {
+  Facts outlier, saturated;
+  outlier.modes.outlier = saturated.modes.saturated = 1u << 19;
+  using enum TripCause;
+  for (const Facts& facts : {outlier, saturated}) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  FaultDetection::Verdict verdict = monitor_.Judge(outlier.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(kStrainOutOfFamily));
+  EXPECT_EQ(verdict.channel, 20);
+  for (int k = 0; k < 3; ++k) verdict = monitor_.Judge(saturated.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(kStrainSaturated) | CauseBit(kStrainOutOfFamily));
+  EXPECT_EQ(verdict.channel, 20);
 }
 
 // All gauges of a link repeat themselves while the model bends it: nothing else tells. At rest they
