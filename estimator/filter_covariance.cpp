@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "model/math/column_sum.h"
 #include "model/math/wide_instructions.h"
@@ -12,71 +13,93 @@ namespace {
 
 using FilterSquare = FilterCovariance::Square;
 
-FilterSquare Padded(const Eigen::MatrixXd& M, Eigen::Index columns) {
-  FilterSquare padded = FilterSquare::Zero((M.rows() + 3) / 4 * 4, columns);
+FilterSquare Padded(const Eigen::MatrixXd& M) {
+  const Eigen::Index rows = (M.rows() + 3) / 4 * 4;
+  FilterSquare padded = FilterSquare::Zero(rows, rows);
   padded.topLeftCorner(M.rows(), M.cols()) = M;
   return padded;
 }
 
-FilterSquare Padded(const Eigen::MatrixXd& M) { return Padded(M, (M.cols() + 3) / 4 * 4); }
-
-// Column `column` of A B from row kFirst on, both padded.
+// Column `column` of A B + C from row kFirst on, all padded; without C where that is null.
 template <int kRows, int kFirst>
-void ProductColumn(const FilterSquare& A, const FilterSquare& B, int column,
+void ProductColumn(const FilterSquare& A, const FilterSquare& B, const FilterSquare* C, int column,
                    FilterSquare* product) noexcept {
   ColumnSum<kRows - kFirst> sum;
+  if (C != nullptr) sum = ColumnSum<kRows - kFirst>(C->col(column).data() + kFirst);
 #pragma GCC unroll 4
   for (int k = 0; k < kRows; ++k) sum.Add(B(k, column), A.col(k).data() + kFirst);
   sum.WriteTo(product->col(column).data() + kFirst);
 }
 
-// A B, where that is symmetric: the half below the diagonal, which the other one mirrors.
+// A B + C, where that is symmetric: the half below the diagonal, which the other one mirrors.
 template <int kRows, int kFirst = 0>
-void SymmetricProduct(const FilterSquare& A, const FilterSquare& B,
+void SymmetricProduct(const FilterSquare& A, const FilterSquare& B, const FilterSquare* C,
                       FilterSquare* product) noexcept {
   constexpr int kBlock = 4;
   for (int column = kFirst; column < kFirst + kBlock; ++column) {
-    ProductColumn<kRows, kFirst>(A, B, column, product);
-    for (int row = kFirst + kBlock; row < kRows; ++row) {
+    ProductColumn<kRows, kFirst>(A, B, C, column, product);
+  }
+  for (int column = kFirst; column < kFirst + kBlock; ++column) {
+    for (int row = column + 1; row < kRows; ++row) {
       (*product)(column, row) = (*product)(row, column);
     }
   }
-  for (int column = 0; column < kBlock; ++column) {
-    for (int row = column + 1; row < kBlock; ++row) {
-      (*product)(kFirst + column, kFirst + row) = (*product)(kFirst + row, kFirst + column);
-    }
-  }
   if constexpr (kFirst + kBlock < kRows) {
-    SymmetricProduct<kRows, kFirst + kBlock>(A, B, product);
+    SymmetricProduct<kRows, kFirst + kBlock>(A, B, C, product);
   }
 }
 
-// Corrects x and P by one output y = c x, of variance r. Most of c is zero.
+// A covariance and a state that outputs correct one after the other, which equals all at once. An
+// output is a row c with few entries. P is corrected by all of them at the end:
+// until then what counts of it is its product with each c.
 template <int kRows>
-void CorrectBy(double y, const double* c, double r, double* x, FilterSquare* P) noexcept {
-  ColumnSum<kRows> sum;
-  double predicted = 0.0;
-  for (int k = 0; k < kRows; ++k) {
-    if (c[k] == 0.0) continue;
-    sum.Add(c[k], P->col(k).data());
-    predicted += c[k] * x[k];
+class Correction {
+ public:
+  Correction(const FilterSquare& P, double* x) noexcept : P_(P), x_(x) {}
+
+  void Add(double y, const FilterCovariance::Output& output) noexcept {
+    ColumnSum<kRows> product;
+    double predicted = 0.0;
+    for (const auto& [state, factor] : output.row) {
+      product.Add(factor, P_.data() + state * kRows);
+      predicted += factor * x_[state];
+    }
+    for (std::size_t before = 0; before < outputs_; ++before) {
+      product.Add(-Dot(output, product_[before]), gain_[before].data());
+    }
+    Column& Pc = product_[outputs_];
+    Column& gain = gain_[outputs_++];
+    product.WriteTo(Pc.data());
+    const double variance = output.variance + Dot(output, Pc);
+    for (std::size_t k = 0; k < kRows; ++k) gain[k] = Pc[k] / variance;
+    ColumnSum<kRows> corrected(x_);
+    corrected.Add(y - predicted, gain.data());
+    corrected.WriteTo(x_);
   }
-  alignas(16) std::array<double, std::size_t{kRows}> Pc, gain;
-  sum.WriteTo(Pc.data());
-  double variance = r;
-  for (std::size_t k = 0; k < kRows; ++k) {
-    if (c[k] != 0.0) variance += c[k] * Pc[k];
+
+  void Finish(FilterSquare* P) const noexcept {
+    for (std::size_t column = 0; column < kRows; ++column) {
+      double* const to = P->data() + column * kRows;
+      ColumnSum<kRows> left(to);
+      for (std::size_t i = 0; i < outputs_; ++i) left.Add(-product_[i][column], gain_[i].data());
+      left.WriteTo(to);
+    }
   }
-  for (std::size_t k = 0; k < kRows; ++k) gain[k] = Pc[k] / variance;
-  ColumnSum<kRows> corrected(x);
-  corrected.Add(y - predicted, gain.data());
-  corrected.WriteTo(x);
-  for (int column = 0; column < kRows; ++column) {
-    ColumnSum<kRows> left(P->col(column).data());
-    left.Add(-Pc[static_cast<std::size_t>(column)], gain.data());
-    left.WriteTo(P->col(column).data());
+
+ private:
+  struct alignas(16) Column : std::array<double, std::size_t{kRows}> {};
+
+  static double Dot(const FilterCovariance::Output& output, const Column& column) noexcept {
+    double sum = 0.0;
+    for (const auto& [state, factor] : output.row) sum += factor * column[state];
+    return sum;
   }
-}
+
+  const FilterSquare& P_;
+  double* const x_;
+  std::size_t outputs_ = 0;
+  std::array<Column, FilterCovariance::Outputs::MaxRowsAtCompileTime> product_, gain_;
+};
 
 }  // namespace
 
@@ -87,9 +110,15 @@ FilterCovariance::FilterCovariance(const Eigen::MatrixXd& A, const Eigen::Matrix
       A_transposed_(A_.transpose()),
       W_(Padded(W)),
       steady_(Padded(steady)),
-      C_transposed_(Padded(C.transpose(), C.rows())),
-      R_(R),
-      P_(steady_) {}
+      P_(steady_) {
+  for (Eigen::Index i = 0; i < C.rows(); ++i) {
+    Output output{.row = {}, .variance = R(i)};
+    for (Eigen::Index k = 0; k < C.cols(); ++k) {
+      if (C(i, k) != 0.0) output.row.push_back({static_cast<std::size_t>(k), C(i, k)});  // start-up
+    }
+    outputs_.push_back(std::move(output));  // start-up
+  }
+}
 
 void FilterCovariance::Correct(const Outputs& y, std::uint32_t good, bool complete,
                                State* x) noexcept {
@@ -123,15 +152,17 @@ void FilterCovariance::CorrectRows(const Outputs& y, std::uint32_t good, bool co
   const Eigen::Index n = x->size();
   alignas(16) std::array<double, std::size_t{kRows}> padded{};
   std::copy_n(x->data(), n, padded.data());
+  Correction<kRows> correction(P_, padded.data());
   for (Eigen::Index i = 0; i < y.size(); ++i) {
-    if ((good >> i & 1u) == 0) continue;
-    CorrectBy<kRows>(y(i), C_transposed_.col(i).data(), R_(i), padded.data(), &P_);
+    if ((good >> i & 1u) != 0) correction.Add(y(i), outputs_[static_cast<std::size_t>(i)]);
   }
+  correction.Finish(&P_);
   std::copy_n(padded.data(), n, x->data());
   FilterSquare AP(kRows, kRows);
-  for (int column = 0; column < kRows; ++column) ProductColumn<kRows, 0>(A_, P_, column, &AP);
-  SymmetricProduct<kRows>(AP, A_transposed_, &P_);
-  if (complete) P_ += W_;
+  for (int column = 0; column < kRows; ++column) {
+    ProductColumn<kRows, 0>(A_, P_, nullptr, column, &AP);
+  }
+  SymmetricProduct<kRows>(AP, A_transposed_, complete ? &W_ : nullptr, &P_);
 }
 
 }  // namespace flexarm

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace flexarm {
 
@@ -42,6 +44,16 @@ class FilterCovariance {
   /// @param complete  no output is missing
   void Correct(const Outputs& y, std::uint32_t good, bool complete, State* x) noexcept;
 
+  /// An output: its row of C, without the entries that are zero, and its variance.
+  struct Output {
+    struct Entry {
+      std::size_t state;
+      double factor;  ///< unit of the output per unit of the state
+    };
+    std::vector<Entry> row;
+    double variance;  ///< in the square of the unit of the output
+  };
+
  private:
   void CorrectPadded(const Outputs& y, std::uint32_t good, bool complete, State* x) noexcept;
   template <int kRows>
@@ -49,8 +61,7 @@ class FilterCovariance {
 
   // With rows and columns of zeros up to a multiple of four, so that loops take four at a time.
   Square A_, A_transposed_, W_, steady_;
-  Square C_transposed_;  // a column for each output
-  Outputs R_;
+  std::vector<Output> outputs_;
   Square P_;  // of the prediction, unless steady()
   int settled_ = kSettledSamples;
 };

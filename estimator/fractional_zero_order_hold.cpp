@@ -9,6 +9,9 @@
 namespace flexarm {
 namespace {
 
+constexpr int kDigitBits = 4, kLastDigit = 15;
+constexpr int kPlaces = kPeriodDigits / kDigitBits;  // of a fraction to base 16
+
 Eigen::MatrixXd SideBySide(const DiscreteModel& hold) {
   const Eigen::Index n = hold.A.rows();
   Eigen::MatrixXd AB = Eigen::MatrixXd::Zero((n + 3) / 4 * 4, n + 2);
@@ -36,10 +39,11 @@ void HoldAll(const std::vector<Eigen::MatrixXd>& holds, const PiecewiseTorque& t
     for (std::int64_t period = 0; period < piece.ticks / kPeriodTicks; ++period) {
       Hold<kRows>(holds[0], piece.torque_nm, x);
     }
-    for (int digit = 1; digit <= kPeriodDigits; ++digit) {
-      if ((piece.ticks >> (kPeriodDigits - digit) & 1) != 0) {
-        Hold<kRows>(holds[static_cast<std::size_t>(digit)], piece.torque_nm, x);
-      }
+    for (int place = 1; place <= kPlaces; ++place) {
+      const std::int64_t digit = piece.ticks >> kDigitBits * (kPlaces - place) & kLastDigit;
+      if (digit == 0) continue;
+      const std::int64_t first = kLastDigit * (place - 1);
+      Hold<kRows>(holds[static_cast<std::size_t>(first + digit)], piece.torque_nm, x);
     }
   }
 }
@@ -53,8 +57,13 @@ FractionalZeroOrderHold::FractionalZeroOrderHold(const DiscreteModel& whole_peri
   if (A.rows() > kMostStates) {
     throw std::invalid_argument("FractionalZeroOrderHold: at most 24 states");
   }
-  for (int digit = 1; digit <= kPeriodDigits; ++digit) {
-    hold_.push_back(SideBySide(ZeroOrderHold(A, B, std::ldexp(period_s, -digit))));  // start-up
+  for (int place = 1; place <= kPlaces; ++place) {
+    const DiscreteModel unit = ZeroOrderHold(A, B, std::ldexp(period_s, -kDigitBits * place));
+    DiscreteModel hold = unit;
+    for (int digit = 1; digit <= kLastDigit; ++digit) {
+      if (digit > 1) hold = {.A = unit.A * hold.A, .B = unit.A * hold.B + unit.B};
+      hold_.push_back(SideBySide(hold));  // start-up
+    }
   }
 }
 

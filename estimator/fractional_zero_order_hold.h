@@ -11,10 +11,10 @@ namespace flexarm {
 
 /// Zero-order hold over any fraction of a period: x' = A x + B u under piecewise constant torque.
 ///
-/// The zero-order holds of Ts, Ts/2 .. Ts/2^16 are computed off line. They are functions of one
-/// matrix and commute, so applying those of the binary digits of a duration one after the other is
-/// the exact hold of that duration. On line there are products and sums only, so a replay is exact
-/// to the bit.
+/// The zero-order holds of Ts and of 1 .. 15 times Ts/16, Ts/16^2 .. Ts/16^4 are computed off line.
+/// They are functions of one matrix and commute, so applying those of the digits of a duration to
+/// base 16, one after the other, is the exact hold of that duration. On line there are products and
+/// sums only, so a replay is exact to the bit.
 /// Real-time: Advance is safe; the constructor is not.
 class FractionalZeroOrderHold {
  public:
@@ -40,8 +40,8 @@ class FractionalZeroOrderHold {
 
   void AdvancePadded(const PiecewiseTorque& torque, Padded* x) const noexcept;
 
-  // [A B] of Ts / 2^j, with rows of zeros up to a multiple of four, so that loops take four at a
-  // time.
+  // [A B] of Ts, then of Ts/16, 2 Ts/16 .. 15 Ts/16, Ts/256 .., with rows of zeros up to a multiple
+  // of four, so that loops take four at a time.
   std::vector<Eigen::MatrixXd> hold_;
 };
 

@@ -19,6 +19,11 @@ constexpr int kMaxOutliersPerLink = 2;
 // squared sine of the angle between the two columns.
 constexpr double kMinSeparation = 1e-4;
 
+// Of a set of channels that is not empty.
+std::size_t LowestBit(std::uint32_t channels) noexcept {
+  return static_cast<std::size_t>(std::countr_zero(channels));
+}
+
 }  // namespace
 
 StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
@@ -46,6 +51,9 @@ StrainFit::StrainFit(const ArmParameters& arm, const SensorConfig& sensors,
     for (std::size_t j = 0; j < static_cast<std::size_t>(modes_); ++j) {
       c.shape[j] = shape(static_cast<std::size_t>(c.link), j, row.position_m);
     }
+    c.spread = {c.shape[0] * c.shape[0], c.shape[1] * c.shape[1], 2.0 * c.shape[0] * c.shape[1]};
+    c.weighted = {c.weight * c.shape[0], c.weight * c.shape[1]};
+    c.normal = {c.weighted[0] * c.shape[0], c.weighted[0] * c.shape[1], c.weighted[1] * c.shape[1]};
   }
   for (std::size_t link = 0; link < 2; ++link) {
     root_shape_[link] = RootStrainShape(arm.link[link], modes[link]);
@@ -117,14 +125,14 @@ bool StrainFit::Solve(int link, std::uint32_t used,
                       const std::array<double, kMaxStrainChannels>& strain,
                       std::array<double, 4>* modal, Variance* variance) const noexcept {
   double a = 0.0, b = 0.0, c = 0.0, d = 0.0, e = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
+  for (std::uint32_t left = used & LinkMask(link); left != 0; left &= left - 1) {
+    const std::size_t i = LowestBit(left);
     const Channel& channel = channel_[i];
-    if (channel.link != link || (used >> i & 1u) == 0) continue;
-    a += channel.weight * channel.shape[0] * channel.shape[0];
-    b += channel.weight * channel.shape[0] * channel.shape[1];
-    c += channel.weight * channel.shape[1] * channel.shape[1];
-    d += channel.weight * channel.shape[0] * strain[i];
-    e += channel.weight * channel.shape[1] * strain[i];
+    a += channel.normal[0];
+    b += channel.normal[1];
+    c += channel.normal[2];
+    d += channel.weighted[0] * strain[i];
+    e += channel.weighted[1] * strain[i];
   }
   const std::size_t first = link == 0 ? 0 : 2;
   const std::array<double, 2>& root = root_shape_[static_cast<std::size_t>(link)];
@@ -209,15 +217,15 @@ StrainFit::Suspect StrainFit::SuspectOf(int link, std::uint32_t used,
   Suspect suspect{};
   double most = 0.0, sum = 0.0;
   int count = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
+  for (std::uint32_t left = used & LinkMask(link); left != 0; left &= left - 1) {
+    const std::size_t i = LowestBit(left);
     const Channel& channel = channel_[i];
-    if (channel.link != link || (used >> i & 1U) == 0) continue;
     const double distance = std::fabs(strain[i] - Predicted(channel, modal));
     sum += distance * distance;
     ++count;
-    const double s0 = channel.shape[0], s1 = channel.shape[1];
-    const double spread = s0 * s0 * variance.modal_m2[0] + s1 * s1 * variance.modal_m2[1] +
-                          2.0 * s0 * s1 * variance.modal_covariance_m2;
+    const double spread = channel.spread[0] * variance.modal_m2[0] +
+                          channel.spread[1] * variance.modal_m2[1] +
+                          channel.spread[2] * variance.modal_covariance_m2;
     const double rest = 1.0 - channel.weight * spread;  // 1 - h
     if (!(rest > kAlone)) continue;
     const double falls = channel.weight * distance * distance / rest;
@@ -238,8 +246,8 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
     Variance variance = of_all_[at];
     if ((out->used & all) == all && solvable_[at]) {
       modal[first] = modal[first + 1] = 0.0;
-      for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
-        if (channel_[i].link != link) continue;
+      for (std::uint32_t left = all; left != 0; left &= left - 1) {
+        const std::size_t i = LowestBit(left);
         modal[first] += channel_[i].inverse[0] * strain[i];
         modal[first + 1] += channel_[i].inverse[1] * strain[i];
       }
@@ -271,8 +279,10 @@ bool StrainFit::OthersMoved(const Channel& channel, std::uint32_t others,
                             const std::array<double, kMaxStrainChannels>& strain) const noexcept {
   const std::uint32_t both = others & channel.used_at_change & LinkMask(channel.link);
   std::array<double, kMaxStrainChannels> change{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i)
+  for (std::uint32_t left = both; left != 0; left &= left - 1) {
+    const std::size_t i = LowestBit(left);
     change[i] = strain[i] - channel.all_at_change[i];
+  }
   std::array<double, 4> modal{};
   Variance variance{};
   if (!Solve(channel.link, both, change, &modal, &variance)) return true;

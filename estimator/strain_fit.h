@@ -83,10 +83,14 @@ class StrainFit {
  private:
   struct Channel {
     int link = 0;
-    StrainScale config;               // of the config
-    StrainScale scale;                // the same, calibrated
-    double weight = 0.0;              // 1 / variance
-    std::array<double, 2> shape{};    // (h/2) psi_j''(x)
+    StrainScale config;             // of the config
+    StrainScale scale;              // the same, calibrated
+    double weight = 0.0;            // 1 / variance
+    std::array<double, 2> shape{};  // (h/2) psi_j''(x)
+    // Terms of the normal equations: weight s0, weight s1; weight s0^2, weight s0 s1, weight s1^2.
+    std::array<double, 2> weighted{};
+    std::array<double, 3> normal{};
+    std::array<double, 3> spread{};   // s0^2, s1^2, 2 s0 s1: of a variance of the modal coordinates
     std::array<double, 2> inverse{};  // column of the pseudo-inverse when all channels are good
     // Stuck detection: the last raw value, and when it last changed the fitted strain here, the
     // strains of all channels, and which of them were used.

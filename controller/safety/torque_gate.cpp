@@ -37,10 +37,11 @@ GateResult Gate(const GateInput& in, const GateLimits& limits) noexcept {
   if (!finite) why |= kGateNotFinite;
   if (why != 0) return {.torque_nm = {0.0, 0.0}, .why = why};
 
+  double share = 1.0;
+  if (in.homing) share = std::min(share, limits.homing_fraction);
+  if (in.reduced) share = std::min(share, limits.reduced_fraction);
   GateResult result{.torque_nm = {0.0, 0.0}, .why = 0};
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    const double share = std::min(in.homing ? limits.homing_fraction : 1.0,
-                                  in.reduced ? limits.reduced_fraction : 1.0);
     const double limit = std::max(share * limits.torque_nm[joint], 0.0);
     const double step = std::max(limits.slew_nm_per_s[joint] * in.dt_s, 0.0);
     const double within = std::clamp(in.asked_nm[joint], -limit, limit);

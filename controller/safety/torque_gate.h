@@ -20,8 +20,8 @@ struct GateLimits {
   std::array<double, 2> slew_nm_per_s;
   std::int64_t command_timeout_ns;  ///< two control periods
   std::int64_t permit_timeout_ns;   ///< safety.permit_timeout_ms
-  double homing_fraction = 1.0;     ///< safety.homing_torque_fraction
-  double reduced_fraction = 1.0;    ///< safety.reduced_torque
+  double homing_fraction;           ///< safety.homing_torque_fraction
+  double reduced_fraction;          ///< safety.reduced_torque
 };
 
 /// The limits of a rig.
@@ -31,8 +31,8 @@ struct GateInput {
   std::array<double, 2> asked_nm;     ///< requested torque: the newest command that acts
   std::int64_t asked_age_ns;          ///< since it began to act (AgeNs)
   SafetyState permit;                 ///< newest permit
-  bool homing = false;                ///< its run is homing (Homes): less torque
-  bool reduced = false;               ///< its limits are reduced: the same
+  bool homing;                        ///< its run is homing (Homes): less torque
+  bool reduced;                       ///< its limits are reduced: the same
   std::int64_t permit_age_ns;         ///< since it was renewed (AgeNs)
   std::array<double, 2> previous_nm;  ///< last output of the gate
   double dt_s;                        ///< since then

@@ -49,6 +49,7 @@ void RunGate(const RigConfig& config) {
                            .asked_age_ns = age_ns,
                            .permit = static_cast<SafetyState>(state),
                            .homing = state % 2 == 1,
+                           .reduced = state % 3 == 1,
                            .permit_age_ns = age_ns,
                            .previous_nm = {0.0, 0.0},
                            .dt_s = 0.02};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -20,12 +21,16 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr GateLimits kGateLimits{.torque_nm = {30.0, 6.0},
                                  .slew_nm_per_s = {500.0, 150.0},
                                  .command_timeout_ns = 40 * kMs,
-                                 .permit_timeout_ns = 5 * kMs};
+                                 .permit_timeout_ns = 5 * kMs,
+                                 .homing_fraction = 0.9,
+                                 .reduced_fraction = 0.8};
 
 constexpr GateInput FineInput() {
   return {.asked_nm = {2.0, -1.0},
           .asked_age_ns = 3 * kMs,
           .permit = SafetyState::kRunning,
+          .homing = false,
+          .reduced = false,
           .permit_age_ns = 1 * kMs,
           .previous_nm = {1.9, -0.9},
           .dt_s = 1e-3};
@@ -250,6 +255,18 @@ TEST(Gate, ReducedLimitsAreAShareTooAndTheLeastShareHolds) {
   EXPECT_EQ(Gate(in, limits).torque_nm, (std::array<double, 2>{0.0, 0.0}));
 }
 
+TEST(Gate, AShareAboveOnePassesNoMoreThanTheLimit) {
+  GateLimits limits = kGateLimits;
+  limits.homing_fraction = limits.reduced_fraction = 1.5;
+  GateInput in = FineInput();
+  in.asked_nm = in.previous_nm = {40.0, -8.0};
+  for (const auto& [homing, reduced] : {std::pair{true, false}, {false, true}, {true, true}}) {
+    in.homing = homing;
+    in.reduced = reduced;
+    EXPECT_EQ(Gate(in, limits).torque_nm, (std::array<double, 2>{30.0, -6.0}));
+  }
+}
+
 TEST(Gate, NoTimePassedMeansNoChange) {
   GateInput in = FineInput();
   for (const double dt : {0.0, -1.0}) {
@@ -276,6 +293,8 @@ TEST(Gate, NeverExceedsItsLimitsForAnyInput) {
     GateInput in{.asked_nm = {value(60.0), value(12.0)},
                  .asked_age_ns = *rc::gen::inRange<std::int64_t>(-kMs, 60 * kMs),
                  .permit = static_cast<SafetyState>(*rc::gen::inRange(0, 8)),
+                 .homing = *rc::gen::inRange(0, 2) == 1,
+                 .reduced = *rc::gen::inRange(0, 2) == 1,
                  .permit_age_ns = *rc::gen::inRange<std::int64_t>(-kMs / 10, 7 * kMs),
                  .previous_nm = {},
                  .dt_s = *rc::gen::inRange(0, 21) * 1e-3};
@@ -286,14 +305,17 @@ TEST(Gate, NeverExceedsItsLimitsForAnyInput) {
     const bool allowed = HasTorque(in.permit);
     for (std::size_t joint = 0; joint < 2; ++joint) {
       const double torque = out.torque_nm[joint];
-      RC_ASSERT(std::abs(torque) <= kGateLimits.torque_nm[joint]);  // false for NaN too
+      const double share = in.reduced ? 0.8 : in.homing ? 0.9 : 1.0;
+      const double limit = share * kGateLimits.torque_nm[joint];
+      RC_ASSERT(std::abs(torque) <= limit);  // false for NaN too
       if ((out.why & kGateZeroed) != 0) {
         RC_ASSERT(torque == 0.0);
       } else {
         // previous +- step is rounded once: half an ulp of at most 40 N m, 4e-15. A slew limit that
         // is wrong by 0.1 % would be off by 1e-4.
         const double step = kGateLimits.slew_nm_per_s[joint] * in.dt_s;
-        RC_ASSERT(std::abs(torque - in.previous_nm[joint]) <= step + 1e-14);
+        const double from = std::clamp(in.previous_nm[joint], -limit, limit);
+        RC_ASSERT(std::abs(torque - from) <= step + 1e-14);
       }
       if (torque != 0.0) {
         RC_ASSERT(allowed);

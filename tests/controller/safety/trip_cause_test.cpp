@@ -6,10 +6,20 @@
 #include <set>
 #include <string>
 
+#include "controller/safety/safety_machine.h"
 #include "controller/types/trip_advice.h"
 
 namespace flexarm {
 namespace {
+
+static_assert(LowestCause(CauseBit(TripCause::kEmergencyStop) | CauseBit(TripCause::kStaleFrame)) ==
+              TripCause::kEmergencyStop);
+static_assert(LowestCause(CauseBit(static_cast<TripCause>(kTripCauses - 1))) ==
+              static_cast<TripCause>(kTripCauses - 1));
+// Sets that no part of the program makes.
+static_assert(LowestCause(0) == TripCause::kStateNotFinite);
+static_assert(LowestCause(CauseBit(TripCause::kNone)) == TripCause::kStateNotFinite);
+static_assert(LowestCause(TripCauses{1} << kTripCauses) == TripCause::kStateNotFinite);
 
 TEST(TripCause, EveryCauseHasItsOwnMachineNameAndATextThatSaysWhatToDo) {
   std::set<std::string> names;

@@ -111,10 +111,14 @@ struct FakeDrive final : Task {
     const GateLimits limits{.torque_nm = {30.0, 6.0},
                             .slew_nm_per_s = {500.0, 150.0},
                             .command_timeout_ns = 2 * kPeriodNs,
-                            .permit_timeout_ns = 5 * kMs};
+                            .permit_timeout_ns = 5 * kMs,
+                            .homing_fraction = 1.0,
+                            .reduced_fraction = 1.0};
     const GateResult result = Gate({.asked_nm = {1.0, 1.0},
                                     .asked_age_ns = 0,  // commands never age: only the permit acts
                                     .permit = permit.state,
+                                    .homing = false,
+                                    .reduced = false,
                                     .permit_age_ns = AgeNs(activation.due_ns, permit.renewed_ns),
                                     .previous_nm = torque_nm,
                                     .dt_s = 1e-3},
