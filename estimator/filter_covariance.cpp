@@ -39,10 +39,8 @@ void SymmetricProduct(const FilterSquare& A, const FilterSquare& B, const Filter
   for (int column = kFirst; column < kFirst + kBlock; ++column) {
     ProductColumn<kRows, kFirst>(A, B, C, column, product);
   }
-  for (int column = kFirst; column < kFirst + kBlock; ++column) {
-    for (int row = column + 1; row < kRows; ++row) {
-      (*product)(column, row) = (*product)(row, column);
-    }
+  for (int j = kFirst; j < kFirst + kBlock; ++j) {
+    for (int i = j + 1; i < kRows; ++i) (*product)(j, i) = (*product)(i, j);
   }
   if constexpr (kFirst + kBlock < kRows) {
     SymmetricProduct<kRows, kFirst + kBlock>(A, B, C, product);

@@ -42,7 +42,7 @@ void HoldAll(const std::vector<Eigen::MatrixXd>& holds, const PiecewiseTorque& t
     for (int place = 1; place <= kPlaces; ++place) {
       const std::int64_t digit = piece.ticks >> kDigitBits * (kPlaces - place) & kLastDigit;
       if (digit == 0) continue;
-      const std::int64_t first = kLastDigit * (place - 1);
+      const std::int64_t first = std::int64_t{kLastDigit} * (place - 1);
       Hold<kRows>(holds[static_cast<std::size_t>(first + digit)], piece.torque_nm, x);
     }
   }
