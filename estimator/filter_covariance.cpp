@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "model/math/column_sum.h"
+#include "model/math/mirror_lower_half.h"
 #include "model/math/wide_instructions.h"
 
 namespace flexarm {
@@ -31,25 +32,22 @@ void ProductColumn(const FilterSquare& A, const FilterSquare& B, const FilterSqu
   sum.WriteTo(product->col(column).data() + kFirst);
 }
 
-// A B + C, where that is symmetric: the half below the diagonal, which the other one mirrors.
+// A B + C on and below the diagonal, and in parts above it.
 template <int kRows, int kFirst = 0>
-void SymmetricProduct(const FilterSquare& A, const FilterSquare& B, const FilterSquare* C,
-                      FilterSquare* product) noexcept {
+void LowerProduct(const FilterSquare& A, const FilterSquare& B, const FilterSquare* C,
+                  FilterSquare* product) noexcept {
   constexpr int kBlock = 4;
   for (int column = kFirst; column < kFirst + kBlock; ++column) {
     ProductColumn<kRows, kFirst>(A, B, C, column, product);
   }
-  for (int j = kFirst; j < kFirst + kBlock; ++j) {
-    for (int i = j + 1; i < kRows; ++i) (*product)(j, i) = (*product)(i, j);
-  }
   if constexpr (kFirst + kBlock < kRows) {
-    SymmetricProduct<kRows, kFirst + kBlock>(A, B, C, product);
+    LowerProduct<kRows, kFirst + kBlock>(A, B, C, product);
   }
 }
 
 // A covariance and a state that outputs correct one after the other, which equals all at once. An
-// output is a row c with few entries. P is corrected by all of them at the end:
-// until then what counts of it is its product with each c.
+// output is a row c with few entries. P is corrected by all of them at the end: until then what
+// counts of it is its product with each c.
 template <int kRows>
 class Correction {
  public:
@@ -160,7 +158,8 @@ void FilterCovariance::CorrectRows(const Outputs& y, std::uint32_t good, bool co
   for (int column = 0; column < kRows; ++column) {
     ProductColumn<kRows, 0>(A_, P_, nullptr, column, &AP);
   }
-  SymmetricProduct<kRows>(AP, A_transposed_, complete ? &W_ : nullptr, &P_);
+  LowerProduct<kRows>(AP, A_transposed_, complete ? &W_ : nullptr, &P_);
+  MirrorLowerHalf<kRows>(kRows, P_.data());
 }
 
 }  // namespace flexarm

@@ -36,7 +36,7 @@ class FractionalZeroOrderHold {
   }
 
  private:
-  using Padded = std::array<double, kMostStates>;
+  struct alignas(16) Padded : std::array<double, kMostStates> {};  // as ColumnSum needs it
 
   void AdvancePadded(const PiecewiseTorque& torque, Padded* x) const noexcept;
 

@@ -1,6 +1,7 @@
 #include "estimator/payload_covariance.h"
 
 #include "model/math/column_sum.h"
+#include "model/math/mirror_lower_half.h"
 #include "model/math/wide_instructions.h"
 
 namespace flexarm {
@@ -17,13 +18,6 @@ constexpr int kBlock = 4;
 // Index among all states.
 constexpr int StateOf(int driving) noexcept {
   return driving < kGauge ? driving : driving + kGauges;
-}
-
-template <typename Square>
-void MirrorLowerHalf(int columns, Square* P) noexcept {
-  for (int j = 0; j < columns; ++j) {
-    for (int i = j + 1; i < Square::RowsAtCompileTime; ++i) (*P)(j, i) = (*P)(i, j);
-  }
 }
 
 // Factors of F P F' + N N': the sum of left column k times entry j of right column k is column j.
@@ -68,7 +62,7 @@ void ReduceBy(const PayloadCovariance::ByOutput<kOutputs>& V, int frozen,
   ReduceColumns<16>(V, P);
   if (frozen == 1) (*P)(kFirst, kFirst) = kept(0, 0);
   if (frozen == 3) P->block<3, 3>(kFirst, kFirst) = kept;
-  MirrorLowerHalf(PayloadCovariance::kPadded, P);
+  MirrorLowerHalf<PayloadCovariance::kPadded>(PayloadCovariance::kPadded, P->data());
 }
 
 }  // namespace
@@ -108,7 +102,7 @@ void PayloadCovariance::Propagate(const Change& change,
   for (int k = kGauge; k < kDriving; ++k) {
     P->block<1, kMotion>(StateOf(k), 0) = factors.left.col(k).transpose();
   }
-  MirrorLowerHalf(kMotion, P);
+  MirrorLowerHalf<kPadded>(kMotion, P->data());
 }
 
 FLEXARM_WIDE_INSTRUCTIONS

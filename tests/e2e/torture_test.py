@@ -1,9 +1,14 @@
 #!/usr/bin/env python3
 """`flexarm torture`: sessions of the whole daemon under faults, and the same in shards."""
 
+import json
+import subprocess
+import sys
 import unittest
 
-from program import HIL, ProgramTest
+from program import BIN, HIL, ROOT, ProgramTest
+
+SHARDS = ROOT / "tests/torture/shards.py"
 
 
 class Torture(ProgramTest):
@@ -23,6 +28,25 @@ class Torture(ProgramTest):
     def test_results_do_not_depend_on_the_number_of_jobs(self):
         one, two = (self.torture("--seeds", "20..27", "--jobs", jobs) for jobs in ("1", "2"))
         self.assertEqual(one, two)
+
+    def test_a_campaign_goes_on_where_it_stopped_and_is_of_one_build(self):
+        lines = self.folder / "lines.jsonl"
+
+        def shards(*options):
+            return subprocess.run([sys.executable, SHARDS, lines, "--program", BIN / "flexarm",
+                                   "--size", "6", *options], capture_output=True, text=True)
+
+        self.assertEqual(shards("--shards", "1").returncode, 0)
+        first = lines.read_text()
+        self.assertEqual(json.loads(first)["scenarios"], 6)
+        whole = shards("--shards", "2")
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        self.assertTrue(lines.read_text().startswith(first), "the first shard ran again")
+        self.assertIn("12 sessions", whole.stdout)
+        lines.write_text(first.replace('"build": "', '"build": "another '))
+        refused = shards("--shards", "2")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("begin another file", refused.stderr)
 
     def test_wrong_seeds_and_laws_are_refused(self):
         for options, text in ((("--seeds", "x"), "x"), (("--laws", "fastest"), "fastest")):

@@ -124,7 +124,7 @@ TEST(PayloadFilter, KnowsWhatTheFitOfOneModeReadsBetterThanItsNoise) {
                              config);
   const PayloadFilter::Covariance P = filter.CovarianceAfterRest();
   for (std::size_t link = 0; link < 2; ++link) {
-    Eigen::VectorXd h = Eigen::VectorXd::Zero(PayloadFilter::kStates);
+    Eigen::VectorXd h = Eigen::VectorXd::Zero(P.rows());
     const auto first = static_cast<Eigen::Index>(12 + 2 * link);
     h(first) = 1.0;
     h(first + 1) = config.second_in_first[link];

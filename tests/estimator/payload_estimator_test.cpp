@@ -19,7 +19,7 @@ std::vector<double> Model() {
 
 PayloadEstimator Estimator() { return {Model(), StudyPayload()}; }
 
-DecodedCounters Angles(double th1, double th2, std::uint32_t good = 0b1111) {
+DecodedCounters JointAngles(double th1, double th2, std::uint32_t good = 0b1111) {
   DecodedCounters counters{};
   counters.angle_rad = {th1, th2, th1, th2};
   counters.good = good;
@@ -37,14 +37,14 @@ PiecewiseTorque Held(double u1, double u2) { return PiecewiseTorque::WholePeriod
 
 TEST(PayloadEstimator, StartsAtRestAtTheMeasuredHubAngles) {
   PayloadEstimator estimator = Estimator();
-  estimator.Update(Angles(0.4, -0.3), BendWith({}), Held(0.0, 0.0));
+  estimator.Update(JointAngles(0.4, -0.3), BendWith({}), Held(0.0, 0.0));
   PayloadEstimator::State expected = PayloadEstimator::State::Zero();
   expected.head<2>() << 0.4, -0.3;
   EXPECT_LT((estimator.Now() - expected).norm(), 1e-12);
   EXPECT_EQ(estimator.estimate().payload_kg, 0.2);
-  estimator.Update(Angles(0.5, -0.3), BendWith({}), Held(0.0, 0.0));
+  estimator.Update(JointAngles(0.5, -0.3), BendWith({}), Held(0.0, 0.0));
   estimator.Reset();
-  estimator.Update(Angles(-0.1, 0.2), BendWith({}), Held(0.0, 0.0));
+  estimator.Update(JointAngles(-0.1, 0.2), BendWith({}), Held(0.0, 0.0));
   EXPECT_NEAR(estimator.Now()[0], -0.1, 1e-12);
 }
 
@@ -53,10 +53,10 @@ TEST(PayloadEstimator, StartsAtRestAtTheMeasuredHubAngles) {
 TEST(PayloadEstimator, IsAsCertainAfterAResetAsAfterARest) {
   const double count_rad = 2.0 * M_PI / 2540.0;
   PayloadEstimator fresh = Estimator(), rested = Estimator();
-  fresh.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
-  for (int k = 0; k < 300; ++k) rested.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
+  fresh.Update(JointAngles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
+  for (int k = 0; k < 300; ++k) rested.Update(JointAngles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   for (auto* estimator : {&fresh, &rested}) {
-    estimator->Update(Angles(count_rad, 0.0), BendWith({}), Held(0.0, 0.0));
+    estimator->Update(JointAngles(count_rad, 0.0), BendWith({}), Held(0.0, 0.0));
   }
   const double fresh_rad_s = fresh.Now()[6], rested_rad_s = rested.Now()[6];
   EXPECT_GT(rested_rad_s, 0.01) << "the count had no effect";
@@ -66,11 +66,11 @@ TEST(PayloadEstimator, IsAsCertainAfterAResetAsAfterARest) {
 // The joints' friction may hold a bend.
 TEST(PayloadEstimator, StartsWithTheBendThatTheGaugesRead) {
   PayloadEstimator estimator = Estimator();
-  estimator.Update(Angles(0.0, 0.0), BendWith({0.004, 0.0, -0.002, 0.0}), Held(0.0, 0.0));
+  estimator.Update(JointAngles(0.0, 0.0), BendWith({0.004, 0.0, -0.002, 0.0}), Held(0.0, 0.0));
   EXPECT_NEAR(estimator.Now()[2], 0.004, 2e-4);  // it starts to swing back in this sample
   EXPECT_NEAR(estimator.Now()[4], -0.002, 2e-4);
   PayloadEstimator unread = Estimator();
-  unread.Update(Angles(0.0, 0.0), BendWith({0.004, 0.0, -0.002, 0.0}, false), Held(0.0, 0.0));
+  unread.Update(JointAngles(0.0, 0.0), BendWith({0.004, 0.0, -0.002, 0.0}, false), Held(0.0, 0.0));
   EXPECT_EQ(unread.Now()[2], 0.0);
 }
 
@@ -78,12 +78,12 @@ TEST(PayloadEstimator, StartsWithTheBendThatTheGaugesRead) {
 TEST(PayloadEstimator, AnInputThatIsNotGoodIsIgnored) {
   PayloadEstimator clean = Estimator(), garbage = Estimator();
   for (auto* estimator : {&clean, &garbage}) {
-    estimator->Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
+    estimator->Update(JointAngles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   }
   constexpr std::uint32_t kHubsOnly = 0b0011;
-  DecodedCounters wrong = Angles(0.001, 0.002, kHubsOnly);
+  DecodedCounters wrong = JointAngles(0.001, 0.002, kHubsOnly);
   wrong.angle_rad[2] = wrong.angle_rad[3] = 7.0;
-  clean.Update(Angles(0.001, 0.002, kHubsOnly), BendWith({}, false), Held(1.0, 0.2));
+  clean.Update(JointAngles(0.001, 0.002, kHubsOnly), BendWith({}, false), Held(1.0, 0.2));
   garbage.Update(wrong, BendWith({1.0, 1.0, 1.0, 1.0}, false), Held(1.0, 0.2));
   EXPECT_EQ(clean.Now(), garbage.Now());
   EXPECT_EQ(clean.estimate().nis, garbage.estimate().nis);
@@ -93,16 +93,16 @@ TEST(PayloadEstimator, AnInputThatIsNotGoodIsIgnored) {
 // Without any input the filter predicts, by the same model as After.
 TEST(PayloadEstimator, ALostFrameLeavesThePredictionOnly) {
   PayloadEstimator estimator = Estimator();
-  estimator.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
+  estimator.Update(JointAngles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   const PayloadEstimator::State predicted = estimator.After(Held(2.0, 0.4));
-  estimator.Update(Angles(9.0, 9.0, 0), BendWith({}, false), Held(2.0, 0.4));
+  estimator.Update(JointAngles(9.0, 9.0, 0), BendWith({}, false), Held(2.0, 0.4));
   EXPECT_EQ(estimator.Now(), predicted);
 }
 
 // Two pieces act one after the other for their durations; equal ones are one piece.
 TEST(PayloadEstimator, PiecesOfTorqueActOneAfterTheOther) {
   PayloadEstimator estimator = Estimator();
-  estimator.Update(Angles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
+  estimator.Update(JointAngles(0.0, 0.0), BendWith({}), Held(0.0, 0.0));
   PiecewiseTorque halves, mixed, quarter;
   halves.Add({.torque_nm = {2.0, 0.4}, .ticks = kPeriodTicks / 2});
   halves.Add({.torque_nm = {2.0, 0.4}, .ticks = kPeriodTicks / 2});
@@ -138,7 +138,7 @@ class LateArm {
           estimator->stepper().Advance(x_, {.torque_nm = {acting.last_nm()[0], acting.last_nm()[1]},
                                             .payload_kg = 0.2,
                                             .friction_nm = StudyPayload().friction_start_nm});
-      estimator->Update(Angles(x_.q[0], x_.q[1]),
+      estimator->Update(JointAngles(x_.q[0], x_.q[1]),
                         BendWith({x_.phi_f[0], x_.phi_f[1], x_.phi_f[2], x_.phi_f[3]}),
                         TorqueByDelay{Torque(k + 1), Torque(k), Torque(k - 1), Torque(k - 2)});
     }
@@ -190,14 +190,14 @@ TEST(PayloadEstimator, UsesTheTorqueOfTheCurrentDelayHypothesis) {
   PayloadEstimator estimator = Estimator(), alone = Estimator();
   for (int k = 0; k < 5; ++k) {
     const PiecewiseTorque torque = Held(1.0 + k, 0.2);
-    estimator.Update(Angles(0.0, 0.0), BendWith({}),
+    estimator.Update(JointAngles(0.0, 0.0), BendWith({}),
                      TorqueByDelay{std::nullopt, torque, Held(9.0, 2.0), std::nullopt});
-    alone.Update(Angles(0.0, 0.0), BendWith({}), torque);
+    alone.Update(JointAngles(0.0, 0.0), BendWith({}), torque);
     ASSERT_EQ(estimator.delay_found(), 0);
     EXPECT_EQ(estimator.Now(), alone.Now());
   }
   for (int k = 0; k < 50; ++k) {
-    estimator.Update(Angles(0.0, 0.0, 0), BendWith({}, false),
+    estimator.Update(JointAngles(0.0, 0.0, 0), BendWith({}, false),
                      TorqueByDelay{Held(0.0, 0.0), Held(6.0, 1.0), Held(0.0, 0.0), Held(0.0, 0.0)});
   }
   EXPECT_EQ(estimator.delay_found(), 0);
@@ -217,7 +217,7 @@ TEST(PayloadModel, IsReproducedFromItsConstantsToTheBit) {
 TEST(PayloadEstimator, ReportsTheRatesOfTheGauges) {
   PayloadEstimator estimator = Estimator();
   for (int k = 0; k < 10; ++k) {
-    estimator.Update(Angles(0.0, 0.0, 0), BendWith({}, false), Held(2.0, 0.4));
+    estimator.Update(JointAngles(0.0, 0.0, 0), BendWith({}, false), Held(2.0, 0.4));
   }
   const GaugedState& x = estimator.estimate().state;
   constexpr double kCorner_rad_s = 2.0 * M_PI * 20.0;

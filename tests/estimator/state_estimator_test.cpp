@@ -12,41 +12,10 @@
 #include "hal/gauge_filter.h"
 #include "model/math/dense_decompositions.h"
 #include "model/math/discretize.h"
-#include "tests/estimator/thesis_estimator.h"
+#include "tests/estimator/estimator_inputs.h"
 
 namespace flexarm {
 namespace {
-
-FilterGains GainsOf(const KalmanDesign& design, const StateLayout& layout = kR12) {
-  return {.layout = layout,
-          .A = design.A,
-          .B = design.B,
-          .C = design.C,
-          .L = design.L,
-          .A_rate = design.A_rate,
-          .B_rate = design.B_rate,
-          .W = design.W,
-          .P = design.P,
-          .R = design.R};
-}
-
-DecodedCounters Angles(double th1, double th2, double th3, double th4) {
-  DecodedCounters counters{};
-  counters.angle_rad = {th1, th2, th3, th4};
-  counters.good = 0b1111;
-  return counters;
-}
-
-FittedModes Bend(const std::array<double, 4>& modal) {
-  FittedModes modes{};
-  modes.modal_m = modal;
-  modes.valid = {true, true};
-  return modes;
-}
-
-StateEstimator Kalman(const KalmanDesign& design, const StateLayout& layout = kR12) {
-  return {ThesisEstimator(), GainsOf(design, layout), kPeriod_s, kStiffness};
-}
 
 StateEstimator Difference() {
   return {ThesisEstimator(EstimatorKind::kDifference), GainsOf(ThesisFilter()), kPeriod_s,
@@ -453,28 +422,6 @@ TEST(DifferenceEstimator, AReadingAfterALostOneGivesTheMeanRate) {
     EXPECT_NEAR(out.x(0), turned, 1e-15);
     EXPECT_NEAR(out.x(6), 0.5, 1e-12);
     EXPECT_NEAR(out.x(10), 0.05, 1e-12);
-  }
-}
-
-// Predicted rates of the gauges: the derivative of the prediction's own outputs, by a central
-// difference over +-0.1 ms around the sample. Its error is (w h)^2 / 6, 1e-4 at 300 rad/s.
-TEST(KalmanFilter, PredictsTheRatesOfTheModes) {
-  const KalmanDesign design = ThesisFilter();
-  StateEstimator estimator = Kalman(design);
-  EXPECT_EQ(estimator.ModalRates(PiecewiseTorque()), (std::array<double, 4>{}));
-  estimator.Update(Angles(0.1, 0.2, 0.1, 0.2), Bend({0.03, 1e-3, 0.01, 1e-3}), {0.0, 0.0});
-  const std::array<double, 2> torque = {2.0, -0.3};
-  const std::array<double, 4> rates = estimator.ModalRates(PiecewiseTorque::WholePeriod(torque));
-  Eigen::VectorXd x(16);
-  x << 0.1, 0.2, 0.03, 1e-3, 0.01, 1e-3, 0, 0, 0, 0, 0, 0, 0.03, 1e-3, 0.01, 1e-3;
-  const auto modes_at = [&](double t_s) -> Eigen::VectorXd {
-    const DiscreteModel hold = ZeroOrderHold(design.A_rate, design.B_rate, t_s);
-    return (design.C * (hold.A * x + hold.B * Eigen::Vector2d(torque[0], torque[1]))).tail(4);
-  };
-  const Eigen::VectorXd slope = (modes_at(kPeriod_s + 1e-4) - modes_at(kPeriod_s - 1e-4)) / 2e-4;
-  EXPECT_GT(slope.cwiseAbs().maxCoeff(), 0.1);
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    EXPECT_NEAR(rates[static_cast<std::size_t>(i)], slope(i), 1e-3 * slope.cwiseAbs().maxCoeff());
   }
 }
 

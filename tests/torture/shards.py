@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A large campaign of `flexarm torture`, in shards of 20,000 seeds, with a line of results each.
+"""A large campaign of `flexarm torture`, in shards of many seeds, with a line of results each.
 
 Lines that are there already are kept, so a campaign that was stopped goes on with the same command;
 all lines of a file must be of one build. Exit code 1 if a session broke a rule.
@@ -13,12 +13,16 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SHARD = 20_000
 
 
 def read(path):
     lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
-    return {line["last_seed"] // SHARD: line for line in map(json.loads, lines)}
+    return {line["last_seed"]: line for line in map(json.loads, lines)}
+
+
+def build_of(program):
+    shown = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
+    return shown.stdout.partition("(")[2].partition(")")[0]
 
 
 def write(path, lines):
@@ -27,12 +31,10 @@ def write(path, lines):
     new.replace(path)
 
 
-def run(program, config, jobs, shard):
-    seeds = f"{(shard - 1) * SHARD + 1}..{shard * SHARD}"
+def run(program, config, jobs, seeds):
     begin = time.monotonic()
     result = subprocess.run([program, "torture", "-c", config, "--seeds", seeds, "--jobs", str(jobs),
-                             "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                            text=True, check=False)
+                             "--json"], stdout=subprocess.PIPE, text=True, check=False)
     if result.returncode > 1:
         sys.exit(f"shards: {program} torture --seeds {seeds} ended with {result.returncode}")
     return json.loads(result.stdout) | {"wall_s": round(time.monotonic() - begin)}
@@ -64,20 +66,24 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "build/release/bin/flexarm"))
     parser.add_argument("--config", default=str(ROOT / "config/hil.toml"))
     parser.add_argument("--shards", type=int, default=50, help="run 1 .. N; 0: only sum up the file")
+    parser.add_argument("--size", type=int, default=20_000, help="seeds of a shard")
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
     lines = read(arguments.lines)
+    if arguments.shards > 0 and lines:
+        own, others = build_of(arguments.program), {line["build"] for line in lines.values()}
+        if others != {own}:
+            sys.exit(f"shards: {arguments.lines} is of build {', '.join(sorted(others))}, the program "
+                     f"of {own}: begin another file")
     for shard in range(1, arguments.shards + 1):
-        if shard in lines:
+        last = shard * arguments.size
+        if last in lines:
             continue
-        line = run(arguments.program, arguments.config, arguments.jobs, shard)
-        builds = {old["build"] for old in lines.values()} - {line["build"]}
-        if builds:
-            sys.exit(f"shards: {arguments.lines} is of build {builds.pop()}, the program of "
-                     f"{line['build']}: begin another file")
-        lines[shard] = line
+        lines[last] = run(arguments.program, arguments.config, arguments.jobs,
+                          f"{last - arguments.size + 1}..{last}")
         write(arguments.lines, lines)
-        print(f"shard {shard}: {line['wall_s']} s, {len(line['failures'])} broke a rule", flush=True)
+        print(f"shard {shard}: {lines[last]['wall_s']} s, {len(lines[last]['failures'])} broke a rule",
+              flush=True)
     return tell(lines) if lines else 0
 
 

@@ -143,6 +143,7 @@ void RegisterTorture(CLI::App& app, Exit& exit) {
       ->type_name("NAMES")
       ->delimiter(',');
   options->grid.AddTo(verb);
+  verb->get_option("--shard")->description("Only the I-th of N parts, 1 <= I <= N");
   verb->add_flag("--minimise", options->minimise,
                  "Search the smallest scenario that breaks the rule of the first failure");
   verb->add_flag("--matrix", options->matrix,
