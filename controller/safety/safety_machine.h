@@ -124,8 +124,7 @@ constexpr SafetyDecision NextSafetyState(SafetyStatus status, const SafetyFacts&
   };
 
   if (static_cast<int>(status.state) >= kSafetyStates) {  // a corrupted byte
-    const TripCause cause =
-        facts.present != 0 ? LowestCause(facts.present) : TripCause::kStateNotFinite;
+    const TripCause cause = LowestCause(facts.present);
     return {{kTripped, cause}, not_here};
   }
 
