@@ -120,9 +120,9 @@ void SafetyTask::AnswerRequests(const OperatorRequest& request, Refusal refusal,
     arm_ = {};
   }
   if (tripped) {
-    CancelBelow(UINT32_MAX, facts.present);
+    CancelBelow(newest_ + 1);
   } else if (request.kind == RequestKind::kStop || request.kind == RequestKind::kDisarm) {
-    CancelBelow(request.number, facts.present);
+    CancelBelow(request.number);
   }
 }
 
@@ -181,9 +181,8 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
 
 OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, const DriveReport& drives) noexcept {
   acknowledge_ = false;
-  while (waiting_count_ < kMaxWaiting && channels_.requests->Pop(&waiting_[waiting_count_])) {
-    ++waiting_count_;
-  }
+  Receive(due_ns);
+  const OperatorRequest none{.kind = RequestKind::kNone, .number = 0, .not_before_ns = due_ns};
   if (const std::uint32_t number = channels_.stop->Take(); number != 0) {
     return {.kind = RequestKind::kStop, .number = number, .not_before_ns = due_ns};
   }
@@ -193,15 +192,30 @@ OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, const DriveReport& 
   const bool enabling = status_.state == SafetyState::kArmed && drives.power != DrivePower::kOn &&
                         due_ns - state_since_ns_ <= kEnableNs;
   for (std::size_t i = 0; i < waiting_count_; ++i) {
-    if (waiting_[i].not_before_ns > due_ns) continue;
-    if (enabling && waiting_[i].kind == RequestKind::kRun) continue;
-    if (Acknowledges(waiting_[i], due_ns, drives)) continue;
     const OperatorRequest request = waiting_[i];
+    const bool cancelled = RaisesEnergy(request.kind) && request.number < cancelled_below_;
+    if (!cancelled) {
+      if (request.not_before_ns > due_ns) continue;
+      if (enabling && request.kind == RequestKind::kRun) continue;
+      if (Acknowledges(request, due_ns, drives)) continue;
+    }
+    OperatorRequest* const place = waiting_.data() + i;
+    std::copy(place + 1, waiting_.data() + waiting_count_, place);
     --waiting_count_;
-    for (std::size_t k = i; k < waiting_count_; ++k) waiting_[k] = waiting_[k + 1];
-    return request;
+    if (!cancelled) return request;
+    Answer(request, Refusal::kCancelled, status_.state, last_facts_.present);
+    return none;
   }
-  return {.kind = RequestKind::kNone, .number = 0, .not_before_ns = due_ns};
+  return none;
+}
+
+// One in a tick, like those that are judged: what others ask for does not make a tick longer.
+void SafetyTask::Receive(std::int64_t due_ns) noexcept {
+  if (waiting_count_ == kMaxWaiting || !channels_.requests->Pop(&waiting_[waiting_count_])) return;
+  const OperatorRequest& received = waiting_[waiting_count_++];
+  newest_ = std::max(newest_, received.number);
+  // It may have been asked for before the trip: it must not be what happens after a reset.
+  if (CauseLatched(status_.state) && received.not_before_ns > due_ns) CancelBelow(newest_ + 1);
 }
 
 // Only a reset that nothing but the drives stands in the way of: a cause that the operator can
@@ -220,19 +234,6 @@ bool SafetyTask::Acknowledges(const OperatorRequest& reset, std::int64_t due_ns,
   if (well || others || due_ns - acknowledging_since_ns_ > kAcknowledgeNs) return false;
   acknowledge_ = faulty;
   return true;
-}
-
-void SafetyTask::CancelBelow(std::uint32_t number, TripCauses present) noexcept {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < waiting_count_; ++i) {
-    const OperatorRequest& waits = waiting_[i];
-    if (RaisesEnergy(waits.kind) && waits.number < number) {
-      Answer(waits, Refusal::kCancelled, status_.state, present);
-    } else {
-      waiting_[kept++] = waits;
-    }
-  }
-  waiting_count_ = kept;
 }
 
 void SafetyTask::Enter(const SafetyStatus& next, const SafetyInputs& in,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -47,12 +48,13 @@ struct SafetyChannels {
 /// agree with the lock-step run reads the permit before, At(due - 1).
 ///
 /// One request is judged per tick: a latched stop or disarm, else the first in order of arrival of
-/// those whose `not_before_ns` has passed; a run waits while the drives are being enabled, and a
-/// reset while the drives acknowledge their faults: `acknowledge` is in the permit then. A stop
-/// or a disarm cancels the waiting arms and runs of lower numbers; a trip cancels all. The run that
-/// is granted is in the permit from that tick on. A disarm is answered when the relay is open,
-/// because people reach into the arm then; one that comes while disarming takes the place of the
-/// one before. An arm is answered when the tests of the power path, if there are any, are over.
+/// those whose `not_before_ns` has passed or that are cancelled; a run waits while the drives are
+/// being enabled, and a reset while the drives acknowledge their faults: `acknowledge` is in the
+/// permit then. A stop or a disarm cancels the arms and runs of lower numbers; a trip cancels all
+/// that came before, and while it is latched those that are to be judged later. The run that is
+/// granted is in the permit from that tick on. A disarm is answered when the relay is open, because
+/// people reach into the arm then; one that comes while disarming takes the place of the one
+/// before. An arm is answered when the tests of the power path, if there are any, are over.
 ///
 /// A tick that comes late is judged like any other before it touches the lines: where late threads
 /// trip, relay and pump stay off from it on. Real-time: safe after construction.
@@ -111,8 +113,11 @@ class SafetyTask final : public Task {
   /// True while `reset`, which is due, waits for the drives.
   bool Acknowledges(const OperatorRequest& reset, std::int64_t due_ns,
                     const DriveReport& drives) noexcept;
-  /// Refuses the waiting arms, runs and changes whose number is below `number`.
-  void CancelBelow(std::uint32_t number, TripCauses present) noexcept;
+  void Receive(std::int64_t due_ns) noexcept;
+  /// Arms, runs and changes of a lower number are refused when their turn comes.
+  void CancelBelow(std::uint32_t number) noexcept {
+    cancelled_below_ = std::max(cancelled_below_, number);
+  }
   void Enter(const SafetyStatus& next, const SafetyInputs& in,
              const OperatorRequest& request) noexcept;
   void Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
@@ -149,6 +154,8 @@ class SafetyTask final : public Task {
   OperatorRequest disarm_{};  // carried out, answered once the relay is open; number 0: none
   std::array<OperatorRequest, kMaxWaiting> waiting_{};
   std::size_t waiting_count_ = 0;
+  std::uint32_t newest_ = 0;           // number of the newest request of the queue
+  std::uint32_t cancelled_below_ = 0;  // number
   PermitHistory permits_{kNoPermit};
   TimingCounts timing_{};    // as last published
   PresentCauses present_{};  // the same

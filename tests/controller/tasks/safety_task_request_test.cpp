@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "controller/tasks/planned_experiment.h"
 #include "controller/tasks/safety_task.h"
 #include "tests/controller/tasks/safety_task_bench.h"
@@ -206,10 +208,11 @@ TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
   const std::uint32_t planned_run = Ask(RequestKind::kRun, executor_.next_ns() + 500 * kMs);
   Ask(RequestKind::kDisarm, executor_.next_ns() + 1000 * kMs);
   RunFor(kMs);
-  Ask(RequestKind::kStop);
+  stop_.Set(++number_);
   const std::uint32_t later_run = Ask(RequestKind::kRun, executor_.next_ns() + 5000 * kMs);
   RunFor(kMs);
   EXPECT_EQ(safety_.status().state, kStopping);
+  RunFor(kMs);
   RequestAnswer answer{};
   ASSERT_TRUE(answers_.Pop(&answer));
   EXPECT_EQ(answer.kind, RequestKind::kStop);
@@ -222,11 +225,63 @@ TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
   RunFor(1000 * kMs + 5 * kMs);
   EXPECT_EQ(safety_.status().state, kIdle) << "armed at rest, then disarmed as planned";
   lines_.levels = 0;
-  RunFor(2 * kMs);
+  RunFor(3 * kMs);
   while (answers_.Pop(&answer)) {
   }
   EXPECT_EQ(answer.number, later_run);
   EXPECT_EQ(answer.refusal, Refusal::kCancelled) << "a trip cancels all";
+}
+
+// The task takes one request from the queue in a tick, so some are still in it when the stop comes.
+TEST_F(SafetyTaskTest, AStopCancelsWhatIsStillInTheQueueAndNotWhatCameAfterIt) {
+  GoTo(kRunning);
+  std::vector<std::uint32_t> before(5);
+  for (std::uint32_t& number : before) number = Ask(RequestKind::kRun, executor_.next_ns() + kMs);
+  stop_.Set(++number_);
+  const std::uint32_t after = Ask(RequestKind::kRun, executor_.next_ns() + kMs);
+  RunFor(10 * kMs);
+  RequestAnswer answer{};
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.kind, RequestKind::kStop);
+  for (const std::uint32_t number : before) {
+    ASSERT_TRUE(answers_.Pop(&answer));
+    EXPECT_EQ(answer.number, number);
+    EXPECT_EQ(answer.refusal, Refusal::kCancelled);
+  }
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.number, after);
+  EXPECT_EQ(answer.refusal, Refusal::kWrongState) << "Stopping";
+}
+
+TEST_F(SafetyTaskTest, NoRequestFromBeforeATripIsCarriedOutAfterTheReset) {
+  GoTo(kIdle);
+  const std::int64_t later_ns = executor_.next_ns() + 5000 * kMs;
+  const std::vector<std::uint32_t> asked{Ask(RequestKind::kArm, later_ns),
+                                         Ask(RequestKind::kArm, later_ns),
+                                         Ask(RequestKind::kArm, later_ns)};
+  lines_.levels &= ~LineBit(Line::kEmergencyStop);  // trips in the second tick
+  RunFor(10 * kMs);
+  ASSERT_EQ(safety_.status().state, kTripped);
+  RequestAnswer answer{};
+  for (const std::uint32_t number : asked) {
+    ASSERT_TRUE(answers_.Pop(&answer));
+    EXPECT_EQ(answer.number, number);
+    EXPECT_EQ(answer.refusal, Refusal::kCancelled);
+  }
+  EXPECT_FALSE(answers_.Pop(&answer));
+}
+
+TEST_F(SafetyTaskTest, JudgesOneRequestInATickInTheOrderOfTheQueue) {
+  GoTo(kIdle);
+  const std::vector<std::uint32_t> asked{Ask(RequestKind::kArm), Ask(RequestKind::kReset),
+                                         Ask(RequestKind::kArm)};
+  for (const std::uint32_t number : asked) {
+    RunFor(kMs);
+    RequestAnswer answer{};
+    ASSERT_TRUE(answers_.Pop(&answer));
+    EXPECT_EQ(answer.number, number);
+    EXPECT_FALSE(answers_.Pop(&answer));
+  }
 }
 
 }  // namespace
