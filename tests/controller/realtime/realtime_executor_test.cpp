@@ -1,15 +1,9 @@
 #include "controller/realtime/realtime_executor.h"
 
 #include <gtest/gtest.h>
-#include <pthread.h>
-#include <sched.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,53 +12,14 @@
 #include "controller/exchange/latest_value.h"
 #include "controller/realtime/clock.h"
 #include "controller/realtime/lockstep_executor.h"
-#include "controller/realtime/realtime_setup.h"
 #include "controller/realtime/wakeup.h"
-#include "tests/support/loop_time.h"
+#include "tests/controller/realtime/recording_task.h"
 
 // Test machines guarantee no latency: these tests assert order and counts only, which hold for any
 // lateness.
 
 namespace flexarm {
 namespace {
-
-constexpr std::int64_t kLeadNs = 20 * kMs;
-
-bool FifoPermitted(int priority) { return ReadRealtimeHost(priority).fifo_error == 0; }
-
-class RecordingTask : public Task {
- public:
-  explicit RecordingTask(Traits traits) : traits_(traits) { activations.reserve(10'000); }
-  Traits traits() const noexcept override { return traits_; }
-  void Run(const Activation& activation) noexcept override {
-    activations.push_back(activation);
-    Body(activation);
-  }
-  virtual void Body(const Activation&) noexcept {}
-
-  std::vector<Activation> activations;  // reserved: read it after Join
-
- private:
-  Traits traits_;
-};
-
-Task::Traits Every(std::int64_t period_ns, int priority = 0, std::int64_t phase_ns = 0) {
-  return {.name = "test",
-          .period_ns = period_ns,
-          .phase_ns = phase_ns,
-          .deadline_ns = period_ns,
-          .priority = priority};
-}
-
-// Runs until every task was activated `count` times, however long that takes on a loaded machine.
-void RunFor(RealtimeExecutor& executor, std::int64_t epoch_ns, std::uint64_t count) {
-  executor.Start(epoch_ns);
-  for (std::size_t i = 0; i < executor.size(); ++i) {
-    while (executor.statistics(i).activations < count) SleepUntil(MonotonicNow() + 1 * kMs);
-  }
-  executor.RequestStop();
-  executor.Join();
-}
 
 // Every activation lies on the grid, later than the one before, and every skipped period is
 // counted.
@@ -313,98 +268,6 @@ TEST(RealtimeExecutor, RefusesATaskThatCannotBeScheduled) {
   EXPECT_THROW(executor.Add(standing), std::invalid_argument);
   EXPECT_THROW(executor.Add(starving), std::invalid_argument);
   EXPECT_THROW(executor.Add(negative), std::invalid_argument);
-}
-
-struct SchedulingTask final : RecordingTask {
-  using RecordingTask::RecordingTask;
-  void Body(const Activation&) noexcept override {
-    policy = sched_getscheduler(0);
-    sched_param parameters{};
-    sched_getparam(0, &parameters);
-    priority = parameters.sched_priority;
-    volatile double smallest_normal = std::numeric_limits<double>::min();
-    denormals_flushed = smallest_normal / 2.0 == 0.0;
-  }
-  int policy = -1;
-  int priority = -1;
-  bool denormals_flushed = false;
-};
-
-TEST(RealtimeExecutor, GivesEachThreadItsPolicyPriorityAndFloatMode) {
-  if (!FifoPermitted(80)) GTEST_SKIP() << "SCHED_FIFO is not permitted here";
-  SchedulingTask control(Every(5 * kMs, 80));
-  SchedulingTask recorder(Every(5 * kMs, 0));
-  RealtimeExecutor executor(true);
-  executor.Add(control);
-  executor.Add(recorder);
-  RunFor(executor, MonotonicNow() + kLeadNs, 1);
-  EXPECT_EQ(control.policy, SCHED_FIFO);
-  EXPECT_EQ(control.priority, 80);
-  EXPECT_TRUE(control.denormals_flushed);
-  EXPECT_EQ(recorder.policy, SCHED_OTHER);
-  EXPECT_TRUE(recorder.denormals_flushed);
-}
-
-TEST(RealtimeExecutor, WithoutFifoEveryThreadIsOrdinary) {
-  SchedulingTask control(Every(5 * kMs, 80));
-  RealtimeExecutor executor(false);
-  executor.Add(control);
-  RunFor(executor, MonotonicNow() + kLeadNs, 1);
-  EXPECT_EQ(control.policy, SCHED_OTHER);
-}
-
-class NamedTask final : public RecordingTask {
- public:
-  explicit NamedTask(const char* name) : RecordingTask(Named(name)) {}
-  void Body(const Activation&) noexcept override {
-    pthread_getname_np(pthread_self(), thread_name.data(), thread_name.size());
-  }
-
-  std::array<char, 16> thread_name{};
-
- private:
-  static Traits Named(const char* name) {
-    Traits traits = Every(5 * kMs);
-    traits.name = name;
-    return traits;
-  }
-};
-
-TEST(RealtimeExecutor, NamesEachThreadAndKeepsTheEndOfALongName) {
-  NamedTask shortest("operator"), longest("fifteen-letters"), first("strain-amplifier-1"),
-      second("strain-amplifier-2");
-  RealtimeExecutor executor(false);
-  for (NamedTask* task : {&shortest, &longest, &first, &second}) executor.Add(*task);
-  RunFor(executor, MonotonicNow() + kLeadNs, 1);
-  EXPECT_STREQ(shortest.thread_name.data(), "operator");
-  EXPECT_STREQ(longest.thread_name.data(), "fifteen-letters");
-  EXPECT_STREQ(first.thread_name.data(), "strain-a~fier-1");
-  EXPECT_STREQ(second.thread_name.data(), "strain-a~fier-2");
-}
-
-// In a child process without any right: exits with 7 and the message if Start refuses.
-[[noreturn]] void StartWithoutRights() {
-  const rlimit none{.rlim_cur = 0, .rlim_max = 0};
-  if (setrlimit(RLIMIT_RTPRIO, &none) != 0 || (geteuid() == 0 && setuid(65534) != 0)) _exit(3);
-  RecordingTask task(Every(5 * kMs, 80));
-  RealtimeExecutor executor(true);
-  executor.Add(task);
-  try {
-    executor.Start(MonotonicNow() + kLeadNs, 20 * kMs);
-  } catch (const std::runtime_error& error) {
-    fprintf(stderr, "%s\n", error.what());
-    _exit(7);
-  }
-  _exit(0);  // ran as an ordinary thread: wrong
-}
-
-TEST(RealtimeExecutorDeathTest, ThrowsWhenFifoIsNotPermitted) {
-#if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "setuid never returns because of the thread sanitizer's own thread";
-#endif
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
-  EXPECT_EXIT(StartWithoutRights(), testing::ExitedWithCode(7),
-              "'test' with SCHED_FIFO priority 80.*LimitRTPRIO.*--without-realtime");
 }
 
 // A chain of two tasks that communicate through a history: the producer's value of instant t is

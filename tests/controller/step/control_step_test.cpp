@@ -11,48 +11,13 @@
 
 #include "controller/design/design_controller.h"
 #include "controller/types/trip_cause.h"
-#include "model/math/discretize.h"
 #include "model/units.h"
-#include "tests/controller/law/shipped_rig.h"
-#include "tests/controller/step/step_at_rest.h"
+#include "tests/controller/step/control_step_fixture.h"
 
 namespace flexarm {
 namespace {
 
 static_assert(noexcept(std::declval<ControlStep&>().Step(std::declval<const StepInput&>())));
-
-// A reference half a degree away, so that the torque is not zero.
-StepInput Moving(std::int64_t tick, SafetyState state = SafetyState::kRunning) {
-  StepInput input = AtRest(tick, state);
-  input.reference_now.x_m[0] = input.reference_next.x_m[0] = 0.01;
-  input.reference_now.x_m[1] = input.reference_next.x_m[1] = -0.01;
-  return input;
-}
-
-// Plausible inputs of a run: counts, strains and torques that change from tick to tick.
-std::vector<StepInput> ARun() {
-  std::vector<StepInput> inputs;
-  for (int k = 0; k < 60; ++k) {
-    StepInput input = Moving(k, k < 40 ? SafetyState::kRunning : SafetyState::kStopping);
-    const double angle = 30.0 * std::sin(0.05 * k);  // counts
-    const auto counts = static_cast<std::int32_t>(std::lround(angle));
-    for (std::size_t i = 0; i < 3; ++i) {
-      input.frame.counter[i] = static_cast<std::uint32_t>(counts) & 0xFFu;
-    }
-    input.frame.counter[3] =
-        static_cast<std::uint32_t>(std::lround(angle * 24480.0 / 2540.0)) & 0xFFFFu;
-    input.applied_torque_nm = {std::sin(0.3 * k), 0.1 * std::cos(0.2 * k)};
-    inputs.push_back(input);
-  }
-  inputs.front().reset = 1;
-  return inputs;
-}
-
-class ControlStepTest : public testing::Test {
- protected:
-  const RigConfig config_ = ShippedRig({kThesisLaw});
-  ControlStep step_{config_, ShippedDesign()};
-};
 
 bool SameBytes(const StepOutput& a, const StepOutput& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
@@ -159,80 +124,6 @@ TEST_F(ControlStepTest, TorqueActsTowardsTheReference) {
   EXPECT_GT(out.torque_nm[0], 0.0);
 }
 
-// The torque of the last step acts in the next one: x_next = A x_hat + B u_before.
-TEST_F(ControlStepTest, PredictsToTheInstantAtWhichTheTorqueActs) {
-  step_.Step(Moving(0));
-  const StepOutput before = step_.Step(Moving(1));
-  const StepOutput out = step_.Step(Moving(2));
-  const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out.x_hat.data(), 12);
-  const Eigen::VectorXd expected =
-      ShippedDesign().A * x +
-      ShippedDesign().B * Eigen::Vector2d(before.torque_nm[0], before.torque_nm[1]);
-  const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out.x_next.data(), 12);
-  EXPECT_LT((predicted - expected).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ(out.limits & kPredictionOff, 0u);
-}
-
-// Advances x by `ms` under a constant torque: the zero-order hold of that duration in one piece.
-Eigen::VectorXd Held(const Eigen::VectorXd& x, double ms, const std::array<double, 2>& torque_nm) {
-  const Design& d = ShippedDesign();
-  const DiscreteModel hold = ZeroOrderHold(d.A_rate, d.B_rate, 1e-3 * ms);
-  return hold.A * x + hold.B * Eigen::Vector2d(torque_nm[0], torque_nm[1]);
-}
-
-// Torque k acts 15, 26 or 54 ms after k Ts; until then the earlier ones act in order. Instants are
-// rounded to 0.3 us: at rates of 1 rad/s and 100 rad/s^2 the error is 3e-7 rad and 3e-5 rad/s. A
-// prediction over one whole period instead has a thousand times that error.
-TEST_F(ControlStepTest, PredictsWithTheTorquesThatDoNotActYet) {
-  for (const std::int64_t late_ms : {-5, 6, 34}) {
-    ControlStep step(config_, ShippedDesign());
-    std::vector<StepOutput> out;
-    for (StepInput input : ARun()) {
-      input.acted_late_ns = input.acts_late_ns = late_ms * 1'000'000;
-      out.push_back(step.Step(input));
-    }
-    const std::size_t k = 30;
-    const auto asked = [&out](std::size_t i) { return out[i].torque_nm; };
-    Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out[k].x_hat.data(), 12);
-    if (late_ms == -5) {
-      x = Held(x, 15, asked(k - 1));
-    } else if (late_ms == 6) {
-      x = Held(Held(x, 6, asked(k - 2)), 20, asked(k - 1));
-    } else {
-      x = Held(Held(Held(x, 14, asked(k - 3)), 20, asked(k - 2)), 20, asked(k - 1));
-    }
-    const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out[k].x_next.data(), 12);
-    EXPECT_LT((predicted - x).head(6).cwiseAbs().maxCoeff(), 3e-7) << late_ms;
-    EXPECT_LT((predicted - x).tail(6).cwiseAbs().maxCoeff(), 3e-5) << late_ms;
-    EXPECT_NE(asked(k - 1), asked(k - 2)) << "the same torque: the test is inconclusive";
-  }
-}
-
-// The measured instant is used for the torque that it was measured of, the planned one for the new
-// torque.
-TEST_F(ControlStepTest, ACommandThatActedLateIsPredictedLate) {
-  step_.Step(Moving(0));
-  const StepOutput before = step_.Step(Moving(1));
-  StepInput input = Moving(2);
-  input.acted_late_ns = 3'000'000;
-  input.acts_late_ns = 1'000'000;
-  const StepOutput out = step_.Step(input);
-  ControlStep other(config_, ShippedDesign());
-  const StepOutput first = other.Step(Moving(0));
-  Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(out.x_hat.data(), 12);
-  x = Held(Held(x, 3, first.torque_nm), 18, before.torque_nm);
-  const Eigen::VectorXd predicted = Eigen::Map<const Eigen::VectorXd>(out.x_next.data(), 12);
-  EXPECT_LT((predicted - x).cwiseAbs().maxCoeff(), 3e-5);
-}
-
-TEST_F(ControlStepTest, WithoutPredictionTheLawUsesTheEstimateAndAFlagIsSet) {
-  ControlStep step(ShippedRig({kThesisLaw, "controller.prediction=false"}), ShippedDesign());
-  step.Step(Moving(0));
-  const StepOutput out = step.Step(Moving(1));
-  EXPECT_EQ(out.x_next, out.x_hat);
-  EXPECT_NE(out.limits & kPredictionOff, 0u);
-}
-
 // The goal of a stop is the arm at its hub angles with untwisted joints: at rest there the torque
 // is zero. A goal without the rotors of a torsional model would give K_stop times their angle.
 TEST(ControlStepOfATorsionalModel, StoppingAtRestAsksForZeroTorque) {
@@ -251,126 +142,6 @@ TEST(ControlStepOfATorsionalModel, StoppingAtRestAsksForZeroTorque) {
   EXPECT_NEAR(out.x_hat[2], out.x_hat[0], 1e-9);
   EXPECT_NEAR(out.torque_nm[0], 0.0, 1e-6);
   EXPECT_NEAR(out.torque_nm[1], 0.0, 1e-6);
-}
-
-// One missing frame is bridged by prediction; more than two periods without a frame are a fault.
-TEST_F(ControlStepTest, AFrameOfAnotherTickIsIgnored) {
-  step_.Step(AtRest(0, SafetyState::kRunning));
-  StepInput late = AtRest(1, SafetyState::kRunning);
-  late.frame.sampled_at_ns = 0;
-  late.frame.counter[0] = 20;  // must have no effect
-  const StepOutput out = step_.Step(late);
-  EXPECT_EQ(out.counters_used, 0u);
-  EXPECT_EQ(out.strain_used, 0u);
-  EXPECT_EQ(out.counts[0], 0);
-  EXPECT_EQ(out.faults, 0u);
-  EXPECT_NE(out.limits & kAdaptationHeld, 0u);
-  const StepOutput next = step_.Step(AtRest(2, SafetyState::kRunning));
-  EXPECT_EQ(next.counters_used, 0b1111u);
-  EXPECT_EQ(next.faults, 0u);
-}
-
-TEST_F(ControlStepTest, AStaleFrameIsAFaultAndZeroesTheTorque) {
-  StepOutput out{};
-  for (int k = 0; k <= 3; ++k) {
-    StepInput input = Moving(k);
-    input.frame.sampled_at_ns = 0;
-    out = step_.Step(input);
-  }
-  EXPECT_NE(out.faults & CauseBit(TripCause::kStaleFrame), 0u);
-  EXPECT_NE(out.faults & CauseBit(TripCause::kNoCounterReading), 0u);
-  EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0}));
-}
-
-// Gauges that answer without a good reading: one sample is bridged, the second has no torque and
-// the name of the link, whatever the estimator.
-TEST_F(ControlStepTest, LostStrainIsAFaultOfItsLinkInTheSecondSample) {
-  struct Case {
-    std::uint32_t valid;
-    TripCauses faults;
-  };
-  constexpr TripCauses kLink1 = CauseBit(TripCause::kNoStrainReading1),
-                       kLink2 = CauseBit(TripCause::kNoStrainReading2);
-  for (const char* estimator : {"estimator.name=kalman", "estimator.name=difference",
-                                "estimator.name=polynomial", "controller.name=gain-scheduled"}) {
-    const RigConfig config = ShippedRig({estimator});
-    const Design design = DesignController(config);
-    for (const Case& lost : {Case{0xFFC00, kLink1}, Case{0x003FF, kLink2}, Case{0, kLink1 | kLink2},
-                             Case{0xFFC03, kLink1}}) {  // two gauges do not check each other
-      SCOPED_TRACE(std::string(estimator) + " " + std::to_string(lost.valid));
-      ControlStep step(config, design);
-      StepInput input = Moving(0);
-      input.reset = 1;
-      step.Step(input);
-      for (int k = 1; k <= 3; ++k) {
-        input = Moving(k);
-        for (RigidPoint& point : input.path) point.angle_rad[0] = 0.01;  // of the scheduled law
-        input.frame.strain_valid = lost.valid;
-        const StepOutput out = step.Step(input);
-        EXPECT_EQ(out.faults, k < 2 ? 0 : lost.faults) << k;
-        EXPECT_EQ(out.torque_nm[0] != 0.0, k < 2) << k;
-        EXPECT_EQ(std::isnan(out.root_strain[0]), (lost.faults & kLink1) != 0) << "unknown";
-        EXPECT_EQ(std::isnan(out.root_strain[1]), (lost.faults & kLink2) != 0) << "unknown";
-        EXPECT_EQ(out.may_damp, 0);
-        if (k == 2) {
-          EXPECT_EQ(out.fault_value, lost.valid == 0xFFC03 ? 2.0 : 0.0) << "good gauges";
-          EXPECT_EQ(out.fault_limit, 3.0) << "gauges that it takes";
-        }
-        for (const double x : out.x_hat) EXPECT_TRUE(std::isfinite(x));
-      }
-      EXPECT_EQ(step.Step(AtRest(4, SafetyState::kTripped)).faults, 0u) << "the readings are back";
-    }
-  }
-}
-
-TEST_F(ControlStepTest, SomeGaugesMayBeMissing) {
-  ControlStep whole(config_, ShippedDesign());
-  for (int k = 0; k < 20; ++k) {
-    StepInput input = Moving(k);
-    const StepOutput all = whole.Step(input);
-    input.frame.strain_valid = 0xFFFFF & ~(1U << 3 | 1U << 7 | 1U << 15);
-    const StepOutput out = step_.Step(input);
-    EXPECT_EQ(out.faults, 0u);
-    EXPECT_EQ(out.strain_used, input.frame.strain_valid);
-    EXPECT_NEAR(out.torque_nm[0], all.torque_nm[0], 1e-9) << "zero strain by any gauges";
-  }
-}
-
-TEST_F(ControlStepTest, AnAppliedTorqueThatIsNaNIsAFaultAndZeroesTheTorque) {
-  for (const double bad :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    ControlStep step(config_, ShippedDesign());
-    step.Step(Moving(0));
-    StepInput poisoned = Moving(1);
-    poisoned.applied_torque_nm[1] = bad;
-    const StepOutput out = step.Step(poisoned);
-    EXPECT_NE(out.faults & CauseBit(TripCause::kStateNotFinite), 0u);
-    EXPECT_EQ(out.torque_nm, (std::array<double, 2>{0.0, 0.0}));
-  }
-}
-
-// Clipping alone would turn a NaN into full torque: fmax and fmin ignore it.
-TEST_F(ControlStepTest, AReferenceThatIsNaNIsAFaultAndZeroesTheTorque) {
-  step_.Step(AtRest(0, SafetyState::kArmed));
-  StepInput input = Moving(1);
-  input.reference_next.x_m[0] = std::numeric_limits<double>::quiet_NaN();
-  const StepOutput output = step_.Step(input);
-  EXPECT_EQ(output.faults, CauseBit(TripCause::kStateNotFinite));
-  EXPECT_EQ(output.torque_nm, (std::array<double, 2>{0.0, 0.0}));
-  EXPECT_EQ(step_.Step(Moving(2)).faults, 0u) << "the adaptive gains must not contain it";
-}
-
-// A trip can be reset only when its cause is gone, and the step is reset only when the arm is armed
-// again. So a state that is not finite must recover without a reset, or the daemon stays tripped.
-TEST_F(ControlStepTest, AStateThatWasNotFiniteRecoversWithTheInputs) {
-  step_.Step(Moving(0));
-  StepInput poisoned = Moving(1);
-  poisoned.applied_torque_nm[0] = std::numeric_limits<double>::quiet_NaN();
-  step_.Step(poisoned);
-  StepOutput out{};
-  for (int k = 2; k < 40; ++k) out = step_.Step(AtRest(k, SafetyState::kTripped));
-  EXPECT_EQ(out.faults, 0u);
-  EXPECT_TRUE(out.at_rest);
 }
 
 // The gains adapted in a first run must not cause a torque step in the second: for an arm at rest
