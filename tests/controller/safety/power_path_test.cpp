@@ -16,20 +16,22 @@ constexpr DriveVoltage kOff{.on = 0, .off = 0b11};
 constexpr DriveVoltage kHalf{.on = 0b01, .off = 0b10};
 constexpr DriveVoltage kPart{.on = 0, .off = 0b01};  // of the other drive nothing is known
 
-// One state, from 0 on, after a state in which the voltage agreed.
+constexpr std::int64_t kBeginNs = 7000 * kMs;
+
+// One state, from kBeginNs on, after a state in which the voltage agreed.
 struct Path {
   explicit Path(SafetyState now, SafetyState before = kIdle, DriveVoltage was = kOff) : state(now) {
-    monitor.Judge({.due_ns = -kMs,
+    monitor.Judge({.due_ns = kBeginNs - kMs,
                    .state = before,
-                   .state_since_ns = -5000 * kMs,
+                   .state_since_ns = kBeginNs - 5000 * kMs,
                    .voltage = was,
-                   .reported_ns = -20 * kMs});
+                   .reported_ns = kBeginNs - 20 * kMs});
   }
   bool FailsAt(std::int64_t ms, DriveVoltage voltage, std::int64_t reported_ms = INT64_MIN) {
-    const std::int64_t reported_ns = (reported_ms == INT64_MIN ? ms : reported_ms) * kMs;
-    return monitor.Judge({.due_ns = ms * kMs,
+    const std::int64_t reported_ns = kBeginNs + (reported_ms == INT64_MIN ? ms : reported_ms) * kMs;
+    return monitor.Judge({.due_ns = kBeginNs + ms * kMs,
                           .state = state,
-                          .state_since_ns = 0,
+                          .state_since_ns = kBeginNs,
                           .voltage = voltage,
                           .reported_ns = reported_ns});
   }
@@ -40,6 +42,7 @@ struct Path {
 };
 
 TEST(PowerPath, WithoutAWitnessNothingIsJudged) {
+  EXPECT_TRUE(PowerPathLimits{.rise_ns = 1}.witness());
   PowerPathMonitor monitor{PowerPathLimits{}};
   for (int i = 0; i < kSafetyStates; ++i) {
     for (const DriveVoltage voltage : {kOn, kOff, kHalf, DriveVoltage{}}) {
@@ -51,6 +54,20 @@ TEST(PowerPath, WithoutAWitnessNothingIsJudged) {
       EXPECT_TRUE(monitor.follows());
     }
   }
+}
+
+TEST(PowerPath, AContradictionFromTheFirstTickOnCountsFromThere) {
+  PowerPathMonitor monitor{kTimes};
+  const auto fails_at = [&](std::int64_t ms) {
+    return monitor.Judge({.due_ns = kBeginNs + ms * kMs,
+                          .state = kStarting,
+                          .state_since_ns = INT64_MIN,
+                          .voltage = kOn,
+                          .reported_ns = 0});
+  };
+  EXPECT_FALSE(fails_at(0));
+  EXPECT_FALSE(fails_at(1060));
+  EXPECT_TRUE(fails_at(1061));
 }
 
 TEST(PowerPath, WithBothOpenNoDriveMayHaveVoltageAfterTheFallTime) {
@@ -66,6 +83,7 @@ TEST(PowerPath, WithBothOpenNoDriveMayHaveVoltageAfterTheFallTime) {
       EXPECT_DOUBLE_EQ(path.monitor.evidence().value, 1.061);
       EXPECT_DOUBLE_EQ(path.monitor.evidence().limit, 1.06);
       EXPECT_FALSE(path.FailsAt(1061, kOff));
+      EXPECT_EQ(path.monitor.evidence().value, 0.0) << "of the last tick";
       EXPECT_TRUE(path.monitor.follows());
     }
   }

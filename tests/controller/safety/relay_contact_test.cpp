@@ -34,11 +34,15 @@ TEST(RelayContact, MustFollowItsCommandWithinATenthOfASecond) {
 
 TEST(RelayContact, AContradictionFromTheFirstTickOnCountsFromThere) {
   RelayContactMonitor monitor;
-  for (int tick = 0; tick <= 100; ++tick) EXPECT_FALSE(monitor.Judge(tick * kMs, false, kClosed));
-  EXPECT_TRUE(monitor.Judge(101 * kMs, false, kClosed));
+  EXPECT_EQ(monitor.evidence().value, 0.0);
+  for (int tick = 1000; tick <= 1100; ++tick) {
+    EXPECT_FALSE(monitor.Judge(tick * kMs, false, kClosed));
+  }
+  EXPECT_TRUE(monitor.Judge(1101 * kMs, false, kClosed));
   EXPECT_DOUBLE_EQ(monitor.evidence().value, 0.101);
   EXPECT_DOUBLE_EQ(monitor.evidence().limit, 0.1);
   EXPECT_EQ(monitor.evidence().channel, static_cast<std::uint32_t>(LineTrouble::kRelayStuckClosed));
+  EXPECT_EQ(monitor.evidence().detail, 0u);
   EXPECT_TRUE(monitor.Judge(5000 * kMs, false, kClosed)) << "as long as it contradicts";
   EXPECT_FALSE(monitor.Judge(5001 * kMs, false, kOpen));
 }

@@ -163,8 +163,7 @@ TEST(SafetyMonitor, TheOldestPermitIsKeptAndTheSameLatenessCountsOnce) {
   for (int begins = 1; begins <= 2; ++begins) {
     in.control.missed_in_a_row = 3;
     in.control.missed_in_window = 16;
-    monitor.Judge(in);
-    monitor.Judge(in);
+    for (int i = 0; i < 3; ++i) monitor.Judge(in);
     EXPECT_EQ(monitor.timing().deadlines_missed, static_cast<std::uint32_t>(begins));
     EXPECT_EQ(monitor.timing().deadlines_often_missed, static_cast<std::uint32_t>(begins));
     in.control.missed_in_a_row = in.control.missed_in_window = 0;
@@ -177,6 +176,7 @@ TEST(SafetyMonitor, TheEvidenceOfADriveFaultAndOfACauseWithoutAny) {
   in.drive.drive_ok = false;
   in.troubles.drive.bus = 2;
   ExpectEvidence(TripCause::kDriveFault, in, 0.0, 1.0, 2);
+  in.control.evidence = {.value = 5.0, .limit = 6.0, .channel = 7, .detail = 8};  // of no fault
   ExpectEvidence(TripCause::kStateNotFinite, in, 0.0, 0.0, 0);
   EXPECT_EQ(SafetyMonitor(kLimits).EvidenceOf(TripCause::kStateNotFinite, in).detail, 0u);
   ExpectEvidence(TripCause::kLimitSwitch1Low, in, 0.0, 0.0, 0);  // it has closed again

@@ -26,6 +26,7 @@ TEST(SafetyMonitor, FindsNoCauseWithoutAFault) {
   EXPECT_EQ(facts.experiment_done, 0);
   EXPECT_EQ(facts.stop_expired, 0);
   EXPECT_EQ(facts.reset_pressed, 0);
+  EXPECT_EQ(supervisor.timing(), TimingCounts{});
 }
 
 TEST(SafetyMonitor, NamesEachOpenSwitchAndTheEmergencyStop) {
@@ -185,6 +186,7 @@ TEST(SafetyMonitor, AShutdownWithPowerLeftTripsAfterItsLimit) {
   const Evidence evidence = monitor.EvidenceOf(TripCause::kShutdownTimeout, in);
   EXPECT_DOUBLE_EQ(evidence.value, 3.501);
   EXPECT_DOUBLE_EQ(evidence.limit, 3.5);
+  EXPECT_EQ(evidence.channel, 0u);
   for (const SafetyState state : {kArmed, kRunning, kStopping, kFaultStopping, kDisarming}) {
     in.state = state;
     EXPECT_NE(present_after(1'002 * kMs + kLimitNs) & CauseBit(TripCause::kShutdownTimeout), 0u);
@@ -309,7 +311,7 @@ TEST(SafetyMonitor, AButtonThatIsStuckFromTheStartNeverCounts) {
 TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   SafetyConfig safety{};
   safety.stop_timeout_s = 3.0;
-  safety.fault_stop_s = 0.375;
+  safety.fault_stop_s = 1.375;
   safety.homing_contact_s = 0.625;
   safety.permit_timeout_ms = 5.25;
   safety.missed_deadlines_to_trip = 5;
@@ -326,7 +328,7 @@ TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   const MonitorLimits limits = MakeMonitorLimits(safety, loop, true);
   EXPECT_EQ(limits.heartbeat_timeout_ns, 40 * kMs);
   EXPECT_EQ(limits.stop_timeout_ns, 3000 * kMs);
-  EXPECT_EQ(limits.fault_stop_ns, 375 * kMs);
+  EXPECT_EQ(limits.fault_stop_ns, 1375 * kMs);
   EXPECT_EQ(limits.homing_contact_ns, 625 * kMs);
   EXPECT_EQ(limits.lines_stall_ns, 5'250'000) << "the permit's timeout, 5.25 ms";
   EXPECT_EQ(limits.missed_deadlines_to_trip, 5);
@@ -344,92 +346,6 @@ TEST(SafetyMonitor, TakesItsLimitsFromTheConfiguration) {
   EXPECT_EQ(power.report_ns, 60 * kMs) << "three periods";
 }
 
-// A homing run searches for one limit switch, which may open during the run, for a limited time.
-class HomingContact : public testing::Test {
- protected:
-  SafetyInputs OnSwitch(std::int64_t after_ms = 0) const {
-    SafetyInputs in = Fine();
-    in.due_ns += after_ms * kMs;
-    in.control_alive_ns = in.control.due_ns = in.due_ns - 20 * kMs;
-    in.drive_alive_ns = in.drive.due_ns = in.due_ns - kMs;
-    in.may_open = LineBit(Line::kLimit2High);
-    in.levels &= ~LineBit(Line::kLimit2High);
-    return in;
-  }
-  SafetyInputs OffSwitch(std::int64_t after_ms = 0) const {
-    SafetyInputs in = OnSwitch(after_ms);
-    in.levels = kHealthyLevels;
-    return in;
-  }
-
-  SafetyMonitor monitor_{kLimits};
-};
-
-TEST_F(HomingContact, TheSwitchSearchedForDoesNotTripAtOnce) {
-  monitor_.Judge(OffSwitch());
-  EXPECT_EQ(monitor_.Judge(OnSwitch(1)).present, 0u);
-  EXPECT_EQ(monitor_.Judge(OnSwitch(500)).present, 0u);
-}
-
-TEST_F(HomingContact, EachLimitSwitchMayBeTheOneSearchedFor) {
-  for (const Line line :
-       {Line::kLimit1Low, Line::kLimit1High, Line::kLimit2Low, Line::kLimit2High}) {
-    SafetyMonitor monitor(kLimits);
-    monitor.Judge(OffSwitch());
-    SafetyInputs in = OnSwitch(1);
-    in.may_open = LineBit(line);
-    in.levels = kHealthyLevels & ~LineBit(line);
-    EXPECT_EQ(monitor.Judge(in).present, 0u) << static_cast<int>(line);
-  }
-}
-
-TEST_F(HomingContact, StayingOnItForTooLongTrips) {
-  monitor_.Judge(OffSwitch());
-  EXPECT_EQ(monitor_.Judge(OnSwitch(501)).present, CauseBit(TripCause::kLimitSwitch2High));
-}
-
-TEST_F(HomingContact, TheTimeGoesOnWhenTheSwitchHasClosedBetween) {
-  monitor_.Judge(OffSwitch());
-  EXPECT_EQ(monitor_.Judge(OnSwitch(300)).present, 0u);
-  EXPECT_EQ(monitor_.Judge(OffSwitch(500)).present, 0u);
-  EXPECT_EQ(monitor_.Judge(OnSwitch(700)).present, 0u) << "0.5 s in all";
-  EXPECT_EQ(monitor_.Judge(OffSwitch(701)).present, 0u) << "off the switch";
-  EXPECT_EQ(monitor_.Judge(OnSwitch(702)).present, CauseBit(TripCause::kLimitSwitch2High));
-}
-
-TEST_F(HomingContact, TheTimeBeginsAgainWithTheNextRun) {
-  monitor_.Judge(OffSwitch());
-  monitor_.Judge(OnSwitch(500));
-  SafetyInputs armed = OffSwitch(501);
-  armed.state = kArmed;
-  monitor_.Judge(armed);
-  EXPECT_EQ(monitor_.Judge(OnSwitch(900)).present, 0u);
-}
-
-TEST_F(HomingContact, EveryOtherSwitchTrips) {
-  monitor_.Judge(OffSwitch());
-  SafetyInputs in = OnSwitch(1);
-  in.levels &= ~LineBit(Line::kLimit2Low);
-  EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2Low));
-}
-
-TEST_F(HomingContact, TheEmergencyStopAlwaysTrips) {
-  monitor_.Judge(OffSwitch());
-  SafetyInputs in = OnSwitch(1);
-  in.may_open |= LineBit(Line::kEmergencyStop);
-  in.levels &= ~LineBit(Line::kEmergencyStop);
-  EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kEmergencyStop));
-}
-
-TEST_F(HomingContact, TheSwitchMayOpenOnlyWhileRunning) {
-  for (const SafetyState state : {kIdle, kArmed, kStopping, kTripped}) {
-    SafetyInputs in = OnSwitch();
-    in.state = state;
-    EXPECT_EQ(monitor_.Judge(in).present, CauseBit(TripCause::kLimitSwitch2High))
-        << ToString(state);
-  }
-}
-
 TEST(SafetyMonitor, MayDampNeedsGoodSensorsAndEveryDriveOn) {
   EXPECT_EQ(SafetyMonitor(kLimits).Judge(Fine()).may_damp, 1);
   SafetyInputs in = Fine();
@@ -441,6 +357,8 @@ TEST(SafetyMonitor, MayDampNeedsGoodSensorsAndEveryDriveOn) {
   MonitorLimits without = kLimits;
   without.fault_stop_ns = 0;
   EXPECT_EQ(SafetyMonitor(without).Judge(Fine()).may_damp, 0);
+  without.fault_stop_ns = 1;
+  EXPECT_EQ(SafetyMonitor(without).Judge(Fine()).may_damp, 1) << "any time is one";
   for (const DrivePower power : {DrivePower::kNone, DrivePower::kOff, DrivePower::kMixed}) {
     in = Fine();
     in.drive.power = power;
@@ -465,6 +383,11 @@ TEST(SafetyMonitor, ACauseBeyondThoseOfItsBeginningEndsDamping) {
   EXPECT_EQ(next(0), 1);
   EXPECT_EQ(next(CauseBit(TripCause::kHubRate1)), 1) << "it was there at the beginning";
   EXPECT_EQ(next(kBegan | CauseBit(TripCause::kBendingStrain2)), 0);
+
+  in.state = SafetyState::kRunning;
+  EXPECT_EQ(next(CauseBit(TripCause::kBendingStrain2)), 1);
+  in.state = kFaultStopping;
+  EXPECT_EQ(next(CauseBit(TripCause::kBendingStrain2)), 1) << "the beginning of another stop";
 }
 
 TEST(SafetyMonitor, FaultStoppingAndDisarmingHaveTheirOwnTimeLimits) {
