@@ -103,6 +103,8 @@ TEST(LineCalls, TheEvidenceIsTheCallThatFailedElseTheLongest) {
                  LineTrouble::kReadSlow);
   ExpectEvidence({.read = {.took_ns = kMs}, .write = {.took_ns = 50 * kMs}}, 0.05,
                  LineTrouble::kWriteSlow);
+  ExpectEvidence({.read = {.took_ns = kMs}, .write = {.took_ns = kMs}}, 0.001,
+                 LineTrouble::kReadSlow);
 }
 
 }  // namespace

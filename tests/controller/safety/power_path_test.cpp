@@ -82,6 +82,7 @@ TEST(PowerPath, WithBothOpenNoDriveMayHaveVoltageAfterTheFallTime) {
       EXPECT_EQ(path.trouble(), LineTrouble::kVoltageStaysOn);
       EXPECT_DOUBLE_EQ(path.monitor.evidence().value, 1.061);
       EXPECT_DOUBLE_EQ(path.monitor.evidence().limit, 1.06);
+      EXPECT_EQ(path.monitor.evidence().detail, 0u);
       EXPECT_FALSE(path.FailsAt(1061, kOff));
       EXPECT_EQ(path.monitor.evidence().value, 0.0) << "of the last tick";
       EXPECT_TRUE(path.monitor.follows());

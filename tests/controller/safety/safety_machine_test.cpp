@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "tests/controller/safety/machine_facts.h"
 
 namespace flexarm {
@@ -146,23 +144,6 @@ TEST(SafetyMachine, RefusesWithTheReason) {
       refusal(kIdle, WithPresent(Healthy(RequestKind::kArm), CauseBit(TripCause::kEmergencyStop))),
       Refusal::kUnhealthy);
   EXPECT_EQ(refusal(kArmed, Healthy(kCorruptedRequest)), Refusal::kWrongState);
-}
-
-TEST(SafetyMachine, EveryRefusalHasATextThatSaysWhatToDo) {
-  for (const RequestKind request : kEveryRequest) {
-    for (const SafetyState state :
-         {kStarting, kIdle, kArmed, kRunning, kStopping, kTripped, kFaultStopping, kDisarming,
-          kTestingPump, kTestingRelay, kTestingPower}) {
-      EXPECT_STREQ(RefusalText(request, Refusal::kNone, state), "");
-      for (int i = 1; i <= static_cast<int>(Refusal::kTooLate); ++i) {
-        EXPECT_STRNE(RefusalText(request, static_cast<Refusal>(i), state), "");
-        EXPECT_STRNE(ToString(static_cast<Refusal>(i)), "corrupted");
-      }
-    }
-  }
-  EXPECT_NE(std::string(RefusalText(RequestKind::kDisarm, Refusal::kWrongState, kRunning))
-                .find("flexarm stop"),
-            std::string::npos);
 }
 
 // Also at compile time: the state machine is a constant expression.
