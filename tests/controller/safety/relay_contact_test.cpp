@@ -35,6 +35,9 @@ TEST(RelayContact, MustFollowItsCommandWithinATenthOfASecond) {
 TEST(RelayContact, AContradictionFromTheFirstTickOnCountsFromThere) {
   RelayContactMonitor monitor;
   EXPECT_EQ(monitor.evidence().value, 0.0);
+  EXPECT_TRUE(monitor.agrees()) << "nothing is known before the first tick";
+  EXPECT_EQ(monitor.evidence().channel, static_cast<std::uint32_t>(LineTrouble::kRelayStuckClosed))
+      << "told to be open";
   for (int tick = 1000; tick <= 1100; ++tick) {
     EXPECT_FALSE(monitor.Judge(tick * kMs, false, kClosed));
   }
