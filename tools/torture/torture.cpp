@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "controller/runlog/replay.h"
@@ -116,6 +117,11 @@ class Scenario {
     std::int64_t watched_ns = kWatchedNs;
     if (scenario_.is_clean()) watched_ns += std::llround(1e9 * scenario_.move_s);
     session_.RunUntil(begin_ns + watched_ns);
+    // A fault that can be seen only just now has its three ticks too.
+    if (const auto to_be_named = MustBeNamed(before);
+        to_be_named && to_be_named->by_ns > session_.now_ns()) {
+      session_.RunUntil(to_be_named->by_ns);
+    }
     out_.tip_m = session_.watch().tip_m();
     const std::int64_t last_ns = session_.watch().last_torque_ns();
     if (last_ns != INT64_MIN) out_.last_torque_ns = last_ns - begin_ns;
@@ -140,33 +146,45 @@ class Scenario {
         watch.Add(latched->at_ns, "named-rightly", ToString(latched->cause));
       }
     }
-    if (session_.faults().size() != 1) return;
-    const Fault& fault = session_.faults().front();
-    const std::int64_t within_ns = NamedWithinNs(rig_.config, fault);
-    if (within_ns == INT64_MAX || before == SafetyState::kTripped ||
-        before == SafetyState::kStarting) {
-      return;
-    }
-    const bool is_reading = fault.place <= FaultPlace::kFrame;
-    const std::int64_t seen_ns = is_reading ? session_.stack().seen_ns() : fault.from_ns;
-    if (seen_ns == INT64_MAX) return;
-    const std::int64_t late_ns = scenario_.wake_ups.latest_ns;
-    std::int64_t by_ns = seen_ns + within_ns + late_ns + kMs;
-    if (is_reading && watch.granted_ns() >= seen_ns && watch.granted_ns() < by_ns) {
-      // The loop forgets all samples in the first one of a run.
-      by_ns += watch.granted_ns() + rig_.config.loop.period_ns() - seen_ns;
-    }
-    if (fault.to_ns < by_ns) return;
+    const auto to_be_named = MustBeNamed(before);
+    if (!to_be_named) return;
+    const auto [seen_ns, by_ns] = *to_be_named;
     out_.observable_ns = seen_ns - begin_ns;
     const bool in_time = out_.latched_ns != INT64_MAX && begin_ns + out_.latched_ns <= by_ns;
     if (!in_time) {
       watch.Add(seen_ns, "named-in-time",
-                Text(fault) + ": " +
+                Text(session_.faults().front()) + ": " +
                     (out_.latched_ns == INT64_MAX
                          ? std::string("no trip")
                          : "after " + std::to_string((begin_ns + out_.latched_ns - seen_ns) / kMs) +
                                " ms"));
     }
+  }
+
+  struct ToBeNamed {
+    std::int64_t seen_ns;  // since when the fault can be seen
+    std::int64_t by_ns;    // until when it must have latched
+  };
+  // Of a session with one fault; nothing: it need not be named.
+  std::optional<ToBeNamed> MustBeNamed(SafetyState before) {
+    if (session_.faults().size() != 1) return std::nullopt;
+    const Fault& fault = session_.faults().front();
+    const std::int64_t within_ns = NamedWithinNs(rig_.config, fault);
+    if (within_ns == INT64_MAX || before == SafetyState::kTripped ||
+        before == SafetyState::kStarting) {
+      return std::nullopt;
+    }
+    const bool is_reading = fault.place <= FaultPlace::kFrame;
+    const std::int64_t seen_ns = is_reading ? session_.stack().seen_ns() : fault.from_ns;
+    if (seen_ns == INT64_MAX) return std::nullopt;
+    std::int64_t by_ns = seen_ns + within_ns + scenario_.wake_ups.latest_ns + kMs;
+    const std::int64_t granted_ns = session_.watch().granted_ns();
+    if (is_reading && granted_ns >= seen_ns && granted_ns < by_ns) {
+      // The loop forgets all samples in the first one of a run.
+      by_ns += granted_ns + rig_.config.loop.period_ns() - seen_ns;
+    }
+    if (fault.to_ns < by_ns) return std::nullopt;
+    return ToBeNamed{.seen_ns = seen_ns, .by_ns = by_ns};
   }
 
   // From every state there is a way back to Idle.
