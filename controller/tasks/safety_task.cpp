@@ -22,6 +22,10 @@ bool RaisesEnergy(RequestKind kind) noexcept {
   return kind == RequestKind::kArm || kind == RequestKind::kRun || kind == RequestKind::kChange;
 }
 
+bool IsCancelled(const OperatorRequest& request, std::uint32_t below) noexcept {
+  return RaisesEnergy(request.kind) && request.number < below;
+}
+
 }  // namespace
 
 SafetyTask::SafetyTask(const MonitorLimits& limits, SafetyChannels channels, std::int64_t phase_ns)
@@ -120,7 +124,7 @@ void SafetyTask::AnswerRequests(const OperatorRequest& request, Refusal refusal,
     arm_ = {};
   }
   if (tripped) {
-    CancelBelow(newest_ + 1);
+    CancelBelow(UINT32_MAX);
   } else if (request.kind == RequestKind::kStop || request.kind == RequestKind::kDisarm) {
     CancelBelow(request.number);
   }
@@ -181,7 +185,7 @@ SafetyTask::DriveSide SafetyTask::ReadDrives(std::int64_t due_ns) noexcept {
 
 OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, const DriveReport& drives) noexcept {
   acknowledge_ = false;
-  Receive(due_ns);
+  Receive();
   const OperatorRequest none{.kind = RequestKind::kNone, .number = 0, .not_before_ns = due_ns};
   if (const std::uint32_t number = channels_.stop->Take(); number != 0) {
     return {.kind = RequestKind::kStop, .number = number, .not_before_ns = due_ns};
@@ -192,14 +196,15 @@ OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, const DriveReport& 
   const bool enabling = status_.state == SafetyState::kArmed && drives.power != DrivePower::kOn &&
                         due_ns - state_since_ns_ <= kEnableNs;
   for (std::size_t i = 0; i < waiting_count_; ++i) {
-    const OperatorRequest request = waiting_[i];
-    const bool cancelled = RaisesEnergy(request.kind) && request.number < cancelled_below_;
+    const auto& [waits, is_cancelled] = waiting_[i];
+    const bool cancelled = is_cancelled;
     if (!cancelled) {
-      if (request.not_before_ns > due_ns) continue;
-      if (enabling && request.kind == RequestKind::kRun) continue;
-      if (Acknowledges(request, due_ns, drives)) continue;
+      if (waits.not_before_ns > due_ns) continue;
+      if (enabling && waits.kind == RequestKind::kRun) continue;
+      if (Acknowledges(waits, due_ns, drives)) continue;
     }
-    OperatorRequest* const place = waiting_.data() + i;
+    const OperatorRequest request = waits;
+    Waiting* const place = waiting_.data() + i;
     std::copy(place + 1, waiting_.data() + waiting_count_, place);
     --waiting_count_;
     if (!cancelled) return request;
@@ -210,12 +215,23 @@ OperatorRequest SafetyTask::TakeRequest(std::int64_t due_ns, const DriveReport& 
 }
 
 // One in a tick, like those that are judged: what others ask for does not make a tick longer.
-void SafetyTask::Receive(std::int64_t due_ns) noexcept {
-  if (waiting_count_ == kMaxWaiting || !channels_.requests->Pop(&waiting_[waiting_count_])) return;
-  const OperatorRequest& received = waiting_[waiting_count_++];
-  newest_ = std::max(newest_, received.number);
-  // It may have been asked for before the trip: it must not be what happens after a reset.
-  if (CauseLatched(status_.state) && received.not_before_ns > due_ns) CancelBelow(newest_ + 1);
+void SafetyTask::Receive() noexcept {
+  if (waiting_count_ == kMaxWaiting) return;
+  Waiting& received = waiting_[waiting_count_];
+  if (!channels_.requests->Pop(&received.request)) return;
+  ++waiting_count_;
+  received.cancelled = queued_ > 0 && IsCancelled(received.request, cancelled_below_);
+  if (queued_ > 0) --queued_;
+}
+
+// Those that are still in the queue came before, too.
+void SafetyTask::CancelBelow(std::uint32_t number) noexcept {
+  for (std::size_t i = 0; i < waiting_count_; ++i) {
+    if (IsCancelled(waiting_[i].request, number)) waiting_[i].cancelled = true;
+  }
+  // While some from before an earlier stop or trip are left, the higher number holds.
+  cancelled_below_ = queued_ == 0 ? number : std::max(cancelled_below_, number);
+  queued_ = channels_.requests->size();
 }
 
 // Only a reset that nothing but the drives stands in the way of: a cause that the operator can

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -50,11 +49,11 @@ struct SafetyChannels {
 /// One request is judged per tick: a latched stop or disarm, else the first in order of arrival of
 /// those whose `not_before_ns` has passed or that are cancelled; a run waits while the drives are
 /// being enabled, and a reset while the drives acknowledge their faults: `acknowledge` is in the
-/// permit then. A stop or a disarm cancels the arms and runs of lower numbers; a trip cancels all
-/// that came before, and while it is latched those that are to be judged later. The run that is
-/// granted is in the permit from that tick on. A disarm is answered when the relay is open, because
-/// people reach into the arm then; one that comes while disarming takes the place of the one
-/// before. An arm is answered when the tests of the power path, if there are any, are over.
+/// permit then. A stop or a disarm cancels the arms and runs of lower numbers that came before it;
+/// a trip cancels all. The run that is granted is in the permit from that tick on. A disarm is
+/// answered when the relay is open, because people reach into the arm then; one that comes while
+/// disarming takes the place of the one before. An arm is answered when the tests of the power
+/// path, if there are any, are over.
 ///
 /// A tick that comes late is judged like any other before it touches the lines: where late threads
 /// trip, relay and pump stay off from it on. Real-time: safe after construction.
@@ -102,6 +101,11 @@ class SafetyTask final : public Task {
     DriveTroubles troubles;
   };
 
+  struct Waiting {
+    OperatorRequest request;
+    bool cancelled;
+  };
+
   DriveSide ReadDrives(std::int64_t due_ns) noexcept;
   /// Kind kNone: there is none in this tick.
   OperatorRequest TakeRequest(std::int64_t due_ns, const DriveReport& drives) noexcept;
@@ -113,11 +117,10 @@ class SafetyTask final : public Task {
   /// True while `reset`, which is due, waits for the drives.
   bool Acknowledges(const OperatorRequest& reset, std::int64_t due_ns,
                     const DriveReport& drives) noexcept;
-  void Receive(std::int64_t due_ns) noexcept;
-  /// Arms, runs and changes of a lower number are refused when their turn comes.
-  void CancelBelow(std::uint32_t number) noexcept {
-    cancelled_below_ = std::max(cancelled_below_, number);
-  }
+  void Receive() noexcept;
+  /// Arms, runs and changes of a lower number that were asked for until now are refused when their
+  /// turn comes.
+  void CancelBelow(std::uint32_t number) noexcept;
   void Enter(const SafetyStatus& next, const SafetyInputs& in,
              const OperatorRequest& request) noexcept;
   void Answer(const OperatorRequest& request, Refusal refusal, SafetyState judged_in,
@@ -152,10 +155,10 @@ class SafetyTask final : public Task {
   bool recorded_ = false;
   OperatorRequest arm_{};     // the power path is being tested; number 0: none
   OperatorRequest disarm_{};  // carried out, answered once the relay is open; number 0: none
-  std::array<OperatorRequest, kMaxWaiting> waiting_{};
+  std::array<Waiting, kMaxWaiting> waiting_{};
   std::size_t waiting_count_ = 0;
-  std::uint32_t newest_ = 0;           // number of the newest request of the queue
-  std::uint32_t cancelled_below_ = 0;  // number
+  std::size_t queued_ = 0;             // requests of the queue from before the last CancelBelow
+  std::uint32_t cancelled_below_ = 0;  // its number
   PermitHistory permits_{kNoPermit};
   TimingCounts timing_{};    // as last published
   PresentCauses present_{};  // the same

@@ -253,6 +253,17 @@ TEST_F(SafetyTaskTest, AStopCancelsWhatIsStillInTheQueueAndNotWhatCameAfterIt) {
   EXPECT_EQ(answer.refusal, Refusal::kWrongState) << "Stopping";
 }
 
+// Those of an unattended run have numbers of their own, below those of clients.
+TEST_F(SafetyTaskTest, AStopDoesNotCancelWhatIsAskedForLaterWithALowerNumber) {
+  GoTo(kIdle);
+  stop_.Set(number_ + 1000);
+  RunFor(kMs);
+  RequestAnswer stop{};
+  ASSERT_TRUE(answers_.Pop(&stop));
+  EXPECT_EQ(stop.refusal, Refusal::kWrongState);
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kNone);
+}
+
 TEST_F(SafetyTaskTest, NoRequestFromBeforeATripIsCarriedOutAfterTheReset) {
   GoTo(kIdle);
   const std::int64_t later_ns = executor_.next_ns() + 5000 * kMs;
