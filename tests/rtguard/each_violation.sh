@@ -39,4 +39,5 @@ ends system-call 'system call 110$'
 ends lock 'system call 202$'
 ends page-fault 'page faults: 1$'
 ends wait 'waits between two sleeps: 1$'
+ends crash 'signal 11$'
 exit $failed

@@ -6,9 +6,12 @@
 //     that no library makes are seen as well),
 //   - a page fault,
 //   - a wait between two sleeps: a voluntary context switch that is no sleep of the thread's own,
-//   - an involuntary context switch of the thread `safety`, above which nothing has priority.
+//   - an involuntary context switch of the thread `safety`, above which nothing has priority,
+//   - a crash of any thread: the program's handler would make calls that the filter stops.
 // The safety thread may set GPIO lines. Threads of buses may read, write and wait for their
 // devices. At the end the library writes one line a thread: "rtguard: NAME: N activations".
+// RTGUARD_SHARED_LINES=1: another process uses the same GPIO chip, as an emulated rig does with a
+// simulated one; a wait in an ioctl, for the kernel's lock of that chip, is no violation then.
 // RTGUARD_REPORT names a file for all it writes, otherwise stderr has it.
 
 #include <dlfcn.h>
@@ -24,6 +27,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -50,6 +54,7 @@ struct Watched {
 std::array<Watched, kMostThreads> watched;
 std::atomic<int> watched_count{0};
 int report_fd = STDERR_FILENO;
+bool shares_lines = false;
 
 // constinit: reading them must not run an initialiser.
 constinit thread_local bool is_armed = false;
@@ -72,10 +77,19 @@ void Say(const char* text) {
   std::array<void*, 40> frames{};
   backtrace_symbols_fd(frames.data(), backtrace(frames.data(), static_cast<int>(frames.size())),
                        report_fd);
+  std::signal(SIGABRT, SIG_DFL);
   std::abort();
 }
 
 void SystemCall(int, siginfo_t* info, void*) { Violation("system call", info->si_syscall); }
+
+constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+
+void Crash(int signal, siginfo_t*, void*) { Violation("signal", signal); }
+
+bool IsOurs(int signal) {
+  return signal == SIGSYS || std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
+}
 
 // What every thread may do: sleep, ask for the time and for its own figures, wake another thread,
 // and end.
@@ -194,6 +208,7 @@ void CheckHeap(const char* function, std::size_t size) {
 }
 
 [[gnu::constructor]] void Begin() {
+  shares_lines = std::getenv("RTGUARD_SHARED_LINES") != nullptr;
   if (const char* file = std::getenv("RTGUARD_REPORT")) {
     report_fd = open(file, O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC, 0644);
   }
@@ -203,6 +218,8 @@ void CheckHeap(const char* function, std::size_t size) {
   using Sigaction = int (*)(int, const struct sigaction*, struct sigaction*);
   const auto real = reinterpret_cast<Sigaction>(dlsym(RTLD_NEXT, "sigaction"));
   real(SIGSYS, &action, nullptr);
+  action.sa_sigaction = Crash;
+  for (const int signal : kCrashes) real(signal, &action, nullptr);
 }
 
 [[gnu::destructor]] void End() {
@@ -282,6 +299,25 @@ long syscall(long number, ...) {
   return result;
 }
 
+int ioctl(int fd, unsigned long request, ...) noexcept {
+  va_list list;
+  va_start(list, request);
+  void* const argument = va_arg(list, void*);
+  va_end(list);
+  using Ioctl = int (*)(int, unsigned long, ...);
+  static const auto real = reinterpret_cast<Ioctl>(dlsym(RTLD_NEXT, "ioctl"));
+  if (!is_armed || !shares_lines) return real(fd, request, argument);
+  rusage before{};
+  rusage after{};
+  getrusage(RUSAGE_THREAD, &before);
+  const int result = real(fd, request, argument);
+  const int error = errno;
+  getrusage(RUSAGE_THREAD, &after);
+  woken.ru_nvcsw += after.ru_nvcsw - before.ru_nvcsw;
+  errno = error;
+  return result;
+}
+
 // A thread that gives up its signal stack has left its loop.
 int sigaltstack(const stack_t* stack, stack_t* before) noexcept {
   is_armed = false;
@@ -290,11 +326,11 @@ int sigaltstack(const stack_t* stack, stack_t* before) noexcept {
   return real(stack, before);
 }
 
-// The program may not take the signal of the filter.
+// The program may not take the signals of the filter and of a crash.
 int sigaction(int signal, const struct sigaction* action, struct sigaction* before) noexcept {
   using Sigaction = int (*)(int, const struct sigaction*, struct sigaction*);
   static const auto real = reinterpret_cast<Sigaction>(dlsym(RTLD_NEXT, "sigaction"));
-  return real(signal, signal == SIGSYS ? nullptr : action, before);
+  return real(signal, IsOurs(signal) ? nullptr : action, before);
 }
 }
 // NOLINTEND(bugprone-reserved-identifier, readability-inconsistent-declaration-parameter-name,

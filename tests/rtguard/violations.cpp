@@ -1,5 +1,5 @@
 // Does once, on a thread named `control`, what a real-time thread must not do: one of the arguments
-//   heap, system-call, lock, page-fault, wait, or nothing.
+//   heap, system-call, lock, page-fault, wait, crash, or nothing.
 // RealtimeExecutor runs the thread, as in the daemon; rtguard must end the process.
 
 #include <sys/mman.h>
@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -44,6 +45,7 @@ class Violating final : public Task {
     if (Is("system-call")) syscall(SYS_getppid);
     if (Is("lock")) mutex_.lock();  // another thread has it
     if (Is("page-fault")) page_[0] = 1;
+    if (Is("crash")) static_cast<void>(raise(SIGSEGV));
     if (Is("wait")) {
       // A system call of its own, below every library: it is on the list, and waits.
       const timespec moment{.tv_sec = 0, .tv_nsec = 1'000'000};
