@@ -1,5 +1,6 @@
 #include "tools/torture/detection.h"
 
+#include <algorithm>
 #include <initializer_list>
 
 namespace flexarm {
@@ -107,6 +108,28 @@ std::int64_t NamedWithinNs(const RigConfig& config, const Fault& fault) noexcept
       return INT64_MAX;
   }
   return INT64_MAX;
+}
+
+bool HideAngle(const RigConfig& config, const std::vector<Fault>& faults, int joint) noexcept {
+  const auto any = [&faults](const auto& is) {
+    return std::any_of(faults.begin(), faults.end(), is);
+  };
+  // Counters 0 and 1 are of the hubs, 2 and 3 of the rotors; lines 0 and 1 are the switches of
+  // joint 0, 2 and 3 those of joint 1.
+  const bool hub = any([joint](const Fault& fault) {
+    return fault.place == FaultPlace::kCounter && fault.index == joint;
+  });
+  const bool rotor = any([joint](const Fault& fault) {
+    return fault.place == FaultPlace::kCounter && fault.index == joint + 2;
+  });
+  const bool frame = any([&config](const Fault& fault) {
+    return fault.place == FaultPlace::kFrame && NamedWithinNs(config, fault) == INT64_MAX;
+  });
+  const bool limit_switch = any([joint](const Fault& fault) {
+    return fault.place == FaultPlace::kLine && fault.kind == FaultKind::kStuck &&
+           fault.index / 2 == joint;
+  });
+  return limit_switch && (frame || (hub && rotor));
 }
 
 }  // namespace flexarm

@@ -25,4 +25,8 @@ bool IsBridged(const Fault& fault) noexcept;
 /// docs/torture.md says why for each.
 std::int64_t NamedWithinNs(const RigConfig& config, const Fault& fault) noexcept;
 
+/// Whether the faults leave nothing that measures where the hub of a joint (0, 1) is: a limit
+/// switch of the joint is stuck, and its encoders deceive in agreement with each other.
+bool HideAngle(const RigConfig& config, const std::vector<Fault>& faults, int joint) noexcept;
+
 }  // namespace flexarm

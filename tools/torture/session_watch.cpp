@@ -93,7 +93,7 @@ void SessionWatch::LookAtArm(std::int64_t now_ns, const WatchSample& sample) {
   if (last_torque_ns_ == INT64_MIN || now_ns - last_torque_ns_ > acts_ns) return;  // it coasts
   for (std::size_t i = 0; i < 2; ++i) {
     const double limit_rad = config_.safety.soft_angle_deg[i] * kRadPerDeg;
-    if (torque_acts) {
+    if (torque_acts && !rules_.angle_hidden[i]) {
       Over(now_ns, "hub angle", std::fabs(truth.hub_angle_rad[i]) / limit_rad,
            rules_.most.angle_share, &peaks_.angle_share);
     }

@@ -49,7 +49,8 @@ struct WatchRules {
   /// Torque may stay for so long after the tick in which the state stopped allowing it, in the time
   /// of the arm's thread; -1: a slice that begins then or later has none.
   std::int64_t torque_after_ns;
-  Peaks most;  ///< torque_share is always 1
+  Peaks most;                             ///< torque_share is always 1
+  std::array<bool, 2> angle_hidden = {};  ///< a joint whose hub angle nothing measures: not judged
 };
 
 /// Watches a session from outside, every millisecond: torque only while it is permitted, limits of

@@ -52,7 +52,9 @@ class Scenario {
     // slice has no torque. With a fault of the safety thread, the permit must be too old.
     const auto permit_ns = std::llround(rig.config.safety.permit_timeout_ms * 1e6);
     return {.torque_after_ns = HasFaultOf(scenario, FaultPlace::kSafety) ? permit_ns + 2 * kMs : -1,
-            .most = envelope};
+            .most = envelope,
+            .angle_hidden = {HideAngle(rig.config, scenario.faults, 0),
+                             HideAngle(rig.config, scenario.faults, 1)}};
   }
 
   bool Reach() {

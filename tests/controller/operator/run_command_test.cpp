@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "controller/runlog/run_label.h"
+#include "controller/types/rejected_error.h"
 #include "tests/controller/operator/operator_parts.h"
 #include "tests/support/message_of.h"
 

@@ -51,6 +51,16 @@ TEST(BusJournal, ReportsFailuresWithoutALossAtMostOnceASecond) {
       "error: can0: 1 failed exchanges without loss of the bus; the last: can0: no answer in time");
 }
 
+TEST(BusJournal, MoreThanASecondPassesBetweenTwoReports) {
+  Journal journal;
+  journal.Follow(0, {Bus(true, "", 1)});
+  journal.Follow(1'000 * kMs, {Bus(true, "", 2)});
+  EXPECT_EQ(journal.lines.size(), 1U);
+  journal.Follow(1'000 * kMs + 1, {Bus(true, "", 3)});
+  ASSERT_EQ(journal.lines.size(), 2U);
+  EXPECT_EQ(journal.lines[1], "error: can0: 2 failed exchanges without loss of the bus");
+}
+
 // It stays until the operator resets: said once, and not as a failed exchange again and again.
 TEST(BusJournal, ReportsADrivesFaultAndItsEndOnce) {
   Journal journal;

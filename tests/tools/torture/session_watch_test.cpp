@@ -181,6 +181,28 @@ TEST_F(SessionWatchTest, ARateIsTakenOverAWholePeriod) {
   EXPECT_TRUE(watch.violations().empty()) << watch.violations().front().what;
 }
 
+TEST_F(SessionWatchTest, AnAngleThatNothingMeasuresIsNotJudged) {
+  SessionWatch hidden(
+      config,
+      {.torque_after_ns = 2 * kMs,
+       .most = {.torque_share = 1.0, .angle_share = 1.3, .rate_share = 2.0, .strain_share = 1.3},
+       .angle_hidden = {false, true}});
+  hidden.Allow("arm");
+  hidden.Allow("run");
+  sample.told.relay_closed = true;
+  sample.status = {kArmed, TripCause::kNone};
+  hidden.Look(kMs, sample);
+  sample.status = {kRunning, TripCause::kNone};
+  sample.torque_nm = {5.0, 1.0};
+  sample.truth.hub_angle_rad = {0.0, 118.0 * kRadPerDeg};
+  hidden.Look(2 * kMs, sample);
+  EXPECT_TRUE(hidden.violations().empty()) << hidden.violations().front().what;
+  sample.truth.hub_angle_rad = {118.0 * kRadPerDeg, 0.0};
+  hidden.Look(3 * kMs, sample);
+  ASSERT_FALSE(hidden.violations().empty());
+  EXPECT_EQ(hidden.violations().front().rule, "envelope");
+}
+
 TEST_F(SessionWatchTest, NothingArmsOrRunsByItself) {
   Look(5);
   Become(kArmed);
