@@ -38,9 +38,11 @@ from changed_files import changed_files  # noqa: E402
 
 BUILD_LIMIT_S = 600
 KINDS = ("killed", "not compiled", "survived", "argued", "left")
-# Quick to compile; assertions on. The tests are found when they run: a mutant may crash at once.
-CONFIGURE = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
-             "-DFLEXARM_BATCHES=OFF", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache",
+# Quick to compile; assertions on, also of the library: an index beyond an array ends the test. The
+# tests are found when they run: a mutant may crash at once.
+CONFIGURE = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug",
+             "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -D_GLIBCXX_ASSERTIONS", "-DFLEXARM_BATCHES=OFF",
+             "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache",
              "-DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST"]
 
 

@@ -48,6 +48,10 @@ TEST_F(HubRateTest, AHubThatTurnsTooFastTripsWhateverTheEstimateSays) {
     EXPECT_EQ(SamplesUntilTrip(&monitor_, TripCause::kHubRate1, 0, sign * (7.99 + count_rad_s),
                                kPeriod_s),
               0);
+    monitor_.Reset();
+    EXPECT_EQ(SamplesUntilTrip(&monitor_, TripCause::kHubRate2, 1, sign * (9.99 + count_rad_s),
+                               kPeriod_s),
+              0);
   }
 }
 

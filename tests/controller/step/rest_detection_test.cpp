@@ -72,6 +72,16 @@ TEST_F(FaultDetectionTest, ResetClearsTheHubAnglesBefore) {
   }
 }
 
+TEST_F(FaultDetectionTest, ResetForgetsWhereTheArmWas) {
+  for (int k = 0; k < 40; ++k) monitor_.Judge(Facts().Now());
+  monitor_.Reset();
+  Facts elsewhere;
+  elsewhere.counters.angle_rad = {0.3, -0.2, 0.3, -0.2};
+  elsewhere.modes.root_strain = {2e-4, 1e-4};
+  for (int k = 1; k < 25; ++k) EXPECT_FALSE(monitor_.Judge(elsewhere.Now()).at_rest) << k;
+  EXPECT_TRUE(monitor_.Judge(elsewhere.Now()).at_rest);
+}
+
 // safety.rest_time_s may be shorter than the window over which hub rates are measured.
 TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestWithAShortRestTime) {
   SafetyConfig safety = config_.safety;
@@ -83,6 +93,45 @@ TEST_F(FaultDetectionTest, AMovingHubIsNotAtRestWithAShortRestTime) {
     moving.counters.angle_rad[0] = moving.counters.angle_rad[2] = 0.06 * kPeriod_s * k;
     EXPECT_FALSE(hasty.Judge(moving.Now()).at_rest) << k;
   }
+}
+
+// Not before the window of the hub rates is full: 0.1 s are five samples, and the one before them.
+TEST_F(FaultDetectionTest, AShortRestTimeLastsAsLongAsTheWindowOfTheRates) {
+  SafetyConfig safety = config_.safety;
+  safety.rest_time_s = 0.05;
+  FaultDetection hasty(safety, config_.estimator, kPeriod_s, config_.sensors, kGaugesNeeded,
+                       {761.59, 497.96});
+  for (int k = 1; k < 6; ++k) EXPECT_FALSE(hasty.Judge(Facts().Now()).at_rest) << k;
+  EXPECT_TRUE(hasty.Judge(Facts().Now()).at_rest);
+}
+
+// The bounds themselves are not at rest. Binary fractions, so that the rates are exact: at 64 Hz
+// the window of the hubs has 6 samples, that of the strain one.
+TEST_F(FaultDetectionTest, RatesAtTheirBoundsAreNotAtRest) {
+  constexpr double kPeriod64_s = 1.0 / 64.0;
+  SafetyConfig safety = config_.safety;
+  safety.rest_hub_rate_rad_s = 0x1p-4;
+  safety.rest_strain_rate_per_s = 0x1p-8;
+  FaultDetection detection(safety, config_.estimator, kPeriod64_s, config_.sensors, kGaugesNeeded,
+                           {761.59, 497.96});
+  const auto rests = [&](double hub1, double hub2, double strain1, double strain2) {
+    detection.Reset();
+    bool at_rest = false;
+    for (int k = 0; k < 60; ++k) {
+      Facts facts;
+      const double t = k * kPeriod64_s;
+      facts.counters.angle_rad = {hub1 * t, hub2 * t, hub1 * t, hub2 * t};
+      facts.modes.root_strain = {strain1 * t, strain2 * t};
+      at_rest = detection.Judge(facts.Now()).at_rest;
+    }
+    return at_rest;
+  };
+  constexpr double kBelow = 1.0 - 0x1p-10;
+  EXPECT_TRUE(rests(0x1p-4 * kBelow, -0x1p-4 * kBelow, 0x1p-8 * kBelow, -0x1p-8 * kBelow));
+  EXPECT_FALSE(rests(0x1p-4, 0.0, 0.0, 0.0));
+  EXPECT_FALSE(rests(0.0, -0x1p-4, 0.0, 0.0));
+  EXPECT_FALSE(rests(0.0, 0.0, 0x1p-8, 0.0));
+  EXPECT_FALSE(rests(0.0, 0.0, 0.0, -0x1p-8));
 }
 
 // At rest: half a second, 25 samples, of slow hubs and slow strain.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace flexarm {
 namespace {
 
@@ -58,6 +60,20 @@ TEST_F(CountWatchTest, WhatAnArmAtRestTurnsIsNoLoss) {
   watch_.Reconnected();
   Read(1029, 971);
   EXPECT_EQ(watch_.epochs(), (CountEpochs{1, 0, 1, 0}));
+}
+
+// The most that an arm at rest turns, to the count: here 20 of them.
+TEST_F(CountWatchTest, ExactlyWhatAnArmAtRestTurnsIsNoLoss) {
+  SensorConfig sensors = Sensors();
+  sensors.encoder[0].counts_per_turn = 20.0 * 2.0 * std::numbers::pi / CountWatch::kRestTurnRad;
+  watch_ = CountWatch(sensors);
+  Read(1000, 0);
+  watch_.Reconnected();
+  Read(1020, 0);
+  EXPECT_EQ(watch_.epochs(), CountEpochs{});
+  watch_.Reconnected();
+  Read(1041, 0);
+  EXPECT_EQ(watch_.epochs(), (CountEpochs{1, 0, 0, 0}));
 }
 
 TEST_F(CountWatchTest, ACounterIsComparedAcrossItsOverflow) {

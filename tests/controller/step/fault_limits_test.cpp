@@ -1,0 +1,121 @@
+// A value that is exactly at its limit, and what the evidence is of a sample that cannot tell.
+
+#include <gtest/gtest.h>
+
+#include "controller/step/fault_detection.h"
+#include "model/units.h"
+#include "tests/controller/step/fault_detection_fixture.h"
+
+namespace flexarm {
+namespace {
+
+class FaultLimitsTest : public FaultDetectionTest {
+ protected:
+  // Whether samples like this one, in a row, raise a fault.
+  bool Trips(const Facts& facts) {
+    monitor_.Reset();
+    TripCauses faults = 0;
+    for (int k = 0; k < 10; ++k) faults |= monitor_.Judge(facts.Now()).faults;
+    return faults != 0;
+  }
+};
+
+TEST_F(FaultLimitsTest, ALimitItselfIsNotBeyondIt) {
+  for (const double sign : {1.0, -1.0}) {
+    Facts facts;
+    const double soft_rad = sign * 90.0 * kRadPerDeg;
+    facts.counters.angle_rad = {soft_rad, soft_rad, soft_rad, soft_rad};
+    EXPECT_FALSE(Trips(facts));
+    facts = {};
+    facts.estimate.x(6) = sign * config_.safety.hub_rate_rad_s[0];
+    facts.estimate.x(7) = sign * config_.safety.hub_rate_rad_s[1];
+    EXPECT_FALSE(Trips(facts));
+    facts = {};
+    facts.modes.root_strain = {sign * config_.safety.strain_limit[0],
+                               sign * config_.safety.strain_limit[1]};
+    EXPECT_FALSE(Trips(facts));
+    facts = {};
+    facts.reference_hub_rad = {sign * 20.0 * kRadPerDeg, sign * 35.0 * kRadPerDeg};
+    EXPECT_FALSE(Trips(facts));
+    facts = {};
+    facts.counters.angle_rad = {0.0, 0.0, sign * config_.estimator.hub_rotor_limit_rad,
+                                -sign * config_.estimator.hub_rotor_limit_rad};
+    EXPECT_FALSE(Trips(facts));
+    facts = {};
+    facts.estimate.innovation[0] = sign * config_.estimator.innovation_limit_rad;
+    facts.estimate.innovation[1] = sign * config_.estimator.innovation_limit_rad;
+    EXPECT_FALSE(Trips(facts));
+    facts = {};
+    facts.modes.repeated = {0x3FF, 0xFFC00};
+    facts.root_innovation = {sign * config_.estimator.strain_stuck_limit,
+                             sign * config_.estimator.strain_stuck_limit};
+    EXPECT_FALSE(Trips(facts));
+  }
+}
+
+TEST_F(FaultLimitsTest, DampingEndsAtItsLimits) {
+  const auto may_damp = [this](const auto& change) {
+    Facts facts;
+    change(&facts);
+    monitor_.Reset();
+    return monitor_.Judge(facts.Now()).may_damp;
+  };
+  const double most = FaultDetection::kDampedTo;
+  EXPECT_FALSE(
+      may_damp([&](Facts* f) { f->estimate.x(6) = most * config_.safety.hub_rate_rad_s[0]; }));
+  EXPECT_FALSE(
+      may_damp([&](Facts* f) { f->modes.root_strain[1] = most * config_.safety.strain_limit[1]; }));
+}
+
+// The pluck test compares no sensor with another, and has no soft limit to leave out.
+TEST_F(FaultLimitsTest, ThePluckTestComparesNoSensors) {
+  Facts facts;
+  facts.mode = LoopMode::kOpenLoop;
+  facts.counters.angle_rad = {0.0, 0.0, 0.5, 0.5};
+  facts.modes.outlier = facts.modes.stuck = 1;
+  facts.estimate.innovation[0] = 1.0;
+  EXPECT_FALSE(Trips(facts));
+  facts.modes.saturated = 1;
+  EXPECT_TRUE(Trips(facts));
+}
+
+// The soft limits lie inside the switches, which homing looks for.
+TEST_F(FaultLimitsTest, HomingLeavesOutTheSoftLimitsAlone) {
+  Facts facts;
+  facts.mode = LoopMode::kRegulate;
+  facts.counters.angle_rad = {2.0, 2.0, 2.0, 2.0};
+  EXPECT_FALSE(Trips(facts));
+  facts.estimate.innovation[0] = 1.0;
+  EXPECT_TRUE(Trips(facts));
+}
+
+// Still present, as the sample before has told; the present one names no gauge.
+TEST_F(FaultLimitsTest, AFaultThatASampleCannotTellHasNoChannel) {
+  Facts outlier;
+  outlier.modes.outlier = 1U << 6U;
+  FaultDetection::Verdict verdict{};
+  for (int k = 0; k < 3; ++k) verdict = monitor_.Judge(outlier.Now());
+  ASSERT_EQ(verdict.faults, CauseBit(TripCause::kStrainOutOfFamily));
+  EXPECT_EQ(verdict.channel, 7);
+  verdict = monitor_.Judge(WithoutCounter(0).Now());
+  ASSERT_EQ(verdict.faults, CauseBit(TripCause::kStrainOutOfFamily));
+  EXPECT_EQ(verdict.channel, 0);
+}
+
+// The worse one of two joints is the evidence.
+TEST_F(FaultLimitsTest, TheEvidenceIsOfTheWorseJoint) {
+  using enum TripCause;
+  Facts facts;
+  facts.counters.angle_rad = {0.0, 0.0, 0.2, -0.3};
+  Expect(kHubAgainstRotor, 3, facts, 0.3, 0.1, 2);
+  facts.counters.angle_rad = {0.0, 0.0, -0.3, 0.2};
+  Expect(kHubAgainstRotor, 3, facts, 0.3, 0.1, 1);
+  facts.counters.angle_rad = {0.0, 0.0, 0.3, 0.3};
+  Expect(kHubAgainstRotor, 3, facts, 0.3, 0.1, 1);
+  facts = {};
+  facts.estimate.innovation[0] = facts.estimate.innovation[1] = 0.4;
+  Expect(kEstimatorResidual, 3, facts, 0.4, 0.35, 1);
+}
+
+}  // namespace
+}  // namespace flexarm
