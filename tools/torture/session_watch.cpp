@@ -35,6 +35,12 @@ void SessionWatch::Look(std::int64_t now_ns, const WatchSample& sample) {
 
 void SessionWatch::LookAtTorque(std::int64_t now_ns, const WatchSample& sample) {
   const std::array<double, 2>& torque_nm = sample.torque_nm;
+  // An arm whose thread catches up may take several commands between two looks, and may be without
+  // power for a moment.
+  const std::int64_t moved_ns = std::max(sample.arm_ns - arm_ns_, kMs);
+  const bool unseen = moved_ns > kMs;
+  const double commands =
+      std::ceil(static_cast<double>(moved_ns) / static_cast<double>(config_.loop.period_ns()));
   // The torque of a slice acts from its begin on; the newest look is at the millisecond before now.
   const std::int64_t slice_ns = sample.arm_ns - kMs;
   const auto back =
@@ -56,8 +62,11 @@ void SessionWatch::LookAtTorque(std::int64_t now_ns, const WatchSample& sample) 
     if (std::fabs(torque) > limit_nm + kRounding) {
       Add(now_ns, "torque-limit", joint + std::to_string(torque) + " N m");
     }
-    const double most_nm = config_.safety.slew_limit_nm_per_s[i] * config_.loop.period_s();
-    if (torque != 0.0 && std::fabs(torque - torque_nm_[i]) > most_nm + kRounding) {
+    const double most_nm =
+        commands * config_.safety.slew_limit_nm_per_s[i] * config_.loop.period_s();
+    const double from_nm =
+        unseen && std::fabs(torque) < std::fabs(torque - torque_nm_[i]) ? 0.0 : torque_nm_[i];
+    if (torque != 0.0 && std::fabs(torque - from_nm) > most_nm + kRounding) {
       Add(now_ns, "slew-limit",
           joint + "from " + std::to_string(torque_nm_[i]) + " to " + std::to_string(torque));
     }

@@ -181,6 +181,41 @@ TEST_F(SessionWatchTest, ARateIsTakenOverAWholePeriod) {
   EXPECT_TRUE(watch.violations().empty()) << watch.violations().front().what;
 }
 
+// 10 N m for joint 1 and each command: 40 ms are two of them.
+TEST_F(SessionWatchTest, AnArmThatCatchesUpMayTakeACommandAPeriod) {
+  RunWithTorque();
+  Look(39, true);
+  sample.torque_nm[0] = -15.0;  // from 5
+  Look();
+  EXPECT_TRUE(watch.violations().empty()) << watch.violations().front().what;
+  Look(39, true);
+  sample.torque_nm[0] = 20.5;  // more than two commands from 0, too
+  Look();
+  ExpectBroken("slew-limit");
+}
+
+// The charge pump fails and comes back between two looks: from -6 to 0, and on to 9.
+TEST_F(SessionWatchTest, ATorqueMayBeCutBetweenTwoLooks) {
+  RunWithTorque();
+  sample.torque_nm[0] = -5.0;
+  Look(10);
+  Look(1, true);
+  sample.torque_nm[0] = 9.0;
+  Look();
+  EXPECT_TRUE(watch.violations().empty()) << watch.violations().front().what;
+  sample.torque_nm[0] = -5.0;
+  Look();
+  ExpectBroken("slew-limit");
+}
+
+TEST_F(SessionWatchTest, ATorqueThatWasNotCutMayNotJump) {
+  RunWithTorque();
+  Look(1, true);
+  sample.torque_nm[0] = -10.5;  // from 5, and more than 10 from 0
+  Look();
+  ExpectBroken("slew-limit");
+}
+
 TEST_F(SessionWatchTest, AnAngleThatNothingMeasuresIsNotJudged) {
   SessionWatch hidden(
       config,
