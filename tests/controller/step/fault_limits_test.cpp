@@ -117,5 +117,101 @@ TEST_F(FaultLimitsTest, TheEvidenceIsOfTheWorseJoint) {
   Expect(kEstimatorResidual, 3, facts, 0.4, 0.35, 1);
 }
 
+// In the second sample that lacks a reading the model stands for nothing any more.
+TEST_F(FaultLimitsTest, WhatIsUnknownIsNotJudgedByTheModel) {
+  using enum TripCause;
+  Facts angle = WithoutCounter(1);
+  angle.estimate.x(1) = 2.0;
+  EXPECT_EQ(monitor_.Judge(angle.Now()).faults, CauseBit(kSoftLimit2));
+  EXPECT_EQ(monitor_.Judge(angle.Now()).faults, CauseBit(kNoCounterReading));
+  monitor_.Reset();
+  Facts bent = Unfitted(0, 0);
+  bent.model_root_strain = {3e-3, 0.0};
+  EXPECT_EQ(monitor_.Judge(bent.Now()).faults, CauseBit(kBendingStrain1));
+  EXPECT_EQ(monitor_.Judge(bent.Now()).faults, CauseBit(kNoStrainReading1));
+}
+
+// A joint is compared as long as its own two encoders are read, whatever the other one's do.
+TEST_F(FaultLimitsTest, HubAgainstRotorNeedsBothReadingsOfItsJoint) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    for (std::size_t lost = 0; lost < 4; ++lost) {
+      monitor_.Reset();
+      Facts facts = WithoutCounter(lost);
+      facts.counters.angle_rad[joint + 2] = 0.5;
+      TripCauses faults = 0;
+      for (int k = 0; k < 3; ++k) faults |= monitor_.Judge(facts.Now()).faults;
+      EXPECT_EQ((faults & CauseBit(TripCause::kHubAgainstRotor)) != 0, lost % 2 != joint)
+          << "joint " << joint + 1 << " without counter " << lost + 1;
+    }
+  }
+}
+
+TEST_F(FaultLimitsTest, AHubAgainstItsRotorThatCannotBeComparedHasNoChannel) {
+  Facts apart;
+  apart.counters.angle_rad = {0.0, 0.0, 0.5, 0.0};
+  FaultDetection::Verdict verdict{};
+  for (int k = 0; k < 3; ++k) verdict = monitor_.Judge(apart.Now());
+  ASSERT_EQ(verdict.faults, CauseBit(TripCause::kHubAgainstRotor));
+  apart.counters.good = 0;
+  verdict = monitor_.Judge(apart.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kHubAgainstRotor));
+  EXPECT_EQ(verdict.channel, 0);
+  EXPECT_EQ(verdict.value, 0.0);
+}
+
+TEST_F(FaultLimitsTest, GaugesThatRepeatThemselvesAreNamedWithThoseOfEachLink) {
+  using enum TripCause;
+  Facts facts;
+  facts.modes.repeated = {0x3FF, 0};
+  facts.root_innovation = {-1.2e-4, 9e-4};
+  Expect(kStrainStuck, 3, facts, 1.2e-4, 1e-4, 1);
+  facts.modes.repeated = {1, 0};  // the only gauge
+  Expect(kStrainStuck, 3, facts, 1.2e-4, 1e-4, 1);
+  facts.modes.repeated = {0x3F8, 0xFFC00};  // the model tells both
+  facts.root_innovation = {1.2e-4, 1.3e-4};
+  Expect(kStrainStuck, 3, facts, 1.3e-4, 1e-4, 4);
+  facts = {};
+  facts.modes.stuck = 1U << 4U;
+  facts.modes.repeated = {0, 0xFFC00};
+  facts.root_innovation = {1e-3, 1.2e-4};
+  Expect(kStrainStuck, 3, facts, 1.2e-4, 1e-4, 5);
+  facts.modes.repeated = {};
+  Expect(kStrainStuck, 3, facts, 0.0, 1e-4, 5);
+}
+
+// What has no measure has the evidence 0.
+TEST_F(FaultLimitsTest, AJumpAndASaturatedGaugeHaveNoValue) {
+  Facts facts;
+  facts.counters.jumped = 1;
+  Expect(TripCause::kEncoderJump, 1, facts, 0.0, config_.estimator.max_joint_rate_rad_s, 1);
+  facts = {};
+  facts.modes.saturated = 1U << 2U;
+  facts.modes.worst_outlier = 5e-4;
+  FaultDetection::Verdict verdict{};
+  for (int k = 0; k < 3; ++k) verdict = monitor_.Judge(facts.Now());
+  static_assert(TripCause::kStrainSaturated < TripCause::kStrainOutOfFamily);
+  EXPECT_NE(verdict.faults & CauseBit(TripCause::kStrainSaturated), 0U);
+  EXPECT_EQ(verdict.value, 0.0);
+  EXPECT_EQ(verdict.limit, 0.0);
+  EXPECT_EQ(verdict.channel, 3);
+}
+
+TEST_F(FaultLimitsTest, AStateThatIsNotFiniteIsThatAlone) {
+  Facts facts;
+  facts.estimate.x(3) = kNan;
+  FaultDetection::Verdict verdict = monitor_.Judge(facts.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kStateNotFinite));
+  EXPECT_EQ(verdict.value, 0.0);
+  EXPECT_EQ(verdict.limit, 0.0);
+  EXPECT_EQ(verdict.channel, 0);
+  facts = {};
+  facts.estimate.x(7) = kNan;  // the rate of hub 2
+  monitor_.Reset();
+  verdict = monitor_.Judge(facts.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kStateNotFinite));
+  EXPECT_EQ(verdict.limit, config_.safety.hub_rate_rad_s[1]);
+  EXPECT_EQ(verdict.channel, 2);
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -72,5 +72,36 @@ TEST_F(HubRateTest, ASingleJumpOfAnEncoderIsNoRate) {
   }
 }
 
+// Only a hub that is not fast may be damped: what the rate of a single sample shows.
+TEST_F(HubRateTest, AnArmThatBeginsElsewhereHasNotTurned) {
+  Facts facts;
+  facts.counters.angle_rad = {1.0, -1.0, 1.0, -1.0};
+  EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
+}
+
+TEST_F(HubRateTest, AReadingThatIsMissingIsNoRate) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    monitor_.Reset();
+    Facts facts;
+    monitor_.Judge(facts.Now());
+    facts.estimate.x(6 + static_cast<Eigen::Index>(joint)) = 1.2 * 10.0;
+    EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0U) << "the first fast sample";
+    facts = {};
+    facts.counters.good &= ~(1U << joint);
+    facts.counters.angle_rad[joint] = 1.0;  // whatever its driver has left there
+    EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0U);
+  }
+}
+
+// 7 rad/s; over one period it would be 14, and 12 is the most that is damped.
+TEST_F(HubRateTest, AfterALostSampleTheRateIsThatOfTwoPeriods) {
+  Facts facts, lost;
+  lost.counters.good = 0b1110;
+  monitor_.Judge(facts.Now());
+  monitor_.Judge(lost.Now());
+  facts.counters.angle_rad[0] = facts.counters.angle_rad[2] = 7.0 * 2.0 * kPeriod_s;
+  EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
+}
+
 }  // namespace
 }  // namespace flexarm
