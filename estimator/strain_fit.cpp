@@ -315,6 +315,7 @@ std::uint32_t StrainFit::JudgeStuck(const SensorFrame& frame,
     if (solved && SeesStuck(static_cast<std::size_t>(link), others, variance)) modal = apart;
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels_); ++i) {
+    if ((frame.strain_valid >> i & 1U) == 0) continue;  // what is there is no reading
     Channel& c = channel_[i];
     const double bent = Predicted(c, modal);
     if (!c.seen || frame.strain[i] != c.last_raw) {
@@ -323,7 +324,7 @@ std::uint32_t StrainFit::JudgeStuck(const SensorFrame& frame,
       c.strain_at_change = bent;
       c.all_at_change = strain;
       c.used_at_change = out->used;
-    } else if ((repeats >> i & 1u) != 0 && std::fabs(bent - c.strain_at_change) > stuck_limit_ &&
+    } else if (std::fabs(bent - c.strain_at_change) > stuck_limit_ &&
                OthersMoved(c, out->used & ~repeats, strain)) {
       out->stuck |= std::uint32_t{1} << i;
     }

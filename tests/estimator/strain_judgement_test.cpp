@@ -158,6 +158,33 @@ TEST_F(StrainJudgement, ChannelsThatRepeatByChanceAreNotStuck) {
   EXPECT_EQ(fit.Fit(frame).stuck, 0U);
 }
 
+// Symptom: with a frame lost while the arm swung back, the channels that then read 0, as the empty
+// frame had, were stuck; too few were left for the fit, and the second sample without one tripped.
+TEST_F(StrainJudgement, WhatAMissingReadingLeavesBehindIsNotRepeated) {
+  const SensorFrame straight = FrameOf({});
+  for (std::size_t i = 0; i < 20; ++i) ASSERT_EQ(straight.strain[i], 0);
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  fit.Fit(FrameOf(kBent));
+  EXPECT_FALSE(fit.Fit(SensorFrame{}).valid[0]);
+  const FittedModes out = fit.Fit(straight);
+  EXPECT_EQ(out.stuck, 0U);
+  EXPECT_EQ(out.repeated, (std::array<std::uint32_t, 2>{0, 0}));
+  EXPECT_EQ(out.gauges, (std::array{10, 10}));
+  ExpectBend(out, {}, 20);
+}
+
+TEST_F(StrainJudgement, AStuckChannelIsSeenAcrossAMissingReading) {
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  fit.Fit(FrameOf({}));
+  SensorFrame missing = FrameOf({0.02, 0.0, -0.02, 0.0});
+  missing.strain_valid &= ~1U;
+  missing.strain[0] = 7;
+  EXPECT_EQ(fit.Fit(missing).stuck, 0U);
+  SensorFrame frame = FrameOf(kBent);
+  frame.strain[0] = 0;
+  EXPECT_EQ(fit.Fit(frame).stuck, 1U);
+}
+
 TEST_F(StrainJudgement, ALinkWhoseGoodChannelsAllRepeatIsTold) {
   StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
   SensorFrame frame = FrameOf(kBent);

@@ -195,8 +195,7 @@ TEST_F(FaultDetectionTest, AMovementRestartsTheHalfSecond) {
   EXPECT_FALSE(monitor_.Judge(moved.Now()).at_rest);
   int samples = 0;
   while (!monitor_.Judge(moved.Now()).at_rest && samples < 100) ++samples;
-  EXPECT_GE(samples, 24);
-  EXPECT_LE(samples, 30) << "only the window of five samples may delay it";
+  EXPECT_EQ(samples, 4 + 24) << "the window of five samples delays it, and the 25th is at rest";
 }
 
 }  // namespace
