@@ -77,6 +77,33 @@ TEST_F(RequestTrackerTest, ARequestOfAnUnattendedRunKeepsItBusyToo) {
   EXPECT_FALSE(tracker.busy()) << "a disarm adds no energy";
 }
 
+TEST_F(RequestTrackerTest, AChangeIsAskedForLikeARun) {
+  constexpr int kClient = 7;
+  const auto ask = [this](int client) {
+    return tracker.AskForChange(40, client, {.experiment = nullptr, .may_open = 0b10}, 5, 90);
+  };
+  const RequestTracker::Asked asked = ask(kClient);
+  EXPECT_EQ(asked.number, 1'001U);
+  EXPECT_EQ(asked.refusal, Refusal::kNone);
+  const std::vector<OperatorRequest> made = stack.TakeRequests();
+  ASSERT_EQ(made.size(), 1U);
+  EXPECT_EQ(made[0].kind, RequestKind::kChange);
+  EXPECT_EQ(made[0].number, 1'001U);
+  EXPECT_EQ(made[0].not_before_ns, 40);
+  EXPECT_EQ(made[0].run.may_open, 0b10);
+  EXPECT_EQ(made[0].changes, 5U);
+  EXPECT_EQ(made[0].not_after_ns, 90);
+  EXPECT_TRUE(tracker.busy());
+  const RequestTracker::Asked second = ask(8);
+  EXPECT_EQ(second.number, 0U);
+  EXPECT_EQ(second.refusal, Refusal::kBusy);
+  EXPECT_THAT(stack.TakeRequests(), IsEmpty());
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'001, RequestKind::kChange)), ElementsAre(kClient));
+  EXPECT_FALSE(tracker.busy());
+  EXPECT_EQ(ask(RequestTracker::kNoClient).number, 1'002U);
+  EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1'002, RequestKind::kChange)), IsEmpty());
+}
+
 TEST_F(RequestTrackerTest, AnArmIsAskedForOnlyOnceTheLatchFileSaysSo) {
   EXPECT_NE(Ask(RequestKind::kReset, 7), 0u);
   EXPECT_FALSE(folder.Has(TripLatch::kFile)) << "of arms alone";
