@@ -69,6 +69,7 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
 
 void FaultDetection::Reset() noexcept {
   in_a_row_ = {};
+  strain_off_model_ = {};
   rest_ticks_ = 0;
   incomplete_ticks_ = 0;
   ring_ = 0;
@@ -131,8 +132,11 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
     monitored.hub_rad[i] = Bridged((counters.good >> i & 1U) != 0, counters.angle_rad[i],
                                    facts.estimate->x(static_cast<Eigen::Index>(i)));
     monitored.hub_rate_rad_s[i] = HubRate(facts, i);
-    monitored.root_strain[i] =
-        Bridged(modes.valid[i], modes.root_strain[i], facts.model_root_strain[i]);
+    monitored.root_strain[i] = Bridged(modes.valid[i], modes.root_strain[i],
+                                       facts.model_root_strain[i] + strain_off_model_[i]);
+    if (modes.valid[i]) {
+      strain_off_model_[i] = modes.root_strain[i] - facts.model_root_strain[i];
+    }
   }
   return monitored;
 }

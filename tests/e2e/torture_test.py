@@ -48,6 +48,17 @@ class Torture(ProgramTest):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("begin another file", refused.stderr)
 
+    def test_every_shipped_arm_is_tortured_with_the_laws_that_it_allows(self):
+        for config in sorted((ROOT / "config").glob("*.toml")):
+            with self.subTest(config.name):
+                run = self.run_program("flexarm", "torture", "-c", config, "--seeds", "1..10", "--json")
+                self.assertEqual(run.returncode, 0, run.stderr + run.stdout)
+                told = json.loads(run.stdout)
+                self.assertEqual(told["failures"], [])
+                self.assertGreater(told["peak_torque_share"], 0.0, "no arm moved")
+                refused = "without gain-scheduled, which this config does not allow" in run.stderr
+                self.assertEqual(refused, config.name == "quanser-2dsfl.toml")
+
     def test_wrong_seeds_and_laws_are_refused(self):
         for options, text in ((("--seeds", "x"), "x"), (("--laws", "fastest"), "fastest")):
             self.assert_refused(self.run_program("flexarm", "torture", "-c", HIL, *options), text)

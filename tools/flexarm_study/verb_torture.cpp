@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <iostream>
@@ -9,6 +11,7 @@
 #include "controller/files/write_file.h"
 #include "controller/runlog/build_info.h"
 #include "controller/runlog/errors.h"
+#include "controller/types/law_table.h"
 #include "tools/command_line/options.h"
 #include "tools/command_line/other_programs.h"
 #include "tools/command_line/verbs.h"
@@ -21,11 +24,12 @@ namespace flexarm {
 namespace {
 
 constexpr std::size_t kShown = 20;  // failures in the text
+constexpr std::array kLaws = {"sobel", "sobel-thesis", "gain-scheduled", "lqg"};
 
 struct TortureOptions {
   ConfigOptions config;
   GridOptions grid;
-  std::vector<std::string> laws = {"sobel", "sobel-thesis", "gain-scheduled", "lqg"};
+  std::vector<std::string> laws;  ///< empty: the config's, and those of kLaws that it allows
   std::string seeds = "1..1000";
   bool minimise = false;
   bool matrix = false;
@@ -97,16 +101,35 @@ int RunMatrix(const TortureOptions& options, const TorturedRigs& rigs, const Tor
   return broken.empty() ? Exit::kDone : Exit::kFailed;
 }
 
+RigConfig LoadWithLaw(const TortureOptions& options, const std::string& law) {
+  ConfigOptions with_law = options.config;
+  with_law.overrides.push_back("controller.name=" + law);
+  return with_law.Load();
+}
+
+std::vector<std::string> LawsOf(const TortureOptions& options, const RigConfig& config) {
+  if (!options.laws.empty()) return options.laws;
+  std::vector<std::string> laws;
+  for (const char* law : kLaws) {
+    try {
+      LoadWithLaw(options, law);
+      laws.emplace_back(law);
+    } catch (const ConfigError& error) {
+      std::cerr << "without " << law << ", which this config does not allow: " << error.what()
+                << '\n';
+    }
+  }
+  const std::string own = LawOf(config.controller.kind).name;
+  if (std::find(laws.begin(), laws.end(), own) == laws.end()) laws.push_back(own);
+  return laws;
+}
+
 int Run(const TortureOptions& options) {
   const RigConfig config = options.config.Load();
-  const TorturedRigs rigs(
-      [&options](const std::string& law) {
-        ConfigOptions with_law = options.config;
-        with_law.overrides.push_back("controller.name=" + law);
-        return with_law.Load();
-      },
-      options.laws);
-  const TortureSpace space = SpaceOf(config, options.laws);
+  const std::vector<std::string> laws = LawsOf(options, config);
+  const TorturedRigs rigs([&options](const std::string& law) { return LoadWithLaw(options, law); },
+                          laws);
+  const TortureSpace space = SpaceOf(config, laws);
   if (options.matrix) return RunMatrix(options, rigs, space, config);
   const std::vector<std::uint64_t> seeds = SeedsOf(options);
   const TortureSummary summary = RunTorture(rigs, space, config, seeds, options.grid.jobs,
@@ -139,7 +162,10 @@ void RegisterTorture(CLI::App& app, Exit& exit) {
   verb->add_option("--seeds", options->seeds,
                    "Seeds of the scenarios, such as 1..1000 (default) or 4711")
       ->type_name("VALUES");
-  verb->add_option("--laws", options->laws, "Laws, separated by commas")
+  verb->add_option(
+          "--laws", options->laws,
+          "Laws, separated by commas (default: sobel, sobel-thesis, gain-scheduled and lqg, "
+          "as far as the config allows them)")
       ->type_name("NAMES")
       ->delimiter(',');
   options->grid.AddTo(verb);

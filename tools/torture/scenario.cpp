@@ -147,7 +147,8 @@ TortureSpace SpaceOf(const RigConfig& config, std::vector<std::string> laws) {
   const double nominal_kg = config.arm.payload_mass_kg;
   return {.laws = std::move(laws),
           .payload_kg = range_kg,
-          .fixed_payload_kg = {0.5 * nominal_kg, 1.5 * nominal_kg},
+          .fixed_payload_kg = {std::clamp(0.5 * nominal_kg, range_kg[0], range_kg[1]),
+                               std::clamp(1.5 * nominal_kg, range_kg[0], range_kg[1])},
           .gauges = static_cast<int>(config.sensors.strain.size()),
           .within_deg = {40.0, 50.0},
           .arm = RigidJointArm(config.arm),

@@ -36,6 +36,17 @@ RigConfig LoggingTo(const std::filesystem::path& folder, RigConfig config) {
   return config;
 }
 
+// A config of a rig on wires has a simulated arm here, which begins at zero: no person proves its
+// switches and its wiring, or measures its angles.
+RigConfig Simulated(RigConfig config) {
+  config.backend = "sim";
+  config.commissioning.prove_before_run = false;
+  if (config.commissioning.angles_at_start == AnglesAtStart::kLost) {
+    config.commissioning.angles_at_start = AnglesAtStart::kAtZero;
+  }
+  return config;
+}
+
 // In memory where the machine has a folder for that, because each write is synced.
 std::filesystem::path ParentOfFolders() {
   const std::filesystem::path in_memory = "/dev/shm";
@@ -46,7 +57,7 @@ std::filesystem::path ParentOfFolders() {
 }  // namespace
 
 TorturedRig::TorturedRig(RigConfig with_law)
-    : config(std::move(with_law)),
+    : config(Simulated(std::move(with_law))),
       design(DesignController(config)),
       delay_margin_s(JudgeDesign(config, design).delay_margin_s()),
       limits(MotionLimitsOf(config)) {}

@@ -139,6 +139,33 @@ TEST_F(FaultDetectionTest, AMissingReadingIsJudgedByTheModelForOneSample) {
   EXPECT_EQ(monitor_.Judge(bent.Now()).faults, 0u);
 }
 
+// Symptom: an arm with much friction was at rest with a torque, which the estimate saw as bending
+// beyond the limit; a single lost frame tripped.
+TEST_F(FaultDetectionTest, BendingThatIsMissingIsTheLastReadingAndWhatTheModelBentSince) {
+  for (std::size_t link = 0; link < 2; ++link) {
+    SCOPED_TRACE(link);
+    monitor_.Reset();
+    Facts read;
+    read.modes.root_strain[link] = 1e-4;
+    read.model_root_strain[link] = 2.5e-3;
+    EXPECT_EQ(monitor_.Judge(read.Now()).faults, 0u);
+    Facts lost = Unfitted(link, 0);
+    lost.model_root_strain[link] = 2.5e-3 + 1.79e-3;
+    EXPECT_EQ(monitor_.Judge(lost.Now()).faults, 0u);
+    EXPECT_EQ(monitor_.Judge(read.Now()).faults, 0u);
+    lost.model_root_strain[link] = 2.5e-3 + 1.81e-3;  // 1.91e-3, the limit being 1.9e-3
+    const auto verdict = monitor_.Judge(lost.Now());
+    EXPECT_EQ(verdict.faults, CauseBit(static_cast<TripCause>(
+                                  static_cast<std::size_t>(TripCause::kBendingStrain1) + link)));
+    EXPECT_NEAR(verdict.value, 1.91e-3, 1e-12);
+    monitor_.Reset();
+    EXPECT_NE(monitor_.Judge(lost.Now()).faults, 0u) << "nothing is kept over a reset";
+    lost.model_root_strain[link] = 1.8e-3;
+    monitor_.Reset();
+    EXPECT_EQ(monitor_.Judge(lost.Now()).faults, 0u);
+  }
+}
+
 // A NaN in any monitored quantity is a fault in that sample, whatever it came from.
 TEST_F(FaultDetectionTest, NoLimitIsPassedByNaN) {
   const auto trips = [this](const auto& change, int ticks = 1) {
