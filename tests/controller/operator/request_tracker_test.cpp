@@ -69,7 +69,10 @@ TEST_F(RequestTrackerTest, OneArmRunOrResetAtATime) {
 }
 
 TEST_F(RequestTrackerTest, ARequestOfAnUnattendedRunKeepsItBusyToo) {
-  tracker.AskPlanned({.kind = RequestKind::kArm, .number = 1, .not_before_ns = 100});
+  const RequestTracker::Asked planned =
+      tracker.AskPlanned({.kind = RequestKind::kArm, .number = 1, .not_before_ns = 100});
+  EXPECT_EQ(planned.number, 1u);
+  EXPECT_EQ(planned.refusal, Refusal::kNone);
   EXPECT_EQ(Ask(RequestKind::kArm, 7), 0u);
   EXPECT_EQ(stack.TakeRequests().size(), 1u);
   EXPECT_THAT(tracker.TakeClientsOf(AnswerTo(1, RequestKind::kArm)), IsEmpty());
