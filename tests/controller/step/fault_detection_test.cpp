@@ -159,6 +159,7 @@ TEST_F(FaultDetectionTest, BendingThatIsMissingIsTheLastReadingAndWhatTheModelBe
                                   static_cast<std::size_t>(TripCause::kBendingStrain1) + link)));
     EXPECT_NEAR(verdict.value, 1.91e-3, 1e-12);
     monitor_.Reset();
+    lost.model_root_strain[link] = 2e-3;  // 2.4e-3 less before
     EXPECT_NE(monitor_.Judge(lost.Now()).faults, 0u) << "nothing is kept over a reset";
     lost.model_root_strain[link] = 1.8e-3;
     monitor_.Reset();
@@ -343,6 +344,21 @@ TEST_F(FaultDetectionTest, TheEvidenceIsThatOfTheLowestCause) {
   EXPECT_DOUBLE_EQ(verdict.value, 2.0);
   EXPECT_DOUBLE_EQ(verdict.limit, 90.0 * kRadPerDeg);
   EXPECT_EQ(verdict.channel, 2);
+}
+
+// Lower than one of those before it, and higher than another: the evidence stays.
+TEST_F(FaultDetectionTest, TheEvidenceOfALowerCauseStays) {
+  Facts facts;
+  facts.frame_age_s = 0.1;
+  facts.counters.jumped = 0b1000;
+  facts.counters.angle_rad[2] = 0.5;
+  FaultDetection::Verdict verdict{};
+  for (int k = 0; k < 3; ++k) verdict = monitor_.Judge(facts.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kEncoderJump) |
+                                CauseBit(TripCause::kHubAgainstRotor) |
+                                CauseBit(TripCause::kStaleFrame));
+  EXPECT_DOUBLE_EQ(verdict.limit, config_.estimator.max_joint_rate_rad_s);
+  EXPECT_EQ(verdict.channel, 4);
 }
 
 TEST_F(FaultDetectionTest, ResetClearsTheCountsOfSamplesInARow) {
