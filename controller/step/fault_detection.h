@@ -31,11 +31,11 @@ struct LoopFacts {
 /// Checks of the control step: soft limits, rates, strain, sensors, estimator.
 ///
 /// Each monitored quantity has a value or is unknown, NaN. The value is the reading; in one sample
-/// that lacks a reading of any sensor it is the model's, from the estimate: of bending the last
-/// reading and what the model has bent since, because friction that the model does not have bends
-/// it for as long as it holds. In the second such sample in a row, what lacks a reading is unknown.
-/// An unknown quantity passes no limit: it is a fault in that sample, under the name of the sensor
-/// that is missing.
+/// that lacks a reading of any sensor it is the model's, from the estimate. The strain at a root is
+/// then the last reading plus the change of the estimated strain since: the estimate has no
+/// friction, and bends the links for as long as friction holds a joint against its torque. In the
+/// second such sample in a row, what lacks a reading is unknown. An unknown quantity passes no
+/// limit: it is a fault in that sample, under the name of the sensor that is missing.
 ///
 /// Violations of angle and strain limits and encoder jumps are faults in the sample in which they
 /// occur; hub rates after two samples, estimated or measured by the encoder alone: gauges that lead
@@ -126,8 +126,8 @@ class FaultDetection {
   std::int64_t ticks_ = 0;                         // samples since Reset
   bool started_ = false;                           // false: before_ is not set yet
   std::array<int, kTripCauses> in_a_row_{};
-  std::array<double, 2>
-      strain_off_model_{};  // the last reading of the root strain less the model's
+  // The last reading of the strain at the root of each link, minus the estimated one.
+  std::array<double, 2> strain_off_model_{};
   Verdict verdict_{};
 };
 

@@ -165,7 +165,7 @@ void RegisterTorture(CLI::App& app, Exit& exit) {
   verb->add_option(
           "--laws", options->laws,
           "Laws, separated by commas (default: sobel, sobel-thesis, gain-scheduled and lqg, "
-          "as far as the config allows them)")
+          "as far as the config allows them, and the config's own)")
       ->type_name("NAMES")
       ->delimiter(',');
   options->grid.AddTo(verb);

@@ -40,6 +40,11 @@ class ControlPlanTest : protected Planner, public ControlTaskTest {
     history->Push(DueNs(next_tick_), *motion);
     plans->Publish(*history);
   }
+  void BeginRun(const PlannedExperiment* experiment) {
+    Allow(kArmed);
+    Step();
+    Run(3, experiment);
+  }
   std::uint32_t asked() { return requests->Read().number; }
 
   // From sample 10 to 110.
@@ -47,9 +52,7 @@ class ControlPlanTest : protected Planner, public ControlTaskTest {
 };
 
 TEST_F(ControlPlanTest, AsksAheadOfAMoveAndFollowsThePlan) {
-  Allow(kArmed);
-  Step();
-  Run(3, &move_);
+  BeginRun(&move_);
   Steps(5);
   EXPECT_EQ(asked(), 0U);
   const TickRecord asks = Step();
@@ -71,18 +74,14 @@ TEST_F(ControlPlanTest, AsksAheadOfAMoveAndFollowsThePlan) {
 }
 
 TEST_F(ControlPlanTest, APlanOfAnotherRunIsNotFollowed) {
-  Allow(kArmed);
-  Step();
-  Run(3, &move_);
+  BeginRun(&move_);
   Steps(6);
   Plan(2);
   EXPECT_EQ(Steps(6).input.planned, 0);
 }
 
 TEST_F(ControlPlanTest, StoppingFollowsNoPlan) {
-  Allow(kArmed);
-  Step();
-  Run(3, &move_);
+  BeginRun(&move_);
   Steps(6);
   Plan(3);
   ASSERT_EQ(Steps(6).input.planned, 1);
@@ -97,26 +96,20 @@ TEST_F(ControlPlanTest, APathWithATimeOfItsOwnAsksForNone) {
   const PlannedExperiment slowed(
       move_, AtSpeed(move_.reference, 0.5, ShippedPathDesign(), ShippedLimits()), 0);
   ASSERT_TRUE(slowed.keeps_own_time);
-  Allow(kArmed);
-  Step();
-  Run(3, &slowed);
+  BeginRun(&slowed);
   EXPECT_EQ(Steps(60).input.planned, 0);
   EXPECT_EQ(asked(), 0U);
 }
 
 TEST_F(ControlPlanTest, ARunInOpenLoopAsksForNone) {
   const PlannedExperiment pluck(std::vector<std::array<double, 2>>(40));
-  Allow(kArmed);
-  Step();
-  Run(3, &pluck);
+  BeginRun(&pluck);
   Steps(10);
   EXPECT_EQ(asked(), 0U);
 }
 
 TEST_F(ControlPlanTest, ARunWithoutAnExperimentAsksForNone) {
-  Allow(kArmed);
-  Step();
-  Run(3, nullptr);
+  BeginRun(nullptr);
   EXPECT_EQ(Steps(10).input.planned, 0);
   EXPECT_EQ(asked(), 0U);
 }
