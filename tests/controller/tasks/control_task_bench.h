@@ -34,6 +34,17 @@ inline PlannedExperiment Planned(const Experiment& experiment, const Design& des
   return {experiment, design, kPeriod_s, {0.0, 0.0}, ShippedLimits()};
 }
 
+/// The control task's side of a planner, and the channels between them. Constructed before the
+/// task.
+struct PlanFollowing {
+  std::unique_ptr<PlanRequestChannel> requests =
+      std::make_unique<PlanRequestChannel>(PlanRequest{});
+  std::unique_ptr<MotionPlanHistory> history = std::make_unique<MotionPlanHistory>(MotionPlan{});
+  std::unique_ptr<MotionPlanChannel> plans = std::make_unique<MotionPlanChannel>(*history);
+  PlanFollower follower{
+      {.every = 10, .ready = 5, .rest = 20, .period_ns = kPeriodNs}, requests.get(), plans.get()};
+};
+
 class ControlTaskTest : public testing::Test {
  protected:
   static constexpr std::int64_t kPhaseNs = 10 * kMs;    // loop.acquire_before_ms

@@ -11,18 +11,7 @@ namespace {
 
 using enum SafetyState;
 
-constexpr PlanSchedule kPlans{.every = 10, .ready = 5, .rest = 20, .period_ns = kPeriodNs};
-
-// Constructed before the task that uses it.
-struct Planner {
-  std::unique_ptr<PlanRequestChannel> requests =
-      std::make_unique<PlanRequestChannel>(PlanRequest{});
-  std::unique_ptr<MotionPlanHistory> history = std::make_unique<MotionPlanHistory>(MotionPlan{});
-  std::unique_ptr<MotionPlanChannel> plans = std::make_unique<MotionPlanChannel>(*history);
-  PlanFollower follower{kPlans, requests.get(), plans.get()};
-};
-
-class ControlPlanTest : protected Planner, public ControlTaskTest {
+class ControlPlanTest : protected PlanFollowing, public ControlTaskTest {
  protected:
   ControlPlanTest()
       : ControlTaskTest({"controller.name=gain-scheduled"}, ShippedPathDesign(), &follower) {}

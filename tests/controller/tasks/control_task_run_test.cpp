@@ -78,15 +78,14 @@ TEST_F(ControlRunTest, AStopInTheLastPeriodIsAtRestAfterTheEnd) {
 
 TEST_F(ControlRunTest, ARunWithoutAnExperimentEndsAtOnceWhereTheHubsAre) {
   FramePacket turned = Healthy(0);
-  turned.frame.counter[0] = 100;
-  turned.frame.counter[2] = 100;
+  turned.frame.counter = {100, 60, 100, 60};
   const TickRecord idle = Step(turned);
   Run(2, nullptr);
   turned.frame.sampled_at_ns = kPeriodNs;
   const StepInput input = Step(turned).input;
   EXPECT_EQ(input.reference_ended, 1);
-  EXPECT_NE(idle.output.angle_rad[0], 0.0);
   for (const std::size_t joint : {std::size_t{0}, std::size_t{1}}) {
+    EXPECT_NE(idle.output.angle_rad[joint], 0.0);
     EXPECT_EQ(input.reference_now.x_m[joint], idle.output.angle_rad[joint]);
     EXPECT_EQ(input.reference_next.x_m[joint], idle.output.angle_rad[joint]);
   }
