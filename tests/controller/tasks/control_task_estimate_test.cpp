@@ -95,19 +95,35 @@ TEST_F(ControlEstimateTest, ThePathIsThatOfTheDelayAndThePayloadFound) {
   EXPECT_GT(shorter, 20) << "the second move is not as in the table";
 }
 
-TEST_F(ControlEstimateTest, PlansAreAskedForFromTheSampleOfTheDelayFound) {
-  UntilTheRun();
-  int delayed = 0;
+TEST_F(ControlEstimateTest, PlansAreAskedForAndReadAtTheSampleOfTheDelayFound) {
+  TickRecord before = UntilTheRun();
+  auto motion = std::make_unique<MotionPlan>();  // its state tells the sample
+  motion->run = 1;
+  int delayed_requests = 0, delayed_plans = 0;
   std::uint32_t asked = 0;
   while (ArmRuns()) {
     const TickRecord record = StepOfTheArm();
+    if (record.input.planned != 0) {
+      EXPECT_EQ(record.input.plan.x[0], record.sample + before.output.delay_found);
+      delayed_plans += before.output.delay_found != 0 ? 1 : 0;
+    }
+    before = record;
     const PlanRequest& request = requests->Read();
     if (request.number == asked) continue;
     asked = request.number;
     EXPECT_EQ(request.sample, record.sample + record.output.delay_found);
-    delayed += record.output.delay_found != 0 ? 1 : 0;
+    delayed_requests += record.output.delay_found != 0 ? 1 : 0;
+    motion->number = asked;
+    motion->plan.Begin(request.first, kPayload_kg);
+    for (int k = request.first; k < request.first + 20; ++k) {
+      const auto x = Eigen::Matrix<double, 12, 1>::Constant(k);
+      motion->plan.Append({.motion = MotionSample::Of(x, {0.0, 0.0}), .K = {}});
+    }
+    history->Push(DueNs(next_tick_) - 1, *motion);
+    plans->Publish(*history);
   }
-  EXPECT_GT(delayed, 5);
+  EXPECT_GT(delayed_requests, 5);
+  EXPECT_GT(delayed_plans, 50);
 }
 
 TEST_F(ControlEstimateTest, ANewRunBeginsWithoutTheDelayFound) {

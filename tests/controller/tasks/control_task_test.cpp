@@ -226,6 +226,23 @@ TEST_F(ControlTaskTest, AFaultCutsTheTorqueAtTheDeadline) {
   EXPECT_EQ(report.evidence.detail, 0U);
 }
 
+// Damping torque after a fault of the arm alone is predicted for the usual instant.
+TEST_F(ControlTaskTest, AFaultThatIsDampedKeepsTheInstantOfTheTorque) {
+  Allow(kIdle);
+  TickRecord record{};
+  FramePacket turned = Healthy(0);
+  while (record.output.faults == 0 && next_tick_ < 100) {
+    turned.frame.sampled_at_ns = next_tick_ * kPeriodNs;
+    record = Step(turned);
+    turned.frame.counter[0] += 20;  // of 2540 in 20 ms: 2.5 rad/s
+    turned.frame.counter[2] += 20;
+    for (auto& reading : turned.frame.strain) reading ^= 1;  // else they are stuck
+  }
+  ASSERT_EQ(record.output.faults, CauseBit(TripCause::kSoftLimit1));
+  ASSERT_EQ(record.output.may_damp, 1);
+  EXPECT_EQ(commands_[0].Read().Newest().from_ns, next_tick_ * kPeriodNs);
+}
+
 TEST_F(ControlTaskTest, TheStepsOwnEvidenceIsReported) {
   Allow(kIdle);
   TickRecord record{};

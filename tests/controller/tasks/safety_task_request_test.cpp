@@ -139,6 +139,20 @@ TEST_F(SafetyTaskChangeTest, IsRefusedAfterItsInstantOfAnotherRunAndWithoutOne) 
   EXPECT_EQ(Change(run, INT64_MAX), Refusal::kWrongState) << "it stops";
 }
 
+TEST_F(SafetyTaskChangeTest, IsCancelledByAStop) {
+  GoTo(kRunning);
+  const std::uint32_t change = Ask(RequestKind::kChange, executor_.next_ns() + 500 * kMs);
+  RunFor(kMs);
+  stop_.Set(++number_);
+  RunFor(2 * kMs);
+  RequestAnswer answer{};
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.kind, RequestKind::kStop);
+  ASSERT_TRUE(answers_.Pop(&answer));
+  EXPECT_EQ(answer.number, change);
+  EXPECT_EQ(answer.refusal, Refusal::kCancelled);
+}
+
 TEST_F(SafetyTaskTest, ARunWaitsUntilTheDrivesAreOn) {
   RunFor(100 * kMs);
   Ask(RequestKind::kArm);

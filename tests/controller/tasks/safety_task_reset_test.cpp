@@ -104,6 +104,40 @@ TEST_F(SafetyTaskReset, WithAnotherCauseIsRefusedAtOnceAndAcknowledgesNothing) {
   EXPECT_FALSE(permit().acknowledge);
 }
 
+// What a drive in fault, or a bus that comes back, causes itself does not stand in its own way.
+TEST_F(SafetyTaskReset, OfADriveWhoseReadingsAreMissingTooAcknowledges) {
+  for (const TripCause cause : {TripCause::kStaleFrame, TripCause::kNoCounterReading}) {
+    SCOPED_TRACE(ToString(cause));
+    drive_.report.drive_ok = true;
+    control_.report.faults = 0;
+    TripByADrive();
+    PressButton();
+    control_.report.faults = CauseBit(cause);
+    RunFor(40 * kMs);
+    const std::uint32_t reset = Ask(RequestKind::kReset);
+    RunFor(20 * kMs);
+    EXPECT_TRUE(permit().acknowledge);
+    drive_.report.drive_ok = true;
+    control_.report.faults = 0;
+    RunFor(50 * kMs);
+    EXPECT_EQ(AnswerTo(reset), Refusal::kNone);
+  }
+}
+
+TEST_F(SafetyTaskReset, OfALostBusAcknowledges) {
+  GoTo(SafetyState::kArmed);
+  drive_.report.bus_ok = false;
+  RunUntilTripped(50 * kMs);
+  ASSERT_EQ(safety_.status().cause, TripCause::kBusLost);
+  PressButton();
+  const std::uint32_t reset = Ask(RequestKind::kReset);
+  RunFor(20 * kMs);
+  EXPECT_TRUE(permit().acknowledge);
+  drive_.report.bus_ok = true;
+  RunFor(50 * kMs);
+  EXPECT_EQ(AnswerTo(reset), Refusal::kNone);
+}
+
 TEST_F(SafetyTaskReset, OfATripWithoutDriveFaultIsJudgedAtOnce) {
   GoTo(SafetyState::kArmed);
   lines_.levels &= ~LineBit(Line::kEmergencyStop);

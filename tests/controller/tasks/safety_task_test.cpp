@@ -13,6 +13,15 @@ namespace {
 
 using enum SafetyState;
 
+TEST_F(SafetyTaskTest, IsDueEveryMillisecondBeforeAllOthers) {
+  const Task::Traits traits = safety_.traits();
+  EXPECT_STREQ(traits.name, "safety");
+  EXPECT_EQ(traits.period_ns, kMs);
+  EXPECT_EQ(traits.phase_ns, 0);
+  EXPECT_EQ(traits.deadline_ns, kMs);
+  EXPECT_EQ(traits.priority, 90);
+}
+
 TEST_F(SafetyTaskTest, EntersIdleWhenEveryTaskHasReportedAndStaysThere) {
   RunFor(15 * kMs);  // the first step's report is valid from 5 + 10 ms on
   EXPECT_EQ(safety_.status().state, kStarting);
