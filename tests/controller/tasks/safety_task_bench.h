@@ -183,7 +183,14 @@ struct LateTask final : Task {
 
 class SafetyTaskTest : public testing::Test {
  protected:
-  explicit SafetyTaskTest(const MonitorLimits& limits = kLimits) : limits_(limits) {
+  /// @param others  reports of further buses, which have no task here
+  explicit SafetyTaskTest(const MonitorLimits& limits = kLimits,
+                          const std::vector<DriveReportChannel*>& others = {})
+      : limits_(limits), buses_([&] {
+          std::vector<DriveReportChannel*> all{&drive_reports_};
+          all.insert(all.end(), others.begin(), others.end());
+          return all;
+        }()) {
     executor_.Add(drive_);
     executor_.Add(control_);
     executor_.Add(late_);
@@ -256,6 +263,7 @@ class SafetyTaskTest : public testing::Test {
   FakeLines lines_;
   ControlReportChannel reports_{ControlReportHistory(kNoControlReport)};
   DriveReportChannel drive_reports_{DriveReportHistory(kNoDriveReport)};
+  const std::vector<DriveReportChannel*> buses_;
   PermitChannel drive_permits_{PermitHistory(kNoPermit)};
   PermitChannel operator_permits_{PermitHistory(kNoPermit)};
   SpscQueue<OperatorRequest> requests_{100};
@@ -270,7 +278,7 @@ class SafetyTaskTest : public testing::Test {
   SafetyTask safety_{limits_,
                      {.lines = &lines_,
                       .control = &reports_,
-                      .drives = {&drive_reports_},
+                      .drives = buses_,
                       .requests = &requests_,
                       .stop = &stop_,
                       .disarm = &disarm_,

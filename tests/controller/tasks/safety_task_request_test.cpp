@@ -133,6 +133,7 @@ TEST_F(SafetyTaskChangeTest, IsRefusedAfterItsInstantOfAnotherRunAndWithoutOne) 
   for (const SafetyRecord& record : Records()) {
     EXPECT_FALSE(record.facts.request == RequestKind::kChange && record.before.state == kRunning)
         << "the machine has not judged it";
+    EXPECT_EQ(record.request_number == 0, record.facts.request == RequestKind::kNone);
   }
   control_.report.experiment_done = true;
   RunFor(40 * kMs);
@@ -169,10 +170,14 @@ TEST_F(SafetyTaskTest, DrivesThatDoNotSwitchOnRefuseTheRun) {
   drive_.stuck_off = true;
   GoTo(kArmed);
   const std::uint32_t run = Ask(RequestKind::kRun);
-  RunFor(SafetyTask::kEnableNs - 10 * kMs);
+  std::int64_t armed_ns = 0;
+  for (const SafetyRecord& record : Records()) {
+    if (record.after.state != record.before.state) armed_ns = record.due_ns;
+  }
+  executor_.RunUntil(armed_ns + SafetyTask::kEnableNs + 1);
   RequestAnswer answer{};
   while (answers_.Pop(&answer)) EXPECT_NE(answer.number, run) << "it waits";
-  RunFor(20 * kMs);
+  RunFor(kMs);
   ASSERT_TRUE(answers_.Pop(&answer));
   EXPECT_EQ(answer.number, run);
   EXPECT_EQ(answer.refusal, Refusal::kDrivesOff);
@@ -217,85 +222,6 @@ TEST_F(SafetyTaskTest, ASoftLimitKeepsThePowerForTheDampingThenTrips) {
   EXPECT_FALSE(lines_.relay_closed());
 }
 
-TEST_F(SafetyTaskTest, AStopPrecedesPlannedRequestsAndCancelsThePlannedRun) {
-  GoTo(kRunning);
-  const std::uint32_t planned_run = Ask(RequestKind::kRun, executor_.next_ns() + 500 * kMs);
-  Ask(RequestKind::kDisarm, executor_.next_ns() + 1000 * kMs);
-  RunFor(kMs);
-  stop_.Set(++number_);
-  const std::uint32_t later_run = Ask(RequestKind::kRun, executor_.next_ns() + 5000 * kMs);
-  RunFor(kMs);
-  EXPECT_EQ(safety_.status().state, kStopping);
-  RunFor(kMs);
-  RequestAnswer answer{};
-  ASSERT_TRUE(answers_.Pop(&answer));
-  EXPECT_EQ(answer.kind, RequestKind::kStop);
-  ASSERT_TRUE(answers_.Pop(&answer));
-  EXPECT_EQ(answer.number, planned_run);
-  EXPECT_EQ(answer.refusal, Refusal::kCancelled);
-  EXPECT_FALSE(answers_.Pop(&answer))
-      << "the planned disarm and the requests after the stop are kept";
-  control_.report.at_rest = true;
-  RunFor(1000 * kMs + 5 * kMs);
-  EXPECT_EQ(safety_.status().state, kIdle) << "armed at rest, then disarmed as planned";
-  lines_.levels = 0;
-  RunFor(3 * kMs);
-  while (answers_.Pop(&answer)) {
-  }
-  EXPECT_EQ(answer.number, later_run);
-  EXPECT_EQ(answer.refusal, Refusal::kCancelled) << "a trip cancels all";
-}
-
-// The task takes one request from the queue in a tick, so some are still in it when the stop comes.
-TEST_F(SafetyTaskTest, AStopCancelsWhatIsStillInTheQueueAndNotWhatCameAfterIt) {
-  GoTo(kRunning);
-  std::vector<std::uint32_t> before(5);
-  for (std::uint32_t& number : before) number = Ask(RequestKind::kRun, executor_.next_ns() + kMs);
-  stop_.Set(++number_);
-  const std::uint32_t after = Ask(RequestKind::kRun, executor_.next_ns() + kMs);
-  RunFor(10 * kMs);
-  RequestAnswer answer{};
-  ASSERT_TRUE(answers_.Pop(&answer));
-  EXPECT_EQ(answer.kind, RequestKind::kStop);
-  for (const std::uint32_t number : before) {
-    ASSERT_TRUE(answers_.Pop(&answer));
-    EXPECT_EQ(answer.number, number);
-    EXPECT_EQ(answer.refusal, Refusal::kCancelled);
-  }
-  ASSERT_TRUE(answers_.Pop(&answer));
-  EXPECT_EQ(answer.number, after);
-  EXPECT_EQ(answer.refusal, Refusal::kWrongState) << "Stopping";
-}
-
-// Those of an unattended run have numbers of their own, below those of clients.
-TEST_F(SafetyTaskTest, AStopDoesNotCancelWhatIsAskedForLaterWithALowerNumber) {
-  GoTo(kIdle);
-  stop_.Set(number_ + 1000);
-  RunFor(kMs);
-  RequestAnswer stop{};
-  ASSERT_TRUE(answers_.Pop(&stop));
-  EXPECT_EQ(stop.refusal, Refusal::kWrongState);
-  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kNone);
-}
-
-TEST_F(SafetyTaskTest, NoRequestFromBeforeATripIsCarriedOutAfterTheReset) {
-  GoTo(kIdle);
-  const std::int64_t later_ns = executor_.next_ns() + 5000 * kMs;
-  const std::vector<std::uint32_t> asked{Ask(RequestKind::kArm, later_ns),
-                                         Ask(RequestKind::kArm, later_ns),
-                                         Ask(RequestKind::kArm, later_ns)};
-  lines_.levels &= ~LineBit(Line::kEmergencyStop);  // trips in the second tick
-  RunFor(10 * kMs);
-  ASSERT_EQ(safety_.status().state, kTripped);
-  RequestAnswer answer{};
-  for (const std::uint32_t number : asked) {
-    ASSERT_TRUE(answers_.Pop(&answer));
-    EXPECT_EQ(answer.number, number);
-    EXPECT_EQ(answer.refusal, Refusal::kCancelled);
-  }
-  EXPECT_FALSE(answers_.Pop(&answer));
-}
-
 TEST_F(SafetyTaskTest, JudgesOneRequestInATickInTheOrderOfTheQueue) {
   GoTo(kIdle);
   const std::vector<std::uint32_t> asked{Ask(RequestKind::kArm), Ask(RequestKind::kReset),
@@ -307,6 +233,27 @@ TEST_F(SafetyTaskTest, JudgesOneRequestInATickInTheOrderOfTheQueue) {
     EXPECT_EQ(answer.number, number);
     EXPECT_FALSE(answers_.Pop(&answer));
   }
+}
+
+// Those that wait keep their order, whichever of them is due first.
+TEST_F(SafetyTaskTest, ARequestThatIsDuePassesThoseThatWait) {
+  GoTo(kIdle);
+  const std::int64_t now_ns = executor_.next_ns();
+  const std::uint32_t arm = Ask(RequestKind::kArm, now_ns + 20 * kMs);
+  const std::uint32_t reset = Ask(RequestKind::kReset, now_ns + 10 * kMs);
+  const std::uint32_t again = Ask(RequestKind::kArm, now_ns + 20 * kMs);
+  std::vector<RequestAnswer> answers;
+  RequestAnswer answer{};
+  while (answers_.Pop(&answer)) {
+  }
+  RunFor(50 * kMs);
+  while (answers_.Pop(&answer)) answers.push_back(answer);
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[0].number, reset);
+  EXPECT_EQ(answers[1].number, arm);
+  EXPECT_EQ(answers[1].refusal, Refusal::kNone);
+  EXPECT_EQ(answers[2].number, again);
+  EXPECT_EQ(answers[2].refusal, Refusal::kWrongState);
 }
 
 }  // namespace

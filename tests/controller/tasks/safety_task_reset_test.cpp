@@ -124,6 +124,13 @@ TEST_F(SafetyTaskReset, OfADriveWhoseReadingsAreMissingTooAcknowledges) {
   }
 }
 
+TEST_F(SafetyTaskReset, AnotherRequestAcknowledgesNothing) {
+  TripByADrive();
+  PressButton();
+  EXPECT_EQ(Now(RequestKind::kArm), Refusal::kWrongState);
+  EXPECT_FALSE(permit().acknowledge);
+}
+
 TEST_F(SafetyTaskReset, OfALostBusAcknowledges) {
   GoTo(SafetyState::kArmed);
   drive_.report.bus_ok = false;
