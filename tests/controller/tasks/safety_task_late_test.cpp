@@ -94,6 +94,13 @@ TEST_P(LateSafetyThread, WithinTheLimitItOnlyCostsTime) {
   EXPECT_EQ(timing_.Read().safety_overruns, 0u);
 }
 
+TEST_F(SafetyTaskTest, AlreadyTheSecondTickMayNotBeLate) {
+  RunFor(kMs);
+  late_.delay_ns = 6 * kMs;
+  RunFor(7 * kMs);
+  EXPECT_EQ(safety_.status(), (SafetyStatus{kTripped, TripCause::kSafetyOverrun}));
+}
+
 // Not even for the tick that comes late: the drives find no pump and no permit.
 TEST_P(LateSafetyThread, BeyondTheLimitItTripsAndThePumpStaysOffUntilReset) {
   for (const std::int64_t delay_ns : {6 * kMs, 20 * kMs, 100 * kMs, 4 * kMs + 1}) {

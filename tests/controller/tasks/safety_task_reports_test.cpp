@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
+#include "controller/tasks/planned_experiment.h"
 #include "controller/tasks/safety_task.h"
 #include "tests/controller/tasks/safety_task_bench.h"
 
@@ -44,6 +47,18 @@ TEST_F(SafetyTaskTest, WakesTheBusesWhenThePowerGoesAndOnlyThen) {
   EXPECT_TRUE(wakeup_.Take());
   RunFor(100 * kMs);
   EXPECT_FALSE(wakeup_.Take()) << "once";
+}
+
+TEST_F(SafetyTaskTest, ThePermitHasTheRunThatWasGranted) {
+  const PlannedExperiment experiment{std::vector<std::array<double, 2>>(10)};
+  GoTo(kArmed);
+  EXPECT_EQ(permit().run_number, 0U);
+  Ask(RequestKind::kReset);  // refused
+  const std::uint32_t run = Ask(RequestKind::kRun, INT64_MIN, {.experiment = &experiment});
+  RunFor(2 * kMs);
+  ASSERT_EQ(safety_.status().state, kRunning);
+  EXPECT_EQ(permit().run_number, run);
+  EXPECT_EQ(permit().run.experiment, &experiment);
 }
 
 TEST_F(SafetyTaskTest, ARecordHasTheNumberOfItsRequestOrNone) {

@@ -128,6 +128,7 @@ TEST_F(SafetyTaskChangeTest, IsRefusedAfterItsInstantOfAnotherRunAndWithoutOne) 
   GoTo(kRunning);
   const std::uint32_t run = permit().run_number;
   EXPECT_EQ(Change(run, executor_.next_ns() - 1), Refusal::kTooLate);
+  shutting_down_ = true;  // so that the tick has a record
   EXPECT_EQ(Change(run + 1, INT64_MAX), Refusal::kTooLate);
   EXPECT_EQ(permit().change.number, 0u);
   for (const SafetyRecord& record : Records()) {
