@@ -163,6 +163,21 @@ bool StrainFit::Determines(std::size_t link, std::uint32_t used,
          variance.root <= most.root;
 }
 
+// A bridge that is open reads the end of its range too, but the others do not bend with it.
+double StrainFit::BeyondRange(std::uint32_t saturated,
+                              const std::array<double, kMaxStrainChannels>& strain,
+                              const std::array<double, 4>& modal) const noexcept {
+  constexpr double kConfirmed = 0.9;  // of the end: the fit of few gauges is not exact beyond them
+  double most = 0.0;
+  for (std::uint32_t left = saturated; left != 0; left &= left - 1) {
+    const std::size_t i = LowestBit(left);
+    const double end = std::fabs(strain[i]);
+    const double bent = std::copysign(1.0, strain[i]) * Predicted(channel_[i], modal);
+    if (bent >= kConfirmed * end && end > most) most = end;
+  }
+  return most;
+}
+
 FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
                            const std::array<double, 4>& modal_rate_m_s) noexcept {
   const std::int64_t age_ns = instant_ns - frame.sampled_at_ns;
@@ -173,11 +188,11 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
     const std::uint32_t bit = std::uint32_t{1} << i;
     if ((frame.strain_valid & bit) == 0) continue;
     const std::int32_t raw = frame.strain[i];
+    strain[i] = StrainOf(channel_[i].scale, raw);
     if (raw <= lowest_count_ || raw >= highest_count_) {
       out.saturated |= bit;
       continue;
     }
-    strain[i] = StrainOf(channel_[i].scale, raw);
     const std::int64_t late_ns = frame.strain_offset_ns[i] - age_ns;
     if (late_ns != 0) {
       strain[i] -= 1e-9 * static_cast<double>(late_ns) * Predicted(channel_[i], modal_rate_m_s);
@@ -193,6 +208,7 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
     const std::size_t i = static_cast<std::size_t>(link);
     out.used &= ~stuck;
     out.valid[i] = false;
+    out.beyond_range[i] = 0.0;
     out.root_strain[i] = kUnknown;
     out.modal_m[2 * i] = last_modal_[2 * i];
     out.modal_m[2 * i + 1] = last_modal_[2 * i + 1];
@@ -253,7 +269,10 @@ void StrainFit::FitLink(int link, const std::array<double, kMaxStrainChannels>& 
       }
     } else {
       if (!Solve(link, out->used, strain, &modal, &variance)) return;
-      if (!Determines(at, out->used, variance)) return;
+      if (!Determines(at, out->used, variance)) {
+        out->beyond_range[at] = BeyondRange(out->saturated & all, strain, modal);
+        return;
+      }
     }
     const Suspect suspect = SuspectOf(link, out->used, strain, modal, variance, &out->residual[at]);
     if (suspect.apart <= family_limit_ || removed == kMaxOutliersPerLink) break;

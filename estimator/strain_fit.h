@@ -31,6 +31,9 @@ struct FittedModes {
   /// that rare, and an arm that bends impossible.
   std::array<std::uint32_t, 2> repeated;
   double worst_outlier;  ///< of its studentised distance from the fit, unit strain
+  /// Per link without a valid fit: the unit strain, above 0, at the end of the range of its gauges
+  /// that read it and are bent so far as the others say too. 0: there is none.
+  std::array<double, 2> beyond_range;
 };
 
 /// Weighted least-squares fit of one or two modal coordinates per link to the strain channels.
@@ -118,6 +121,9 @@ class StrainFit {
   bool Solve(int link, std::uint32_t used, const std::array<double, kMaxStrainChannels>& strain,
              std::array<double, 4>* modal, Variance* variance) const noexcept;
   bool Determines(std::size_t link, std::uint32_t used, const Variance& variance) const noexcept;
+  /// The largest strain of saturated channels that the fit of the others confirms; 0: none.
+  double BeyondRange(std::uint32_t saturated, const std::array<double, kMaxStrainChannels>& strain,
+                     const std::array<double, 4>& modal) const noexcept;
   /// The channel without which the others agree best.
   struct Suspect {
     std::uint32_t bit;  ///< 0: there is none

@@ -132,8 +132,11 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
     monitored.hub_rad[i] = Bridged((counters.good >> i & 1U) != 0, counters.angle_rad[i],
                                    facts.estimate->x(static_cast<Eigen::Index>(i)));
     monitored.hub_rate_rad_s[i] = HubRate(facts, i);
-    monitored.root_strain[i] = Bridged(modes.valid[i], modes.root_strain[i],
-                                       facts.model_root_strain[i] + strain_off_model_[i]);
+    // Gauges that end before the limit tell nothing about it.
+    monitored.root_strain[i] = modes.beyond_range[i] > safety_.strain_limit[i]
+                                   ? modes.beyond_range[i]
+                                   : Bridged(modes.valid[i], modes.root_strain[i],
+                                             facts.model_root_strain[i] + strain_off_model_[i]);
     if (modes.valid[i]) {
       strain_off_model_[i] = modes.root_strain[i] - facts.model_root_strain[i];
     }

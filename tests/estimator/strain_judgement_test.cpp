@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 
 #include "estimator/strain_fit.h"
 #include "model/arm/arm_model.h"
@@ -13,6 +17,8 @@ namespace flexarm {
 namespace {
 
 const std::array<double, 4> kBent = {0.03, 1e-4, -0.02, 5e-4};
+
+constexpr double kStrainPerCount = 20.0 / 4096.0 / 5000.0;
 
 // A count is 0.98 microstrain. Rounding of half a count on every channel changes a coordinate by
 // 5e-5 m (measured, f21 without its root channel); a bad channel that stays in the fit, by 1e-3 m
@@ -27,7 +33,7 @@ class StrainJudgement : public testing::Test {
     SensorFrame frame{};
     for (std::size_t i = 0; i < sensors_.strain.size(); ++i) {
       const StrainChannelConfig& row = sensors_.strain[i];
-      const double counts = arm_.Strain(row.link, row.position_m, q) * 5000.0 / (20.0 / 4096.0);
+      const double counts = arm_.Strain(row.link, row.position_m, q) / kStrainPerCount;
       frame.strain[i] = static_cast<std::int32_t>(std::lround(counts));
       frame.strain_valid |= 1u << i;
     }
@@ -60,6 +66,38 @@ TEST_F(StrainJudgement, ASaturatedChannelIsExcludedInTheSameSample) {
       ExpectBend(out, kBent, i);
     }
   }
+}
+
+// Bent beyond what its gauges can read, a link has too few for a fit; those that are left still
+// say that the others are right. Link 1: channels 0 to 9 from the root on.
+TEST_F(StrainJudgement, ALinkThatIsBentBeyondTheRangeOfItsGaugesIsSaidToBe) {
+  for (const double sign : {1.0, -1.0}) {
+    StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+    const std::array<double, 4> far = {sign * 0.32, 0.0, -0.02, 5e-4};
+    SensorFrame frame = FrameOf(far);
+    ASSERT_GT(std::abs(frame.strain[3]), 2048) << "four gauges are beyond";
+    ASSERT_LT(std::abs(frame.strain[4]), 2048);
+    for (std::int32_t& counts : frame.strain) counts = std::clamp(counts, -2048, 2047);
+    const FittedModes out = fit.Fit(frame);
+    EXPECT_FALSE(out.valid[0]);
+    EXPECT_NEAR(out.beyond_range[0], 2047.5 * kStrainPerCount, kStrainPerCount);
+    EXPECT_EQ(out.beyond_range[1], 0.0) << "it has a fit";
+  }
+}
+
+TEST_F(StrainJudgement, GaugesThatAreOpenDoNotBendALink) {
+  StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+  for (const double tip_m : {0.03, -0.03, 0.0}) {
+    SensorFrame frame = FrameOf({tip_m, 0.0, 0.0, 0.0});
+    std::fill_n(frame.strain.begin(), 4, 2047);  // far from what the others say
+    const FittedModes out = fit.Fit(frame);
+    ASSERT_FALSE(out.valid[0]);
+    EXPECT_EQ(out.beyond_range[0], 0.0) << tip_m;
+  }
+  SensorFrame frame = FrameOf({-0.32, 0.0, 0.0, 0.0});
+  for (std::int32_t& counts : frame.strain) counts = std::clamp(counts, -2048, 2047);
+  std::fill_n(frame.strain.begin(), 4, 2047);
+  EXPECT_EQ(fit.Fit(frame).beyond_range[0], 0.0) << "the others are bent the other way";
 }
 
 // 1000 microstrain from the fit, the limit being 400; every channel, both signs.

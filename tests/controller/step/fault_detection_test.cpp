@@ -82,6 +82,24 @@ TEST_F(FaultDetectionTest, BendingStrainTripsInTheSameSample) {
   Expect(TripCause::kBendingStrain2, 1, facts, 1.95e-3, 1.9e-3, 2);
 }
 
+// Without a fit, but with gauges that are bent to the end of their range, beyond the limit.
+TEST_F(FaultDetectionTest, GaugesAtTheEndOfTheirRangeTripInTheSameSample) {
+  Facts facts;
+  facts.modes.valid[1] = false;
+  facts.modes.root_strain[1] = std::numeric_limits<double>::quiet_NaN();
+  facts.modes.beyond_range[1] = 2.0e-3;
+  const FaultDetection::Verdict verdict = monitor_.Judge(facts.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kBendingStrain2));
+  EXPECT_EQ(verdict.value, 2.0e-3);
+  EXPECT_EQ(verdict.limit, 1.9e-3);
+  EXPECT_EQ(verdict.channel, 2);
+  EXPECT_FALSE(verdict.may_damp) << "its bending is not measured";
+  facts.modes.beyond_range[1] = 1.9e-3;  // no farther than the limit: that tells nothing
+  monitor_.Reset();
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0U);
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, CauseBit(TripCause::kNoStrainReading2));
+}
+
 TEST_F(FaultDetectionTest, AnEncoderJumpTripsAtOnceAndNamesItsCounter) {
   Facts facts;
   facts.counters.jumped = 0b0100;
