@@ -105,5 +105,37 @@ TEST(AngleKnowledge, AnUnknownJointBeginsAtZeroWhereItStands) {
   }
 }
 
+TEST(AngleKnowledge, BothJointsMayBecomeUnknownAtOnce) {
+  AngleKnowledge angles(AnglesAtStart::kAtZero, FourEncoders());
+  EXPECT_EQ(angles.Follow(CountEpochs{1, 0, 0, 1}), 0b11);
+  EXPECT_EQ(angles.unknown(), 0b11);
+}
+
+TEST(AngleKnowledge, EachUnknownJointBeginsAtZeroWhoseReadingsAreThere) {
+  AngleKnowledge angles(AnglesAtStart::kLost, FourEncoders());
+  TickRecord tick = Tick();
+  tick.output.counts = {500, 600, 700, 800};
+  tick.output.angle_rad = {1.0, 1.0, 1.0, 1.0};
+  for (const std::uint32_t used : {0b0101U, 0b1010U, 0b1111U}) {
+    tick.output.counters_used = used;
+    Calibration calibration{};
+    angles.BeginAtZero(tick, &calibration);
+    for (std::size_t i = 0; i < kCounters; ++i) {
+      EXPECT_EQ(calibration.counter_zero[i], (used >> i & 1U) != 0 ? tick.output.counts[i] : 0);
+    }
+  }
+}
+
+// 0.035 rad: what the play of a joint at rest may be.
+TEST(AngleKnowledge, WithinThePlayOfAJointNothingBegins) {
+  const AngleKnowledge angles(AnglesAtStart::kLost, FourEncoders());
+  TickRecord tick = Tick();
+  tick.output.counts.fill(500);
+  tick.output.angle_rad.fill(0.035);
+  Calibration calibration{};
+  angles.BeginAtZero(tick, &calibration);
+  EXPECT_EQ(calibration.counter_zero, (std::array<std::int64_t, kCounters>{}));
+}
+
 }  // namespace
 }  // namespace flexarm

@@ -117,6 +117,53 @@ TEST(SwitchProof, ALineCountsOnlyFromItsHealthyLevel) {
   EXPECT_EQ(proof.step(), 1U);
 }
 
+// What is done before the patience is over gives the next act all of it.
+TEST(SwitchProof, EachActHasItsOwnPatience) {
+  SwitchProof proof(kPeriod_s);
+  Hold(proof, kHealthyLevels, kPatience - 1);
+  EXPECT_FALSE(proof.failed());
+  Hold(proof, Away(Line::kLimit1Low), 1 + kPatience - 1);
+  EXPECT_FALSE(proof.failed());
+  Hold(proof, kHealthyLevels, 1 + kPatience - 1);
+  EXPECT_EQ(proof.step(), 1U);
+  EXPECT_FALSE(proof.failed());
+  Hold(proof, kHealthyLevels, 1);
+  EXPECT_TRUE(proof.failed());
+}
+
+TEST(SwitchProof, EveryWrongLineIsNamed) {
+  SwitchProof proof(kPeriod_s);
+  Operate(proof, Line::kLimit1Low);
+  Operate(proof, Line::kLimit1Low);
+  ASSERT_EQ(kProofSteps[proof.step()].line, Line::kLimit1High);
+  Hold(proof, Away(Line::kLimit1Low) & Away(Line::kEmergencyStop));
+  EXPECT_THAT(proof.Text(), testing::StartsWith("limit-1-low, emergency-stop opened where"));
+}
+
+// Levels have bits that are no line.
+TEST(SwitchProof, OtherBitsAreNoLines) {
+  const LineLevels others = static_cast<LineLevels>(~((1U << kLines) - 1U));
+  SwitchProof proof(kPeriod_s);
+  Hold(proof, kHealthyLevels | others);
+  Hold(proof, Away(Line::kLimit1Low) | others);
+  Hold(proof, kHealthyLevels | others);
+  EXPECT_EQ(proof.step(), 1U);
+}
+
+TEST(SwitchProof, OnlyAConnectorThatIsNotSeenHasNoPullDown) {
+  SwitchProof operated(kPeriod_s);
+  Hold(operated, kHealthyLevels, kPatience);
+  EXPECT_EQ(operated.Text(),
+            "limit-1-low did not change within 120 s (operate limit-1-low by hand, then release "
+            "it)");
+  SwitchProof unplugged(kPeriod_s);
+  Operate(unplugged, Line::kLimit1Low);
+  Hold(unplugged, Away(Line::kLimit1Low), kPatience + 1);
+  EXPECT_EQ(unplugged.Text(),
+            "limit-1-low did not come back within 120 s (unplug the connector of limit-1-low, then "
+            "plug it in again)");
+}
+
 TEST(SwitchProof, EachActAsksForWhatToDoThen) {
   SwitchProof proof(kPeriod_s);
   Hold(proof, kHealthyLevels);
@@ -127,6 +174,13 @@ TEST(SwitchProof, EachActAsksForWhatToDoThen) {
   EXPECT_EQ(proof.Text(), "unplug the connector of limit-1-low, then plug it in again");
   while (proof.step() < kProofSteps.size() - 1) Operate(proof, kProofSteps[proof.step()].line);
   EXPECT_EQ(proof.Text(), "press and release reset-button");
+}
+
+TEST(SwitchProof, ActsHaveNames) {
+  EXPECT_STREQ(ToString(ProofAct::kOperate), "operate");
+  EXPECT_STREQ(ToString(ProofAct::kUnplug), "unplug");
+  EXPECT_STREQ(ToString(ProofAct::kPress), "press");
+  EXPECT_STREQ(ToString(static_cast<ProofAct>(3)), "unknown");
 }
 
 }  // namespace
