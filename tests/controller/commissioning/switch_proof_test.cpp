@@ -5,6 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "hal/line_names.h"
+
 namespace flexarm {
 namespace {
 
@@ -174,6 +178,18 @@ TEST(SwitchProof, EachActAsksForWhatToDoThen) {
   EXPECT_EQ(proof.Text(), "unplug the connector of limit-1-low, then plug it in again");
   while (proof.step() < kProofSteps.size() - 1) Operate(proof, kProofSteps[proof.step()].line);
   EXPECT_EQ(proof.Text(), "press and release reset-button");
+}
+
+// Each switch at its own input, and that its wire may break; the button last, for the reset.
+TEST(SwitchProof, EverySwitchIsOperatedAndUnpluggedThenTheButtonPressed) {
+  std::string steps;
+  for (const ProofStep& step : kProofSteps) {
+    steps += std::string(ToString(step.act)) + " " + ToString(step.line) + "\n";
+  }
+  EXPECT_EQ(steps,
+            "operate limit-1-low\nunplug limit-1-low\noperate limit-1-high\nunplug limit-1-high\n"
+            "operate limit-2-low\nunplug limit-2-low\noperate limit-2-high\nunplug limit-2-high\n"
+            "operate emergency-stop\nunplug emergency-stop\npress reset-button\n");
 }
 
 TEST(SwitchProof, ActsHaveNames) {
