@@ -63,6 +63,7 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
       hub_window_(SamplesIn(kHubRestWindow_s, period_s, kMostRestWindow)),
       strain_window_(SamplesIn(kStrainRestWindow_s, period_s, kMostRestWindow)),
       rate_window_(SamplesIn(kHubRateWindow_s, period_s, kMostRestWindow)),
+      brake_window_(SamplesIn(kBrakesWithin_s, period_s, kMostRestWindow)),
       // Not before the window is full.
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
                                   static_cast<int>(hub_window_) + 1)) {}
@@ -70,6 +71,7 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
 void FaultDetection::Reset() noexcept {
   in_a_row_ = {};
   strain_off_model_ = {};
+  beyond_ = {};
   rest_ticks_ = 0;
   incomplete_ticks_ = 0;
   ring_ = 0;
@@ -144,14 +146,34 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
   return monitored;
 }
 
+// Slower than once is enough: an elastic joint swings while it is braked.
+void FaultDetection::FollowBeyond(std::size_t i, const Monitored& monitored,
+                                  double limit_rad) noexcept {
+  const double hub_rad = std::fabs(monitored.hub_rad[i]);
+  Beyond& hub = beyond_[i];
+  if (!(hub_rad > limit_rad)) {
+    hub = {};
+    return;
+  }
+  const bool outward = hub_rad > std::fabs(Before(rate_window_).hub_rad[i]);
+  const double rate_rad_s = outward ? monitored.hub_rate_rad_s[i] : 0.0;
+  if (hub.samples == brake_window_) {
+    hub.driven_on = rate_rad_s > hub.fastest_rad_s;
+    return;
+  }
+  ++hub.samples;
+  hub.fastest_rad_s = std::max(hub.fastest_rad_s, rate_rad_s);
+}
+
 void FaultDetection::JudgeJoints(const LoopFacts& facts, const Monitored& monitored) noexcept {
   using enum TripCause;
   const SafetyConfig& limits = facts.reduced ? reduced_ : safety_;
   for (std::size_t i = 0; i < 2; ++i) {
+    const double soft_rad = limits.soft_angle_deg[i] * kRadPerDeg;
+    FollowBeyond(i, monitored, soft_rad);
     if (facts.mode != LoopMode::kRegulate) {
       RaiseUnlessWithin(PerJoint(kSoftLimit1, i), kNoCounterReading, 1,
-                        std::fabs(monitored.hub_rad[i]), limits.soft_angle_deg[i] * kRadPerDeg,
-                        i + 1);
+                        std::fabs(monitored.hub_rad[i]), soft_rad, i + 1);
     }
     RaiseUnlessWithin(PerJoint(kHubRate1, i), kStateNotFinite, kRateTicks,
                       monitored.hub_rate_rad_s[i], limits.hub_rate_rad_s[i], i + 1);
@@ -251,7 +273,7 @@ bool FaultDetection::MayDamp(const LoopFacts& facts, const Monitored& monitored)
     const double rate = monitored.hub_rate_rad_s[i];
     const double strain = std::fabs(facts.modes->root_strain[i]);
     const bool measured = facts.modes->valid[i] && (facts.counters->good >> i & 1U) != 0;
-    if (!measured || !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||
+    if (!measured || beyond_[i].driven_on || !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||
         !(strain < kDampedTo * safety_.strain_limit[i])) {
       return false;
     }

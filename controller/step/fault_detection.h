@@ -52,12 +52,17 @@ class FaultDetection {
     double value, limit;    ///< of the lowest fault
     std::uint16_t channel;  ///< 1-based; 0: none
     bool at_rest;           ///< hub and strain rates within their bounds for rest_time
-    bool may_damp;  ///< hubs and bending of both links are measured, and within kDampedTo limits
+    /// Hubs and bending of both links are measured and within kDampedTo limits, and no hub that is
+    /// beyond its soft limit is driven on.
+    bool may_damp;
   };
 
   /// After a cause of stop category 1 the arm is damped only while hub rates and strains stay below
   /// this many times their limits. Beyond, damping does not work: a wrong sign, a broken link.
   static constexpr double kDampedTo = 1.5;
+  /// A hub beyond its soft limit is driven on if, after this time beyond it, it moves outward
+  /// faster than ever within it: the torque that damps it does not brake.
+  static constexpr double kBrakesWithin_s = 0.1;
 
   FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
                  const SensorConfig& sensors, const std::array<int, 2>& gauges_needed,
@@ -83,7 +88,14 @@ class FaultDetection {
     std::array<double, 2> hub_rad, root_strain;
     std::int64_t tick;
   };
+  /// A hub beyond its soft limit.
+  struct Beyond {
+    std::size_t samples = 0;     // up to brake_window_
+    double fastest_rad_s = 0.0;  // outward, in those
+    bool driven_on = false;      // faster after them
+  };
   Monitored Monitor(const LoopFacts& facts) noexcept;
+  void FollowBeyond(std::size_t i, const Monitored& monitored, double limit_rad) noexcept;
   /// `reading`, or what stands for it in this sample.
   double Bridged(bool read, double reading, double model) const noexcept;
 
@@ -118,6 +130,7 @@ class FaultDetection {
   std::array<double, 2> hub_count_rad_;     // one count of the hub encoders
   std::size_t hub_window_, strain_window_;  // samples over which the rates at rest are taken
   std::size_t rate_window_;                 // samples over which a hub rate is measured
+  std::size_t brake_window_;                // samples of kBrakesWithin_s
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
   int incomplete_ticks_ = 0;  // samples in a row that lacked a reading, up to kMissingTicks
@@ -128,6 +141,7 @@ class FaultDetection {
   std::array<int, kTripCauses> in_a_row_{};
   // The last reading of the strain at the root of each link, minus the estimated one.
   std::array<double, 2> strain_off_model_{};
+  std::array<Beyond, 2> beyond_{};
   Verdict verdict_{};
 };
 

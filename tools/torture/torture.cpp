@@ -51,8 +51,12 @@ class Scenario {
     // Within a millisecond the drive has the permit of the tick that changed the state: the next
     // slice has no torque. With a fault of the safety thread, the permit must be too old.
     const auto permit_ns = std::llround(rig.config.safety.permit_timeout_ms * 1e6);
+    Peaks most = envelope;
+    if (HasFaultOf(scenario, FaultPlace::kTorque)) {
+      most.angle_share = std::max(most.angle_share, kAngleShareWithTorqueFault);
+    }
     return {.torque_after_ns = HasFaultOf(scenario, FaultPlace::kSafety) ? permit_ns + 2 * kMs : -1,
-            .most = envelope,
+            .most = most,
             .angle_hidden = {HideAngle(rig.config, scenario.faults, 0),
                              HideAngle(rig.config, scenario.faults, 1)}};
   }

@@ -48,6 +48,9 @@ class TorturedRigs {
 /// a twentieth more of the angle, a quarter of the others (docs/torture.md).
 inline constexpr Peaks kEnvelope{
     .torque_share = 1.0, .angle_share = 1.3, .rate_share = 3.0, .strain_share = 1.3};
+/// The same of the angle if a torque is not that of the command: what damps the arm beyond its soft
+/// limit may then drive it on until that shows (FaultDetection::kBrakesWithin_s).
+inline constexpr double kAngleShareWithTorqueFault = 2.0;
 
 /// Runs one scenario and checks every rule (docs/torture.md).
 /// @param guard  of the real-time tasks; null: none

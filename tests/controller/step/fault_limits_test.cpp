@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "controller/step/fault_detection.h"
 #include "model/units.h"
 #include "tests/controller/step/fault_detection_fixture.h"
@@ -65,6 +67,30 @@ TEST_F(FaultLimitsTest, DampingEndsAtItsLimits) {
       may_damp([&](Facts* f) { f->estimate.x(6) = most * config_.safety.hub_rate_rad_s[0]; }));
   EXPECT_FALSE(
       may_damp([&](Facts* f) { f->modes.root_strain[1] = most * config_.safety.strain_limit[1]; }));
+}
+
+// Hub 2 goes beyond its soft limit of 90 deg, with these turns from sample to sample.
+TEST_F(FaultLimitsTest, DampingEndsWhenItDoesNotBrake) {
+  const auto may_damp = [this](double sign, const std::vector<double>& turns_deg) {
+    monitor_.Reset();
+    double hub_rad = sign * 89.0 * kRadPerDeg;
+    bool damps = true;
+    for (const double turn_deg : turns_deg) {
+      Facts facts;
+      facts.counters.angle_rad = {0.0, hub_rad, 0.0, hub_rad};
+      damps = monitor_.Judge(facts.Now()).may_damp;
+      hub_rad += sign * turn_deg * kRadPerDeg;
+    }
+    return damps;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    // Beyond from the second sample on; the window of five ends with the sixth.
+    EXPECT_FALSE(may_damp(sign, {3, 3, 3, 4, 3, 3, 5, 5}));
+    EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 3, 3, 4, 4})) << "not faster than once within it";
+    EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 5, 5})) << "faster within it";
+    EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 3, 3, -5, -5})) << "it comes back";
+    EXPECT_TRUE(may_damp(sign, {3, -3, 3, 3, 3, 3, 5, 5})) << "it was within the limit again";
+  }
 }
 
 // The pluck test compares no sensor with another, and has no soft limit to leave out.
