@@ -71,9 +71,10 @@ TEST_F(FaultLimitsTest, DampingEndsAtItsLimits) {
 
 // Hub 2 goes beyond its soft limit of 90 deg, with these turns from sample to sample.
 TEST_F(FaultLimitsTest, DampingEndsWhenItDoesNotBrake) {
-  const auto may_damp = [this](double sign, const std::vector<double>& turns_deg) {
+  const auto may_damp = [this](double sign, const std::vector<double>& turns_deg,
+                               double from_deg = 89.0) {
     monitor_.Reset();
-    double hub_rad = sign * 89.0 * kRadPerDeg;
+    double hub_rad = sign * from_deg * kRadPerDeg;
     bool damps = true;
     for (const double turn_deg : turns_deg) {
       Facts facts;
@@ -86,11 +87,22 @@ TEST_F(FaultLimitsTest, DampingEndsWhenItDoesNotBrake) {
   for (const double sign : {1.0, -1.0}) {
     // Beyond from the second sample on; the window of five ends with the sixth.
     EXPECT_FALSE(may_damp(sign, {3, 3, 3, 4, 3, 3, 5, 5}));
+    EXPECT_TRUE(may_damp(sign, {5, 5, 5}, 100.0)) << "a reset forgets";
     EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 3, 3, 4, 4})) << "not faster than once within it";
     EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 5, 5})) << "faster within it";
     EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 3, 3, -5, -5})) << "it comes back";
     EXPECT_TRUE(may_damp(sign, {3, -3, 3, 3, 3, 3, 5, 5})) << "it was within the limit again";
+    EXPECT_TRUE(may_damp(sign, {0, 0, 3, 3, 3, 4, 4}, 90.0)) << "at the limit is not beyond it";
   }
+}
+
+// An estimate that turns where the encoder stands is not the hub.
+TEST_F(FaultLimitsTest, AHubThatStandsIsNotDrivenOn) {
+  Facts facts;
+  facts.counters.angle_rad = {0.0, 2.0, 0.0, 2.0};
+  for (int k = 0; k < 6; ++k) EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
+  facts.estimate.x(7) = 5.0;
+  EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
 }
 
 // The pluck test compares no sensor with another, and has no soft limit to leave out.
