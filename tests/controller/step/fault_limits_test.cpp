@@ -92,6 +92,7 @@ TEST_F(FaultLimitsTest, DampingEndsWhenItDoesNotBrake) {
     EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 5, 5})) << "faster within it";
     EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 3, 3, -5, -5})) << "it comes back";
     EXPECT_TRUE(may_damp(sign, {3, -3, 3, 3, 3, 3, 5, 5})) << "it was within the limit again";
+    EXPECT_TRUE(may_damp(sign, {1.2, 1.2, 1.2, 1.2, 1.2, 0, 0})) << "it stands";
     EXPECT_TRUE(may_damp(sign, {0, 0, 3, 3, 3, 4, 4}, 90.0)) << "at the limit is not beyond it";
   }
 }
