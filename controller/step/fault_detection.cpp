@@ -146,7 +146,7 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
   return monitored;
 }
 
-// Slower than once is enough: an elastic joint swings while it is braked.
+// Not beyond what it once was is enough: an elastic joint swings while it is braked.
 void FaultDetection::FollowBeyond(std::size_t i, const Monitored& monitored,
                                   double limit_rad) noexcept {
   const double hub_rad = std::fabs(monitored.hub_rad[i]);
@@ -170,8 +170,8 @@ void FaultDetection::JudgeJoints(const LoopFacts& facts, const Monitored& monito
   const SafetyConfig& limits = facts.reduced ? reduced_ : safety_;
   for (std::size_t i = 0; i < 2; ++i) {
     const double soft_rad = limits.soft_angle_deg[i] * kRadPerDeg;
-    FollowBeyond(i, monitored, soft_rad);
     if (facts.mode != LoopMode::kRegulate) {
+      FollowBeyond(i, monitored, soft_rad);
       RaiseUnlessWithin(PerJoint(kSoftLimit1, i), kNoCounterReading, 1,
                         std::fabs(monitored.hub_rad[i]), soft_rad, i + 1);
     }

@@ -97,6 +97,17 @@ TEST_F(FaultLimitsTest, DampingEndsWhenItDoesNotBrake) {
   }
 }
 
+// Homing looks for the switches, which are beyond the soft limits.
+TEST_F(FaultLimitsTest, HomingIsDampedBeyondTheSoftLimits) {
+  Facts facts;
+  facts.mode = LoopMode::kRegulate;
+  for (double turn_rad = 0.0, hub_rad = 2.0; turn_rad < 0.1; turn_rad += 0.01) {
+    hub_rad += turn_rad;  // faster and faster
+    facts.counters.angle_rad = {0.0, hub_rad, 0.0, hub_rad};
+    EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
+  }
+}
+
 // An estimate that turns where the encoder stands is not the hub.
 TEST_F(FaultLimitsTest, AHubThatStandsIsNotDrivenOn) {
   Facts facts;
