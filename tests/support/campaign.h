@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/support/sanitizer.h"
+
 namespace flexarm {
 
 /// How many cases a campaign of random cases has: `sample` in every run of the tests, a tenth of
@@ -11,11 +13,7 @@ namespace flexarm {
 inline long CampaignCases(long sample, long whole) {
   const char* wanted = std::getenv("FLEXARM_CAMPAIGN");
   if (wanted != nullptr) return std::string(wanted) == "whole" ? whole : std::atol(wanted);
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return sample / 10;
-#else
-  return sample;
-#endif
+  return kSanitized ? sample / 10 : sample;
 }
 
 }  // namespace flexarm

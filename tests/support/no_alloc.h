@@ -1,13 +1,11 @@
 #pragma once
 
+#include "tests/support/sanitizer.h"
+
 namespace flexarm {
 
 /// True where the allocator can be replaced: the sanitizers have their own.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kNoAllocWorks = false;
-#else
-inline constexpr bool kNoAllocWorks = true;
-#endif
+inline constexpr bool kNoAllocWorks = !kSanitized;
 
 /// While one of these exists, this thread must not use the heap: malloc, calloc, realloc, free of
 /// a block, aligned allocation, and so operator new and delete. The first call is reported on

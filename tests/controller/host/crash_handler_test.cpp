@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "controller/realtime/alternate_stack.h"
+#include "tests/support/sanitizer.h"
 
 namespace flexarm {
 namespace {
@@ -24,11 +25,7 @@ class EndsBy {
   explicit EndsBy(int signal) : signal_(signal) {}
   bool operator()(int status) const {
     if (WIFSIGNALED(status)) return WTERMSIG(status) == signal_;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    return WEXITSTATUS(status) != 0;
-#else
-    return false;
-#endif
+    return kSanitized && WEXITSTATUS(status) != 0;
   }
 
  private:
@@ -120,9 +117,9 @@ TEST_F(CrashDeathTest, OfAStackThatOverflowedIsHandledOnAnother) {
 
 // A pipe that is not read: a write would wait for ever, and the process would never end.
 TEST_F(CrashDeathTest, IsNotHeldByAFullPipe) {
-#if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the thread sanitizer itself reports to the full pipe, and waits";
-#endif
+  if (kThreadSanitizer) {
+    GTEST_SKIP() << "the thread sanitizer itself reports to the full pipe, and waits";
+  }
   EXPECT_EXIT(
       {
         int ends[2];

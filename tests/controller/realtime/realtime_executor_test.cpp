@@ -13,6 +13,7 @@
 #include "controller/realtime/lockstep_executor.h"
 #include "controller/realtime/wakeup.h"
 #include "tests/controller/realtime/recording_task.h"
+#include "tests/support/fifo_permitted.h"
 
 // Test machines guarantee no latency: these tests assert order and counts only, which hold for any
 // lateness.

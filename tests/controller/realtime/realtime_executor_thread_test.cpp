@@ -12,6 +12,8 @@
 #include <stdexcept>
 
 #include "tests/controller/realtime/recording_task.h"
+#include "tests/support/fifo_permitted.h"
+#include "tests/support/sanitizer.h"
 
 namespace flexarm {
 namespace {
@@ -100,9 +102,9 @@ TEST(RealtimeExecutor, NamesEachThreadAndKeepsTheEndOfALongName) {
 }
 
 TEST(RealtimeExecutorDeathTest, ThrowsWhenFifoIsNotPermitted) {
-#if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "setuid never returns because of the thread sanitizer's own thread";
-#endif
+  if (kThreadSanitizer) {
+    GTEST_SKIP() << "setuid never returns because of the thread sanitizer's own thread";
+  }
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(StartWithoutRights(), testing::ExitedWithCode(7),
               "'test' with SCHED_FIFO priority 80.*LimitRTPRIO.*--without-realtime");

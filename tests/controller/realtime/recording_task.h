@@ -4,14 +4,11 @@
 
 #include "controller/realtime/clock.h"
 #include "controller/realtime/realtime_executor.h"
-#include "controller/realtime/realtime_setup.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
 
 inline constexpr std::int64_t kLeadNs = 20 * kMs;
-
-inline bool FifoPermitted(int priority) { return ReadRealtimeHost(priority).fifo_error == 0; }
 
 class RecordingTask : public Task {
  public:

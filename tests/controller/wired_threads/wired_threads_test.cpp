@@ -16,7 +16,6 @@
 #include "controller/operator/request_tracker.h"
 #include "controller/realtime/clock.h"
 #include "controller/realtime/realtime_executor.h"
-#include "controller/realtime/realtime_setup.h"
 #include "controller/tasks/wired_stack.h"
 #include "hal/canopen/canopen_device.h"
 #include "hal/canopen/canopen_wiring.h"
@@ -29,6 +28,7 @@
 #include "tests/controller/latch/latch_folder.h"
 #include "tests/controller/loop/simulated_runs.h"
 #include "tests/support/campaign.h"
+#include "tests/support/fifo_permitted.h"
 #include "tests/support/loop_time.h"
 
 namespace flexarm {
@@ -337,7 +337,7 @@ class Cycle {
   LatchFolder folder_;
   TripLatch latch_{folder_.path(), "/runs", [](bool, const std::string&) {}};
   std::unique_ptr<RequestTracker> tracker_;
-  RealtimeExecutor executor_{ReadRealtimeHost(SafetyTask::kPriority).fifo_error == 0};
+  RealtimeExecutor executor_{FifoPermitted(SafetyTask::kPriority)};
   std::int64_t epoch_ns_ = 0;
   SafetyState state_ = SafetyState::kStarting;
   int asked_ = 0, answered_ = 0;
