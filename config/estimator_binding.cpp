@@ -45,7 +45,8 @@ void ReadChecks(TableReader estimator, EstimatorConfig* out) {
                  "a counter that changes faster has jumped: trip encoder-jump");
   estimator.Read("hub_rotor_limit_rad", &out->hub_rotor_limit_rad,
                  "largest angle between hub and rotor beyond the twist due to the torque: trip "
-                 "hub-against-rotor");
+                 "hub-against-rotor; without a rotor encoder, between a hub and its reading that "
+                 "repeats itself: trip estimator-residual");
   estimator.Read("strain_family_limit", &out->strain_family_limit,
                  {"a channel farther from the fit to its link is left out: trip "
                   "strain-out-of-family",

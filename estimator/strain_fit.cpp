@@ -223,13 +223,28 @@ FittedModes StrainFit::Fit(const SensorFrame& frame, std::int64_t instant_ns,
   return out;
 }
 
+double StrainFit::OfTheOthers(const Channel& channel, const Variance& variance) const noexcept {
+  constexpr double kAlone = 1e-6;
+  const double spread = channel.spread[0] * variance.modal_m2[0] +
+                        channel.spread[1] * variance.modal_m2[1] +
+                        channel.spread[2] * variance.modal_covariance_m2;
+  const double rest = 1.0 - channel.weight * spread;
+  return rest > kAlone ? rest : 0.0;
+}
+
+double StrainFit::ShownOfError(std::size_t channel) const noexcept {
+  const Channel& c = channel_[channel];
+  const double rest = OfTheOthers(c, of_all_[static_cast<std::size_t>(c.link)]);
+  const double followed = c.shape[0] * c.inverse[0] + c.shape[1] * c.inverse[1];
+  return rest > 0.0 ? (1.0 - followed) / std::sqrt(rest) : 0.0;
+}
+
 // Without channel i the weighted sum of squares falls by w d^2 / (1 - h), with its distance d from
 // the fit and its leverage h: the square of its studentised distance.
 StrainFit::Suspect StrainFit::SuspectOf(int link, std::uint32_t used,
                                         const std::array<double, kMaxStrainChannels>& strain,
                                         const std::array<double, 4>& modal,
                                         const Variance& variance, double* residual) const noexcept {
-  constexpr double kAlone = 1e-6;  // 1 - h of a channel that alone determines a mode
   Suspect suspect{};
   double most = 0.0, sum = 0.0;
   int count = 0;
@@ -239,11 +254,8 @@ StrainFit::Suspect StrainFit::SuspectOf(int link, std::uint32_t used,
     const double distance = std::fabs(strain[i] - Predicted(channel, modal));
     sum += distance * distance;
     ++count;
-    const double spread = channel.spread[0] * variance.modal_m2[0] +
-                          channel.spread[1] * variance.modal_m2[1] +
-                          channel.spread[2] * variance.modal_covariance_m2;
-    const double rest = 1.0 - channel.weight * spread;  // 1 - h
-    if (!(rest > kAlone)) continue;
+    const double rest = OfTheOthers(channel, variance);
+    if (rest == 0.0) continue;
     const double falls = channel.weight * distance * distance / rest;
     if (!(falls > most)) continue;
     most = falls;

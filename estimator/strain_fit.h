@@ -78,6 +78,9 @@ class StrainFit {
   /// Channels that a valid fit of each link needs at least: one more than it has modes, so that
   /// they check each other; all of a link that has no more than modes.
   const std::array<int, 2>& gauges_needed() const noexcept { return gauges_needed_; }
+  /// How much of an error of one channel its studentised distance from the fit shows, 0 .. 1, with
+  /// all channels good: sqrt(1 - h), with its leverage h. 0: the fit follows it wherever it goes.
+  double ShownOfError(std::size_t channel) const noexcept;
   /// Surface strain at the root of a link, 0 or 1, bent as the modal coordinates f11 f12 f21 f22.
   double RootStrain(std::size_t link, const std::array<double, 4>& modal_m) const noexcept {
     return root_shape_[link][0] * modal_m[2 * link] + root_shape_[link][1] * modal_m[2 * link + 1];
@@ -112,6 +115,9 @@ class StrainFit {
   };
 
   double Predicted(const Channel& channel, const std::array<double, 4>& modal) const noexcept;
+  /// 1 - h of a channel, with its leverage h in a fit of that variance; 0: it alone determines a
+  /// mode.
+  double OfTheOthers(const Channel& channel, const Variance& variance) const noexcept;
   std::uint32_t LinkMask(int link) const noexcept {
     return link_mask_[static_cast<std::size_t>(link)];
   }

@@ -19,6 +19,15 @@ double PlantStep_ms(double period_ms) {
   return 0.5;
 }
 
+// A joint that is driven from rest by its whole torque turns one radian in sqrt(2 J / S).
+double StopTimeout_s(const ArmScales& scales) {
+  double slowest_s = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    slowest_s = std::max(slowest_s, std::sqrt(scales.inertia_kgm2[i] / scales.torque_nm[i]));
+  }
+  return std::clamp(8.0 * slowest_s, 4.0, 10.0);
+}
+
 }  // namespace
 
 std::array<double, 2> HubRateLimit_rad_s(const ArmScales& scales) {
@@ -53,6 +62,8 @@ void DeriveLimits(const TuningBasis& basis, const ArmScales& scales, DerivedList
   out->List("limits.hub_rate_rad_s", HubRateLimit_rad_s(scales), "2.5 sqrt(S / J)");
   out->List("limits.strain_limit", scales.strain_limit,
             "0.95 of the strain that the gauges can show");
+  out->Number("safety.stop_timeout_s", StopTimeout_s(scales),
+              "8 sqrt(J / S) of the slower joint, 4 to 10 s");
   out->Number("safety.rest_strain_rate_per_s",
               2.6 * std::max(scales.strain_limit[0], scales.strain_limit[1]),
               "2.6 strain limits a second");

@@ -72,6 +72,7 @@ void FaultDetection::Reset() noexcept {
   in_a_row_ = {};
   strain_off_model_ = {};
   beyond_ = {};
+  repeated_ = {};
   rest_ticks_ = 0;
   incomplete_ticks_ = 0;
   ring_ = 0;
@@ -243,12 +244,40 @@ void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
 void FaultDetection::JudgeEstimate(const LoopFacts& facts) noexcept {
   const StateEstimator::Estimate& estimate = *facts.estimate;
   Raise(TripCause::kStateNotFinite, !estimate.x.allFinite(), 1, 0.0, 0.0, 0);
+  const double limit_rad = estimator_.innovation_limit_rad;
   const double hub1 = std::fabs(estimate.innovation[0]), hub2 = std::fabs(estimate.innovation[1]);
   const double worst = hub1 > hub2 || std::isnan(hub1) ? hub1 : hub2;  // NaN if one is
+  // The estimate follows a reading that jumps: without another encoder only the jump itself tells.
+  const bool jumped = (IsAlone(0) && hub1 > limit_rad) || (IsAlone(1) && hub2 > limit_rad);
   const bool judged = facts.mode != LoopMode::kOpenLoop;
-  Raise(TripCause::kEstimatorResidual, judged && !(worst <= estimator_.innovation_limit_rad),
-        estimator_.fault_ticks, worst, estimator_.innovation_limit_rad, hub1 >= hub2 ? 1 : 2,
-        IsComplete());
+  Raise(TripCause::kEstimatorResidual, judged && !(worst <= limit_rad),
+        jumped ? 1 : estimator_.fault_ticks, worst, limit_rad, hub1 >= hub2 ? 1 : 2, IsComplete());
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!IsAlone(i)) continue;
+    const double off_rad = FollowRepeated(facts, i);
+    if (!judged || !(off_rad > estimator_.hub_rotor_limit_rad)) continue;
+    Raise(TripCause::kEstimatorResidual, true, 1, off_rad, estimator_.hub_rotor_limit_rad, i + 1);
+  }
+}
+
+// A hub that friction stops, or its drive, slows down first, and the model knows the drive's
+// torque. Without a torque a brake may hold it.
+double FaultDetection::FollowRepeated(const LoopFacts& facts, std::size_t i) noexcept {
+  Repeated& hub = repeated_[i];
+  if ((facts.counters->good >> i & 1U) == 0) return 0.0;
+  const double reading_rad = facts.counters->angle_rad[i];
+  if (reading_rad != hub.reading_rad) {
+    hub = {.reading_rad = reading_rad,
+           .turned_rad = std::fabs(reading_rad - hub.reading_rad),
+           .samples = 0};
+    return 0.0;
+  }
+  if (hub.samples == 0) {
+    hub.turned_rad = std::min(hub.turned_rad, std::fabs(facts.estimate->innovation[i]));
+  }
+  if (facts.applied_torque_nm[i] == 0.0) hub.turned_rad = 0.0;
+  hub.samples = std::min(hub.samples + 1, kMostRepeated);
+  return hub.samples < estimator_.fault_ticks ? 0.0 : hub.samples * hub.turned_rad;
 }
 
 // What the encoder has turned at least: a count less than it says, since the begin of the window

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "controller/types/safety_config.h"
 #include "controller/types/step_types.h"
@@ -41,10 +42,13 @@ struct LoopFacts {
 /// occur; hub rates after two samples, estimated or measured by the encoder alone: gauges that lead
 /// the estimate astray do not hide how fast a hub turns. Faults of single sensors and of the
 /// estimator are raised after `fault_ticks` samples in a row; a sample that lacks a reading is no
-/// evidence that they are well again. Homing (LoopMode::kRegulate) has no
-/// soft limits: they lie inside the switches, and the angle is not calibrated yet. The pluck test
-/// (kOpenLoop) does not compare sensors with each other: it measures their agreement, and its
-/// torque does not depend on them. Real-time: safe.
+/// evidence that they are well again. The hub of a joint without an encoder on its rotor is
+/// compared with the model alone, which soon follows a wrong reading: one innovation beyond its
+/// limit is a fault at once, and so is a reading that repeats itself from one sample to the next
+/// while the hub turned, as soon as the hub would be off by hub_rotor_limit. Homing
+/// (LoopMode::kRegulate) has no soft limits: they lie inside the switches, and the angle is not
+/// calibrated yet. The pluck test (kOpenLoop) does not compare sensors with each other: it measures
+/// their agreement, and its torque does not depend on them. Real-time: safe.
 class FaultDetection {
  public:
   struct Verdict {
@@ -63,6 +67,9 @@ class FaultDetection {
   /// A hub beyond its soft limit is driven on if, after this time beyond it, it moves outward
   /// faster than ever within it: the torque that damps it does not brake.
   static constexpr double kBrakesWithin_s = 0.1;
+  /// A reading that repeats itself is followed for so many samples: a hub so slow that it is not
+  /// off by hub_rotor_limit then may have come to rest.
+  static constexpr int kMostRepeated = 8;
 
   FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
                  const SensorConfig& sensors, const std::array<int, 2>& gauges_needed,
@@ -94,6 +101,13 @@ class FaultDetection {
     double fastest_rad_s = 0.0;  // outward, in those
     bool driven_on = false;      // faster after them
   };
+  /// The reading of a hub encoder that repeats itself.
+  struct Repeated {
+    double reading_rad = std::numeric_limits<double>::quiet_NaN();
+    // In the sample before the first repeated one; the model's for that one, if it is less.
+    double turned_rad = 0.0;
+    int samples = 0;  // repeated, up to kMostRepeated
+  };
   Monitored Monitor(const LoopFacts& facts) noexcept;
   void FollowBeyond(std::size_t i, const Monitored& monitored, double limit_rad) noexcept;
   /// `reading`, or what stands for it in this sample.
@@ -103,6 +117,11 @@ class FaultDetection {
   void JudgeCounters(const LoopFacts& facts) noexcept;
   void JudgeStrain(const LoopFacts& facts) noexcept;
   void JudgeEstimate(const LoopFacts& facts) noexcept;
+  /// No encoder on the rotor of joint i.
+  bool IsAlone(std::size_t i) const noexcept { return (counters_present_ >> (i + 2) & 1U) == 0; }
+  /// @returns how far a hub whose reading repeats itself has turned since, if it went on, rad; 0
+  ///   if it does not, or not for fault_ticks yet
+  double FollowRepeated(const LoopFacts& facts, std::size_t i) noexcept;
   bool JudgeRest(const LoopFacts& facts) noexcept;
   /// The complete sample so many before the present one.
   const Posture& Before(std::size_t samples) const noexcept {
@@ -142,6 +161,7 @@ class FaultDetection {
   // The last reading of the strain at the root of each link, minus the estimated one.
   std::array<double, 2> strain_off_model_{};
   std::array<Beyond, 2> beyond_{};
+  std::array<Repeated, 2> repeated_{};
   Verdict verdict_{};
 };
 

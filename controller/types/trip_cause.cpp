@@ -167,9 +167,11 @@ constexpr std::array<Row, kTripCauses> kRows{{
     {kEstimatorResidual,
      "estimator-residual",
      kJoint,
-     {"The measurements do not fit the model of the arm.",
-      "Check the payload, the gauges and the configuration.",
-      "Correct them, or fit the model to a run with `flexarm identify`."}},
+     {"The measurements do not fit the model of the arm, or the reading of a hub encoder stands "
+      "still or jumps where the model says that the hub turns.",
+      "Check the encoder, its cable and its coupling; then the payload, the gauges and the "
+      "configuration.",
+      "Repair or correct them, or fit the model to a run with `flexarm identify`."}},
     {kStopTimeout,
      "stop-timeout",
      kJoint,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 #include "estimator/strain_fit.h"
 #include "model/arm/arm_model.h"
@@ -134,6 +135,46 @@ TEST_F(StrainJudgement, AnOutlierThatTheFitFollowsIsSeenToo) {
     EXPECT_LT(out.worst_outlier * out.worst_outlier / error, 4e-4) << "not seen by the distance";
     ExpectBend(out, kBent, root);
   }
+}
+
+// What shows is the studentised distance over the error: of a straight arm, one channel in error.
+TEST_F(StrainJudgement, WhatShowsOfAnErrorIsItsStudentisedDistance) {
+  constexpr std::int32_t kError_counts = 1024;
+  for (std::size_t i = 0; i < 20; ++i) {
+    StrainFit fit(ThesisRig(), sensors_, ThesisEstimator());
+    SensorFrame frame = FrameOf({});
+    frame.strain[i] = kError_counts;
+    const double distance = fit.Fit(frame).worst_outlier;
+    EXPECT_NEAR(fit.ShownOfError(i), distance / (kError_counts * kStrainPerCount), 1e-12) << i;
+    EXPECT_LT(fit.ShownOfError(i), 1.0);
+  }
+}
+
+// Bent by the error of one channel, the polynomial may be farther from another.
+TEST_F(StrainJudgement, WhatShowsToThePolynomialIsAtMostTheWorstDistance) {
+  EstimatorConfig config = ThesisEstimator();
+  config.kind = EstimatorKind::kPolynomial;
+  constexpr std::int32_t kError_counts = 1024;
+  for (std::size_t i = 0; i < 20; ++i) {
+    StrainFit fit(ThesisRig(), sensors_, config);
+    SensorFrame frame = FrameOf({});
+    frame.strain[i] = kError_counts;
+    const double distance = fit.Fit(frame).worst_outlier;
+    EXPECT_LE(fit.ShownOfError(i), distance / (kError_counts * kStrainPerCount) + 1e-12) << i;
+    EXPECT_GT(fit.ShownOfError(i), 0.1);
+  }
+}
+
+TEST_F(StrainJudgement, NothingShowsOfAChannelWithoutWhichTheModesAreUnknown) {
+  SensorConfig two = sensors_;
+  std::erase_if(two.strain, [this](const StrainChannelConfig& row) {
+    return row.link == 2 && row.position_m != sensors_.strain[10].position_m &&
+           row.position_m != sensors_.strain[15].position_m;
+  });
+  const StrainFit fit(ThesisRig(), two, ThesisEstimator());
+  EXPECT_GT(fit.ShownOfError(9), 0.5) << "link 1 has its ten";
+  EXPECT_EQ(fit.ShownOfError(10), 0.0);
+  EXPECT_EQ(fit.ShownOfError(11), 0.0);
 }
 
 // At most two outliers per link are removed.

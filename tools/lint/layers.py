@@ -90,7 +90,7 @@ LAYERS = {
     "tools/bound": "model model/math model/rigid_joint estimator controller/types",
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config config/derivation tools/support tools/runs tools/plot tools/bound controller/files",
-    "tools/torture": "model model/rigid_joint hal hal/sim controller/realtime controller/types "
+    "tools/torture": "model model/rigid_joint estimator hal hal/sim controller/realtime controller/types "
                      "controller/safety controller/law controller/step controller/runlog controller/tasks controller/latch "
                      "controller/operator controller/design controller/host config tools/support tools/sweep",
     "tools/bench_host": "model/arm model/simulation controller/files controller/types "

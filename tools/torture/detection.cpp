@@ -75,6 +75,10 @@ bool IsBridged(const Fault& fault) noexcept {
          (fault.kind == FaultKind::kOff || fault.kind == FaultKind::kNotANumber);
 }
 
+bool IsAlone(const RigConfig& config, int counter) noexcept {
+  return counter < 2 && (config.sensors.counters_present() >> (counter + 2) & 1U) == 0;
+}
+
 std::int64_t NamedWithinNs(const RigConfig& config, const Fault& fault) noexcept {
   if (!IsAbrupt(fault.kind) || IsBridged(fault)) return INT64_MAX;
   const std::int64_t ticks_ns = 3 * config.loop.period_ns();

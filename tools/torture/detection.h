@@ -20,6 +20,9 @@ bool IsAbrupt(FaultKind kind) noexcept;
 /// Whether the loop may go on without the reading: gauges of which enough are left.
 bool IsBridged(const Fault& fault) noexcept;
 
+/// Whether no other encoder checks this counter: the hub of a joint whose rotor has none.
+bool IsAlone(const RigConfig& config, int counter) noexcept;
+
 /// The longest time from the instant from which a fault can be seen until its cause latches;
 /// INT64_MAX: it need not be named, because nothing measures it or the arm is safe with it.
 /// docs/torture.md says why for each.

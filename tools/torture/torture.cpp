@@ -54,6 +54,7 @@ class Scenario {
     Peaks most = envelope;
     if (HasFaultOf(scenario, FaultPlace::kTorque)) {
       most.angle_share = std::max(most.angle_share, kAngleShareWithTorqueFault);
+      most.rate_share = std::max(most.rate_share, kRateShareWithTorqueFault);
     }
     return {.torque_after_ns = HasFaultOf(scenario, FaultPlace::kSafety) ? permit_ns + 2 * kMs : -1,
             .most = most,
@@ -185,6 +186,15 @@ class Scenario {
     if (seen_ns == INT64_MAX) return std::nullopt;
     std::int64_t by_ns = seen_ns + within_ns + scenario_.wake_ups.latest_ns + kMs;
     const std::int64_t granted_ns = session_.watch().granted_ns();
+    if (fault.place == FaultPlace::kCounter && IsAlone(rig_.config, fault.index)) {
+      // One frame shows it, to a loop that has seen the one before; a hub that stands still without
+      // a torque may be held.
+      const bool forgotten = granted_ns != INT64_MIN && granted_ns >= seen_ns && granted_ns < by_ns;
+      const bool may_be_held = fault.kind == FaultKind::kStuck &&
+                               session_.watch().last_torque_ns() < by_ns &&
+                               !session_.watch().first_cause();
+      if (forgotten || may_be_held) return std::nullopt;
+    }
     if (is_reading && granted_ns >= seen_ns && granted_ns < by_ns) {
       // The loop forgets all samples in the first one of a run.
       by_ns += granted_ns + rig_.config.loop.period_ns() - seen_ns;
@@ -199,7 +209,7 @@ class Scenario {
     session_.RunFor(100 * kMs);
     if (session_.state() != SafetyState::kTripped) {
       session_.Command("stop");
-      session_.RunFor(kRestNs);
+      session_.RunFor(std::max(kRestNs, StopTimeoutNs()));
       session_.Command("disarm");
       session_.RunUntilState(SafetyState::kIdle, 300 * kMs);
     }
@@ -240,6 +250,10 @@ class Scenario {
     session_.RunUntilAnswered(10'000 * kMs);
   }
 
+  std::int64_t StopTimeoutNs() const {
+    return std::llround(1e9 * rig_.config.safety.stop_timeout_s);
+  }
+
   bool LosesFrames() const {
     return std::any_of(scenario_.plant.begin(), scenario_.plant.end(), [](const std::string& set) {
       return set.starts_with("sim.lost_frame_fraction");
@@ -262,7 +276,7 @@ class Scenario {
                            std::to_string(session_.sent()) + " sent, " +
                                std::to_string(session_.answered()) + " answered");
     }
-    const std::int64_t limit_ns = std::llround(1e9 * rig_.config.safety.stop_timeout_s) + kEndNs;
+    const std::int64_t limit_ns = StopTimeoutNs() + kEndNs;
     const bool done = session_.ShutDown(limit_ns);
     if (!done && !stuck) {
       session_.watch().Add(session_.now_ns(), "ends",

@@ -51,6 +51,9 @@ inline constexpr Peaks kEnvelope{
 /// The same of the angle if a torque is not that of the command: what damps the arm beyond its soft
 /// limit may then drive it on until that shows (FaultDetection::kBrakesWithin_s).
 inline constexpr double kAngleShareWithTorqueFault = 2.0;
+/// The same of the hub rate: of an arm whose elbow may turn five times as fast as its shoulder, the
+/// elbow swings the shoulder.
+inline constexpr double kRateShareWithTorqueFault = 4.0;
 
 /// Runs one scenario and checks every rule (docs/torture.md).
 /// @param guard  of the real-time tasks; null: none

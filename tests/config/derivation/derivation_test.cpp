@@ -103,8 +103,8 @@ INSTANTIATE_TEST_SUITE_P(
         Factor{"controller.payload.fast_least_s", 1.1},
         Factor{"controller.payload.gain_payload_kg", 1.0},
         Factor{"limits.slew_limit_nm_per_s", 1.25}, Factor{"limits.hub_rate_rad_s", 1.4},
-        Factor{"limits.strain_limit", 1.0}, Factor{"safety.rest_strain_rate_per_s", 1.1},
-        Factor{"commissioning.pluck_torque_nm", 1.3}),
+        Factor{"limits.strain_limit", 1.0}, Factor{"safety.stop_timeout_s", 1.0},
+        Factor{"safety.rest_strain_rate_per_s", 1.1}, Factor{"commissioning.pluck_torque_nm", 1.3}),
     [](const auto& test) {
       std::string name = test.param.key;
       std::replace_if(name.begin(), name.end(), [](char c) { return c == '.'; }, '_');
@@ -123,6 +123,18 @@ TEST(Derivation, FollowsTheTorqueOfTheArm) {
       EXPECT_NEAR(two[i], 2.0 * one[i], 0.01 * two[i]) << key << " " << i;
     }
   }
+}
+
+// 8 sqrt(J / S): less torque, a longer stop; none is longer than 10 s.
+TEST(Derivation, AWeakArmHasLongerToStop) {
+  TuningBasis basis = ThesisBasis();
+  const ArmScales scales = ScalesOf(basis);
+  basis.torque_limit_nm = {scales.torque_nm[0], 0.15};
+  const double inertia_kgm2 = ScalesOf(basis).inertia_kgm2[1];
+  const auto stop_s = [&basis] { return ByKey(basis).at("safety.stop_timeout_s").value[0]; };
+  EXPECT_NEAR(stop_s(), 8.0 * std::sqrt(inertia_kgm2 / 0.15), 5e-3) << "three digits";
+  basis.torque_limit_nm[1] = 0.001;
+  EXPECT_EQ(stop_s(), 10.0);
 }
 
 TEST(Derivation, KeepsTheRatesWithinWhatTheCountersCanTell) {
