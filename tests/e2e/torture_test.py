@@ -58,6 +58,18 @@ class Torture(ProgramTest):
                 self.assertGreater(told["peak_torque_share"], 0.0, "no arm moved")
                 refused = "without gain-scheduled, which this config does not allow" in run.stderr
                 self.assertEqual(refused, config.name == "quanser-2dsfl.toml")
+                self.assertNotIn("does not suit", run.stderr)
+                self.assertIn("sobel", told["laws"])
+
+    def test_a_law_that_trips_without_a_fault_is_left_out_unless_it_is_asked_for(self):
+        strict = ("--set", "estimator.innovation_limit_rad=0.004", "--set", "controller.name=pd")
+        run = self.run_program("flexarm", "torture", "-c", HIL, *strict, "--seeds", "1..3", "--json")
+        self.assertIn("without sobel, which does not suit this arm: estimator-residual", run.stderr)
+        self.assertNotIn("sobel", json.loads(run.stdout)["laws"])
+        self.assertIn("pd", json.loads(run.stdout)["laws"], "the config's own")
+        run = self.run_program("flexarm", "torture", "-c", HIL, *strict, "--seeds", "1..3", "--json",
+                               "--laws", "sobel")
+        self.assertEqual(json.loads(run.stdout)["laws"], ["sobel"])
 
     def test_wrong_seeds_and_laws_are_refused(self):
         for options, text in ((("--seeds", "x"), "x"), (("--laws", "fastest"), "fastest")):

@@ -19,6 +19,7 @@
 #include "tools/sweep/sweep_grid.h"
 #include "tools/torture/campaign.h"
 #include "tools/torture/fault_matrix.h"
+#include "tools/torture/unsuited_law.h"
 
 namespace flexarm {
 namespace {
@@ -124,17 +125,45 @@ std::vector<std::string> LawsOf(const TortureOptions& options, const RigConfig& 
   return laws;
 }
 
+// Trips of a law that does not suit the arm say nothing of the safety chain. The config's own
+// stays.
+std::vector<std::string> WithoutUnsuited(const TortureOptions& options, const TorturedRigs& rigs,
+                                         const RigConfig& config,
+                                         const std::vector<std::string>& laws) {
+  if (!options.laws.empty()) return laws;
+  const TortureSpace space = SpaceOf(config, laws);
+  const std::string own = LawOf(config.controller.kind).name;
+  std::vector<std::string> why(laws.size());
+  ParallelFor(
+      laws.size(),
+      [&](std::size_t i) {
+        if (laws[i] != own) why[i] = WhyUnsuited(rigs, space, config, laws[i]);
+      },
+      {}, options.grid.jobs);
+  std::vector<std::string> suited;
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    if (why[i].empty()) {
+      suited.push_back(laws[i]);
+    } else {
+      std::cerr << "without " << laws[i] << ", which does not suit this arm: " << why[i]
+                << "; --laws takes it\n";
+    }
+  }
+  return suited;
+}
+
 int Run(const TortureOptions& options) {
   const RigConfig config = options.config.Load();
-  const std::vector<std::string> laws = LawsOf(options, config);
+  const std::vector<std::string> allowed = LawsOf(options, config);
   const TorturedRigs rigs([&options](const std::string& law) { return LoadWithLaw(options, law); },
-                          laws);
-  const TortureSpace space = SpaceOf(config, laws);
+                          allowed);
+  const TortureSpace space = SpaceOf(config, WithoutUnsuited(options, rigs, config, allowed));
   if (options.matrix) return RunMatrix(options, rigs, space, config);
   const std::vector<std::uint64_t> seeds = SeedsOf(options);
   const TortureSummary summary = RunTorture(rigs, space, config, seeds, options.grid.jobs,
                                             ProgressBar("scenarios", seeds.size()));
   nlohmann::ordered_json json = TortureJson(summary);
+  json["laws"] = space.laws;
   json["build"] = BuildId();
   if (!summary.failures.empty() && options.minimise) {
     const TortureFailure& first = summary.failures.front();
@@ -165,7 +194,7 @@ void RegisterTorture(CLI::App& app, Exit& exit) {
   verb->add_option(
           "--laws", options->laws,
           "Laws, separated by commas (default: sobel, sobel-thesis, gain-scheduled and lqg, "
-          "as far as the config allows them, and the config's own)")
+          "as far as the config allows them and they suit the arm, and the config's own)")
       ->type_name("NAMES")
       ->delimiter(',');
   options->grid.AddTo(verb);

@@ -134,6 +134,10 @@ const char* ToString(Situation situation) noexcept {
   return kNames.at(static_cast<std::size_t>(situation));
 }
 
+const std::array<double, 2>& TortureSpace::PayloadsOf(const std::string& law) const {
+  return FollowsPayload(law) ? payload_kg : fixed_payload_kg;
+}
+
 double MoveTime_s(const TortureSpace& space, const std::array<double, 2>& to_deg,
                   double heaviest_kg, double share) {
   const Eigen::Vector2d to_rad = Eigen::Vector2d(to_deg[0], to_deg[1]) * kRadPerDeg;
@@ -158,8 +162,7 @@ TortureSpace SpaceOf(const RigConfig& config, std::vector<std::string> laws) {
 TortureScenario ScenarioOf(std::uint64_t seed, const TortureSpace& space, const RigConfig& config) {
   Draw draw(seed);
   TortureScenario scenario{.seed = seed, .law = draw.Of(space.laws)};
-  const std::array<double, 2>& payload_kg =
-      FollowsPayload(scenario.law) ? space.payload_kg : space.fixed_payload_kg;
+  const std::array<double, 2>& payload_kg = space.PayloadsOf(scenario.law);
   scenario.payload_kg = draw.Between(payload_kg[0], payload_kg[1]);
   scenario.plant = DrawPlant(&draw, config);
   for (std::size_t i = 0; i < 2; ++i) {

@@ -62,6 +62,9 @@ struct TortureSpace {
   std::array<double, 2> within_deg;  ///< of the moves
   RigidJointArm arm;                 ///< of the design
   MoveRecipe recipe;                 ///< of the benchmark's moves for this rig
+
+  /// Least and greatest payload with a law.
+  const std::array<double, 2>& PayloadsOf(const std::string& law) const;
 };
 
 /// The space of a rig.

@@ -88,6 +88,7 @@ TEST_F(LoneHubTest, TheOtherJointHasItsThreeSamples) {
     Facts facts;
     facts.counters.good &= ~(1U << (joint + 2));
     facts.estimate.innovation[1 - joint] = 0.36;
+    facts.estimate.innovation[joint] = 0.35;  // at its limit, not beyond
     for (int k = 0; k < 2; ++k) EXPECT_EQ(detection.Judge(facts.Now()).faults, 0u);
     EXPECT_EQ(detection.Judge(facts.Now()).faults, kResidual);
     detection.Reset();

@@ -13,6 +13,7 @@
 #include "tools/support/scratch_folder.h"
 #include "tools/torture/campaign.h"
 #include "tools/torture/fault_matrix.h"
+#include "tools/torture/unsuited_law.h"
 
 namespace flexarm {
 namespace {
@@ -51,6 +52,26 @@ TEST(Torture, CampaignBreaksNoRule) {
   EXPECT_GT(summary.observable, seeds.size() / 20);
   EXPECT_GT(summary.causes.size(), 15U);
   EXPECT_GT(summary.replayed_steps, 50 * static_cast<std::int64_t>(seeds.size()));
+}
+
+TEST(Torture, EveryLawSuitsTheShippedArm) {
+  for (const std::string& law : kTorturedLaws) {
+    EXPECT_EQ(WhyUnsuited(Rigs(), Space(), ShippedRig(), law), "") << law;
+  }
+}
+
+// Less than the model is off by in a move, or at rest.
+TEST(Torture, ALawThatTripsWithoutAFaultDoesNotSuitTheArm) {
+  const auto why = [](const std::string& limit_rad) {
+    const std::string limit = "estimator.innovation_limit_rad=" + limit_rad;
+    const TorturedRigs rigs(
+        [&limit](const std::string& law) { return ShippedRig({"controller.name=" + law, limit}); },
+        {"sobel"});
+    return WhyUnsuited(rigs, Space(), ShippedRig({limit}), "sobel");
+  };
+  const std::string where = " without a fault, with 0.05 kg on the plant \"nominal\"";
+  EXPECT_EQ(why("0.004"), "estimator-residual" + where);
+  EXPECT_EQ(why("1e-12"), "it does not run" + where);
 }
 
 TEST(Torture, ASeedGivesTheSameSessionAgain) {
