@@ -64,6 +64,9 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
       strain_window_(SamplesIn(kStrainRestWindow_s, period_s, kMostRestWindow)),
       rate_window_(SamplesIn(kHubRateWindow_s, period_s, kMostRestWindow)),
       brake_window_(SamplesIn(kBrakesWithin_s, period_s, kMostRestWindow)),
+      stands_window_(
+          std::max(static_cast<int>(SamplesIn(kStandsWithin_s, period_s, kMostRestWindow)),
+                   estimator.fault_ticks)),
       // Not before the window is full.
       rest_ticks_needed_(std::max(static_cast<int>(std::ceil(safety.rest_time_s / period_s)),
                                   static_cast<int>(hub_window_) + 1)) {}
@@ -73,6 +76,7 @@ void FaultDetection::Reset() noexcept {
   strain_off_model_ = {};
   beyond_ = {};
   repeated_ = {};
+  live_innovation_ = {};
   rest_ticks_ = 0;
   incomplete_ticks_ = 0;
   ring_ = 0;
@@ -217,14 +221,19 @@ void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
   const FittedModes& modes = *facts.modes;
   const int ticks = estimator_.fault_ticks;
   const bool judged = facts.mode != LoopMode::kOpenLoop;
-  // A link whose gauges all repeat themselves has no other gauge to compare with: the model is.
+  // A link whose gauges all repeat themselves has no other gauge to compare with: the model is, as
+  // far as it has left them since. Of a hub that friction holds it says what is not so, always.
   std::uint32_t stuck = modes.stuck;
   double left = 0.0;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double innovation = std::fabs(facts.root_innovation[i]);
-    if (modes.repeated[i] == 0 || innovation <= estimator_.strain_stuck_limit) continue;
+    if (modes.repeated[i] == 0) {
+      live_innovation_[i] = facts.root_innovation[i];
+      continue;
+    }
+    const double apart = std::fabs(facts.root_innovation[i] - live_innovation_[i]);
+    if (apart <= estimator_.strain_stuck_limit) continue;
     stuck |= modes.repeated[i];
-    left = innovation;
+    left = apart;
   }
   Raise(TripCause::kStrainStuck, judged && stuck != 0, ticks, left, estimator_.strain_stuck_limit,
         FirstChannel(stuck), IsComplete());
@@ -276,7 +285,7 @@ double FaultDetection::FollowRepeated(const LoopFacts& facts, std::size_t i) noe
     hub.turned_rad = std::min(hub.turned_rad, std::fabs(facts.estimate->innovation[i]));
   }
   if (facts.applied_torque_nm[i] == 0.0) hub.turned_rad = 0.0;
-  hub.samples = std::min(hub.samples + 1, kMostRepeated);
+  hub.samples = std::min(hub.samples + 1, stands_window_);
   return hub.samples < estimator_.fault_ticks ? 0.0 : hub.samples * hub.turned_rad;
 }
 

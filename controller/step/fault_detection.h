@@ -67,9 +67,10 @@ class FaultDetection {
   /// A hub beyond its soft limit is driven on if, after this time beyond it, it moves outward
   /// faster than ever within it: the torque that damps it does not brake.
   static constexpr double kBrakesWithin_s = 0.1;
-  /// A reading that repeats itself is followed for so many samples: a hub so slow that it is not
-  /// off by hub_rotor_limit then may have come to rest.
-  static constexpr int kMostRepeated = 8;
+  /// A reading that repeats itself is followed for so long: a hub so slow that it is not off by
+  /// hub_rotor_limit then may have come to rest. A vibrating link stops its hub at once, from half
+  /// a radian a second.
+  static constexpr double kStandsWithin_s = 0.08;
 
   FaultDetection(const SafetyConfig& safety, const EstimatorConfig& estimator, double period_s,
                  const SensorConfig& sensors, const std::array<int, 2>& gauges_needed,
@@ -106,7 +107,7 @@ class FaultDetection {
     double reading_rad = std::numeric_limits<double>::quiet_NaN();
     // In the sample before the first repeated one; the model's for that one, if it is less.
     double turned_rad = 0.0;
-    int samples = 0;  // repeated, up to kMostRepeated
+    int samples = 0;  // repeated, up to stands_window_
   };
   Monitored Monitor(const LoopFacts& facts) noexcept;
   void FollowBeyond(std::size_t i, const Monitored& monitored, double limit_rad) noexcept;
@@ -150,6 +151,7 @@ class FaultDetection {
   std::size_t hub_window_, strain_window_;  // samples over which the rates at rest are taken
   std::size_t rate_window_;                 // samples over which a hub rate is measured
   std::size_t brake_window_;                // samples of kBrakesWithin_s
+  int stands_window_;                       // samples of kStandsWithin_s, at least fault_ticks
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
   int incomplete_ticks_ = 0;  // samples in a row that lacked a reading, up to kMissingTicks
@@ -160,6 +162,8 @@ class FaultDetection {
   std::array<int, kTripCauses> in_a_row_{};
   // The last reading of the strain at the root of each link, minus the estimated one.
   std::array<double, 2> strain_off_model_{};
+  // Of each link, the root innovation when its gauges last did not all repeat themselves.
+  std::array<double, 2> live_innovation_{};
   std::array<Beyond, 2> beyond_{};
   std::array<Repeated, 2> repeated_{};
   Verdict verdict_{};

@@ -311,6 +311,28 @@ TEST_F(FaultDetectionTest, ALinkWhoseGaugesAllRepeatIsJudgedByTheModel) {
   for (int k = 0; k < 10; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
 }
 
+// The model bends the links of an arm whose hubs friction holds. A gauge then repeats itself by
+// chance.
+TEST_F(FaultDetectionTest, WhatTheModelWasOffByWhileTheGaugesLivedIsNoStuckGauge) {
+  Facts facts;
+  facts.root_innovation = {-5e-4, 3e-4};
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  facts.modes.repeated = {0x3FF, 0xFFC00};
+  facts.root_innovation = {-4.01e-4, 3.99e-4};
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  facts.root_innovation = {-4.01e-4, 4.1e-4};
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  const FaultDetection::Verdict verdict = monitor_.Judge(facts.Now());
+  EXPECT_EQ(verdict.faults, CauseBit(TripCause::kStrainStuck));
+  EXPECT_DOUBLE_EQ(verdict.value, 4.1e-4 - 3e-4);
+  EXPECT_EQ(verdict.channel, 11);
+  monitor_.Reset();
+  facts.root_innovation = {0.9e-4, 1.01e-4};
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
+  EXPECT_EQ(monitor_.Judge(facts.Now()).faults, CauseBit(TripCause::kStrainStuck))
+      << "a reset forgets what they were off by";
+}
+
 TEST_F(FaultDetectionTest, AnIntermittentStrainFaultDoesNotTrip) {
   Facts bad;
   bad.modes.outlier = 1;

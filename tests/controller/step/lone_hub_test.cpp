@@ -24,8 +24,8 @@ SensorConfig WithoutRotors(SensorConfig sensors, int joint) {
 /// hub_rotor_limit_rad 0.1, innovation_limit_rad 0.35.
 class LoneHubTest : public testing::Test {
  protected:
-  FaultDetection Without(int joint) const {
-    return {config_.safety, config_.estimator, kPeriod_s, WithoutRotors(config_.sensors, joint),
+  FaultDetection Without(int joint, double period_s = kPeriod_s) const {
+    return {config_.safety, config_.estimator, period_s, WithoutRotors(config_.sensors, joint),
             kGaugesNeeded,  {761.59, 497.96}};
   }
 
@@ -97,25 +97,36 @@ TEST_F(LoneHubTest, TheOtherJointHasItsThreeSamples) {
   }
 }
 
-// Off by more than 0.1 rad, and repeated three times: 3 x 0.05 or more, 6 x 0.02, 8 x 0.0126.
+// Off by more than 0.1 rad, and repeated three times; within 80 ms, which are four samples.
 TEST_F(LoneHubTest, AReadingThatStandsStillWhileTheHubTurnsTrips) {
   for (const double sign : {1.0, -1.0}) {
     EXPECT_EQ(RepeatsUntilTrip(sign * 0.15, sign * -0.15, 0.5), 3);
     EXPECT_EQ(RepeatsUntilTrip(sign * 0.05, sign * -0.05, 0.5), 3);
-    EXPECT_EQ(RepeatsUntilTrip(sign * 0.02, sign * -0.02, -0.5), 6);
-    EXPECT_EQ(RepeatsUntilTrip(sign * 0.0126, sign * -0.0126, 0.5), 8);
-    EXPECT_EQ(RepeatsUntilTrip(sign * 0.0126, sign * -0.0126, 0.5, 0), 8);
+    EXPECT_EQ(RepeatsUntilTrip(sign * 0.034, sign * -0.034, -0.5), 3);
+    EXPECT_EQ(RepeatsUntilTrip(sign * 0.033, sign * -0.033, -0.5), 4);
+    EXPECT_EQ(RepeatsUntilTrip(sign * 0.0251, sign * -0.0251, 0.5), 4);
+    EXPECT_EQ(RepeatsUntilTrip(sign * 0.0251, sign * -0.0251, 0.5, 0), 4);
   }
 }
 
 TEST_F(LoneHubTest, ASlowHubMayHaveComeToRest) {
+  EXPECT_EQ(RepeatsUntilTrip(0.0249, -0.0249, 0.5), 0);
+}
+
+// 80 ms are eight samples at 100 Hz, and one at 10 Hz, where the third trips.
+TEST_F(LoneHubTest, TheTimeDoesNotDependOnTheSamplingRate) {
+  hubs_only_ = Without(-1, 0.01);
+  EXPECT_EQ(RepeatsUntilTrip(0.0126, -0.0126, 0.5), 8);
   EXPECT_EQ(RepeatsUntilTrip(0.0124, -0.0124, 0.5), 0);
+  hubs_only_ = Without(-1, 0.1);
+  EXPECT_EQ(RepeatsUntilTrip(0.034, -0.034, 0.5), 3);
+  EXPECT_EQ(RepeatsUntilTrip(0.033, -0.033, 0.5), 0);
 }
 
 TEST_F(LoneHubTest, AHubThatItsDriveStopsHasNoInnovation) {
   EXPECT_EQ(RepeatsUntilTrip(0.05, -0.001, 0.5), 0);
-  EXPECT_EQ(RepeatsUntilTrip(0.05, -0.02, 0.5), 6) << "what the model says is less";
-  EXPECT_EQ(RepeatsUntilTrip(0.02, -0.05, 0.5), 6) << "what it turned is less";
+  EXPECT_EQ(RepeatsUntilTrip(0.05, -0.03, 0.5), 4) << "what the model says is less";
+  EXPECT_EQ(RepeatsUntilTrip(0.03, -0.05, 0.5), 4) << "what it turned is less";
 }
 
 TEST_F(LoneHubTest, WithoutATorqueABrakeMayHoldIt) {
