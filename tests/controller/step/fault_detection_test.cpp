@@ -327,7 +327,7 @@ TEST_F(FaultDetectionTest, WhatTheModelWasOffByWhileTheGaugesLivedIsNoStuckGauge
   EXPECT_DOUBLE_EQ(verdict.value, 4.1e-4 - 3e-4);
   EXPECT_EQ(verdict.channel, 11);
   monitor_.Reset();
-  facts.root_innovation = {0.9e-4, 3.5e-4};
+  facts.root_innovation = {-4.5e-4, 3.5e-4};
   for (int k = 0; k < 2; ++k) EXPECT_EQ(monitor_.Judge(facts.Now()).faults, 0u);
   EXPECT_EQ(monitor_.Judge(facts.Now()).faults, CauseBit(TripCause::kStrainStuck))
       << "a reset forgets what they were off by";

@@ -111,6 +111,7 @@ TEST_F(LoneHubTest, AReadingThatStandsStillWhileTheHubTurnsTrips) {
 
 TEST_F(LoneHubTest, ASlowHubMayHaveComeToRest) {
   EXPECT_EQ(RepeatsUntilTrip(0.0249, -0.0249, 0.5), 0);
+  EXPECT_EQ(RepeatsUntilTrip(0.03, -0.025, 0.5), 0) << "off by the limit, not more";
 }
 
 // 80 ms are eight samples at 100 Hz, and one at 10 Hz, where the third trips.
