@@ -221,8 +221,8 @@ void FaultDetection::JudgeStrain(const LoopFacts& facts) noexcept {
   const FittedModes& modes = *facts.modes;
   const int ticks = estimator_.fault_ticks;
   const bool judged = facts.mode != LoopMode::kOpenLoop;
-  // A link whose gauges all repeat themselves has no other gauge to compare with: the model is, as
-  // far as it has left them since. Of a hub that friction holds it says what is not so, always.
+  // A link whose gauges all repeat themselves has no other gauge to compare with: the model is, by
+  // how far it has left them since. It is off all the time while friction holds a hub.
   std::uint32_t stuck = modes.stuck;
   double left = 0.0;
   for (std::size_t i = 0; i < 2; ++i) {

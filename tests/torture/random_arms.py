@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`flexarm torture` on arms drawn at random, each described to `flexarm config new`. An arm that
 `config new` refuses is told and passed over. The same number draws the same arm. Exit code 1 if a
-session broke a rule.
+session broke a rule, or if no arm was left.
 """
 
 import argparse
@@ -64,13 +64,14 @@ def arm(number):
 
 
 def torture(program, number, seeds, jobs, folder):
+    """How many sessions broke a rule; None: there is no such arm."""
     config = folder / f"arm-{number}.toml"
-    made = subprocess.run([program, "config", "new", "-o", config, *arm(number)],
+    made = subprocess.run([program, "config", "new", "-o", config, "--overwrite", *arm(number)],
                           capture_output=True, text=True, check=False)
     if made.returncode != 0:
         reason = (made.stderr.strip() or made.stdout.strip()).splitlines()[-1]
         print(f"arm {number}: no config: {reason}", flush=True)
-        return True
+        return None
     result = subprocess.run([program, "torture", "-c", config, "--seeds", seeds, "--jobs", str(jobs),
                              "--json"], capture_output=True, text=True, check=False)
     if result.returncode > 1:
@@ -80,7 +81,7 @@ def torture(program, number, seeds, jobs, folder):
           f"{told['tripped']} tripped, {len(told['failures'])} broke a rule", flush=True)
     for failure in told["failures"]:
         print(f"  seed {failure['seed']}: {failure['rule']}: {failure['what']}")
-    return not told["failures"]
+    return len(told["failures"])
 
 
 def main():
@@ -95,9 +96,9 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         folder = arguments.configs or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        kept = [torture(arguments.program, number, arguments.seeds, arguments.jobs, folder)
-                for number in range(arguments.first, arguments.first + arguments.arms)]
-    return 0 if all(kept) else 1
+        broken = [torture(arguments.program, number, arguments.seeds, arguments.jobs, folder)
+                  for number in range(arguments.first, arguments.first + arguments.arms)]
+    return 1 if any(broken) or all(count is None for count in broken) else 0
 
 
 if __name__ == "__main__":
