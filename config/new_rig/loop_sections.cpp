@@ -75,7 +75,7 @@ RigSection Safety() {
   RigSection safety = Section("safety");
   safety.Add("rest_hub_rate_rad_s", 0.05, kAsThesis);
   safety.Add("rest_time_s", 0.5);
-  safety.Add("fault_stop_s", 0.5);
+  safety.Add("fault_stop_s", 1.5);
   safety.Add("permit_timeout_ms", 5.0);
   safety.Add("missed_deadlines_to_trip", "3");
   safety.Add("overrun_to_trip_ms", 5.0);

@@ -63,7 +63,6 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
       hub_window_(SamplesIn(kHubRestWindow_s, period_s, kMostRestWindow)),
       strain_window_(SamplesIn(kStrainRestWindow_s, period_s, kMostRestWindow)),
       rate_window_(SamplesIn(kHubRateWindow_s, period_s, kMostRestWindow)),
-      brake_window_(SamplesIn(kBrakesWithin_s, period_s, kMostRestWindow)),
       stands_window_(
           std::max(static_cast<int>(SamplesIn(kStandsWithin_s, period_s, kMostRestWindow)),
                    estimator.fault_ticks)),
@@ -74,7 +73,6 @@ FaultDetection::FaultDetection(const SafetyConfig& safety, const EstimatorConfig
 void FaultDetection::Reset() noexcept {
   in_a_row_ = {};
   strain_off_model_ = {};
-  beyond_ = {};
   repeated_ = {};
   live_innovation_ = {};
   rest_ticks_ = 0;
@@ -151,34 +149,14 @@ FaultDetection::Monitored FaultDetection::Monitor(const LoopFacts& facts) noexce
   return monitored;
 }
 
-// Not beyond what it once was is enough: an elastic joint swings while it is braked.
-void FaultDetection::FollowBeyond(std::size_t i, const Monitored& monitored,
-                                  double limit_rad) noexcept {
-  const double hub_rad = std::fabs(monitored.hub_rad[i]);
-  Beyond& hub = beyond_[i];
-  if (!(hub_rad > limit_rad)) {
-    hub = {};
-    return;
-  }
-  const bool outward = hub_rad > std::fabs(Before(rate_window_).hub_rad[i]);
-  const double rate_rad_s = outward ? monitored.hub_rate_rad_s[i] : 0.0;
-  if (hub.samples == brake_window_) {
-    hub.driven_on = rate_rad_s > hub.fastest_rad_s;
-    return;
-  }
-  ++hub.samples;
-  hub.fastest_rad_s = std::max(hub.fastest_rad_s, rate_rad_s);
-}
-
 void FaultDetection::JudgeJoints(const LoopFacts& facts, const Monitored& monitored) noexcept {
   using enum TripCause;
   const SafetyConfig& limits = facts.reduced ? reduced_ : safety_;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double soft_rad = limits.soft_angle_deg[i] * kRadPerDeg;
     if (facts.mode != LoopMode::kRegulate) {
-      FollowBeyond(i, monitored, soft_rad);
       RaiseUnlessWithin(PerJoint(kSoftLimit1, i), kNoCounterReading, 1,
-                        std::fabs(monitored.hub_rad[i]), soft_rad, i + 1);
+                        std::fabs(monitored.hub_rad[i]), limits.soft_angle_deg[i] * kRadPerDeg,
+                        i + 1);
     }
     RaiseUnlessWithin(PerJoint(kHubRate1, i), kStateNotFinite, kRateTicks,
                       monitored.hub_rate_rad_s[i], limits.hub_rate_rad_s[i], i + 1);
@@ -307,11 +285,15 @@ double FaultDetection::HubRate(const LoopFacts& facts, std::size_t i) const noex
 // Each comparison is false for NaN. The pluck test (kOpenLoop) has no torque but its own.
 bool FaultDetection::MayDamp(const LoopFacts& facts, const Monitored& monitored) const noexcept {
   if (facts.mode == LoopMode::kOpenLoop || !facts.estimate->x.allFinite()) return false;
+  const bool homing = facts.mode == LoopMode::kRegulate;
+  const auto& soft_deg = (facts.reduced ? reduced_ : safety_).soft_angle_deg;
   for (std::size_t i = 0; i < 2; ++i) {
+    const double angle_deg = homing ? 0.0 : std::fabs(monitored.hub_rad[i]) / kRadPerDeg;
     const double rate = monitored.hub_rate_rad_s[i];
     const double strain = std::fabs(facts.modes->root_strain[i]);
     const bool measured = facts.modes->valid[i] && (facts.counters->good >> i & 1U) != 0;
-    if (!measured || beyond_[i].driven_on || !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||
+    if (!measured || !(angle_deg < soft_deg[i] + kDampedBeyond_deg) ||
+        !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||
         !(strain < kDampedTo * safety_.strain_limit[i])) {
       return false;
     }

@@ -56,17 +56,16 @@ class FaultDetection {
     double value, limit;    ///< of the lowest fault
     std::uint16_t channel;  ///< 1-based; 0: none
     bool at_rest;           ///< hub and strain rates within their bounds for rest_time
-    /// Hubs and bending of both links are measured and within kDampedTo limits, and no hub that is
-    /// beyond its soft limit is driven on.
-    bool may_damp;
+    bool may_damp;          ///< hubs and bending are measured, and not too far beyond their limits
   };
 
   /// After a cause of stop category 1 the arm is damped only while hub rates and strains stay below
   /// this many times their limits. Beyond, damping does not work: a wrong sign, a broken link.
   static constexpr double kDampedTo = 1.5;
-  /// A hub beyond its soft limit is driven on if, after this time beyond it, it moves outward
-  /// faster than ever within it: the torque that damps it does not brake.
-  static constexpr double kBrakesWithin_s = 0.1;
+  /// The same of a hub this far beyond the soft limit in force, except in homing. How far a hub
+  /// turns until it is braked does not depend on where the limit lies; where damping works it is 35
+  /// degrees at most (docs/safety.md, "Stop categories").
+  static constexpr double kDampedBeyond_deg = 45.0;
   /// A reading that repeats itself is followed for so long: a hub so slow that it is not off by
   /// hub_rotor_limit then may have come to rest. A vibrating link stops its hub at once, from half
   /// a radian a second.
@@ -96,12 +95,6 @@ class FaultDetection {
     std::array<double, 2> hub_rad, root_strain;
     std::int64_t tick;
   };
-  /// A hub beyond its soft limit.
-  struct Beyond {
-    std::size_t samples = 0;     // up to brake_window_
-    double fastest_rad_s = 0.0;  // outward, in those
-    bool driven_on = false;      // faster after them
-  };
   /// The reading of a hub encoder that repeats itself.
   struct Repeated {
     double reading_rad = std::numeric_limits<double>::quiet_NaN();
@@ -110,7 +103,6 @@ class FaultDetection {
     int samples = 0;  // repeated, up to stands_window_
   };
   Monitored Monitor(const LoopFacts& facts) noexcept;
-  void FollowBeyond(std::size_t i, const Monitored& monitored, double limit_rad) noexcept;
   /// `reading`, or what stands for it in this sample.
   double Bridged(bool read, double reading, double model) const noexcept;
 
@@ -150,7 +142,6 @@ class FaultDetection {
   std::array<double, 2> hub_count_rad_;     // one count of the hub encoders
   std::size_t hub_window_, strain_window_;  // samples over which the rates at rest are taken
   std::size_t rate_window_;                 // samples over which a hub rate is measured
-  std::size_t brake_window_;                // samples of kBrakesWithin_s
   int stands_window_;                       // samples of kStandsWithin_s, at least fault_ticks
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
@@ -164,7 +155,6 @@ class FaultDetection {
   std::array<double, 2> strain_off_model_{};
   // Of each link, the root innovation when its gauges last did not all repeat themselves.
   std::array<double, 2> live_innovation_{};
-  std::array<Beyond, 2> beyond_{};
   std::array<Repeated, 2> repeated_{};
   Verdict verdict_{};
 };

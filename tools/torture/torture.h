@@ -49,7 +49,8 @@ class TorturedRigs {
 inline constexpr Peaks kEnvelope{
     .torque_share = 1.0, .angle_share = 1.3, .rate_share = 3.0, .strain_share = 1.3};
 /// The same of the angle if a torque is not that of the command: what damps the arm beyond its soft
-/// limit may then drive it on until that shows (FaultDetection::kBrakesWithin_s).
+/// limit may then drive it on, until FaultDetection::kDampedBeyond_deg, which is 1.5 times the
+/// shipped limits, and in the two periods until the torque is off.
 inline constexpr double kAngleShareWithTorqueFault = 2.0;
 /// The same of the hub rate: of an arm whose elbow may turn five times as fast as its shoulder, the
 /// elbow swings the shoulder.

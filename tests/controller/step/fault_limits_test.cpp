@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
+#include <cstddef>
 
 #include "controller/step/fault_detection.h"
 #include "model/units.h"
@@ -69,52 +69,28 @@ TEST_F(FaultLimitsTest, DampingEndsAtItsLimits) {
       may_damp([&](Facts* f) { f->modes.root_strain[1] = most * config_.safety.strain_limit[1]; }));
 }
 
-// Hub 2 goes beyond its soft limit of 90 deg, with these turns from sample to sample.
-TEST_F(FaultLimitsTest, DampingEndsWhenItDoesNotBrake) {
-  const auto may_damp = [this](double sign, const std::vector<double>& turns_deg,
-                               double from_deg = 89.0) {
+// The soft limits are 90 degrees.
+TEST_F(FaultLimitsTest, DampingEndsFarBeyondASoftLimit) {
+  const auto may_damp = [this](std::size_t joint, double hub_deg, bool reduced, LoopMode mode) {
+    Facts facts;
+    facts.mode = mode;
+    facts.counters.angle_rad[joint] = facts.counters.angle_rad[joint + 2] = hub_deg * kRadPerDeg;
+    LoopFacts now = facts.Now();
+    now.reduced = reduced;
     monitor_.Reset();
-    double hub_rad = sign * from_deg * kRadPerDeg;
-    bool damps = true;
-    for (const double turn_deg : turns_deg) {
-      Facts facts;
-      facts.counters.angle_rad = {0.0, hub_rad, 0.0, hub_rad};
-      damps = monitor_.Judge(facts.Now()).may_damp;
-      hub_rad += sign * turn_deg * kRadPerDeg;
-    }
-    return damps;
+    return monitor_.Judge(now).may_damp;
   };
-  for (const double sign : {1.0, -1.0}) {
-    // Beyond from the second sample on; the window of five ends with the sixth.
-    EXPECT_FALSE(may_damp(sign, {3, 3, 3, 4, 3, 3, 5, 5}));
-    EXPECT_TRUE(may_damp(sign, {5, 5, 5}, 100.0)) << "a reset forgets";
-    EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 3, 3, 4, 4})) << "not faster than once within it";
-    EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 5, 5})) << "faster within it";
-    EXPECT_TRUE(may_damp(sign, {3, 3, 3, 4, 3, 3, -5, -5})) << "it comes back";
-    EXPECT_TRUE(may_damp(sign, {3, -3, 3, 3, 3, 3, 5, 5})) << "it was within the limit again";
-    EXPECT_TRUE(may_damp(sign, {1.2, 1.2, 1.2, 1.2, 1.2, 0, 0})) << "it stands";
-    EXPECT_TRUE(may_damp(sign, {0, 0, 3, 3, 3, 4, 4}, 90.0)) << "at the limit is not beyond it";
+  const double reduced_deg = 90.0 * config_.safety.reduced_angle;
+  for (const std::size_t joint : {0u, 1u}) {
+    for (const double sign : {1.0, -1.0}) {
+      EXPECT_TRUE(may_damp(joint, sign * 134.9, false, LoopMode::kFollow));
+      EXPECT_FALSE(may_damp(joint, sign * 135.1, false, LoopMode::kFollow));
+      EXPECT_TRUE(may_damp(joint, sign * (reduced_deg + 44.9), true, LoopMode::kFollow));
+      EXPECT_FALSE(may_damp(joint, sign * (reduced_deg + 45.1), true, LoopMode::kFollow));
+      EXPECT_TRUE(may_damp(joint, sign * 200.0, false, LoopMode::kRegulate))
+          << "homing looks for the switches, which are beyond the soft limits";
+    }
   }
-}
-
-// Homing looks for the switches, which are beyond the soft limits.
-TEST_F(FaultLimitsTest, HomingIsDampedBeyondTheSoftLimits) {
-  Facts facts;
-  facts.mode = LoopMode::kRegulate;
-  for (double turn_rad = 0.0, hub_rad = 2.0; turn_rad < 0.1; turn_rad += 0.01) {
-    hub_rad += turn_rad;  // faster and faster
-    facts.counters.angle_rad = {0.0, hub_rad, 0.0, hub_rad};
-    EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
-  }
-}
-
-// An estimate that turns where the encoder stands is not the hub.
-TEST_F(FaultLimitsTest, AHubThatStandsIsNotDrivenOn) {
-  Facts facts;
-  facts.counters.angle_rad = {0.0, 2.0, 0.0, 2.0};
-  for (int k = 0; k < 6; ++k) EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
-  facts.estimate.x(7) = 5.0;
-  EXPECT_TRUE(monitor_.Judge(facts.Now()).may_damp);
 }
 
 // The pluck test compares no sensor with another, and has no soft limit to leave out.
