@@ -288,12 +288,12 @@ bool FaultDetection::MayDamp(const LoopFacts& facts, const Monitored& monitored)
   const bool homing = facts.mode == LoopMode::kRegulate;
   const auto& soft_deg = (facts.reduced ? reduced_ : safety_).soft_angle_deg;
   for (std::size_t i = 0; i < 2; ++i) {
-    const double angle_deg = homing ? 0.0 : std::fabs(monitored.hub_rad[i]) / kRadPerDeg;
+    const double most_rad = (soft_deg[i] + kDampedBeyond_deg) * kRadPerDeg;
+    const bool near = homing || std::fabs(monitored.hub_rad[i]) < most_rad;
     const double rate = monitored.hub_rate_rad_s[i];
     const double strain = std::fabs(facts.modes->root_strain[i]);
     const bool measured = facts.modes->valid[i] && (facts.counters->good >> i & 1U) != 0;
-    if (!measured || !(angle_deg < soft_deg[i] + kDampedBeyond_deg) ||
-        !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||
+    if (!measured || !near || !(rate < kDampedTo * safety_.hub_rate_rad_s[i]) ||
         !(strain < kDampedTo * safety_.strain_limit[i])) {
       return false;
     }

@@ -84,9 +84,9 @@ TEST_F(FaultLimitsTest, DampingEndsFarBeyondASoftLimit) {
   for (const std::size_t joint : {0u, 1u}) {
     for (const double sign : {1.0, -1.0}) {
       EXPECT_TRUE(may_damp(joint, sign * 134.9, false, LoopMode::kFollow));
-      EXPECT_FALSE(may_damp(joint, sign * 135.1, false, LoopMode::kFollow));
+      EXPECT_FALSE(may_damp(joint, sign * 135.0, false, LoopMode::kFollow));
       EXPECT_TRUE(may_damp(joint, sign * (reduced_deg + 44.9), true, LoopMode::kFollow));
-      EXPECT_FALSE(may_damp(joint, sign * (reduced_deg + 45.1), true, LoopMode::kFollow));
+      EXPECT_FALSE(may_damp(joint, sign * (reduced_deg + 45.0), true, LoopMode::kFollow));
       EXPECT_TRUE(may_damp(joint, sign * 200.0, false, LoopMode::kRegulate))
           << "homing looks for the switches, which are beyond the soft limits";
     }
