@@ -44,6 +44,8 @@ TEST(Excursion, IsAsFarAsTheSafetyPageSays) {
       {TripCause::kHubRate2, 2.6, 0.2, {356, 124, 26}},
       {TripCause::kSoftLimit2, 30.6, 0.5, {144, 65, 17}},
       {TripCause::kSoftLimit1, 30.4, 0.5, {57, 77, 4}},
+      {TripCause::kHubRate2, 3.3, 0.9, {126, 99, 61}},
+      {TripCause::kHubRate2, 2.7, 0.9, {244, 244, 244}},
   };
   for (const ExcursionRow& row : kRows) {
     for (std::size_t i = 0; i < kFaultStop_s.size(); ++i) {
