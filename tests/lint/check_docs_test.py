@@ -76,6 +76,9 @@ BROKEN = {
                            "test: tests/run_test.py has no test with it_flies in its name"),
     "a link":
         ("docs/theory/plant.md", "[page](folder/other.txt)", "link: there is no folder/other.txt"),
+    "a link to what is not installed":
+        ("docs/page.md", "[beam](../model/arm/beam.h)",
+         "link: ../model/arm/beam.h is not installed with the page"),
     "a page": ("docs/page.md", "See old.md.", "citation: there is no old.md"),
     "a page in a comment":
         ("model/arm/beam.h", "// beyond.md 3", "citation: there is no beyond.md"),

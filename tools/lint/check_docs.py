@@ -5,7 +5,7 @@ In README.md, docs/ and model/symbols.md:
 test      `Suite.Name` is a C++ test under tests/, `tests/x.sh: text` a script that holds this text;
           PROGRAM --gtest_filter='Suite.Name:Suite.*': the program has a test for each pattern;
           python3 tests/x_test.py -k TEXT: a test of that file has TEXT in its name
-link      a relative link leads to a file
+link      a relative link leads to a file that is installed with the page
 path      `controller/law/design.h`, `hal/can*`, `design.h`, `law/`: files and folders are there, a
           header without its folder exactly once, `Name` in `file.h` in that file; words in
           capitals stand for names
@@ -45,6 +45,9 @@ FILTERED = re.compile(r"(\w+) --gtest_filter='?([^'\s`]*)'?")
 SELECTED = re.compile(r"python3 (tests/[\w/.-]+\.py) -k (\w+)")
 NAMED_SCRIPT = re.compile(r"`(tests/[\w/.-]+)(?:: ([^`]+))?`")
 LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)[^)]*\)")
+# What the pages may link to: systemd/CMakeLists.txt installs it beside them. The installed configs and
+# experiments are TOML and CSV files; LICENSE and pages at the top have no folder.
+INSTALLED = re.compile(r"docs/.*|config/.*\.(?:toml|csv)|model/symbols\.md|[^/]*\.md|LICENSE")
 LANES = Path("tools/lanes.sh")
 LANES_PAGE = Path("docs/testing.md")
 LANE_SET = re.compile(r"\b(quick|ci|only_all)_lanes=\(([^)]*)\)")
@@ -381,8 +384,11 @@ def check_page(tree, path, text):
         if said and target.exists() and said not in prose.read(target):
             yield match.start(), "test", f"{script} does not say '{said}'"
     for match in LINK.finditer(text):
-        if not (path.parent / match.group(1)).exists():
+        linked = (path.parent / match.group(1)).resolve()
+        if not linked.exists():
             yield match.start(), "link", f"there is no {match.group(1)}"
+        elif not (linked.is_relative_to(tree.root) and INSTALLED.fullmatch(tree.name(linked))):
+            yield match.start(), "link", f"{match.group(1)} is not installed with the page"
     for match in NAME_IN_FILE.finditer(text):
         name, file = match.groups()
         for path_there, code in tree.code("", ".h", ".cpp"):
