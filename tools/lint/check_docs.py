@@ -45,9 +45,9 @@ FILTERED = re.compile(r"(\w+) --gtest_filter='?([^'\s`]*)'?")
 SELECTED = re.compile(r"python3 (tests/[\w/.-]+\.py) -k (\w+)")
 NAMED_SCRIPT = re.compile(r"`(tests/[\w/.-]+)(?:: ([^`]+))?`")
 LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)[^)]*\)")
-# What the pages may link to: systemd/CMakeLists.txt installs it beside them. The installed configs and
-# experiments are TOML and CSV files; LICENSE and pages at the top have no folder.
-INSTALLED = re.compile(r"docs/.*|config/.*\.(?:toml|csv)|model/symbols\.md|[^/]*\.md|LICENSE")
+# What the pages may link to: systemd/CMakeLists.txt installs it beside them; of config/ only
+# the rigs and experiments.
+INSTALLED = re.compile(r"docs/.*|config/.*\.(?:toml|csv)|model/symbols\.md|(?:README|CHANGELOG)\.md|LICENSE")
 LANES = Path("tools/lanes.sh")
 LANES_PAGE = Path("docs/testing.md")
 LANE_SET = re.compile(r"\b(quick|ci|only_all)_lanes=\(([^)]*)\)")
