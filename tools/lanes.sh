@@ -230,8 +230,8 @@ fuzz() {  # fuzz TARGET DICTIONARY: for a minute, from the stored inputs and tho
 lane_fuzz() {  # libFuzzer on every reader of outside input, a minute each (FLEXARM_FUZZ_S=N)
   build fuzz fuzz_programs
   export ASAN_SYMBOLIZER_PATH=${ASAN_SYMBOLIZER_PATH:-/usr/lib/llvm-19/bin/llvm-symbolizer}
-  local targets=(calibration:json can: comedi: config:toml csv:csv experiment:toml gains:json
-                 log:log modbus: socket:json) target
+  local targets=(calibration:json can: client:json comedi: config:toml csv:csv experiment:toml gains:json
+                 log:log modbus: socket:json telemetry:) target
   for target in "${targets[@]}"; do
     part "${target%:*}" fuzz "${target%:*}" "${target#*:}"
   done

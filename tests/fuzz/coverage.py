@@ -16,6 +16,7 @@ SOURCES = {  # beginnings of the paths of a target's code
     "calibration": ("controller/commissioning/calibration_file", "controller/files/external_"),
     "can": ("hal/canopen/canopen_codec", "hal/canopen/canopen_d", "hal/canopen/canopen_re", "hal/canopen/confirmed",
             "hal/canopen/node_setup", "hal/canopen/sdo"),
+    "client": ("controller/operator/operator_client", "tools/status/"),
     "comedi": ("hal/comedi/board_proof", "hal/comedi/comedi_device", "hal/comedi/daq_codec", "hal/comedi/scan_clock"),
     "config": ("config/", "controller/types/"),
     "csv": ("controller/runlog/csv",),
@@ -24,6 +25,7 @@ SOURCES = {  # beginnings of the paths of a target's code
     "log": ("controller/runlog/re", "controller/runlog/run_", "controller/runlog/word_blocks"),
     "modbus": ("hal/modbus/modbus_device", "hal/modbus/modbus_link", "hal/modbus/modbus_value"),
     "socket": ("controller/operator/",),
+    "telemetry": ("controller/telemetry/telemetry_line",),
 }
 FUNCTION = re.compile(r"COVERED_FUNC: hits: \d+ edges: (\d+)/(\d+) .* (\S+?):\d+$", re.M)
 

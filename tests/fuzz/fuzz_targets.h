@@ -22,6 +22,8 @@ void FuzzGains(FuzzBytes input);
 void FuzzCalibration(FuzzBytes input);
 void FuzzLog(FuzzBytes input);
 void FuzzSocket(FuzzBytes input);
+void FuzzClient(FuzzBytes input);
+void FuzzTelemetry(FuzzBytes input);
 void FuzzModbus(FuzzBytes input);
 void FuzzCan(FuzzBytes input);
 void FuzzComedi(FuzzBytes input);

@@ -133,6 +133,27 @@ def make_socket():
     put("socket", "many-lines", b"\0" + lines)
 
 
+def make_client():
+    """Columns, rows, colours and UTF-8 of the screen, then the answers (fuzz_client.cpp)."""
+    status = json.loads((ROOT / "tests/golden/watch/running.json").read_text(encoding="utf-8"))
+    tripped = {**status, "state": "Tripped", "run": None, "present": [{"name": "emergency-stop"}],
+               "trip": {"name": "bending-strain-1", "text": "link 1", "value": 0.0022, "limit": 0.0019}}
+    refusal = {"ok": False, "refusal": "busy", "error": "the arm moves", "remedy": "stop it"}
+    for name, answers in (("running", [status]), ("tripped", [tripped]), ("refusal", [refusal]),
+                          ("many", [refusal, {}, {"ok": True, "rig": "Pr\u00fcfstand \u81c2"}]),
+                          ("escape", [{**status, "rig": "\x1b[2J\n\x7f\x9b", "state": "\r"}])):
+        lines = b"".join(json.dumps(answer, ensure_ascii=False).encode() + b"\n" for answer in answers)
+        put("client", name, bytes([119, 39, 2]) + lines)
+
+
+def make_telemetry():
+    """Encoders and gauges left out, the rig's name, lost, time, state, then the sample (fuzz_telemetry.cpp)."""
+    begin = b"\0\0\3rig" + struct.pack("<Qd", 3, 1764233100.125)
+    for name, numbers in (("ones", [1.0]), ("unknown", [float("nan"), float("inf")]), ("large", [-1.7e308, 5e-324])):
+        put("telemetry", name, begin + b"\3" + struct.pack(f"<{len(numbers)}d", *numbers) * (300 // len(numbers)))
+    put("telemetry", "few-sensors", b"\x0c\x0f\2\xff\"" + bytes(16) + b"\0" + bytes(range(256)) * 8)
+
+
 def reply(function, payload, how=0):
     """How the peer answers (fuzz_modbus.cpp): below 0x80 with a right header."""
     body = bytes([function, len(payload)]) + payload
@@ -198,6 +219,8 @@ def main():
         put("calibration", "tare.json", programs.calibration.read_bytes())
         make_logs(programs)
     make_socket()
+    make_client()
+    make_telemetry()
     make_modbus()
     make_can()
     make_comedi()

@@ -49,12 +49,13 @@ TEST_P(StoredInputs, AnEmptyInputIsAnInput) { GetParam().run({}); }
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, StoredInputs,
                          testing::Values(Target{"calibration", FuzzCalibration},
-                                         Target{"can", FuzzCan}, Target{"comedi", FuzzComedi},
-                                         Target{"config", FuzzConfig}, Target{"csv", FuzzCsv},
+                                         Target{"can", FuzzCan}, Target{"client", FuzzClient},
+                                         Target{"comedi", FuzzComedi}, Target{"config", FuzzConfig},
+                                         Target{"csv", FuzzCsv},
                                          Target{"experiment", FuzzExperiment},
                                          Target{"gains", FuzzGains}, Target{"log", FuzzLog},
-                                         Target{"modbus", FuzzModbus},
-                                         Target{"socket", FuzzSocket}),
+                                         Target{"modbus", FuzzModbus}, Target{"socket", FuzzSocket},
+                                         Target{"telemetry", FuzzTelemetry}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
