@@ -1,5 +1,6 @@
 #include "model/beam/dynamic_stiffness.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/beam/beam_equations.h"
@@ -48,7 +49,9 @@ Eigen::Matrix4d SectionStiffness(const BeamSection& s, double omega) {
 int CountClampedClamped(const BeamSection& s, double omega) {
   const double z = Beta(s, omega) * s.length_m;
   if (z < 4.0) return 0;  // the first root is 4.730
-  const int i = static_cast<int>(std::floor(z / kPi));
+  // Of a section without stiffness it has no end. No caller asks for as many.
+  constexpr double kMostCounted = 1e6;
+  const int i = static_cast<int>(std::min(std::floor(z / kPi), kMostCounted));
   const bool positive = 1.0 / std::cosh(z) > std::cos(z);
   const bool even = i % 2 == 0;
   return i - (positive == even ? 0 : 1);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "model/beam/dynamic_stiffness.h"
 #include "model/beam/link_modes.h"
+#include "model/beam/root_search_error.h"
 #include "model/beam_methods/friction_root.h"
 #include "tests/support/thesis_rig.h"
 
@@ -31,6 +33,15 @@ TEST(BeamModes, BareCantileverHasTheRootsOfTheClosedForm) {
   EXPECT_NEAR(mode[0].beta_length(), 1.875104068711961, 1e-12);
   EXPECT_NEAR(mode[1].beta_length(), 4.694091132974175, 1e-12);
   EXPECT_NEAR(mode[2].beta_length(), 7.854757438237613, 1e-12);
+}
+
+// Its frequencies crowd: their number below 1 rad/s is no int. Found by fuzzing a config.
+TEST(BeamModes, ASectionWithoutStiffnessIsRefused) {
+  BeamSection soft = Strip(0.9);
+  soft.second_moment_m4 = 2.657e-90;
+  EXPECT_EQ(CountClampedClamped(Strip(0.9), 1.0), 0);
+  EXPECT_EQ(CountClampedClamped(soft, 1.0), 1'000'000) << "as many are counted";
+  EXPECT_THROW(ClampedModes({soft}, {0.0, 0.0}, 1), RootSearchError);
 }
 
 struct TableRow {
