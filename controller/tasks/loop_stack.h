@@ -47,6 +47,8 @@ class LoopStack {
   /// All tasks, for an executor: safety, control, those of the backend, the planner.
   std::vector<Task*> tasks();
   SafetyTask& safety() { return safety_; }
+  /// Null: the law does not plan ahead.
+  const Task* planner() const noexcept { return planner_.get(); }
   /// Tasks of the backend, in order of priority.
   virtual std::vector<Task*> drive_tasks() = 0;
   /// The task whose timing is logged: one activation a sample.

@@ -29,6 +29,22 @@ class Torture(ProgramTest):
         one, two = (self.torture("--seeds", "20..27", "--jobs", jobs) for jobs in ("1", "2"))
         self.assertEqual(one, two)
 
+    def test_a_scenario_of_a_file_is_that_of_its_seed(self):
+        file = self.folder / "small.json"
+        file.write_text('{"seed": 1}')
+        refused = self.run_program("flexarm", "torture", "-c", HIL, "--scenario", file)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("small.json: no scenario of a torture", refused.stderr)
+        scenario = {"seed": 7, "law": "lqg", "payload_kg": 0.1, "plant": [], "move_to_deg": [30, -40], "move_s": 2.0,
+                    "situation": "Running", "after_ms": 400, "faults": [
+                        {"place": "counter", "index": 0, "kind": "off", "from_ms": 0, "to_ms": None, "seed": 1}],
+                    "commands": [{"at_ms": 20, "line": {"command": "status"}}], "recovers": True,
+                    "wake_ups": {"seed": 1, "latest_ms": 0.4, "latest_slow_ms": 3, "order_changes": 2}}
+        file.write_text(json.dumps(scenario))
+        told = self.torture("--scenario", file)
+        self.assertEqual((told["scenarios"], told["failures"]), (1, []))
+        self.assertEqual((told["laws"], told["causes"]), (["lqg"], {"no-counter-reading": 1}))
+
     def test_a_campaign_goes_on_where_it_stopped_and_is_of_one_build(self):
         lines = self.folder / "lines.jsonl"
 

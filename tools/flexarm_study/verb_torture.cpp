@@ -3,9 +3,11 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "controller/files/external_json.h"
 #include "controller/files/write_file.h"
@@ -19,19 +21,21 @@
 #include "tools/sweep/sweep_grid.h"
 #include "tools/torture/campaign.h"
 #include "tools/torture/fault_matrix.h"
+#include "tools/torture/scenario_json.h"
 #include "tools/torture/unsuited_law.h"
 
 namespace flexarm {
 namespace {
 
 constexpr std::size_t kShown = 20;  // failures in the text
-constexpr std::array kLaws = {"sobel", "sobel-thesis", "gain-scheduled", "lqg"};
+constexpr std::array kLaws = {"sobel", "sobel-thesis", "gain-scheduled", "lqg", "receding-horizon"};
 
 struct TortureOptions {
   ConfigOptions config;
   GridOptions grid;
   std::vector<std::string> laws;  ///< empty: the config's, and those of kLaws that it allows
   std::string seeds = "1..1000";
+  std::filesystem::path scenario;  ///< instead of seeds; empty: none
   bool minimise = false;
   bool matrix = false;
   OutputOptions page;
@@ -154,29 +158,41 @@ std::vector<std::string> WithoutUnsuited(const TortureOptions& options, const To
 
 int Run(const TortureOptions& options) {
   const RigConfig config = options.config.Load();
-  const std::vector<std::string> allowed = LawsOf(options, config);
+  std::optional<TortureScenario> alone;
+  if (!options.scenario.empty()) {
+    alone = ReadScenario(options.scenario, static_cast<int>(config.sensors.strain.size()));
+  }
+  const std::vector<std::string> allowed =
+      alone ? std::vector{alone->law} : LawsOf(options, config);
   const TorturedRigs rigs([&options](const std::string& law) { return LoadWithLaw(options, law); },
                           allowed);
-  const TortureSpace space = SpaceOf(config, WithoutUnsuited(options, rigs, config, allowed));
+  const TortureSpace space =
+      SpaceOf(config, alone ? allowed : WithoutUnsuited(options, rigs, config, allowed));
   if (options.matrix) return RunMatrix(options, rigs, space, config);
-  const std::vector<std::uint64_t> seeds = SeedsOf(options);
-  const TortureSummary summary = RunTorture(rigs, space, config, seeds, options.grid.jobs,
-                                            ProgressBar("scenarios", seeds.size()));
+  const std::vector<TortureScenario> scenarios =
+      alone ? std::vector{*alone} : ScenariosOf(SeedsOf(options), space, config);
+  const TortureSummary summary =
+      RunTorture(rigs, scenarios, options.grid.jobs, ProgressBar("scenarios", scenarios.size()));
   nlohmann::ordered_json json = TortureJson(summary);
   json["laws"] = space.laws;
   json["build"] = BuildId();
   if (!summary.failures.empty() && options.minimise) {
     const TortureFailure& first = summary.failures.front();
-    const TortureScenario small =
-        Minimised(rigs, ScenarioOf(first.seed, space, config), first.violation.rule);
+    const auto broke =
+        std::find_if(scenarios.begin(), scenarios.end(),
+                     [&first](const TortureScenario& one) { return one.seed == first.seed; });
+    const TortureScenario small = Minimised(rigs, *broke, first.violation.rule);
     json["minimised"] = Text(small);
+    json["minimised_scenario"] = ScenarioJson(small);
   }
   if (options.json) {
     std::cout << PrintedJson(json) << '\n';
   } else {
     PrintSummary(summary);
     if (json.contains("minimised")) {
-      std::cout << "the first, minimised: " << json["minimised"].get<std::string>() << '\n';
+      std::cout << "the first, minimised: " << json["minimised"].get<std::string>()
+                << "\nas a file for --scenario:\n"
+                << PrintedJson(json["minimised_scenario"]) << '\n';
     }
   }
   return summary.failures.empty() ? Exit::kDone : Exit::kFailed;
@@ -193,14 +209,21 @@ void RegisterTorture(CLI::App& app, Exit& exit) {
       ->type_name("VALUES");
   verb->add_option(
           "--laws", options->laws,
-          "Laws, separated by commas (default: sobel, sobel-thesis, gain-scheduled and lqg, "
-          "as far as the config allows them and they suit the arm, and the config's own)")
+          "Laws, separated by commas (default: sobel, sobel-thesis, gain-scheduled, lqg and "
+          "receding-horizon, as far as the config allows them and they suit the arm, and the "
+          "config's own)")
       ->type_name("NAMES")
       ->delimiter(',');
   options->grid.AddTo(verb);
   verb->get_option("--shard")->description("Only the I-th of N parts, 1 <= I <= N");
-  verb->add_flag("--minimise", options->minimise,
-                 "Search the smallest scenario that breaks the rule of the first failure");
+  verb->add_option("--scenario", options->scenario,
+                   "Instead of seeds: the scenario of a file, which --minimise has printed")
+      ->type_name("FILE")
+      ->excludes("--seeds")
+      ->excludes("--laws");
+  verb->add_flag(
+      "--minimise", options->minimise,
+      "Search the smallest scenario that breaks the rule of the first failure, and print it");
   verb->add_flag("--matrix", options->matrix,
                  "Instead: every fault in every state with every law, on the nominal arm");
   options->page.AddTo(verb, "With --matrix: write the tables to this file, in Markdown", false);
@@ -212,7 +235,8 @@ void RegisterTorture(CLI::App& app, Exit& exit) {
       "Examples:\n"
       "  flexarm torture -c config/hil.toml\n"
       "  flexarm torture -c config/hil.toml --seeds 1..20000 --shard 1/4 --json\n"
-      "  flexarm torture -c config/hil.toml --seeds 4711 --minimise");
+      "  flexarm torture -c config/hil.toml --seeds 4711 --minimise\n"
+      "  flexarm torture -c config/hil.toml --scenario small.json");
   verb->callback([options, &exit] { exit.code = Run(*options); });
 }
 

@@ -91,6 +91,7 @@ LAYERS = {
     "tools/sweep": "model model/rigid_joint hal controller/types controller/runlog controller/host "
                    "config config/derivation tools/support tools/runs tools/plot tools/bound controller/files",
     "tools/torture": "model model/rigid_joint estimator hal hal/sim controller/realtime controller/types "
+                     "controller/files tools/runs "
                      "controller/safety controller/law controller/step controller/runlog controller/tasks controller/latch "
                      "controller/operator controller/design controller/host config tools/support tools/sweep",
     "tools/bench_host": "model/arm model/simulation controller/files controller/types "

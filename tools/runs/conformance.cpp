@@ -126,7 +126,8 @@ std::vector<ConformanceCheck> CheckConformance(const LoadedRun& run) {
       ForEveryTick("torque-finite", run, TorqueIsFinite),
       ForEveryTick("torque-limit", run, TorqueLimit(limits)),
       ForEveryTick("slew-limit", run, SlewLimit(limits, run.period_s()))};
-  for (ConformanceCheck& check : CheckSafety(run)) checks.push_back(std::move(check));
+  for (ConformanceCheck& check : CheckSafety(run.contents, run.config))
+    checks.push_back(std::move(check));
   checks.push_back(DigestHolds(run));
   checks.push_back(IsClosed(run));
   return checks;

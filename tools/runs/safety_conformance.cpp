@@ -19,16 +19,21 @@ std::string Text(const TableRow& row) {
   return "row " + std::string(row.from) + ", " + std::string(row.when) + ": " + std::string(row.to);
 }
 
+// In the time of the log.
+double TimeOf(const RunContents& run, std::int64_t time_ns) {
+  return static_cast<double>(time_ns - run.info.start_ns) * 1e-9;
+}
+
 // What is wrong with a record, given the one before it; empty if nothing is.
 using RecordRule = std::function<std::string(const SafetyRecord* before, const SafetyRecord& now)>;
 
-ConformanceCheck ForEveryRecord(const std::string& name, const LoadedRun& run,
+ConformanceCheck ForEveryRecord(const std::string& name, const RunContents& run,
                                 const RecordRule& rule) {
-  const auto& records = run.contents.safety;
+  const auto& records = run.safety;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const std::string wrong = rule(i > 0 ? &records[i - 1] : nullptr, records[i]);
     if (wrong.empty()) continue;
-    const double time_s = run.TimeOf(records[i].due_ns);
+    const double time_s = TimeOf(run, records[i].due_ns);
     return {name, false, "record " + std::to_string(i + 1) + ": " + wrong, time_s,
             static_cast<std::int64_t>(i) + 1};
   }
@@ -107,28 +112,28 @@ class RecordedStates {
   std::size_t next_ = 0;  // the first that is not before the end
 };
 
-std::int64_t PermitTimeoutNs(const LoadedRun& run) {
-  return std::llround(1e6 * run.config.safety.permit_timeout_ms);
+std::int64_t PermitTimeoutNs(const RigConfig& config) {
+  return std::llround(1e6 * config.safety.permit_timeout_ms);
 }
 
 // What is wrong with a tick; empty if nothing is.
 using RuleOfTick = std::function<std::string(const TickRecord& tick)>;
 
-ConformanceCheck ForEachTickOf(const std::string& name, const LoadedRun& run,
+ConformanceCheck ForEachTickOf(const std::string& name, const RunContents& run,
                                const RuleOfTick& rule) {
-  for (const TickRecord& tick : run.contents.tick) {
+  for (const TickRecord& tick : run.tick) {
     const std::string wrong = rule(tick);
     if (wrong.empty()) continue;
     return {name, false, "tick " + std::to_string(tick.input.tick) + ": " + wrong,
-            run.TimeOf(tick.input.now_ns)};
+            TimeOf(run, tick.input.now_ns)};
   }
   return {name, true, ""};
 }
 
 // The state in which the loop worked. A permit may be as old as the gate accepts.
-RuleOfTick WorksInARecordedState(const LoadedRun& run) {
-  return [permit_ns = PermitTimeoutNs(run),
-          recorded = RecordedStates(run.contents.safety)](const TickRecord& tick) mutable {
+RuleOfTick WorksInARecordedState(const RunContents& run, const RigConfig& config) {
+  return [permit_ns = PermitTimeoutNs(config),
+          recorded = RecordedStates(run.safety)](const TickRecord& tick) mutable {
     const StepInput& input = tick.input;
     const bool held = recorded.AnyHeld(input.now_ns - permit_ns, input.now_ns,
                                        [&](SafetyState is) { return is == input.safety_state; });
@@ -139,10 +144,10 @@ RuleOfTick WorksInARecordedState(const LoadedRun& run) {
 }
 
 // A torque that was applied belongs to the period before the frame.
-RuleOfTick NoTorqueWhereNoneIsAllowed(const LoadedRun& run) {
-  const std::int64_t period_ns = std::llround(1e6 * run.config.loop.period_ms);
-  return [period_ns, permit_ns = PermitTimeoutNs(run),
-          recorded = RecordedStates(run.contents.safety)](const TickRecord& tick) mutable {
+RuleOfTick NoTorqueWhereNoneIsAllowed(const RunContents& run, const RigConfig& config) {
+  const std::int64_t period_ns = std::llround(1e6 * config.loop.period_ms);
+  return [period_ns, permit_ns = PermitTimeoutNs(config),
+          recorded = RecordedStates(run.safety)](const TickRecord& tick) mutable {
     const StepInput& input = tick.input;
     const std::int64_t end_ns = input.sampling_instant_ns;
     const bool was_allowed =
@@ -161,16 +166,16 @@ RuleOfTick NoTorqueWhereNoneIsAllowed(const LoadedRun& run) {
 
 }  // namespace
 
-std::vector<ConformanceCheck> CheckSafety(const LoadedRun& run) {
-  if (run.contents.safety.empty()) {
+std::vector<ConformanceCheck> CheckSafety(const RunContents& run, const RigConfig& config) {
+  if (run.safety.empty()) {
     return {{"safety-table", false, "there are no safety records"}};
   }
   return {ForEveryRecord("safety-table", run, ObeysTable),
           ForEveryRecord("safety-chain", run, FollowsTheOneBefore),
           ForEveryRecord("trip-latched", run, TripStaysLatched),
           ForEveryRecord("running-was-granted", run, RunningWasGranted),
-          ForEachTickOf("state-from-safety", run, WorksInARecordedState(run)),
-          ForEachTickOf("torque-only-where-allowed", run, NoTorqueWhereNoneIsAllowed(run))};
+          ForEachTickOf("state-from-safety", run, WorksInARecordedState(run, config)),
+          ForEachTickOf("torque-only-where-allowed", run, NoTorqueWhereNoneIsAllowed(run, config))};
 }
 
 }  // namespace flexarm

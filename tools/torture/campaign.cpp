@@ -9,13 +9,6 @@
 namespace flexarm {
 namespace {
 
-void Raise(const Peaks& of_run, Peaks* most) {
-  most->torque_share = std::max(most->torque_share, of_run.torque_share);
-  most->angle_share = std::max(most->angle_share, of_run.angle_share);
-  most->rate_share = std::max(most->rate_share, of_run.rate_share);
-  most->strain_share = std::max(most->strain_share, of_run.strain_share);
-}
-
 void Add(const TortureScenario& scenario, const TortureOutcome& outcome, TortureSummary* summary) {
   ++summary->scenarios;
   if (scenario.is_clean()) ++summary->clean;
@@ -35,22 +28,26 @@ void Add(const TortureScenario& scenario, const TortureOutcome& outcome, Torture
 
 }  // namespace
 
-TortureSummary RunTorture(const TorturedRigs& rigs, const TortureSpace& space,
-                          const RigConfig& config, const std::vector<std::uint64_t>& seeds,
-                          std::size_t jobs, const std::function<void(std::size_t)>& progress) {
+std::vector<TortureScenario> ScenariosOf(const std::vector<std::uint64_t>& seeds,
+                                         const TortureSpace& space, const RigConfig& config) {
   if (seeds.empty()) throw InputError("no scenario: expected at least one seed");
-  std::vector<TortureScenario> scenarios(seeds.size());
-  std::vector<TortureOutcome> outcomes(seeds.size());
+  std::vector<TortureScenario> scenarios;
+  for (const std::uint64_t seed : seeds) scenarios.push_back(ScenarioOf(seed, space, config));
+  return scenarios;
+}
+
+TortureSummary RunTorture(const TorturedRigs& rigs, const std::vector<TortureScenario>& scenarios,
+                          std::size_t jobs, const std::function<void(std::size_t)>& progress) {
+  std::vector<TortureOutcome> outcomes(scenarios.size());
   ParallelFor(
-      seeds.size(),
+      scenarios.size(),
       [&](std::size_t i) {
-        scenarios[i] = ScenarioOf(seeds[i], space, config);
         outcomes[i] = RunScenario(rigs, scenarios[i]);
         outcomes[i].tip_m = {};  // 10 kB of each session, of which there may be a million
       },
       progress, jobs);
-  TortureSummary summary{.first_seed = seeds.front(), .last_seed = seeds.back()};
-  for (std::size_t i = 0; i < seeds.size(); ++i) Add(scenarios[i], outcomes[i], &summary);
+  TortureSummary summary{.first_seed = scenarios.front().seed, .last_seed = scenarios.back().seed};
+  for (std::size_t i = 0; i < scenarios.size(); ++i) Add(scenarios[i], outcomes[i], &summary);
   return summary;
 }
 

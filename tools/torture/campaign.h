@@ -36,10 +36,12 @@ struct TortureSummary {
   std::vector<TortureFailure> failures{};       ///< all
 };
 
-/// Runs the scenarios of the seeds, on all cores. The summary does not depend on `jobs`.
-/// @throws InputError  an empty list
-TortureSummary RunTorture(const TorturedRigs& rigs, const TortureSpace& space,
-                          const RigConfig& config, const std::vector<std::uint64_t>& seeds,
+/// The scenarios of the seeds. @throws InputError  an empty list
+std::vector<TortureScenario> ScenariosOf(const std::vector<std::uint64_t>& seeds,
+                                         const TortureSpace& space, const RigConfig& config);
+
+/// Runs scenarios, at least one, on all cores. The summary does not depend on `jobs`.
+TortureSummary RunTorture(const TorturedRigs& rigs, const std::vector<TortureScenario>& scenarios,
                           std::size_t jobs, const std::function<void(std::size_t)>& progress = {});
 
 nlohmann::ordered_json TortureJson(const TortureSummary& summary);

@@ -60,6 +60,7 @@ TripCauses NamesOf(const Fault& fault) {
     case FaultPlace::kPlant:
       return kBusCauses | kGaugeCauses | kCounterCauses | kLimits;
     case FaultPlace::kOperator:
+    case FaultPlace::kPlanner:  // the law has its closed form
       return 0;
   }
   return 0;
@@ -109,6 +110,7 @@ std::int64_t NamedWithinNs(const RigConfig& config, const Fault& fault) noexcept
     case FaultPlace::kPump:
     case FaultPlace::kSafety:
     case FaultPlace::kOperator:
+    case FaultPlace::kPlanner:
       return INT64_MAX;
   }
   return INT64_MAX;

@@ -23,7 +23,7 @@ DisturbedExecutor::DisturbedExecutor(const WakeUps& wake_ups, const std::vector<
   std::sort(changes_.begin(), changes_.end(), std::greater<>());
 }
 
-void DisturbedExecutor::Add(Task& task, FaultPlace place) {
+void DisturbedExecutor::Add(Task& task, std::optional<FaultPlace> place) {
   const Task::Traits traits = task.traits();
   slots_.push_back({.task = &task,
                     .traits = traits,

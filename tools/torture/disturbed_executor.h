@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -39,8 +40,8 @@ class DisturbedExecutor {
   /// @param end_ns  no change of order comes later
   DisturbedExecutor(const WakeUps& wake_ups, const std::vector<Fault>& faults, std::int64_t end_ns);
 
-  /// @param place  of its faults; another place: none
-  void Add(Task& task, FaultPlace place = FaultPlace::kFrame);
+  /// @param place  of its faults; nothing: no fault is its own
+  void Add(Task& task, std::optional<FaultPlace> place = std::nullopt);
 
   /// `guard` outlives the executor; null: none. It sees the tasks that have a priority.
   void Watch(ActivationGuard* guard) noexcept { guard_ = guard; }
@@ -55,7 +56,7 @@ class DisturbedExecutor {
   struct Slot {
     Task* task;
     Task::Traits traits;
-    FaultPlace place;
+    std::optional<FaultPlace> place;
     std::int64_t due_ns;
     std::int64_t wake_ns;
     int missed_in_a_row;

@@ -29,7 +29,8 @@ constexpr std::array<Row, kFaultPlaces> kPlaces = {{{"gauge", 0},
                                                     {"safety-thread", 1},
                                                     {"control-thread", 1},
                                                     {"plant-thread", 1},
-                                                    {"operator-thread", 1}}};
+                                                    {"operator-thread", 1},
+                                                    {"planner-thread", 1}}};
 
 constexpr std::array<const char*, kFaultKinds> kKinds = {
     "off",  "stuck",   "garbage",      "not-a-number", "wrong-scale",
@@ -77,6 +78,7 @@ bool Exists(FaultPlace place, FaultKind kind) noexcept {
     case FaultPlace::kControl:
     case FaultPlace::kPlant:
     case FaultPlace::kOperator:
+    case FaultPlace::kPlanner:
       return IsOneOf(kind, {kOff, kStuck, kSlow, kDelayed, kIntermittent, kDrifting, kLate});
   }
   return false;

@@ -27,8 +27,9 @@ enum class FaultPlace : std::uint8_t {
   kControl,      ///< the control thread
   kPlant,        ///< the thread of bus and drives
   kOperator,     ///< the operator thread
+  kPlanner,      ///< the planner thread, of a law that plans ahead
 };
-inline constexpr int kFaultPlaces = 16;
+inline constexpr int kFaultPlaces = 17;
 
 /// How it is spoilt.
 enum class FaultKind : std::uint8_t {

@@ -50,7 +50,18 @@ double Apart(const std::array<double, 2>& a, const std::array<double, 2>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-void AddOutcome(const TortureOutcome& outcome, const TortureOutcome& healthy, MatrixCell* cell) {
+// In which the cause has latched before the fault.
+bool AlreadyLatched(Situation situation) {
+  return situation == Situation::kFaultStopping || situation == Situation::kTripped;
+}
+
+// In which the operator has the arm move; what damps it after a trip is like Stopping.
+bool IsMove(Situation situation) {
+  return situation == Situation::kRunning || situation == Situation::kStopping;
+}
+
+void AddOutcome(const TortureOutcome& outcome, const TortureOutcome& healthy, Situation situation,
+                MatrixCell* cell) {
   ++cell->sessions;
   const bool tripped = outcome.cause != TripCause::kNone;
   if (tripped) {
@@ -61,11 +72,9 @@ void AddOutcome(const TortureOutcome& outcome, const TortureOutcome& healthy, Ma
   } else {
     ++cell->without_trip;
   }
-  cell->torque_ns = std::max(cell->torque_ns, tripped ? outcome.last_torque_ns : 0);
-  cell->peaks.torque_share = std::max(cell->peaks.torque_share, outcome.peaks.torque_share);
-  cell->peaks.angle_share = std::max(cell->peaks.angle_share, outcome.peaks.angle_share);
-  cell->peaks.rate_share = std::max(cell->peaks.rate_share, outcome.peaks.rate_share);
-  cell->peaks.strain_share = std::max(cell->peaks.strain_share, outcome.peaks.strain_share);
+  const bool ends = tripped || AlreadyLatched(situation);
+  cell->torque_ns = std::max(cell->torque_ns, ends ? outcome.last_torque_ns : 0);
+  Raise(outcome.peaks, &cell->peaks);
   const std::size_t ms = std::min(outcome.tip_m.size(), healthy.tip_m.size());
   const auto trip = tripped ? static_cast<std::size_t>(outcome.latched_ns / kMs) : ms;
   for (std::size_t i = 0; i < std::min(ms, trip); ++i) {
@@ -101,17 +110,39 @@ std::string Rounded(double value, int digits) {
   return text.data();
 }
 
+const MatrixCell& CellOf(const MatrixRow& row, Situation situation) {
+  const auto* const at = std::find(kMatrixSituations.begin(), kMatrixSituations.end(), situation);
+  return row.cells.at(static_cast<std::size_t>(at - kMatrixSituations.begin()));
+}
+
+// Largest values of Running and Stopping.
+MatrixCell WorstOfMove(const MatrixRow& row) {
+  MatrixCell worst;
+  for (std::size_t i = 0; i < row.cells.size(); ++i) {
+    if (!IsMove(kMatrixSituations.at(i))) continue;
+    Raise(row.cells[i].peaks, &worst.peaks);
+    worst.tip_m = std::max(worst.tip_m, row.cells[i].tip_m);
+    worst.coast_m = std::max(worst.coast_m, row.cells[i].coast_m);
+  }
+  return worst;
+}
+
 std::string RowText(const MatrixRow& row, const RigConfig& config) {
   std::string text = std::string("| ") + ToString(row.place) + " " + ToString(row.kind);
-  for (const MatrixCell& cell : row.cells) text += " | " + CellText(cell, config);
-  const MatrixCell& running = row.cells[2];
-  text +=
-      " | " + (running.causes.empty() ? std::string("-") : std::to_string(running.torque_ns / kMs));
-  text += " | " + Rounded(running.peaks.torque_share, 2);
-  text += " | " + Rounded(running.peaks.angle_share, 2);
-  text += " | " + Rounded(running.peaks.strain_share, 2);
-  text += " | " + Rounded(1e3 * running.tip_m, 0);
-  text += " | " + Rounded(1e3 * running.coast_m, 0);
+  for (std::size_t i = 0; i < row.cells.size(); ++i) {
+    if (!AlreadyLatched(kMatrixSituations.at(i))) text += " | " + CellText(row.cells[i], config);
+  }
+  for (const Situation situation : {Situation::kRunning, Situation::kStopping}) {
+    const MatrixCell& cell = CellOf(row, situation);
+    text += " | " + (cell.causes.empty() ? std::string("-") : std::to_string(cell.torque_ns / kMs));
+  }
+  const MatrixCell worst = WorstOfMove(row);
+  text += " | " + std::to_string(CellOf(row, Situation::kFaultStopping).torque_ns / kMs);
+  text += " | " + Rounded(worst.peaks.torque_share, 2);
+  text += " | " + Rounded(worst.peaks.angle_share, 2);
+  text += " | " + Rounded(worst.peaks.strain_share, 2);
+  text += " | " + Rounded(1e3 * worst.tip_m, 0);
+  text += " | " + Rounded(1e3 * worst.coast_m, 0);
   return text + " |\n";
 }
 
@@ -124,7 +155,7 @@ std::vector<MatrixRow> EmptyMatrix(const TortureSpace& space) {
       for (int kind = 0; kind < kFaultKinds; ++kind) {
         const auto at = static_cast<FaultPlace>(place);
         const auto of = static_cast<FaultKind>(kind);
-        if (!Exists(at, of)) continue;
+        if (!Exists(at, of) || !Has(law, at)) continue;
         rows.push_back({.place = at,
                         .kind = of,
                         .law = law,
@@ -171,7 +202,7 @@ std::vector<MatrixRow> FaultMatrix(const TorturedRigs& rigs, const TortureSpace&
         MatrixRow& row = rows[i / cells];
         const Situation situation = kMatrixSituations.at(i % cells);
         for (const TortureScenario& scenario : MatrixScenarios(space, config, row, situation)) {
-          AddOutcome(RunScenario(rigs, scenario), healthy.at({row.law, situation}),
+          AddOutcome(RunScenario(rigs, scenario), healthy.at({row.law, situation}), situation,
                      &row.cells[i % cells]);
         }
       },
@@ -187,10 +218,11 @@ std::string MatrixMarkdown(const std::vector<MatrixRow>& rows, const RigConfig& 
   for (const MatrixRow& row : rows) {
     if (row.law != law) {
       law = row.law;
-      page += "\n## " + law +
-              "\n\n| fault | Idle | Armed | Running | Stopping | torque ends, ms | torque | "
-              "angle | strain | tip, mm | coasts, mm "
-              "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+      page +=
+          "\n## " + law +
+          "\n\n| fault | Starting | Idle | Armed | Running | Stopping | Disarming | torque ends in "
+          "Running, ms | in Stopping | in FaultStopping | torque | angle | strain | tip, mm | "
+          "coasts, mm |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     }
     page += RowText(row, config);
   }

@@ -35,8 +35,9 @@ struct MatrixRow {
   std::vector<MatrixCell> cells;  ///< by kMatrixSituations
 };
 
-inline constexpr std::array<Situation, 4> kMatrixSituations = {
-    Situation::kIdle, Situation::kArmed, Situation::kRunning, Situation::kStopping};
+inline constexpr std::array<Situation, kSituations> kMatrixSituations = {
+    Situation::kStarting, Situation::kIdle,      Situation::kArmed,         Situation::kRunning,
+    Situation::kStopping, Situation::kDisarming, Situation::kFaultStopping, Situation::kTripped};
 
 /// Every fault in every situation with every law, on the nominal arm, with threads on time.
 /// @param progress  called with the number of cells that are done

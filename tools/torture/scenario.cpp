@@ -12,7 +12,7 @@ namespace flexarm {
 namespace {
 
 constexpr std::array<const char*, kSituations> kNames = {
-    "Starting", "Idle", "Armed", "Running", "Stopping", "Disarming", "Tripped"};
+    "Starting", "Idle", "Armed", "Running", "Stopping", "Disarming", "Tripped", "FaultStopping"};
 
 // Draws from one generator: the same numbers on every machine.
 class Draw {
@@ -35,12 +35,18 @@ class Draw {
   UniformNumbers uniform_;
 };
 
-Fault DrawFault(const TortureSpace& space, Draw* draw) {
+const LawRow* RowOf(const std::string& law) {
+  const auto* const row = std::find_if(kLaws.begin(), kLaws.end(),
+                                       [&law](const LawRow& one) { return law == one.name; });
+  return row == kLaws.end() ? nullptr : row;
+}
+
+Fault DrawFault(const TortureSpace& space, const std::string& law, Draw* draw) {
   for (;;) {
     const auto place = static_cast<FaultPlace>(draw->Below(kFaultPlaces));
     const auto kind = static_cast<FaultKind>(draw->Below(kFaultKinds));
     const int index = draw->Below(CountOf(place, space.gauges));
-    if (!Exists(place, kind)) continue;
+    if (!Exists(place, kind) || !Has(law, place)) continue;
     const std::int64_t from_ns = draw->Ms(0.0, 40.0);
     // Half of them stay until the recovery.
     const std::int64_t to_ns = draw->With(0.5) ? INT64_MAX : from_ns + draw->Ms(1.0, 400.0);
@@ -88,9 +94,8 @@ std::string DrawCommand(Draw* draw) {
 }
 
 bool FollowsPayload(const std::string& law) {
-  const auto* const row = std::find_if(kLaws.begin(), kLaws.end(),
-                                       [&law](const LawRow& one) { return law == one.name; });
-  return row != kLaws.end() && (row->is_scheduled || row->plans_ahead);
+  const LawRow* const row = RowOf(law);
+  return row != nullptr && (row->is_scheduled || row->plans_ahead);
 }
 
 // A change of the path that goes on.
@@ -138,6 +143,11 @@ const std::array<double, 2>& TortureSpace::PayloadsOf(const std::string& law) co
   return FollowsPayload(law) ? payload_kg : fixed_payload_kg;
 }
 
+bool Has(const std::string& law, FaultPlace place) {
+  const LawRow* const row = RowOf(law);
+  return place != FaultPlace::kPlanner || (row != nullptr && row->plans_ahead);
+}
+
 double MoveTime_s(const TortureSpace& space, const std::array<double, 2>& to_deg,
                   double heaviest_kg, double share) {
   const Eigen::Vector2d to_rad = Eigen::Vector2d(to_deg[0], to_deg[1]) * kRadPerDeg;
@@ -175,7 +185,7 @@ TortureScenario ScenarioOf(std::uint64_t seed, const TortureSpace& space, const 
   scenario.after_ns = draw.Ms(0.0, scenario.situation == Situation::kRunning ? 900.0 : 60.0);
   const double kind = draw.Between(0.0, 1.0);
   const int faults = kind < 0.1 ? 0 : kind < 0.7 ? 1 : kind < 0.9 ? 2 : 3;
-  for (int i = 0; i < faults; ++i) scenario.faults.push_back(DrawFault(space, &draw));
+  for (int i = 0; i < faults; ++i) scenario.faults.push_back(DrawFault(space, scenario.law, &draw));
   DrawCommands(&draw, &scenario);
   scenario.recovers = draw.With(0.3);
   constexpr std::array<std::int64_t, 4> kLatest = {0, 50'000, 400'000, 900'000};

@@ -22,9 +22,11 @@ enum class Situation : std::uint8_t {
   kRunning,
   kStopping,
   kDisarming,
-  kTripped,  ///< by the emergency stop in mid-move
+  kTripped,        ///< by the emergency stop in mid-move
+  kFaultStopping,  ///< by a torque in mid-move that was not that of the command, and is again;
+                   ///< in a fifth Tripped at once (TortureSession::BreakALimit)
 };
-inline constexpr int kSituations = 7;
+inline constexpr int kSituations = 8;
 
 const char* ToString(Situation situation) noexcept;
 
@@ -50,7 +52,10 @@ struct TortureScenario {
   WakeUps wake_ups{};
 
   /// Nothing in it may trip the arm.
-  bool is_clean() const { return faults.empty() && situation != Situation::kTripped; }
+  bool is_clean() const {
+    return faults.empty() && situation != Situation::kTripped &&
+           situation != Situation::kFaultStopping;
+  }
 };
 
 /// What scenarios are drawn from: laws, and what the rig has.
@@ -66,6 +71,9 @@ struct TortureSpace {
   /// Least and greatest payload with a law.
   const std::array<double, 2>& PayloadsOf(const std::string& law) const;
 };
+
+/// Whether the daemon has such a place with this law.
+bool Has(const std::string& law, FaultPlace place);
 
 /// The space of a rig.
 TortureSpace SpaceOf(const RigConfig& config, std::vector<std::string> laws);

@@ -15,6 +15,13 @@ constexpr std::size_t kKept = 4096;  // milliseconds: a thread of the arm may ha
 
 }  // namespace
 
+void Raise(const Peaks& by, Peaks* most) {
+  most->torque_share = std::max(most->torque_share, by.torque_share);
+  most->angle_share = std::max(most->angle_share, by.angle_share);
+  most->rate_share = std::max(most->rate_share, by.rate_share);
+  most->strain_share = std::max(most->strain_share, by.strain_share);
+}
+
 void SessionWatch::Add(std::int64_t at_ns, const char* rule, const std::string& what) {
   if (violations_.size() < kMostViolations) {
     violations_.push_back({.at_ns = at_ns, .rule = rule, .what = what});

@@ -44,6 +44,9 @@ struct Peaks {
   double strain_share = 0.0;  ///< true strain at a gauge over its limit, while a torque acts
 };
 
+/// Raises each of `most` that is less than that of `by`.
+void Raise(const Peaks& by, Peaks* most);
+
 /// Which rules hold in a session, by its faults.
 struct WatchRules {
   /// Torque may stay for so long after the tick in which the state stopped allowing it, in the time

@@ -18,7 +18,8 @@ namespace flexarm {
 /// What became of a scenario.
 struct TortureOutcome {
   std::vector<Violation> violations;
-  bool reached = false;                 ///< the situation came about
+  bool reached = false;                           ///< the situation came about
+  SafetyState began_in = SafetyState::kStarting;  ///< the state in which the faults began
   TripCause cause = TripCause::kNone;   ///< the first that latched after the faults had begun
   std::int64_t latched_ns = INT64_MAX;  ///< that instant, after the begin of the faults
   std::int64_t observable_ns =
@@ -65,7 +66,7 @@ TortureOutcome RunScenario(const TorturedRigs& rigs, const TortureScenario& scen
 inline constexpr std::int64_t kWatchedNs = 700 * kMs;
 
 /// The smallest scenario found that breaks the same rule: fewer faults and commands, no disturbed
-/// threads, the nominal arm.
+/// threads, the nominal arm, and shorter times until the faults and of each.
 TortureScenario Minimised(const TorturedRigs& rigs, const TortureScenario& scenario,
                           const std::string& rule, const Peaks& envelope = kEnvelope);
 

@@ -20,7 +20,17 @@ constexpr std::size_t kEventDepth = 1'000, kTimingDepth = 64;
 // Time stands still while an experiment is planned.
 constexpr std::chrono::seconds kPlanWait{60};
 
-std::vector<Fault> NotYet(std::vector<Fault> faults) {
+// What BreakALimit uses is behind those of the scenario.
+std::vector<Fault> NotYet(const TortureScenario& scenario) {
+  std::vector<Fault> faults = scenario.faults;
+  if (scenario.situation == Situation::kFaultStopping) {
+    faults.push_back({.place = FaultPlace::kTorque,
+                      .index = 1,
+                      .kind = FaultKind::kGarbage,
+                      .from_ns = kNever,
+                      .to_ns = kNever,
+                      .seed = scenario.seed});
+  }
   for (Fault& fault : faults) fault.from_ns = fault.to_ns = kNever;
   return faults;
 }
@@ -66,7 +76,7 @@ TortureSession::TortureSession(const TorturedRig& rig, const TortureScenario& sc
                                const WatchRules& rules)
     : rig_(rig),
       scenario_(scenario),
-      faults_(NotYet(scenario.faults)),
+      faults_(NotYet(scenario)),
       grid_(rig.config.loop),
       folder_(ParentOfFolders()),
       operator_config_(LoggingTo(folder_.path(), rig.config)),
@@ -100,14 +110,18 @@ TortureSession::TortureSession(const TorturedRig& rig, const TortureScenario& sc
   operator_.emplace(Context());
   client_.emplace((folder_.path() / "socket").string());
   for (Task* task : stack_.tasks()) {
-    FaultPlace place = FaultPlace::kFrame;
-    if (task == &stack_.safety()) place = FaultPlace::kSafety;
-    if (task == &stack_.control()) place = FaultPlace::kControl;
-    if (task == stack_.drive_tasks().front()) place = FaultPlace::kPlant;
-    executor_.Add(*task, place);
+    executor_.Add(*task, PlaceOf(task));
   }
   executor_.Add(*operator_, FaultPlace::kOperator);
   executor_.Add(recorder_);
+}
+
+std::optional<FaultPlace> TortureSession::PlaceOf(const Task* task) {
+  if (task == &stack_.safety()) return FaultPlace::kSafety;
+  if (task == &stack_.control()) return FaultPlace::kControl;
+  if (task == stack_.planner()) return FaultPlace::kPlanner;
+  if (task == stack_.drive_tasks().front()) return FaultPlace::kPlant;
+  return std::nullopt;
 }
 
 OperatorContext TortureSession::Context() {
@@ -178,8 +192,17 @@ void TortureSession::RunMove() {
   Send(nlohmann::json{{"command", "run"}, {"experiment", experiment}}.dump());
 }
 
+bool TortureSession::BreakALimit() {
+  constexpr std::int64_t kWithinNs = 3'000 * kMs;
+  faults_.back().from_ns = now_ns_;
+  const std::int64_t until_ns = now_ns_ + kWithinNs;
+  while (now_ns_ < until_ns && !CauseLatched(state())) RunFor(kMs);
+  faults_.back().to_ns = now_ns_;
+  return CauseLatched(state());
+}
+
 void TortureSession::BeginFaults() {
-  for (std::size_t i = 0; i < faults_.size(); ++i) {
+  for (std::size_t i = 0; i < scenario_.faults.size(); ++i) {
     faults_[i].from_ns = now_ns_ + scenario_.faults[i].from_ns;
     const std::int64_t to_ns = scenario_.faults[i].to_ns;
     faults_[i].to_ns = to_ns == kNever ? kNever : now_ns_ + to_ns;

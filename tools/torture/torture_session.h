@@ -59,6 +59,10 @@ class TortureSession {
   void Press(const char* line, int level);
   void RunMove();
 
+  /// In mid-move: breaks a limit by a torque that is not that of the command, until that has
+  /// latched. The arm is damped then, unless a reading became implausible as well: then it is
+  /// Tripped. @returns false: no limit was broken
+  bool BreakALimit();
   /// Faults begin now; their instants so far are relative.
   void BeginFaults();
   /// Faults end now.
@@ -87,6 +91,7 @@ class TortureSession {
 
  private:
   OperatorContext Context();
+  std::optional<FaultPlace> PlaceOf(const Task* task);
   void TakeAnswers();
   void TakeRecords();
 

@@ -102,6 +102,17 @@ TEST(DisturbedExecutor, AHungThreadSkipsThePeriodsThatHavePassed) {
   EXPECT_EQ(control[3].missed_in_a_row, 4) << "that one was missed as well";
 }
 
+TEST(DisturbedExecutor, AFaultOfReadingsDelaysNoThread) {
+  const std::vector<Fault> faults = {Of(FaultPlace::kFrame, FaultKind::kOff, 0, 100)};
+  std::vector<Seen> seen;
+  Noting recorder("recorder", 10, 0, &seen);
+  DisturbedExecutor executor({}, faults, 100 * kMs);
+  executor.Add(recorder);
+  executor.RunUntil(100 * kMs);
+  ASSERT_EQ(seen.size(), 10U);
+  for (const Seen& one : seen) EXPECT_EQ(one.activation.late_ns, 0);
+}
+
 TEST(DisturbedExecutor, TasksThatWakeTogetherRunInAnyOrderAndASeedRepeatsIt) {
   bool safety_first = false, control_first = false;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

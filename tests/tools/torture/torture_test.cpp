@@ -18,7 +18,8 @@
 namespace flexarm {
 namespace {
 
-const std::vector<std::string> kTorturedLaws = {"sobel", "sobel-thesis", "gain-scheduled", "lqg"};
+const std::vector<std::string> kTorturedLaws = {"sobel", "sobel-thesis", "gain-scheduled", "lqg",
+                                                "receding-horizon"};
 
 // The designs take a second: once.
 const TorturedRigs& Rigs() {
@@ -40,7 +41,7 @@ TortureScenario Drawn(std::uint64_t seed) {
 TEST(Torture, CampaignBreaksNoRule) {
   std::vector<std::uint64_t> seeds(static_cast<std::size_t>(CampaignCases(1'000, 20'000)));
   std::iota(seeds.begin(), seeds.end(), 1);
-  const TortureSummary summary = RunTorture(Rigs(), Space(), ShippedRig(), seeds, 1);
+  const TortureSummary summary = RunTorture(Rigs(), ScenariosOf(seeds, Space(), ShippedRig()), 1);
   for (const TortureFailure& failure : summary.failures) {
     ADD_FAILURE() << "seed " << failure.seed << ": " << failure.violation.rule << ": "
                   << failure.violation.what << "\n"
@@ -101,16 +102,25 @@ TEST(Torture, ASessionLeavesNoCalibrationBehind) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+// A run with something of everything.
+TortureScenario Crowded() {
+  for (std::uint64_t seed = 1;; ++seed) {
+    const TortureScenario drawn = Drawn(seed);
+    if (drawn.situation == Situation::kRunning && drawn.faults.size() == 3 &&
+        !drawn.commands.empty() && !drawn.plant.empty()) {
+      return drawn;
+    }
+  }
+}
+
 // A rule that the arm breaks by moving at all: what is left is the move.
 TEST(Torture, AFailureIsMinimisedToWhatBreaksItsRule) {
-  TortureScenario scenario = Drawn(10);
-  ASSERT_EQ(scenario.situation, Situation::kRunning);
-  ASSERT_EQ(scenario.faults.size(), 3U);
-  ASSERT_FALSE(scenario.commands.empty() || scenario.plant.empty());
+  const TortureScenario scenario = Crowded();
   Peaks none = kEnvelope;
   none.angle_share = 0.01;
   const TortureScenario small = Minimised(Rigs(), scenario, "envelope", none);
   EXPECT_TRUE(small.faults.empty());
+  EXPECT_LE(small.after_ns, scenario.after_ns);
   EXPECT_TRUE(small.commands.empty());
   EXPECT_TRUE(small.plant.empty());
   EXPECT_EQ(small.wake_ups.latest_ns, 0);
@@ -162,6 +172,42 @@ TEST(Torture, AFaultThatIsSeenAtTheEndIsWatchedUntilItMustBeNamed) {
     if (outcome.latched_ns > 700 * kMs && outcome.latched_ns < INT64_MAX) ++named_later;
   }
   EXPECT_GT(named_later, 0);
+}
+
+// A torque that is not that of the command breaks a limit, and the arm is damped: in some sessions
+// a reading becomes implausible as well, and then nothing is damped.
+TEST(Torture, MostFaultsInFaultStoppingBeginInThatState) {
+  int damped = 0, sessions = 0;
+  for (std::uint64_t seed = 1; sessions < 10; ++seed) {
+    const TortureScenario scenario = Drawn(seed);
+    if (scenario.situation != Situation::kFaultStopping) continue;
+    const TortureOutcome outcome = RunScenario(Rigs(), scenario);
+    EXPECT_TRUE(outcome.reached && outcome.violations.empty()) << seed;
+    if (outcome.began_in == SafetyState::kFaultStopping) ++damped;
+    ++sessions;
+  }
+  EXPECT_GE(damped, sessions / 2);
+}
+
+// The link bends farther than in the move alone, long before the fault ends.
+TEST(Torture, TheShortestFaultThatBreaksTheRuleIsFound) {
+  const TortureScenario scenario = InMidMove({.place = FaultPlace::kTorque,
+                                              .index = 1,
+                                              .kind = FaultKind::kGarbage,
+                                              .from_ns = 0,
+                                              .to_ns = 512 * kMs,
+                                              .seed = 1});
+  TortureScenario well = scenario;
+  well.faults.clear();
+  const double moves = RunScenario(Rigs(), well).peaks.strain_share;
+  const double fault = RunScenario(Rigs(), scenario).peaks.strain_share;
+  ASSERT_GT(fault, 1.2 * moves);
+  Peaks tight = kEnvelope;
+  tight.strain_share = 0.5 * (moves + fault);
+  const TortureScenario small = Minimised(Rigs(), scenario, "envelope", tight);
+  ASSERT_EQ(small.faults.size(), 1U);
+  EXPECT_LT(small.faults[0].to_ns, 512 * kMs);
+  EXPECT_LE(small.after_ns, scenario.after_ns);
 }
 
 TEST(Torture, EveryPlaceKindAndSituationIsDrawn) {
