@@ -8,7 +8,7 @@ from program import ProgramTest
 
 ROWS = ["step-sobel", "step-receding-horizon", "plan", "right-hand-side", "integrator-step",
         "experiment", "plant-cvode", "plant-ode45", "replay", "export", "sweep-two-cores",
-        "wake-up"]
+        "wake-up", "wake-up-under-load"]
 NUMBERS = ("median_s", "lower_quartile_s", "upper_quartile_s", "repetitions")
 # Rows that need nothing but the product. The others need programs or permissions of the machine.
 ALWAYS = {"step-sobel", "step-receding-horizon", "plan", "right-hand-side", "integrator-step",
@@ -28,6 +28,8 @@ class BenchHost(ProgramTest):
                 if row["not_measured"] is None:
                     self.assertTrue(all(row[key] > 0 for key in NUMBERS), row)
                     self.assertLessEqual(row["lower_quartile_s"], row["upper_quartile_s"])
+                    if row["name"].startswith("wake-up"):
+                        self.assertRegex(row["result"], r"percentile.*; cyclictest.*percentile")
                 else:
                     self.assertNotIn(row["name"], ALWAYS, row["not_measured"])
                     self.assertIsNone(row["median_s"])

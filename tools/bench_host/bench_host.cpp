@@ -52,7 +52,7 @@ std::vector<std::string> LawsOf(const RigConfig& config) {
 
 }  // namespace
 
-std::size_t BenchRowsOf(const BenchSetting& setting) { return 10 + LawsOf(setting.config).size(); }
+std::size_t BenchRowsOf(const BenchSetting& setting) { return 11 + LawsOf(setting.config).size(); }
 
 BenchReport RunBenchHost(const BenchSetting& setting,
                          const std::function<void(std::size_t)>& progress) {
@@ -81,6 +81,7 @@ BenchReport RunBenchHost(const BenchSetting& setting,
   bench.Add("export", [&] { return ExportRow(run, setting); });
   bench.Add("sweep-two-cores", [&] { return TwoCoresRow(setting, scratch.path()); });
   bench.Add("wake-up", [&] { return WakeUpRow(setting, scratch.path()); });
+  bench.Add("wake-up-under-load", [&] { return LoadedWakeUpRow(setting, scratch.path()); });
   return report;
 }
 

@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "controller/files/external_text.h"
 
@@ -47,6 +50,35 @@ class Redirection {
   posix_spawn_file_actions_t actions_{};
 };
 
+std::filesystem::path OutputIn(const std::filesystem::path& folder) {
+  return folder / "output.txt";
+}
+std::filesystem::path ErrorsIn(const std::filesystem::path& folder) {
+  return folder / "errors.txt";
+}
+
+pid_t Spawn(const std::vector<std::string>& words, const std::filesystem::path& folder) {
+  const Redirection redirection(folder, OutputIn(folder), ErrorsIn(folder));
+  std::vector<std::string> copies = words;
+  std::vector<char*> arguments;
+  for (std::string& word : copies) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int error = ::posix_spawnp(&child, words.front().c_str(), redirection.actions(), nullptr,
+                                   arguments.data(), environ);
+  if (error != 0) {
+    throw std::runtime_error(words.front() + " cannot be started: " + std::strerror(error));
+  }
+  return child;
+}
+
+// @param status  from waitpid
+ProgramResult ResultOf(int status, const std::filesystem::path& folder) {
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return {
+      .exit_code = code, .output = TextOf(OutputIn(folder)), .errors = TextOf(ErrorsIn(folder))};
+}
+
 }  // namespace
 
 bool IsInPath(const std::string& name) {
@@ -59,24 +91,46 @@ bool IsInPath(const std::string& name) {
 }
 
 ProgramResult RunChild(const std::vector<std::string>& words, const std::filesystem::path& folder) {
-  const std::filesystem::path output = folder / "output.txt", errors = folder / "errors.txt";
-  const Redirection redirection(folder, output, errors);
-  std::vector<std::string> copies = words;
-  std::vector<char*> arguments;
-  for (std::string& word : copies) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  const int error = ::posix_spawnp(&child, words.front().c_str(), redirection.actions(), nullptr,
-                                   arguments.data(), environ);
-  if (error != 0) {
-    throw std::runtime_error(words.front() + " cannot be started: " + std::strerror(error));
-  }
+  const pid_t child = Spawn(words, folder);
   int status = 0;
   while (::waitpid(child, &status, 0) != child) {
     if (errno != EINTR) throw std::runtime_error(words.front() + " is gone");
   }
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {.exit_code = code, .output = TextOf(output), .errors = TextOf(errors)};
+  return ResultOf(status, folder);
+}
+
+BackgroundChild::BackgroundChild(const std::vector<std::string>& words,
+                                 const std::filesystem::path& folder)
+    : name_(words.front()), folder_(folder), child_(0) {
+  if (words.front().find('/') == std::string::npos && !IsInPath(words.front())) {
+    throw std::runtime_error(words.front() + " cannot be started: " + std::strerror(ENOENT));
+  }
+  std::vector<std::string> tied = {"setpriv", "--pdeathsig", "TERM", "--"};
+  tied.insert(tied.end(), words.begin(), words.end());
+  child_ = Spawn(tied, folder);
+}
+
+BackgroundChild::~BackgroundChild() {
+  constexpr int kTries = 500;
+  if (!HasEnded()) ::kill(child_, SIGTERM);
+  for (int i = 0; i < kTries && !HasEnded(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  if (ended_) return;
+  ::kill(child_, SIGKILL);
+  while (::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
+  }
+}
+
+bool BackgroundChild::HasEnded() {
+  ended_ = ended_ || ::waitpid(child_, &status_, WNOHANG) == child_;
+  return ended_;
+}
+
+void BackgroundChild::RequireRunning() {
+  if (HasEnded()) {
+    throw std::runtime_error(name_ + " has ended: " + ReasonOf(ResultOf(status_, folder_)));
+  }
 }
 
 std::string ReasonOf(const ProgramResult& result) {

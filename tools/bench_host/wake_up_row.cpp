@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -14,6 +14,9 @@
 
 namespace flexarm {
 namespace {
+
+// End of cyclictest's histogram: five periods of the shipped config.
+constexpr int kHistogram_us = 100'000;
 
 // A move that any arm may make.
 std::string ExperimentText(int duration_s) {
@@ -51,45 +54,86 @@ std::vector<double> DaemonLateness_s(const BenchSetting& setting, int duration_s
   return late_s;
 }
 
-CyclictestResult RunCyclictest(const RigConfig& config, std::size_t wake_ups,
-                               const std::filesystem::path& scratch) {
-  const ProgramResult result =
-      RunChild({"cyclictest", "--quiet", "--mlockall", "--threads=1",
-                "--priority=" + std::to_string(ControlTask::kPriority),
-                "--interval=" + std::to_string(config.loop.period_ns() / 1000),
-                "--loops=" + std::to_string(wake_ups)},
-               scratch);
+// s.
+std::vector<double> CyclictestLateness_s(const RigConfig& config, std::size_t wake_ups,
+                                         const std::filesystem::path& scratch) {
+  const ProgramResult result = RunChild(
+      {"cyclictest", "--quiet", "--mlockall", "--threads=1",
+       "--priority=" + std::to_string(ControlTask::kPriority),
+       "--interval=" + std::to_string(config.loop.period_ns() / 1000),
+       "--loops=" + std::to_string(wake_ups), "--histogram=" + std::to_string(kHistogram_us)},
+      scratch);
   if (result.exit_code != 0) throw std::runtime_error("cyclictest: " + ReasonOf(result));
-  return ParseCyclictest(result.output);
+  std::vector<double> late = ParseCyclictest(result.output);
+  if (late.size() != wake_ups) {
+    throw std::runtime_error(
+        fmt::format("cyclictest counted {} of {} wake-ups", late.size(), wake_ups));
+  }
+  for (double& one : late) one *= 1e-6;
+  return late;
 }
 
-}  // namespace
+// How late a thread woke, us.
+struct LatenessFigures {
+  double mean_us, p999_us, worst_us;
+};
 
-BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scratch) {
-  BenchRow row{.name = "wake-up",
-               .what = "Daemon: wake-up of the control thread after its instant"};
+LatenessFigures FiguresOf(const std::vector<double>& late_s) {
+  const double sum_s = std::accumulate(late_s.begin(), late_s.end(), 0.0);
+  return {.mean_us = 1e6 * sum_s / static_cast<double>(late_s.size()),
+          .p999_us = 1e6 * Quantile(late_s, 0.999),
+          .worst_us = 1e6 * Quantile(late_s, 1.0)};
+}
+
+std::string TextOf(const LatenessFigures& figures) {
+  return fmt::format("mean {:.0f} us, 99.9th percentile {:.0f} us, worst {:.0f} us",
+                     figures.mean_us, figures.p999_us, figures.worst_us);
+}
+
+// @param scratch  empty
+void AddFigures(const BenchSetting& setting, const std::filesystem::path& scratch, BenchRow* row) {
+  const std::vector<double> late_s = DaemonLateness_s(setting, setting.quick ? 1 : 40, scratch);
+  const LatenessFigures daemon = FiguresOf(late_s);
+  const LatenessFigures other =
+      FiguresOf(CyclictestLateness_s(setting.config, late_s.size(), scratch));
+  row->time = TimingOf(late_s);
+  row->ratio = {.name = "mean_over_cyclictest",
+                .unit = "times cyclictest's mean",
+                .value = daemon.mean_us / other.mean_us,
+                .bar = {}};
+  row->result = TextOf(daemon) + "; cyclictest " + TextOf(other);
+}
+
+// The stressors of tests/guest/daemon_in_guest/load.sh, with one of the processor for each of them.
+const std::vector<std::string> kStress = {"stress-ng", "--quiet", "--cpu", "0",          "--io",
+                                          "1",         "--vm",    "1",     "--vm-bytes", "64M"};
+
+// Why this cannot be measured here; empty: it can.
+std::string Obstacle(const BenchSetting& setting, bool loaded) {
   if (setting.config.backend != "sim") {
-    return NotMeasured(row.name, row.what,
-                       "the config is not of the simulated arm: add --set hal.backend=sim");
+    return "the config is not of the simulated arm: add --set hal.backend=sim";
   }
   if (!IsInPath("cyclictest")) {
-    return NotMeasured(row.name, row.what,
-                       "there is no cyclictest in PATH: `apt-get install rt-tests`");
+    return "there is no cyclictest in PATH: `apt-get install rt-tests`";
   }
+  if (loaded && !IsInPath(kStress.front())) {
+    return "there is no stress-ng in PATH: `apt-get install stress-ng`";
+  }
+  return "";
+}
+
+// `row` with its figures, measured in a folder of its own.
+BenchRow Measured(BenchRow row, const BenchSetting& setting, const std::filesystem::path& scratch,
+                  bool loaded) {
+  const std::string obstacle = Obstacle(setting, loaded);
+  if (!obstacle.empty()) return NotMeasured(row.name, row.what, obstacle);
+  const std::filesystem::path folder = scratch / row.name, stress_folder = folder / "stress";
+  std::filesystem::create_directories(stress_folder);
   try {
-    const std::vector<double> late_s = DaemonLateness_s(setting, setting.quick ? 1 : 10, scratch);
-    const CyclictestResult other =
-        RunCyclictest(setting.config, setting.quick ? 30 : late_s.size(), scratch);
-    row.time = TimingOf(late_s);
-    const double mean_us = 1e6 * std::accumulate(late_s.begin(), late_s.end(), 0.0) /
-                           static_cast<double>(late_s.size());
-    row.ratio = {.name = "mean_over_cyclictest",
-                 .unit = "times cyclictest's mean",
-                 .value = mean_us / other.mean_us,
-                 .bar = {}};
-    row.result = fmt::format(
-        "mean {:.0f} us, worst {:.0f} us; cyclictest mean {:.0f} us, worst {:.0f} us", mean_us,
-        1e6 * *std::max_element(late_s.begin(), late_s.end()), other.mean_us, other.worst_us);
+    std::optional<BackgroundChild> stress;
+    if (loaded) stress.emplace(kStress, stress_folder);
+    AddFigures(setting, folder, &row);
+    if (stress) stress->RequireRunning();
     return row;
   } catch (const std::runtime_error& error) {
     return NotMeasured(
@@ -98,8 +142,21 @@ BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scr
   }
 }
 
-// "T: 0 ( 1234) P:80 I:20000 C:    300 Min:      3 Act:    5 Avg:    6 Max:      40"
-CyclictestResult ParseCyclictest(const std::string& output) {
+constexpr const char* kWhat = "Daemon: wake-up of the control thread after its instant";
+
+}  // namespace
+
+BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scratch) {
+  return Measured({.name = "wake-up", .what = kWhat}, setting, scratch, false);
+}
+
+BenchRow LoadedWakeUpRow(const BenchSetting& setting, const std::filesystem::path& scratch) {
+  return Measured({.name = "wake-up-under-load", .what = std::string(kWhat) + ", under stress-ng"},
+                  setting, scratch, true);
+}
+
+// With --histogram: lines "000003 000017" of lateness and count, then, behind #, figures of all.
+std::vector<double> ParseCyclictest(const std::string& output) {
   const auto number_after = [&output](const std::string& name) {
     const std::size_t at = output.find(name);
     std::istringstream rest(at == std::string::npos ? "" : output.substr(at + name.size()));
@@ -107,7 +164,23 @@ CyclictestResult ParseCyclictest(const std::string& output) {
     if (!(rest >> value)) throw std::runtime_error("cyclictest printed no " + name);
     return value;
   };
-  return {.mean_us = number_after("Avg:"), .worst_us = number_after("Max:")};
+  const double worst_us = number_after("# Max Latencies:");
+  const auto beyond = static_cast<std::size_t>(number_after("# Histogram Overflows:"));
+  std::vector<double> late_us;
+  std::istringstream lines(output);
+  double end_us = 0.0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::size_t count = 0;
+    double us = 0.0;
+    if (!(words >> us >> count)) continue;
+    late_us.insert(late_us.end(), count, us);
+    end_us = us + 1.0;
+  }
+  late_us.insert(late_us.end(), beyond, end_us);
+  if (late_us.empty()) throw std::runtime_error("cyclictest counted no wake-up");
+  if (beyond > 0) late_us.back() = worst_us;
+  return late_us;
 }
 
 }  // namespace flexarm

@@ -2,23 +2,25 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tools/bench_host/bench_row.h"
 #include "tools/bench_host/bench_setting.h"
 
 namespace flexarm {
 
-/// Wake-up of the daemon's control thread on the simulated arm in real time, and after it of
-/// cyclictest with the same priority and period. Not measured where real time is not permitted, or
-/// with a config of real hardware, which this never touches.
+/// Wake-ups of the daemon's control thread on the simulated arm in real time, and after it as many
+/// of cyclictest with the same priority and period. Not measured where real time is not permitted,
+/// or with a config of real hardware, which this never touches.
 BenchRow WakeUpRow(const BenchSetting& setting, const std::filesystem::path& scratch);
 
-/// What cyclictest says of its thread.
-struct CyclictestResult {
-  double mean_us, worst_us;
-};
-/// @param output  of cyclictest --quiet with one thread
-/// @throws std::runtime_error if it has no such line
-CyclictestResult ParseCyclictest(const std::string& output);
+/// The same while stress-ng keeps every processor, the disk and the memory busy.
+BenchRow LoadedWakeUpRow(const BenchSetting& setting, const std::filesystem::path& scratch);
+
+/// How late each wake-up was that cyclictest counted, us, in whole us, in ascending order. Those
+/// beyond the end of its histogram count as its end, and the latest as cyclictest says.
+/// @param output  of cyclictest --quiet --histogram with one thread
+/// @throws std::runtime_error if it is not that
+std::vector<double> ParseCyclictest(const std::string& output);
 
 }  // namespace flexarm

@@ -79,7 +79,7 @@ void RegisterBenchHost(CLI::App& app, Exit& exit) {
       "Takes some minutes on a quiet machine; no row needs root. A row that cannot be measured "
       "says\n"
       "why and what to do: CVODE needs flexarm-cvode-race, ode45 octave-cli, wake-ups cyclictest\n"
-      "and the permission for real time.\n"
+      "and the permission for real time, those under load also stress-ng.\n"
       "The config (default: the shipped hil.toml) must have the simulated arm for the wake-ups.\n"
       "JSON: machine, warnings, bounds, rows (name, median_s, lower_quartile_s, "
       "upper_quartile_s,\n"
