@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Inside the guest, on virtual time: the unchanged daemon under rtguard (tests/rtguard) on a wired
-# rig that has two faults, one after the other, in every state and during a command of an operator.
+# rig that has two faults, one after the other, in five states and during a command of an operator.
 # 49 runs are a covering array: among them is each pair of values of two of first fault, second
 # fault, state, command and time between the faults. Each run ends without power at the hardware,
 # a trip that names one of its faults, and a reset. guard_six_pairs.sh has every ninth.
