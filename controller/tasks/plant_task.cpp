@@ -25,7 +25,12 @@ PlantTask::PlantTask(const RigConfig& config, double payload_kg,
       drive_{.delay_ns = std::llround(config.sim.transport_delay_ms * 1e6)},
       reported_{.delay_ns = grid_.actuation_ns},
       channels_(channels) {
-  StartFrame(0);
+  BeginAt(0);
+}
+
+void PlantTask::BeginAt(std::int64_t start_ns) noexcept {
+  now_ns_ = start_ns;
+  StartFrame(start_ns);
   PublishFrame();
 }
 

@@ -62,6 +62,9 @@ class PlantTask final : public Task {
   Traits traits() const noexcept override;
   void Run(const Activation& activation) noexcept override;
 
+  /// The clock is at `start_ns` when the arm is switched on: a whole period. Before any task runs.
+  void BeginAt(std::int64_t start_ns) noexcept;
+
   /// Any thread. Experiments with a lower number than this are no longer used.
   std::uint32_t released() const noexcept { return released_.load(std::memory_order_acquire); }
 

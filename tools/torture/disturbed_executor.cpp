@@ -18,7 +18,8 @@ DisturbedExecutor::DisturbedExecutor(const WakeUps& wake_ups, const std::vector<
                                      std::int64_t end_ns)
     : wake_ups_(wake_ups), faults_(&faults), random_(wake_ups.seed) {
   for (int i = 0; i < wake_ups.order_changes; ++i) {
-    changes_.push_back(static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(end_ns)));
+    const auto after = static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(end_ns));
+    changes_.push_back(wake_ups.start_ns + after);
   }
   std::sort(changes_.begin(), changes_.end(), std::greater<>());
 }
@@ -28,7 +29,7 @@ void DisturbedExecutor::Add(Task& task, std::optional<FaultPlace> place) {
   slots_.push_back({.task = &task,
                     .traits = traits,
                     .place = place,
-                    .due_ns = traits.phase_ns,
+                    .due_ns = wake_ups_.start_ns + traits.phase_ns,
                     .wake_ns = 0,
                     .missed_in_a_row = 0,
                     .rank = random_()});

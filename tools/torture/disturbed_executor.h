@@ -13,6 +13,7 @@ namespace flexarm {
 /// How the threads of a session are woken.
 struct WakeUps {
   std::uint64_t seed = 1;
+  std::int64_t start_ns = 0;        ///< the clock at the start: a whole period of every task
   std::int64_t latest_ns = 0;       ///< a real-time task wakes up to so much after its due instant
   std::int64_t latest_slow_ns = 0;  ///< the same of tasks of priority 0
   int order_changes = 0;            ///< how often the order of tasks that wake together changes
@@ -37,7 +38,7 @@ class ActivationGuard {
 class DisturbedExecutor {
  public:
   /// @param faults  those of threads are used; outlive the executor
-  /// @param end_ns  no change of order comes later
+  /// @param end_ns  no change of order comes later after the start
   DisturbedExecutor(const WakeUps& wake_ups, const std::vector<Fault>& faults, std::int64_t end_ns);
 
   /// @param place  of its faults; nothing: no fault is its own

@@ -105,7 +105,9 @@ TortureSession::TortureSession(const TorturedRig& rig, const TortureScenario& sc
                  .truth = stack_.truth_records()},
                 &recording_),
       executor_(scenario.wake_ups, faults_, 4'000 * kMs),
-      watch_(rig.config, rules) {
+      watch_(rig.config, rules),
+      now_ns_(scenario.wake_ups.start_ns) {
+  stack_.BeginAt(now_ns_);
   latch_.Open();
   operator_.emplace(Context());
   client_.emplace((folder_.path() / "socket").string());
@@ -169,7 +171,10 @@ bool TortureSession::RunUntilAnswered(std::int64_t within_ns) {
 }
 
 void TortureSession::TakeAnswers() {
-  while (client_->Line()) ++answered_;
+  while (auto line = client_->Line()) {
+    answer_ = *std::move(line);
+    ++answered_;
+  }
 }
 
 void TortureSession::Send(const std::string& line) {

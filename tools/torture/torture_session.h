@@ -79,6 +79,8 @@ class TortureSession {
   SessionWatch& watch() { return watch_; }
   long sent() const { return sent_; }
   long answered() const { return answered_; }
+  /// The newest answer, one line of JSON.
+  const std::string& answer() const { return answer_; }
   const std::deque<RunContents>& runs() const { return runs_; }
   /// Forgets the recorded runs but the newest.
   void DropRuns() {
@@ -114,7 +116,8 @@ class TortureSession {
   std::optional<LineClient> client_;
   DisturbedExecutor executor_;
   SessionWatch watch_;
-  std::int64_t now_ns_ = 0;
+  std::string answer_;
+  std::int64_t now_ns_;
   long sent_ = 0, answered_ = 0;
 };
 

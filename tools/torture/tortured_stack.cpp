@@ -5,6 +5,15 @@
 
 namespace flexarm {
 
+namespace {
+
+void CountOneMore(const EncoderConfig& encoder, SensorFrame* frame) {
+  std::uint32_t& counter = frame->counter[static_cast<std::size_t>(encoder.counter)];
+  counter = (counter + 1) & static_cast<std::uint32_t>((1ULL << encoder.counter_bits) - 1);
+}
+
+}  // namespace
+
 TorturedPlant::TorturedPlant(const RigConfig& config, PlantTask* plant, const Channels& channels,
                              const std::vector<Fault>& faults)
     : config_(config),
@@ -43,6 +52,8 @@ void TorturedPlant::PassFrames() noexcept {
     FramePacket packet = entry.value;
     strain_share_ = StrainShare(packet.frame);
     packet.frame = spoiled_frames_.Next(packet.frame, at_ns);
+    if (flickers_ != nullptr && at_ns / period_ns_ % 2 != 0)
+      CountOneMore(*flickers_, &packet.frame);
     frames_.Push(at_ns, packet);
   }
   frame_ns_ = until_ns;

@@ -34,6 +34,10 @@ class TorturedPlant final : public Task {
   Traits traits() const noexcept override { return plant_->traits(); }
   void Run(const Activation& activation) noexcept override;
 
+  /// From now on every other frame counts one more, as an encoder that rests on the edge of a
+  /// count; null: none does.
+  void Flicker(const EncoderConfig* encoder) noexcept { flickers_ = encoder; }
+
   /// FaultyFrames::seen_ns
   std::int64_t seen_ns() const noexcept { return spoiled_frames_.seen_ns(); }
   /// Largest true strain at a gauge in the newest frame, over its limit.
@@ -54,6 +58,7 @@ class TorturedPlant final : public Task {
   FaultyTorque spoiled_torque_;
   std::int64_t period_ns_;
   std::int64_t command_ns_ = INT64_MIN, frame_ns_ = INT64_MIN;  // of the last one passed
+  const EncoderConfig* flickers_ = nullptr;
   int reported_ = 0;
   double strain_share_ = 0.0;
   CommandHistory commands_{kNoCommand};
@@ -88,6 +93,10 @@ class TorturedStack final : private TorturedWires, public LoopStack {
   std::uint32_t released_experiments() const noexcept override;
 
   const PlantTask& arm() const noexcept { return plant_; }
+  /// Before any task runs: PlantTask::BeginAt.
+  void BeginAt(std::int64_t start_ns) noexcept { plant_.BeginAt(start_ns); }
+  /// TorturedPlant::Flicker
+  void Flicker(const EncoderConfig* encoder) noexcept { side_.Flicker(encoder); }
   SafetyStatus status() noexcept { return safety().status(); }
   WatchSample Sample() noexcept;
   std::int64_t seen_ns() const noexcept { return side_.seen_ns(); }
