@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 {
   quick_lanes=(format layers guards)
   ci_lanes=(format layers release step-cost install hil bench e2e docs headers tsan asan clang-tidy guest)
-  only_all_lanes=(guards unit campaigns soak slowest mutation mutants fuzz docs-all build-cost headers-all
+  only_all_lanes=(guards unit campaigns soak soak-days slowest mutation mutants fuzz docs-all build-cost headers-all
                   python-types browser separate clang-tidy-all asan-all tsan-all guest-long package cluster debian13 arm64)
 }
 
@@ -149,26 +149,44 @@ lane_release() {  # all tests but those of whole programs, release build
   preset_tests release
 }
 
-lane_campaigns() {  # random campaigns at their whole size; `release` runs a sample of each
-  build release operator_loop_test loop_loop_test sensor_loss_loop_test shipped_runs_loop_test \
-    wired_loop_test
-  local program
-  for program in operator/operator_loop_test loop/loop_loop_test loop/sensor_loss_loop_test \
-      loop/shipped_runs_loop_test wired/wired_loop_test; do
-    FLEXARM_CAMPAIGN=whole "build/release/tests/controller/$program" --gtest_filter='*.Campaign*'
-  done
-  build release tools_bound_long_test
-  FLEXARM_CAMPAIGN=whole build/release/tests/tools/bound/tools_bound_long_test
-  build release tools_torture_long_test
-  FLEXARM_CAMPAIGN=whole build/release/tests/tools/torture/tools_torture_long_test
-  build release tools_health_long_test
-  FLEXARM_CAMPAIGN=whole build/release/tests/tools/health/tools_health_long_test
-  build release flexarm flexarm-study flexarm-web flexarmd
-  tests/e2e/fault_matrix_check.sh build/release/bin/flexarm
+campaign() {  # campaign FILTER PROGRAM: the matching tests of a program, at their whole size
+  FLEXARM_CAMPAIGN=whole FLEXARM_CAMPAIGN_JOBS=$jobs "build/release/tests/$2" --gtest_filter="$1"
+}
+
+killed_runs() {
   FLEXARM_CAMPAIGN=whole FLEXARM_BIN="$PWD/build/release/bin" python3 tests/e2e/killed_run_test.py
-  build tsan wired_threads_test
+}
+
+started_rigs() (  # a shell of its own: the environment of tsan is not for the other parts
   use_environment_of tsan
   FLEXARM_CAMPAIGN=whole build/tsan/tests/controller/wired_threads/wired_threads_test
+)
+
+lane_campaigns() {  # random campaigns at their whole size; `release` runs a sample of each
+  local programs=(controller/{operator/operator_loop,loop/loop_loop,loop/sensor_loss_loop}_test
+                  controller/{loop/shipped_runs_loop,wired/wired_loop}_test)
+  local torture=tools/torture/tools_torture_long_test program
+  build release operator_loop_test loop_loop_test sensor_loss_loop_test shipped_runs_loop_test \
+    wired_loop_test tools_bound_long_test tools_torture_long_test tools_health_long_test \
+    flexarm flexarm-study flexarm-web flexarmd
+  for program in "${programs[@]}"; do
+    part "${program##*/}" campaign '*.Campaign*' "$program"
+  done
+  part bound campaign '*' tools/bound/tools_bound_long_test
+  # The days of `Soak` are lane soak-days.
+  part torture-sessions campaign Torture.CampaignBreaksNoRule "$torture"
+  part torture-matrix campaign 'GuardedMatrix*' "$torture"
+  part torture-rest campaign '*-Soak.*:Torture.CampaignBreaksNoRule:GuardedMatrix*' "$torture"
+  part health campaign '*' tools/health/tools_health_long_test
+  part fault-matrix tests/e2e/fault_matrix_check.sh build/release/bin/flexarm
+  part killed-runs killed_runs
+  build tsan wired_threads_test
+  part started-rigs started_rigs
+}
+
+lane_soak-days() {  # three days of the daemon in lock step
+  build release tools_torture_long_test
+  campaign 'Soak.*' tools/torture/tools_torture_long_test
 }
 
 lane_soak() {  # the daemon in real time on the simulated arm for 50 minutes (FLEXARM_SOAK_S=N)

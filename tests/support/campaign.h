@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 
@@ -14,6 +16,13 @@ inline long CampaignCases(long sample, long whole) {
   const char* wanted = std::getenv("FLEXARM_CAMPAIGN");
   if (wanted != nullptr) return std::string(wanted) == "whole" ? whole : std::atol(wanted);
   return kSanitized ? sample / 10 : sample;
+}
+
+/// Threads of a campaign whose cases are independent: FLEXARM_CAMPAIGN_JOBS, or one, because ctest
+/// runs several programs at a time.
+inline std::size_t CampaignJobs() {
+  const char* wanted = std::getenv("FLEXARM_CAMPAIGN_JOBS");
+  return wanted == nullptr ? 1 : std::max(std::strtoul(wanted, nullptr, 10), 1UL);
 }
 
 }  // namespace flexarm

@@ -41,7 +41,8 @@ TortureScenario Drawn(std::uint64_t seed) {
 TEST(Torture, CampaignBreaksNoRule) {
   std::vector<std::uint64_t> seeds(static_cast<std::size_t>(CampaignCases(1'000, 20'000)));
   std::iota(seeds.begin(), seeds.end(), 1);
-  const TortureSummary summary = RunTorture(Rigs(), ScenariosOf(seeds, Space(), ShippedRig()), 1);
+  const TortureSummary summary =
+      RunTorture(Rigs(), ScenariosOf(seeds, Space(), ShippedRig()), CampaignJobs());
   for (const TortureFailure& failure : summary.failures) {
     ADD_FAILURE() << "seed " << failure.seed << ": " << failure.violation.rule << ": "
                   << failure.violation.what << "\n"
