@@ -84,8 +84,8 @@ void FaultDetection::Reset() noexcept {
 
 void FaultDetection::Raise(TripCause cause, bool present, int ticks, double value, double limit,
                            std::size_t channel, bool known) noexcept {
-  int& in_a_row = in_a_row_[static_cast<std::size_t>(cause)];
-  if (present || known) in_a_row = present ? in_a_row + 1 : 0;
+  std::uint8_t& in_a_row = in_a_row_[static_cast<std::size_t>(cause)];
+  if (present || known) in_a_row = static_cast<std::uint8_t>(present ? in_a_row + 1 : 0);
   if (in_a_row < ticks) return;
   if (verdict_.faults == 0 || CauseBit(cause) < (verdict_.faults & (~verdict_.faults + 1))) {
     verdict_.value = value;
@@ -93,7 +93,7 @@ void FaultDetection::Raise(TripCause cause, bool present, int ticks, double valu
     verdict_.channel = static_cast<std::uint16_t>(channel);
   }
   verdict_.faults |= CauseBit(cause);
-  in_a_row = ticks;  // saturated: cannot overflow
+  in_a_row = static_cast<std::uint8_t>(ticks);  // saturated: cannot wrap
 }
 
 // The cause of an unknown value is raised where the sensor is judged as well, with its evidence;

@@ -146,11 +146,11 @@ class FaultDetection {
   int rest_ticks_needed_;
   int rest_ticks_ = 0;
   int incomplete_ticks_ = 0;  // samples in a row that lacked a reading, up to kMissingTicks
-  std::array<Posture, kMostRestWindow> before_{};  // ring buffer of the last complete samples
-  std::size_t ring_ = 0;                           // the oldest
-  std::int64_t ticks_ = 0;                         // samples since Reset
-  bool started_ = false;                           // false: before_ is not set yet
-  std::array<int, kTripCauses> in_a_row_{};
+  std::array<Posture, kMostRestWindow> before_{};     // ring buffer of the last complete samples
+  std::size_t ring_ = 0;                              // the oldest
+  std::int64_t ticks_ = 0;                            // samples since Reset
+  bool started_ = false;                              // false: before_ is not set yet
+  std::array<std::uint8_t, kTripCauses> in_a_row_{};  // samples with the cause, saturated
   // The last reading of the strain at the root of each link, minus the estimated one.
   std::array<double, 2> strain_off_model_{};
   // Of each link, the root innovation when its gauges last did not all repeat themselves.

@@ -56,6 +56,16 @@ TEST_F(FaultDetectionTest, WithReducedLimitsTheFollowingErrorHasTheirShareOfTheA
   EXPECT_EQ(monitor_.Judge(reduced).faults, CauseBit(TripCause::kFollowingError1));
 }
 
+// The samples in a row are counted with 8 bits.
+TEST_F(FaultDetectionTest, AFaultThatLastsIsRaisedInEverySample) {
+  Facts facts;
+  facts.reference_hub_rad = {22.1 * kRadPerDeg, 0.0};
+  for (int k = 1; k < 1'000; ++k) {
+    const TripCauses expected = k < 3 ? 0U : CauseBit(TripCause::kFollowingError1);
+    ASSERT_EQ(monitor_.Judge(facts.Now()).faults, expected) << "sample " << k;
+  }
+}
+
 TEST_F(FaultDetectionTest, HubRatesTripOnTheSecondSample) {
   Facts facts;
   facts.estimate.x(6) = -8.1;
