@@ -203,6 +203,10 @@ bool TortureSession::BreakALimit() {
   const std::int64_t until_ns = now_ns_ + kWithinNs;
   while (now_ns_ < until_ns && !CauseLatched(state())) RunFor(kMs);
   faults_.back().to_ns = now_ns_;
+  if (!CauseLatched(state())) {
+    Press("emergency-stop", 0);
+    RunUntilState(SafetyState::kTripped, 100 * kMs);
+  }
   return CauseLatched(state());
 }
 

@@ -61,7 +61,8 @@ class TortureSession {
 
   /// In mid-move: breaks a limit by a torque that is not that of the command, until that has
   /// latched. The arm is damped then, unless a reading became implausible as well: then it is
-  /// Tripped. @returns false: no limit was broken
+  /// Tripped, as by the emergency stop where the torque is too weak to break a limit. @returns
+  /// whether a cause has latched
   bool BreakALimit();
   /// Faults begin now; their instants so far are relative.
   void BeginFaults();
