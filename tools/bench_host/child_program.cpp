@@ -101,7 +101,7 @@ ProgramResult RunChild(const std::vector<std::string>& words, const std::filesys
 
 BackgroundChild::BackgroundChild(const std::vector<std::string>& words,
                                  const std::filesystem::path& folder)
-    : name_(words.front()), folder_(folder), child_(0) {
+    : name_(words.front()), folder_(folder) {
   if (words.front().find('/') == std::string::npos && !IsInPath(words.front())) {
     throw std::runtime_error(words.front() + " cannot be started: " + std::strerror(ENOENT));
   }

@@ -42,7 +42,7 @@ class BackgroundChild {
 
   std::string name_;
   std::filesystem::path folder_;
-  pid_t child_;
+  pid_t child_ = 0;
   bool ended_ = false;
   int status_ = 0;
 };
