@@ -29,7 +29,7 @@ class Torture(ProgramTest):
         one, two = (self.torture("--seeds", "20..27", "--jobs", jobs) for jobs in ("1", "2"))
         self.assertEqual(one, two)
 
-    def test_a_scenario_of_a_file_is_that_of_its_seed(self):
+    def test_a_scenario_of_a_file_runs_alone(self):
         file = self.folder / "small.json"
         file.write_text('{"seed": 1}')
         refused = self.run_program("flexarm", "torture", "-c", HIL, "--scenario", file)

@@ -1,6 +1,5 @@
 #include <sys/socket.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -9,6 +8,7 @@
 #include "controller/operator/unix_address.h"
 #include "controller/runlog/file_descriptor.h"
 #include "controller/types/rejected_error.h"
+#include "tests/controller/operator/socket_peer.h"
 #include "tests/fuzz/fuzz_reader.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tools/status/display_text.h"
@@ -24,9 +24,6 @@ constexpr double kWithin_s = 1.0;  // never waited for: all is sent before it is
 class Server {
  public:
   Server() : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    std::string folder = "/tmp/flexarm-fuzz-XXXXXX";
-    if (mkdtemp(folder.data()) == nullptr) throw std::runtime_error("no folder");
-    path_ = folder + "/socket";
     const UnixAddress address(path_);
     if (bind(socket_.get(), address.get(), address.size()) != 0 || listen(socket_.get(), 1) != 0) {
       throw std::runtime_error("no socket");
@@ -54,7 +51,7 @@ class Server {
 
  private:
   FileDescriptor socket_;
-  std::string path_;
+  const std::string path_ = SocketPath();
 };
 
 bool HasControlCharacter(const std::string& text) {
@@ -63,10 +60,6 @@ bool HasControlCharacter(const std::string& text) {
     if ((byte < 0x20 && sign != '\n') || byte == 0x7F) return true;
   }
   return false;
-}
-
-void Expect(bool holds, const char* what) {
-  if (!holds) throw std::logic_error(what);
 }
 
 struct Shape {

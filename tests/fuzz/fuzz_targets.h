@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <string>
 
 // The targets of fuzzing: each gives bytes that may be anything to the code of the product that
@@ -27,6 +28,11 @@ void FuzzTelemetry(FuzzBytes input);
 void FuzzModbus(FuzzBytes input);
 void FuzzCan(FuzzBytes input);
 void FuzzComedi(FuzzBytes input);
+
+/// For a target: what must hold whatever the input is.
+inline void Expect(bool holds, const char* what) {
+  if (!holds) throw std::logic_error(what);
+}
 
 inline std::string TextOf(FuzzBytes input) { return {input.begin(), input.end()}; }
 

@@ -45,10 +45,6 @@ void ExpectNumber(const Json& told, double value) {
   throw std::logic_error(told.dump() + " is not " + std::to_string(value));
 }
 
-void Expect(bool holds, const char* what) {
-  if (!holds) throw std::logic_error(what);
-}
-
 }  // namespace
 
 // A sample whose bytes may be anything: its line is one JSON object that says what the sample has.

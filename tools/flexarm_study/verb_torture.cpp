@@ -226,6 +226,7 @@ void RegisterTorture(CLI::App& app, Exit& exit) {
       "Search the smallest scenario that breaks the rule of the first failure, and print it");
   verb->add_flag("--matrix", options->matrix,
                  "Instead: every fault in every state with every law, on the nominal arm");
+  verb->get_option("--matrix")->excludes("--scenario");
   options->page.AddTo(verb, "With --matrix: write the tables to this file, in Markdown", false);
   AddJson(verb, &options->json);
   verb->footer(
