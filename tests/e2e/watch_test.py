@@ -10,6 +10,7 @@ import pty
 import re
 import select
 import signal
+import socket
 import struct
 import subprocess
 import termios
@@ -228,6 +229,23 @@ class Watch(ProgramTest):
         lines.communicate()
         self.assertEqual(lines.returncode, 0)
         kill.cancel()
+
+    def test_a_second_interrupt_while_an_answer_is_waited_for_changes_nothing(self):
+        with socket.socket(socket.AF_UNIX) as mute:
+            mute.bind(str(self.folder / "mute.sock"))
+            mute.listen()  # connects, and never answers: each question is waited for a second
+            lines = subprocess.Popen(
+                [BIN / "flexarm", "status", "--watch", "--json", "--period", "0.1", "--socket",
+                 self.folder / "mute.sock"], stdout=subprocess.PIPE, text=True)
+            kill = threading.Timer(WITHIN_S, lines.kill)
+            kill.start()
+            self.assertFalse(json.loads(lines.stdout.readline())["ok"])
+            lines.send_signal(signal.SIGINT)
+            time.sleep(0.3)  # the first is taken, the second comes at the end
+            lines.send_signal(signal.SIGINT)
+            lines.communicate()
+            self.assertEqual(lines.returncode, 0)
+            kill.cancel()
 
     def test_the_period_belongs_to_the_watch(self):
         self.assert_refused(self.run_program("flexarm", "status", "--period", "1"), "--watch")

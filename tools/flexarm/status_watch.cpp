@@ -27,7 +27,8 @@ constexpr int kAgeEvery_ms = 500;
 // Of text that is no screen: more than all parts have.
 constexpr int kBlockRows = 200;
 
-/// Signals as something to read. The threads that are made later do not get them either.
+/// Signals as something to read. The threads that are made later do not get them either. They are
+/// blocked until the program ends: a second Ctrl-C while it waits for the last answer does nothing.
 class SignalQueue {
  public:
   SignalQueue() {
@@ -36,14 +37,10 @@ class SignalQueue {
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH, SIGTSTP}) {
       sigaddset(&taken, number);
     }
-    pthread_sigmask(SIG_BLOCK, &taken, &before_);
+    pthread_sigmask(SIG_BLOCK, &taken, nullptr);
     queue_ = FileDescriptor(signalfd(-1, &taken, SFD_CLOEXEC | SFD_NONBLOCK));
     if (!queue_.is_open()) throw std::system_error(errno, std::generic_category(), "signalfd");
   }
-  ~SignalQueue() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalQueue(const SignalQueue&) = delete;
-  SignalQueue& operator=(const SignalQueue&) = delete;
-
   int descriptor() const { return queue_.get(); }
 
   /// The next one; 0: none has come.
@@ -54,7 +51,6 @@ class SignalQueue {
   }
 
  private:
-  sigset_t before_{};
   FileDescriptor queue_;
 };
 
