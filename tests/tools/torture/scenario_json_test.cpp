@@ -80,8 +80,15 @@ TEST_F(ScenarioFile, SaysWhatIsWrong) {
     bad.erase(key);
     EXPECT_THAT(RefusalOf(bad), HasSubstr(key));
     bad[key] = Json::object({{"what", "is this"}});
-    EXPECT_THAT(RefusalOf(bad), HasSubstr("scenario.json: ")) << key;
+    EXPECT_THAT(RefusalOf(bad), HasSubstr("scenario.json: " + key)) << key;
   }
+  bad = good;
+  bad["faults"][0]["seed"] = -1;
+  EXPECT_THAT(RefusalOf(bad),
+              HasSubstr("faults[0].seed: expected a whole number, 0 or more, found -1"));
+  bad = good;
+  bad["wake_ups"]["latest_ms"] = "soon";
+  EXPECT_THAT(RefusalOf(bad), HasSubstr("wake_ups.latest_ms: expected a number, found \"soon\""));
   EXPECT_THAT(MessageOf<InputError>([&] { Read("[1"); }), HasSubstr("is not JSON"));
 }
 
