@@ -288,7 +288,8 @@ lane_guest-long() {  # the same kernel: what takes minutes more, and changes sel
   part pairs tests/guest/run_all.sh build/release --note "$logs/$lane.pairs.note" \
     guard_pairs.{0..3}
   part scripts tests/guest/run_all.sh build/release --note "$logs/$lane.scripts.note" \
-    guarded wire_more commission load wakeup fast_loop hardened refusal
+    guard_faults.{tcp,can,serial,readings,power} guarded wire_more commission load wakeup fast_loop \
+    hardened refusal
   build release flexarm-study
   part newcomer tests/guest/newcomer.sh build/release --note "$logs/$lane.newcomer.note"
   note "$(cat "$logs/$lane".{pairs,scripts,newcomer}.note | paste -sd';')"

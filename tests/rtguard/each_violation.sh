@@ -22,10 +22,10 @@ if ((status == 77)); then
 fi
 failed=0
 
-passes() {  # passes WHAT
+passes() {  # passes WHAT [THREAD]
   local status
-  status=$(guarded "$1")
-  if ((status != 0)) || ! grep -q '^rtguard: control: [1-9][0-9]* activations$' "$report"; then
+  status=$(guarded "$1" "${2:-control}")
+  if ((status != 0)) || ! grep -q "^rtguard: ${2:-control}: [1-9][0-9]* activations\$" "$report"; then
     echo "$1: no violation, and it ended with $status:"
     cat "$report"
     failed=1
@@ -44,6 +44,9 @@ ends() {  # ends WHAT MESSAGE [THREAD]: aborted, with the message and the place 
 }
 passes nothing
 passes switch  # only the thread of the highest priority may not be switched away
+passes descriptor vcan0  # a bus thread asks what the descriptor is that it has opened again
+ends descriptor 'system call ' control
+ends path 'system call 262$' vcan0
 ends heap 'malloc of bytes: 4$'
 ends system-call 'system call 110$'
 ends lock 'system call 202$'

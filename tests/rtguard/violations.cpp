@@ -1,11 +1,13 @@
 // Does once, on a thread of the given name, what a real-time thread must not do: one of the
 // arguments
-//   heap, system-call, lock, page-fault, wait, switch, crash, or nothing.
+//   heap, system-call, path, lock, page-fault, wait, switch, crash, or nothing;
+//   descriptor: only a bus thread may.
 // RealtimeExecutor runs the thread, as in the daemon; rtguard must end the process.
 
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -88,6 +90,9 @@ class Violating final : public Task {
     done_ = true;
     if (Is("heap")) kept_ = std::make_unique<int>(1);
     if (Is("system-call")) syscall(SYS_getppid);
+    struct stat properties{};
+    if (Is("descriptor")) fstat(STDERR_FILENO, &properties);
+    if (Is("path")) stat("/dev/null", &properties);
     if (Is("lock")) mutex_.lock();  // another thread has it
     if (Is("page-fault")) page_[0] = 1;
     if (Is("crash")) static_cast<void>(raise(SIGSEGV));

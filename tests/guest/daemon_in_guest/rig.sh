@@ -19,11 +19,11 @@ chip=$(cat /sys/kernel/config/gpio-sim/rig/bank/chip_name)
 sed "s/^chip = .*/chip = \"$chip\"/" $configs/hil-wire.toml >wire.toml
 sed -i "s#^extends = .*#extends = \"$configs/thesis-rig.toml\"#" wire.toml
 
-start_rig() {
+start_rig() {  # start_rig OPTION..: of `flexarm rig`
   failures_before=$failures
   rm -f rig.in rig.out
   mkfifo rig.in
-  chrt -f 75 flexarm rig -c wire.toml --json <rig.in >>rig.out 2>rig.err &
+  chrt -f 75 flexarm rig -c wire.toml --json "$@" <rig.in >>rig.out 2>rig.err &
   rig=$!
   exec 3>rig.in
   check "the rig is emulated" within 20 grep -q emulating rig.err
