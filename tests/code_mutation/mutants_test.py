@@ -80,7 +80,8 @@ class Generate(unittest.TestCase):
             text = (ROOT / source).read_text(encoding="utf-8")
             found = generate.mutants_of(text)
             self.assertEqual(found, generate.mutants_of(text))
-            self.assertGreater(len(found), 10, source)
+            lines = text.count("\n")  # a header may have little but declarations
+            self.assertGreater(len(found), 10 if source.endswith(".cpp") else lines // 20, source)
             self.assertNotIn(text, [mutant.apply(text) for mutant in found])
 
 
