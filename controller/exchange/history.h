@@ -50,13 +50,12 @@ class History {
 
   /// The value that holds at `now_ns`; the oldest stored one if all are newer.
   const Entry& At(std::int64_t now_ns) const noexcept {
+    const std::int32_t oldest = After(newest_);
     std::int32_t at = newest_;
-    for (int back = 0; back < N - 1; ++back) {
-      const Entry& entry = entries_[static_cast<std::size_t>(at)];
-      if (entry.from_ns <= now_ns) return entry;
+    while (at != oldest && entries_[static_cast<std::size_t>(at)].from_ns > now_ns) {
       at = at == 0 ? N - 1 : at - 1;
     }
-    return entries_[static_cast<std::size_t>(After(newest_))];
+    return entries_[static_cast<std::size_t>(at)];
   }
 
   /// Calls `look` with each stored value that began to hold after `after_ns` and until `until_ns`.

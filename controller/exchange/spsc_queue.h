@@ -45,11 +45,7 @@ class SpscQueue {
 
   /// Consumer thread only. False if the queue is empty.
   bool Pop(T* value) noexcept {
-    bool found = false;
-    {
-      const Unchecked unchecked;
-      found = queue_.try_dequeue(*value);
-    }
+    const bool found = Dequeue(value);
     if (found) Acquire();
     return found;
   }
@@ -86,6 +82,11 @@ class SpscQueue {
   void Release() noexcept {}
   void Acquire() noexcept {}
 #endif
+
+  bool Dequeue(T* value) noexcept {
+    const Unchecked unchecked;
+    return queue_.try_dequeue(*value);
+  }
 
   moodycamel::ReaderWriterQueue<T> queue_;
   std::atomic<std::uint64_t> dropped_{0};

@@ -6,9 +6,14 @@
 #include <cstdint>
 #include <memory>
 #include <thread>
+#include <type_traits>
 
 namespace flexarm {
 namespace {
+
+// A copy would hand over each value a second time.
+static_assert(!std::is_copy_constructible_v<SpscQueue<int>>);
+static_assert(!std::is_copy_assignable_v<SpscQueue<int>>);
 
 TEST(SpscQueue, ReturnsValuesInOrder) {
   SpscQueue<int> queue(8);
