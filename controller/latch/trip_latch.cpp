@@ -110,13 +110,12 @@ void TripLatch::Follow(std::int64_t now_ns, const Permit& newest, bool awaiting)
 void TripLatch::Keep(std::int64_t now_ns, Kept wanted) {
   if (kept_ == wanted || (failed_ == wanted && now_ns < retry_ns_)) return;
   retry_ns_ = now_ns + kRetryNs;
-  const FileChange change =
-      wanted == Kept::kNothing
-          ? (folder_ ? folder_->Remove(kFile) : FileChange{.problem = {}, .untouched = true})
-          : Write({.cause = trip_->cause,
-                   .evidence = trip_->evidence,
-                   .time_utc = trip_->time_utc,
-                   .log_directory = log_directory_});
+  const FileChange change = wanted == Kept::kNothing
+                                ? (folder_ ? folder_->Remove(kFile) : FileChange{})
+                                : Write({.cause = trip_->cause,
+                                         .evidence = trip_->evidence,
+                                         .time_utc = trip_->time_utc,
+                                         .log_directory = log_directory_});
   if (change.problem.empty()) {
     kept_ = wanted;
     failed_ = Kept::kUnknown;

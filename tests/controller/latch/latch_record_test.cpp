@@ -54,6 +54,9 @@ TEST(LatchRecord, PeopleCanReadIt) {
   const std::string text = LatchText(Tripped(TripCause::kSoftLimit2));
   EXPECT_THAT(text, HasSubstr("\"soft-limit-2\""));
   EXPECT_THAT(text, HasSubstr("limits.soft_angle_deg")) << "what happened";
+  LatchRecord record = kArmedRecord;
+  record.log_directory = "/Messungen/März";
+  EXPECT_THAT(LatchText(record), HasSubstr("/Messungen/März"));
 }
 
 TEST(LatchRecord, AValueThatIsNoNumberStaysNone) {
@@ -83,10 +86,13 @@ TEST(LatchRecord, WhatTheDaemonCannotHaveWrittenIsRefused) {
   EXPECT_THAT(ProblemOf(text + text), HasSubstr("JSON object"));
   EXPECT_THAT(ProblemOf("{}"), HasSubstr("'flexarm'"));
   EXPECT_THAT(ProblemOf(Replaced(text, "safety-latch", "calibration")), HasSubstr("calibration"));
-  EXPECT_THAT(ProblemOf(Replaced(text, "\"version\": 1", "\"version\": 2")), HasSubstr("not 2"));
+  EXPECT_THAT(ProblemOf(Replaced(text, "\"version\": 1", "\"version\": 2")),
+              HasSubstr("expected version 1, not 2"));
   EXPECT_THAT(ProblemOf(Replaced(text, "\"tripped\"", "\"well\"")), HasSubstr("'state'"));
   EXPECT_THAT(ProblemOf(Replaced(text, "soft-limit-2", "soft-limit-3")), HasSubstr("soft-limit-3"));
   EXPECT_THAT(ProblemOf(Replaced(text, "soft-limit-2", "none")), HasSubstr("none"));
+  const char* corrupted = ToString(static_cast<TripCause>(kTripCauses));
+  EXPECT_THAT(ProblemOf(Replaced(text, "soft-limit-2", corrupted)), HasSubstr(corrupted));
   EXPECT_THAT(ProblemOf(Replaced(text, "\"channel\": 2", "\"channel\": -2")),
               HasSubstr("'channel'"));
   EXPECT_THAT(ProblemOf(Replaced(text, "4294967295", "4294967296")), HasSubstr("'detail'"));

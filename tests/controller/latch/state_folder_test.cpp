@@ -1,5 +1,6 @@
 #include "controller/latch/state_folder.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -7,10 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <functional>
 
 #include "controller/types/rejected_error.h"
 #include "tests/controller/latch/latch_folder.h"
+#include "tests/controller/latch/sync_calls.h"
 #include "tests/support/message_of.h"
 
 namespace flexarm {
@@ -32,6 +35,15 @@ int InChild(const std::function<int()>& body) {
   int status = 0;
   EXPECT_EQ(waitpid(child, &status, 0), child);
   return status;
+}
+
+// The same by a user without rights.
+int AsNobody(const std::function<int()>& body) {
+  return InChild([&] {
+    constexpr uid_t kNobody = 65534;
+    if (geteuid() == 0 && (setgid(kNobody) != 0 || setuid(kNobody) != 0)) return 2;
+    return body();
+  });
 }
 
 TEST_F(StateFolderTest, WhatWasWrittenIsReadByTheNext) {
@@ -101,15 +113,30 @@ TEST_F(StateFolderTest, AFileWithoutPermissionIsAProblem) {
   there.Put(kName, "text");
   std::filesystem::permissions(there.file(kName), std::filesystem::perms::none);
   std::filesystem::permissions(there.path().parent_path(), std::filesystem::perms::all);
-  const int status = InChild([&] {
-    constexpr uid_t kNobody = 65534;
-    if (geteuid() == 0 && (setgid(kNobody) != 0 || setuid(kNobody) != 0)) return 2;
+  const int status = AsNobody([&] {
     const FileText found = StateFolder(there.path()).Read(kName);
     const bool named = found.problem.find("Permission denied") != std::string::npos;
     return !found.text && named ? 0 : 1;
   });
   EXPECT_EQ(WEXITSTATUS(status), 0);
   EXPECT_TRUE(WIFEXITED(status));
+}
+
+TEST_F(StateFolderTest, AFolderWithoutPermissionIsRefusedWithTheRemedy) {
+  std::filesystem::create_directories(there.path());
+  std::filesystem::permissions(there.path(), std::filesystem::perms::none);
+  std::filesystem::permissions(there.path().parent_path(), std::filesystem::perms::all);
+  const int status = AsNobody([&] {
+    const std::string refusal =
+        MessageOf<RejectedError>([&] { const StateFolder folder(there.path()); });
+    return refusal.find("cannot be opened: Permission denied") != std::string::npos &&
+                   refusal.find("daemon.state_directory") != std::string::npos
+               ? 0
+               : 1;
+  });
+  std::filesystem::permissions(there.path(), std::filesystem::perms::owner_all);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST_F(StateFolderTest, AFullDiskLeavesTheOldFile) {
@@ -155,8 +182,77 @@ TEST_F(StateFolderTest, AProcessKilledInTheMiddleOfAWriteLeavesTheOldFile) {
   ASSERT_TRUE(killed_while_writing());
   const StateFolder folder(there.path());
   EXPECT_EQ(folder.Read(kName).text, "old");
+  errno = EIO;  // of an earlier call
   EXPECT_EQ(folder.Remove(kName).problem, "");
   EXPECT_EQ(folder.Read(kName).problem, "") << "the part is removed too";
+}
+
+// Its entry in the folder above.
+TEST_F(StateFolderTest, AFolderThatIsNewIsSyncedSoThatAPowerFailureKeepsIt) {
+  file_systems_synced = 0;
+  {
+    const StateFolder made(there.path());
+  }
+  EXPECT_EQ(file_systems_synced, 1);
+  {
+    const StateFolder found(there.path());
+  }
+  EXPECT_EQ(file_systems_synced, 1) << "it was there";
+}
+
+TEST_F(StateFolderTest, ARemovalThatIsNotSyncedIsAProblem) {
+  const StateFolder folder(there.path());
+  ASSERT_EQ(folder.Replace(kName, "text").problem, "");
+  const FoldersFailToSync failing;
+  const FileChange change = folder.Remove(kName);
+  EXPECT_THAT(change.problem, HasSubstr(kName));
+  EXPECT_FALSE(change.untouched);
+}
+
+// How many descriptors of this process are of something in the folder, or of the folder.
+int OpenIn(const std::filesystem::path& folder, bool only_inherited = false) {
+  int count = 0;
+  for (int fd = 0; fd < 256; ++fd) {
+    std::error_code closed;
+    const auto target =
+        std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(fd), closed);
+    if (closed || !target.native().starts_with(folder.native())) continue;
+    count += !only_inherited || (fcntl(fd, F_GETFD) & FD_CLOEXEC) == 0;
+  }
+  return count;
+}
+
+TEST_F(StateFolderTest, NothingButTheFolderStaysOpen) {
+  there.Put(kName, "text");
+  {
+    const StateFolder folder(there.path());
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(folder.Read(kName).text, "text");
+      EXPECT_THROW(StateFolder(there.path()), RejectedError);
+    }
+    EXPECT_EQ(OpenIn(there.path()), 1);
+    EXPECT_EQ(OpenIn(there.path(), true), 0) << "a program that the daemon starts would lock it";
+  }
+  EXPECT_EQ(OpenIn(there.path()), 0);
+}
+
+// Then the next file that is opened has the descriptor 0.
+TEST_F(StateFolderTest, WithoutAStandardInputItIsTheSame) {
+  there.Put(kName, "text");
+  const int status = InChild([&] {
+    close(STDIN_FILENO);
+    return StateFolder(there.path()).Read(kName).text == "text" ? 0 : 1;
+  });
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const StateFolder folder(there.path());
+  const int of_file = InChild([&] {
+    close(STDIN_FILENO);
+    errno = 0;
+    return folder.Read(kName).text == "text" ? 0 : 1;
+  });
+  EXPECT_TRUE(WIFEXITED(of_file));
+  EXPECT_EQ(WEXITSTATUS(of_file), 0);
 }
 
 TEST_F(StateFolderTest, AFolderThatWasDeletedIsNamed) {

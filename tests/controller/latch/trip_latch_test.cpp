@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "tests/controller/latch/latch_folder.h"
+#include "tests/controller/latch/sync_calls.h"
 
 namespace flexarm {
 namespace {
 
 using enum SafetyState;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -29,8 +31,9 @@ class TripLatchTest : public testing::Test {
     latch_.reset();
     journal_.clear();
     latch_ = std::make_unique<TripLatch>(
-        there_.path(), "/runs",
-        [this](bool, const std::string& text) { journal_.push_back(text); });
+        there_.path(), "/runs", [this](bool is_error, const std::string& text) {
+          journal_.push_back((is_error ? "error: " : "info: ") + text);
+        });
     return latch_->Open();
   }
 
@@ -63,6 +66,7 @@ class TripLatchTest : public testing::Test {
 
 TEST_F(TripLatchTest, TheFirstStartHasNoTripAndNoFile) {
   EXPECT_FALSE(Restart());
+  EXPECT_NE(latch_->folder(), nullptr);
   Follow(In(kStarting));
   Follow(In(kIdle));
   EXPECT_FALSE(there_.Has(kFile));
@@ -84,9 +88,9 @@ TEST_F(TripLatchTest, ATripComesBackWithItsCauseItsValuesAndItsTimeUntilItsReset
     EXPECT_EQ(trip->evidence.channel, kEvidence.channel);
     EXPECT_EQ(trip->time_utc, time_utc);
     EXPECT_TRUE(trip->before_start);
-    EXPECT_THAT(journal_, ElementsAre(testing::AllOf(HasSubstr("from before this start"),
-                                                     HasSubstr("soft-limit-2"), HasSubstr(time_utc),
-                                                     HasSubstr(kFile))));
+    EXPECT_THAT(journal_, ElementsAre(AllOf(
+                              HasSubstr("error: "), HasSubstr("from before this start"),
+                              HasSubstr("soft-limit-2"), HasSubstr(time_utc), HasSubstr(kFile))));
     Follow(In(kStarting));
     Follow(In(kTripped));
     EXPECT_TRUE(latch_->trip()->before_start);
@@ -95,6 +99,7 @@ TEST_F(TripLatchTest, ATripComesBackWithItsCauseItsValuesAndItsTimeUntilItsReset
   EXPECT_TRUE(there_.Has(kFile)) << "the reset is not answered yet";
   Follow(In(kIdle));
   EXPECT_FALSE(there_.Has(kFile));
+  EXPECT_FALSE(latch_->trip());
   EXPECT_FALSE(Restart());
 }
 
@@ -161,8 +166,10 @@ TEST_F(TripLatchTest, AFileThatCannotBeReadIsATripUntilItsReset) {
     EXPECT_EQ(trip.cause, TripCause::kTripRecordUnreadable);
     EXPECT_THAT(trip.record_problem, HasSubstr(there_.file(kFile).string()));
     EXPECT_EQ(trip.time_utc, "");
-    EXPECT_EQ(there_.Text(kFile), text) << "what was found stays for those who look";
+    EXPECT_TRUE(trip.before_start);
+    EXPECT_THAT(journal_, ElementsAre(HasSubstr(trip.record_problem)));
     Follow(In(kTripped, TripCause::kTripRecordUnreadable));
+    EXPECT_EQ(there_.Text(kFile), text) << "what was found stays for those who look";
     EXPECT_EQ(Restart().value().cause, TripCause::kTripRecordUnreadable);
     Follow(In(kIdle));
     EXPECT_FALSE(Restart());
@@ -175,7 +182,8 @@ TEST_F(TripLatchTest, WithoutRoomTheArmIsNotArmedAndTheReasonIsTold) {
     const FullDisk full;
     EXPECT_THAT(latch_->PrepareArm(In(kIdle)), HasSubstr(kFile));
   }
-  EXPECT_THAT(journal_, ElementsAre(HasSubstr("the arm is not armed")));
+  EXPECT_THAT(journal_,
+              ElementsAre(AllOf(HasSubstr("error: "), HasSubstr("the arm is not armed"))));
   EXPECT_EQ(latch_->PrepareArm(In(kIdle)), "");
   std::filesystem::remove_all(there_.path());
   Follow(In(kIdle));
@@ -184,6 +192,7 @@ TEST_F(TripLatchTest, WithoutRoomTheArmIsNotArmedAndTheReasonIsTold) {
 
 TEST_F(TripLatchTest, BeforeItIsOpenNothingMayBeArmed) {
   TripLatch closed(there_.path(), "/runs", [](bool, const std::string&) {});
+  EXPECT_EQ(closed.folder(), nullptr);
   EXPECT_NE(closed.PrepareArm(In(kIdle)), "");
   EXPECT_FALSE(std::filesystem::exists(there_.path()));
 }
@@ -201,7 +210,8 @@ TEST_F(TripLatchTest, WithoutRoomATripIsToldOnceAndTriedEverySecond) {
   {
     const FullDisk full;
     for (int k = 0; k < 80; ++k) Follow(In(kTripped));
-    EXPECT_THAT(journal_, ElementsAre(HasSubstr("would not survive a restart")));
+    EXPECT_THAT(journal_,
+                ElementsAre(AllOf(HasSubstr("error: "), HasSubstr("would not survive a restart"))));
     EXPECT_THAT(latch_->problem(), HasSubstr(kFile));
   }
   int periods = 0;
@@ -212,7 +222,7 @@ TEST_F(TripLatchTest, WithoutRoomATripIsToldOnceAndTriedEverySecond) {
   EXPECT_LE(periods, 50);
   EXPECT_GT(periods, 1) << "not in every period";
   EXPECT_EQ(latch_->problem(), "");
-  EXPECT_THAT(journal_.back(), HasSubstr("in order again"));
+  EXPECT_THAT(journal_.back(), HasSubstr("info: the latch file is in order again"));
   EXPECT_EQ(Restart().value().cause, TripCause::kSoftLimit2);
 }
 
@@ -247,6 +257,108 @@ TEST_F(TripLatchTest, AFileThatCannotBeRemovedIsToldAndTheNextStartIsTripped) {
   EXPECT_THAT(journal_.back(), HasSubstr("a restarted daemon would be tripped"));
   EXPECT_NE(latch_->PrepareArm(In(kIdle)), "");
   EXPECT_TRUE(Restart());
+}
+
+TEST_F(TripLatchTest, ASecondTripByTheSameCauseIsAnotherIfItsValuesDiffer) {
+  Restart();
+  Follow(In(kTripped));
+  Permit second = In(kTripped);
+  second.evidence.value = 1.7;
+  Follow(second);
+  EXPECT_EQ(Restart().value().evidence.value, 1.7);
+}
+
+TEST_F(TripLatchTest, ATripIsWrittenOnce) {
+  Restart();
+  Follow(In(kTripped));
+  there_.Put(kFile, "of another process");
+  for (int k = 0; k < 200; ++k) Follow(In(kTripped));
+  EXPECT_EQ(there_.Text(kFile), "of another process");
+}
+
+TEST_F(TripLatchTest, AWriteThatFailedIsTriedAfterASecondAndLaterOnesAtOnce) {
+  Restart();
+  {
+    const FullDisk full;
+    latch_->Follow(0, In(kTripped), false);
+  }
+  latch_->Follow(TripLatch::kRetryNs - 1, In(kTripped), false);
+  EXPECT_FALSE(there_.Has(kFile));
+  latch_->Follow(TripLatch::kRetryNs, In(kTripped), false);
+  EXPECT_TRUE(there_.Has(kFile));
+  latch_->Follow(TripLatch::kRetryNs + 1, In(kTripped, TripCause::kEmergencyStop), false);
+  EXPECT_THAT(there_.Text(kFile), HasSubstr(ToString(TripCause::kEmergencyStop)));
+  latch_->Follow(TripLatch::kRetryNs + 2, In(kIdle), false);
+  EXPECT_FALSE(there_.Has(kFile));
+}
+
+TEST_F(TripLatchTest, AResetAfterASecondTripThatHadNoRoomRemovesTheFirst) {
+  Restart();
+  Follow(In(kTripped));
+  {
+    const FullDisk full;
+    Follow(In(kTripped, TripCause::kEmergencyStop));
+  }
+  Follow(In(kIdle));
+  EXPECT_FALSE(Restart());
+}
+
+// The file was removed, but a power failure could bring it back.
+TEST_F(TripLatchTest, ARemovalThatWasNotSyncedIsTriedAgain) {
+  Restart();
+  Arm();
+  {
+    const FoldersFailToSync failing;
+    Follow(In(kIdle));
+  }
+  EXPECT_THAT(journal_, ElementsAre(HasSubstr("a restarted daemon would be tripped")));
+  EXPECT_NE(latch_->problem(), "");
+  for (int k = 0; k < 50; ++k) Follow(In(kIdle));
+  EXPECT_EQ(latch_->problem(), "");
+}
+
+TEST_F(TripLatchTest, AfterARemovalThatWasNotSyncedTheFileIsWrittenBeforeTheArmIsArmed) {
+  Restart();
+  Arm();
+  {
+    const FoldersFailToSync failing;
+    Follow(In(kIdle));
+  }
+  EXPECT_EQ(latch_->PrepareArm(In(kIdle)), "");
+  EXPECT_EQ(latch_->problem(), "") << "the file is as it should be";
+  EXPECT_EQ(Restart().value().cause, TripCause::kEndedWhileArmed);
+}
+
+TEST_F(TripLatchTest, AFileThatWasWrittenButNotSyncedArmsNothingAndGoes) {
+  Restart();
+  Follow(In(kIdle));
+  {
+    const FoldersFailToSync failing;
+    EXPECT_THAT(latch_->PrepareArm(In(kIdle)), HasSubstr("cannot be synced"));
+  }
+  EXPECT_TRUE(there_.Has(kFile));
+  Follow(In(kIdle));
+  EXPECT_FALSE(Restart());
+}
+
+TEST_F(TripLatchTest, TheSameTroubleIsToldAgainWhereItMeansSomethingElse) {
+  Restart();
+  const FoldersFailToSync failing;
+  for (int k = 0; k < 10; ++k) Follow(In(kTripped));
+  for (int k = 0; k < 10; ++k) Follow(In(kIdle));
+  EXPECT_THAT(journal_, ElementsAre(HasSubstr("would not survive a restart"),
+                                    HasSubstr("a restarted daemon would be tripped")));
+}
+
+TEST_F(TripLatchTest, AnotherTroubleIsToldToo) {
+  Restart();
+  {
+    const FullDisk full;
+    Follow(In(kTripped));
+  }
+  std::filesystem::remove_all(there_.path());
+  for (int k = 0; k < 50; ++k) Follow(In(kTripped));
+  EXPECT_THAT(journal_, ElementsAre(HasSubstr("File too large"), HasSubstr("No such file")));
 }
 
 // Whenever the process is killed: if the relay may be closed, or a trip was seen and its reset was
