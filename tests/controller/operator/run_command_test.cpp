@@ -39,8 +39,12 @@ class RunCommandTest : public OperatorParts {
                   return ParseExperiment(text, name);
                 },
             .judge_experiment =
-                [this](const Experiment&, const std::array<double, 2>&, const std::stop_token&) {
-                  while (judging_held_) std::this_thread::yield();
+                [this](const Experiment&, const std::array<double, 2>& start_rad,
+                       const std::stop_token& stop) {
+                  judging_begun_ = true;
+                  while (judging_held_ && !stop.stop_requested()) std::this_thread::yield();
+                  given_up_ = stop.stop_requested();
+                  judged_from_rad_ = start_rad;
                   return objection_;
                 },
             .plan_wait = {}};
@@ -68,7 +72,10 @@ class RunCommandTest : public OperatorParts {
 
   std::atomic<bool> held_ = true;
   std::atomic<bool> judging_held_ = false;
+  std::atomic<bool> judging_begun_ = false;
+  std::atomic<bool> given_up_ = false;
   std::optional<UnmetCondition> objection_;
+  std::array<double, 2> judged_from_rad_{};
   bool client_is_there_ = true;
   RunCommand run_{TargetsOf()};  // in place of the one that waits
 };
@@ -121,8 +128,27 @@ TEST_F(RunCommandTest, AStopADisarmTheEndOfTheDaemonAndAClientThatHasGoneCancelA
 TEST_F(RunCommandTest, ACancelledRunDoesNotCancelTheNext) {
   run_.Cancel();
   EXPECT_TRUE(Start().is_null());
+  run_.Cancel();
+  EXPECT_EQ(Follow()->json["refusal"], "cancelled");
+  EXPECT_TRUE(Start().is_null());
   EXPECT_FALSE(FollowToTheEnd());
   EXPECT_EQ(stack_.TakeRequests().size(), 1u);
+}
+
+TEST_F(RunCommandTest, IsNotPlannedWhereItWouldBeRefused) {
+  now_.shutting_down = true;
+  const Json ends = Start();
+  EXPECT_EQ(ends["refusal"], "shutting-down");
+  EXPECT_EQ(ends["command"], "run");
+  EXPECT_EQ(ends["state"], "Armed");
+  now_.shutting_down = false;
+  now_.permit.state = SafetyState::kIdle;
+  const Json idle = Start();
+  EXPECT_EQ(idle["refusal"], "wrong-state");
+  EXPECT_EQ(idle["ok"], false);
+  EXPECT_EQ(idle["command"], "run");
+  EXPECT_EQ(idle["state"], "Idle");
+  EXPECT_FALSE(run_.planning());
 }
 
 // What has changed while it was planned.
@@ -138,6 +164,41 @@ TEST_F(RunCommandTest, TheConditionsAreJudgedAgainWhenThePlanIsThere) {
   const std::optional<ClientAnswer> moved = FollowToTheEnd();
   EXPECT_THAT(moved->json.value("error", ""), HasSubstr("was moved"));
   EXPECT_EQ(moved->json["refusal"], "arm-moved");
+}
+
+TEST_F(RunCommandTest, AnArmThatStandsWhereThePlanBeginsIsRun) {
+  now_.tick.output.angle_rad[0] = 0.1;
+  now_.tick.output.angle_rad[1] = -0.2;
+  EXPECT_TRUE(Start().is_null());
+  now_.tick.output.angle_rad[0] += 0.009;
+  now_.tick.output.angle_rad[1] -= 0.009;
+  EXPECT_FALSE(FollowToTheEnd());
+  EXPECT_EQ(judged_from_rad_, (std::array{0.1, -0.2}));
+  const std::vector<OperatorRequest> made = stack_.TakeRequests();
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_DOUBLE_EQ(made[0].run.experiment->reference.At(0).x_m[0], 0.1);
+}
+
+TEST_F(RunCommandTest, AnArmOfWhichEitherJointWasMovedIsNotRun) {
+  for (const std::size_t joint : {0U, 1U}) {
+    held_ = true;
+    EXPECT_TRUE(Start().is_null());
+    now_.tick.output.angle_rad[joint] -= 0.011;
+    const std::optional<ClientAnswer> answer = FollowToTheEnd();
+    ASSERT_TRUE(answer) << joint;
+    EXPECT_EQ(answer->json["refusal"], "arm-moved");
+  }
+  EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(RunCommandTest, TheSwitchesMayBeOverriddenToo) {
+  EXPECT_TRUE(run_.Start({{"command", "run"},
+                          {"experiment", kPlannedMove},
+                          {"overrides", {{kSwitchesCondition, "seen to work"}}}},
+                         kRunClient, now_)
+                  .is_null());
+  EXPECT_FALSE(FollowToTheEnd());
+  EXPECT_EQ(stack_.TakeRequests().size(), 1u);
 }
 
 TEST_F(RunCommandTest, APlanWaitsForTheAnswerToAReset) {
@@ -178,8 +239,19 @@ TEST_F(RunCommandTest, TheOperatorGoesOnWhileAnExperimentIsJudged) {
   EXPECT_TRUE(run_.planning());
   run_.Cancel();
   EXPECT_EQ(Follow()->json["refusal"], "cancelled");
-  judging_held_ = false;
   EXPECT_THAT(stack_.TakeRequests(), IsEmpty());
+}
+
+TEST_F(RunCommandTest, ACancelledPlanIsGivenUp) {
+  judging_held_ = true;
+  held_ = false;
+  EXPECT_TRUE(Start().is_null());
+  while (!judging_begun_) std::this_thread::yield();
+  run_.Cancel();
+  EXPECT_EQ(Follow()->json["refusal"], "cancelled");
+  const auto latest = std::chrono::steady_clock::now() + kPlanWait;
+  while (!given_up_ && std::chrono::steady_clock::now() < latest) std::this_thread::yield();
+  EXPECT_TRUE(given_up_);
 }
 
 TEST_F(RunCommandTest, AnObjectionRefusesTheRunAndSaysHowToOverrideIt) {
