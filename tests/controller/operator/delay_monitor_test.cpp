@@ -16,6 +16,13 @@ StepInput Acted(std::int64_t acted_late_ns, std::int64_t acts_late_ns,
   return input;
 }
 
+TEST(DelayMonitor, BeforeTheFirstStepNoDelayWasMeasured) {
+  const DelayMonitor watch(20 * kMs, 0.009);
+  EXPECT_EQ(watch.delay_ms(), 0.0);
+  EXPECT_EQ(watch.longest_ms(), 0.0);
+  EXPECT_DOUBLE_EQ(watch.margin_ms(), 9.0) << "all of it is left";
+}
+
 TEST(DelayMonitor, TellsTheDelayOfTheLastTorqueAndTheLongest) {
   DelayMonitor watch(20 * kMs, 0.009);
   watch.Take(Acted(0, 0));
@@ -58,6 +65,13 @@ TEST(FoundDelayMonitor, TellsOnceARunThatADelayWasFound) {
   EXPECT_FALSE(take(1)) << "said already";
   EXPECT_FALSE(take(1, SafetyState::kStopping));
   EXPECT_TRUE(take(1)) << "the next run";
+}
+
+TEST(FoundDelayMonitor, TellsADelayThatIsFoundInTheFirstStep) {
+  FoundDelayMonitor watch;
+  StepOutput output{};
+  output.delay_found = 1;
+  EXPECT_TRUE(watch.Take(Acted(0, 0), output));
 }
 
 TEST(DelayMonitor, SaysNothingWhileNothingRuns) {
