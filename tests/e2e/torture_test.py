@@ -34,7 +34,7 @@ class Torture(ProgramTest):
         file.write_text('{"seed": 1}')
         refused = self.run_program("flexarm", "torture", "-c", HIL, "--scenario", file)
         self.assertEqual(refused.returncode, 2)
-        self.assertIn("small.json: no scenario of a torture", refused.stderr)
+        self.assertIn("small.json: wake_ups is missing; expected a scenario", refused.stderr)
         scenario = {"seed": 7, "law": "lqg", "payload_kg": 0.1, "plant": [], "move_to_deg": [30, -40], "move_s": 2.0,
                     "situation": "Running", "after_ms": 400, "faults": [
                         {"place": "counter", "index": 0, "kind": "off", "from_ms": 0, "to_ms": None, "seed": 1}],

@@ -31,7 +31,11 @@ class Object {
 
   const Json& Member(const char* key) const {
     const auto found = json_.find(key);
-    if (found == json_.end()) throw InputError(where_ + key + " is missing");
+    if (found == json_.end()) {
+      throw InputError(
+          where_ + key +
+          " is missing; expected a scenario as `flexarm torture --minimise` prints it");
+    }
     return *found;
   }
   Object Within(const char* key) const { return {Member(key), where_ + key + "."}; }
