@@ -21,7 +21,9 @@ amplifier1=strain-amplifier-1 amplifier2=strain-amplifier-2
 # Of the journal: starting `flexarm status` takes longer than a trip.
 last_change() { grep -oE '[A-Za-z]+ -> [A-Za-z]+.*' daemon.log | tail -n 1; }
 came_to() { [[ $(last_change) == *"-> $1"* ]]; }
-armed() { check "armed" within 20 arm_rig >/dev/null; }
+armed() { check "armed" within 20 arm_quietly; }
+arm_quietly() { arm_rig >/dev/null 2>&1; }
+zero_quietly() { flexarm zero >/dev/null 2>&1; }
 more_than() { (($(count "$2") > $1)); }
 
 # fault FAULT END PATTERN: in the present state; its trip, its end, and a reset.
@@ -82,13 +84,7 @@ tcp() {
 }
 
 serial() {
-  # The slower line needs more of the period.
-  sed -i -e '/^port = 15022$/d' -e "/^name = \"$amplifier2\"$/,/^response/{
-    s/^transport = .*/transport = \"rtu\"/
-    s#^host = .*#device = \"$PWD/serial\"\nbaud = 230400\nparity = \"even\"\ndata_bits = 8\nstop_bits = 1#
-    s/^response.*/response_timeout_ms = 2.0/
-  }" wire.toml
-  printf '[loop]\nacquire_before_ms = 14.0\nstep_deadline_ms = 4.0\n' >>wire.toml
+  put_on_serial_line $amplifier2
   start_rig
   start_daemon
   replies $amplifier2 silent "late 30" bad-checksum byte-by-byte half-frame wrong-unit \
@@ -118,7 +114,7 @@ can() {
   node() {  # node ROLE FAULT NAME
     armed
     fault "node $1 $2" "node $1 well" "$3"
-    within 20 flexarm zero >/dev/null  # an encoder that was lost does not know its angle
+    check "$1 $2: zero" within 20 zero_quietly  # an encoder that was lost does not know its angle
   }
   for node in "drive1 drive-fault: vcan0: node 1" "rotor2 bus-lost: vcan0: node 14"; do
     set -- "${node%% *}" "${node#* }"
@@ -141,7 +137,7 @@ power() {
   start_rig --relay-feeds-drives --payload-kg 6  # too heavy for its links
   start_daemon
   for test in Pump Relay Power; do
-    arm_rig >/dev/null 2>&1 &  # it answers when the arm is armed
+    arm_quietly &  # it answers when the arm is armed
     check "in the test" within 20 came_to "Testing$test"
     fault "press emergency-stop 0" "press emergency-stop 1" emergency-stop
     wait $!
@@ -152,15 +148,7 @@ power() {
 TestingPump -> TestingRelay
 TestingRelay -> TestingPower
 TestingPower -> Armed'
-  cat >too-heavy.toml <<'TOML'
-name = "too-heavy"
-duration_s = 8.0
-[[move]]
-start_s = 0.0
-duration_s = 1.0
-to_deg = [40.0, 0.0]
-TOML
-  check "a run" flexarm run --override-switches "emulated machine" too-heavy.toml
+  check "a run" flexarm run --override-switches "emulated machine" quick.toml
   check "damped" within 10 grep -q -- 'Running -> FaultStopping: bending-strain-2' daemon.log
   check "tripped" within 10 came_to Tripped
   check "the hardware has no power" equal "$(hardware)" "$dead"

@@ -21,6 +21,11 @@ start_simulated() {  # start_simulated STATE_FOLDER OPTION..
   check "started" came_to 300 'Starting -> '
 }
 
+event() {  # event EXPERIMENT WHAT: that experiment, in which it happens
+  cat "$1"
+  printf '[[sim_event]]\nat_s = 0.5\n%s\n' "$2"
+}
+
 echo "== every state"
 start_simulated state
 press_sim() { flexarm sim reset-button 1 >/dev/null; sleep 0.1; flexarm sim reset-button 0 >/dev/null; }
@@ -46,17 +51,7 @@ check "zero" within 20 flexarm zero
 ends 0 safety control plant
 
 echo "== a fault stop, by a payload that bends the links too far"
-cat >too-heavy.toml <<'TOML'
-name = "too-heavy"
-duration_s = 8.0
-[[move]]
-start_s = 0.0
-duration_s = 1.0
-to_deg = [40.0, 0.0]
-[[sim_event]]
-at_s = 0.5
-payload_kg = 6.0
-TOML
+event quick.toml "payload_kg = 6.0" >too-heavy.toml
 start_simulated state-2
 arm_sim
 check "a run" flexarm run too-heavy.toml
@@ -64,13 +59,9 @@ check "damped" came_to 10 'Running -> FaultStopping'
 check "tripped" came_to 10 'FaultStopping -> Tripped'
 ends 1 safety control plant
 
-event() {  # event WHAT: a slow move in which it happens
-  cat slow.toml
-  printf '[[sim_event]]\nat_s = 0.5\n%s\n' "$1"
-}
 for fault in "plant \(stale-frame\|no-counter-reading\)" "control control-heartbeat-lost"; do
   echo "== the thread ${fault% *} stands still"
-  event "freeze = \"${fault% *}\"" >frozen.toml
+  event slow.toml "freeze = \"${fault% *}\"" >frozen.toml
   start_simulated "state-${fault% *}"
   arm_sim
   check "a run" flexarm run frozen.toml
@@ -79,7 +70,7 @@ for fault in "plant \(stale-frame\|no-counter-reading\)" "control control-heartb
 done
 
 echo "== a daemon that is killed, and the next one"
-event "kill = true" >killed.toml
+event slow.toml "kill = true" >killed.toml
 start_simulated state-killed
 arm_sim
 check "a run" flexarm run killed.toml

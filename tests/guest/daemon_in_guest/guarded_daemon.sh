@@ -37,3 +37,12 @@ start_s = 0.0
 duration_s = 8.0
 to_deg = [4.0, -4.0]
 TOML
+# So fast that a payload of 6 kg bends the links too far.
+cat >quick.toml <<'TOML'
+name = "quick"
+duration_s = 8.0
+[[move]]
+start_s = 0.0
+duration_s = 1.0
+to_deg = [40.0, 0.0]
+TOML

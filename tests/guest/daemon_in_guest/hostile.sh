@@ -8,14 +8,7 @@
 . "$(dirname "$0")/rig.sh"
 
 tcp=strain-amplifier-1 rtu=strain-amplifier-2
-# The second amplifier is on a serial line, which the rig creates and the daemon opens. The slower
-# line needs more of the period.
-sed -i -e '/^port = 15022$/d' -e "/^name = \"$rtu\"$/,/^response/{
-  s/^transport = .*/transport = \"rtu\"/
-  s#^host = .*#device = \"$PWD/serial\"\nbaud = 230400\nparity = \"even\"\ndata_bits = 8\nstop_bits = 1#
-  s/^response.*/response_timeout_ms = 2.0/
-}" wire.toml
-printf '[loop]\nacquire_before_ms = 14.0\nstep_deadline_ms = 4.0\n' >>wire.toml
+put_on_serial_line $rtu
 check "the config is valid" flexarm config check wire.toml
 start_rig
 check "the serial line exists" test -c serial

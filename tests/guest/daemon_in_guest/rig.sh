@@ -19,6 +19,17 @@ chip=$(cat /sys/kernel/config/gpio-sim/rig/bank/chip_name)
 sed "s/^chip = .*/chip = \"$chip\"/" $configs/hil-wire.toml >wire.toml
 sed -i "s#^extends = .*#extends = \"$configs/thesis-rig.toml\"#" wire.toml
 
+# put_on_serial_line AMPLIFIER: the second one, in wire.toml. The rig creates the line, the daemon
+# opens it. It is slower, and needs more of the period.
+put_on_serial_line() {
+  sed -i -e '/^port = 15022$/d' -e "/^name = \"$1\"$/,/^response/{
+    s/^transport = .*/transport = \"rtu\"/
+    s#^host = .*#device = \"$PWD/serial\"\nbaud = 230400\nparity = \"even\"\ndata_bits = 8\nstop_bits = 1#
+    s/^response.*/response_timeout_ms = 2.0/
+  }" wire.toml
+  printf '[loop]\nacquire_before_ms = 14.0\nstep_deadline_ms = 4.0\n' >>wire.toml
+}
+
 start_rig() {  # start_rig OPTION..: of `flexarm rig`
   failures_before=$failures
   rm -f rig.in rig.out
